@@ -1,0 +1,38 @@
+// What a scene file says beside the scene itself: film, sampler, integrator. Options of the command line
+// override it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "montelux/mc/random/sampler_settings.h"
+#include "montelux/scene/film/film_settings.h"
+#include "montelux/scene/scene.h"
+
+namespace montelux {
+
+// How the light at a vertex of a path is found (MISSION C5, C9).
+enum class Strategy : std::uint8_t {
+    uniform, // directions uniform over the sphere (hemisphere for opaque surfaces)
+    bsdf,    // directions by BSDF sampling
+    light,   // points on lights; what lights cannot be sampled for (mirrors, seen lights) by BSDF sampling
+    mis,     // both, joined by multiple importance sampling
+};
+enum class Heuristic : std::uint8_t { balance, power };
+
+struct IntegratorSettings {
+    int max_depth = 5; // scattering events of a path
+    Strategy strategy = Strategy::mis;
+    Heuristic heuristic = Heuristic::power;
+};
+
+struct SceneDescription {
+    Scene scene;
+    FilmSettings film;
+    SamplerSettings sampler;
+    IntegratorSettings integrator;
+    std::string output_file; // the file's own wish; may be empty
+};
+
+} // namespace montelux

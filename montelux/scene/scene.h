@@ -1,0 +1,44 @@
+// The scene: plain values in flat arrays, immutable once built.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "montelux/image/image.h"
+#include "montelux/scene/camera/camera_settings.h"
+#include "montelux/scene/light/light.h"
+#include "montelux/scene/material/material.h"
+#include "montelux/scene/shape/shape.h"
+#include "montelux/scene/texture/texture.h"
+
+namespace montelux {
+
+// A group of shapes in a space of its own, placed by instances.
+struct ObjectDefinition {
+    std::vector<Index> shapes;
+};
+struct Instance {
+    Index object = none;
+    Transform world_from_object;
+};
+
+struct Scene {
+    std::vector<TriangleMesh> meshes;
+    std::vector<Quadric> quadrics;
+    std::vector<Shape> shapes;
+    std::vector<Index> world_shapes; // shapes that stand directly in the world
+    std::vector<ObjectDefinition> objects;
+    std::vector<Instance> instances;
+
+    std::vector<Material> materials;
+    std::vector<FloatTexture> float_textures;
+    std::vector<SpectrumTexture> spectrum_textures;
+    std::vector<Image> images;       // of image textures
+    std::vector<Image> environments; // square equal-area maps, R, G, B linear
+
+    std::vector<Light> lights; // the area lights of one mesh stand side by side, one a triangle
+    CameraSettings camera;
+};
+
+} // namespace montelux

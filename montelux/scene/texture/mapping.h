@@ -1,0 +1,40 @@
+// From a point on a surface to the (s, t) of a 2-D texture.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "montelux/mc/math/constants.h"
+#include "montelux/mc/math/transform.h"
+
+namespace montelux {
+
+// What a texture may look at. The footprint (duvdx, duvdy: one pixel step to the right and down) selects
+// the level of detail; zero means "no filtering".
+struct TextureContext {
+    Point3f p; // world space
+    Vec3f n;
+    Point2f uv;
+    Vec3f dpdx, dpdy;
+    Vec2f duvdx, duvdy;
+};
+
+struct TextureCoordinates {
+    Point2f st;
+    Vec2f dstdx, dstdy;
+};
+
+// uv: (s, t) = (su u + du, sv v + dv). The others start from the point in texture space:
+// spherical (theta/pi, phi/2pi), cylindrical (phi/2pi, z), planar (ds + p.vs, dt + p.vt), where du and dv
+// are the offsets of the planar map.
+struct TextureMapping {
+    enum class Kind : std::uint8_t { uv, spherical, cylindrical, planar };
+    Kind kind = Kind::uv;
+    float su = 1, sv = 1, du = 0, dv = 0;
+    Vec3f vs{1, 0, 0}, vt{0, 1, 0};
+    Transform texture_from_world;
+
+    TextureCoordinates operator()(const TextureContext& c) const;
+};
+
+} // namespace montelux

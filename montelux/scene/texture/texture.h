@@ -1,0 +1,76 @@
+// Textures: values over surfaces, as trees of plain nodes in the scene's arrays.
+#pragma once
+
+#include <array>
+#include <variant>
+
+#include "montelux/scene/index.h"
+#include "montelux/scene/texture/mapping.h"
+#include "montelux/spectrum/spectrum.h"
+
+namespace montelux {
+
+// A parameter of a material: a constant, or the texture with that index if there is one.
+struct FloatParameter {
+    float value = 0;
+    Index texture = none;
+
+    bool is_constant() const { return texture == none; }
+};
+struct SpectrumParameter {
+    Spectrum value;
+    Index texture = none;
+
+    bool is_constant() const { return texture == none; }
+};
+
+// What an RGB colour stands for when it becomes a spectrum.
+enum class RgbMeaning : std::uint8_t { albedo, unbounded, illuminant };
+
+enum class TextureFilter : std::uint8_t { point, bilinear, trilinear, ewa };
+enum class TextureWrap : std::uint8_t { repeat, black, clamp, octahedral_sphere };
+
+// Texels are filtered first, then scaled (and 1 - x taken when `invert`), then read as a spectrum;
+// a float texture uses the mean of the colour channels.
+struct ImageTexture {
+    Index image = none; // into Scene::images
+    TextureMapping mapping;
+    TextureFilter filter = TextureFilter::bilinear;
+    TextureWrap wrap = TextureWrap::repeat;
+    float max_anisotropy = 8;
+    float scale = 1;
+    bool invert = false;
+    RgbMeaning meaning = RgbMeaning::albedo; // of spectrum textures
+};
+
+template <typename Parameter>
+struct ConstantTexture {
+    Parameter value;
+};
+template <typename Parameter>
+struct ScaleTexture {
+    Parameter texture;
+    FloatParameter scale;
+};
+// (1 - amount) first + amount second
+template <typename Parameter>
+struct MixTexture {
+    Parameter first, second;
+    FloatParameter amount;
+};
+// Unit cells of alternating value, in (s, t) or, with dimension 3, in texture space. Box-filtered over the
+// footprint.
+template <typename Parameter>
+struct CheckerboardTexture {
+    int dimension = 2;
+    TextureMapping mapping;
+    std::array<Parameter, 2> values;
+};
+
+template <typename Parameter>
+using TextureNode = std::variant<ConstantTexture<Parameter>, ImageTexture, ScaleTexture<Parameter>,
+                                 MixTexture<Parameter>, CheckerboardTexture<Parameter>>;
+using FloatTexture = TextureNode<FloatParameter>;
+using SpectrumTexture = TextureNode<SpectrumParameter>;
+
+} // namespace montelux
