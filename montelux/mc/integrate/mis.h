@@ -1,0 +1,81 @@
+// Weights of multiple importance sampling: balance, power, cutoff and maximum heuristics.
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+namespace montelux {
+
+// Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation", section 9.2. Strategy i draws
+// n_i samples with density p_i; a weight depends on the q_i = n_i p_i alone. Weights sum to 1 wherever
+// some q_i > 0. A strategy with q_i = 0 has weight 0; infinite densities (a delta) take all the weight
+// and share it by their counts.
+
+// Weight of strategy f beside strategy g: q_f / (q_f + q_g).
+template <std::floating_point T>
+constexpr T balance_heuristic(int nf, T f_pdf, int ng, T g_pdf) {
+    T qf = static_cast<T>(nf) * f_pdf, qg = static_cast<T>(ng) * g_pdf;
+    if (!(qf > 0)) return 0;
+    if (qf > std::numeric_limits<T>::max())
+        return qg > std::numeric_limits<T>::max() ? static_cast<T>(nf) / static_cast<T>(nf + ng) : T(1);
+    return 1 / (1 + qg / qf);
+}
+
+// Power heuristic with exponent 2: q_f^2 / (q_f^2 + q_g^2), by the ratio so that squares cannot overflow.
+template <std::floating_point T>
+constexpr T power_heuristic(int nf, T f_pdf, int ng, T g_pdf) {
+    T qf = static_cast<T>(nf) * f_pdf, qg = static_cast<T>(ng) * g_pdf;
+    if (!(qf > 0)) return 0;
+    if (qf > std::numeric_limits<T>::max())
+        return qg > std::numeric_limits<T>::max() ? static_cast<T>(nf) / static_cast<T>(nf + ng) : T(1);
+    T ratio = qg / qf;
+    return 1 / (1 + ratio * ratio);
+}
+
+struct MisHeuristic {
+    enum class Kind { balance, power, cutoff, maximum };
+    Kind kind = Kind::balance;
+    // power: the exponent beta > 0; cutoff: the fraction alpha in [0, 1] of the largest q below which a
+    // strategy is dropped; unused otherwise.
+    double parameter = 0;
+
+    static constexpr MisHeuristic balance() { return {Kind::balance, 1}; }
+    static constexpr MisHeuristic power(double beta = 2) { return {Kind::power, beta}; }
+    static constexpr MisHeuristic cutoff(double alpha = 0.1) { return {Kind::cutoff, alpha}; }
+    static constexpr MisHeuristic maximum() { return {Kind::maximum, 0}; }
+};
+
+// Weight of strategy i where strategy k has q_k = n_k p_k(x). Ties of the maximum heuristic, and
+// infinite q, share equally.
+template <std::floating_point T>
+T mis_weight(const MisHeuristic& heuristic, std::span<const T> q, std::size_t i) {
+    T largest = 0;
+    for (T v : q) largest = v > largest ? v : largest;
+    if (!(q[i] > 0)) return 0;
+
+    std::size_t ties = 0;
+    for (T v : q) ties += v == largest;
+    T share_of_ties = q[i] == largest ? 1 / static_cast<T>(ties) : T(0);
+    if (std::isinf(largest) || heuristic.kind == MisHeuristic::Kind::maximum) return share_of_ties;
+
+    // Relative to the largest, no power and no sum can overflow.
+    T alpha = heuristic.kind == MisHeuristic::Kind::cutoff ? static_cast<T>(heuristic.parameter) : T(0);
+    T beta = heuristic.kind == MisHeuristic::Kind::power ? static_cast<T>(heuristic.parameter) : T(1);
+    auto term = [&](T v) {
+        T r = v / largest;
+        if (!(r > 0) || r < alpha) return T(0);
+        return beta == 1 ? r : std::pow(r, beta);
+    };
+    T sum = 0;
+    for (T v : q) sum += term(v);
+    return term(q[i]) / sum;
+}
+template <std::floating_point T>
+T mis_weight(const MisHeuristic& heuristic, std::span<T> q, std::size_t i) {
+    return mis_weight(heuristic, std::span<const T>(q), i);
+}
+
+} // namespace montelux
