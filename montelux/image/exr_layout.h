@@ -1,0 +1,32 @@
+// The outer structure of an OpenEXR file, checked before any library sees it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "montelux/image/decoders.h"
+
+namespace montelux {
+
+struct ExrChannel {
+    std::string name;
+    int type; // 0 uint, 1 half, 2 float
+};
+
+// What parse_exr learns of the first part.
+struct ExrLayout {
+    int min_x = 0, min_y = 0;
+    int width = 0, height = 0;
+    std::vector<ExrChannel> channels;
+    Attributes attributes;
+};
+
+// Follows "Technical Introduction to OpenEXR" and "OpenEXR File Layout" (openexr.com): headers, chunk offset
+// tables and, for the first part, the frame of every chunk. Refuses what is damaged, incomplete, deep,
+// subsampled or out of proportion to the file with an Error. Attributes that are not needed for the pixels
+// get an unknown type in `bytes`, so that the library passes over values nobody has checked.
+ExrLayout parse_exr(std::span<std::uint8_t> bytes, const std::string& name, const ReadOptions& options);
+
+} // namespace montelux

@@ -1,0 +1,86 @@
+// Helpers of the image tests: a folder that goes away, pictures with known contents, expected sentences.
+#pragma once
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <string>
+#include <unistd.h>
+
+#include "montelux/image/image.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        std::string pattern = (std::filesystem::temp_directory_path() / "montelux-test-XXXXXX").string();
+        if (!::mkdtemp(pattern.data())) throw Error("no temporary folder");
+        path_ = pattern;
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    const std::filesystem::path& path() const { return path_; }
+    int file_count() const {
+        int n = 0;
+        for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(path_)) ++n;
+        return n;
+    }
+
+  private:
+    std::filesystem::path path_;
+};
+
+inline void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
+    std::ofstream(path, std::ios::binary) << bytes;
+}
+
+inline std::string read_bytes(const std::filesystem::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// A fixed sequence that looks random: the mixing function of splitmix64 (Steele et al. 2014).
+inline double noise(std::uint64_t i) {
+    std::uint64_t z = (i + 1) * 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    z ^= z >> 31;
+    return static_cast<double>(z >> 11) * 0x1p-53;
+}
+
+// Positive and negative values over many orders of magnitude.
+inline Image make_picture(int width, int height, std::vector<std::string> channels) {
+    Image image(width, height, std::move(channels));
+    for (std::size_t i = 0; i < image.sample_count(); ++i)
+        image.f32()[i] = static_cast<float>((noise(2 * i) - 0.3) * std::exp2(40 * (noise(2 * i + 1) - 0.5)));
+    return image;
+}
+
+inline bool same_bits(std::span<const float> a, std::span<const float> b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+// Runs `action`, which must throw an Error that mentions all of `parts`.
+template <typename Action>
+void expect_error(Action action, std::initializer_list<std::string> parts) {
+    try {
+        action();
+    } catch (const Error& e) {
+        for (const std::string& part : parts)
+            EXPECT_NE(std::string(e.what()).find(part), std::string::npos)
+                << "'" << part << "' is missing in: " << e.what();
+        return;
+    }
+    ADD_FAILURE() << "no Error was thrown";
+}
+
+} // namespace montelux
