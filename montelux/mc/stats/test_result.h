@@ -1,0 +1,26 @@
+// What a statistical test returns, and how the thresholds of many tests are shared.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+namespace montelux {
+
+struct TestResult {
+    double statistic = 0;
+    double degrees_of_freedom = 0; // 0 where the statistic has none
+    double p_value = 0;            // probability of a result this bad from correct code
+    std::string description;
+
+    // Rejects correct code with probability `significance` at most. NaN does not pass.
+    bool passes(double significance) const { return p_value > significance; }
+};
+
+// The threshold for each of `tests` independent tests when all together may raise a false alarm with
+// probability `significance`. Sidak 1967, "Rectangular Confidence Regions for the Means of Multivariate
+// Normal Distributions".
+inline double sidak_threshold(double significance, int tests) {
+    return -std::expm1(std::log1p(-significance) / tests);
+}
+
+} // namespace montelux
