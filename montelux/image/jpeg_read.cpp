@@ -1,8 +1,10 @@
+// clang-format off: jpeglib.h needs <cstdio> before it, and jerror.h needs jpeglib.h.
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
 #include <jerror.h>
 #include <jpeglib.h>
+// clang-format on
 
 #include "montelux/image/decoders.h"
 #include "montelux/mc/math/error.h"

@@ -1,0 +1,18 @@
+// The subcommands of the command line program: each function registers one and sets the exit code it ends
+// with.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace montelux::app {
+
+// Exit codes of the program.
+inline constexpr int exit_done = 0, exit_failed = 1, exit_usage = 2;
+
+void add_render(CLI::App& app, int& exit_code);
+void add_compare(CLI::App& app, int& exit_code);
+void add_info(CLI::App& app, int& exit_code);
+
+} // namespace montelux::app

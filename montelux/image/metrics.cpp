@@ -1,0 +1,229 @@
+#include "montelux/image/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "montelux/mc/math/compensated.h"
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/stats/moments.h"
+
+namespace montelux {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+std::string size_of(const Image& image) {
+    return std::to_string(image.width()) + " x " + std::to_string(image.height());
+}
+
+bool finite_pixel(const MeasuredPicture& p, int x, int y) {
+    for (std::size_t c = 0; c < p.channels.size(); ++c)
+        if (!std::isfinite(p.value(x, y, static_cast<int>(c)))) return false;
+    return true;
+}
+
+// Which pixels count: finite in both, and not among the noisiest.
+std::vector<bool> choose_pixels(const MeasuredPicture& a, const MeasuredPicture& b, double percent,
+                                Comparison& result) {
+    int width = a.image->width(), height = a.image->height(), channels = static_cast<int>(a.channels.size());
+    std::vector<bool> chosen(a.image->pixel_count());
+    std::vector<std::size_t> order;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            if (finite_pixel(a, x, y) && finite_pixel(b, x, y)) {
+                order.push_back(static_cast<std::size_t>(y) * width + x);
+                chosen[order.back()] = true;
+            }
+    result.not_finite = chosen.size() - order.size();
+    result.set_aside =
+        static_cast<std::uint64_t>(std::floor(percent / 100 * static_cast<double>(order.size())));
+    result.pixels = order.size() - result.set_aside;
+    if (result.set_aside == 0) return chosen;
+
+    const MeasuredPicture& source = b.has_error() ? b : a;
+    auto brightness = [&](std::size_t pixel) {
+        double sum = 0;
+        for (int c = 0; c < channels; ++c)
+            sum +=
+                std::abs(source.value(static_cast<int>(pixel % width), static_cast<int>(pixel / width), c));
+        return sum;
+    };
+    CompensatedSum total;
+    for (std::size_t pixel : order) total.add(brightness(pixel));
+    double floor = 1e-3 * total.value() / static_cast<double>(order.size());
+    std::vector<double> noise(chosen.size());
+    for (std::size_t pixel : order) {
+        double error = 0;
+        for (int c = 0; c < channels; ++c)
+            error +=
+                source.standard_error(static_cast<int>(pixel % width), static_cast<int>(pixel / width), c);
+        double relative = error == 0 ? 0 : error / (brightness(pixel) + floor);
+        noise[pixel] = std::isnan(relative) ? std::numeric_limits<double>::infinity() : relative;
+    }
+    auto noisier = [&](std::size_t i, std::size_t j) {
+        return noise[i] != noise[j] ? noise[i] > noise[j] : i > j;
+    };
+    auto end = order.begin() + static_cast<std::ptrdiff_t>(result.set_aside);
+    std::nth_element(order.begin(), end, order.end(), noisier);
+    for (auto it = order.begin(); it != end; ++it) chosen[*it] = false;
+    return chosen;
+}
+
+class ZCollector {
+  public:
+    // Variance of a - b from the known errors; negative when it is not usable.
+    static double variance(const MeasuredPicture& a, const MeasuredPicture& b, int x, int y, int c) {
+        double sum = 0;
+        for (const MeasuredPicture* p : {&a, &b})
+            if (p->has_error()) {
+                double s = p->standard_error(x, y, c);
+                if (!(s >= 0) || !std::isfinite(s)) return -1;
+                sum += s * s;
+            }
+        return sum;
+    }
+
+    void add(double difference, double variance) {
+        if (variance < 0) {
+            ++z_.invalid_errors;
+        } else if (variance == 0) {
+            ++(difference == 0 ? z_.equal_without_error : z_.unexplained);
+        } else {
+            double z = difference / std::sqrt(variance), magnitude = std::abs(z);
+            moments_.add(z);
+            for (int k = 0; k < 3; ++k) inside_[k] += magnitude <= k + 1;
+            z_.largest = std::max(z_.largest, magnitude);
+        }
+    }
+
+    ZScores finish() const {
+        ZScores z = z_;
+        z.count = moments_.count();
+        z.mean = z.count > 0 ? moments_.mean() : nan;
+        z.standard_deviation = z.count > 1 ? moments_.standard_deviation() : nan;
+        for (int k = 0; k < 3; ++k)
+            z.within[k] = z.count > 0 ? static_cast<double>(inside_[k]) / static_cast<double>(z.count) : nan;
+        return z;
+    }
+
+  private:
+    ZScores z_;
+    RunningMoments moments_;
+    std::array<std::uint64_t, 3> inside_{};
+};
+
+} // namespace
+
+MeasuredPicture measured_picture(const std::string& name, const Image& image) {
+    MeasuredPicture p{name, &image, image.color_channels(), nullptr, {}};
+    if (p.channels.empty()) throw Error(name, "has neither the channels R, G, B nor Y");
+    auto errors = image.color_channels("stderr.");
+    if (errors.size() == p.channels.size()) {
+        p.error = &image;
+        p.error_channels = errors;
+    }
+    return p;
+}
+
+MeasuredPicture measured_picture(const std::string& name, const Image& image, const std::string& error_name,
+                                 const Image& error) {
+    MeasuredPicture p = measured_picture(name, image);
+    if (error.width() != image.width() || error.height() != image.height())
+        throw Error(error_name, "is " + size_of(error) +
+                                    " pixels, but the picture whose errors it should hold, " + name +
+                                    ", is " + size_of(image));
+    p.error = &error;
+    p.error_channels = error.color_channels("stderr.");
+    if (p.error_channels.empty()) p.error_channels = error.color_channels();
+    if (p.error_channels.size() != p.channels.size())
+        throw Error(error_name, "has no standard error for each of the " + std::to_string(p.channels.size()) +
+                                    " colour channels of " + name);
+    return p;
+}
+
+Comparison compare_pictures(const MeasuredPicture& a, const MeasuredPicture& b,
+                            const ComparisonOptions& options) {
+    if (a.image->width() != b.image->width() || a.image->height() != b.image->height())
+        throw Error("compare", a.name + " is " + size_of(*a.image) + " pixels, but " + b.name + " is " +
+                                   size_of(*b.image));
+    if (a.channels.size() != b.channels.size())
+        throw Error("compare", (a.channels.size() == 1 ? a.name : b.name) + " is grey, but " +
+                                   (a.channels.size() == 1 ? b.name : a.name) + " is in colour");
+    if (!(options.relative_epsilon > 0))
+        throw Error("compare", "the epsilon of the relative error must be positive");
+    if (!(options.set_aside_percent >= 0) || options.set_aside_percent >= 100)
+        throw Error("compare", "the share to set aside must be at least 0 and below 100 per cent");
+    if (options.set_aside_percent > 0 && !a.has_error() && !b.has_error())
+        throw Error("compare", "pixels can only be set aside for their noise when standard errors are known");
+
+    Comparison result;
+    result.a_has_error = a.has_error();
+    result.b_has_error = b.has_error();
+    std::vector<bool> chosen = choose_pixels(a, b, options.set_aside_percent, result);
+    if (result.pixels == 0) throw Error("compare", "there is no pixel that is finite in both pictures");
+
+    bool any_error = a.has_error() || b.has_error();
+    double n = static_cast<double>(result.pixels);
+    ZCollector scores;
+    CompensatedSum all_squares, all_relative;
+    for (int c = 0; c < static_cast<int>(a.channels.size()); ++c) {
+        CompensatedSum sum_a, sum_b, squares, relative, variances;
+        for (int y = 0; y < a.image->height(); ++y)
+            for (int x = 0; x < a.image->width(); ++x) {
+                if (!chosen[static_cast<std::size_t>(y) * a.image->width() + x]) continue;
+                double va = a.value(x, y, c), vb = b.value(x, y, c), d = va - vb;
+                sum_a.add(va);
+                sum_b.add(vb);
+                squares.add(d * d);
+                relative.add(d * d / (vb * vb + options.relative_epsilon));
+                if (!any_error) continue;
+                double variance = ZCollector::variance(a, b, x, y, c);
+                scores.add(d, variance);
+                variances.add(std::max(variance, 0.0));
+            }
+        ChannelComparison channel;
+        channel.name = a.image->channel_names()[a.channels[c]];
+        channel.mean_a = sum_a.value() / n;
+        channel.mean_b = sum_b.value() / n;
+        channel.relative_mean_difference =
+            channel.mean_b != 0 ? (channel.mean_a - channel.mean_b) / channel.mean_b : nan;
+        channel.mean_difference_error = any_error ? std::sqrt(variances.value()) / n : nan;
+        channel.rmse = std::sqrt(squares.value() / n);
+        channel.rel_mse = relative.value() / n;
+        result.channels.push_back(channel);
+        all_squares.add(squares);
+        all_relative.add(relative);
+    }
+    double samples = n * static_cast<double>(a.channels.size());
+    result.rmse = std::sqrt(all_squares.value() / samples);
+    result.rel_mse = all_relative.value() / samples;
+    if (any_error) result.z = scores.finish();
+    return result;
+}
+
+ChannelSummary summarize_channel(const Image& image, int channel) {
+    ChannelSummary s;
+    s.minimum = std::numeric_limits<double>::infinity();
+    s.maximum = -s.minimum;
+    CompensatedSum sum;
+    std::size_t step = static_cast<std::size_t>(image.channels());
+    for (std::size_t i = static_cast<std::size_t>(channel); i < image.sample_count(); i += step) {
+        double v = static_cast<double>(image.value_at(i));
+        s.nan += std::isnan(v);
+        s.infinite += std::isinf(v);
+        s.negative += v < 0;
+        if (!std::isfinite(v)) continue;
+        ++s.finite;
+        sum.add(v);
+        s.minimum = std::min(s.minimum, v);
+        s.maximum = std::max(s.maximum, v);
+    }
+    s.mean = sum.value() / static_cast<double>(s.finite);
+    if (s.finite == 0) s.minimum = s.mean = s.maximum = nan;
+    return s;
+}
+
+} // namespace montelux
