@@ -1,0 +1,27 @@
+// Writes the tables of montelux/spectrum/rgb_uplift.h for every named colour space into one binary file,
+// while Montelux is built: rgb_uplift_generator OUTPUT
+#include <cstdio>
+#include <fstream>
+
+#include "montelux/spectrum/rgb_uplift.h"
+#include "montelux/spectrum/rgb_uplift_layout.h"
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        std::fputs("usage: rgb_uplift_generator OUTPUT\n", stderr);
+        return 2;
+    }
+    std::ofstream out(argv[1], std::ios::binary);
+    for (const montelux::RgbUpliftLayout& layout : montelux::rgb_uplift_layouts) {
+        const montelux::RgbColorSpace& space = *montelux::find_rgb_color_space(layout.space);
+        auto nodes = montelux::RgbUpliftTable::compute(space, layout.resolution);
+        out.write(reinterpret_cast<const char*>(nodes.data()),
+                  static_cast<std::streamsize>(nodes.size() * sizeof(nodes[0])));
+    }
+    out.close();
+    if (!out) {
+        std::fprintf(stderr, "%s: cannot write the tables\n", argv[1]);
+        return 1;
+    }
+    return 0;
+}

@@ -1,0 +1,62 @@
+// Spectra made from RGB colours: reflectances, unbounded values and lights.
+#pragma once
+
+#include "montelux/spectrum/rgb_uplift.h"
+
+namespace montelux {
+
+// A reflectance: values in [0, 1]. Colours are clamped to [0, 1].
+class RgbAlbedoSpectrum {
+  public:
+    RgbAlbedoSpectrum() : RgbAlbedoSpectrum(SigmoidPolynomial::constant(0)) {}
+    explicit RgbAlbedoSpectrum(SigmoidPolynomial polynomial) : polynomial_(polynomial) {}
+    RgbAlbedoSpectrum(const RgbColorSpace& space, Vec3f rgb) : polynomial_(rgb_uplift_table(space)(rgb)) {}
+
+    SampledSpectrum sample(const SampledWavelengths& w) const { return polynomial_.sample(w); }
+    float operator()(float lambda) const { return polynomial_(lambda); }
+    float max_value() const { return polynomial_.max_value(); }
+    const SigmoidPolynomial& polynomial() const { return polynomial_; }
+
+  private:
+    SigmoidPolynomial polynomial_;
+};
+
+// Any non-negative colour: a reflectance of largest component 1/2, scaled by twice the largest component.
+class RgbUnboundedSpectrum {
+  public:
+    RgbUnboundedSpectrum() = default;
+    // Negative components count as 0.
+    RgbUnboundedSpectrum(const RgbColorSpace& space, Vec3f rgb)
+        : scale_(2 * std::max(max_component(rgb), 0.0f)),
+          polynomial_(rgb_uplift_table(space)(scale_ > 0 ? rgb / scale_ : Vec3f())) {}
+
+    SampledSpectrum sample(const SampledWavelengths& w) const { return scale_ * polynomial_.sample(w); }
+    float operator()(float lambda) const { return scale_ * polynomial_(lambda); }
+    float max_value() const { return scale_ * polynomial_.max_value(); }
+
+  private:
+    float scale_ = 0;
+    SigmoidPolynomial polynomial_;
+};
+
+// A light of this colour: an unbounded spectrum times the colour space's illuminant.
+class RgbIlluminantSpectrum {
+  public:
+    // `space` must outlive the spectrum.
+    RgbIlluminantSpectrum(const RgbColorSpace& space, Vec3f rgb)
+        : filter_(space, rgb), illuminant_(&space.illuminant()) {}
+
+    SampledSpectrum sample(const SampledWavelengths& w) const {
+        return filter_.sample(w) * illuminant_->sample(w);
+    }
+    float operator()(float lambda) const { return filter_(lambda) * (*illuminant_)(lambda); }
+    // Not below the largest value, and near it.
+    float max_value() const { return filter_.max_value() * illuminant_->max_value(); }
+    const SpectrumTable& illuminant() const { return *illuminant_; }
+
+  private:
+    RgbUnboundedSpectrum filter_;
+    const SpectrumTable* illuminant_;
+};
+
+} // namespace montelux
