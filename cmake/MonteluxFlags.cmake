@@ -1,9 +1,10 @@
 # Compiler settings shared by every target: montelux_flags (code of ours) and what users of the library need.
 add_library(montelux_flags INTERFACE)
 target_compile_features(montelux_flags INTERFACE cxx_std_20)
-# Reproducible sums: no reassociation, no contraction that differs between call sites of one formula.
+# Reproducible sums: no reassociation, and no fused multiply-add that differs between call sites of one formula
+# (x * x - y * y is 0 where x = y); std::fma says it where it is meant.
 target_compile_options(montelux_flags INTERFACE
-    -fno-math-errno -fno-trapping-math -fvisibility=hidden
+    -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden
     -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual -Woverloaded-virtual
     -Wconversion -Wno-sign-conversion -Wno-float-conversion -Wdouble-promotion -Wno-psabi)
 if(MONTELUX_WERROR)
@@ -20,7 +21,23 @@ if(MONTELUX_SANITIZE)
     target_link_options(montelux_flags INTERFACE -fsanitize=address,undefined)
 endif()
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-if(NOT CMAKE_BUILD_TYPE)
+if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE)
     set(CMAKE_BUILD_TYPE Release)
 endif()
-set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
+
+# Link-time optimisation: libraries hold machine code beside GCC's intermediate code, so that programs built
+# without it can link them too. Clang 14 has no such objects.
+set(MONTELUX_LTO_FLAGS)
+if(MONTELUX_LTO)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+        set(MONTELUX_LTO_FLAGS -flto=auto -ffat-lto-objects)
+    else()
+        message(STATUS "Link-time optimisation is used with GCC only; building without it")
+    endif()
+endif()
+
+find_program(MONTELUX_CCACHE ccache)
+mark_as_advanced(MONTELUX_CCACHE)
+if(PROJECT_IS_TOP_LEVEL AND MONTELUX_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${MONTELUX_CCACHE})
+endif()

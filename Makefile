@@ -1,0 +1,53 @@
+# The front door: `make` lists what can be asked for. Each line below is a few commands that can also be typed.
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+.DEFAULT_GOAL := help
+.PHONY: help demo build test test-all bench lint format install dependencies clean
+
+JOBS ?= $(shell cmake/jobs.sh)
+BUILD := build/release
+DEMO_SPP ?= 64
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
+
+demo: build ## build, then render a scene of our own (about a minute on two cores)
+	$(BUILD)/montelux render scenes/demo/studio.pbrt --spp $(DEMO_SPP) -o build/demo.exr -o build/demo.png
+
+build: dependencies ## the program, at build/release/montelux
+	cmake --preset release
+	cmake --build $(BUILD) --parallel $(JOBS) --target montelux
+
+test: dependencies ## fast tests, then the same tests under the address and undefined-behaviour sanitizers
+	cmake --preset release
+	cmake --build $(BUILD) --parallel $(JOBS)
+	cmake --preset asan
+	cmake --build build/asan --parallel $(JOBS)
+	cmake/run-tests.sh fast $(JOBS) $(BUILD) build/asan
+
+test-all: dependencies ## every test, the slow ones too (without sanitizers)
+	cmake --preset release
+	cmake --build $(BUILD) --parallel $(JOBS)
+	cmake/run-tests.sh 'fast|slow' $(JOBS) $(BUILD)
+
+bench: dependencies ## speed of the parts, then of whole pictures
+	cmake --preset bench
+	cmake --build build/bench --parallel $(JOBS)
+	cmake/run-benchmarks.sh build/bench
+
+lint: ## formatting and static analysis (FILES="a.cpp b.cpp" for some, else all)
+	cmake/install-dependencies.sh lint
+	cmake/lint.sh $(JOBS) $(FILES)
+
+format: ## rewrite the sources in the house format
+	git ls-files '*.h' '*.cpp' | xargs clang-format -i
+
+install: build ## headers, libraries and program (PREFIX=/usr/local)
+	cmake --build $(BUILD) --parallel $(JOBS)
+	cmake --install $(BUILD) --prefix $(or $(PREFIX),/usr/local)
+
+dependencies: ## install the missing Debian packages (with sudo when not root)
+	@cmake/install-dependencies.sh build
+
+clean: ## forget everything that was built
+	rm -rf build

@@ -1,0 +1,24 @@
+#!/bin/bash
+# Runs the tests with some labels in each build folder; the last line is "N passed, N failed".
+# Usage: run-tests.sh label-expression jobs build-folder...
+set -u
+labels=$1 jobs=$2
+shift 2
+total=0 failed=0 skipped=0 broken=0
+for build in "$@"; do
+    echo "== $build"
+    report=$(mktemp)
+    ctest --test-dir "$build" --label-regex "$labels" --parallel "$jobs" --output-on-failure \
+        --no-tests=error --output-junit "$report"
+    status=$?
+    # The attributes of <testsuite> stand one a line; a report that says nothing counts as a failed run.
+    count() { sed -n "s/.*[[:space:]]$1=\"\([0-9]*\)\".*/\1/p" "$report" | head -n 1; }
+    tests=$(count tests) bad=$(count failures) left_out=$(count skipped)
+    total=$((total + ${tests:-0})) failed=$((failed + ${bad:-0})) skipped=$((skipped + ${left_out:-0}))
+    if [ $status -ne 0 ] && [ "${bad:-0}" -eq 0 ]; then broken=$((broken + 1)); fi
+    rm -f "$report"
+done
+[ $skipped -eq 0 ] || echo "$skipped skipped (each says why above or in ctest --verbose)"
+[ $broken -eq 0 ] || echo "$broken test runs broke off"
+echo "$((total - failed - skipped)) passed, $((failed + broken)) failed"
+[ $((failed + broken)) -eq 0 ]

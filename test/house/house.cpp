@@ -1,0 +1,217 @@
+#include "test/house/house.h"
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <regex>
+#include <sstream>
+
+namespace montelux::house {
+
+namespace {
+
+std::string without_comments(std::string_view cmake) {
+    std::istringstream in{std::string(cmake)};
+    std::string text;
+    for (std::string line; std::getline(in, line);) text += line.substr(0, line.find('#')) + "\n";
+    return text;
+}
+
+std::vector<std::string> words(const std::string& text) {
+    std::istringstream in(text);
+    std::vector<std::string> result;
+    for (std::string word; in >> word;) result.push_back(word);
+    return result;
+}
+
+std::string at(const SourceFile& file, std::size_t line) {
+    return file.path + ":" + std::to_string(line) + ": ";
+}
+
+bool starts_with_room(std::string_view path, std::string_view room) {
+    return path.substr(0, room.size()) == room && path.size() > room.size() && path[room.size()] == '/';
+}
+
+// Reports every edge that closes a circle in a graph of names.
+std::vector<std::string> circles(const std::map<std::string, std::vector<std::string>>& graph) {
+    std::vector<std::string> found, trail;
+    std::set<std::string> done;
+    std::function<void(const std::string&)> visit = [&](const std::string& node) {
+        auto open = std::find(trail.begin(), trail.end(), node);
+        if (open != trail.end()) {
+            std::string circle;
+            for (auto step = open; step != trail.end(); ++step) circle += *step + " -> ";
+            found.push_back(circle + node);
+            return;
+        }
+        if (!graph.contains(node) || !done.insert(node).second) return;
+        trail.push_back(node);
+        for (const std::string& next : graph.at(node)) visit(next);
+        trail.pop_back();
+    };
+    for (const auto& [node, targets] : graph) visit(node);
+    return found;
+}
+
+} // namespace
+
+std::string RoomTable::room_of(std::string_view path) const {
+    std::string best;
+    for (const std::string& room : order)
+        if (starts_with_room(path, room) && room.size() > best.size()) best = room;
+    return best;
+}
+
+bool RoomTable::may_include(const std::string& from, const std::string& to) const {
+    if (from == to) return true;
+    auto row = uses.find(from);
+    return row != uses.end() && std::find(row->second.begin(), row->second.end(), to) != row->second.end();
+}
+
+RoomTable parse_rooms(std::string_view cmake) {
+    const std::string text = without_comments(cmake);
+    const std::regex command(R"((set|montelux_room)\s*\(([^)]*)\))");
+    std::map<std::string, std::vector<std::string>> variables;
+    RoomTable table;
+    for (std::sregex_iterator it(text.begin(), text.end(), command), end; it != end; ++it) {
+        std::vector<std::string> arguments;
+        for (const std::string& word : words((*it)[2])) {
+            bool is_variable = word.starts_with("${") && word.ends_with("}");
+            std::string name = is_variable ? word.substr(2, word.size() - 3) : "";
+            if (variables.contains(name))
+                for (const std::string& value : variables[name]) arguments.push_back(value);
+            else
+                arguments.push_back(word);
+        }
+        if (arguments.empty()) continue;
+        const std::string name = arguments.front();
+        arguments.erase(arguments.begin());
+        if ((*it)[1] == "set") {
+            variables[name] = arguments;
+            continue;
+        }
+        auto first = std::find(arguments.begin(), arguments.end(), "USES");
+        auto last = std::find_if(first, arguments.end(),
+                                 [](const std::string& a) { return a == "LINKS" || a == "INCLUDES"; });
+        if (first != arguments.end()) ++first;
+        table.order.push_back(name);
+        table.uses[name] = {first, last};
+    }
+    return table;
+}
+
+std::vector<SourceFile> read_sources(const std::filesystem::path& root,
+                                     const std::vector<std::string>& folders) {
+    std::vector<SourceFile> files;
+    for (const std::string& folder : folders) {
+        if (!std::filesystem::exists(root / folder)) continue;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
+            const auto extension = entry.path().extension();
+            if (!entry.is_regular_file() || (extension != ".h" && extension != ".cpp")) continue;
+            SourceFile file{std::filesystem::relative(entry.path(), root).generic_string(), {}};
+            std::ifstream in(entry.path());
+            for (std::string line; std::getline(in, line);) file.lines.push_back(line);
+            files.push_back(std::move(file));
+        }
+    }
+    std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.path < b.path; });
+    return files;
+}
+
+std::vector<Include> includes_of(const SourceFile& file) {
+    static const std::regex directive(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
+    std::vector<Include> result;
+    for (std::size_t i = 0; i < file.lines.size(); ++i) {
+        std::smatch match;
+        if (std::regex_search(file.lines[i], match, directive))
+            result.push_back({i + 1, match[2], match[1] == "\""});
+    }
+    return result;
+}
+
+std::vector<std::string> wrong_rooms(const RoomTable& rooms, const std::vector<SourceFile>& files) {
+    static const std::string library = "montelux/", tests = "test/";
+    std::set<std::string> paths;
+    for (const SourceFile& file : files) paths.insert(file.path);
+
+    std::vector<std::string> wrong;
+    for (const SourceFile& file : files) {
+        const bool in_library = file.path.starts_with(library);
+        const std::string room = in_library ? rooms.room_of(file.path.substr(library.size()))
+                                 : file.path.starts_with(tests)
+                                     ? rooms.room_of(file.path.substr(tests.size()))
+                                     : "";
+        if (in_library && room.empty()) wrong.push_back(at(file, 1) + "lies in no room of CMakeLists.txt");
+        for (const Include& include : includes_of(file)) {
+            if (!include.target.starts_with(library)) {
+                if (in_library && include.quoted)
+                    wrong.push_back(
+                        at(file, include.line) + "\"" + include.target +
+                        "\" is not a path from the root of the repository that starts with montelux/");
+                continue;
+            }
+            const std::string target = rooms.room_of(include.target.substr(library.size()));
+            if (target.empty() || !paths.contains(include.target))
+                wrong.push_back(at(file, include.line) + "there is no " + include.target);
+            else if (in_library && !room.empty() && !rooms.may_include(room, target))
+                wrong.push_back(at(file, include.line) + room + " may not include " + target);
+            else if (!in_library && room.starts_with("mc/") && !target.starts_with("mc/"))
+                wrong.push_back(at(file, include.line) + "the tests of " + room + " know nothing of " +
+                                target);
+        }
+    }
+    return wrong;
+}
+
+std::vector<std::string> circular_rooms(const RoomTable& rooms) { return circles(rooms.uses); }
+
+std::vector<std::string> circular_headers(const std::vector<SourceFile>& files) {
+    std::map<std::string, std::vector<std::string>> graph;
+    for (const SourceFile& file : files)
+        for (const Include& include : includes_of(file)) graph[file.path].push_back(include.target);
+    return circles(graph);
+}
+
+std::vector<std::string> fenced_libraries(const std::vector<SourceFile>& files) {
+    // A library that one room alone may know, so that replacing it touches one folder.
+    struct Fence {
+        std::regex header;
+        std::string folder;
+    };
+    static const std::vector<Fence> fences = {
+        {std::regex("^embree[0-9]*/"), "montelux/accel/"},
+        {std::regex("^(tbb|oneapi/tbb)/"), "montelux/mc/parallel/"},
+        {std::regex("^(OpenEXR/|Imf|Imath|png\\.h|jpeglib\\.h|stb_|stb/)"), "montelux/image/"},
+        {std::regex("^CLI/"), "app/"},
+    };
+    std::vector<std::string> wrong;
+    for (const SourceFile& file : files)
+        for (const Include& include : includes_of(file))
+            for (const Fence& fence : fences)
+                if (std::regex_search(include.target, fence.header) && !file.path.starts_with(fence.folder) &&
+                    !file.path.starts_with("test/" + fence.folder.substr(fence.folder.find('/') + 1)))
+                    wrong.push_back(at(file, include.line) + include.target + " is known to " + fence.folder +
+                                    " alone");
+    return wrong;
+}
+
+std::vector<std::string> headers_without_purpose(const std::vector<SourceFile>& files) {
+    static const std::regex sentence(R"(^// \S+ \S+)");
+    std::vector<std::string> wrong;
+    for (const SourceFile& file : files)
+        if (file.path.ends_with(".h") &&
+            (file.lines.empty() || !std::regex_search(file.lines.front(), sentence)))
+            wrong.push_back(at(file, 1) + "the first line does not say what the header is for");
+    return wrong;
+}
+
+std::vector<std::string> long_files(const std::vector<SourceFile>& files, std::size_t limit) {
+    std::vector<std::string> wrong;
+    for (const SourceFile& file : files)
+        if (file.lines.size() > limit && file.path.find("_data.") == std::string::npos)
+            wrong.push_back(at(file, limit) + std::to_string(file.lines.size()) + " lines, and " +
+                            std::to_string(limit) + " are allowed");
+    return wrong;
+}
+
+} // namespace montelux::house

@@ -1,0 +1,114 @@
+#include "test/house/house.h"
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iostream>
+#include <sstream>
+
+namespace montelux::house {
+namespace {
+
+const std::filesystem::path root = MONTELUX_SOURCE_DIR;
+const std::vector<std::string> folders = {"montelux", "app", "test", "bench", "examples"};
+
+RoomTable real_rooms() {
+    std::ifstream in(root / "CMakeLists.txt");
+    std::ostringstream text;
+    text << in.rdbuf();
+    return parse_rooms(text.str());
+}
+const std::vector<SourceFile>& real_sources() {
+    static const std::vector<SourceFile> files = read_sources(root, folders);
+    return files;
+}
+std::string joined(const std::vector<std::string>& sentences) {
+    std::string text;
+    for (const std::string& s : sentences) text += s + "\n";
+    return text;
+}
+
+TEST(House, TableOfRoomsIsRead) {
+    const RoomTable rooms = real_rooms();
+    EXPECT_GE(rooms.order.size(), 14u);
+    EXPECT_TRUE(rooms.uses.at("mc/math").empty());
+    EXPECT_TRUE(rooms.may_include("transport", "accel"));
+    EXPECT_TRUE(rooms.may_include("scene", "mc/dist")); // by way of a variable of the table
+    EXPECT_FALSE(rooms.may_include("scene", "accel"));
+    EXPECT_EQ(rooms.room_of("mc/math/vec.h"), "mc/math");
+    EXPECT_GE(real_sources().size(), 30u);
+}
+TEST(House, EachFileIncludesOnlyWhatItsRoomMay) {
+    EXPECT_EQ(joined(wrong_rooms(real_rooms(), real_sources())), "");
+}
+TEST(House, NoCircles) {
+    EXPECT_EQ(joined(circular_rooms(real_rooms())), "");
+    EXPECT_EQ(joined(circular_headers(real_sources())), "");
+}
+TEST(House, LibrariesStayBehindTheirFences) { EXPECT_EQ(joined(fenced_libraries(real_sources())), ""); }
+TEST(House, EachHeaderSaysItsPurposeFirst) { EXPECT_EQ(joined(headers_without_purpose(real_sources())), ""); }
+TEST(House, FilesAreShort) {
+    std::cout << "longer than they should be:\n" << joined(long_files(real_sources(), 400));
+    EXPECT_EQ(joined(long_files(real_sources(), 600)), "");
+}
+
+// The rules themselves: each finds the offence that it exists for.
+const RoomTable small = parse_rooms("set(low mc/math) # a comment (with brackets\n"
+                                    "montelux_room(mc/math)\n"
+                                    "montelux_room(scene USES ${low} LINKS a::b)\n"
+                                    "montelux_room(accel USES ${low}\n  scene LINKS embree)\n");
+const SourceFile math{"montelux/mc/math/vec.h", {"// Vectors of three."}};
+const SourceFile accel{"montelux/accel/ray.h", {"// Rays and hits.", "#include <embree3/rtcore.h>"}};
+
+TEST(HouseRules, TableExpandsVariablesAndStopsAtLinks) {
+    EXPECT_EQ(small.order, (std::vector<std::string>{"mc/math", "scene", "accel"}));
+    EXPECT_EQ(small.uses.at("scene"), (std::vector<std::string>{"mc/math"}));
+    EXPECT_EQ(small.uses.at("accel"), (std::vector<std::string>{"mc/math", "scene"}));
+}
+TEST(HouseRules, IncludeOfAHigherRoomIsFound) {
+    const SourceFile wrong{"montelux/scene/x.cpp", {"", "#include \"montelux/accel/ray.h\""}};
+    EXPECT_EQ(joined(wrong_rooms(small, {math, accel, wrong})),
+              "montelux/scene/x.cpp:2: scene may not include accel\n");
+    const SourceFile right{"montelux/accel/x.cpp", {"#include \"montelux/mc/math/vec.h\""}};
+    EXPECT_EQ(joined(wrong_rooms(small, {math, accel, right})), "");
+}
+TEST(HouseRules, StrayFilesAndPathsAreFound) {
+    EXPECT_EQ(wrong_rooms(small, {SourceFile{"montelux/attic/x.cpp", {}}}).size(), 1u);
+    EXPECT_EQ(wrong_rooms(small, {SourceFile{"montelux/scene/x.cpp", {"#include \"y.h\""}}}).size(), 1u);
+    EXPECT_EQ(
+        wrong_rooms(small, {SourceFile{"montelux/scene/x.cpp", {"#include \"montelux/scene/no.h\""}}}).size(),
+        1u);
+    EXPECT_EQ(wrong_rooms(small, {SourceFile{"montelux/scene/x.cpp", {"#include \"app/y.h\""}}}).size(), 1u);
+    EXPECT_EQ(
+        wrong_rooms(small, {accel, SourceFile{"test/mc/math/x.cpp", {"#include \"montelux/accel/ray.h\""}}})
+            .size(),
+        1u);
+}
+TEST(HouseRules, CirclesAreFound) {
+    EXPECT_EQ(joined(circular_rooms(parse_rooms("montelux_room(a USES b)\nmontelux_room(b USES c)\n"
+                                                "montelux_room(c USES a)"))),
+              "a -> b -> c -> a\n");
+    EXPECT_EQ(circular_headers({{"montelux/a.h", {"#include \"montelux/b.h\""}},
+                                {"montelux/b.h", {"  #  include \"montelux/a.h\""}}})
+                  .size(),
+              1u);
+    EXPECT_TRUE(
+        circular_headers({{"montelux/a.h", {"#include \"montelux/b.h\""}}, {"montelux/b.h", {}}}).empty());
+}
+TEST(HouseRules, EmbreeOutsideAccelIsFound) {
+    EXPECT_TRUE(fenced_libraries({accel}).empty());
+    EXPECT_EQ(fenced_libraries({{"montelux/transport/x.cpp", {"#include <embree4/rtcore.h>"}}}).size(), 1u);
+    EXPECT_EQ(fenced_libraries({{"montelux/render/x.cpp", {"#include <tbb/parallel_for.h>"}}}).size(), 1u);
+}
+TEST(HouseRules, HeaderWithoutPurposeIsFound) {
+    EXPECT_TRUE(headers_without_purpose({math}).empty());
+    EXPECT_EQ(headers_without_purpose({{"montelux/mc/math/x.h", {"#pragma once"}}}).size(), 1u);
+    EXPECT_EQ(headers_without_purpose({{"montelux/mc/math/x.h", {}}}).size(), 1u);
+}
+TEST(HouseRules, LongFileIsFound) {
+    const SourceFile file{"montelux/scene/x.cpp", std::vector<std::string>(11)};
+    EXPECT_EQ(long_files({file}, 10).size(), 1u);
+    EXPECT_TRUE(long_files({file}, 11).empty());
+    EXPECT_TRUE(long_files({{"montelux/spectrum/cie_data.cpp", file.lines}}, 10).empty());
+}
+
+} // namespace
+} // namespace montelux::house
