@@ -1,9 +1,10 @@
-// clang-format off: jpeglib.h needs <cstdio> before it, and jerror.h needs jpeglib.h.
+// jpeglib.h needs <cstdio> before it, and jerror.h needs jpeglib.h.
+// clang-format off
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
-#include <jerror.h>
 #include <jpeglib.h>
+#include <jerror.h>
 // clang-format on
 
 #include "montelux/image/decoders.h"
