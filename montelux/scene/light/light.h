@@ -45,6 +45,7 @@ struct UniformInfiniteLight {
 // Radiance from a square equal-area octahedral map (Clarberg 2008) of RGB illuminants.
 struct ImageInfiniteLight {
     Index environment = none; // into Scene::environments
+    const RgbColorSpace* color_space = &RgbColorSpace::srgb();
     float scale = 1;
     Transform world_from_light;
 };

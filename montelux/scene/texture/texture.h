@@ -41,6 +41,7 @@ struct ImageTexture {
     float scale = 1;
     bool invert = false;
     RgbMeaning meaning = RgbMeaning::albedo; // of spectrum textures
+    const RgbColorSpace* color_space = &RgbColorSpace::srgb();
 };
 
 template <typename Parameter>

@@ -1,0 +1,36 @@
+// Rays against the scene: closest hits and occlusion. The only room that knows Embree.
+#pragma once
+
+#include <memory>
+
+#include "montelux/scene/scene.h"
+#include "montelux/scene/shape/quadric.h"
+#include "montelux/scene/shape/ray.h"
+
+namespace montelux {
+
+class SceneTables;
+
+// Built once from an immutable scene, which must outlive it; all members may be called from any thread.
+class Accelerator {
+  public:
+    // `tables` serve the textures of alpha cut-outs. Throws Error when memory runs out or a geometry is
+    // refused.
+    Accelerator(const Scene& scene, const SceneTables& tables);
+    ~Accelerator();
+    Accelerator(Accelerator&&) noexcept;
+    Accelerator& operator=(Accelerator&&) noexcept;
+
+    // The first hit along the ray, if any.
+    bool intersect(const Ray& ray, Hit& hit) const;
+    // Whether anything lies within (0, t_max).
+    bool occluded(const Ray& ray) const;
+    // Of everything that can be hit, in world space.
+    const Bounds3& bounds() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace montelux

@@ -1,0 +1,25 @@
+#include "montelux/accel/alpha.h"
+
+#include <bit>
+#include <cstdint>
+
+#include "montelux/mc/random/hash.h"
+#include "montelux/scene/shape/surface_point.h"
+#include "montelux/scene/texture/evaluate.h"
+
+namespace montelux {
+
+bool is_opaque(const Scene& scene, const SceneTables& tables, const Ray& ray, const Hit& hit) {
+    // Instances: the ray is already in the space of the object, and so is the shape.
+    SurfacePoint s = surface_point(scene, ray, hit, false);
+    TextureContext context{.p = s.p, .n = s.ns, .uv = s.uv, .dpdx = {}, .dpdy = {}, .duvdx = {}, .duvdy = {}};
+    float alpha = evaluate(scene, tables, scene.shapes[hit.shape].alpha, context);
+    if (alpha >= 1) return true;
+    if (!(alpha > 0)) return false;
+    std::uint64_t h = 0;
+    for (float v : {ray.o.x, ray.o.y, ray.o.z, ray.d.x, ray.d.y, ray.d.z})
+        h = mix64(h ^ std::bit_cast<std::uint32_t>(v));
+    return static_cast<float>(h >> 40) * 0x1p-24f < alpha;
+}
+
+} // namespace montelux

@@ -1,0 +1,15 @@
+// Alpha cut-outs: whether a surface is there at a hit.
+#pragma once
+
+#include "montelux/scene/scene.h"
+#include "montelux/scene/shape/ray.h"
+
+namespace montelux {
+
+class SceneTables;
+
+// A point with alpha a is there with probability a. The decision is a function of the ray alone, so that a
+// sample stays a pure function of its key.
+bool is_opaque(const Scene& scene, const SceneTables& tables, const Ray& ray, const Hit& hit);
+
+} // namespace montelux

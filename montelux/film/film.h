@@ -1,0 +1,107 @@
+// The film: running moments of every pixel, and the image that they give.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "montelux/image/image.h"
+#include "montelux/mc/stats/moments.h"
+#include "montelux/scene/film/film_settings.h"
+
+namespace montelux {
+
+// What one sample of a pixel has to say. All but the radiance are of the first surface, 0 where there is
+// none.
+struct FilmSample {
+    Vec3f radiance; // linear sRGB, filter weight applied
+    Vec3f albedo;   // linear sRGB
+    Vec3f normal;   // world space
+    float depth = 0;
+};
+
+// A radiance that is not a number, infinite, or below zero though no filter weight made it so.
+struct BadSample {
+    enum class Kind : std::uint8_t { nan, infinite, negative };
+    Kind kind = Kind::nan;
+    int x = 0, y = 0;
+    std::uint64_t sample = 0;
+    auto operator<=>(const BadSample&) const = default;
+};
+
+// A pixel's value is the mean of independent, identically distributed units: single samples for the
+// independent sampler, means over one randomisation of a point set for the others. The standard error comes
+// from the spread of the units alone, so it holds for both.
+class Pixel {
+  public:
+    void add_sample(const FilmSample& s) {
+        unit_sum_ += Vec3d(s.radiance);
+        ++unit_samples_;
+        albedo_ += s.albedo;
+        normal_ += s.normal;
+        depth_ += s.depth;
+        ++samples_;
+    }
+    void count_bad() {
+        ++unit_samples_;
+        ++samples_;
+        ++bad_;
+    }
+    // Closes the unit that the samples since the last call make up.
+    void end_unit() {
+        if (unit_samples_ == 0) return;
+        units_.add(unit_sum_ / static_cast<double>(unit_samples_));
+        unit_sum_ = {};
+        unit_samples_ = 0;
+    }
+
+    // All units must have ended.
+    const Moments3& units() const { return units_; }
+    std::uint32_t samples() const { return samples_; }
+    std::uint32_t bad() const { return bad_; }
+    Vec3f albedo() const { return samples_ > 0 ? albedo_ / static_cast<float>(samples_) : Vec3f{}; }
+    Vec3f normal() const { return samples_ > 0 ? normal_ / static_cast<float>(samples_) : Vec3f{}; }
+    float depth() const { return samples_ > 0 ? depth_ / static_cast<float>(samples_) : 0; }
+
+  private:
+    Moments3 units_;
+    Vec3d unit_sum_;
+    Vec3f albedo_, normal_;
+    float depth_ = 0;
+    std::uint32_t unit_samples_ = 0, samples_ = 0, bad_ = 0;
+};
+
+// The error of the whole picture, as shown while rendering and written to the file.
+struct FilmError {
+    // Root mean square over pixels of the standard error of luminance, over the mean luminance.
+    double relative = 0;
+    double mean_luminance = 0;
+    double mean_samples = 0; // a pixel
+};
+
+class Film {
+  public:
+    explicit Film(const FilmSettings& settings);
+
+    const FilmSettings& settings() const { return settings_; }
+    const PixelBounds& bounds() const { return settings_.crop; }
+    Pixel& pixel(int x, int y) { return pixels_[index(x, y)]; }
+    const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
+
+    FilmError error() const;
+    // Layers R, G, B (mean); stderr.R, G, B; samples; albedo.R, G, B; N.X, Y, Z; depth.Z, of the cropped
+    // pixels. The standard error is infinite where fewer than two units have been taken.
+    Image develop() const;
+
+  private:
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y - settings_.crop.y0) *
+                   static_cast<std::size_t>(settings_.crop.width()) +
+               static_cast<std::size_t>(x - settings_.crop.x0);
+    }
+
+    FilmSettings settings_;
+    std::vector<Pixel> pixels_;
+};
+
+} // namespace montelux

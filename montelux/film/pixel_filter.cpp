@@ -1,0 +1,105 @@
+#include "montelux/film/pixel_filter.h"
+
+#include <cmath>
+#include <vector>
+
+#include "montelux/mc/math/constants.h"
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/warp/tent.h"
+
+namespace montelux {
+
+namespace {
+
+float sinc(float x) {
+    x *= pi_f;
+    return std::abs(x) < 1e-4f ? 1 - x * x / 6 : std::sin(x) / x;
+}
+
+float factor(const BoxFilter&, float, float) { return 1; }
+float factor(const TriangleFilter&, float x, float radius) { return radius - std::abs(x); }
+// Lowered so that it meets zero at the radius.
+float factor(const GaussianFilter& f, float x, float radius) {
+    auto g = [&](float v) { return std::exp(-v * v / (2 * f.sigma * f.sigma)); };
+    return std::max(0.0f, g(x) - g(radius));
+}
+// Mitchell and Netravali 1988, "Reconstruction Filters in Computer Graphics", stretched to the radius.
+float factor(const MitchellFilter& f, float x, float radius) {
+    x = std::abs(2 * x / radius);
+    float b = f.b, c = f.c;
+    if (x <= 1) return ((12 - 9 * b - 6 * c) * x * x * x + (-18 + 12 * b + 6 * c) * x * x + (6 - 2 * b)) / 6;
+    return ((-b - 6 * c) * x * x * x + (6 * b + 30 * c) * x * x + (-12 * b - 48 * c) * x + (8 * b + 24 * c)) /
+           6;
+}
+// Sinc windowed by the central lobe of a sinc that ends at the radius.
+float factor(const LanczosFilter& f, float x, float radius) {
+    (void)radius;
+    return sinc(x) * sinc(x / f.tau);
+}
+
+float axis_factor(const PixelFilter& filter, int axis, float x) {
+    return std::visit(
+        [&](const auto& f) {
+            float r = f.radius[axis];
+            return std::abs(x) <= r ? factor(f, x, r) : 0.0f;
+        },
+        filter);
+}
+
+} // namespace
+
+Vec2f filter_radius(const PixelFilter& filter) {
+    return std::visit([](const auto& f) { return f.radius; }, filter);
+}
+
+float filter_value(const PixelFilter& filter, Vec2f offset) {
+    return axis_factor(filter, 0, offset.x) * axis_factor(filter, 1, offset.y);
+}
+
+PixelFilterSampler::PixelFilterSampler(const PixelFilter& filter) : filter_(filter) {
+    Vec2f radius = filter_radius(filter);
+    for (int a = 0; a < 2; ++a) {
+        if (!(radius[a] > 0 && radius[a] < 1000))
+            throw Error("pixel filter", "the radius must be positive and at most 1000 pixels");
+        axes_[a].radius = radius[a];
+        if (std::holds_alternative<BoxFilter>(filter) || std::holds_alternative<TriangleFilter>(filter))
+            continue;
+        int n = std::max(64, static_cast<int>(std::ceil(radius[a] * 64)) * 2);
+        std::vector<double> magnitude;
+        double integral = 0;
+        for (int i = 0; i <= n; ++i) {
+            double x = double(radius[a]) * (2.0 * i / n - 1);
+            magnitude.push_back(std::abs(double(axis_factor(filter, a, static_cast<float>(x)))));
+        }
+        // Composite Simpson on a grid eight times finer.
+        int m = 8 * n;
+        for (int i = 0; i <= m; ++i) {
+            double x = double(radius[a]) * (2.0 * i / m - 1);
+            double w = i == 0 || i == m ? 1 : (i % 2 == 1 ? 4 : 2);
+            integral += w * double(axis_factor(filter, a, static_cast<float>(x)));
+        }
+        integral *= 2 * double(radius[a]) / m / 3;
+        if (!(integral > 0)) throw Error("pixel filter", "the filter's integral is not positive");
+        axes_[a].inverse_integral = static_cast<float>(1 / integral);
+        axes_[a].density.emplace(magnitude, -double(radius[a]), double(radius[a]));
+    }
+}
+
+float PixelFilterSampler::sample_axis(const Axis& axis, int which, float u, float& weight) const {
+    if (!axis.density) {
+        if (std::holds_alternative<BoxFilter>(filter_)) return (2 * u - 1) * axis.radius;
+        return sample_tent(u, axis.radius);
+    }
+    auto s = axis.density->sample(u);
+    weight *= axis_factor(filter_, which, s.x) * axis.inverse_integral / s.pdf;
+    return s.x;
+}
+
+FilterSample PixelFilterSampler::sample(Vec2f u) const {
+    FilterSample s;
+    s.offset.x = sample_axis(axes_[0], 0, u.x, s.weight);
+    s.offset.y = sample_axis(axes_[1], 1, u.y, s.weight);
+    return s;
+}
+
+} // namespace montelux

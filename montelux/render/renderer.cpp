@@ -1,0 +1,222 @@
+#include "montelux/render/renderer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <vector>
+
+#include "montelux/film/pixel_filter.h"
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/random/sample_stream.h"
+#include "montelux/render/passes.h"
+#include "montelux/spectrum/sensor.h"
+#include "montelux/transport/path.h"
+
+namespace montelux {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+constexpr int tile_size = 16;
+
+std::vector<PixelBounds> tiles_of(const PixelBounds& crop) {
+    std::vector<PixelBounds> tiles;
+    for (int y = crop.y0; y < crop.y1; y += tile_size)
+        for (int x = crop.x0; x < crop.x1; x += tile_size)
+            tiles.push_back({x, y, std::min(x + tile_size, crop.x1), std::min(y + tile_size, crop.y1)});
+    return tiles;
+}
+
+// Radiance that may enter a sum, or why it may not.
+std::optional<BadSample::Kind> badness(Vec3f rgb, SampledSpectrum radiance) {
+    if (std::isnan(rgb.x + rgb.y + rgb.z) || has_nan(radiance)) return BadSample::Kind::nan;
+    if (!is_finite(rgb) || !all_finite(radiance)) return BadSample::Kind::infinite;
+    // RGB may be negative for colours outside the gamut; the spectrum may not.
+    if (has_negative(radiance)) return BadSample::Kind::negative;
+    return std::nullopt;
+}
+
+// Everything that one sample needs, shared by all threads.
+struct SampleContext {
+    const SceneDescription& description;
+    PathScene path;
+    PixelFilterSampler filter;
+    Sensor sensor;
+    Sensor albedo_sensor{};
+    // Spectrum of the white that albedos are seen under.
+    const SpectrumTable& white = RgbColorSpace::srgb().illuminant();
+    float white_scale = static_cast<float>(1 / integrate_luminance(white));
+
+    struct Result {
+        FilmSample film;
+        std::optional<BadSample::Kind> bad;
+    };
+
+    Result take(RayTracer& tracer, int x, int y, std::uint64_t index) const {
+        SampleStream stream(description.sampler, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                            index);
+        Vec2f u_film = stream.next_2d();
+        float u_lambda = stream.next_1d();
+        Vec2f u_lens = path.camera.has_lens() ? stream.next_2d() : Vec2f{0.5f, 0.5f};
+        FilterSample point = filter.sample(u_film);
+        Point2f film{static_cast<float>(x) + 0.5f + point.offset.x,
+                     static_cast<float>(y) + 0.5f + point.offset.y};
+        Ray ray = path.camera.generate_ray(film, u_lens);
+        SampledWavelengths lambda = SampledWavelengths::sample_visible(u_lambda);
+        const SampledWavelengths all = lambda;
+        FirstHit first;
+        SampledSpectrum radiance = path_radiance(path, tracer, ray, lambda, stream, &first);
+
+        Result result;
+        Vec3f rgb = sensor.to_rgb(radiance, lambda);
+        result.bad = badness(rgb, radiance);
+        if (result.bad) return result;
+        float largest = max_component(rgb), limit = description.film.max_component_value;
+        if (largest > limit) rgb *= limit / largest;
+        result.film.radiance = rgb * point.weight;
+        if (first.found) {
+            result.film.albedo = albedo_sensor.to_rgb(first.albedo * white.sample(all) * white_scale, all);
+            result.film.normal = first.normal;
+            result.film.depth = first.depth;
+        }
+        return result;
+    }
+};
+
+// Statistics and bad samples of the tiles that have been rendered, merged in any order: counts and minima.
+struct Tally {
+    std::mutex mutex;
+    RenderReport report;
+
+    void add(const RayStatistics& rays, const BadSampleReport& bad, double seconds, std::uint64_t samples) {
+        std::lock_guard lock(mutex);
+        report.rays.merge(rays);
+        report.bad.merge(bad);
+        report.thread_seconds += seconds;
+        report.samples += samples;
+    }
+};
+
+} // namespace
+
+void BadSampleReport::add(const BadSample& bad) {
+    switch (bad.kind) {
+    case BadSample::Kind::nan:
+        ++nan;
+        break;
+    case BadSample::Kind::infinite:
+        ++infinite;
+        break;
+    case BadSample::Kind::negative:
+        ++negative;
+        break;
+    }
+    auto key = [](const BadSample& b) { return std::tuple(b.sample, b.y, b.x); };
+    if (!first || key(bad) < key(*first)) first = bad;
+}
+
+void BadSampleReport::merge(const BadSampleReport& other) {
+    nan += other.nan;
+    infinite += other.infinite;
+    negative += other.negative;
+    auto key = [](const BadSample& b) { return std::tuple(b.sample, b.y, b.x); };
+    if (other.first && (!first || key(*other.first) < key(*first))) first = other.first;
+}
+
+Renderer::Renderer(const SceneDescription& description)
+    : description_(description),
+      camera_(description.scene.camera, description.film.width, description.film.height) {
+    if (description.sampler.samples_per_pixel < 1)
+        throw Error("sampler", "at least 1 sample a pixel is needed");
+    auto begin = Clock::now();
+    tables_ = std::make_unique<SceneTables>(description.scene);
+    accelerator_ = std::make_unique<Accelerator>(description.scene, *tables_);
+    build_seconds_ = seconds_since(begin);
+}
+
+RenderReport Renderer::render(Film& film, const ProgressCallback& progress, const CancelFlag* cancel) const {
+    const SamplerSettings& sampler = description_.sampler;
+    const FilmSettings& settings = description_.film;
+    const float footprint_scale =
+        std::max(0.125f, 1 / std::sqrt(static_cast<float>(sampler.samples_per_pixel)));
+    const SampleContext context{
+        .description = description_,
+        .path = {description_.scene, *tables_, camera_, description_.integrator, footprint_scale},
+        .filter = PixelFilterSampler(settings.filter),
+        .sensor =
+            Sensor(RgbColorSpace::srgb(), {settings.exposure_time, settings.iso, settings.white_balance})};
+
+    const std::vector<PixelBounds> tiles = tiles_of(film.bounds());
+    const std::vector<SamplePass> passes = sample_passes(sampler);
+    const std::uint64_t pixels = static_cast<std::uint64_t>(film.bounds().width()) * film.bounds().height();
+    RenderProgress state;
+    state.samples_total = pixels * sampler.samples_per_pixel;
+
+    Tally tally;
+    auto begin = Clock::now();
+    Clock::time_point last_report = begin;
+    auto report_progress = [&](std::optional<FilmError> error) {
+        if (!progress) return;
+        state.seconds = seconds_since(begin);
+        if (error) state.error = error;
+        progress(state);
+    };
+
+    for (const SamplePass& pass : passes) {
+        bool complete = parallel_for(
+            static_cast<std::int64_t>(tiles.size()),
+            [&](std::int64_t t) {
+                auto tile_begin = Clock::now();
+                const PixelBounds& tile = tiles[static_cast<std::size_t>(t)];
+                RayTracer tracer(*accelerator_);
+                BadSampleReport bad;
+                for (int y = tile.y0; y < tile.y1; ++y)
+                    for (int x = tile.x0; x < tile.x1; ++x) {
+                        Pixel& pixel = film.pixel(x, y);
+                        for (std::uint64_t i = pass.begin; i < pass.end; ++i) {
+                            SampleContext::Result r = context.take(tracer, x, y, i);
+                            if (r.bad) {
+                                pixel.count_bad();
+                                bad.add({*r.bad, x, y, i});
+                            } else {
+                                pixel.add_sample(r.film);
+                            }
+                            if (pass.every_sample_is_a_unit) pixel.end_unit();
+                        }
+                        pixel.end_unit();
+                    }
+                std::uint64_t samples = (pass.end - pass.begin) * static_cast<std::uint64_t>(tile.width()) *
+                                        static_cast<std::uint64_t>(tile.height());
+                tally.add(tracer.statistics, bad, seconds_since(tile_begin), samples);
+                if (progress) {
+                    std::lock_guard lock(tally.mutex);
+                    state.samples_done += samples;
+                    if (seconds_since(last_report) > 0.2) {
+                        last_report = Clock::now();
+                        report_progress(std::nullopt);
+                    }
+                }
+            },
+            cancel);
+        if (!complete) {
+            tally.report.cancelled = true;
+            break;
+        }
+        report_progress(film.error());
+    }
+
+    RenderReport report = tally.report;
+    report.seconds = seconds_since(begin);
+    if (report.rays.timed > 0)
+        report.ray_seconds = report.rays.timed_seconds * static_cast<double>(report.rays.rays()) /
+                             static_cast<double>(report.rays.timed);
+    return report;
+}
+
+} // namespace montelux

@@ -1,0 +1,111 @@
+// Glass and other clear interfaces: smooth, or GGX microfacets that reflect and refract.
+#pragma once
+
+#include <optional>
+
+#include "montelux/scene/bsdf/bsdf_types.h"
+#include "montelux/scene/bsdf/fresnel.h"
+#include "montelux/scene/bsdf/ggx.h"
+
+namespace montelux {
+
+// Which lobes take part: walks through layers ask for one of them.
+enum class Lobes : std::uint8_t { both, reflection, transmission };
+
+// Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces".
+struct DielectricBsdf {
+    float eta = 1.5f; // index below the surface (-z) over that above
+    Ggx ggx;
+
+    // An index of 1 bends nothing, however rough the interface.
+    bool is_specular() const { return eta == 1 || ggx.is_smooth(); }
+    bool has_specular() const { return is_specular(); }
+    SampledSpectrum albedo(Vec3f) const { return SampledSpectrum(1); }
+
+    template <typename Stream>
+    BsdfEvaluation evaluate(Vec3f wo, Vec3f wi, TransportMode mode, Stream&) const {
+        return evaluate_lobes(wo, wi, mode, Lobes::both);
+    }
+    template <typename Stream>
+    std::optional<BsdfSample> sample(Vec3f wo, TransportMode mode, Stream& stream) const {
+        float uc = stream.next_1d();
+        Vec2f u = is_specular() ? Vec2f{} : stream.next_2d();
+        return sample_lobes(wo, uc, u, mode, Lobes::both);
+    }
+
+    BsdfEvaluation evaluate_lobes(Vec3f wo, Vec3f wi, TransportMode mode, Lobes lobes) const {
+        if (is_specular() || wo.z == 0 || wi.z == 0) return {};
+        bool reflects = same_hemisphere(wo, wi);
+        if (lobes != Lobes::both && reflects != (lobes == Lobes::reflection)) return {};
+        float eta_p = reflects ? 1 : (wo.z > 0 ? eta : 1 / eta);
+        Vec3f m = wi * eta_p + wo;
+        float len2 = length_squared(m);
+        if (!(len2 > 0)) return {};
+        m = m / std::sqrt(len2);
+        if (m.z < 0) m = -m;
+        float o_m = dot(wo, m), i_m = dot(wi, m);
+        // Microfacets seen from behind.
+        if (i_m * wi.z < 0 || o_m * wo.z < 0) return {};
+        float r = fresnel_dielectric(o_m, eta);
+        float lambda_o = ggx.lambda(wo);
+        float d = ggx.d(m);
+        float g_over_g1 = (1 + lambda_o) / (1 + lambda_o + ggx.lambda(wi));
+        float visible = d * std::abs(o_m) / ((1 + lambda_o) * std::abs(wo.z));
+        if (reflects) {
+            float density = visible / (4 * std::abs(o_m));
+            float chosen = lobes == Lobes::both ? r : 1;
+            return {SampledSpectrum(density * r * g_over_g1), density * chosen};
+        }
+        float denominator = i_m + o_m / eta_p;
+        float density = visible * std::abs(i_m) / (denominator * denominator);
+        float t = 1 - r;
+        float chosen = lobes == Lobes::both ? t : 1;
+        float f = density * t * g_over_g1;
+        if (mode == TransportMode::radiance) f /= eta_p * eta_p;
+        return {SampledSpectrum(f), density * chosen};
+    }
+
+    // uc chooses between reflection and refraction, u the microfacet.
+    std::optional<BsdfSample> sample_lobes(Vec3f wo, float uc, Vec2f u, TransportMode mode,
+                                           Lobes lobes) const {
+        if (wo.z == 0) return std::nullopt;
+        bool smooth = is_specular();
+        Vec3f m = smooth ? Vec3f{0, 0, 1} : ggx.sample_visible(wo, u);
+        float r = fresnel_dielectric(dot(wo, m), eta);
+        float p_reflect = lobes == Lobes::both ? r : (lobes == Lobes::reflection ? 1.0f : 0.0f);
+        bool reflects = uc < p_reflect;
+        float chosen = reflects ? p_reflect : 1 - p_reflect;
+        float fresnel = reflects ? r : 1 - r;
+        BsdfSample s;
+        s.specular = smooth;
+        s.transmission = !reflects;
+        if (reflects) {
+            s.wi = smooth ? Vec3f{-wo.x, -wo.y, wo.z} : reflect(wo, m);
+            if (!same_hemisphere(wo, s.wi)) return std::nullopt;
+        } else {
+            auto refraction = refract(wo, m, eta);
+            if (!refraction || same_hemisphere(wo, refraction->wt) || refraction->wt.z == 0)
+                return std::nullopt;
+            s.wi = refraction->wt;
+            s.eta = refraction->eta;
+        }
+        float weight = fresnel / chosen;
+        if (!reflects && mode == TransportMode::radiance) weight /= s.eta * s.eta;
+        if (smooth) {
+            s.pdf = chosen;
+            s.weight = SampledSpectrum(weight);
+            return s;
+        }
+        float o_m = dot(wo, m), i_m = dot(s.wi, m);
+        float lambda_o = ggx.lambda(wo);
+        float visible = ggx.d(m) * std::abs(o_m) / ((1 + lambda_o) * std::abs(wo.z));
+        float denominator = i_m + o_m / s.eta;
+        float jacobian = reflects ? 1 / (4 * std::abs(o_m)) : std::abs(i_m) / (denominator * denominator);
+        s.pdf = visible * jacobian * chosen;
+        s.weight = SampledSpectrum(weight * (1 + lambda_o) / (1 + lambda_o + ggx.lambda(s.wi)));
+        if (!(s.pdf > 0)) return std::nullopt;
+        return s;
+    }
+};
+
+} // namespace montelux

@@ -1,0 +1,214 @@
+// Any base under a dielectric coat, with or without a scattering medium between: evaluated by random walks.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "montelux/mc/integrate/mis.h"
+#include "montelux/mc/random/philox_stream.h"
+#include "montelux/mc/warp/hemisphere.h"
+#include "montelux/scene/bsdf/dielectric.h"
+#include "montelux/scene/bsdf/henyey_greenstein.h"
+
+namespace montelux {
+
+// Guo, Hasan, Zhao 2018, "Position-Free Monte Carlo Simulation for Arbitrary Layered BSDFs": the layers are
+// flat and infinite, so that a walk is told by its depth z (base at 0, coat at `thickness`) and its direction
+// alone. `evaluate` is an unbiased estimate, not the value. Its density is not known in closed form; the pdf
+// that evaluate and sample report is a fixed positive function of the two directions, which serves in MIS
+// weights as well (the weights sum to 1 for any), and sample's weight is f |cos| over the true density.
+template <typename Base>
+struct LayeredBsdf {
+    DielectricBsdf coat;
+    Base base;
+    Ggx proxy; // roughness of the light that comes back from the base, for the reported pdf
+    SampledSpectrum medium_albedo; // single-scattering albedo between the layers; its extinction is 1 per
+                                   // unit of thickness
+    float g = 0;
+    float thickness = 0.01f;
+    int max_depth = 10;
+    int sample_count = 1;
+
+    bool is_specular() const { return coat.is_specular() && base.is_specular(); }
+    bool has_specular() const { return coat.is_specular(); }
+    // Without what bounces between the layers.
+    SampledSpectrum albedo(Vec3f wo) const {
+        float r = fresnel_dielectric(abs_cos_theta(wo), coat.eta);
+        return r + (1 - r) * base.albedo(wo);
+    }
+
+    template <typename Stream>
+    BsdfEvaluation evaluate(Vec3f wo, Vec3f wi, TransportMode mode, Stream& stream) const {
+        if (!same_hemisphere(wo, wi) || is_specular()) return {};
+        // Both sides are coated.
+        if (wo.z < 0) {
+            wo = -wo;
+            wi = -wi;
+        }
+        SampledSpectrum walks;
+        PhiloxStream rng = PhiloxStream::split(stream);
+        for (int i = 0; i < sample_count; ++i) walks += walk(wo, wi, mode, rng);
+        BsdfEvaluation result = coat.evaluate_lobes(wo, wi, mode, Lobes::reflection);
+        result.f += walks / static_cast<float>(sample_count);
+        result.pdf = proxy_pdf(wo, wi);
+        return result;
+    }
+
+    template <typename Stream>
+    std::optional<BsdfSample> sample(Vec3f wo, TransportMode mode, Stream& stream) const {
+        bool below = wo.z < 0;
+        if (below) wo = -wo;
+        PhiloxStream rng = PhiloxStream::split(stream);
+        float uc = rng.next_1d();
+        Vec2f u = rng.next_2d();
+        auto s = coat.sample_lobes(wo, uc, u, mode, Lobes::both);
+        if (!s) return std::nullopt;
+        if (s->transmission && !leave(*s, mode, rng)) return std::nullopt;
+        if (!s->specular) s->pdf = proxy_pdf(wo, s->wi);
+        if (!(s->pdf > 0)) return std::nullopt;
+        s->transmission = false;
+        s->eta = 1;
+        if (below) s->wi = -s->wi;
+        return s;
+    }
+
+  private:
+    float absorption(float dz, Vec3f w) const { return std::exp(-std::abs(dz / w.z)); }
+
+    float proxy_pdf(Vec3f wo, Vec3f wi) const {
+        float r = std::clamp(fresnel_dielectric(wo.z, coat.eta), 0.1f, 0.9f);
+        float cosine = inv_pi_f * wi.z;
+        Vec3f m = normalize(wo + wi);
+        float lobe = proxy.visible_pdf(wo, m) / (4 * std::max(dot(wo, m), 1e-6f));
+        float top = coat.is_specular()
+                        ? lobe
+                        : coat.evaluate_lobes(wo, wi, TransportMode::radiance, Lobes::reflection).pdf;
+        return r * top + (1 - r) * (0.8f * lobe + 0.2f * cosine);
+    }
+
+    // One step of a walk at depth z along w: to the other interface, or to a scattering event between.
+    // Returns false for the latter; z is the new depth.
+    bool reaches_interface(float& z, Vec3f w, SampledSpectrum& beta, PhiloxStream& rng) const {
+        if (is_black(medium_albedo)) {
+            z = z == 0 ? thickness : 0;
+            beta *= absorption(thickness, w);
+            return true;
+        }
+        float u = rng.next_1d();
+        float dz = -std::log1p(-u) * std::abs(w.z);
+        float next = w.z > 0 ? z + dz : z - dz;
+        if (next > 0 && next < thickness) {
+            z = next;
+            return false;
+        }
+        z = w.z > 0 ? thickness : 0;
+        return true;
+    }
+
+    // Follows a walk that has entered through the coat until it leaves; s becomes the whole event.
+    bool leave(BsdfSample& s, TransportMode mode, PhiloxStream& rng) const {
+        SampledSpectrum beta = s.weight;
+        Vec3f w = s.wi;
+        float z = thickness;
+        for (int depth = 0; depth < max_depth; ++depth) {
+            if (!survives(depth, beta, rng) || w.z == 0) return false;
+            if (!reaches_interface(z, w, beta, rng)) {
+                Vec2f u = rng.next_2d();
+                w = HenyeyGreenstein{g}.sample(-w, u).wi;
+                beta *= medium_albedo;
+                s.specular = false;
+                continue;
+            }
+            std::optional<BsdfSample> event;
+            if (z == 0) {
+                event = base.sample(-w, mode, rng);
+            } else {
+                float uc = rng.next_1d();
+                Vec2f u = rng.next_2d();
+                event = coat.sample_lobes(-w, uc, u, mode, Lobes::both);
+            }
+            if (!event) return false;
+            beta *= event->weight;
+            s.specular = s.specular && event->specular;
+            w = event->wi;
+            if (event->transmission) {
+                s.weight = beta;
+                s.wi = w;
+                return true;
+            }
+        }
+        return false;
+    }
+
+    // The light that takes at least one trip to the base or the medium, times |cos theta_i|.
+    SampledSpectrum walk(Vec3f wo, Vec3f wi, TransportMode mode, PhiloxStream& rng) const {
+        float uc_o = rng.next_1d(), uc_i = rng.next_1d();
+        Vec2f u_o = rng.next_2d();
+        Vec2f u_i = rng.next_2d();
+        auto in = coat.sample_lobes(wo, uc_o, u_o, mode, Lobes::transmission);
+        // The way out that ends in wi, traced backwards.
+        auto out = coat.sample_lobes(wi, uc_i, u_i, adjoint(mode), Lobes::transmission);
+        if (!in || !out || in->wi.z == 0 || out->wi.z == 0) return {};
+        bool rough = !coat.is_specular();
+        Vec3f to_exit = -out->wi;
+        SampledSpectrum exit_weight = out->weight * (abs_cos_theta(wi) / abs_cos_theta(out->wi));
+        auto out_weight = [&](float other_pdf) {
+            return rough ? power_heuristic(1, out->pdf, 1, other_pdf) : 1.0f;
+        };
+        auto exit_by_chance = [&](Vec3f w, float pdf, float dz, bool delta) {
+            BsdfEvaluation exit = coat.evaluate_lobes(-w, wi, mode, Lobes::transmission);
+            float weight = delta ? 1 : power_heuristic(1, pdf, 1, exit.pdf);
+            return exit.f * (absorption(dz, w) * weight);
+        };
+
+        SampledSpectrum sum, beta = in->weight;
+        Vec3f w = in->wi;
+        float z = thickness;
+        for (int depth = 0; depth < max_depth; ++depth) {
+            if (!survives(depth, beta, rng) || w.z == 0) break;
+            if (!reaches_interface(z, w, beta, rng)) {
+                HenyeyGreenstein phase{g};
+                float p = phase.pdf(-w, to_exit);
+                sum += beta * medium_albedo * exit_weight *
+                       (p * out_weight(p) * absorption(z - thickness, to_exit));
+                Vec2f u = rng.next_2d();
+                PhaseSample event = phase.sample(-w, u);
+                beta *= medium_albedo;
+                w = event.wi;
+                if (w.z > 0 && rough) sum += beta * exit_by_chance(w, event.pdf, z - thickness, false);
+            } else if (z == thickness) {
+                float uc = rng.next_1d();
+                Vec2f u = rng.next_2d();
+                auto event = coat.sample_lobes(-w, uc, u, mode, Lobes::reflection);
+                if (!event) break;
+                beta *= event->weight;
+                w = event->wi;
+            } else {
+                if (!base.is_specular()) {
+                    BsdfEvaluation e = base.evaluate(-w, to_exit, mode, rng);
+                    sum += beta * e.f * exit_weight * (out_weight(e.pdf) * absorption(thickness, to_exit));
+                }
+                auto event = base.sample(-w, mode, rng);
+                if (!event || event->wi.z <= 0) break;
+                beta *= event->weight;
+                w = event->wi;
+                if (rough) sum += beta * exit_by_chance(w, event->pdf, thickness, event->specular);
+            }
+        }
+        return sum;
+    }
+
+    // Russian roulette once the walk is long and faint.
+    static bool survives(int depth, SampledSpectrum& beta, PhiloxStream& rng) {
+        float strength = max_value(beta);
+        if (depth <= 3 || strength >= 0.25f) return true;
+        float u = rng.next_1d();
+        if (!(u < strength)) return false;
+        beta /= strength;
+        return true;
+    }
+};
+
+} // namespace montelux

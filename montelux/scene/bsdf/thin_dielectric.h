@@ -1,0 +1,37 @@
+// A thin clear slab: light goes straight through or is mirrored, all internal reflections summed.
+#pragma once
+
+#include <optional>
+
+#include "montelux/scene/bsdf/bsdf_types.h"
+#include "montelux/scene/bsdf/fresnel.h"
+
+namespace montelux {
+
+struct ThinDielectricBsdf {
+    float eta = 1.5f;
+
+    bool is_specular() const { return true; }
+    bool has_specular() const { return true; }
+    SampledSpectrum albedo(Vec3f) const { return SampledSpectrum(1); }
+
+    template <typename Stream>
+    BsdfEvaluation evaluate(Vec3f, Vec3f, TransportMode, Stream&) const {
+        return {};
+    }
+
+    template <typename Stream>
+    std::optional<BsdfSample> sample(Vec3f wo, TransportMode, Stream& stream) const {
+        float r = fresnel_dielectric(abs_cos_theta(wo), eta);
+        // The geometric series of bounces inside the slab (Stokes): R + T R T + T R R R T + ...
+        if (r < 1) r += (1 - r) * (1 - r) * r / (1 - r * r);
+        float uc = stream.next_1d();
+        if (uc < r)
+            return BsdfSample{
+                .weight = SampledSpectrum(1), .wi = {-wo.x, -wo.y, wo.z}, .pdf = r, .specular = true};
+        return BsdfSample{
+            .weight = SampledSpectrum(1), .wi = -wo, .pdf = 1 - r, .specular = true, .transmission = true};
+    }
+};
+
+} // namespace montelux

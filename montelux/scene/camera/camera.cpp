@@ -1,0 +1,116 @@
+#include "montelux/scene/camera/camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "montelux/mc/math/constants.h"
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/warp/disk.h"
+#include "montelux/mc/warp/equal_area_square.h"
+
+namespace montelux {
+
+namespace {
+
+ScreenWindow window_of(const std::optional<ScreenWindow>& window, std::optional<float> aspect, int width,
+                       int height) {
+    if (window) return *window;
+    float a = aspect.value_or(static_cast<float>(width) / static_cast<float>(height));
+    if (a > 1) return {-a, a, -1, 1};
+    return {-1, 1, -1 / a, 1 / a};
+}
+
+} // namespace
+
+Camera::Camera(const CameraSettings& settings, int width, int height)
+    : world_from_camera_(settings.world_from_camera) {
+    for (int i = 0; i < 3; ++i) {
+        Vec3d axis{i == 0 ? 1.0 : 0, i == 1 ? 1.0 : 0, i == 2 ? 1.0 : 0};
+        axes_[i] = Vec3f(world_from_camera_.vector(axis));
+    }
+    origin_ = Vec3f(world_from_camera_.point(Vec3d{0, 0, 0}));
+    auto use_window = [&](const ScreenWindow& w, double scale) {
+        x0_ = static_cast<float>(double(w.x_min) * scale);
+        dx_ = static_cast<float>((double(w.x_max) - double(w.x_min)) * scale / width);
+        y0_ = static_cast<float>(double(w.y_max) * scale);
+        dy_ = static_cast<float>((double(w.y_min) - double(w.y_max)) * scale / height);
+        pixel_ = std::min(std::abs(dx_), std::abs(dy_));
+    };
+    auto use_lens = [&](float radius, float distance) {
+        if (!(radius >= 0) || !std::isfinite(radius))
+            throw Error("camera", "the lens radius must not be negative");
+        if (radius > 0 && !(distance > 0)) throw Error("camera", "the focal distance must be positive");
+        lens_radius_ = radius;
+        focal_distance_ = distance;
+    };
+    if (const auto* c = std::get_if<PerspectiveCamera>(&settings.model)) {
+        if (!(c->fov > 0 && c->fov < 180))
+            throw Error("camera", "the field of view must lie between 0 and 180 degrees");
+        use_window(window_of(c->screen_window, c->frame_aspect_ratio, width, height),
+                   std::tan(double(c->fov) * pi / 360));
+        use_lens(c->lens_radius, c->focal_distance);
+    } else if (const auto* o = std::get_if<OrthographicCamera>(&settings.model)) {
+        kind_ = Kind::orthographic;
+        use_window(window_of(o->screen_window, o->frame_aspect_ratio, width, height), 1);
+        use_lens(o->lens_radius, o->focal_distance);
+    } else {
+        const auto& s = std::get<SphericalCamera>(settings.model);
+        kind_ = s.mapping == SphericalCamera::Mapping::equal_area ? Kind::equal_area : Kind::equirectangular;
+        dx_ = 1.0f / static_cast<float>(width);
+        dy_ = 1.0f / static_cast<float>(height);
+        pixel_ = static_cast<float>(std::sqrt(4 * pi / (double(width) * height)));
+    }
+}
+
+Point3f Camera::world_point(Point3f p) const { return origin_ + world_vector(p); }
+Vec3f Camera::world_vector(Vec3f v) const { return v.x * axes_[0] + v.y * axes_[1] + v.z * axes_[2]; }
+
+Ray Camera::generate_ray(Point2f film, Point2f lens) const {
+    Point3f o{0, 0, 0};
+    Vec3f d;
+    switch (kind_) {
+    case Kind::perspective:
+        d = {x0_ + film.x * dx_, y0_ + film.y * dy_, 1};
+        break;
+    case Kind::orthographic:
+        o = {x0_ + film.x * dx_, y0_ + film.y * dy_, 0};
+        d = {0, 0, 1};
+        break;
+    case Kind::equal_area: {
+        // The square's z axis is the camera's up.
+        Point2f square{std::clamp(film.x * dx_, 0.0f, 1.0f), std::clamp(film.y * dy_, 0.0f, 1.0f)};
+        Vec3f w = equal_area_square_to_sphere(square);
+        d = {w.x, w.z, w.y};
+        break;
+    }
+    case Kind::equirectangular: {
+        float theta = pi_f * film.y * dy_, phi = two_pi_f * film.x * dx_;
+        d = {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
+        break;
+    }
+    }
+    if (lens_radius_ > 0) {
+        Point3f focus = o + d * (focal_distance_ / d.z);
+        Point2f on_lens = lens_radius_ * sample_uniform_disk_concentric(lens);
+        o = {on_lens.x, on_lens.y, 0};
+        d = focus - o;
+    }
+    return {world_point(o), normalize(world_vector(d))};
+}
+
+Camera::Footprint Camera::footprint(Point3f p, Normal3f n, float scale) const {
+    Vec3f axis = kind_ == Kind::orthographic ? normalize(axes_[2]) : p - origin_;
+    float distance = kind_ == Kind::orthographic ? 1 : length(axis);
+    if (!(distance > 0)) return {};
+    Vec3f w = axis / distance;
+    float width = pixel_ * scale * (kind_ == Kind::orthographic ? length(axes_[0]) : distance);
+    Frame frame = Frame::from_normal_and_tangent(w, axes_[0]);
+    // A step across the line of sight, slid along it onto the tangent plane. At grazing angles the plane
+    // recedes without end: the stretch is bounded.
+    float cosine = dot(w, n);
+    cosine = std::copysign(std::max(std::abs(cosine), 1e-3f), cosine);
+    auto slide = [&](Vec3f step) { return step - w * (dot(step, n) / cosine); };
+    return {slide(frame.s * width), slide(frame.t * width)};
+}
+
+} // namespace montelux

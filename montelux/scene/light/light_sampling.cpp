@@ -1,0 +1,220 @@
+#include "montelux/scene/light/light_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "montelux/mc/warp/cone.h"
+#include "montelux/mc/warp/equal_area_square.h"
+#include "montelux/mc/warp/sphere.h"
+#include "montelux/mc/warp/triangle.h"
+#include "montelux/scene/shape/surface_point.h"
+
+namespace montelux {
+
+namespace {
+
+// From off the surface at the reference to just before the point on the light.
+Ray shadow_ray(const ReferencePoint& from, Vec3f wi, Point3f to, Normal3f n, float error) {
+    Point3f o = offset_origin(from.p, from.n, from.error, wi);
+    Point3f end = offset_origin(to, n, error, -wi);
+    return {o, end - o, 1};
+}
+
+Ray shadow_ray_to_infinity(const ReferencePoint& from, Vec3f wi) {
+    return {offset_origin(from.p, from.n, from.error, wi), wi};
+}
+
+std::optional<LightSample> from_area_point(const AreaLight& light, const ReferencePoint& from, Point3f p,
+                                           Normal3f n, float error, float area_density,
+                                           const SampledWavelengths& lambda) {
+    Vec3f d = p - from.p;
+    float d2 = length_squared(d);
+    if (!(d2 > 0)) return std::nullopt;
+    LightSample s;
+    s.wi = d / std::sqrt(d2);
+    float cosine = -dot(n, s.wi);
+    if (!(cosine > 0) && !light.two_sided) return std::nullopt;
+    cosine = std::abs(cosine);
+    if (cosine == 0) return std::nullopt;
+    s.radiance = light.spectrum.sample(lambda) * light.scale;
+    s.pdf = area_density * d2 / cosine;
+    s.shadow = shadow_ray(from, s.wi, p, n, error);
+    return s;
+}
+
+float size_of(Vec3d p) {
+    return static_cast<float>(std::max(std::abs(p.x), std::max(std::abs(p.y), std::abs(p.z))));
+}
+
+// A point outside a sphere sees it as a cone: uniform over its solid angle.
+struct SphereCone {
+    Vec3f axis;
+    double distance;
+    double sin2_max;
+    // 1 - cos(theta_max) without cancellation.
+    double one_minus_cos_max() const { return sin2_max / (1 + std::sqrt(std::max(0.0, 1 - sin2_max))); }
+    float pdf() const { return static_cast<float>(inv_two_pi / one_minus_cos_max()); }
+};
+std::optional<SphereCone> cone_of(const WorldSphere& sphere, Point3f from) {
+    Vec3d axis = sphere.center - Vec3d(from);
+    double d2 = dot(axis, axis), r2 = sphere.radius * sphere.radius;
+    if (d2 <= r2 * 1.0001) return std::nullopt;
+    double d = std::sqrt(d2);
+    return SphereCone{Vec3f(axis / d), d, r2 / d2};
+}
+
+std::optional<LightSample> sample_sphere(const AreaLight& light, const WorldSphere& sphere,
+                                         const SphereCone& cone, bool flipped, const ReferencePoint& from,
+                                         Vec2f u, const SampledWavelengths& lambda) {
+    // Inside out: the visible side is dark.
+    if (flipped && !light.two_sided) return std::nullopt;
+    double one_minus_cos = double(u.x) * cone.one_minus_cos_max();
+    double sin2 = one_minus_cos * (2 - one_minus_cos);
+    float sin_theta = static_cast<float>(std::sqrt(sin2)), cos_theta = static_cast<float>(1 - one_minus_cos);
+    float phi = two_pi_f * u.y;
+    LightSample s;
+    s.wi = Frame::from_normal(cone.axis).to_world(
+        {sin_theta * std::cos(phi), sin_theta * std::sin(phi), cos_theta});
+    s.pdf = cone.pdf();
+    s.radiance = light.spectrum.sample(lambda) * light.scale;
+    // The near intersection.
+    double t = cone.distance * (1 - one_minus_cos) -
+               std::sqrt(std::max(0.0, sphere.radius * sphere.radius - cone.distance * cone.distance * sin2));
+    Vec3d p = Vec3d(from.p) + t * Vec3d(s.wi);
+    Vec3f n = Vec3f(normalize(p - sphere.center));
+    s.shadow =
+        shadow_ray(from, s.wi, Vec3f(p), n, coordinate_error(size_of(p) + static_cast<float>(sphere.radius)));
+    return s;
+}
+
+float spot_falloff(const SpotLight& light, Vec3f w) {
+    float c = dot(w, light.axis);
+    if (c >= light.cos_falloff_start) return 1;
+    if (c <= light.cos_total_width) return 0;
+    float t = (c - light.cos_total_width) / (light.cos_falloff_start - light.cos_total_width);
+    return t * t * (3 - 2 * t);
+}
+
+std::optional<LightSample> sample_point(Point3f position, SampledSpectrum intensity,
+                                        const ReferencePoint& from) {
+    Vec3f d = position - from.p;
+    float d2 = length_squared(d);
+    if (!(d2 > 0)) return std::nullopt;
+    LightSample s;
+    s.wi = d / std::sqrt(d2);
+    s.radiance = intensity / d2;
+    s.pdf = 1;
+    s.delta = true;
+    Point3f o = offset_origin(from.p, from.n, from.error, s.wi);
+    s.shadow = {o, position - o, 1};
+    return s;
+}
+
+Point2f map_point(const ImageInfiniteLight& light, Vec3f wi) {
+    return equal_area_sphere_to_square(normalize(light.world_from_light.inverse().vector(wi)));
+}
+
+SampledSpectrum map_radiance(const Scene& scene, const ImageInfiniteLight& light, Point2f st,
+                             const SampledWavelengths& lambda) {
+    const Image& map = scene.environments[light.environment];
+    int x = std::clamp(static_cast<int>(st.x * static_cast<float>(map.width())), 0, map.width() - 1);
+    int y = std::clamp(static_cast<int>(st.y * static_cast<float>(map.height())), 0, map.height() - 1);
+    Vec3f rgb{map.value(x, y, 0), map.value(x, y, 1), map.value(x, y, 2)};
+    return RgbIlluminantSpectrum(*light.color_space, max(rgb, Vec3f{0, 0, 0})).sample(lambda) * light.scale;
+}
+
+} // namespace
+
+SampledSpectrum emitted_radiance(const AreaLight& light, Normal3f n, Vec3f w,
+                                 const SampledWavelengths& lambda) {
+    if (!light.two_sided && !(dot(n, w) > 0)) return {};
+    return light.spectrum.sample(lambda) * light.scale;
+}
+
+SampledSpectrum infinite_radiance(const Scene& scene, Index index, Vec3f wi,
+                                  const SampledWavelengths& lambda) {
+    const Light& any = scene.lights[index];
+    if (const auto* light = std::get_if<UniformInfiniteLight>(&any))
+        return light->spectrum.sample(lambda) * light->scale;
+    if (const auto* light = std::get_if<ImageInfiniteLight>(&any))
+        return map_radiance(scene, *light, map_point(*light, wi), lambda);
+    return {};
+}
+
+std::optional<LightSample> sample_light(const Scene& scene, const LightTables& tables, Index index,
+                                        const ReferencePoint& from, Vec2f u,
+                                        const SampledWavelengths& lambda) {
+    const Light& any = scene.lights[index];
+    if (const auto* light = std::get_if<AreaLight>(&any)) {
+        const Shape& shape = scene.shapes[light->shape];
+        if (shape.mesh != none) {
+            const LightTriangle& t = tables.triangle(index);
+            if (!(t.area > 0)) return std::nullopt;
+            Vec3f b = sample_uniform_triangle(u);
+            return from_area_point(*light, from, t.p0 + b.y * t.e1 + b.z * t.e2, t.n, t.error, 1 / t.area,
+                                   lambda);
+        }
+        if (const auto& sphere = tables.sphere(index))
+            if (auto cone = cone_of(*sphere, from.p))
+                return sample_sphere(*light, *sphere, *cone, shape.flip_normal, from, u, lambda);
+        QuadricAreaSample s = sample_area(scene.quadrics[shape.quadric], u);
+        Normal3f n = Vec3f(shape.flip_normal ? -s.point.n : s.point.n);
+        return from_area_point(*light, from, Vec3f(s.point.p), n, coordinate_error(size_of(s.point.p)),
+                               static_cast<float>(s.pdf), lambda);
+    }
+    if (const auto* light = std::get_if<PointLight>(&any))
+        return sample_point(light->position, light->spectrum.sample(lambda) * light->scale, from);
+    if (const auto* light = std::get_if<SpotLight>(&any)) {
+        float falloff = spot_falloff(*light, normalize(from.p - light->position));
+        if (falloff == 0) return std::nullopt;
+        return sample_point(light->position, light->spectrum.sample(lambda) * (light->scale * falloff), from);
+    }
+    if (const auto* light = std::get_if<DistantLight>(&any))
+        return LightSample{.radiance = light->spectrum.sample(lambda) * light->scale,
+                           .wi = light->to_light,
+                           .pdf = 1,
+                           .delta = true,
+                           .shadow = shadow_ray_to_infinity(from, light->to_light)};
+    if (const auto* light = std::get_if<UniformInfiniteLight>(&any)) {
+        Vec3f wi = sample_uniform_sphere(u);
+        return LightSample{.radiance = light->spectrum.sample(lambda) * light->scale,
+                           .wi = wi,
+                           .pdf = inv_four_pi_f,
+                           .shadow = shadow_ray_to_infinity(from, wi)};
+    }
+    const auto& light = std::get<ImageInfiniteLight>(any);
+    auto s = tables.environment(light.environment).sample(u);
+    if (!(s.pdf > 0)) return std::nullopt;
+    Vec3f wi = light.world_from_light.vector(equal_area_square_to_sphere(s.p));
+    wi = normalize(wi);
+    return LightSample{.radiance = map_radiance(scene, light, s.p, lambda),
+                       .wi = wi,
+                       .pdf = s.pdf * inv_four_pi_f,
+                       .shadow = shadow_ray_to_infinity(from, wi)};
+}
+
+float area_light_pdf(const Scene& scene, const LightTables& tables, Index index, const ReferencePoint& from,
+                     Point3f p, Normal3f n) {
+    const auto& light = std::get<AreaLight>(scene.lights[index]);
+    const Shape& shape = scene.shapes[light.shape];
+    float area_density;
+    if (shape.mesh != none) {
+        area_density = 1 / tables.triangle(index).area;
+    } else {
+        if (const auto& sphere = tables.sphere(index))
+            if (auto cone = cone_of(*sphere, from.p)) return cone->pdf();
+        area_density = static_cast<float>(area_pdf(scene.quadrics[shape.quadric], Vec3d(p)));
+    }
+    Vec3f d = p - from.p;
+    float d2 = length_squared(d);
+    float cosine = std::abs(dot(n, d)) / std::sqrt(d2);
+    return cosine > 0 ? area_density * d2 / cosine : 0;
+}
+
+float infinite_light_pdf(const Scene& scene, const LightTables& tables, Index index, Vec3f wi) {
+    const auto* light = std::get_if<ImageInfiniteLight>(&scene.lights[index]);
+    if (light == nullptr) return inv_four_pi_f;
+    return tables.environment(light->environment).pdf(map_point(*light, wi)) * inv_four_pi_f;
+}
+
+} // namespace montelux

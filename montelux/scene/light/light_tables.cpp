@@ -1,0 +1,138 @@
+#include "montelux/scene/light/light_tables.h"
+
+#include <cmath>
+
+#include "montelux/mc/math/constants.h"
+#include "montelux/scene/shape/surface_point.h"
+
+namespace montelux {
+
+namespace {
+
+LightTriangle light_triangle(const Scene& scene, const AreaLight& light) {
+    const Shape& shape = scene.shapes[light.shape];
+    const TriangleMesh& mesh = scene.meshes[shape.mesh];
+    const Index* v = &mesh.indices[3 * std::size_t{light.primitive}];
+    LightTriangle t;
+    t.p0 = mesh.positions[v[0]];
+    t.e1 = mesh.positions[v[1]] - t.p0;
+    t.e2 = mesh.positions[v[2]] - t.p0;
+    Vec3f c = cross(t.e1, t.e2);
+    float len = length(c);
+    t.area = 0.5f * len;
+    if (len > 0) {
+        // The same side as a hit at the centroid would report.
+        Hit hit{.b1 = 1.0f / 3, .b2 = 1.0f / 3, .shape = light.shape, .primitive = light.primitive};
+        SurfacePoint s = surface_point(scene, Ray{}, hit, false);
+        t.n = s.ng;
+        t.error = s.error;
+    }
+    return t;
+}
+
+// Mean over the visible range.
+double mean(const Spectrum& s) {
+    double sum = 0;
+    int n = 0;
+    for (float lambda = lambda_min; lambda <= lambda_max; lambda += 5, ++n) sum += double(s(lambda));
+    return sum / n;
+}
+
+double luminance(const Image& map, int x, int y) {
+    return (double(map.value(x, y, 0)) + double(map.value(x, y, 1)) + double(map.value(x, y, 2))) / 3;
+}
+
+double mean_luminance(const Image& map) {
+    double sum = 0;
+    for (int y = 0; y < map.height(); ++y)
+        for (int x = 0; x < map.width(); ++x) sum += luminance(map, x, y);
+    return sum / static_cast<double>(map.pixel_count());
+}
+
+std::unique_ptr<PiecewiseConstant2D> environment_density(const Image& map) {
+    std::vector<float> values(map.pixel_count());
+    for (int y = 0; y < map.height(); ++y)
+        for (int x = 0; x < map.width(); ++x)
+            values[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width()) +
+                   static_cast<std::size_t>(x)] = static_cast<float>(std::max(0.0, luminance(map, x, y)));
+    return std::make_unique<PiecewiseConstant2D>(values, static_cast<std::uint32_t>(map.width()),
+                                                 static_cast<std::uint32_t>(map.height()));
+}
+
+} // namespace
+
+Bounds3 bounds_of(const Scene& scene) {
+    Bounds3 bounds;
+    auto add_shape = [&](Index index, const Transform* t) {
+        const Shape& shape = scene.shapes[index];
+        auto add = [&](Vec3d p) { bounds.add(t != nullptr ? t->point(p) : p); };
+        if (shape.mesh != none) {
+            for (Point3f p : scene.meshes[shape.mesh].positions) add(Vec3d(p));
+        } else {
+            Bounds3 b = world_bounds(scene.quadrics[shape.quadric]);
+            for (int i = 0; i < 8; ++i)
+                add({(i & 1) != 0 ? b.upper.x : b.lower.x, (i & 2) != 0 ? b.upper.y : b.lower.y,
+                     (i & 4) != 0 ? b.upper.z : b.lower.z});
+        }
+    };
+    for (Index shape : scene.world_shapes) add_shape(shape, nullptr);
+    for (const Instance& instance : scene.instances)
+        for (Index shape : scene.objects[instance.object].shapes)
+            add_shape(shape, &instance.world_from_object);
+    return bounds;
+}
+
+LightTables::LightTables(const Scene& scene)
+    : triangle_of_light_(scene.lights.size(), none), spheres_(scene.lights.size()),
+      bounds_(bounds_of(scene)) {
+    for (const Image& map : scene.environments) environments_.push_back(environment_density(map));
+
+    double radius = std::max(bounds_.radius(), 1e-30);
+    double cross_section = pi * radius * radius;
+    std::vector<double> powers;
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        double power = std::visit(
+            [&](const auto& light) -> double {
+                using L = std::decay_t<decltype(light)>;
+                if constexpr (std::is_same_v<L, AreaLight>) {
+                    const Shape& shape = scene.shapes[light.shape];
+                    double area;
+                    if (shape.mesh != none) {
+                        triangle_of_light_[i] = static_cast<Index>(triangles_.size());
+                        triangles_.push_back(light_triangle(scene, light));
+                        area = double(triangles_.back().area);
+                    } else {
+                        const Quadric& quadric = scene.quadrics[shape.quadric];
+                        area = world_area(quadric);
+                        spheres_[i] = whole_sphere(quadric);
+                    }
+                    return pi * area * (light.two_sided ? 2 : 1) * double(light.scale) * mean(light.spectrum);
+                } else if constexpr (std::is_same_v<L, ImageInfiniteLight>) {
+                    infinite_lights_.push_back(static_cast<Index>(i));
+                    // The photometric normalisation is in `scale`; so is the mean of the white illuminant.
+                    Spectrum white(RgbIlluminantSpectrum(*light.color_space, {1, 1, 1}));
+                    return 4 * pi * cross_section * double(light.scale) * mean(white) *
+                           mean_luminance(scene.environments[light.environment]);
+                } else {
+                    double flux = double(light.scale) * mean(light.spectrum);
+                    if constexpr (std::is_same_v<L, UniformInfiniteLight>) {
+                        infinite_lights_.push_back(static_cast<Index>(i));
+                        return 4 * pi * cross_section * flux;
+                    } else if constexpr (std::is_same_v<L, DistantLight>) {
+                        return cross_section * flux;
+                    } else if constexpr (std::is_same_v<L, SpotLight>) {
+                        return 2 * pi * flux *
+                               ((1 - double(light.cos_falloff_start)) +
+                                0.5 * (double(light.cos_falloff_start) - double(light.cos_total_width)));
+                    } else {
+                        return 4 * pi * flux;
+                    }
+                }
+            },
+            scene.lights[i]);
+        powers.push_back(std::isfinite(power) && power > 0 ? power : 0);
+    }
+    if (!powers.empty()) by_power_.emplace(std::span<const double>(powers));
+}
+
+} // namespace montelux

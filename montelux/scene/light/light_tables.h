@@ -1,0 +1,53 @@
+// Tables that choose lights and sample them: powers, triangles, environment maps.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "montelux/mc/dist/alias_table.h"
+#include "montelux/mc/dist/piecewise_2d.h"
+#include "montelux/scene/scene.h"
+#include "montelux/scene/shape/quadric.h"
+
+namespace montelux {
+
+// A triangle that emits, in world space. The normal is on the side that shines when the light is one-sided.
+struct LightTriangle {
+    Point3f p0;
+    Vec3f e1, e2;
+    Normal3f n;
+    float area = 0;
+    float error = 0; // as SurfacePoint::error
+};
+
+class LightTables {
+  public:
+    explicit LightTables(const Scene& scene);
+
+    bool empty() const { return !by_power_.has_value(); }
+    // Lights are chosen in proportion to the power that they send into the scene, estimated in the mean over
+    // the visible wavelengths.
+    const AliasTable& by_power() const { return *by_power_; }
+    float probability(Index light) const { return by_power_->probability(light); }
+    // Of a light on a mesh.
+    const LightTriangle& triangle(Index light) const { return triangles_[triangle_of_light_[light]]; }
+    const PiecewiseConstant2D& environment(Index i) const { return *environments_[i]; }
+    const std::vector<Index>& infinite_lights() const { return infinite_lights_; }
+    const std::optional<WorldSphere>& sphere(Index light) const { return spheres_[light]; }
+    const Bounds3& scene_bounds() const { return bounds_; }
+
+  private:
+    std::optional<AliasTable> by_power_;
+    std::vector<LightTriangle> triangles_;
+    std::vector<Index> triangle_of_light_;
+    std::vector<std::optional<WorldSphere>> spheres_;
+    std::vector<std::unique_ptr<PiecewiseConstant2D>> environments_;
+    std::vector<Index> infinite_lights_;
+    Bounds3 bounds_;
+};
+
+// Of everything in the world, instances included.
+Bounds3 bounds_of(const Scene& scene);
+
+} // namespace montelux

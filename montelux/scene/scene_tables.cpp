@@ -1,0 +1,85 @@
+#include "montelux/scene/scene_tables.h"
+
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/scene/material/make_bsdf.h"
+
+namespace montelux {
+
+namespace {
+
+using CoatingKey = std::tuple<float, float, float, int>; // eta, alpha, thickness, max_depth
+
+// The coating's parameters where CoatingTable's closed form holds: nothing varies over the surface, the lobe
+// is isotropic, the layer is clear and refracts all wavelengths alike.
+std::optional<CoatingKey> closed_form(const Material& material) {
+    const auto* m = std::get_if<CoatedDiffuseMaterial>(&material);
+    if (m == nullptr) return std::nullopt;
+    const CoatingParameters& c = m->coating;
+    bool constant = c.roughness.u.is_constant() && c.roughness.v.is_constant() && c.thickness.is_constant() &&
+                    c.albedo.is_constant() && c.eta.is_constant();
+    if (!constant || c.roughness.u.value != c.roughness.v.value || c.albedo.value.max_value() > 0)
+        return std::nullopt;
+    float alpha = c.roughness.u.value;
+    if (c.roughness.remap) alpha = Ggx::alpha_from_roughness(alpha);
+    float eta = c.eta(550);
+    if (!(eta > 0)) return std::nullopt;
+    return CoatingKey{eta, alpha, c.thickness.value, c.max_depth};
+}
+
+bool has_texture(const FloatParameter& p) { return !p.is_constant(); }
+bool has_texture(const SpectrumParameter& p) { return !p.is_constant(); }
+bool has_texture(const RoughnessParameter& r) { return has_texture(r.u) || has_texture(r.v); }
+bool has_texture(const ConductorMaterial& m) {
+    return has_texture(m.eta) || has_texture(m.k) || has_texture(m.reflectance) || has_texture(m.roughness);
+}
+bool has_texture(const CoatingParameters& c) {
+    return has_texture(c.roughness) || has_texture(c.thickness) || has_texture(c.albedo) || has_texture(c.g);
+}
+bool has_texture(const DiffuseMaterial& m) { return has_texture(m.reflectance); }
+bool has_texture(const DielectricMaterial& m) { return has_texture(m.roughness); }
+bool has_texture(const ThinDielectricMaterial&) { return false; }
+bool has_texture(const CoatedDiffuseMaterial& m) {
+    return has_texture(m.reflectance) || has_texture(m.coating);
+}
+bool has_texture(const CoatedConductorMaterial& m) {
+    return has_texture(m.conductor) || has_texture(m.coating);
+}
+
+} // namespace
+
+SceneTables::SceneTables(const Scene& scene) : lights_(scene) {
+    std::vector<std::optional<MipMap>> mipmaps(scene.images.size());
+    parallel_for(static_cast<std::int64_t>(scene.images.size()), [&](std::int64_t i) {
+        mipmaps[static_cast<std::size_t>(i)].emplace(scene.images[static_cast<std::size_t>(i)]);
+    });
+    mipmaps_.reserve(mipmaps.size());
+    for (auto& m : mipmaps) mipmaps_.push_back(std::move(*m));
+
+    std::map<CoatingKey, std::size_t> index_of;
+    std::vector<CoatingKey> keys;
+    std::vector<std::size_t> table_of_material(scene.materials.size(), SIZE_MAX);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        anisotropic_.push_back(montelux::is_anisotropic(scene.materials[i]) ? 1 : 0);
+        textured_.push_back(std::visit([](const auto& m) { return has_texture(m); }, scene.materials[i]) ? 1
+                                                                                                         : 0);
+        if (auto key = closed_form(scene.materials[i])) {
+            auto [found, inserted] = index_of.try_emplace(*key, keys.size());
+            if (inserted) keys.push_back(*key);
+            table_of_material[i] = found->second;
+        }
+    }
+    coatings_.resize(keys.size());
+    parallel_for(static_cast<std::int64_t>(keys.size()), [&](std::int64_t i) {
+        auto k = static_cast<std::size_t>(i);
+        auto [eta, alpha, thickness, max_depth] = keys[k];
+        coatings_[k] = std::make_unique<CoatingTable>(eta, alpha, thickness, max_depth);
+    });
+    for (std::size_t table : table_of_material)
+        coating_of_material_.push_back(table == SIZE_MAX ? nullptr : coatings_[table].get());
+}
+
+} // namespace montelux

@@ -1,0 +1,37 @@
+// What is computed once from an immutable scene: image pyramids, coating tables, light sampling.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "montelux/scene/bsdf/coating.h"
+#include "montelux/scene/light/light_tables.h"
+#include "montelux/scene/scene.h"
+#include "montelux/scene/texture/mipmap.h"
+
+namespace montelux {
+
+class SceneTables {
+  public:
+    // Pyramids of images that no texture filters are built all the same; independent parts are built in
+    // parallel.
+    explicit SceneTables(const Scene& scene);
+
+    const MipMap& mipmap(Index image) const { return mipmaps_[image]; }
+    // Null where the closed form of CoatingTable does not hold and the random walk is used.
+    const CoatingTable* coating(Index material) const { return coating_of_material_[material]; }
+    // The parameters of a material that look up textures want coordinates and footprints.
+    bool is_textured(Index material) const { return textured_[material] != 0; }
+    // The BSDF's lobes depend on the direction of the tangents.
+    bool is_anisotropic(Index material) const { return anisotropic_[material] != 0; }
+    const LightTables& lights() const { return lights_; }
+
+  private:
+    std::vector<MipMap> mipmaps_;
+    std::vector<std::unique_ptr<CoatingTable>> coatings_;
+    std::vector<const CoatingTable*> coating_of_material_;
+    std::vector<char> textured_, anisotropic_;
+    LightTables lights_;
+};
+
+} // namespace montelux

@@ -1,0 +1,217 @@
+#include "montelux/scene/shape/quadric.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "montelux/mc/math/constants.h"
+
+namespace montelux {
+
+namespace {
+
+double azimuth(Vec3d p) {
+    double phi = std::atan2(p.y, p.x);
+    return phi < 0 ? phi + 2 * pi : phi;
+}
+
+bool within(const Sphere& s, Vec3d p) {
+    bool whole_z = s.z_min <= -s.radius && s.z_max >= s.radius;
+    if (!whole_z && (p.z < double(s.z_min) || p.z > double(s.z_max))) return false;
+    return double(s.phi_max) >= 2 * pi - 1e-6 || azimuth(p) <= double(s.phi_max);
+}
+
+bool within(const Disk& d, Vec3d p) {
+    double r2 = p.x * p.x + p.y * p.y;
+    if (r2 > double(d.radius) * double(d.radius) || r2 < double(d.inner_radius) * double(d.inner_radius))
+        return false;
+    return double(d.phi_max) >= 2 * pi - 1e-6 || azimuth(p) <= double(d.phi_max);
+}
+
+struct ObjectRay {
+    Vec3d o, d;
+};
+ObjectRay to_object(const Transform& world_from_object, const Ray& ray) {
+    Transform inverse = world_from_object.inverse();
+    return {inverse.point(Vec3d(ray.o)), inverse.vector(Vec3d(ray.d))};
+}
+
+std::optional<double> intersect_object(const Sphere& s, const ObjectRay& r, double t_min, double t_max) {
+    double a = dot(r.d, r.d);
+    if (!(a > 0)) return std::nullopt;
+    // The distance of the centre from the line instead of b^2 - ac: no cancellation far from the sphere.
+    double t_mid = -dot(r.o, r.d) / a;
+    Vec3d closest = r.o + t_mid * r.d;
+    double h2 = double(s.radius) * double(s.radius) - dot(closest, closest);
+    if (h2 < 0) return std::nullopt;
+    double half = std::sqrt(h2 / a);
+    for (double t : {t_mid - half, t_mid + half})
+        if (t > t_min && t < t_max && within(s, r.o + t * r.d)) return t;
+    return std::nullopt;
+}
+
+std::optional<double> intersect_object(const Disk& d, const ObjectRay& r, double t_min, double t_max) {
+    if (r.d.z == 0) return std::nullopt;
+    double t = (double(d.height) - r.o.z) / r.d.z;
+    if (!(t > t_min && t < t_max) || !within(d, r.o + t * r.d)) return std::nullopt;
+    return t;
+}
+
+Vec3d project(const Sphere& s, Vec3d p) {
+    double len = length(p);
+    return len > 0 ? p * (double(s.radius) / len) : Vec3d{0, 0, double(s.radius)};
+}
+Vec3d project(const Disk& d, Vec3d p) { return {p.x, p.y, double(d.height)}; }
+
+Vec3d object_normal(const Sphere& s, Vec3d p) { return p / double(s.radius); }
+Vec3d object_normal(const Disk&, Vec3d) { return {0, 0, 1}; }
+
+Point2f coordinates(const Sphere& s, Vec3d p) {
+    double r = s.radius;
+    double theta_min = std::acos(std::clamp(std::min(double(s.z_min), double(s.z_max)) / r, -1.0, 1.0));
+    double theta_max = std::acos(std::clamp(std::max(double(s.z_min), double(s.z_max)) / r, -1.0, 1.0));
+    double theta = std::acos(std::clamp(p.z / r, -1.0, 1.0));
+    return {static_cast<float>(azimuth(p) / double(s.phi_max)),
+            static_cast<float>((theta - theta_min) / (theta_max - theta_min))};
+}
+Point2f coordinates(const Disk& d, Vec3d p) {
+    double r = std::sqrt(p.x * p.x + p.y * p.y);
+    return {static_cast<float>(azimuth(p) / double(d.phi_max)),
+            static_cast<float>((double(d.radius) - r) / (double(d.radius) - double(d.inner_radius)))};
+}
+
+template <typename S>
+QuadricPoint to_world(const S& s, Vec3d p) {
+    QuadricPoint q;
+    q.p = s.world_from_object.point(p);
+    q.n = normalize(s.world_from_object.normal(object_normal(s, p)));
+    q.uv = coordinates(s, p);
+    Vec3d dpdu{-p.y, p.x, 0};
+    if (!(dot(dpdu, dpdu) > 0)) dpdu = {0, 1, 0};
+    q.dpdu = s.world_from_object.vector(dpdu);
+    return q;
+}
+
+// World area over object area around an object-space point with unit normal n: |det M| |M^-T n|.
+double area_scale(const Transform& t, Vec3d n) {
+    return std::abs(t.matrix().linear_determinant()) * length(t.normal(n));
+}
+
+double z_low(const Sphere& s) {
+    return std::max(-double(s.radius), std::min(double(s.z_min), double(s.z_max)));
+}
+double z_high(const Sphere& s) {
+    return std::min(double(s.radius), std::max(double(s.z_min), double(s.z_max)));
+}
+
+double object_area(const Sphere& s) { return double(s.phi_max) * double(s.radius) * (z_high(s) - z_low(s)); }
+double object_area(const Disk& d) {
+    double r = d.radius, ri = d.inner_radius;
+    return 0.5 * double(d.phi_max) * (r * r - ri * ri);
+}
+
+Vec3d sample_object(const Sphere& s, Vec2d u) {
+    double z = z_low(s) + u.x * (z_high(s) - z_low(s)), phi = u.y * double(s.phi_max);
+    double r = std::sqrt(std::max(0.0, double(s.radius) * double(s.radius) - z * z));
+    return {r * std::cos(phi), r * std::sin(phi), z};
+}
+Vec3d sample_object(const Disk& d, Vec2d u) {
+    double ri = double(d.inner_radius) * double(d.inner_radius), ro = double(d.radius) * double(d.radius);
+    double r = std::sqrt(ri + u.x * (ro - ri)), phi = u.y * double(d.phi_max);
+    return {r * std::cos(phi), r * std::sin(phi), double(d.height)};
+}
+
+std::optional<double> uniform_scale(const Transform& t) {
+    Vec3d x = t.vector(Vec3d{1, 0, 0}), y = t.vector(Vec3d{0, 1, 0}), z = t.vector(Vec3d{0, 0, 1});
+    double s2 = dot(x, x), tolerance = 1e-5 * s2;
+    bool similar = std::abs(dot(y, y) - s2) < tolerance && std::abs(dot(z, z) - s2) < tolerance &&
+                   std::abs(dot(x, y)) < tolerance && std::abs(dot(y, z)) < tolerance &&
+                   std::abs(dot(z, x)) < tolerance;
+    if (!similar) return std::nullopt;
+    return std::sqrt(s2);
+}
+
+} // namespace
+
+Bounds3 world_bounds(const Quadric& quadric) {
+    return std::visit(
+        [](const auto& s) {
+            Vec3d lower{-double(s.radius), -double(s.radius), 0},
+                upper{double(s.radius), double(s.radius), 0};
+            if constexpr (std::is_same_v<std::decay_t<decltype(s)>, Sphere>) {
+                lower.z = z_low(s);
+                upper.z = z_high(s);
+            } else {
+                lower.z = upper.z = double(s.height);
+            }
+            Bounds3 bounds;
+            for (int i = 0; i < 8; ++i)
+                bounds.add(s.world_from_object.point(Vec3d{(i & 1) != 0 ? upper.x : lower.x,
+                                                           (i & 2) != 0 ? upper.y : lower.y,
+                                                           (i & 4) != 0 ? upper.z : lower.z}));
+            return bounds;
+        },
+        quadric);
+}
+
+double world_area(const Quadric& quadric) {
+    return std::visit(
+        [](const auto& s) {
+            if (auto k = uniform_scale(s.world_from_object)) return object_area(s) * *k * *k;
+            constexpr int n = 128;
+            double sum = 0;
+            for (int i = 0; i < n; ++i)
+                for (int j = 0; j < n; ++j)
+                    sum += area_scale(s.world_from_object,
+                                      object_normal(s, sample_object(s, {(i + 0.5) / n, (j + 0.5) / n})));
+            return object_area(s) * sum / (n * n);
+        },
+        quadric);
+}
+
+std::optional<double> intersect(const Quadric& quadric, const Ray& ray, double t_min) {
+    return std::visit(
+        [&](const auto& s) {
+            return intersect_object(s, to_object(s.world_from_object, ray), t_min, double(ray.t_max));
+        },
+        quadric);
+}
+
+QuadricPoint point_at(const Quadric& quadric, const Ray& ray, double t) {
+    return std::visit(
+        [&](const auto& s) {
+            ObjectRay r = to_object(s.world_from_object, ray);
+            return to_world(s, project(s, r.o + t * r.d));
+        },
+        quadric);
+}
+
+QuadricAreaSample sample_area(const Quadric& quadric, Vec2f u) {
+    return std::visit(
+        [&](const auto& s) {
+            Vec3d p = sample_object(s, Vec2d(u));
+            double scale = area_scale(s.world_from_object, object_normal(s, p));
+            return QuadricAreaSample{to_world(s, p), 1 / (object_area(s) * scale)};
+        },
+        quadric);
+}
+
+double area_pdf(const Quadric& quadric, Vec3d world_point) {
+    return std::visit(
+        [&](const auto& s) {
+            Vec3d p = project(s, s.world_from_object.inverse().point(world_point));
+            return 1 / (object_area(s) * area_scale(s.world_from_object, object_normal(s, p)));
+        },
+        quadric);
+}
+
+std::optional<WorldSphere> whole_sphere(const Quadric& quadric) {
+    const auto* s = std::get_if<Sphere>(&quadric);
+    if (s == nullptr || z_low(*s) > -double(s->radius) || z_high(*s) < double(s->radius) ||
+        double(s->phi_max) < 2 * pi - 1e-6)
+        return std::nullopt;
+    auto scale = uniform_scale(s->world_from_object);
+    if (!scale) return std::nullopt;
+    return WorldSphere{s->world_from_object.point(Vec3d{0, 0, 0}), *scale * double(s->radius)};
+}
+
+} // namespace montelux

@@ -1,0 +1,55 @@
+// Spheres and discs: intersection in double precision, area, and the point of a surface coordinate.
+#pragma once
+
+#include <optional>
+
+#include "montelux/scene/shape/ray.h"
+#include "montelux/scene/shape/shape.h"
+
+namespace montelux {
+
+struct QuadricPoint {
+    Vec3d p, n; // n: unit outward normal (sphere), +z (disc); both in world space
+    Point2f uv; // u = phi / phi_max; v as in pbrt-v4's file format
+    Vec3d dpdu;
+};
+
+struct Bounds3 {
+    Vec3d lower{1e300, 1e300, 1e300}, upper{-1e300, -1e300, -1e300};
+
+    void add(Vec3d p) {
+        lower = min(lower, p);
+        upper = max(upper, p);
+    }
+    bool empty() const { return !(lower.x <= upper.x); }
+    Vec3d center() const { return 0.5 * (lower + upper); }
+    double radius() const { return empty() ? 0 : 0.5 * length(upper - lower); }
+};
+
+Bounds3 world_bounds(const Quadric& quadric);
+// World-space area, by quadrature where the transform scales axes differently.
+double world_area(const Quadric& quadric);
+
+// The first hit with t in (t_min, ray.t_max); the ray is in world space.
+std::optional<double> intersect(const Quadric& quadric, const Ray& ray, double t_min);
+
+// Geometry at the point where `ray` hits at t: the point is projected onto the surface.
+QuadricPoint point_at(const Quadric& quadric, const Ray& ray, double t);
+
+// A point distributed uniformly over the area of object space, and its density per world-space area.
+struct QuadricAreaSample {
+    QuadricPoint point;
+    double pdf;
+};
+QuadricAreaSample sample_area(const Quadric& quadric, Vec2f u);
+// Density of sample_area at a point with object-space normal direction mapped from world (1/area of world).
+double area_pdf(const Quadric& quadric, Vec3d world_point);
+
+// A whole sphere under a similarity transform: centre and radius in world space; else empty.
+struct WorldSphere {
+    Vec3d center;
+    double radius;
+};
+std::optional<WorldSphere> whole_sphere(const Quadric& quadric);
+
+} // namespace montelux

@@ -1,0 +1,34 @@
+// Rays, and what a ray hits.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "montelux/mc/math/vec.h"
+#include "montelux/scene/index.h"
+
+namespace montelux {
+
+// Points o + t d for t in [0, t_max]; d need not have unit length.
+struct Ray {
+    Point3f o;
+    Vec3f d;
+    float t_max = std::numeric_limits<float>::infinity();
+};
+
+struct Hit {
+    float t = 0;
+    float b1 = 0, b2 = 0; // barycentric weights of a triangle's second and third vertex
+    Index shape = none;
+    Index primitive = 0;
+    Index instance = none; // into Scene::instances; none for shapes that stand in the world
+};
+
+// The origin of a ray that leaves a surface: p moved off it along the unit normal, to the side of w, by
+// `error`, the bound of the distance between p and the true surface. Scale-free: the bound grows with the
+// coordinates.
+inline Point3f offset_origin(Point3f p, Normal3f n, float error, Vec3f w) {
+    return p + n * std::copysign(error, dot(n, w));
+}
+
+} // namespace montelux

@@ -1,0 +1,113 @@
+#include "montelux/scene/shape/surface_point.h"
+
+#include <cmath>
+
+#include "montelux/scene/shape/quadric.h"
+
+namespace montelux {
+
+namespace {
+
+float largest_coordinate(Vec3f p) { return std::max(std::abs(p.x), std::max(std::abs(p.y), std::abs(p.z))); }
+
+// p(u, v) is affine on a triangle: solves for its derivatives. Degenerate uv give any tangents.
+void triangle_derivatives(SurfacePoint& s, Vec3f e1, Vec3f e2, Vec2f duv1, Vec2f duv2) {
+    float determinant = duv1.x * duv2.y - duv1.y * duv2.x;
+    if (std::abs(determinant) > 1e-20f) {
+        float inv = 1 / determinant;
+        s.dpdu = (duv2.y * e1 - duv1.y * e2) * inv;
+        s.dpdv = (duv1.x * e2 - duv2.x * e1) * inv;
+        if (length_squared(cross(s.dpdu, s.dpdv)) > 0) return;
+    }
+    Frame frame = Frame::from_normal(s.ng);
+    s.dpdu = frame.s;
+    s.dpdv = frame.t;
+}
+
+SurfacePoint triangle_point(const TriangleMesh& mesh, const Shape& shape, const Hit& hit, bool derivatives) {
+    SurfacePoint s;
+    const Index* v = &mesh.indices[3 * std::size_t{hit.primitive}];
+    Point3f p0 = mesh.positions[v[0]], p1 = mesh.positions[v[1]], p2 = mesh.positions[v[2]];
+    Vec3f e1 = p1 - p0, e2 = p2 - p0;
+    float b0 = 1 - hit.b1 - hit.b2;
+    s.p = b0 * p0 + hit.b1 * p1 + hit.b2 * p2;
+    s.ng = normalize(cross(e1, e2));
+    if (shape.flip_normal) s.ng = -s.ng;
+    s.ns = s.ng;
+    if (!mesh.normals.empty()) {
+        Vec3f n = b0 * mesh.normals[v[0]] + hit.b1 * mesh.normals[v[1]] + hit.b2 * mesh.normals[v[2]];
+        float len2 = length_squared(n);
+        if (len2 > 0) {
+            s.ns = n / std::sqrt(len2);
+            if (dot(s.ns, s.ng) < 0) s.ng = -s.ng;
+        }
+    }
+    s.error = coordinate_error(
+        std::max(largest_coordinate(p0), std::max(largest_coordinate(p1), largest_coordinate(p2))));
+    Point2f uv0{0, 0}, uv1{1, 0}, uv2{1, 1};
+    if (!mesh.uvs.empty()) {
+        uv0 = mesh.uvs[v[0]];
+        uv1 = mesh.uvs[v[1]];
+        uv2 = mesh.uvs[v[2]];
+    }
+    s.uv = b0 * uv0 + hit.b1 * uv1 + hit.b2 * uv2;
+    if (derivatives) triangle_derivatives(s, e1, e2, uv1 - uv0, uv2 - uv0);
+    return s;
+}
+
+SurfacePoint quadric_point(const Quadric& quadric, const Shape& shape, const Ray& ray, const Hit& hit,
+                           bool derivatives) {
+    SurfacePoint s;
+    QuadricPoint q = point_at(quadric, ray, double(hit.t));
+    s.p = Vec3f(q.p);
+    s.ng = Vec3f(shape.flip_normal ? -q.n : q.n);
+    s.ns = s.ng;
+    s.uv = q.uv;
+    s.error = coordinate_error(largest_coordinate(s.p) +
+                               std::visit([](const auto& x) { return x.radius; }, quadric) * 0.25f);
+    if (derivatives) {
+        s.dpdu = Vec3f(q.dpdu);
+        s.dpdv = cross(s.ng, s.dpdu);
+    }
+    return s;
+}
+
+void transform_by(const Transform& t, SurfacePoint& s, float scale) {
+    s.p = t.point(s.p);
+    s.ng = normalize(t.normal(s.ng));
+    s.ns = normalize(t.normal(s.ns));
+    s.dpdu = t.vector(s.dpdu);
+    s.dpdv = t.vector(s.dpdv);
+    s.error = s.error * scale + coordinate_error(largest_coordinate(s.p));
+}
+
+// Largest stretch of a transform, bounded by the Frobenius norm.
+float stretch(const Transform& t) {
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) sum += t.matrix().m[i][j] * t.matrix().m[i][j];
+    return static_cast<float>(std::sqrt(sum));
+}
+
+} // namespace
+
+SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, bool derivatives) {
+    const Shape& shape = scene.shapes[hit.shape];
+    SurfacePoint s;
+    if (hit.instance == none) {
+        s = shape.mesh != none ? triangle_point(scene.meshes[shape.mesh], shape, hit, derivatives)
+                               : quadric_point(scene.quadrics[shape.quadric], shape, ray, hit, derivatives);
+    } else {
+        const Transform& t = scene.instances[hit.instance].world_from_object;
+        Transform inverse = t.inverse();
+        Ray local{inverse.point(ray.o), inverse.vector(ray.d), ray.t_max};
+        s = shape.mesh != none ? triangle_point(scene.meshes[shape.mesh], shape, hit, derivatives)
+                               : quadric_point(scene.quadrics[shape.quadric], shape, local, hit, derivatives);
+        transform_by(t, s, stretch(t));
+    }
+    s.shape = &shape;
+    s.primitive = hit.primitive;
+    return s;
+}
+
+} // namespace montelux

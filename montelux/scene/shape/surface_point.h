@@ -1,0 +1,28 @@
+// The point of a surface that a ray hit: position, normals, texture coordinates.
+#pragma once
+
+#include "montelux/mc/math/frame.h"
+#include "montelux/scene/scene.h"
+#include "montelux/scene/shape/ray.h"
+
+namespace montelux {
+
+struct SurfacePoint {
+    Point3f p;
+    Normal3f ng;     // geometric normal, unit, on the side that ns is on
+    Normal3f ns;     // shading normal, unit
+    float error = 0; // bound of the distance between p and the true surface along ng
+    Point2f uv;
+    Vec3f dpdu, dpdv; // with respect to uv; set by surface_point when asked for
+    const Shape* shape = nullptr;
+    Index primitive = 0;
+};
+
+// Everything at a hit of `ray`. The derivatives are computed only when asked for: textures that are filtered
+// and anisotropic BSDFs need them.
+SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, bool derivatives);
+
+// Bound of the rounding error of coordinates of that size, for offset_origin.
+inline float coordinate_error(float largest) { return 0x1p-20f * largest; }
+
+} // namespace montelux

@@ -1,0 +1,119 @@
+#include "montelux/scene/texture/evaluate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace montelux {
+
+namespace {
+
+// Share of the second colour of a 2-D checkerboard in the footprint around (s, t): the product of two
+// box-filtered square waves.
+float checkerboard_share(const TextureCoordinates& c) {
+    // Mean over [x - r, x + r] of the square wave that is +1 on even unit cells and -1 on odd ones.
+    auto wave = [](float x, float r) {
+        auto integral = [](float v) {
+            float half = v * 0.5f;
+            float frac = 2 * (half - std::floor(half));
+            return frac < 1 ? frac : 2 - frac;
+        };
+        if (r < 1e-4f) return (static_cast<long long>(std::floor(x)) & 1) == 0 ? 1.0f : -1.0f;
+        return (integral(x + r) - integral(x - r)) / (2 * r);
+    };
+    float rs = 0.5f * std::max(std::abs(c.dstdx.x), std::abs(c.dstdy.x));
+    float rt = 0.5f * std::max(std::abs(c.dstdx.y), std::abs(c.dstdy.y));
+    return 0.5f - 0.5f * wave(c.st.x, rs) * wave(c.st.y, rt);
+}
+
+template <typename Parameter>
+float second_share(const CheckerboardTexture<Parameter>& t, const TextureContext& context) {
+    if (t.dimension == 2) return checkerboard_share(t.mapping(context));
+    Vec3f p = t.mapping.texture_from_world.point(context.p);
+    auto cell = static_cast<long long>(std::floor(p.x)) + static_cast<long long>(std::floor(p.y)) +
+                static_cast<long long>(std::floor(p.z));
+    return (cell & 1) == 0 ? 0.0f : 1.0f;
+}
+
+Vec3f image_lookup(const SceneTables& tables, const ImageTexture& t, const TextureContext& context) {
+    TextureCoordinates c = t.mapping(context);
+    Vec3f rgb =
+        t.scale * tables.mipmap(t.image).lookup(c.st, c.dstdx, c.dstdy, t.filter, t.wrap, t.max_anisotropy);
+    if (t.invert) rgb = Vec3f{1, 1, 1} - rgb;
+    return max(rgb, Vec3f{0, 0, 0});
+}
+
+SampledSpectrum as_spectrum(Vec3f rgb, const ImageTexture& t, const SampledWavelengths& lambda) {
+    switch (t.meaning) {
+    case RgbMeaning::albedo: return RgbAlbedoSpectrum(*t.color_space, rgb).sample(lambda);
+    case RgbMeaning::unbounded: return RgbUnboundedSpectrum(*t.color_space, rgb).sample(lambda);
+    case RgbMeaning::illuminant: break;
+    }
+    return RgbIlluminantSpectrum(*t.color_space, rgb).sample(lambda);
+}
+
+// One tree walk for both kinds of values; `value_of` evaluates a parameter, `from_image` an image.
+template <typename Value, typename Texture, typename ValueOf, typename FromImage, typename Amount>
+Value evaluate_node(const Texture& texture, const TextureContext& context, const ValueOf& value_of,
+                    const FromImage& from_image, const Amount& amount) {
+    return std::visit(
+        [&](const auto& t) -> Value {
+            using T = std::decay_t<decltype(t)>;
+            if constexpr (requires { t.value; }) {
+                return value_of(t.value);
+            } else if constexpr (std::is_same_v<T, ImageTexture>) {
+                return from_image(t);
+            } else if constexpr (requires { t.scale; }) {
+                float scale = amount(t.scale);
+                return scale == 0 ? Value(0) : value_of(t.texture) * scale;
+            } else {
+                float share;
+                if constexpr (requires { t.amount; })
+                    share = amount(t.amount);
+                else
+                    share = second_share(t, context);
+                const auto& first = [&]() -> const auto& {
+                    if constexpr (requires { t.amount; })
+                        return t.first;
+                    else
+                        return t.values[0];
+                }
+                ();
+                const auto& second = [&]() -> const auto& {
+                    if constexpr (requires { t.amount; })
+                        return t.second;
+                    else
+                        return t.values[1];
+                }
+                ();
+                if (share <= 0) return value_of(first);
+                if (share >= 1) return value_of(second);
+                return value_of(first) * (1 - share) + value_of(second) * share;
+            }
+        },
+        texture);
+}
+
+} // namespace
+
+float evaluate_texture(const Scene& scene, const SceneTables& tables, const FloatTexture& texture,
+                       const TextureContext& context) {
+    auto value_of = [&](const FloatParameter& p) { return evaluate(scene, tables, p, context); };
+    auto from_image = [&](const ImageTexture& t) {
+        Vec3f rgb = image_lookup(tables, t, context);
+        return (rgb.x + rgb.y + rgb.z) / 3;
+    };
+    return evaluate_node<float>(texture, context, value_of, from_image, value_of);
+}
+
+SampledSpectrum evaluate_texture(const Scene& scene, const SceneTables& tables,
+                                 const SpectrumTexture& texture, const TextureContext& context,
+                                 const SampledWavelengths& lambda) {
+    auto value_of = [&](const SpectrumParameter& p) { return evaluate(scene, tables, p, context, lambda); };
+    auto from_image = [&](const ImageTexture& t) {
+        return as_spectrum(image_lookup(tables, t, context), t, lambda);
+    };
+    auto amount = [&](const FloatParameter& p) { return evaluate(scene, tables, p, context); };
+    return evaluate_node<SampledSpectrum>(texture, context, value_of, from_image, amount);
+}
+
+} // namespace montelux

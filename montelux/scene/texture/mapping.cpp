@@ -1,0 +1,50 @@
+#include "montelux/scene/texture/mapping.h"
+
+#include <algorithm>
+
+namespace montelux {
+
+namespace {
+
+Vec2f spherical(Vec3f p) {
+    Vec3f d = normalize(p);
+    float phi = std::atan2(d.y, d.x);
+    if (phi < 0) phi += two_pi_f;
+    return {std::acos(std::clamp(d.z, -1.0f, 1.0f)) * inv_pi_f, phi * inv_two_pi_f};
+}
+
+Vec2f cylindrical(Vec3f p) { return {(pi_f + std::atan2(p.y, p.x)) * inv_two_pi_f, p.z}; }
+
+// Differences across the seam of an angle go the short way round.
+Vec2f wrapped_difference(Vec2f a, Vec2f b, int angle) {
+    Vec2f d = a - b;
+    d[angle] -= std::round(d[angle]);
+    return d;
+}
+
+} // namespace
+
+TextureCoordinates TextureMapping::operator()(const TextureContext& c) const {
+    if (kind == Kind::uv)
+        return {{su * c.uv.x + du, sv * c.uv.y + dv},
+                {su * c.duvdx.x, sv * c.duvdx.y},
+                {su * c.duvdy.x, sv * c.duvdy.y}};
+    Vec3f p = texture_from_world.point(c.p);
+    Vec3f px = texture_from_world.vector(c.dpdx), py = texture_from_world.vector(c.dpdy);
+    switch (kind) {
+    case Kind::spherical: {
+        Vec2f st = spherical(p);
+        return {st, wrapped_difference(spherical(p + px), st, 1),
+                wrapped_difference(spherical(p + py), st, 1)};
+    }
+    case Kind::cylindrical: {
+        Vec2f st = cylindrical(p);
+        return {st, wrapped_difference(cylindrical(p + px), st, 0),
+                wrapped_difference(cylindrical(p + py), st, 0)};
+    }
+    default:
+        return {{du + dot(p, vs), dv + dot(p, vt)}, {dot(px, vs), dot(px, vt)}, {dot(py, vs), dot(py, vt)}};
+    }
+}
+
+} // namespace montelux

@@ -1,0 +1,219 @@
+#include "montelux/transport/path.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "montelux/mc/integrate/mis.h"
+#include "montelux/mc/warp/hemisphere.h"
+#include "montelux/mc/warp/sphere.h"
+#include "montelux/scene/light/light_sampling.h"
+#include "montelux/scene/material/make_bsdf.h"
+#include "montelux/scene/shape/surface_point.h"
+
+namespace montelux {
+
+namespace {
+
+float mis_weight(Heuristic heuristic, float f, float g) {
+    return heuristic == Heuristic::power ? power_heuristic(1, f, 1, g) : balance_heuristic(1, f, 1, g);
+}
+
+// u such that a = x dpdu + y dpdv in the least-squares sense.
+Vec2f in_tangents(Vec3f a, Vec3f dpdu, Vec3f dpdv) {
+    float uu = dot(dpdu, dpdu), uv = dot(dpdu, dpdv), vv = dot(dpdv, dpdv);
+    float determinant = uu * vv - uv * uv;
+    if (!(std::abs(determinant) > 0)) return {0, 0};
+    float au = dot(a, dpdu), av = dot(a, dpdv), inv = 1 / determinant;
+    Vec2f d{(vv * au - uv * av) * inv, (uu * av - uv * au) * inv};
+    return std::isfinite(d.x) && std::isfinite(d.y) ? d : Vec2f{0, 0};
+}
+
+TextureContext texture_context(const PathScene& ps, const SurfacePoint& s) {
+    TextureContext c{.p = s.p, .n = s.ns, .uv = s.uv, .dpdx = {}, .dpdy = {}, .duvdx = {}, .duvdy = {}};
+    Camera::Footprint footprint = ps.camera.footprint(s.p, s.ng, ps.footprint_scale);
+    c.dpdx = footprint.dpdx;
+    c.dpdy = footprint.dpdy;
+    c.duvdx = in_tangents(c.dpdx, s.dpdu, s.dpdv);
+    c.duvdy = in_tangents(c.dpdy, s.dpdu, s.dpdv);
+    return c;
+}
+
+bool transmits(const Bsdf& bsdf) {
+    return std::holds_alternative<DielectricBsdf>(bsdf) || std::holds_alternative<ThinDielectricBsdf>(bsdf);
+}
+
+// Directions that know nothing of the BSDF: uniform over the hemisphere of wo, or over the sphere for clear
+// surfaces. A delta lobe beside others gets half of the samples, since no such direction can find it.
+std::optional<BsdfSample> sample_uniform(const Bsdf& bsdf, Vec3f wo, SampleStream& stream) {
+    return std::visit(
+        [&](const auto& b) -> std::optional<BsdfSample> {
+            float share = 1;
+            if (b.has_specular()) {
+                share = 0.5f;
+                float u_choice = stream.next_1d();
+                if (u_choice < share) {
+                    auto s = b.sample(wo, TransportMode::radiance, stream);
+                    if (!s || !s->specular) return std::nullopt;
+                    s->weight /= share;
+                    return s;
+                }
+            }
+            Vec2f u = stream.next_2d();
+            BsdfSample s;
+            if (transmits(bsdf)) {
+                s.wi = sample_uniform_sphere(u);
+                s.pdf = share * inv_four_pi_f;
+                s.transmission = !same_hemisphere(wo, s.wi);
+            } else {
+                s.wi = sample_uniform_hemisphere(u);
+                if (wo.z < 0) s.wi.z = -s.wi.z;
+                s.pdf = share * inv_two_pi_f;
+            }
+            BsdfEvaluation e = b.evaluate(wo, s.wi, TransportMode::radiance, stream);
+            if (const auto* d = std::get_if<DielectricBsdf>(&bsdf); d != nullptr && s.transmission)
+                s.eta = wo.z > 0 ? d->eta : 1 / d->eta;
+            s.weight = e.f / s.pdf;
+            if (is_black(s.weight)) return std::nullopt;
+            return s;
+        },
+        bsdf);
+}
+
+// The state of one path between its vertices.
+struct Path {
+    const PathScene& ps;
+    RayTracer& tracer;
+    SampledWavelengths& lambda;
+    SampleStream& stream;
+
+    SampledSpectrum radiance{}, throughput{1};
+    ReferencePoint previous{}; // the last vertex that scattered
+    float bsdf_pdf = 0;        // with which the current direction was sampled there
+    bool sees_lights = true;   // no other strategy can have found the light that the ray hits
+    float eta_scale = 1;       // squared index of refraction along the path, undone for Russian roulette
+
+    bool samples_lights() const {
+        return ps.settings.strategy == Strategy::mis || ps.settings.strategy == Strategy::light;
+    }
+
+    // How much of the light that was found by following the path counts.
+    float hit_weight(float light_pdf) const {
+        if (sees_lights || !samples_lights()) return 1;
+        if (ps.settings.strategy == Strategy::light) return light_pdf > 0 ? 0.0f : 1.0f;
+        return mis_weight(ps.settings.heuristic, bsdf_pdf, light_pdf);
+    }
+
+    void add_infinite_lights(Vec3f w) {
+        const LightTables& lights = ps.tables.lights();
+        for (Index light : lights.infinite_lights()) {
+            SampledSpectrum le = infinite_radiance(ps.scene, light, w, lambda);
+            if (is_black(le)) continue;
+            float weight =
+                sees_lights
+                    ? 1
+                    : hit_weight(lights.probability(light) * infinite_light_pdf(ps.scene, lights, light, w));
+            radiance += throughput * le * weight;
+        }
+    }
+
+    void add_emission(const SurfacePoint& s, Vec3f w) {
+        if (s.shape->first_light == none) return;
+        const LightTables& lights = ps.tables.lights();
+        Index index = s.shape->first_light + s.primitive;
+        const auto& light = std::get<AreaLight>(ps.scene.lights[index]);
+        SampledSpectrum le = emitted_radiance(light, s.ng, -w, lambda);
+        if (is_black(le)) return;
+        float weight = sees_lights ? 1
+                                   : hit_weight(lights.probability(index) *
+                                                area_light_pdf(ps.scene, lights, index, previous, s.p, s.ng));
+        radiance += throughput * le * weight;
+    }
+
+    // Next-event estimation: one light, one point on it. Lights that scattering cannot find are sampled
+    // whatever the strategy says.
+    template <typename B>
+    void add_direct_light(const B& bsdf, const Frame& frame, Vec3f wo, const ReferencePoint& here) {
+        const LightTables& lights = ps.tables.lights();
+        if (lights.empty()) return;
+        float u_light = stream.next_1d();
+        Vec2f u = stream.next_2d();
+        auto chosen = lights.by_power().sample(u_light);
+        auto light = sample_light(ps.scene, lights, chosen.index, here, u, lambda);
+        if (!light || (!light->delta && !samples_lights())) return;
+        BsdfEvaluation e = bsdf.evaluate(wo, frame.to_local(light->wi), TransportMode::radiance, stream);
+        if (is_black(e.f) || is_black(light->radiance)) return;
+        float light_pdf = chosen.probability * light->pdf;
+        float weight = light->delta || ps.settings.strategy == Strategy::light
+                           ? 1
+                           : mis_weight(ps.settings.heuristic, light_pdf, e.pdf);
+        if (tracer.occluded(light->shadow)) return;
+        radiance += throughput * e.f * light->radiance * (weight / light_pdf);
+    }
+
+    // Russian roulette on what the path can still carry to the film. Returns false at its end.
+    bool survives(int depth) {
+        float strength = max_value(throughput) * eta_scale;
+        if (!(strength < 1) || depth <= 1) return strength > 0;
+        float u = stream.next_1d();
+        if (!(u < strength)) return false;
+        throughput /= strength;
+        return true;
+    }
+};
+
+} // namespace
+
+SampledSpectrum path_radiance(const PathScene& ps, RayTracer& tracer, Ray ray, SampledWavelengths& lambda,
+                              SampleStream& stream, FirstHit* first) {
+    Path path{ps, tracer, lambda, stream};
+    for (int depth = 0;;) {
+        Hit hit;
+        if (!tracer.intersect(ray, hit)) {
+            path.add_infinite_lights(ray.d);
+            break;
+        }
+        const Shape& shape = ps.scene.shapes[hit.shape];
+        const bool textured = ps.tables.is_textured(shape.material);
+        const bool tangents = textured || ps.tables.is_anisotropic(shape.material);
+        SurfacePoint s = surface_point(ps.scene, ray, hit, tangents);
+        path.add_emission(s, ray.d);
+        if (depth++ == ps.settings.max_depth) break;
+
+        TextureContext context;
+        if (textured) context = texture_context(ps, s);
+        Bsdf bsdf = make_bsdf(ps.scene, ps.tables, shape.material, context, lambda);
+        Frame frame = tangents ? Frame::from_normal_and_tangent(s.ns, s.dpdu) : Frame::from_normal(s.ns);
+        Vec3f wo = frame.to_local(-ray.d);
+        if (depth == 1 && first != nullptr)
+            *first = {.albedo = std::visit([&](const auto& b) { return b.albedo(wo); }, bsdf),
+                      .normal = s.ns,
+                      .depth = hit.t,
+                      .found = true};
+        if (wo.z == 0) break;
+        ReferencePoint here{s.p, s.ng, s.error};
+
+        const bool uniform = ps.settings.strategy == Strategy::uniform;
+        auto scattered = std::visit(
+            [&](const auto& b) -> std::optional<BsdfSample> {
+                if (!b.is_specular()) {
+                    path.add_direct_light(b, frame, wo, here);
+                    if (uniform) return sample_uniform(bsdf, wo, stream);
+                }
+                return b.sample(wo, TransportMode::radiance, stream);
+            },
+            bsdf);
+        if (!scattered) break;
+
+        path.throughput *= scattered->weight;
+        path.bsdf_pdf = scattered->pdf;
+        path.sees_lights = scattered->specular;
+        path.previous = here;
+        if (scattered->transmission) path.eta_scale *= scattered->eta * scattered->eta;
+        Vec3f wi = frame.to_world(scattered->wi);
+        ray = {offset_origin(s.p, s.ng, s.error, wi), wi};
+        if (!path.survives(depth)) break;
+    }
+    return path.radiance;
+}
+
+} // namespace montelux

@@ -1,0 +1,56 @@
+// The accelerator as a path sees it: counts its rays and times a few of them.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include "montelux/accel/accelerator.h"
+
+namespace montelux {
+
+struct RayStatistics {
+    std::uint64_t closest = 0, occlusion = 0;
+    std::uint64_t timed = 0; // rays that the clock was read for
+    double timed_seconds = 0;
+
+    void merge(const RayStatistics& other) {
+        closest += other.closest;
+        occlusion += other.occlusion;
+        timed += other.timed;
+        timed_seconds += other.timed_seconds;
+    }
+    std::uint64_t rays() const { return closest + occlusion; }
+};
+
+// One a thread. Every 256th ray is timed: reading the clock costs as much as a ray.
+class RayTracer {
+  public:
+    explicit RayTracer(const Accelerator& accelerator) : accelerator_(&accelerator) {}
+
+    bool intersect(const Ray& ray, Hit& hit) {
+        ++statistics.closest;
+        return timed([&] { return accelerator_->intersect(ray, hit); });
+    }
+    bool occluded(const Ray& ray) {
+        ++statistics.occlusion;
+        return timed([&] { return accelerator_->occluded(ray); });
+    }
+
+    RayStatistics statistics;
+
+  private:
+    template <typename F>
+    bool timed(const F& f) {
+        if ((statistics.rays() & 255) != 0) return f();
+        auto begin = std::chrono::steady_clock::now();
+        bool result = f();
+        statistics.timed_seconds +=
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        ++statistics.timed;
+        return result;
+    }
+
+    const Accelerator* accelerator_;
+};
+
+} // namespace montelux
