@@ -9,6 +9,8 @@ target_compile_features(rgb_uplift_generator PRIVATE cxx_std_20)
 target_include_directories(rgb_uplift_generator PRIVATE ${PROJECT_SOURCE_DIR})
 # Always optimised and never instrumented: it would take minutes otherwise.
 target_compile_options(rgb_uplift_generator PRIVATE -O3 -fno-math-errno -fno-trapping-math -march=x86-64-v3 -Wno-psabi)
+find_package(Threads REQUIRED)
+target_link_libraries(rgb_uplift_generator PRIVATE Threads::Threads)
 add_custom_command(OUTPUT ${tables} COMMAND rgb_uplift_generator ${tables} DEPENDS rgb_uplift_generator
     COMMENT "Computing the RGB uplift tables" VERBATIM)
 # The file embeds the tables by an assembler directive, which link-time optimisation cannot see into.

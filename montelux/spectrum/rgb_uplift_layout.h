@@ -18,6 +18,6 @@ struct RgbUpliftLayout {
 };
 
 inline constexpr std::array<RgbUpliftLayout, 4> rgb_uplift_layouts{
-    {{"srgb", 56}, {"dci-p3", 24}, {"rec2020", 24}, {"aces2065-1", 24}}};
+    {{"srgb", 56}, {"dci-p3", 32}, {"rec2020", 32}, {"aces2065-1", 24}}};
 
 } // namespace montelux
