@@ -2,6 +2,7 @@
 // within 1.5 GiB and 10 seconds.
 #include "test/image/bounded_run.h"
 #include "test/image/image_testing.h"
+#include "test/image/sample_files.h"
 #include <algorithm>
 #include <filesystem>
 
@@ -81,7 +82,16 @@ std::vector<std::pair<std::string, std::string>> good_files() {
     add("b.png", {.png_bits = 16});
     add("a.hdr", {});
     add("a.pfm", {});
-    // Types 10 and 2 with 24 bits, 32 x 32 pixels.
+    for (int compression = 5; compression <= 9; ++compression)
+        files.emplace_back("c" + std::to_string(compression) + ".exr",
+                           make_exr({.compression = compression}));
+    files.emplace_back("tiled.exr", make_exr({.tiled = true}));
+    files.emplace_back("mipmap.exr", make_exr({.compression = 4, .tiled = true, .level_mode = 1}));
+    files.emplace_back("ripmap.exr", make_exr({.compression = 1, .tiled = true, .level_mode = 2}));
+    files.emplace_back("parts.exr", make_exr({.parts = 3}));
+    files.emplace_back("baseline.jpg", make_jpeg(60, 50, 3, false));
+    files.emplace_back("progressive.jpg", make_jpeg(60, 50, 3, true));
+    // Run lengths, 24 bits, 32 x 32 pixels.
     std::string tga("\0\0\x0a\0\0\0\0\0\0\0\0\0\x20\0\x20\0\x18\0", 18);
     for (int i = 0; i < 256; ++i) tga += std::string("\x82\x01\x02\x03\x00\x07\x08\x09", 8);
     files.emplace_back("a.tga", tga);

@@ -1,5 +1,6 @@
 // Small files of every kind, written byte by byte, with pixels that are known.
 #include "test/image/image_testing.h"
+#include "test/image/sample_files.h"
 #include <cstdio>
 #include <jpeglib.h>
 
@@ -131,37 +132,6 @@ TEST(HdrFile, DamageIsAnError) {
     expect_error([&] { read("#?RADIANCE\nFORMAT=8-bit\n\n-Y 1 +X 1\n1234"); }, {"8-bit"});
     expect_error([&] { read("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n"); }, {"no end"});
     expect_error([&] { read(head + "-Y 60000 +X 60000\n"); }, {"MiB"});
-}
-
-std::string make_jpeg(int width, int height, int components, bool progressive) {
-    jpeg_compress_struct jpeg{};
-    jpeg_error_mgr errors{};
-    jpeg.err = jpeg_std_error(&errors);
-    jpeg_create_compress(&jpeg);
-    unsigned char* memory = nullptr;
-    unsigned long size = 0;
-    jpeg_mem_dest(&jpeg, &memory, &size);
-    jpeg.image_width = static_cast<JDIMENSION>(width);
-    jpeg.image_height = static_cast<JDIMENSION>(height);
-    jpeg.input_components = components;
-    jpeg.in_color_space = components == 1 ? JCS_GRAYSCALE : components == 3 ? JCS_RGB : JCS_CMYK;
-    jpeg_set_defaults(&jpeg);
-    jpeg_set_quality(&jpeg, 100, TRUE);
-    if (progressive) jpeg_simple_progression(&jpeg);
-    jpeg_start_compress(&jpeg, TRUE);
-    std::vector<unsigned char> row(width * components);
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x)
-            for (int c = 0; c < components; ++c)
-                row[x * components + c] = static_cast<unsigned char>(x * 3 + y + 40 * c);
-        JSAMPROW rows = row.data();
-        jpeg_write_scanlines(&jpeg, &rows, 1);
-    }
-    jpeg_finish_compress(&jpeg);
-    std::string bytes(reinterpret_cast<char*>(memory), size);
-    jpeg_destroy_compress(&jpeg);
-    std::free(memory);
-    return bytes;
 }
 
 TEST(JpegFile, GreyColorAndProgressive) {
