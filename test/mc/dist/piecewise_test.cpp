@@ -1,0 +1,140 @@
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "montelux/mc/dist/piecewise_1d.h"
+#include "montelux/mc/dist/piecewise_2d.h"
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/stats/chi_squared.h"
+
+namespace montelux {
+namespace {
+
+constexpr double significance = 1e-6;
+
+TEST(PiecewiseConstant1D, SamplesPdfAndInverseAgree) {
+    std::vector<double> values{0, 1, 0, 3, 0.25, 0, 0};
+    PiecewiseConstant1D d(values, -1, 2.5);
+    EXPECT_NEAR(d.integral(), 4.25 * 0.5, 1e-15);
+    auto r = interval_chi_squared_test([&](double u) { return d.sample(u).x; },
+                                       [&](double x) { return d.pdf(x); }, -1, 2.5, {.cells_x = 70});
+    EXPECT_TRUE(r.passes(significance)) << r.description;
+    TestUniforms uniforms(1);
+    for (int i = 0; i < 2000; ++i) {
+        double u = uniforms.next();
+        auto s = d.sample(u);
+        ASSERT_NEAR(*d.inverse(s.x), u, 1e-14);
+        ASSERT_DOUBLE_EQ(s.pdf, values[s.piece] / d.integral());
+        auto f = d.sample(static_cast<float>(u));
+        ASSERT_GT(d.pdf(f.x), 0) << f.x;
+    }
+    EXPECT_EQ(d.pdf(3.0), 0);
+    EXPECT_FALSE(d.inverse(-1.01));
+    // The ends: never outside the half-open interval, never in an empty piece.
+    EXPECT_EQ(d.sample(0.0).piece, 1u);
+    EXPECT_EQ(d.sample(one_minus_epsilon_d).piece, 4u);
+    EXPECT_LT(PiecewiseConstant1D(std::vector<double>{1}, 0, 1e-3).sample(one_minus_epsilon_d).x, 1e-3);
+}
+
+TEST(PiecewiseLinear1D, SamplesPdfAndInverseAgree) {
+    std::vector<double> x{0, 0.5, 0.6, 2, 3, 3.5}, f{0, 2, 2, 0, 0, 1};
+    PiecewiseLinear1D d(x, f);
+    EXPECT_NEAR(d.integral(), 0.5 + 0.2 + 1.4 + 0 + 0.25, 1e-15);
+    auto r = interval_chi_squared_test([&](double u) { return d.sample(u).x; },
+                                       [&](double v) { return d.pdf(v); }, 0, 3.5, {.cells_x = 70});
+    EXPECT_TRUE(r.passes(significance)) << r.description;
+    TestUniforms uniforms(1);
+    for (int i = 0; i < 2000; ++i) {
+        double u = uniforms.next();
+        auto s = d.sample(u);
+        ASSERT_NEAR(*d.inverse(s.x), u, 1e-13);
+        ASSERT_NEAR(s.pdf, d.pdf(s.x), 1e-12);
+        ASSERT_NE(s.piece, 3u);
+    }
+    EXPECT_NEAR(d.pdf(0.25), 1 / d.integral(), 1e-15);
+}
+
+TEST(PiecewiseLinear1D, EqualDistancesAndTwoX) {
+    PiecewiseLinear1D d(std::vector<double>{0, 1});
+    for (double u : {0.0, 0.1, 0.5, 0.99}) EXPECT_NEAR(d.sample(u).x, std::sqrt(u), 1e-15);
+}
+
+TEST(PiecewiseConstant2D, SamplesPdfAndInverseAgree) {
+    std::uint32_t nx = 7, ny = 5;
+    std::vector<float> values(nx * ny);
+    TestUniforms uniforms(4);
+    for (float& v : values) v = uniforms.next() < 0.3 ? 0 : static_cast<float>(std::pow(uniforms.next(), 4));
+    for (std::uint32_t i = 0; i < nx; ++i) values[2 * nx + i] = 0; // an empty row
+    PiecewiseConstant2D d(values, nx, ny, {-1, 2}, {1, 5});
+    auto r =
+        rectangle_chi_squared_test([&](Vec2f u) { return d.sample(u).p; }, [&](Vec2d p) { return d.pdf(p); },
+                                   {-1, 2}, {1, 5}, {.cells_x = 21, .cells_y = 25});
+    EXPECT_TRUE(r.passes(significance)) << r.description;
+    double sum = 0, cell = 6.0 / (nx * ny);
+    for (float v : values) sum += static_cast<double>(v);
+    EXPECT_NEAR(d.integral(), sum * cell, 1e-12);
+    for (std::uint32_t j = 0; j < ny; ++j)
+        for (std::uint32_t i = 0; i < nx; ++i)
+            EXPECT_NEAR(d.cell_pdf(i, j), static_cast<double>(values[j * nx + i]) / d.integral(), 1e-8);
+    for (int i = 0; i < 5000; ++i) {
+        Vec2d u = uniforms.next_2d();
+        auto s = d.sample(u);
+        ASSERT_GT(values[s.row * nx + s.column], 0);
+        ASSERT_EQ(s.pdf, d.cell_pdf(s.column, s.row));
+        ASSERT_DOUBLE_EQ(s.pdf, d.pdf(s.p));
+        auto back = d.inverse(s.p);
+        ASSERT_TRUE(back);
+        ASSERT_NEAR(back->x, u.x, 1e-12);
+        ASSERT_NEAR(back->y, u.y, 1e-12);
+    }
+    EXPECT_EQ(d.pdf(Vec2f{-1.5f, 3}), 0);
+    EXPECT_FALSE(d.inverse(Vec2d{0, 3.5}));
+}
+
+TEST(PiecewiseConstant2D, EdgesOfTheSquareStayInDrawableCells) {
+    std::vector<float> values{0, 0, 0, 0, /**/ 0, 3, 1, 0, /**/ 0, 0, 0, 0};
+    PiecewiseConstant2D d(values, 4, 3);
+    for (float x : {0.0f, 0.5f, one_minus_epsilon, 1.0f})
+        for (float y : {0.0f, 0.5f, one_minus_epsilon, 1.0f}) {
+            auto s = d.sample(Vec2f{x, y});
+            EXPECT_GT(values[s.row * 4 + s.column], 0);
+            EXPECT_TRUE(s.p.x < 1 && s.p.y < 1);
+        }
+}
+
+// One bright cell among a million: the faint ones keep their share, and the density integrates to one.
+TEST(PiecewiseConstant2D, HugeRangeLosesNothing) {
+    std::uint32_t n = 1024;
+    std::vector<float> values(n * n, 1e-12f);
+    values[300 * n + 700] = 1e12f;
+    values[5 * n + 5] = 0;
+    PiecewiseConstant2D d(values, n, n);
+    double sum = 0, smallest = INFINITY;
+    for (std::uint32_t j = 0; j < n; ++j)
+        for (std::uint32_t i = 0; i < n; ++i) {
+            sum += d.cell_pdf(i, j) / (n * n);
+            if (i != 5 || j != 5) smallest = std::min(smallest, d.cell_pdf(i, j));
+        }
+    EXPECT_NEAR(sum, 1, 1e-9);
+    EXPECT_GT(smallest, 0);
+    EXPECT_EQ(d.cell_pdf(5, 5), 0);
+    EXPECT_GT(d.cell_pdf(700, 300) / (n * n), 0.999);
+}
+
+TEST(PiecewiseConstant2D, AllZeroIsUniformAndBadInputGetsASentence) {
+    std::vector<float> zeros(6);
+    PiecewiseConstant2D d(zeros, 3, 2);
+    EXPECT_EQ(d.integral(), 0);
+    EXPECT_NEAR(d.pdf(Vec2f{0.9f, 0.1f}), 1, 1e-6f);
+    EXPECT_THROW(PiecewiseConstant2D(zeros, 4, 2), Error);
+    EXPECT_THROW(PiecewiseConstant2D(zeros, 3, 2, {0, 0}, {0, 1}), Error);
+    std::vector<float> bad{1, 1, 1, 1, 1, NAN};
+    EXPECT_THROW(PiecewiseConstant2D(bad, 3, 2), Error);
+    EXPECT_EQ(PiecewiseConstant1D(std::vector<double>{0, 0}, 0, 4).pdf(1.0), 0.25);
+    EXPECT_EQ(PiecewiseLinear1D(std::vector<double>{0, 0}, 0, 4).pdf(1.0), 0.25);
+    EXPECT_THROW(PiecewiseConstant1D(std::vector<double>{1}, 2, 2), Error);
+    EXPECT_THROW(PiecewiseLinear1D(std::vector<double>{1}), Error);
+    EXPECT_THROW((PiecewiseLinear1D{std::vector<double>{0, 0}, std::vector<double>{1, 1}}), Error);
+}
+
+} // namespace
+} // namespace montelux
