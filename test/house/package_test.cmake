@@ -1,5 +1,5 @@
 # Installs montelux::mc, then configures, builds and runs an outside project that finds it with find_package.
-# Its libraries hold no link-time-optimised code only: the consumer is built without that.
+# The consumer is built without link-time optimisation, whatever the library was built with.
 function(step)
     execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
     if(NOT result EQUAL 0)
@@ -17,6 +17,6 @@ step(${CMAKE_COMMAND} -S ${source} -B ${work}/build -G Ninja -D CMAKE_PREFIX_PAT
 step(${CMAKE_COMMAND} --build ${work}/build)
 step(${work}/build/integral)
 message(STATUS "${output}")
-if(NOT output MATCHES "= (0\\.99|1\\.00)[0-9]* \\+- 0\\.000*[1-9]")
+if(NOT output MATCHES "= (0\\.99|1\\.00)[0-9]*\\([0-9]+\\)")
     message(FATAL_ERROR "the integral of sin x over [0, pi/2] is 1; the consumer printed: ${output}")
 endif()
