@@ -159,7 +159,9 @@ struct LayeredBsdf {
         };
         auto exit_by_chance = [&](Vec3f w, float pdf, float dz, bool delta) {
             BsdfEvaluation exit = coat.evaluate_lobes(-w, wi, mode, Lobes::transmission);
-            float weight = delta ? 1 : power_heuristic(1, pdf, 1, exit.pdf);
+            // The rival strategy starts from wi: its density is that of finding -w there.
+            float out_pdf = coat.evaluate_lobes(wi, -w, adjoint(mode), Lobes::transmission).pdf;
+            float weight = delta ? 1 : power_heuristic(1, pdf, 1, out_pdf);
             return exit.f * (absorption(dz, w) * weight);
         };
 

@@ -1,0 +1,114 @@
+// BSDFs to test, and the streams that feed them.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "montelux/mc/stats/chi_squared.h"
+#include "montelux/scene/bsdf/bsdf.h"
+
+namespace montelux::testing {
+
+// Any two numbers are drawn one after the other, whatever the pair is for.
+class TestStream {
+  public:
+    explicit TestStream(std::uint64_t seed) : uniforms_(seed) {}
+    float next_1d() { return uniforms_.next_float(); }
+    Vec2f next_2d() { return uniforms_.next_2f(); }
+
+  private:
+    TestUniforms uniforms_;
+};
+
+// The first numbers are given.
+class FixedStream {
+  public:
+    FixedStream(Vec2f u, float uc) : u_(u), uc_(uc) {}
+    float next_1d() const { return uc_; }
+    Vec2f next_2d() const { return u_; }
+
+  private:
+    Vec2f u_;
+    float uc_;
+};
+
+inline Vec3f direction(double theta_degrees, double phi_degrees = 0) {
+    double t = theta_degrees * pi / 180, p = phi_degrees * pi / 180;
+    return {static_cast<float>(std::sin(t) * std::cos(p)), static_cast<float>(std::sin(t) * std::sin(p)),
+            static_cast<float>(std::cos(t))};
+}
+
+struct BsdfCase {
+    std::string name;
+    Bsdf bsdf;
+    bool exact_pdf = true; // the reported pdf is the sampled density
+};
+
+inline const CoatingTable& coating_table(float alpha) {
+    static const CoatingTable smooth(1.5f, 0, 0.01f, 10), rough(1.5f, 0.1f, 0.01f, 10),
+        rougher(1.5f, 0.4f, 0.01f, 10);
+    return alpha == 0 ? smooth : (alpha < 0.2f ? rough : rougher);
+}
+
+inline CoatedDiffuseBsdf coated_diffuse(float alpha, float rho) {
+    const CoatingTable& table = coating_table(alpha);
+    return {&table, table.base_albedo(SampledSpectrum(rho))};
+}
+
+inline LayeredBsdf<DiffuseBsdf> layered_diffuse(float alpha, float rho) {
+    LayeredBsdf<DiffuseBsdf> b;
+    b.coat = {1.5f, {alpha, alpha}};
+    b.base = {SampledSpectrum(rho)};
+    b.proxy = {0.7f, 0.7f};
+    return b;
+}
+
+inline LayeredBsdf<ConductorBsdf> layered_conductor(float coat_alpha, float base_alpha) {
+    LayeredBsdf<ConductorBsdf> b;
+    b.coat = {1.5f, {coat_alpha, coat_alpha}};
+    b.base = {SampledSpectrum(0.2f, 0.4f, 0.9f, 1.1f),
+              SampledSpectrum(3.9f, 3.0f, 2.4f, 2.1f),
+              {base_alpha, base_alpha}};
+    b.proxy = {std::max(base_alpha, 0.1f), std::max(base_alpha, 0.1f)};
+    return b;
+}
+
+inline std::vector<BsdfCase> bsdf_cases() {
+    SampledSpectrum eta(0.2f, 0.4f, 0.9f, 1.1f), k(3.9f, 3.0f, 2.4f, 2.1f);
+    return {
+        {"diffuse", DiffuseBsdf{SampledSpectrum(0.2f, 0.4f, 0.6f, 0.8f)}},
+        {"conductor_smooth", ConductorBsdf{eta, k, {0, 0}}},
+        {"conductor_0_1", ConductorBsdf{eta, k, {0.1f, 0.1f}}},
+        {"conductor_0_5", ConductorBsdf{eta, k, {0.5f, 0.5f}}},
+        {"conductor_anisotropic", ConductorBsdf{eta, k, {0.15f, 0.5f}}},
+        {"dielectric_smooth", DielectricBsdf{1.5f, {0, 0}}},
+        {"dielectric_0_2", DielectricBsdf{1.5f, {0.2f, 0.2f}}},
+        {"dielectric_0_6", DielectricBsdf{1.33f, {0.6f, 0.6f}}},
+        {"dielectric_anisotropic", DielectricBsdf{1.8f, {0.2f, 0.5f}}},
+        {"dielectric_index_1", DielectricBsdf{1.0f, {0.3f, 0.3f}}},
+        {"thin_dielectric", ThinDielectricBsdf{1.5f}},
+        {"coated_diffuse_smooth", coated_diffuse(0, 0.6f)},
+        {"coated_diffuse_0_1", coated_diffuse(0.1f, 0.6f)},
+        {"coated_diffuse_0_4", coated_diffuse(0.4f, 0.6f)},
+        {"layered_diffuse_0_4", layered_diffuse(0.4f, 0.6f), false},
+        {"layered_conductor", layered_conductor(0.2f, 0.3f), false},
+        {"layered_conductor_smooth_coat", layered_conductor(0, 0.3f), false},
+        {"layered_conductor_smooth", layered_conductor(0, 0), false},
+    };
+}
+
+inline std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3f wo, auto& stream,
+                                        TransportMode mode = TransportMode::radiance) {
+    return std::visit([&](const auto& b) { return b.sample(wo, mode, stream); }, bsdf);
+}
+inline BsdfEvaluation evaluate(const Bsdf& bsdf, Vec3f wo, Vec3f wi, auto& stream,
+                               TransportMode mode = TransportMode::radiance) {
+    return std::visit([&](const auto& b) { return b.evaluate(wo, wi, mode, stream); }, bsdf);
+}
+inline bool is_specular(const Bsdf& bsdf) {
+    return std::visit([](const auto& b) { return b.is_specular(); }, bsdf);
+}
+
+} // namespace montelux::testing

@@ -1,0 +1,67 @@
+// The closed form of a coated diffuse surface against the random walk through the same layers.
+#include "test/scene/bsdf_testing.h"
+#include <gtest/gtest.h>
+
+#include "montelux/mc/stats/moments.h"
+
+namespace montelux::testing {
+namespace {
+
+class Coating : public ::testing::TestWithParam<float> {};
+INSTANTIATE_TEST_SUITE_P(Roughness, Coating, ::testing::Values(0.0f, 0.1f, 0.4f));
+
+// False alarms: 24 comparisons at 5 standard errors, 1.4e-5 a roughness.
+TEST_P(Coating, ClosedFormIsTheMeanOfTheWalk) {
+    TestStream stream(3);
+    for (float rho : {0.3f, 0.95f}) {
+        CoatedDiffuseBsdf closed = coated_diffuse(GetParam(), rho);
+        LayeredBsdf<DiffuseBsdf> walk = layered_diffuse(GetParam(), rho);
+        for (double theta_o : {15.0, 60.0, 82.0})
+            for (double theta_i : {5.0, 40.0, 75.0, 86.0}) {
+                Vec3f wo = direction(theta_o), wi = direction(theta_i, 130);
+                RunningMoments m;
+                for (int i = 0; i < 100000; ++i)
+                    m.add(double(walk.evaluate(wo, wi, TransportMode::radiance, stream).f[0]));
+                double f = double(closed.evaluate(wo, wi, TransportMode::radiance, stream).f[0]);
+                // The table is within 3e-4 of its integrals.
+                EXPECT_NEAR(f, m.mean(), 5 * m.standard_error() + 5e-4 * f)
+                    << "rho " << rho << " theta " << theta_o << " " << theta_i;
+            }
+    }
+}
+
+TEST_P(Coating, SampledAlbedoIsTheWalks) {
+    TestStream stream(5);
+    CoatedDiffuseBsdf closed = coated_diffuse(GetParam(), 0.8f);
+    LayeredBsdf<DiffuseBsdf> walk = layered_diffuse(GetParam(), 0.8f);
+    for (double theta : {20.0, 70.0, 110.0}) {
+        Vec3f wo = direction(theta);
+        RunningMoments a, b;
+        for (int i = 0; i < 200000; ++i) {
+            auto s = closed.sample(wo, TransportMode::radiance, stream);
+            auto t = walk.sample(wo, TransportMode::radiance, stream);
+            a.add(s ? double(s->weight[0]) : 0);
+            b.add(t ? double(t->weight[0]) : 0);
+        }
+        EXPECT_NEAR(a.mean(), b.mean(), 5 * std::hypot(a.standard_error(), b.standard_error()) + 5e-4);
+    }
+}
+
+// A layer that absorbs nothing over a white base returns all light, up to the bounces that max_depth cuts
+// off.
+TEST(CoatingTable, WhiteFurnace) {
+    CoatingTable table(1.5f, 0, 0, 200);
+    CoatedDiffuseBsdf b{&table, table.base_albedo(SampledSpectrum(1))};
+    TestStream stream(9);
+    for (double theta : {0.0, 45.0, 80.0}) {
+        RunningMoments m;
+        for (int i = 0; i < 100000; ++i) {
+            auto s = b.sample(direction(theta), TransportMode::radiance, stream);
+            m.add(s ? double(s->weight[0]) : 0);
+        }
+        EXPECT_NEAR(m.mean(), 1, 5 * m.standard_error() + 1e-3);
+    }
+}
+
+} // namespace
+} // namespace montelux::testing
