@@ -6,14 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "montelux/image/decoders.h"
+#include "montelux/image/exr_header.h"
 
 namespace montelux {
-
-struct ExrChannel {
-    std::string name;
-    int type; // 0 uint, 1 half, 2 float
-};
 
 // What parse_exr learns of the first part.
 struct ExrLayout {
@@ -25,8 +20,7 @@ struct ExrLayout {
 
 // Follows "Technical Introduction to OpenEXR" and "OpenEXR File Layout" (openexr.com): headers, chunk offset
 // tables and, for the first part, the frame of every chunk. Refuses what is damaged, incomplete, deep,
-// subsampled or out of proportion to the file with an Error. Attributes that are not needed for the pixels
-// get an unknown type in `bytes`, so that the library passes over values nobody has checked.
+// subsampled or out of proportion to the file with an Error; changes `bytes` as parse_exr_headers does.
 ExrLayout parse_exr(std::span<std::uint8_t> bytes, const std::string& name, const ReadOptions& options);
 
 } // namespace montelux
