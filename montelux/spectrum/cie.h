@@ -10,6 +10,9 @@ namespace montelux {
 // Colour matching functions at 360, 361, ... 830 nm.
 extern const std::array<float, visible_samples> cie_x, cie_y, cie_z;
 
+// The three matching functions at 360 + i nm.
+inline Vec3d cie_xyz(int i) { return Vec3d(Vec3f(cie_x[i], cie_y[i], cie_z[i])); }
+
 // Integral of cie_y by the sum over its 1 nm samples (nm).
 inline constexpr double cie_y_integral = 106.856917101;
 
@@ -31,8 +34,7 @@ template <typename F>
 Vec3d integrate_xyz(F&& f) {
     Vec3d xyz;
     for (int i = 0; i < visible_samples; ++i)
-        xyz +=
-            Vec3d(cie_x[i], cie_y[i], cie_z[i]) * static_cast<double>(f(lambda_min + static_cast<float>(i)));
+        xyz += cie_xyz(i) * static_cast<double>(f(lambda_min + static_cast<float>(i)));
     return xyz / cie_y_integral;
 }
 

@@ -1,6 +1,7 @@
 #include "montelux/spectrum/piecewise_linear.h"
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "montelux/mc/math/error.h"
@@ -17,8 +18,9 @@ void check_knots(std::span<const float> lambda, std::span<const float> values) {
                     std::to_string(lambda.size()) + " wavelengths and " + std::to_string(values.size()) +
                     " values");
     for (std::size_t i = 0; i < lambda.size(); ++i) {
-        if (!std::isfinite(lambda[i]) || !std::isfinite(values[i]))
-            throw Error("the wavelengths and values of a spectrum must be finite; pair " +
+        if (!(std::abs(lambda[i]) < 1e9f) || !std::isfinite(values[i]))
+            throw Error("the wavelengths and values of a spectrum must be finite (and the wavelengths below "
+                        "1e9 nm); pair " +
                         std::to_string(i + 1) + " is (" + std::to_string(lambda[i]) + ", " +
                         std::to_string(values[i]) + ")");
         if (i > 0 && !(lambda[i] > lambda[i - 1]))
@@ -33,17 +35,23 @@ void check_knots(std::span<const float> lambda, std::span<const float> values) {
 PiecewiseLinear::PiecewiseLinear(std::span<const float> lambda, std::span<const float> values,
                                  SpectrumEnds ends) {
     check_knots(lambda, values);
+    constexpr float before_all = -1e30f;
+    constexpr float infinity = std::numeric_limits<float>::infinity();
     bool extend = ends == SpectrumEnds::constant;
+    knots_.reserve(lambda.size() + 5);
+    knots_.push_back({before_all, 0, 0});
     if (extend && lambda.front() > lambda_min) knots_.push_back({lambda_min - 1, values.front(), 0});
     for (std::size_t i = 0; i < lambda.size(); ++i) knots_.push_back({lambda[i], values[i], 0});
     if (extend && lambda.back() < lambda_max) knots_.push_back({lambda_max + 1, values.back(), 0});
-    for (std::size_t i = 0; i + 1 < knots_.size(); ++i)
+    for (std::size_t i = 1; i + 1 < knots_.size(); ++i)
         knots_[i].slope = (knots_[i + 1].value - knots_[i].value) / (knots_[i + 1].lambda - knots_[i].lambda);
+    knots_.push_back({std::nextafter(knots_.back().lambda, infinity), 0, 0});
+    knots_.push_back({infinity, 0, 0});
 
     std::uint32_t k = 0;
     for (int cell = 0; cell < cell_count; ++cell) {
         float start = lambda_min + static_cast<float>(cell);
-        while (k + 1 < knots_.size() && knots_[k + 1].lambda <= start) ++k;
+        while (knots_[k + 1].lambda <= start) ++k;
         first_in_cell_[cell] = k;
     }
 }

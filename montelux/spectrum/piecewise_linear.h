@@ -24,36 +24,38 @@ class PiecewiseLinear {
     static PiecewiseLinear from_pairs(std::span<const float> pairs, SpectrumEnds ends = SpectrumEnds::zero);
 
     float operator()(float lambda) const {
-        if (!(lambda >= knots_.front().lambda && lambda <= knots_.back().lambda)) return 0;
-        int cell = std::clamp(static_cast<int>(lambda - lambda_min), 0, cell_count - 1);
-        return lookup(lambda, first_in_cell_[cell]);
+        std::uint32_t k = first_in_cell_[visible_cell(lambda)];
+        while (knots_[k].lambda > lambda) --k;
+        return value_after(k, lambda);
     }
     SampledSpectrum sample(const SampledWavelengths& w) const {
-        return {(*this)(w.lambda[0]), (*this)(w.lambda[1]), (*this)(w.lambda[2]), (*this)(w.lambda[3])};
+        auto at = [&](float lambda) { return value_after(first_in_cell_[visible_cell(lambda)], lambda); };
+        return {at(w.lambda[0]), at(w.lambda[1]), at(w.lambda[2]), at(w.lambda[3])};
     }
     // Largest value within the visible range.
     float max_value() const;
     // Multiplies every value.
     void scale(float factor);
-    // First and last wavelength with a value (nm).
-    float first_lambda() const { return knots_.front().lambda; }
-    float last_lambda() const { return knots_.back().lambda; }
 
   private:
     struct Knot {
         float lambda, value, slope; // the slope up to the next knot
     };
-    // Cells of 1 nm from 360 nm on; for each, the last knot at or before its start (or knot 0).
     static constexpr int cell_count = visible_samples;
-
-    float lookup(float lambda, std::uint32_t k) const {
-        // Outside the visible range the search starts at an end of it.
-        while (k > 0 && knots_[k].lambda > lambda) --k;
-        while (k + 1 < knots_.size() && knots_[k + 1].lambda <= lambda) ++k;
+    // Cells of 1 nm from 360 nm on; wavelengths outside the visible range belong to the nearest.
+    static int visible_cell(float lambda) {
+        return static_cast<int>(std::min(std::max(lambda - lambda_min, 0.0f), cell_count - 1.0f));
+    }
+    // `k` is a knot at or before lambda, of which the last is wanted.
+    float value_after(std::uint32_t k, float lambda) const {
+        while (knots_[k + 1].lambda <= lambda) ++k;
         return knots_[k].value + (lambda - knots_[k].lambda) * knots_[k].slope;
     }
 
+    // Before the given knots stands one of value 0, and after them one of value 0 and one at infinity, so
+    // that a search needs no bounds.
     std::vector<Knot> knots_;
+    // For each cell, the last knot at or before its start.
     std::array<std::uint32_t, cell_count> first_in_cell_{};
 };
 

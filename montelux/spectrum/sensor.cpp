@@ -24,7 +24,7 @@ Sensor::Sensor(const RgbColorSpace& space, const SensorSettings& settings)
     double ratio = static_cast<double>(imaging_ratio_);
     rgb_from_xyz_ = Matrix3::diagonal({ratio, ratio, ratio}) * space.rgb_from_xyz() * balance;
     for (int i = 0; i < visible_samples; ++i) {
-        Vec3d rgb = rgb_from_xyz_ * Vec3d(cie_x[i], cie_y[i], cie_z[i]) * 0.25;
+        Vec3d rgb = rgb_from_xyz_ * cie_xyz(i) * 0.25;
         response_[i] =
             Float4{static_cast<float>(rgb.x), static_cast<float>(rgb.y), static_cast<float>(rgb.z), 0};
     }
