@@ -24,6 +24,9 @@ struct Estimate {
     // Samples that were NaN or infinite: left out of the sum as zeros, and counted here. A value with
     // any of them is suspect.
     std::uint64_t non_finite = 0;
+    // Index of the first of them, so that it can be replayed alone.
+    static constexpr std::uint64_t no_index = ~std::uint64_t{0};
+    std::uint64_t first_non_finite = no_index;
 
     // Standard error relative to the value.
     double relative_error() const { return standard_error / std::abs(value); }
@@ -33,8 +36,9 @@ struct Estimate {
     double z_score(double truth) const { return (value - truth) / standard_error; }
 
     // The mean of independent samples with these moments.
-    static Estimate from_moments(const RunningMoments& moments, std::uint64_t non_finite = 0) {
-        return {moments.mean(), moments.standard_error(), moments.count(), non_finite};
+    static Estimate from_moments(const RunningMoments& moments, std::uint64_t non_finite = 0,
+                                 std::uint64_t first_non_finite = no_index) {
+        return {moments.mean(), moments.standard_error(), moments.count(), non_finite, first_non_finite};
     }
 };
 

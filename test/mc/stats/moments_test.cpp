@@ -61,7 +61,7 @@ TEST(Moments3, ChannelsAreIndependentAndStateRestores) {
 }
 
 TEST(Estimate, PrintsConciseNotation) {
-    auto text = [](double v, double e) { return to_string(Estimate{v, e, 10, 0}); };
+    auto text = [](double v, double e) { return to_string(Estimate{v, e, 10}); };
     EXPECT_EQ(text(1.23452, 0.0067), "1.2345(67)");
     EXPECT_EQ(text(1.23452, 0.00996), "1.235(10)");
     EXPECT_EQ(text(-0.5, 0.12), "-0.50(12)");
@@ -77,7 +77,7 @@ TEST(Estimate, PrintsConciseNotation) {
 }
 
 TEST(Estimate, ConfidenceIntervalIsNormal) {
-    Interval i = Estimate{10, 2, 100, 0}.confidence_interval(0.95);
+    Interval i = Estimate{10, 2, 100}.confidence_interval(0.95);
     EXPECT_NEAR(i.lower, 10 - 2 * 1.959963984540054, 1e-12);
     EXPECT_TRUE(i.contains(13.9));
     EXPECT_FALSE(i.contains(14));
