@@ -42,9 +42,10 @@ class PiecewiseLinear {
         float lambda, value, slope; // the slope up to the next knot
     };
     static constexpr int cell_count = visible_samples;
-    // Cells of 1 nm from 360 nm on; wavelengths outside the visible range belong to the nearest.
+    // Cells of 1 nm from 360 nm on; wavelengths outside the visible range belong to the nearest, NaN to the
+    // first.
     static int visible_cell(float lambda) {
-        return static_cast<int>(std::min(std::max(lambda - lambda_min, 0.0f), cell_count - 1.0f));
+        return static_cast<int>(std::min(std::max(0.0f, lambda - lambda_min), cell_count - 1.0f));
     }
     // `k` is a knot at or before lambda, of which the last is wanted.
     float value_after(std::uint32_t k, float lambda) const {

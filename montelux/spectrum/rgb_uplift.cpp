@@ -110,10 +110,11 @@ SigmoidPolynomial RgbUpliftTable::operator()(Vec3f rgb) const {
     if (rgb.x == rgb.y && rgb.y == rgb.z) return SigmoidPolynomial::constant(rgb.x);
 
     int l = rgb.x > rgb.y ? (rgb.x > rgb.z ? 0 : 2) : (rgb.y > rgb.z ? 1 : 2);
+    // The inverse of a denormal number is infinite; min in this order sends the NaN that follows to 1.
     float largest = rgb[l], inverse = 1 / largest;
     Position z = locate(largest);
-    Position y = locate(std::min(rgb[(l + 2) % 3] * inverse, 1.0f));
-    Position x = locate(std::min(rgb[(l + 1) % 3] * inverse, 1.0f));
+    Position y = locate(std::min(1.0f, rgb[(l + 2) % 3] * inverse));
+    Position x = locate(std::min(1.0f, rgb[(l + 1) % 3] * inverse));
 
     const std::ptrdiff_t n = resolution_;
     const Float4* p = nodes_ + ((l * n + z.cell) * n + y.cell) * n + x.cell;

@@ -5,6 +5,10 @@
 #include "montelux/spectrum/rgb_uplift.h"
 #include "montelux/spectrum/rgb_uplift_layout.h"
 
+#ifndef MONTELUX_RGB_UPLIFT_FILE
+#error "MONTELUX_RGB_UPLIFT_FILE must name the file of tables; cmake/MonteluxUplift.cmake sets it"
+#endif
+
 asm(".pushsection .rodata\n"
     ".balign 64\n"
     ".global montelux_rgb_uplift_nodes\n"

@@ -81,6 +81,7 @@ TEST(RgbUplift, ComponentsOutsideTheUnitCubeAreClamped) {
     float nan = std::numeric_limits<float>::quiet_NaN();
     for (float lambda : {400.0f, 550.0f, 700.0f}) {
         EXPECT_EQ(table({2, -1, 0.5f})(lambda), table({1, 0, 0.5f})(lambda));
+        EXPECT_NEAR(table({1e-39f, 0, 2e-40f})(lambda), 0, 1e-5);
         EXPECT_EQ(table({nan, 0.5f, 0.2f})(lambda), table({0, 0.5f, 0.2f})(lambda));
     }
 }

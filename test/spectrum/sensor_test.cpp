@@ -92,5 +92,15 @@ TEST(Sensor, WhiteBalanceMakesItsLightNeutral) {
     }
 }
 
+TEST(Sensor, ChromaticAdaptationIsBradfords) {
+    // D65 to D50 as printed by Lindbloom, "Chromatic Adaptation" (brucelindbloom.com).
+    const double printed[3][3] = {{1.0478112, 0.0228866, -0.0501270},
+                                  {0.0295424, 0.9904844, -0.0170491},
+                                  {-0.0092345, 0.0150436, 0.7521316}};
+    Matrix3 m = chromatic_adaptation({0.31272, 0.32903}, {0.34567, 0.35851});
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) EXPECT_NEAR(m.rows[i][j], printed[i][j], 3e-4);
+}
+
 } // namespace
 } // namespace montelux
