@@ -51,17 +51,20 @@ inline Float4 exp(Float4 x) {
     return select(x == x, result, x);
 }
 
-// ln(x) within 3e-7 relative to max(1, |ln x|) for finite normal x > 0; other x are not allowed.
-inline Float4 log(Float4 x) {
-    // x = m 2^e with m in [sqrt(1/2), sqrt(2)); ln m = 2 artanh(s), s = (m - 1) / (m + 1).
-    Int4 bits = std::bit_cast<Int4>(x);
-    Int4 e = (bits - 0x3f3504f3) >> 23;
-    Int4 m_bits = bits - (e << 23);
-    Float4 m = std::bit_cast<Float4>(m_bits);
-    Float4 s = (m - 1.0f) / (m + 1.0f);
+// artanh(x) within 3e-7 relative to max(1, |artanh x|) for |x| <= 0.9999; other x are not allowed.
+inline Float4 artanh(Float4 x) {
+    // artanh(x) = ln(p / q) / 2 with p = 1 + x, q = 1 - x. With e the difference of their binary logarithms,
+    // rounded, p' = p / 2^e is near q, and ln(p' / q) / 2 = artanh(s) with s = (p' - q) / (p' + q), |s| <
+    // 0.24.
+    Float4 p = 1.0f + x, q = 1.0f - x;
+    Int4 p_bits = std::bit_cast<Int4>(p), q_bits = std::bit_cast<Int4>(q);
+    Int4 e = (p_bits - q_bits + (1 << 22)) >> 23;
+    Int4 scaled_bits = p_bits - (e << 23);
+    Float4 scaled = std::bit_cast<Float4>(scaled_bits);
+    Float4 s = (scaled - q) / (scaled + q);
     Float4 s2 = s * s;
     Float4 series = (((s2 * (1.0f / 9) + 1.0f / 7) * s2 + 0.2f) * s2 + 1.0f / 3) * s2 + 1.0f;
-    return __builtin_convertvector(e, Float4) * 0.693147181f + 2.0f * s * series;
+    return __builtin_convertvector(e, Float4) * 0.346573590f + s * series; // ln(2) / 2
 }
 
 } // namespace montelux

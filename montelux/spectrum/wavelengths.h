@@ -26,9 +26,8 @@ struct SampledWavelengths {
     static SampledWavelengths sample_visible(float u) {
         // lambda = 538 - artanh(x) / 0.0072, so that cosh^-2(0.0072 (lambda - 538)) = 1 - x^2.
         Float4 x = 0.85691062f - 1.82750197f * stratified(u);
-        Float4 artanh = 0.5f * log((1.0f + x) / (1.0f - x));
         SampledWavelengths w;
-        w.lambda = min(max(538.0f - 138.888889f * artanh, broadcast(lambda_min)), broadcast(lambda_max));
+        w.lambda = min(max(538.0f - 138.888889f * artanh(x), broadcast(lambda_min)), broadcast(lambda_max));
         w.pdf = SampledSpectrum(0.0039398042f * (1.0f - x * x));
         return w;
     }
