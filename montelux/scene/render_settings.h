@@ -33,6 +33,8 @@ struct SceneDescription {
     SamplerSettings sampler;
     IntegratorSettings integrator;
     std::string output_file; // the file's own wish; may be empty
+    // Fingerprint of all files that the scene was read from: text, meshes, pictures, spectra.
+    std::uint64_t content_hash = 0;
 };
 
 } // namespace montelux

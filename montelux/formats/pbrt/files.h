@@ -1,0 +1,37 @@
+// The files that a scene refers to: found, read whole, and counted in the scene's fingerprint.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "montelux/formats/content_hash.h"
+#include "montelux/formats/pbrt/diagnostics.h"
+
+namespace montelux::pbrt {
+
+// Relative names are looked for in the folder of the main scene file, as pbrt does, then in the folder of the
+// file that mentions them.
+class Files {
+  public:
+    Files(std::filesystem::path main_folder, Diagnostics& diagnostics)
+        : main_folder_(std::move(main_folder)), diagnostics_(diagnostics) {}
+
+    // An error at `at` when there is no such file.
+    std::filesystem::path find(std::string_view name, Location at) const;
+    // The whole file; one whose name ends in ".gz" is decompressed. Its bytes go into the fingerprint.
+    std::vector<std::uint8_t> read(const std::filesystem::path& path, Location at);
+    // As `read`, told about without a place in a scene file.
+    static std::vector<std::uint8_t> read_alone(const std::filesystem::path& path, ContentHash& hash);
+
+    std::uint64_t content_hash() const { return hash_.value(); }
+    ContentHash& hash() { return hash_; }
+
+  private:
+    std::filesystem::path main_folder_;
+    Diagnostics& diagnostics_;
+    ContentHash hash_;
+};
+
+} // namespace montelux::pbrt

@@ -1,0 +1,39 @@
+// What is in force at a place of a pbrt scene file: transformation, material, area light, defaults.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "montelux/formats/pbrt/lights.h"
+#include "montelux/formats/pbrt/parameter.h"
+#include "montelux/mc/math/transform.h"
+
+namespace montelux::pbrt {
+
+// The current transformation at the start and at the end of the shutter's time.
+struct TransformPair {
+    Transform start, end;
+};
+
+// A material by its declaration, or by a name that may be declared later.
+struct MaterialReference {
+    bool by_name = false;
+    std::size_t index = 0; // of the declaration, or of the name
+};
+
+using Defaults = std::shared_ptr<const std::vector<Parameter>>;
+
+// Small, since it is copied for each AttributeBegin: large parts are shared and replaced, never changed.
+struct GraphicsState {
+    std::shared_ptr<const TransformPair> ctm = std::make_shared<TransformPair>();
+    bool start_active = true, end_active = true;
+    bool reverse_orientation = false;
+    const RgbColorSpace* color_space = nullptr;
+    MaterialReference material;
+    std::shared_ptr<const Emission> emission; // null: shapes do not shine
+    Defaults shape_defaults, light_defaults, material_defaults, texture_defaults;
+};
+
+} // namespace montelux::pbrt

@@ -1,0 +1,193 @@
+#include "montelux/formats/pbrt/lights.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "montelux/formats/nearest_name.h"
+#include "montelux/image/image_read.h"
+#include "montelux/mc/math/constants.h"
+#include "montelux/mc/math/error.h"
+#include "montelux/spectrum/rgb_colorspace.h"
+
+namespace montelux::pbrt {
+namespace {
+
+constexpr std::array<std::string_view, 6> plugins = {"point",    "spot",        "distant",
+                                                     "infinite", "goniometric", "projection"};
+
+float photometric_scale(const Spectrum& s, ParameterReader& r) {
+    double y = to_photometric(s);
+    // A black light stays black.
+    if (y == 0) return 0;
+    if (!(y > 0) || !std::isfinite(y)) r.error("the light's spectrum has no positive luminance");
+    return static_cast<float>(1 / y);
+}
+
+Vec3f direction(ParameterReader& r, Vec3f v) {
+    float l = length(v);
+    if (!(l > 0) || !std::isfinite(l))
+        r.error("'from' and 'to' are the same point: the light has no direction");
+    return v / l;
+}
+
+// Illuminance on an upward-facing (+z) patch from a square equal-area map whose texels have luminance: the
+// equal-area map gives every texel the solid angle 4 pi / texels (Clarberg 2008).
+double upper_illuminance(const Image& map) {
+    Vec3d weights = RgbColorSpace::srgb().luminance_weights();
+    int size = map.width();
+    double sum = 0;
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) {
+            // The diamond |u| + |v| < 1 of the map's [-1,1]^2 is the upper hemisphere; there z = 1 - r^2 with
+            // r = |u| + |v|.
+            double u = 2 * (x + 0.5) / size - 1, v = 2 * (y + 0.5) / size - 1;
+            double radius = std::abs(u) + std::abs(v);
+            if (radius >= 1) continue;
+            Vec3d rgb(Vec3f(map.value(x, y, 0), map.value(x, y, 1), map.value(x, y, 2)));
+            sum += dot(weights, rgb) * (1 - radius * radius);
+        }
+    return sum * 4 * pi / (static_cast<double>(size) * size);
+}
+
+} // namespace
+
+AreaLight Emission::light(Index shape, Index primitive, float area) const {
+    AreaLight light{spectrum, scale, two_sided, shape, primitive};
+    if (power > 0 && area > 0) light.scale *= power / ((two_sided ? 2.0f : 1.0f) * area * pi_f);
+    return light;
+}
+
+LightReader::Source LightReader::source(ParameterReader& r, std::string_view name,
+                                        const RgbColorSpace& color_space) {
+    const Parameter* p = r.any(name, {ParameterType::rgb, ParameterType::spectrum, ParameterType::blackbody});
+    Source s;
+    s.spectrum = p ? spectra_.read(*p, RgbMeaning::illuminant) : Spectrum(color_space.illuminant());
+    s.scale = r.number("scale", 1);
+    if (s.scale < 0) r.error("scale", "parameter 'scale' is negative");
+    s.scale *= photometric_scale(s.spectrum, r);
+    return s;
+}
+
+Emission LightReader::read_area(const Plugin& plugin, const RgbColorSpace& color_space) {
+    ParameterReader r(plugin.parameters, "area light " + in_quotes(plugin.name), plugin.at, diagnostics_);
+    constexpr std::array<std::string_view, 1> names = {"diffuse"};
+    if (plugin.name != "diffuse")
+        r.error("unknown area light " + in_quotes(plugin.name) + did_you_mean(plugin.name, names) +
+                "; expected 'diffuse'");
+    if (r.ignored("filename")) r.error("filename", "an image on an area light is not supported yet");
+    Source s = source(r, "L", color_space);
+    Emission e{s.spectrum, s.scale, r.boolean("twosided", false), r.number("power", -1)};
+    r.finish();
+    return e;
+}
+
+Light LightReader::read(const Plugin& plugin, const Transform& world_from_light,
+                        const RgbColorSpace& color_space) {
+    ParameterReader r(plugin.parameters, "light " + in_quotes(plugin.name), plugin.at, diagnostics_);
+    Light light;
+    if (plugin.name == "point") {
+        Source s = source(r, "I", color_space);
+        float power = r.number("power", -1);
+        if (power > 0) s.scale *= power / (4 * pi_f);
+        Vec3f from = r.point3("from").value_or(Vec3f());
+        light = PointLight{s.spectrum, s.scale, world_from_light.point(from)};
+    } else if (plugin.name == "spot") {
+        Source s = source(r, "I", color_space);
+        float cone = r.number("coneangle", 30), delta = r.number("conedeltaangle", 5);
+        if (!(cone > 0 && cone <= 180))
+            r.error("coneangle", "parameter 'coneangle' is not in (0, 180] degrees");
+        if (!(delta >= 0 && delta <= cone))
+            r.error("conedeltaangle", "parameter 'conedeltaangle' is not between 0 and 'coneangle'");
+        double end = std::cos(static_cast<double>(cone) * pi / 180);
+        double start = std::cos(static_cast<double>(cone - delta) * pi / 180);
+        float power = r.number("power", -1);
+        if (power > 0)
+            s.scale *=
+                static_cast<float>(static_cast<double>(power) / (2 * pi * ((1 - start) + (start - end) / 2)));
+        Vec3f from = r.point3("from").value_or(Vec3f());
+        Vec3f to = r.point3("to").value_or(Vec3f(0, 0, 1));
+        Vec3f axis = direction(r, world_from_light.vector(direction(r, to - from)));
+        light = SpotLight{s.spectrum,
+                          s.scale,
+                          world_from_light.point(from),
+                          axis,
+                          static_cast<float>(start),
+                          static_cast<float>(end)};
+    } else if (plugin.name == "distant") {
+        Source s = source(r, "L", color_space);
+        float illuminance = r.number("illuminance", -1);
+        if (illuminance > 0) s.scale *= illuminance;
+        Vec3f from = r.point3("from").value_or(Vec3f());
+        Vec3f to = r.point3("to").value_or(Vec3f(0, 0, 1));
+        Vec3f to_light = direction(r, world_from_light.vector(direction(r, from - to)));
+        light = DistantLight{s.spectrum, s.scale, to_light};
+    } else if (plugin.name == "infinite") {
+        light = infinite(r, world_from_light, color_space);
+    } else if (plugin.name == "goniometric" || plugin.name == "projection") {
+        r.error("light " + in_quotes(plugin.name) + " is not supported yet");
+    } else {
+        r.error("unknown light " + in_quotes(plugin.name) + did_you_mean(plugin.name, plugins));
+    }
+    r.finish();
+    return light;
+}
+
+Light LightReader::infinite(ParameterReader& r, const Transform& world_from_light,
+                            const RgbColorSpace& color_space) {
+    if (r.ignored("portal")) r.error("portal", "a portal of an infinite light is not supported yet");
+    float illuminance = r.number("illuminance", -1);
+    std::optional<std::string> file = r.string("filename");
+    if (!file) {
+        Source s = source(r, "L", color_space);
+        if (illuminance > 0) s.scale *= illuminance / pi_f;
+        return UniformInfiniteLight{s.spectrum, s.scale};
+    }
+    if (r.ignored("L")) r.error("L", "'L' together with 'filename'; expected one or the other");
+    ImageInfiniteLight light;
+    light.environment = environment(*file, r.at("filename"));
+    light.world_from_light = world_from_light;
+    light.scale = r.number("scale", 1);
+    if (light.scale < 0) r.error("scale", "parameter 'scale' is negative");
+    light.scale *= photometric_scale(Spectrum(RgbColorSpace::srgb().illuminant()), r);
+    if (illuminance > 0) {
+        double map = upper_illuminance(scene_.environments[light.environment]);
+        if (!(map > 0)) r.error("illuminance", "the map has no light in its upper half to be scaled");
+        light.scale *= static_cast<float>(static_cast<double>(illuminance) / map);
+    }
+    return light;
+}
+
+Index LightReader::environment(const std::string& file, Location at) {
+    std::filesystem::path path = files_.find(file, at);
+    if (auto known = environments_.find(path.string()); known != environments_.end()) return known->second;
+    std::vector<std::uint8_t> bytes = files_.read(path, at);
+    try {
+        Image picture = read_image(bytes, path.string());
+        if (picture.width() != picture.height())
+            diagnostics_.error(at, path.string() + " has " + std::to_string(picture.width()) + " x " +
+                                       std::to_string(picture.height()) +
+                                       " pixels; an environment map must be square (equal-area octahedral)");
+        if (!picture.find_channel("R") || !picture.find_channel("G") || !picture.find_channel("B"))
+            diagnostics_.error(at, path.string() + " has no channels R, G and B");
+        constexpr std::array<const char*, 3> rgb = {"R", "G", "B"};
+        std::vector<std::string> channels(rgb.begin(), rgb.end());
+        Image map = picture.select(channels).to_linear_f32();
+        bool negative = false;
+        for (float& v : map.f32()) {
+            if (!std::isfinite(v)) diagnostics_.error(at, path.string() + " has a pixel that is not finite");
+            negative = negative || v < 0;
+            v = std::max(v, 0.0f);
+        }
+        if (negative) diagnostics_.warn(at, path.string() + " has negative pixels; they count as 0");
+        scene_.environments.push_back(std::move(map));
+    } catch (const Error& e) {
+        // Errors that already tell where in the scene file pass through.
+        std::string_view what = e.what();
+        if (what.starts_with(diagnostics_.describe(at))) throw;
+        diagnostics_.error(at, what);
+    }
+    return environments_[path.string()] = static_cast<Index>(scene_.environments.size() - 1);
+}
+
+} // namespace montelux::pbrt

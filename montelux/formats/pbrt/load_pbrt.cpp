@@ -1,0 +1,32 @@
+#include "montelux/formats/pbrt/load_pbrt.h"
+
+#include <vector>
+
+#include "montelux/formats/pbrt/scene_parser.h"
+
+namespace montelux {
+
+SceneDescription load_pbrt(const std::filesystem::path& path, Warnings& warnings) {
+    pbrt::Diagnostics diagnostics(warnings);
+    std::uint32_t file = diagnostics.add_file(path.string());
+    pbrt::Files files(path.parent_path(), diagnostics);
+    std::vector<std::uint8_t> bytes = pbrt::Files::read_alone(path, files.hash());
+    pbrt::SceneBuilder builder(files, diagnostics);
+    pbrt::SceneParser parser(files, builder, diagnostics);
+    parser.enter(path);
+    pbrt::Location end = parser.parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file);
+    return builder.finish(end);
+}
+
+SceneDescription parse_pbrt(std::string_view text, const std::string& name,
+                            const std::filesystem::path& folder, Warnings& warnings) {
+    pbrt::Diagnostics diagnostics(warnings);
+    std::uint32_t file = diagnostics.add_file(name);
+    pbrt::Files files(folder, diagnostics);
+    files.hash().add(text.data(), text.size());
+    pbrt::SceneBuilder builder(files, diagnostics);
+    pbrt::SceneParser parser(files, builder, diagnostics);
+    return builder.finish(parser.parse(text, file));
+}
+
+} // namespace montelux

@@ -1,0 +1,23 @@
+// Scenes in the format of pbrt-v4.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "montelux/formats/warnings.h"
+#include "montelux/scene/render_settings.h"
+
+namespace montelux {
+
+// Reads a pbrt-v4 scene file (gzipped when its name ends in ".gz") and all files that it refers to. Paths are
+// relative to its folder. What is supported, what is left out and what differs stands in docs/pbrt.md.
+// Throws Error "file:line:column: sentence" on anything that pbrt would not understand or that Montelux
+// cannot render; tells of what it ignores in `warnings`.
+SceneDescription load_pbrt(const std::filesystem::path& path, Warnings& warnings);
+
+// The same for a text; `name` stands in messages and `folder` is where paths start.
+SceneDescription parse_pbrt(std::string_view text, const std::string& name,
+                            const std::filesystem::path& folder, Warnings& warnings);
+
+} // namespace montelux

@@ -1,0 +1,71 @@
+// "type name" [ values ]: the parameters that follow a directive of a pbrt scene file.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "montelux/formats/pbrt/tokenizer.h"
+
+namespace montelux {
+class RgbColorSpace;
+}
+
+namespace montelux::pbrt {
+
+enum class ParameterType : std::uint8_t {
+    floating, // "float"
+    integer,
+    point2,
+    vector2,
+    point3,
+    vector3,
+    normal,
+    boolean, // "bool"
+    string,
+    texture, // the name of a texture
+    rgb,
+    spectrum, // a name, a file, or wavelengths with values
+    blackbody,
+};
+std::string_view name_of(ParameterType type);
+
+// Values stand in the vector that fits the type: numbers for everything counted in floats and for spectra
+// given by values, strings for names; booleans are 0 or 1 in `integers`.
+struct Parameter {
+    ParameterType type = ParameterType::floating;
+    std::string name;
+    Location at;
+    std::vector<float> numbers;
+    std::vector<std::int32_t> integers;
+    std::vector<std::string> strings;
+    const RgbColorSpace* color_space = nullptr; // of RGB values: the one in force at the directive
+
+    std::size_t value_count() const { return numbers.size() + integers.size() + strings.size(); }
+};
+
+// The parameters of one directive, in the file's order, with the defaults that an Attribute directive gave
+// behind them: of several with the same name and type, own ones win, and the last of each.
+class ParameterList {
+  public:
+    ParameterList() = default;
+    explicit ParameterList(std::vector<Parameter> own, std::vector<Parameter> defaults = {})
+        : own_(std::move(own)), defaults_(std::move(defaults)) {}
+
+    const std::vector<Parameter>& own() const { return own_; }
+    // Null when there is none with that name (and type).
+    const Parameter* find(std::string_view name) const;
+    const Parameter* find(std::string_view name, ParameterType type) const;
+
+  private:
+    std::vector<Parameter> own_, defaults_;
+};
+
+// Reads the parameters that stand at the tokenizer up to the next word. Errors: an unknown type, a missing
+// name, values of the wrong kind, a bracket that is not closed. A repeated parameter is warned of.
+std::vector<Parameter> read_parameters(Tokenizer& tokens, const RgbColorSpace& color_space,
+                                       Diagnostics& diagnostics);
+
+} // namespace montelux::pbrt

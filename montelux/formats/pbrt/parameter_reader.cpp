@@ -1,0 +1,120 @@
+#include "montelux/formats/pbrt/parameter_reader.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "montelux/formats/nearest_name.h"
+
+namespace montelux::pbrt {
+
+ParameterReader::ParameterReader(const ParameterList& list, std::string plugin, Location at,
+                                 Diagnostics& diagnostics)
+    : list_(list), plugin_(std::move(plugin)), at_(at), diagnostics_(diagnostics) {}
+
+void ParameterReader::know(std::string_view name) {
+    if (std::find(known_.begin(), known_.end(), name) == known_.end()) known_.push_back(name);
+}
+
+Location ParameterReader::at(std::string_view name) const {
+    const Parameter* p = list_.find(name);
+    return p ? p->at : at_;
+}
+
+const Parameter* ParameterReader::any(std::string_view name, std::initializer_list<ParameterType> types) {
+    know(name);
+    const Parameter* best = nullptr;
+    for (ParameterType type : types)
+        if (const Parameter* p = list_.find(name, type); p && !best) best = p;
+    if (best) return best;
+    const Parameter* other = list_.find(name);
+    if (!other) return nullptr;
+    std::string expected;
+    for (const ParameterType* type = types.begin(); type != types.end(); ++type) {
+        if (type != types.begin()) expected += type + 1 == types.end() ? " or " : ", ";
+        expected += name_of(*type);
+    }
+    diagnostics_.error(other->at, "parameter " + in_quotes(name) + " has type " +
+                                      std::string(name_of(other->type)) + "; expected " + expected);
+}
+
+const Parameter* ParameterReader::ignored(std::string_view name) {
+    know(name);
+    return list_.find(name);
+}
+
+const Parameter* ParameterReader::one(std::string_view name, ParameterType type, std::size_t count) {
+    const Parameter* p = any(name, {type});
+    if (p && p->value_count() != count)
+        diagnostics_.error(p->at, "parameter " + in_quotes(name) + " has " +
+                                      std::to_string(p->value_count()) +
+                                      (p->value_count() == 1 ? " value" : " values") + "; expected " +
+                                      std::to_string(count));
+    return p;
+}
+
+std::optional<float> ParameterReader::number(std::string_view name) {
+    const Parameter* p = one(name, ParameterType::floating);
+    return p ? std::optional(p->numbers[0]) : std::nullopt;
+}
+
+std::optional<int> ParameterReader::integer(std::string_view name) {
+    const Parameter* p = one(name, ParameterType::integer);
+    return p ? std::optional<int>(p->integers[0]) : std::nullopt;
+}
+
+std::optional<bool> ParameterReader::boolean(std::string_view name) {
+    const Parameter* p = one(name, ParameterType::boolean);
+    return p ? std::optional(p->integers[0] != 0) : std::nullopt;
+}
+
+std::optional<std::string> ParameterReader::string(std::string_view name) {
+    const Parameter* p = one(name, ParameterType::string);
+    return p ? std::optional(p->strings[0]) : std::nullopt;
+}
+
+std::optional<Vec3f> ParameterReader::triple(std::string_view name, ParameterType type) {
+    const Parameter* p = one(name, type, 3);
+    return p ? std::optional(Vec3f(p->numbers[0], p->numbers[1], p->numbers[2])) : std::nullopt;
+}
+
+std::span<const float> ParameterReader::numbers(std::string_view name, ParameterType type,
+                                                std::size_t group) {
+    const Parameter* p = any(name, {type});
+    if (!p) return {};
+    if (p->numbers.size() % group != 0)
+        diagnostics_.error(p->at, "parameter " + in_quotes(name) + " has " +
+                                      std::to_string(p->numbers.size()) +
+                                      " numbers; expected a multiple of " + std::to_string(group));
+    return p->numbers;
+}
+
+std::span<const std::int32_t> ParameterReader::integers(std::string_view name) {
+    const Parameter* p = any(name, {ParameterType::integer});
+    return p ? std::span<const std::int32_t>(p->integers) : std::span<const std::int32_t>();
+}
+
+std::string_view ParameterReader::choice(std::string_view name,
+                                         std::initializer_list<std::string_view> choices,
+                                         std::string_view otherwise) {
+    const Parameter* p = one(name, ParameterType::string);
+    if (!p) return otherwise;
+    std::string expected;
+    for (std::string_view c : choices) {
+        if (p->strings[0] == c) return c;
+        expected += (expected.empty() ? "" : ", ") + std::string(c);
+    }
+    diagnostics_.error(p->at, "parameter " + in_quotes(name) + " is " + in_quotes(p->strings[0]) +
+                                  "; expected one of " + expected +
+                                  did_you_mean(p->strings[0], {choices.begin(), choices.size()}));
+}
+
+void ParameterReader::finish() {
+    for (const Parameter& p : list_.own()) {
+        if (std::find(known_.begin(), known_.end(), p.name) != known_.end()) continue;
+        diagnostics_.warn_once(plugin_ + "/" + p.name, p.at,
+                               plugin_ + " has no parameter " + in_quotes(p.name) +
+                                   did_you_mean(p.name, known_) + "; it is ignored");
+    }
+}
+
+} // namespace montelux::pbrt

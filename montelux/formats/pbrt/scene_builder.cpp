@@ -1,0 +1,254 @@
+#include "montelux/formats/pbrt/scene_builder.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "montelux/formats/nearest_name.h"
+#include "montelux/spectrum/rgb_colorspace.h"
+
+namespace montelux::pbrt {
+namespace {
+
+constexpr std::size_t max_blocks = 1000000;
+
+} // namespace
+
+SceneBuilder::SceneBuilder(Files& files, Diagnostics& diagnostics)
+    : files_(files), diagnostics_(diagnostics), spectra_(files, diagnostics),
+      textures_(result_.scene, files, spectra_, diagnostics),
+      lights_(result_.scene, files, spectra_, diagnostics) {
+    state_.color_space = &RgbColorSpace::srgb();
+    materials_.push_back({"diffuse", {}, {}}); // what shapes have before any Material directive
+}
+
+void SceneBuilder::require_world(std::string_view directive, Location at) const {
+    if (!in_world_)
+        diagnostics_.error(at,
+                           "'" + std::string(directive) + "' stands before WorldBegin; it belongs behind it");
+}
+
+void SceneBuilder::require_options(std::string_view directive, Location at) const {
+    if (in_world_)
+        diagnostics_.error(at,
+                           "'" + std::string(directive) + "' stands behind WorldBegin; it belongs before it");
+}
+
+void SceneBuilder::world_begin(Location at) {
+    require_options("WorldBegin", at);
+    in_world_ = true;
+    state_.ctm = std::make_shared<TransformPair>();
+    state_.start_active = state_.end_active = true;
+    coordinate_systems_["world"] = state_.ctm;
+    finish_options();
+}
+
+void SceneBuilder::push(Block::Kind kind, Location at) {
+    if (blocks_.size() >= max_blocks)
+        diagnostics_.error(at, "more than " + std::to_string(max_blocks) + " open blocks");
+    blocks_.push_back({kind, at, state_});
+}
+
+void SceneBuilder::pop(Block::Kind kind, std::string_view directive, Location at) {
+    bool attribute = kind == Block::Kind::attribute;
+    if (blocks_.size() <= block_floor_)
+        diagnostics_.error(at, std::string(directive) + " without " +
+                                   (attribute ? "AttributeBegin" : "ObjectBegin"));
+    if (blocks_.back().kind != kind)
+        diagnostics_.error(at, std::string(directive) + ", but the innermost open block is the " +
+                                   (attribute ? "ObjectBegin" : "AttributeBegin") + " of " +
+                                   diagnostics_.describe(blocks_.back().at));
+    state_ = std::move(blocks_.back().state);
+    blocks_.pop_back();
+}
+
+void SceneBuilder::attribute_begin(Location at) {
+    require_world("AttributeBegin", at);
+    push(Block::Kind::attribute, at);
+}
+
+void SceneBuilder::attribute_end(Location at) {
+    require_world("AttributeEnd", at);
+    pop(Block::Kind::attribute, "AttributeEnd", at);
+}
+
+void SceneBuilder::object_begin(const std::string& name, Location at) {
+    require_world("ObjectBegin", at);
+    if (open_object_ != none) diagnostics_.error(at, "ObjectBegin inside another object's definition");
+    Index index = static_cast<Index>(result_.scene.objects.size());
+    if (!objects_.emplace(name, index).second)
+        diagnostics_.error(at, "object " + in_quotes(name) + " is defined twice");
+    push(Block::Kind::object, at);
+    open_object_ = index;
+    result_.scene.objects.emplace_back();
+}
+
+void SceneBuilder::object_end(Location at) {
+    require_world("ObjectEnd", at);
+    pop(Block::Kind::object, "ObjectEnd", at);
+    open_object_ = none;
+}
+
+void SceneBuilder::object_instance(const std::string& name, Location at) {
+    require_world("ObjectInstance", at);
+    if (open_object_ != none) diagnostics_.error(at, "ObjectInstance inside an object's definition");
+    instances_.push_back({name, still_transform(at), at});
+}
+
+SceneBuilder::Import SceneBuilder::begin_import(Location at) {
+    require_world("Import", at);
+    return {state_, std::exchange(block_floor_, blocks_.size())};
+}
+
+void SceneBuilder::end_import(Import import) {
+    if (blocks_.size() > block_floor_)
+        diagnostics_.error(blocks_.back().at, "this block is not closed in the imported file");
+    block_floor_ = import.outer_floor;
+    state_ = std::move(import.state);
+}
+
+void SceneBuilder::concatenate(const Transform& t, Location at) {
+    auto moved = std::make_shared<TransformPair>(*state_.ctm);
+    if (state_.start_active) moved->start = moved->start * t;
+    if (state_.end_active) moved->end = moved->end * t;
+    for (const Transform* m : {&moved->start, &moved->end})
+        for (const Matrix4* matrix : {&m->matrix(), &m->inverse_matrix()})
+            for (const auto& row : matrix->m)
+                for (double v : row)
+                    if (!std::isfinite(v))
+                        diagnostics_.error(at, "the transformation or its inverse is not finite any more");
+    state_.ctm = std::move(moved);
+}
+
+void SceneBuilder::set_transform(const Transform& t, Location at) {
+    auto identity = std::make_shared<TransformPair>(*state_.ctm);
+    if (state_.start_active) identity->start = Transform();
+    if (state_.end_active) identity->end = Transform();
+    state_.ctm = std::move(identity);
+    concatenate(t, at);
+}
+
+void SceneBuilder::active_transform(std::string_view which, Location at) {
+    constexpr std::array<std::string_view, 3> names = {"All", "StartTime", "EndTime"};
+    if (which != "All" && which != "StartTime" && which != "EndTime")
+        diagnostics_.error(at, "ActiveTransform " + in_quotes(which) +
+                                   "; expected All, StartTime or EndTime" + did_you_mean(which, names));
+    state_.start_active = which != "EndTime";
+    state_.end_active = which != "StartTime";
+}
+
+void SceneBuilder::coordinate_system(const std::string& name) { coordinate_systems_[name] = state_.ctm; }
+
+void SceneBuilder::coordinate_system_transform(const std::string& name, Location at) {
+    auto found = coordinate_systems_.find(name);
+    if (found == coordinate_systems_.end()) {
+        std::vector<std::string_view> names;
+        for (const auto& entry : coordinate_systems_) names.push_back(entry.first);
+        if (names.size() > 10000) names.clear();
+        diagnostics_.error(at,
+                           "there is no coordinate system " + in_quotes(name) + did_you_mean(name, names));
+    }
+    state_.ctm = found->second;
+}
+
+void SceneBuilder::reverse_orientation(Location at) {
+    require_world("ReverseOrientation", at);
+    state_.reverse_orientation = !state_.reverse_orientation;
+}
+
+const Transform& SceneBuilder::still_transform(Location at) const {
+    if (!(state_.ctm->start == state_.ctm->end))
+        diagnostics_.error(at,
+                           "this moves (its transformations at the start and the end of the shutter's time "
+                           "differ); motion blur is not supported yet");
+    return state_.ctm->start;
+}
+
+void SceneBuilder::set_option(std::optional<Plugin>& option, Plugin plugin, std::string_view directive) {
+    require_options(directive, plugin.at);
+    if (option) diagnostics_.warn(plugin.at, std::string(directive) + " is given twice; the last one counts");
+    option = std::move(plugin);
+}
+
+void SceneBuilder::set_camera(Plugin plugin) {
+    Location at = plugin.at;
+    set_option(camera_, std::move(plugin), "Camera");
+    result_.scene.camera.world_from_camera = still_transform(at).inverse();
+    const Transform& t = result_.scene.camera.world_from_camera;
+    coordinate_systems_["camera"] = std::make_shared<TransformPair>(TransformPair{t, t});
+}
+
+void SceneBuilder::set_accelerator(const Plugin& plugin) {
+    require_options("Accelerator", plugin.at);
+    diagnostics_.warn_once(
+        "accelerator", plugin.at,
+        "'Accelerator' is ignored: the ray tracer builds its own; the picture is the same");
+}
+
+void SceneBuilder::set_render_option(const Parameter& p) {
+    constexpr std::array<std::string_view, 11> names = {"disablepixeljitter",
+                                                        "disabletexturefiltering",
+                                                        "disablewavelengthjitter",
+                                                        "displacementedgescale",
+                                                        "forcediffuse",
+                                                        "msereferenceimage",
+                                                        "msereferenceout",
+                                                        "pixelstats",
+                                                        "rendercoordsys",
+                                                        "seed",
+                                                        "wavefront"};
+    if (p.name == "seed") {
+        if (p.type != ParameterType::integer || p.integers.size() != 1)
+            diagnostics_.error(p.at, "option 'seed' has type " + std::string(name_of(p.type)) +
+                                         "; expected 1 integer");
+        seed_ = static_cast<std::uint32_t>(p.integers[0]);
+        return;
+    }
+    // The space that coordinates are computed in changes nothing here.
+    if (p.name == "rendercoordsys") return;
+    for (std::string_view name : names)
+        if (p.name == name) {
+            diagnostics_.warn_once("option " + p.name, p.at,
+                                   "option " + in_quotes(p.name) + " is not supported; it is ignored");
+            return;
+        }
+    diagnostics_.error(p.at, "unknown option " + in_quotes(p.name) + did_you_mean(p.name, names));
+}
+
+void SceneBuilder::set_color_space(std::string_view name, Location at) {
+    const RgbColorSpace* space = find_rgb_color_space(name);
+    if (!space)
+        diagnostics_.error(at, "unknown colour space " + in_quotes(name) +
+                                   did_you_mean(name, rgb_color_space_names()));
+    state_.color_space = space;
+}
+
+void SceneBuilder::add_defaults(std::string_view target, std::vector<Parameter> parameters, Location at) {
+    constexpr std::array<std::string_view, 5> names = {"shape", "light", "material", "medium", "texture"};
+    std::array<Defaults*, 5> lists = {&state_.shape_defaults, &state_.light_defaults,
+                                      &state_.material_defaults, nullptr, &state_.texture_defaults};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (target != names[i]) continue;
+        if (!lists[i]) return; // media themselves are an error
+        auto list = std::make_shared<std::vector<Parameter>>();
+        if (*lists[i]) *list = **lists[i];
+        for (Parameter& p : parameters) list->push_back(std::move(p));
+        if (list->size() > 10000) diagnostics_.error(at, "more than 10000 default parameters");
+        *lists[i] = std::move(list);
+        return;
+    }
+    diagnostics_.error(at, "Attribute of " + in_quotes(target) +
+                               "; expected shape, light, material, medium or texture" +
+                               did_you_mean(target, names));
+}
+
+ParameterList SceneBuilder::with_defaults(std::vector<Parameter> own, const Defaults& defaults) const {
+    return defaults ? ParameterList(std::move(own), *defaults) : ParameterList(std::move(own));
+}
+
+void SceneBuilder::medium_interface(std::string_view inside, std::string_view outside, Location at) {
+    if (!inside.empty() || !outside.empty())
+        diagnostics_.error(at, "participating media are not supported yet");
+}
+
+} // namespace montelux::pbrt

@@ -1,0 +1,141 @@
+// The directives of a pbrt scene file, carried out one by one.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "montelux/formats/pbrt/graphics_state.h"
+#include "montelux/formats/pbrt/materials.h"
+#include "montelux/formats/pbrt/settings.h"
+#include "montelux/formats/pbrt/shapes.h"
+#include "montelux/formats/pbrt/textures.h"
+
+namespace montelux::pbrt {
+
+// Each function is one directive; `at` is where it stands. Geometry and lights are made at once; materials,
+// textures and instances when the file is read, since they may be named before they are declared.
+class SceneBuilder {
+  public:
+    SceneBuilder(Files& files, Diagnostics& diagnostics);
+
+    // Blocks.
+    void world_begin(Location at);
+    void attribute_begin(Location at);
+    void attribute_end(Location at);
+    void object_begin(const std::string& name, Location at);
+    void object_end(Location at);
+    void object_instance(const std::string& name, Location at);
+    // What an imported file changes ends with it: begin_import gives what end_import needs.
+    struct Import {
+        GraphicsState state;
+        std::size_t outer_floor;
+    };
+    Import begin_import(Location at);
+    void end_import(Import import);
+
+    // Transformations.
+    void concatenate(const Transform& t, Location at);
+    void set_transform(const Transform& t, Location at);
+    void active_transform(std::string_view which, Location at);
+    void coordinate_system(const std::string& name);
+    void coordinate_system_transform(const std::string& name, Location at);
+    void reverse_orientation(Location at);
+
+    // Before the world.
+    void set_camera(Plugin plugin);
+    void set_film(Plugin plugin) { set_option(film_, std::move(plugin), "Film"); }
+    void set_filter(Plugin plugin) { set_option(filter_, std::move(plugin), "PixelFilter"); }
+    void set_sampler(Plugin plugin) { set_option(sampler_, std::move(plugin), "Sampler"); }
+    void set_integrator(Plugin plugin) { set_option(integrator_, std::move(plugin), "Integrator"); }
+    void set_accelerator(const Plugin& plugin);
+    void set_render_option(const Parameter& p);
+
+    // Anywhere.
+    void set_color_space(std::string_view name, Location at);
+    const RgbColorSpace& color_space() const { return *state_.color_space; }
+    void add_defaults(std::string_view target, std::vector<Parameter> parameters, Location at);
+
+    // In the world.
+    void material(std::string type, std::vector<Parameter> parameters, Location at);
+    void make_named_material(const std::string& name, std::vector<Parameter> parameters, Location at);
+    void named_material(const std::string& name, Location at);
+    void texture(const std::string& name, std::string_view type, std::string plugin,
+                 std::vector<Parameter> parameters, Location at);
+    void light_source(std::string name, std::vector<Parameter> parameters, Location at);
+    void area_light_source(std::string name, std::vector<Parameter> parameters, Location at);
+    void shape(const std::string& name, std::vector<Parameter> parameters, Location at);
+    void medium_interface(std::string_view inside, std::string_view outside, Location at);
+
+    bool in_world() const { return in_world_; }
+    // After the last file. `end` is where it ends.
+    SceneDescription finish(Location end);
+
+  private:
+    struct Block {
+        enum class Kind : std::uint8_t { attribute, object } kind;
+        Location at;
+        GraphicsState state;
+    };
+    struct MaterialUse {
+        Index shape;
+        MaterialReference material;
+        Location at;
+    };
+    struct AlphaUse {
+        Index shape;
+        ParameterList parameters;
+        std::string plugin;
+        Location at;
+    };
+    struct InstanceUse {
+        std::string name;
+        Transform world_from_object;
+        Location at;
+    };
+
+    void require_world(std::string_view directive, Location at) const;
+    void require_options(std::string_view directive, Location at) const;
+    void set_option(std::optional<Plugin>& option, Plugin plugin, std::string_view directive);
+    void push(Block::Kind kind, Location at);
+    void pop(Block::Kind kind, std::string_view directive, Location at);
+    // The transformation where it may not move.
+    const Transform& still_transform(Location at) const;
+    ParameterList with_defaults(std::vector<Parameter> own, const Defaults& defaults) const;
+    void add_lights(Shape& shape, Index index, const Geometry& geometry, Location at);
+    void finish_options();
+    void finish_materials();
+    Index material_index(const MaterialReference& reference, Location at);
+    void finish_instances();
+
+    Files& files_;
+    Diagnostics& diagnostics_;
+    SceneDescription result_;
+    SpectrumReader spectra_;
+    TextureLibrary textures_;
+    LightReader lights_;
+
+    GraphicsState state_;
+    std::vector<Block> blocks_;
+    std::size_t block_floor_ = 0; // blocks below it belong to the file that imports this one
+    bool in_world_ = false;
+    std::map<std::string, std::shared_ptr<const TransformPair>> coordinate_systems_;
+    std::optional<Plugin> camera_, film_, filter_, sampler_, integrator_;
+    std::optional<std::uint64_t> seed_;
+
+    std::vector<MaterialDeclaration> materials_;
+    std::vector<Index> material_indices_; // into Scene::materials, of each declaration
+    std::map<std::string, std::size_t> named_materials_;
+    std::vector<std::string> material_names_; // that NamedMaterial directives use
+    std::map<std::string, std::size_t> material_name_indices_;
+    std::vector<MaterialUse> material_uses_;
+    std::vector<AlphaUse> alpha_uses_;
+
+    std::map<std::string, Index> objects_;
+    Index open_object_ = none;
+    std::vector<InstanceUse> instances_;
+};
+
+} // namespace montelux::pbrt

@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "montelux/formats/nearest_name.h"
+#include "montelux/formats/pbrt/parameter_reader.h"
+#include "montelux/formats/pbrt/settings.h"
+
+namespace montelux::pbrt {
+namespace {
+
+constexpr std::array<std::string_view, 7> sampler_names = {"independent", "stratified", "halton", "sobol",
+                                                           "paddedsobol", "zsobol",     "pmj02bn"};
+
+std::uint32_t read_count(ParameterReader& r, std::string_view name, int otherwise) {
+    int n = r.integer(name, otherwise);
+    if (n <= 0)
+        r.error(name,
+                "parameter " + in_quotes(name) + " is " + std::to_string(n) + "; expected at least 1 sample");
+    return static_cast<std::uint32_t>(n);
+}
+
+} // namespace
+
+SamplerSettings read_sampler(const Plugin& plugin, Diagnostics& diagnostics, std::uint64_t seed) {
+    ParameterReader r(plugin.parameters, "sampler " + in_quotes(plugin.name), plugin.at, diagnostics);
+    SamplerSettings s;
+    s.seed = seed;
+    if (std::optional<int> own = r.integer("seed")) s.seed = static_cast<std::uint32_t>(*own);
+    if (plugin.name == "stratified") {
+        s.kind = SamplerKind::stratified;
+        std::uint64_t count = std::uint64_t{read_count(r, "xsamples", 4)} * read_count(r, "ysamples", 4);
+        if (count > INT32_MAX) r.error("xsamples", "more than 2147483647 samples");
+        s.samples_per_pixel = static_cast<std::uint32_t>(count);
+        if (!r.boolean("jitter", true))
+            diagnostics.warn(r.at("jitter"), "samples are always jittered within their strata");
+        r.finish();
+        return s;
+    }
+    if (plugin.name == "independent") {
+        s.kind = SamplerKind::independent;
+        s.samples_per_pixel = read_count(r, "pixelsamples", 4);
+        r.finish();
+        return s;
+    }
+    if (plugin.name == "halton") {
+        s.kind = SamplerKind::halton;
+    } else if (plugin.name == "sobol" || plugin.name == "paddedsobol") {
+        s.kind = SamplerKind::sobol;
+    } else if (plugin.name == "zsobol" || plugin.name == "pmj02bn") {
+        s.kind = SamplerKind::sobol_blue_noise;
+    } else {
+        r.error("unknown sampler " + in_quotes(plugin.name) + did_you_mean(plugin.name, sampler_names));
+    }
+    s.samples_per_pixel = read_count(r, "pixelsamples", 16);
+    if (plugin.name == "pmj02bn") {
+        diagnostics.warn(plugin.at, "sampler 'pmj02bn' is rendered with Sobol' points of blue-noise error");
+    } else {
+        std::string_view randomization =
+            r.choice("randomization", {"none", "permutedigits", "fastowen", "owen"}, "owen");
+        if (randomization == "none")
+            diagnostics.warn(r.at("randomization"), "the points are randomised all the same: without it the "
+                                                    "error cannot be estimated");
+    }
+    r.finish();
+    return s;
+}
+
+IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostics) {
+    constexpr std::array<std::string_view, 12> names = {
+        "path", "volpath", "simplepath", "randomwalk", "simplevolpath",    "bdpt",
+        "mlt",  "sppm",    "lightpath",  "ao",         "ambientocclusion", "function"};
+    ParameterReader r(plugin.parameters, "integrator " + in_quotes(plugin.name), plugin.at, diagnostics);
+    IntegratorSettings s;
+    s.max_depth = r.integer("maxdepth", 5);
+    if (s.max_depth < 0) r.error("maxdepth", "parameter 'maxdepth' is negative");
+    if (plugin.name == "path" || plugin.name == "volpath") {
+        if (r.boolean("regularize", false))
+            diagnostics.warn(r.at("regularize"),
+                             "'regularize' is not supported: the picture is rendered without that bias");
+        if (r.ignored("lightsampler"))
+            diagnostics.warn_once("lightsampler", r.at("lightsampler"),
+                                  "'lightsampler' is ignored; it changes the noise alone");
+        r.finish();
+    } else if (plugin.name == "simplepath") {
+        bool lights = r.boolean("samplelights", true);
+        bool bsdf = r.boolean("samplebsdf", true);
+        s.strategy = lights ? Strategy::light : bsdf ? Strategy::bsdf : Strategy::uniform;
+        if (lights && !bsdf)
+            diagnostics.warn(r.at("samplebsdf"),
+                             "BSDFs are sampled all the same; it changes the noise alone");
+        r.finish();
+    } else if (plugin.name == "randomwalk") {
+        s.strategy = Strategy::uniform;
+        r.finish();
+    } else if (std::find(names.begin(), names.end(), plugin.name) != names.end()) {
+        diagnostics.warn(plugin.at, "integrator " + in_quotes(plugin.name) +
+                                        " is not supported yet; the scene is rendered with 'path'");
+    } else {
+        r.error("unknown integrator " + in_quotes(plugin.name) + did_you_mean(plugin.name, names));
+    }
+    return s;
+}
+
+} // namespace montelux::pbrt

@@ -1,0 +1,203 @@
+#include "montelux/formats/pbrt/shapes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "montelux/formats/loop_subdivision.h"
+#include "montelux/formats/nearest_name.h"
+#include "montelux/formats/ply.h"
+#include "montelux/mc/math/constants.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux::pbrt {
+namespace {
+
+constexpr std::array<std::string_view, 8> plugins = {"sphere",     "disk",     "trianglemesh", "plymesh",
+                                                     "loopsubdiv", "cylinder", "bilinearmesh", "curve"};
+
+float radians(float degrees) { return std::clamp(degrees, 0.0f, 360.0f) * (pi_f / 180); }
+
+Quadric read_sphere(ParameterReader& r, const Transform& world_from_object) {
+    Sphere s;
+    s.radius = r.number("radius", 1);
+    if (!(s.radius > 0)) r.error("radius", "parameter 'radius' must be positive");
+    float a = r.number("zmin", -s.radius), b = r.number("zmax", s.radius);
+    s.z_min = std::clamp(std::min(a, b), -s.radius, s.radius);
+    s.z_max = std::clamp(std::max(a, b), -s.radius, s.radius);
+    s.phi_max = radians(r.number("phimax", 360));
+    s.world_from_object = world_from_object;
+    return s;
+}
+
+Quadric read_disk(ParameterReader& r, const Transform& world_from_object) {
+    Disk d;
+    d.height = r.number("height", 0);
+    d.radius = r.number("radius", 1);
+    if (!(d.radius > 0)) r.error("radius", "parameter 'radius' must be positive");
+    d.inner_radius = r.number("innerradius", 0);
+    if (!(d.inner_radius >= 0 && d.inner_radius <= d.radius))
+        r.error("innerradius", "parameter 'innerradius' is not between 0 and 'radius'");
+    d.phi_max = radians(r.number("phimax", 360));
+    d.world_from_object = world_from_object;
+    return d;
+}
+
+std::vector<Vec3f> triples(std::span<const float> numbers) {
+    std::vector<Vec3f> v(numbers.size() / 3);
+    for (std::size_t i = 0; i < v.size(); ++i)
+        v[i] = {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
+    return v;
+}
+
+// Indices as they are in the file, whole triangles, each below `vertex_count`.
+std::vector<Index> read_indices(ParameterReader& r, std::size_t vertex_count) {
+    std::span<const std::int32_t> given = r.integers("indices");
+    std::size_t count = given.size() - given.size() % 3;
+    if (count != given.size())
+        r.diagnostics().warn(r.at("indices"), "parameter 'indices' has " + std::to_string(given.size()) +
+                                                  " values, no multiple of 3; the last " +
+                                                  std::to_string(given.size() - count) + " are ignored");
+    std::vector<Index> indices(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (given[i] < 0 || static_cast<std::size_t>(given[i]) >= vertex_count)
+            r.error("indices", "triangle " + std::to_string(i / 3) + " refers to vertex " +
+                                   std::to_string(given[i]) + "; the mesh has " +
+                                   std::to_string(vertex_count) + " vertices");
+        indices[i] = static_cast<Index>(given[i]);
+    }
+    return indices;
+}
+
+TriangleMesh read_triangle_mesh(ParameterReader& r) {
+    TriangleMesh mesh;
+    mesh.positions = triples(r.numbers("P", ParameterType::point3, 3));
+    if (mesh.positions.empty()) r.error("shape 'trianglemesh' needs vertex positions 'P'");
+    if (r.integers("indices").empty()) {
+        if (mesh.positions.size() != 3)
+            r.error("shape 'trianglemesh' needs 'indices' when it has not exactly 3 vertices");
+        mesh.indices = {0, 1, 2};
+    } else {
+        mesh.indices = read_indices(r, mesh.positions.size());
+    }
+    mesh.normals = triples(r.numbers("N", ParameterType::normal, 3));
+    std::span<const float> uv = r.numbers("uv", ParameterType::point2, 2);
+    for (std::size_t i = 0; i < uv.size(); i += 2) mesh.uvs.emplace_back(uv[i], uv[i + 1]);
+    auto drop_unless_one_a_vertex = [&](auto& values, std::string_view name) {
+        if (values.empty() || values.size() == mesh.positions.size()) return;
+        r.diagnostics().warn(r.at(name), "parameter " + in_quotes(name) + " has " +
+                                             std::to_string(values.size()) + " entries for " +
+                                             std::to_string(mesh.positions.size()) +
+                                             " vertices; it is ignored");
+        values.clear();
+    };
+    drop_unless_one_a_vertex(mesh.normals, "N");
+    drop_unless_one_a_vertex(mesh.uvs, "uv");
+    if (r.ignored("S"))
+        r.diagnostics().warn_once("trianglemesh S", r.at("S"),
+                                  "vertex tangents 'S' are not supported yet: they matter to anisotropic "
+                                  "materials, and the picture differs");
+    r.ignored("faceIndices"); // matters to Ptex textures alone
+    return mesh;
+}
+
+TriangleMesh read_ply_mesh(ParameterReader& r, Files& files) {
+    std::optional<std::string> name = r.string("filename");
+    if (!name) r.error("shape 'plymesh' needs a parameter 'filename'");
+    Location at = r.at("filename");
+    for (std::string_view parameter : {"displacement", "edgelength"})
+        if (r.ignored(parameter))
+            r.diagnostics().warn_once(
+                "plymesh displacement", r.at(parameter),
+                "displacement is not supported yet: the mesh is rendered without it, and "
+                "the picture differs");
+    std::filesystem::path path = files.find(*name, at);
+    std::vector<std::uint8_t> bytes = files.read(path, at);
+    PlyMesh ply;
+    try {
+        ply = parse_ply(bytes, path.string());
+    } catch (const Error& e) {
+        r.error("filename", e.what());
+    }
+    auto note = [&](std::size_t count, const char* what) {
+        if (count > 0) r.diagnostics().warn(at, path.string() + ": " + std::to_string(count) + what);
+    };
+    note(ply.quads, " quadrilaterals are split into two triangles each");
+    note(ply.polygons, " faces of more than four corners are split into fans of triangles");
+    note(ply.degenerate, " faces of fewer than three corners are left out");
+    return std::move(ply.mesh);
+}
+
+TriangleMesh read_loop_subdivision(ParameterReader& r) {
+    int levels = r.integer("levels", 3);
+    if (levels < 0) r.error("levels", "parameter 'levels' is negative");
+    r.choice("scheme", {"loop"}, "loop");
+    std::vector<Vec3f> positions = triples(r.numbers("P", ParameterType::point3, 3));
+    if (positions.empty()) r.error("shape 'loopsubdiv' needs vertex positions 'P'");
+    std::vector<Index> indices = read_indices(r, positions.size());
+    if (indices.empty()) r.error("shape 'loopsubdiv' needs 'indices'");
+    TriangleMesh mesh;
+    try {
+        SubdividedMesh fine = subdivide_loop(positions, indices, levels);
+        mesh.positions = std::move(fine.positions);
+        mesh.normals = std::move(fine.normals);
+        mesh.indices = std::move(fine.indices);
+    } catch (const Error& e) {
+        r.error(e.what());
+    }
+    return mesh;
+}
+
+void move_to_world(TriangleMesh& mesh, const Transform& world_from_object, bool reverse_orientation,
+                   ParameterReader& r) {
+    bool stays = world_from_object.matrix() == Matrix4{};
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        if (!stays) mesh.positions[i] = world_from_object.point(mesh.positions[i]);
+        if (!is_finite(mesh.positions[i]))
+            r.error("vertex " + std::to_string(i) + " lies at infinity in world space");
+    }
+    for (Normal3f& n : mesh.normals) {
+        if (!stays) n = world_from_object.normal(n);
+        if (reverse_orientation) n = -n;
+        if (!is_finite(n)) r.error("a vertex normal is not finite in world space");
+    }
+}
+
+} // namespace
+
+std::size_t Geometry::primitive_count() const {
+    const auto* mesh = std::get_if<TriangleMesh>(&shape);
+    return mesh ? mesh->triangle_count() : 1;
+}
+
+float Geometry::area(std::size_t primitive) const {
+    if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) {
+        auto corner = [&](std::size_t k) { return Vec3d(mesh->positions[mesh->indices[3 * primitive + k]]); };
+        return static_cast<float>(0.5 * length(cross(corner(1) - corner(0), corner(2) - corner(0))));
+    }
+    const Quadric& quadric = std::get<Quadric>(shape);
+    if (const auto* s = std::get_if<Sphere>(&quadric)) return s->phi_max * s->radius * (s->z_max - s->z_min);
+    const Disk& d = std::get<Disk>(quadric);
+    return 0.5f * d.phi_max * (d.radius * d.radius - d.inner_radius * d.inner_radius);
+}
+
+Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transform& world_from_object,
+                    bool reverse_orientation, Files& files) {
+    if (plugin == "sphere") return {read_sphere(r, world_from_object)};
+    if (plugin == "disk") return {read_disk(r, world_from_object)};
+    TriangleMesh mesh;
+    if (plugin == "trianglemesh")
+        mesh = read_triangle_mesh(r);
+    else if (plugin == "plymesh")
+        mesh = read_ply_mesh(r, files);
+    else if (plugin == "loopsubdiv")
+        mesh = read_loop_subdivision(r);
+    else if (std::find(plugins.begin(), plugins.end(), plugin) != plugins.end())
+        r.error("shape " + in_quotes(plugin) + " is not supported yet");
+    else
+        r.error("unknown shape " + in_quotes(plugin) + did_you_mean(plugin, plugins));
+    move_to_world(mesh, world_from_object, reverse_orientation, r);
+    return {std::move(mesh)};
+}
+
+} // namespace montelux::pbrt

@@ -1,0 +1,28 @@
+// Shapes of a pbrt scene file: parameters to meshes and quadrics.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "montelux/formats/pbrt/files.h"
+#include "montelux/formats/pbrt/parameter_reader.h"
+#include "montelux/formats/pbrt/settings.h"
+#include "montelux/scene/scene.h"
+
+namespace montelux::pbrt {
+
+// The geometry of one Shape directive, and the area of each of its primitives as lights need it.
+struct Geometry {
+    std::variant<TriangleMesh, Quadric> shape;
+
+    std::size_t primitive_count() const;
+    // As pbrt computes it: triangles in world space, quadrics in their own space.
+    float area(std::size_t primitive) const;
+};
+
+// Vertices of meshes are transformed by `world_from_object`; vertex normals too, and turned around with
+// `reverse_orientation`. A quadric keeps the transform.
+Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transform& world_from_object,
+                    bool reverse_orientation, Files& files);
+
+} // namespace montelux::pbrt

@@ -1,0 +1,248 @@
+#include "montelux/formats/pbrt/textures.h"
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
+#include "montelux/formats/nearest_name.h"
+#include "montelux/image/image_read.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux::pbrt {
+namespace {
+
+constexpr std::array<std::string_view, 5> supported = {"constant", "imagemap", "scale", "mix",
+                                                       "checkerboard"};
+constexpr std::array<std::string_view, 13> plugins = {
+    "constant", "imagemap", "scale", "mix",   "checkerboard", "bilerp",      "dots",
+    "fbm",      "marble",   "ptex",  "windy", "wrinkled",     "directionmix"};
+
+// Deeper trees of textures are refused: looking one up is recursive.
+constexpr std::size_t max_depth = 64;
+
+std::string label(const TextureDeclaration& d) { return "texture " + in_quotes(d.plugin); }
+
+std::optional<ColorEncoding> parse_encoding(const std::string& name) {
+    if (name == "sRGB") return ColorEncoding::srgb();
+    if (name == "linear") return ColorEncoding::linear();
+    if (!name.starts_with("gamma ")) return std::nullopt;
+    Warnings ignored;
+    Diagnostics diagnostics(ignored);
+    diagnostics.add_file("encoding");
+    try {
+        Tokenizer tokens(std::string_view(name).substr(6), 0, diagnostics);
+        std::vector<float> numbers;
+        if (tokens.read_numbers(numbers) != 1 || tokens.next().kind != Token::Kind::end) return std::nullopt;
+        return ColorEncoding::gamma(numbers[0]);
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+}
+
+} // namespace
+
+void TextureLibrary::declare(std::string_view type, const std::string& name, TextureDeclaration declaration) {
+    if (type != "float" && type != "spectrum")
+        diagnostics_.error(declaration.at, "texture " + in_quotes(name) + " has type " + in_quotes(type) +
+                                               "; expected 'float' or 'spectrum'");
+    if (std::find(plugins.begin(), plugins.end(), declaration.plugin) == plugins.end())
+        diagnostics_.error(declaration.at, "unknown texture " + in_quotes(declaration.plugin) +
+                                               did_you_mean(declaration.plugin, plugins));
+    Table& table = type == "float" ? float_ : spectrum_;
+    Location at = declaration.at;
+    std::size_t order = float_.size() + spectrum_.size() + 1;
+    if (!table.emplace(name, Entry{std::move(declaration), order}).second)
+        diagnostics_.error(at, std::string(type) + " texture " + in_quotes(name) + " is defined twice");
+}
+
+TextureLibrary::Entry& TextureLibrary::look_up(const Parameter& p, Table& table, const Table& other,
+                                               const char* type) {
+    if (p.strings.size() != 1)
+        diagnostics_.error(p.at, "parameter " + in_quotes(p.name) + " has " +
+                                     std::to_string(p.strings.size()) +
+                                     " values; expected 1 name of a texture");
+    const std::string& name = p.strings[0];
+    auto found = table.find(name);
+    if (found == table.end()) {
+        if (other.contains(name))
+            diagnostics_.error(p.at, "texture " + in_quotes(name) + " is not a " + type +
+                                         " texture, which parameter " + in_quotes(p.name) + " needs");
+        std::vector<std::string_view> names;
+        for (const auto& entry : table) names.push_back(entry.first);
+        if (names.size() > 10000) names.clear();
+        diagnostics_.error(p.at, std::string("there is no ") + type + " texture " + in_quotes(name) +
+                                     did_you_mean(name, names));
+    }
+    if (resolving_ > 0 && found->second.order >= resolving_order_)
+        diagnostics_.error(p.at,
+                           "texture " + in_quotes(name) + " is not defined before the texture that uses it");
+    return found->second;
+}
+
+std::optional<FloatParameter> TextureLibrary::find_float(ParameterReader& r, std::string_view name) {
+    const Parameter* p = r.any(name, {ParameterType::texture, ParameterType::floating});
+    if (!p) return std::nullopt;
+    if (p->type == ParameterType::texture)
+        return FloatParameter{0, resolve_float(look_up(*p, float_, spectrum_, "float"))};
+    if (p->numbers.size() != 1)
+        diagnostics_.error(p->at, "parameter " + in_quotes(name) + " has " +
+                                      std::to_string(p->numbers.size()) + " values; expected 1");
+    return FloatParameter{p->numbers[0]};
+}
+
+std::optional<SpectrumParameter> TextureLibrary::find_spectrum(ParameterReader& r, std::string_view name,
+                                                               RgbMeaning meaning) {
+    const Parameter* p = r.any(name, {ParameterType::texture, ParameterType::rgb, ParameterType::spectrum,
+                                      ParameterType::blackbody});
+    if (!p) return std::nullopt;
+    if (p->type == ParameterType::texture)
+        return SpectrumParameter{{}, resolve_spectrum(look_up(*p, spectrum_, float_, "spectrum"), meaning)};
+    return SpectrumParameter{spectra_.read(*p, meaning)};
+}
+
+Index TextureLibrary::resolve_float(Entry& entry) {
+    if (entry.nodes[0] != none) return entry.nodes[0];
+    FloatTexture node = make_node<FloatParameter>(entry, RgbMeaning::unbounded);
+    scene_.float_textures.push_back(std::move(node));
+    return entry.nodes[0] = static_cast<Index>(scene_.float_textures.size() - 1);
+}
+
+Index TextureLibrary::resolve_spectrum(Entry& entry, RgbMeaning meaning) {
+    Index& index = entry.nodes[static_cast<std::size_t>(meaning)];
+    if (index != none) return index;
+    SpectrumTexture node = make_node<SpectrumParameter>(entry, meaning);
+    scene_.spectrum_textures.push_back(std::move(node));
+    return index = static_cast<Index>(scene_.spectrum_textures.size() - 1);
+}
+
+template <typename Parameter>
+Parameter TextureLibrary::input(ParameterReader& r, std::string_view name, RgbMeaning meaning,
+                                float otherwise) {
+    if constexpr (std::is_same_v<Parameter, FloatParameter>)
+        return float_or(r, name, otherwise);
+    else
+        return spectrum_or(r, name, meaning, otherwise);
+}
+
+template <typename Parameter>
+TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meaning) {
+    const TextureDeclaration& d = entry.declaration;
+    if (std::find(supported.begin(), supported.end(), d.plugin) == supported.end())
+        diagnostics_.error(d.at, label(d) + " is not supported yet");
+    if (resolving_ >= max_depth)
+        diagnostics_.error(d.at, "textures refer to one another more than " + std::to_string(max_depth) +
+                                     " levels deep");
+    std::size_t outer = std::exchange(resolving_order_, entry.order);
+    ++resolving_;
+    ParameterReader r(d.parameters, label(d), d.at, diagnostics_);
+    TextureNode<Parameter> node;
+    if (d.plugin == "constant") {
+        node = ConstantTexture<Parameter>{input<Parameter>(r, "value", meaning, 1)};
+    } else if (d.plugin == "imagemap") {
+        node = image_texture(r, d, meaning);
+    } else if (d.plugin == "scale") {
+        Parameter texture = input<Parameter>(r, "tex", meaning, 1);
+        node = ScaleTexture<Parameter>{std::move(texture), float_or(r, "scale", 1)};
+    } else if (d.plugin == "mix") {
+        Parameter first = input<Parameter>(r, "tex1", meaning, 0);
+        Parameter second = input<Parameter>(r, "tex2", meaning, 1);
+        node = MixTexture<Parameter>{std::move(first), std::move(second), float_or(r, "amount", 0.5f)};
+    } else {
+        CheckerboardTexture<Parameter> c;
+        c.dimension = r.integer("dimension", 2);
+        if (c.dimension != 2 && c.dimension != 3)
+            r.error("dimension",
+                    "parameter 'dimension' is " + std::to_string(c.dimension) + "; expected 2 or 3");
+        if (c.dimension == 2)
+            c.mapping = mapping(r, d);
+        else
+            c.mapping.texture_from_world = d.world_from_texture.inverse();
+        c.values[0] = input<Parameter>(r, "tex1", meaning, 1);
+        c.values[1] = input<Parameter>(r, "tex2", meaning, 0);
+        node = std::move(c);
+    }
+    r.finish();
+    --resolving_;
+    resolving_order_ = outer;
+    return node;
+}
+
+TextureMapping TextureLibrary::mapping(ParameterReader& r, const TextureDeclaration& d) {
+    TextureMapping m;
+    std::string_view kind = r.choice("mapping", {"uv", "spherical", "cylindrical", "planar"}, "uv");
+    m.texture_from_world = d.world_from_texture.inverse();
+    if (kind == "uv") {
+        m.su = r.number("uscale", 1);
+        m.sv = r.number("vscale", 1);
+    } else if (kind == "planar") {
+        m.kind = TextureMapping::Kind::planar;
+        m.vs = r.vector3("v1").value_or(Vec3f(1, 0, 0));
+        m.vt = r.vector3("v2").value_or(Vec3f(0, 1, 0));
+    } else {
+        m.kind = kind == "spherical" ? TextureMapping::Kind::spherical : TextureMapping::Kind::cylindrical;
+        return m;
+    }
+    m.du = r.number("udelta", 0);
+    m.dv = r.number("vdelta", 0);
+    return m;
+}
+
+ImageTexture TextureLibrary::image_texture(ParameterReader& r, const TextureDeclaration& d,
+                                           RgbMeaning meaning) {
+    ImageTexture t;
+    t.meaning = meaning;
+    t.mapping = mapping(r, d);
+    std::string_view filter =
+        r.choice("filter", {"bilinear", "point", "trilinear", "ewa", "EWA"}, "bilinear");
+    t.filter = filter == "bilinear"    ? TextureFilter::bilinear
+               : filter == "point"     ? TextureFilter::point
+               : filter == "trilinear" ? TextureFilter::trilinear
+                                       : TextureFilter::ewa;
+    std::string_view wrap = r.choice("wrap", {"repeat", "black", "clamp", "octahedralsphere"}, "repeat");
+    t.wrap = wrap == "repeat"  ? TextureWrap::repeat
+             : wrap == "black" ? TextureWrap::black
+             : wrap == "clamp" ? TextureWrap::clamp
+                               : TextureWrap::octahedral_sphere;
+    t.max_anisotropy = r.number("maxanisotropy", 8);
+    if (!(t.max_anisotropy >= 1)) r.error("maxanisotropy", "parameter 'maxanisotropy' is below 1");
+    t.scale = r.number("scale", 1);
+    t.invert = r.boolean("invert", false);
+    std::optional<std::string> file = r.string("filename");
+    if (!file) r.error("texture 'imagemap' needs a parameter 'filename'");
+    t.image = image(*file, r.string("encoding"), r.at("filename"));
+    return t;
+}
+
+Index TextureLibrary::image(const std::string& file, const std::optional<std::string>& encoding,
+                            Location at) {
+    std::optional<ColorEncoding> asked;
+    if (encoding) {
+        asked = parse_encoding(*encoding);
+        if (!asked)
+            diagnostics_.error(at, "encoding " + in_quotes(*encoding) +
+                                       " is unknown; expected 'sRGB', 'linear' or 'gamma' with a number");
+    }
+    std::filesystem::path path = files_.find(file, at);
+    std::string key = path.string() + '\0' + encoding.value_or("");
+    if (auto known = images_.find(key); known != images_.end()) return known->second;
+    std::vector<std::uint8_t> bytes = files_.read(path, at);
+    try {
+        Image picture = read_image(bytes, path.string());
+        bool integers = picture.format() == PixelFormat::u8 || picture.format() == PixelFormat::u16;
+        if (asked && integers) picture.set_encoding(*asked);
+        scene_.images.push_back(std::move(picture));
+    } catch (const Error& e) {
+        diagnostics_.error(at, e.what());
+    }
+    return images_[key] = static_cast<Index>(scene_.images.size() - 1);
+}
+
+void TextureLibrary::warn_of_unused() {
+    for (const Table* table : {&float_, &spectrum_})
+        for (const auto& [name, entry] : *table)
+            if (std::all_of(entry.nodes.begin(), entry.nodes.end(), [](Index i) { return i == none; }))
+                diagnostics_.warn(entry.declaration.at,
+                                  "texture " + in_quotes(name) + " is not used and was not read");
+}
+
+} // namespace montelux::pbrt

@@ -1,0 +1,313 @@
+#include "montelux/formats/ply.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "montelux/formats/gunzip.h"
+#include "montelux/formats/number.h"
+#include "montelux/formats/ply_header.h"
+#include "montelux/image/file.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+namespace {
+
+using ply::Element;
+using ply::Format;
+using ply::Header;
+using ply::Property;
+using ply::Type;
+
+template <typename T>
+T byte_swapped(T value) {
+    std::array<std::uint8_t, sizeof(T)> bytes;
+    std::memcpy(bytes.data(), &value, sizeof(T));
+    for (std::size_t i = 0; i < sizeof(T) / 2; ++i) std::swap(bytes[i], bytes[sizeof(T) - 1 - i]);
+    std::memcpy(&value, bytes.data(), sizeof(T));
+    return value;
+}
+
+// Both cursors read one number after the other and know where they are for messages.
+class BinaryCursor {
+  public:
+    BinaryCursor(std::span<const std::uint8_t> bytes, const Header& header, std::string_view name)
+        : begin_(bytes.data()), p_(begin_ + header.size), end_(begin_ + bytes.size()),
+          swap_((header.format == Format::big_endian) == (std::endian::native == std::endian::little)),
+          name_(name) {}
+
+    double number(Type type) {
+        switch (type) {
+        case Type::int8:
+            return read<std::int8_t>();
+        case Type::uint8:
+            return read<std::uint8_t>();
+        case Type::int16:
+            return read<std::int16_t>();
+        case Type::uint16:
+            return read<std::uint16_t>();
+        case Type::int32:
+            return read<std::int32_t>();
+        case Type::uint32:
+            return read<std::uint32_t>();
+        case Type::float32:
+            return static_cast<double>(read<float>());
+        case Type::float64:
+            break;
+        }
+        return read<double>();
+    }
+    // Bytes that a row takes at least.
+    static std::size_t smallest_row(const Element& e) {
+        std::size_t size = 0;
+        for (const Property& p : e.properties) size += ply::size_of(p.is_list ? p.count_type : p.type);
+        return size;
+    }
+    void skip(std::uint64_t count, Type type) {
+        if (count > remaining() / ply::size_of(type)) fail_short();
+        p_ += count * ply::size_of(type);
+    }
+    std::size_t remaining() const { return static_cast<std::size_t>(end_ - p_); }
+    std::string where() const {
+        return std::string(name_) + ": byte " + std::to_string(static_cast<std::size_t>(p_ - begin_));
+    }
+    [[noreturn]] void fail_short() const { throw Error(where(), "the data end early"); }
+
+  private:
+    template <typename T>
+    T read() {
+        if (remaining() < sizeof(T)) fail_short();
+        T value;
+        std::memcpy(&value, p_, sizeof(T));
+        p_ += sizeof(T);
+        return swap_ ? byte_swapped(value) : value;
+    }
+    const std::uint8_t *begin_, *p_, *end_;
+    bool swap_;
+    std::string_view name_;
+};
+
+class AsciiCursor {
+  public:
+    AsciiCursor(std::span<const std::uint8_t> bytes, const Header& header, std::string_view name)
+        : p_(reinterpret_cast<const char*>(bytes.data()) + header.size),
+          end_(reinterpret_cast<const char*>(bytes.data()) + bytes.size()), line_(header.lines + 1),
+          name_(name) {}
+
+    double number(Type type) {
+        while (p_ != end_ && (*p_ == ' ' || *p_ == '\n' || *p_ == '\t' || *p_ == '\r'))
+            if (*p_++ == '\n') ++line_;
+        if (p_ == end_) fail_short();
+        double value;
+        NumberResult result = parse_number(p_, end_, value);
+        bool whole = result.end == end_ || static_cast<unsigned char>(*result.end) <= ' ';
+        if (result.status != NumberStatus::ok || !whole) throw Error(where(), "expected a number");
+        if (ply::is_integer(type) && value != std::floor(value))
+            throw Error(where(), "expected an integer, read a number with a fraction");
+        p_ = result.end;
+        return value;
+    }
+    // A digit for each number or list.
+    static std::size_t smallest_row(const Element& e) { return e.properties.size(); }
+    void skip(std::uint64_t count, Type type) {
+        if (count > remaining()) fail_short();
+        for (std::uint64_t i = 0; i < count; ++i) number(type);
+    }
+    std::size_t remaining() const { return static_cast<std::size_t>(end_ - p_); }
+    std::string where() const { return std::string(name_) + ":" + std::to_string(line_); }
+    [[noreturn]] void fail_short() const { throw Error(where(), "the data end early"); }
+
+  private:
+    const char *p_, *end_;
+    std::size_t line_;
+    std::string_view name_;
+};
+
+// Where a vertex's properties go: position, normal, texture coordinates.
+constexpr int slots = 8;
+int slot_of(std::string_view property) {
+    struct Name {
+        std::string_view name;
+        int slot;
+    };
+    constexpr std::array<Name, 14> names = {{{"x", 0},
+                                             {"y", 1},
+                                             {"z", 2},
+                                             {"nx", 3},
+                                             {"ny", 4},
+                                             {"nz", 5},
+                                             {"u", 6},
+                                             {"v", 7},
+                                             {"s", 6},
+                                             {"t", 7},
+                                             {"texture_u", 6},
+                                             {"texture_v", 7},
+                                             {"texture_s", 6},
+                                             {"texture_t", 7}}};
+    for (const Name& n : names)
+        if (n.name == property) return n.slot;
+    return -1;
+}
+
+template <typename Cursor>
+class BodyParser {
+  public:
+    BodyParser(Cursor cursor, const Header& header, std::string_view name)
+        : cursor_(cursor), header_(header), name_(name) {}
+
+    PlyMesh parse() {
+        bool vertices = false, faces = false;
+        for (const Element& e : header_.elements) {
+            std::size_t smallest = Cursor::smallest_row(e);
+            if (e.count > 0 && smallest > 0 && e.count > cursor_.remaining() / smallest)
+                throw Error(std::string(name_) + ":" + std::to_string(e.line),
+                            "the header tells of " + std::to_string(e.count) + " rows of '" + e.name +
+                                "', more than the file can hold");
+            if (e.name == "vertex") {
+                parse_vertices(e);
+                vertices = true;
+            } else if (e.name == "face") {
+                parse_faces(e);
+                faces = true;
+            } else if (!e.properties.empty()) {
+                for (std::uint64_t i = 0; i < e.count; ++i)
+                    for (const Property& p : e.properties) skip(p);
+            }
+        }
+        if (!vertices) throw Error(name_, "the file has no element 'vertex'");
+        if (!faces) throw Error(name_, "the file has no element 'face'");
+        check_indices();
+        return std::move(result_);
+    }
+
+  private:
+    void skip(const Property& p) {
+        if (p.is_list)
+            skip_list(p, list_count(p));
+        else
+            cursor_.skip(1, p.type);
+    }
+    void skip_list(const Property& p, std::uint64_t count) { cursor_.skip(count, p.type); }
+    std::uint64_t list_count(const Property& p) {
+        double n = cursor_.number(p.count_type);
+        if (!(n >= 0)) throw Error(cursor_.where(), "a list of negative length");
+        if (n > static_cast<double>(cursor_.remaining())) cursor_.fail_short();
+        return static_cast<std::uint64_t>(n);
+    }
+
+    void parse_vertices(const Element& e) {
+        if (e.count >= std::numeric_limits<Index>::max()) throw Error(name_, "too many vertices");
+        std::vector<int> slot;
+        std::array<bool, slots> have{};
+        for (const Property& p : e.properties) {
+            int s = p.is_list ? -1 : slot_of(p.name);
+            slot.push_back(s);
+            if (s >= 0) have[static_cast<std::size_t>(s)] = true;
+        }
+        if (!(have[0] && have[1] && have[2]))
+            throw Error(std::string(name_) + ":" + std::to_string(e.line),
+                        "element 'vertex' needs the properties x, y and z");
+        bool normals = have[3] && have[4] && have[5], uvs = have[6] && have[7];
+        TriangleMesh& mesh = result_.mesh;
+        mesh.positions.resize(e.count);
+        if (normals) mesh.normals.resize(e.count);
+        if (uvs) mesh.uvs.resize(e.count);
+        std::array<float, slots> v{};
+        for (std::size_t i = 0; i < e.count; ++i) {
+            for (std::size_t k = 0; k < slot.size(); ++k) {
+                if (slot[k] >= 0)
+                    v[static_cast<std::size_t>(slot[k])] =
+                        static_cast<float>(cursor_.number(e.properties[k].type));
+                else
+                    skip(e.properties[k]);
+            }
+            mesh.positions[i] = {v[0], v[1], v[2]};
+            if (normals) mesh.normals[i] = {v[3], v[4], v[5]};
+            if (uvs) mesh.uvs[i] = {v[6], v[7]};
+            float sum = v[0] + v[1] + v[2] + v[3] + v[4] + v[5] + v[6] + v[7];
+            if (!std::isfinite(sum)) check_vertex(i, v);
+        }
+    }
+    void check_vertex(std::size_t i, const std::array<float, slots>& v) const {
+        for (float x : v)
+            if (!std::isfinite(x))
+                throw Error(cursor_.where(),
+                            "vertex " + std::to_string(i) + " has a value that is not finite");
+    }
+
+    void parse_faces(const Element& e) {
+        const Property* list = nullptr;
+        for (const Property& p : e.properties)
+            if (p.is_list && (p.name == "vertex_indices" || p.name == "vertex_index")) list = &p;
+        if (!list)
+            throw Error(std::string(name_) + ":" + std::to_string(e.line),
+                        "element 'face' needs a list 'vertex_indices'");
+        if (!ply::is_integer(list->type))
+            throw Error(std::string(name_) + ":" + std::to_string(e.line),
+                        "list 'vertex_indices' must be of an integer type");
+        result_.mesh.indices.reserve(3 * e.count);
+        for (std::uint64_t i = 0; i < e.count; ++i)
+            for (const Property& p : e.properties) {
+                if (&p == list)
+                    parse_corners(p);
+                else
+                    skip(p);
+            }
+    }
+    void parse_corners(const Property& p) {
+        std::uint64_t corners = list_count(p);
+        if (corners < 3) {
+            skip_list(p, corners);
+            ++result_.degenerate;
+            return;
+        }
+        result_.quads += corners == 4;
+        result_.polygons += corners > 4;
+        Index first = corner(p.type), last = corner(p.type);
+        for (std::uint64_t k = 2; k < corners; ++k) {
+            Index c = corner(p.type);
+            result_.mesh.indices.insert(result_.mesh.indices.end(), {first, last, c});
+            last = c;
+        }
+    }
+    Index corner(Type type) {
+        double v = cursor_.number(type);
+        if (!(v >= 0 && v < static_cast<double>(none)))
+            throw Error(cursor_.where(), "a face has a negative vertex index or one beyond 2^32");
+        return static_cast<Index>(v);
+    }
+    void check_indices() const {
+        std::size_t count = result_.mesh.positions.size();
+        for (std::size_t i = 0; i < result_.mesh.indices.size(); ++i)
+            if (result_.mesh.indices[i] >= count)
+                throw Error(name_, "triangle " + std::to_string(i / 3) + " refers to vertex " +
+                                       std::to_string(result_.mesh.indices[i]) + "; the file has " +
+                                       std::to_string(count) + " vertices");
+    }
+
+    Cursor cursor_;
+    const Header& header_;
+    std::string_view name_;
+    PlyMesh result_;
+};
+
+} // namespace
+
+PlyMesh parse_ply(std::span<const std::uint8_t> bytes, std::string_view name) {
+    Header header = ply::parse_header(bytes, name);
+    if (header.format == Format::ascii)
+        return BodyParser(AsciiCursor(bytes, header, name), header, name).parse();
+    return BodyParser(BinaryCursor(bytes, header, name), header, name).parse();
+}
+
+PlyMesh read_ply(const std::filesystem::path& path) {
+    constexpr std::size_t max_bytes = std::size_t{16} << 30;
+    std::vector<std::uint8_t> bytes = read_file_bytes(path, max_bytes);
+    if (path.extension() == ".gz") bytes = gunzip(bytes, path.string(), max_bytes);
+    return parse_ply(bytes, path.string());
+}
+
+} // namespace montelux

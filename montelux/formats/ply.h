@@ -1,0 +1,33 @@
+// Triangle meshes from PLY files (Turk 1994, "The PLY Polygon File Format").
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "montelux/scene/shape/shape.h"
+
+namespace montelux {
+
+struct PlyMesh {
+    TriangleMesh mesh;
+    std::size_t quads = 0;      // faces of four corners, split into two triangles along corners 0 and 2
+    std::size_t polygons = 0;   // faces of more corners, split into a fan around corner 0
+    std::size_t degenerate = 0; // faces of fewer than three corners, left out
+};
+
+// ASCII and binary, little and big endian, properties of any type in any order. Vertices: x, y, z; optional
+// nx, ny, nz; optional u, v (also s, t; texture_u, texture_v; texture_s, texture_t). Faces: a list
+// vertex_indices or vertex_index. Other elements and properties are skipped.
+// Nothing is allocated that the file's size does not back. Throws Error, with `name` in front, when the
+// header is wrong, the data end early, a number cannot be read or is not finite, or an index points to no
+// vertex.
+PlyMesh parse_ply(std::span<const std::uint8_t> bytes, std::string_view name);
+
+// The same for a file, which may be gzipped (".gz").
+PlyMesh read_ply(const std::filesystem::path& path);
+
+} // namespace montelux
