@@ -1,0 +1,41 @@
+// Which points the samples of a picture or an integral are drawn from, and how they split into replicates.
+#pragma once
+
+#include <cstdint>
+
+namespace montelux {
+
+enum class SamplerKind : std::uint8_t {
+    independent,
+    stratified,
+    halton,
+    hammersley,
+    sobol,
+    sobol_blue_noise
+};
+
+struct SamplerSettings {
+    SamplerKind kind = SamplerKind::sobol;
+    std::uint64_t seed = 0;
+    std::uint32_t samples_per_pixel = 16;
+    std::uint32_t replicates = 1; // independent randomisations that the samples of a pixel are split into
+};
+
+// Points of one randomisation: samples_per_pixel / replicates, rounded up, and at least 1. Powers of two suit
+// the Sobol' kinds best, squares the stratified one.
+constexpr std::uint32_t points_per_replicate(const SamplerSettings& s) {
+    const std::uint32_t replicates = s.replicates == 0 ? 1 : s.replicates;
+    const std::uint32_t points = s.samples_per_pixel / replicates + (s.samples_per_pixel % replicates != 0);
+    return points == 0 ? 1 : points;
+}
+
+// A replicate is a run of consecutive samples. It goes on beyond samples_per_pixel: a picture that is
+// rendered further starts new replicates of the same length.
+constexpr std::uint64_t replicate_of(const SamplerSettings& s, std::uint64_t sample_index) {
+    return sample_index / points_per_replicate(s);
+}
+constexpr std::uint32_t index_in_replicate(const SamplerSettings& s, std::uint64_t sample_index) {
+    return static_cast<std::uint32_t>(sample_index % points_per_replicate(s));
+}
+
+} // namespace montelux
