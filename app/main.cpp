@@ -13,7 +13,9 @@ int main(int argc, char** argv) {
         CLI::App app("Montelux: Monte Carlo integration and light transport", "montelux");
         app.set_version_flag("--version", "montelux " MONTELUX_VERSION);
         app.require_subcommand(1);
-        app.footer("Exit codes: 0 done, 1 could not do it, 2 wrong usage.");
+        app.footer("Exit codes: 0 done, 1 could not do it, 2 wrong usage, 130 interrupted (what there was is "
+                   "saved).");
+        add_render(app, exit_code);
         add_compare(app, exit_code);
         add_info(app, exit_code);
         try {

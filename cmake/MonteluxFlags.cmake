@@ -6,7 +6,7 @@ target_compile_features(montelux_flags INTERFACE cxx_std_20)
 target_compile_options(montelux_flags INTERFACE
     -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden
     -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual -Woverloaded-virtual
-    -Wconversion -Wno-sign-conversion -Wno-float-conversion -Wdouble-promotion -Wno-psabi)
+    -Wconversion -Wno-sign-conversion -Wno-float-conversion -Wdouble-promotion -Wno-psabi $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 if(MONTELUX_WERROR)
     target_compile_options(montelux_flags INTERFACE -Werror)
 endif()

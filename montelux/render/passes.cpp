@@ -2,9 +2,13 @@
 
 #include <algorithm>
 
-#include "montelux/mc/random/sample_stream.h"
-
 namespace montelux {
+
+SamplerSettings with_replicates(SamplerSettings settings) {
+    if (settings.kind != SamplerKind::independent && settings.replicates < 2)
+        settings.replicates = std::min(8u, settings.samples_per_pixel);
+    return settings;
+}
 
 std::vector<SamplePass> sample_passes(const SamplerSettings& settings) {
     const std::uint64_t n = settings.samples_per_pixel;

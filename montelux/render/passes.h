@@ -15,6 +15,11 @@ struct SamplePass {
     bool every_sample_is_a_unit = true;
 };
 
+// With `replicates` 0 or 1 and a quasi-random sampler: the number that suits. Eight give an error estimate
+// with seven degrees of freedom and leave most samples to the point sets; with fewer than eight samples each
+// stands alone.
+SamplerSettings with_replicates(SamplerSettings settings);
+
 // Covers [0, samples_per_pixel) in order. A quasi-random sampler has one pass a randomisation; the
 // independent one starts with short passes, so that a first look comes early.
 std::vector<SamplePass> sample_passes(const SamplerSettings& settings);

@@ -44,7 +44,8 @@ std::optional<BadSample::Kind> badness(Vec3f rgb, SampledSpectrum radiance) {
 
 // Everything that one sample needs, shared by all threads.
 struct SampleContext {
-    const SceneDescription& description;
+    const SamplerSettings& sampler;
+    float max_component_value;
     PathScene path;
     PixelFilterSampler filter;
     Sensor sensor;
@@ -59,8 +60,7 @@ struct SampleContext {
     };
 
     Result take(RayTracer& tracer, int x, int y, std::uint64_t index) const {
-        SampleStream stream(description.sampler, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                            index);
+        SampleStream stream(sampler, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), index);
         Vec2f u_film = stream.next_2d();
         float u_lambda = stream.next_1d();
         Vec2f u_lens = path.camera.has_lens() ? stream.next_2d() : Vec2f{0.5f, 0.5f};
@@ -77,7 +77,7 @@ struct SampleContext {
         Vec3f rgb = sensor.to_rgb(radiance, lambda);
         result.bad = badness(rgb, radiance);
         if (result.bad) return result;
-        float largest = max_component(rgb), limit = description.film.max_component_value;
+        float largest = max_component(rgb), limit = max_component_value;
         if (largest > limit) rgb *= limit / largest;
         result.film.radiance = rgb * point.weight;
         if (first.found) {
@@ -130,7 +130,7 @@ void BadSampleReport::merge(const BadSampleReport& other) {
 }
 
 Renderer::Renderer(const SceneDescription& description)
-    : description_(description),
+    : description_(description), sampler_(with_replicates(description.sampler)),
       camera_(description.scene.camera, description.film.width, description.film.height) {
     if (description.sampler.samples_per_pixel < 1)
         throw Error("sampler", "at least 1 sample a pixel is needed");
@@ -141,12 +141,13 @@ Renderer::Renderer(const SceneDescription& description)
 }
 
 RenderReport Renderer::render(Film& film, const ProgressCallback& progress, const CancelFlag* cancel) const {
-    const SamplerSettings& sampler = description_.sampler;
+    const SamplerSettings& sampler = sampler_;
     const FilmSettings& settings = description_.film;
     const float footprint_scale =
         std::max(0.125f, 1 / std::sqrt(static_cast<float>(sampler.samples_per_pixel)));
     const SampleContext context{
-        .description = description_,
+        .sampler = sampler,
+        .max_component_value = settings.max_component_value,
         .path = {description_.scene, *tables_, camera_, description_.integrator, footprint_scale},
         .filter = PixelFilterSampler(settings.filter),
         .sensor =

@@ -53,6 +53,8 @@ class Renderer {
 
     const Accelerator& accelerator() const { return *accelerator_; }
     const Camera& camera() const { return camera_; }
+    // As the description says, with the number of replicates decided.
+    const SamplerSettings& sampler() const { return sampler_; }
     double build_seconds() const { return build_seconds_; }
 
     // Adds all samples to the film, which must be new. The film depends on the description alone: not on
@@ -62,6 +64,7 @@ class Renderer {
 
   private:
     const SceneDescription& description_;
+    SamplerSettings sampler_;
     double build_seconds_ = 0;
     std::unique_ptr<SceneTables> tables_;
     std::unique_ptr<Accelerator> accelerator_;

@@ -19,14 +19,14 @@ struct PerspectiveCamera {
     float fov = 90; // degrees, over the shorter axis
     float lens_radius = 0;
     float focal_distance = 1e6f;
-    std::optional<float> frame_aspect_ratio;
-    std::optional<ScreenWindow> screen_window;
+    std::optional<float> frame_aspect_ratio{};
+    std::optional<ScreenWindow> screen_window{};
 };
 struct OrthographicCamera {
     float lens_radius = 0;
     float focal_distance = 1e6f;
-    std::optional<float> frame_aspect_ratio;
-    std::optional<ScreenWindow> screen_window;
+    std::optional<float> frame_aspect_ratio{};
+    std::optional<ScreenWindow> screen_window{};
 };
 // Every direction: the film is an equal-area octahedral or a latitude-longitude map.
 struct SphericalCamera {

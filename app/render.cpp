@@ -1,0 +1,162 @@
+// montelux render: from a scene file to a picture with error bars.
+#include "app/commands.h"
+#include "app/progress.h"
+#include "app/render_options.h"
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <sys/resource.h>
+
+#include "montelux/formats/pbrt/load.h"
+#include "montelux/image/image_write.h"
+#include "montelux/render/renderer.h"
+
+namespace montelux::app {
+
+namespace {
+
+CancelFlag cancel_flag;
+
+extern "C" void on_signal(int) { cancel_flag.request(); }
+
+// The first signal asks the render to stop, the second one ends the program.
+void catch_signals() {
+    struct sigaction action {};
+    action.sa_handler = on_signal;
+    action.sa_flags = SA_RESETHAND;
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+}
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+std::vector<std::string> outputs_of(const RenderOptions& options, const SceneDescription& description) {
+    if (!options.outputs.empty()) return options.outputs;
+    // The file's own wish, in the current folder, always with the layers that only EXR can hold.
+    std::filesystem::path name =
+        description.output_file.empty() ? std::filesystem::path(options.scene) : description.output_file;
+    return {name.filename().replace_extension(".exr").string()};
+}
+
+void add_header(Image& image, const RenderOptions& options, const SceneDescription& description,
+                const RenderReport& report, const FilmError& error, const Renderer& renderer) {
+    auto& a = image.attributes();
+    char hash[17];
+    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(description.content_hash));
+    a["software"] = std::string("Montelux " MONTELUX_VERSION);
+    a["scene"] = std::filesystem::path(options.scene).filename().string();
+    a["sceneHash"] = std::string(hash);
+    a["samplesPerPixel"] = static_cast<int>(description.sampler.samples_per_pixel);
+    a["sampler"] = name_of(description.sampler.kind);
+    a["replicates"] = static_cast<int>(renderer.sampler().replicates);
+    a["strategy"] = name_of(description.integrator.strategy);
+    a["seed"] = std::to_string(description.sampler.seed);
+    a["renderSeconds"] = static_cast<float>(report.seconds);
+    a["relativeError"] = static_cast<float>(error.relative);
+    a["badSamples"] = static_cast<int>(std::min<std::uint64_t>(report.bad.count(), 1u << 30));
+    a["worldToCamera"] = renderer.camera().world_from_camera().inverse_matrix();
+    const PixelBounds& c = description.film.crop;
+    a["fullResolution"] = std::vector<float>{static_cast<float>(description.film.width),
+                                             static_cast<float>(description.film.height)};
+    a["cropPixels"] = std::vector<float>{static_cast<float>(c.x0), static_cast<float>(c.y0),
+                                         static_cast<float>(c.x1), static_cast<float>(c.y1)};
+}
+
+void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed) {
+    if (bad.count() == 0) return;
+    const char* kind = bad.first->kind == BadSample::Kind::nan        ? "not a number"
+                       : bad.first->kind == BadSample::Kind::infinite ? "infinite"
+                                                                      : "negative";
+    std::fprintf(stderr,
+                 "montelux: warning: %llu samples were left out (%llu not a number, %llu infinite, %llu "
+                 "negative); the "
+                 "first, %s, is sample %llu of pixel %d,%d with seed %llu\n",
+                 static_cast<unsigned long long>(bad.count()), static_cast<unsigned long long>(bad.nan),
+                 static_cast<unsigned long long>(bad.infinite), static_cast<unsigned long long>(bad.negative),
+                 kind, static_cast<unsigned long long>(bad.first->sample), bad.first->x, bad.first->y,
+                 static_cast<unsigned long long>(seed));
+}
+
+void print_statistics(const RenderReport& report, double load_seconds, double build_seconds) {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    auto samples = static_cast<double>(report.samples), rays = static_cast<double>(report.rays.rays());
+    std::printf("load               %.3f s\n", load_seconds);
+    std::printf("build              %.3f s\n", build_seconds);
+    std::printf("render             %.3f s, %.3f s of all threads\n", report.seconds, report.thread_seconds);
+    std::printf("samples            %ssamples/s, %.3f us of a thread each\n",
+                count_text(samples / report.seconds).c_str(), 1e6 * report.thread_seconds / samples);
+    std::printf(
+        "rays               %srays/s, %srays/s a thread, %.2f a sample (%.2f closest hit, %.2f occlusion)\n",
+        count_text(rays / report.seconds).c_str(), count_text(rays / report.thread_seconds).c_str(),
+        rays / samples, static_cast<double>(report.rays.closest) / samples,
+        static_cast<double>(report.rays.occlusion) / samples);
+    std::printf("inside Embree      %.1f %% of the time\n", 100 * report.ray_seconds / report.thread_seconds);
+    std::printf("peak memory        %.1f MiB\n", static_cast<double>(usage.ru_maxrss) / 1024);
+}
+
+int run(const RenderOptions& options) {
+    using Clock = std::chrono::steady_clock;
+    const ThreadLimit limit(static_cast<int>(std::clamp(options.threads, 0ll, 4096ll)));
+    for (const std::string& output : options.outputs) check_writable(output);
+
+    auto load_begin = Clock::now();
+    Warnings warnings;
+    SceneDescription description = load_pbrt(options.scene, warnings);
+    apply(options, description);
+    double load_seconds = seconds_since(load_begin);
+    if (!options.quiet) {
+        for (const std::string& w : warnings.messages())
+            std::fprintf(stderr, "montelux: warning: %s\n", w.c_str());
+        if (warnings.left_out() > 0)
+            std::fprintf(stderr, "montelux: warning: %zu more warnings were left out\n", warnings.left_out());
+    }
+    const std::vector<std::string> outputs = outputs_of(options, description);
+    for (const std::string& output : outputs) check_writable(output);
+
+    Film film(description.film);
+    Renderer renderer(description);
+    ProgressPrinter printer(options.quiet);
+    catch_signals();
+    RenderReport report = renderer.render(
+        film, [&](const RenderProgress& p) { printer.update(p); }, &cancel_flag);
+    printer.finish();
+    print_bad_samples(report.bad, description.sampler.seed);
+
+    FilmError error = film.error();
+    Image image = film.develop();
+    add_header(image, options, description, report, error, renderer);
+    for (const std::string& output : outputs) write_image(output, image);
+    if (!options.quiet) {
+        for (const std::string& output : outputs)
+            std::printf("%s: %dx%d, %.4g samples a pixel, relative error %s, %s%s\n", output.c_str(),
+                        image.width(), image.height(), error.mean_samples,
+                        percent_text(error.relative).c_str(), duration_text(report.seconds).c_str(),
+                        report.cancelled ? ", stopped before the end" : "");
+        if (options.stats) print_statistics(report, load_seconds, renderer.build_seconds());
+    }
+    return report.cancelled ? exit_interrupted : exit_done;
+}
+
+} // namespace
+
+void add_render(CLI::App& app, int& exit_code) {
+    auto options = std::make_shared<RenderOptions>();
+    CLI::App* command = app.add_subcommand("render", "render a scene; every pixel with its standard error");
+    declare(*command, *options);
+    command->callback([options, &exit_code] {
+        try {
+            exit_code = run(*options);
+        } catch (const UsageError& e) {
+            std::fprintf(stderr, "montelux: error: %s\n", e.what());
+            exit_code = exit_usage;
+        }
+    });
+}
+
+} // namespace montelux::app

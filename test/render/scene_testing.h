@@ -1,0 +1,108 @@
+// Small scenes with known answers, and their pictures.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "montelux/film/film.h"
+#include "montelux/render/renderer.h"
+
+namespace montelux::testing {
+
+// The spectrum of an RGB light that gives film RGB (1, 1, 1), and the scale that goes with it.
+inline Spectrum white_light() { return Spectrum(RgbIlluminantSpectrum(RgbColorSpace::srgb(), {1, 1, 1})); }
+inline float white_scale() { return static_cast<float>(1 / to_photometric(white_light())); }
+
+inline SpectrumParameter gray(float value) { return {Spectrum(value), none}; }
+
+// A square of side 2 around the origin of the plane z = 0 of `t`, normal +z.
+inline TriangleMesh square(const Transform& t) {
+    TriangleMesh m;
+    for (Vec3d p : {Vec3d{-1, -1, 0}, Vec3d{1, -1, 0}, Vec3d{1, 1, 0}, Vec3d{-1, 1, 0}})
+        m.positions.push_back(Vec3f(t.point(p)));
+    m.indices = {0, 1, 2, 0, 2, 3};
+    return m;
+}
+
+class SceneBuilder {
+  public:
+    SceneBuilder() {
+        description.film.width = description.film.height = 8;
+        description.film.crop = {0, 0, 8, 8};
+        description.film.filter = BoxFilter{};
+        description.sampler.kind = SamplerKind::independent;
+        description.sampler.samples_per_pixel = 64;
+        description.integrator.max_depth = 5;
+    }
+
+    SceneDescription description;
+    Scene& scene = description.scene;
+
+    Index add(const Material& m) {
+        scene.materials.push_back(m);
+        return static_cast<Index>(scene.materials.size() - 1);
+    }
+    Index add_mesh(TriangleMesh mesh, Index material, float emission = 0) {
+        Shape shape;
+        shape.mesh = static_cast<Index>(scene.meshes.size());
+        shape.material = material;
+        std::size_t n = mesh.triangle_count();
+        scene.meshes.push_back(std::move(mesh));
+        return add_shape(shape, n, emission);
+    }
+    Index add_quadric(const Quadric& quadric, Index material, float emission = 0, bool flip = false) {
+        Shape shape;
+        shape.quadric = static_cast<Index>(scene.quadrics.size());
+        shape.material = material;
+        shape.flip_normal = flip;
+        scene.quadrics.push_back(quadric);
+        return add_shape(shape, 1, emission);
+    }
+    void add_uniform_light(float radiance) {
+        scene.lights.push_back(UniformInfiniteLight{white_light(), white_scale() * radiance});
+    }
+    void look(Vec3d from, Vec3d to, float fov) {
+        Vec3d up = std::abs(normalize(to - from).z) > 0.9 ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+        scene.camera.world_from_camera = Transform::look_at(from, to, up)->inverse();
+        scene.camera.model = PerspectiveCamera{.fov = fov};
+    }
+
+  private:
+    Index add_shape(Shape shape, std::size_t primitives, float emission) {
+        auto index = static_cast<Index>(scene.shapes.size());
+        if (emission > 0) {
+            shape.first_light = static_cast<Index>(scene.lights.size());
+            for (std::size_t i = 0; i < primitives; ++i)
+                scene.lights.push_back(
+                    AreaLight{white_light(), emission * white_scale(), false, index, static_cast<Index>(i)});
+        }
+        scene.shapes.push_back(shape);
+        scene.world_shapes.push_back(index);
+        return index;
+    }
+};
+
+// Mean of one channel over all pixels with its standard error: pixels are independent.
+struct PictureMean {
+    double mean = 0, standard_error = 0;
+};
+inline PictureMean picture_mean(const Film& film, int channel = 1) {
+    double sum = 0, variance = 0;
+    const PixelBounds& b = film.bounds();
+    for (int y = b.y0; y < b.y1; ++y)
+        for (int x = b.x0; x < b.x1; ++x) {
+            sum += film.pixel(x, y).units().mean(channel);
+            variance += film.pixel(x, y).units().variance_of_mean(channel);
+        }
+    double n = double(b.width()) * b.height();
+    return {sum / n, std::sqrt(variance) / n};
+}
+
+inline Film render(const SceneDescription& description) {
+    Film film(description.film);
+    Renderer(description).render(film);
+    return film;
+}
+
+} // namespace montelux::testing
