@@ -47,6 +47,17 @@ PiecewiseConstant2D::PiecewiseConstant2D(std::span<const double> values, std::ui
     build(values);
 }
 
+void PiecewiseConstant2D::build_guide(const std::uint32_t* cdf, std::uint32_t n, std::uint32_t* guide) {
+    std::uint64_t parts = guide_parts(n);
+    std::uint32_t i = 0;
+    for (std::uint64_t g = 0; g < parts; ++g) {
+        std::uint64_t start = ((g << 32) + parts - 1) / parts; // the least fraction that falls in this part
+        while (i + 1 < n && cdf[i + 1] <= start) ++i;
+        guide[g] = i;
+    }
+    guide[parts] = n - 1;
+}
+
 template <typename T>
 void PiecewiseConstant2D::build(std::span<const T> values) {
     const char* where = "PiecewiseConstant2D";
@@ -68,6 +79,8 @@ void PiecewiseConstant2D::build(std::span<const T> values) {
 
     conditional_.resize(cells);
     marginal_.resize(rows_);
+    conditional_guide_.resize(std::size_t{rows_} * guide_entries(columns_));
+    marginal_guide_.resize(guide_entries(rows_));
     std::vector<double> row_sums(rows_);
     for (std::size_t j = 0; j < rows_; ++j) {
         std::span<const T> row = values.subspan(j * columns_, columns_);
@@ -75,8 +88,11 @@ void PiecewiseConstant2D::build(std::span<const T> values) {
         for (T v : row) sum.add(static_cast<double>(v));
         row_sums[j] = sum.value();
         fixed_point_cdf(row, row_sums[j], whole, conditional_.data() + j * columns_);
+        build_guide(conditional_.data() + j * columns_, columns_,
+                    conditional_guide_.data() + j * guide_entries(columns_));
     }
     fixed_point_cdf(std::span<const double>(row_sums), total, whole, marginal_.data());
+    build_guide(marginal_.data(), rows_, marginal_guide_.data());
 }
 
 } // namespace montelux

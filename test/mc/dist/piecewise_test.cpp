@@ -120,6 +120,29 @@ TEST(PiecewiseConstant2D, HugeRangeLosesNothing) {
     EXPECT_GT(d.cell_pdf(700, 300) / (n * n), 0.999);
 }
 
+// A table large enough for its guide to matter: every draw lands where the inverse says.
+TEST(PiecewiseConstant2D, LargeTableWithGapsAndPeaks) {
+    std::uint32_t nx = 301, ny = 129;
+    std::vector<double> values(nx * ny);
+    TestUniforms uniforms(6);
+    for (double& v : values) v = uniforms.next() < 0.5 ? 0 : std::pow(uniforms.next(), 30);
+    PiecewiseConstant2D d(values, nx, ny);
+    double worst = 0;
+    for (int i = 0; i < 100000; ++i) {
+        Vec2d u = uniforms.next_2d();
+        auto s = d.sample(u);
+        ASSERT_GT(values[s.row * nx + s.column], 0);
+        auto back = d.inverse(s.p);
+        ASSERT_TRUE(back);
+        worst = std::max({worst, std::abs(back->x - u.x), std::abs(back->y - u.y)});
+    }
+    EXPECT_LT(worst, 1e-12);
+    auto r =
+        rectangle_chi_squared_test([&](Vec2d u) { return d.sample(u).p; }, [&](Vec2d p) { return d.pdf(p); },
+                                   {0, 0}, {1, 1}, {.cells_x = 43, .cells_y = 43});
+    EXPECT_TRUE(r.passes(significance)) << r.description;
+}
+
 TEST(PiecewiseConstant2D, AllZeroIsUniformAndBadInputGetsASentence) {
     std::vector<float> zeros(6);
     PiecewiseConstant2D d(zeros, 3, 2);
