@@ -36,9 +36,13 @@ void expect_unbiased_and_calibrated(double truth, const Run& run, int seeds = 20
 const auto sine = [](double x) { return std::sin(x); };
 
 TEST(BasicMonteCarlo, UnbiasedAndCalibrated) {
-    expect_unbiased_and_calibrated(1, [](std::uint64_t seed) {
-        return basic_monte_carlo(sine, 0, pi / 2, {.samples = 2000, .seed = seed});
-    });
+    // Enough seeds that a standard error 7% off is seen.
+    expect_unbiased_and_calibrated(
+        1,
+        [](std::uint64_t seed) {
+            return basic_monte_carlo(sine, 0, pi / 2, {.samples = 1000, .seed = seed});
+        },
+        8000);
 }
 
 TEST(BasicMonteCarlo, FourTimesTheSamplesHalveTheError) {
