@@ -78,6 +78,20 @@ TEST(DiscreteDistribution, WalkingDrawsWhatBisectionDraws) {
     }
 }
 
+// Without chance: shares of a fine regular grid, where each bin holds at most two intervals.
+TEST(AliasTable, SharesOfTheUnitIntervalAreTheProbabilities) {
+    constexpr int points = 1 << 18;
+    for (const auto& weights : tables) {
+        AliasTable alias{std::span<const double>(weights)};
+        std::size_t n = weights.size();
+        std::vector<double> share(n);
+        for (int i = 0; i < points; ++i) share[alias.sample((i + 0.5) / points).index] += 1.0 / points;
+        for (std::size_t i = 0; i < n; ++i)
+            ASSERT_NEAR(share[i], static_cast<double>(alias.probability(i)),
+                        2.0 * static_cast<double>(n) / points + 1e-6);
+    }
+}
+
 TEST(AliasTable, ZeroWeightsAreNeverDrawnByFloats) {
     std::vector<float> weights(777);
     TestUniforms u(5);
