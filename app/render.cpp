@@ -10,7 +10,7 @@
 #include <memory>
 #include <sys/resource.h>
 
-#include "montelux/formats/pbrt/load.h"
+#include "montelux/formats/pbrt/load_pbrt.h"
 #include "montelux/image/image_write.h"
 #include "montelux/render/renderer.h"
 
@@ -38,8 +38,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 std::vector<std::string> outputs_of(const RenderOptions& options, const SceneDescription& description) {
     if (!options.outputs.empty()) return options.outputs;
     // The file's own wish, in the current folder, always with the layers that only EXR can hold.
-    std::filesystem::path name =
-        description.output_file.empty() ? std::filesystem::path(options.scene) : description.output_file;
+    std::filesystem::path name = description.output_file.empty() ? options.scene : description.output_file;
     return {name.filename().replace_extension(".exr").string()};
 }
 

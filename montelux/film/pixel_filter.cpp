@@ -1,5 +1,6 @@
 #include "montelux/film/pixel_filter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -81,6 +82,9 @@ PixelFilterSampler::PixelFilterSampler(const PixelFilter& filter) : filter_(filt
         integral *= 2 * double(radius[a]) / m / 3;
         if (!(integral > 0)) throw Error("pixel filter", "the filter's integral is not positive");
         axes_[a].inverse_integral = static_cast<float>(1 / integral);
+        // A floor keeps the density from zero where the filter crosses it, and the weights bounded.
+        double largest = *std::max_element(magnitude.begin(), magnitude.end());
+        for (double& v : magnitude) v = std::max(v, 1e-3 * largest);
         axes_[a].density.emplace(magnitude, -double(radius[a]), double(radius[a]));
     }
 }

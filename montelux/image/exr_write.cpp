@@ -36,7 +36,7 @@ class FileStream final : public Imf::OStream {
 
 Imf::Compression compression_of(ExrCompression c) {
     switch (c) {
-    case ExrCompression::none:
+    case ExrCompression::uncompressed:
         return Imf::NO_COMPRESSION;
     case ExrCompression::rle:
         return Imf::RLE_COMPRESSION;

@@ -7,7 +7,7 @@
 
 namespace montelux {
 
-enum class ExrCompression { none, rle, zips, zip, piz };
+enum class ExrCompression { uncompressed, rle, zips, zip, piz };
 
 struct WriteOptions {
     ExrCompression exr_compression = ExrCompression::zip;

@@ -75,11 +75,12 @@ struct SampleContext {
 
         Result result;
         Vec3f rgb = sensor.to_rgb(radiance, lambda);
-        result.bad = badness(rgb, radiance);
-        if (result.bad) return result;
         float largest = max_component(rgb), limit = max_component_value;
         if (largest > limit) rgb *= limit / largest;
-        result.film.radiance = rgb * point.weight;
+        rgb *= point.weight;
+        result.bad = badness(rgb, radiance);
+        if (result.bad) return result;
+        result.film.radiance = rgb;
         if (first.found) {
             result.film.albedo = albedo_sensor.to_rgb(first.albedo * white.sample(all) * white_scale, all);
             result.film.normal = first.normal;

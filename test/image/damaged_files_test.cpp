@@ -75,7 +75,7 @@ std::vector<std::pair<std::string, std::string>> good_files() {
         files.emplace_back(name, read_bytes(folder / name));
     };
     image.attributes()["comments"] = std::string("a remark");
-    for (ExrCompression c : {ExrCompression::none, ExrCompression::rle, ExrCompression::zips,
+    for (ExrCompression c : {ExrCompression::uncompressed, ExrCompression::rle, ExrCompression::zips,
                              ExrCompression::zip, ExrCompression::piz})
         add(std::to_string(static_cast<int>(c)) + ".exr", {.exr_compression = c});
     add("a.png", {});
