@@ -31,8 +31,9 @@ Vec3f direction(ParameterReader& r, Vec3f v) {
     return v / l;
 }
 
-// Illuminance on an upward-facing (+z) patch from a square equal-area map whose texels have luminance: the
-// equal-area map gives every texel the solid angle 4 pi / texels (Clarberg 2008).
+// What pbrt takes for the illuminance of a map on an upward-facing (+z) patch: the mean over all texels of
+// luminance times positive cosine, times 2 pi. (The texels of an equal-area map, Clarberg 2008, share 4 pi
+// steradians, so this is half the illuminance; scenes are made with pbrt, so its measure is kept.)
 double upper_illuminance(const Image& map) {
     Vec3d weights = RgbColorSpace::srgb().luminance_weights();
     int size = map.width();
@@ -47,7 +48,7 @@ double upper_illuminance(const Image& map) {
             Vec3d rgb(Vec3f(map.value(x, y, 0), map.value(x, y, 1), map.value(x, y, 2)));
             sum += dot(weights, rgb) * (1 - radius * radius);
         }
-    return sum * 4 * pi / (static_cast<double>(size) * size);
+    return sum * 2 * pi / (static_cast<double>(size) * size);
 }
 
 } // namespace

@@ -1,0 +1,245 @@
+// Directives and defaults: what ends up in the scene.
+#include "test/formats/pbrt/parse.h"
+#include <cmath>
+#include <gtest/gtest.h>
+#include <string>
+
+#include "montelux/spectrum/rgb_colorspace.h"
+
+namespace montelux {
+namespace {
+
+using test::parse;
+using test::parse_world;
+
+void expect_near(Vec3f a, Vec3f b, float tolerance = 1e-5f) {
+    EXPECT_LE(length(a - b), tolerance)
+        << a.x << ' ' << a.y << ' ' << a.z << " and " << b.x << ' ' << b.y << ' ' << b.z;
+}
+
+const Sphere& sphere(const SceneDescription& d, std::size_t i = 0) {
+    return std::get<Sphere>(d.scene.quadrics.at(i));
+}
+
+TEST(PbrtDefaults, OfAnEmptyScene) {
+    Warnings told;
+    SceneDescription d = parse("WorldBegin", &told);
+    EXPECT_EQ(d.film.width, 1280);
+    EXPECT_EQ(d.film.height, 720);
+    EXPECT_EQ(d.film.crop, (PixelBounds{0, 0, 1280, 720}));
+    const auto& filter = std::get<GaussianFilter>(d.film.filter);
+    EXPECT_EQ(filter.radius, Vec2f(1.5f, 1.5f));
+    EXPECT_EQ(filter.sigma, 0.5f);
+    EXPECT_EQ(d.film.iso, 100);
+    EXPECT_EQ(d.film.exposure_time, 1);
+    EXPECT_EQ(d.film.white_balance, 0);
+    EXPECT_TRUE(std::isinf(d.film.max_component_value));
+    const auto& camera = std::get<PerspectiveCamera>(d.scene.camera.model);
+    EXPECT_EQ(camera.fov, 90);
+    EXPECT_EQ(camera.lens_radius, 0);
+    EXPECT_EQ(camera.focal_distance, 1e6f);
+    EXPECT_FALSE(camera.screen_window || camera.frame_aspect_ratio);
+    EXPECT_EQ(d.sampler.samples_per_pixel, 16u);
+    EXPECT_EQ(d.sampler.kind, SamplerKind::sobol_blue_noise);
+    EXPECT_EQ(d.integrator.max_depth, 5);
+    EXPECT_EQ(d.integrator.strategy, Strategy::mis);
+    EXPECT_EQ(told.messages(),
+              std::vector<std::string>{"scene:1:11: the scene has no light; its picture is black"});
+}
+
+TEST(PbrtOptions, FilmCameraSamplerIntegratorFilter) {
+    SceneDescription d = parse(R"(
+        Option "integer seed" 7
+        Film "rgb" "integer xresolution" [ 100 ] "integer yresolution" 50 "string filename" "out.exr"
+            "float cropwindow" [ 0.101 0.5 0 1 ] "float iso" 200 "float maxcomponentvalue" 10
+        Camera "perspective" "float fov" 39.5 "float lensradius" .25 "float focaldistance" 3
+            "float screenwindow" [ -2 2 -1 1 ] "float shutterclose" 0.5
+        Sampler "stratified" "integer xsamples" 3 "integer ysamples" 5
+        Integrator "simplepath" "integer maxdepth" 12 "bool samplelights" false
+        PixelFilter "mitchell" "float xradius" 3 "float B" 0.5
+        WorldBegin)");
+    EXPECT_EQ(d.film.width, 100);
+    EXPECT_EQ(d.film.crop, (PixelBounds{11, 0, 50, 50}));
+    EXPECT_EQ(d.film.iso, 200);
+    EXPECT_EQ(d.film.exposure_time, 0.5f);
+    EXPECT_EQ(d.film.max_component_value, 10);
+    EXPECT_EQ(d.output_file, "out.exr");
+    const auto& camera = std::get<PerspectiveCamera>(d.scene.camera.model);
+    EXPECT_EQ(camera.fov, 39.5f);
+    EXPECT_EQ(camera.lens_radius, 0.25f);
+    EXPECT_EQ(camera.focal_distance, 3);
+    EXPECT_EQ(camera.screen_window->x_min, -2);
+    EXPECT_EQ(d.sampler.kind, SamplerKind::stratified);
+    EXPECT_EQ(d.sampler.samples_per_pixel, 15u);
+    EXPECT_EQ(d.sampler.seed, 7u);
+    EXPECT_EQ(d.integrator.max_depth, 12);
+    EXPECT_EQ(d.integrator.strategy, Strategy::bsdf);
+    const auto& filter = std::get<MitchellFilter>(d.film.filter);
+    EXPECT_EQ(filter.radius, Vec2f(3, 2));
+    EXPECT_EQ(filter.b, 0.5f);
+    EXPECT_FLOAT_EQ(filter.c, 1.0f / 3);
+    d = parse(
+        "Film \"rgb\" \"integer pixelbounds\" [ 10 20 -5 30 ] Camera \"spherical\" \"string mapping\" "
+        "\"equirectangular\" Sampler \"halton\" \"integer seed\" 3 Option \"integer seed\" 9 WorldBegin");
+    EXPECT_EQ(d.film.crop, (PixelBounds{10, 0, 20, 30}));
+    EXPECT_EQ(std::get<SphericalCamera>(d.scene.camera.model).mapping,
+              SphericalCamera::Mapping::equirectangular);
+    EXPECT_EQ(d.sampler.seed, 3u);
+    d = parse(
+        "Camera \"orthographic\" PixelFilter \"sinc\" Integrator \"bdpt\" \"integer maxdepth\" 3 WorldBegin");
+    EXPECT_TRUE(std::holds_alternative<OrthographicCamera>(d.scene.camera.model));
+    EXPECT_EQ(std::get<LanczosFilter>(d.film.filter).radius, Vec2f(4, 4));
+    EXPECT_EQ(d.integrator.max_depth, 3);
+}
+
+TEST(PbrtTransforms, OrderAndStack) {
+    SceneDescription d = parse_world(R"(
+        Translate 1 2 3
+        AttributeBegin
+            Rotate 90 0 0 1
+            Scale 2 2 2
+            Shape "sphere"
+            CoordinateSystem "here"
+        AttributeEnd
+        Shape "sphere"
+        Identity Shape "sphere"
+        CoordSysTransform "here" Shape "sphere"
+        Transform [ 1 0 0 0  0 1 0 0  0 0 1 0  5 6 7 1 ] Shape "sphere"
+        ConcatTransform [ 0 1 0 0  -1 0 0 0  0 0 1 0  0 0 0 1 ] Shape "sphere"
+        TransformBegin Translate 1 1 1 TransformEnd Shape "sphere")");
+    auto at = [&](std::size_t i, Vec3f p) { return sphere(d, i).world_from_object.point(p); };
+    expect_near(at(0, {1, 0, 0}), {1, 4, 3});
+    expect_near(at(1, {1, 0, 0}), {2, 2, 3});
+    expect_near(at(2, {1, 0, 0}), {1, 0, 0});
+    expect_near(at(3, {1, 0, 0}), {1, 4, 3});
+    expect_near(at(4, {1, 0, 0}), {6, 6, 7});
+    expect_near(at(5, {1, 0, 0}), {5, 7, 7});
+    expect_near(at(6, {1, 0, 0}), {5, 7, 7});
+}
+
+TEST(PbrtTransforms, CameraAndItsCoordinateSystem) {
+    SceneDescription d = parse(R"(
+        LookAt 1 2 3  1 2 10  0 1 0
+        Camera "perspective"
+        WorldBegin
+        CoordSysTransform "camera" Shape "sphere")");
+    expect_near(d.scene.camera.world_from_camera.point(Vec3f(0, 0, 1)), {1, 2, 4});
+    expect_near(sphere(d).world_from_object.point(Vec3f(0, 0, 2)), {1, 2, 5});
+    // pbrt's camera space is left-handed: with +z forward and +y up, +x goes to the right.
+    expect_near(d.scene.camera.world_from_camera.vector(Vec3f(1, 0, 0)), {1, 0, 0});
+}
+
+TEST(PbrtTransforms, EqualTransformsOfBothTimesDoNotMove) {
+    SceneDescription d =
+        parse_world("ActiveTransform StartTime Translate 1 0 0 ActiveTransform EndTime Translate 1 0 0 "
+                    "ActiveTransform All TransformTimes 0 2 Shape \"sphere\"");
+    expect_near(sphere(d).world_from_object.point(Vec3f()), {1, 0, 0});
+}
+
+TEST(PbrtShapes, Quadrics) {
+    SceneDescription d =
+        parse_world("Shape \"sphere\" \"float radius\" 2 \"float zmin\" 1 \"float zmax\" -5 "
+                    "\"float phimax\" 180 \"float alpha\" 0.5 Shape \"sphere\" Shape \"disk\" Scale -1 "
+                    "1 1 Shape \"sphere\" ReverseOrientation Shape \"sphere\" Identity Shape \"disk\"");
+    EXPECT_EQ(sphere(d, 0).z_min, -2);
+    EXPECT_EQ(sphere(d, 0).z_max, 1);
+    EXPECT_FLOAT_EQ(sphere(d, 0).phi_max, 3.14159265f);
+    EXPECT_EQ(d.scene.shapes[0].alpha.value, 0.5f);
+    EXPECT_EQ(sphere(d, 1).radius, 1);
+    EXPECT_EQ(sphere(d, 1).z_min, -1);
+    const Disk& disk = std::get<Disk>(d.scene.quadrics[2]);
+    EXPECT_EQ(disk.radius, 1);
+    EXPECT_EQ(disk.inner_radius + disk.height, 0);
+    bool flips[] = {false, false, false, true, false, true};
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(d.scene.shapes[i].flip_normal, flips[i]) << i;
+    EXPECT_EQ(d.scene.world_shapes, (std::vector<Index>{0, 1, 2, 3, 4, 5}));
+}
+
+TEST(PbrtShapes, MeshesGoToTheWorld) {
+    SceneDescription d = parse_world(R"(
+        ReverseOrientation
+        Translate 0 0 1 Scale -2 1 1
+        Shape "trianglemesh" "point3 P" [ 0 0 0  1 0 0  0 1 0  1 1 1 ] "integer indices" [ 0 1 2 2 1 3 ]
+            "normal N" [ 1 0 0  0 0 1  0 0 1  0 0 1 ] "point2 uv" [ 0 0 1 0 0 1 1 1 ])");
+    const TriangleMesh& mesh = d.scene.meshes.at(0);
+    EXPECT_EQ(mesh.positions[1], Vec3f(-2, 0, 1));
+    // Normals go by the inverse transpose, and are turned around by ReverseOrientation alone.
+    expect_near(mesh.normals[0], {0.5f, 0, 0});
+    expect_near(mesh.normals[1], {0, 0, -1});
+    EXPECT_EQ(mesh.uvs[3], Vec2f(1, 1));
+    EXPECT_EQ(mesh.indices, (std::vector<Index>{0, 1, 2, 2, 1, 3}));
+    EXPECT_FALSE(d.scene.shapes[0].flip_normal); // both reversed and mirrored
+    EXPECT_EQ(d.scene.shapes[0].quadric, none);
+}
+
+TEST(PbrtShapes, WhatDoesNotFitAMeshIsLeftOut) {
+    Warnings told;
+    SceneDescription d = parse_world(
+        "LightSource \"point\" Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"point2 uv\" [0 0] "
+        "\"normal N\" [0 0 1] \"integer indices\" [0 1 2 0]",
+        &told);
+    EXPECT_EQ(told.messages().size(), 3u);
+    EXPECT_EQ(d.scene.meshes[0].indices.size(), 3u);
+    EXPECT_TRUE(d.scene.meshes[0].normals.empty() && d.scene.meshes[0].uvs.empty());
+}
+
+TEST(PbrtObjects, DefinitionsAndInstances) {
+    Warnings told;
+    SceneDescription d = parse_world(R"(
+        ObjectInstance "thing"
+        Translate 1 0 0
+        ObjectBegin "thing"
+            Translate 0 1 0
+            AreaLightSource "diffuse"
+            Shape "sphere"
+            Shape "trianglemesh" "point3 P" [ 0 0 0 1 0 0 0 1 0 ]
+        ObjectEnd
+        Shape "sphere"
+        Scale 2 2 2
+        ObjectInstance "thing")",
+                                     &told);
+    ASSERT_EQ(d.scene.objects.size(), 1u);
+    EXPECT_EQ(d.scene.objects[0].shapes, (std::vector<Index>{0, 1}));
+    EXPECT_EQ(d.scene.world_shapes, std::vector<Index>{2});
+    expect_near(sphere(d, 0).world_from_object.point(Vec3f()), {1, 1, 0});
+    expect_near(d.scene.meshes[0].positions[0], {1, 1, 0});
+    expect_near(sphere(d, 1).world_from_object.point(Vec3f()), {1, 0, 0});
+    ASSERT_EQ(d.scene.instances.size(), 2u);
+    expect_near(d.scene.instances[0].world_from_object.point(Vec3f(1, 1, 1)), {1, 1, 1});
+    expect_near(d.scene.instances[1].world_from_object.point(Vec3f(1, 1, 1)), {3, 2, 2});
+    EXPECT_TRUE(d.scene.lights.empty());
+    EXPECT_EQ(d.scene.shapes[0].first_light, none);
+    EXPECT_EQ(told.messages().size(), 2u); // area light in an object, no light at all
+}
+
+TEST(PbrtAttributes, DefaultsOfShapesMaterialsLights) {
+    SceneDescription d = parse_world(R"(
+        Attribute "shape" "float radius" 3
+        Attribute "material" "float roughness" 0.5 "bool remaproughness" false
+        Attribute "light" "float scale" 2
+        AttributeBegin
+            Attribute "shape" "float radius" 4
+            Shape "sphere"
+        AttributeEnd
+        Material "dielectric"
+        Shape "sphere"
+        Shape "sphere" "float radius" 5
+        Material "diffuse"
+        LightSource "point")");
+    EXPECT_EQ(sphere(d, 0).radius, 4);
+    EXPECT_EQ(sphere(d, 1).radius, 3);
+    EXPECT_EQ(sphere(d, 2).radius, 5);
+    const auto& m = std::get<DielectricMaterial>(d.scene.materials[d.scene.shapes[1].material]);
+    EXPECT_EQ(m.roughness.u.value, 0.5f);
+    EXPECT_FALSE(m.roughness.remap);
+    const auto& light = std::get<PointLight>(d.scene.lights[0]);
+    EXPECT_NEAR(light.scale * to_photometric(light.spectrum), 2, 1e-5);
+}
+
+TEST(PbrtFiles, SameTextSameHash) {
+    EXPECT_EQ(parse_world("Shape \"sphere\"").content_hash, parse_world("Shape \"sphere\"").content_hash);
+    EXPECT_NE(parse_world("Shape \"sphere\"").content_hash, parse_world("Shape \"disk\"").content_hash);
+}
+
+} // namespace
+} // namespace montelux

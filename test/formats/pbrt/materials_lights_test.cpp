@@ -1,0 +1,286 @@
+// Materials, textures and lights with pbrt-v4's defaults and units.
+#include "test/formats/pbrt/parse.h"
+#include <cmath>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <string>
+
+#include "montelux/image/image_write.h"
+#include "montelux/spectrum/named_spectra.h"
+#include "montelux/spectrum/rgb_colorspace.h"
+
+namespace montelux {
+namespace {
+
+using test::parse_world;
+
+constexpr double pi = std::numbers::pi;
+
+template <typename T>
+T material(const std::string& directive) {
+    SceneDescription d = parse_world(directive + " Shape \"sphere\"");
+    return std::get<T>(d.scene.materials.at(d.scene.shapes.at(0).material));
+}
+
+void expect_same(const Spectrum& a, const Spectrum& b) {
+    for (float lambda = 370; lambda < 820; lambda += 25) EXPECT_FLOAT_EQ(a(lambda), b(lambda)) << lambda;
+}
+
+TEST(PbrtMaterials, Defaults) {
+    EXPECT_EQ(material<DiffuseMaterial>("").reflectance.value(500), 0.5f);
+    auto coated = material<CoatedDiffuseMaterial>("Material \"coateddiffuse\"");
+    EXPECT_EQ(coated.reflectance.value(500), 0.5f);
+    EXPECT_EQ(coated.coating.thickness.value, 0.01f);
+    EXPECT_EQ(coated.coating.eta(500), 1.5f);
+    EXPECT_EQ(coated.coating.g.value, 0);
+    EXPECT_EQ(coated.coating.albedo.value(500), 0);
+    EXPECT_EQ(coated.coating.max_depth, 10);
+    EXPECT_EQ(coated.coating.sample_count, 1);
+    EXPECT_EQ(coated.coating.roughness.u.value, 0);
+    EXPECT_TRUE(coated.coating.roughness.remap);
+    auto metal = material<ConductorMaterial>("Material \"conductor\"");
+    expect_same(metal.eta.value, *find_named_spectrum("metal-Cu-eta"));
+    expect_same(metal.k.value, *find_named_spectrum("metal-Cu-k"));
+    EXPECT_FALSE(metal.from_reflectance);
+    EXPECT_EQ(material<DielectricMaterial>("Material \"dielectric\"").eta(500), 1.5f);
+    EXPECT_EQ(material<ThinDielectricMaterial>("Material \"thindielectric\"").eta(500), 1.5f);
+    auto both = material<CoatedConductorMaterial>("Material \"coatedconductor\"");
+    expect_same(both.conductor.eta.value, *find_named_spectrum("metal-Cu-eta"));
+    EXPECT_EQ(both.coating.eta(500), 1.5f);
+    EXPECT_EQ(both.coating.thickness.value, 0.01f);
+}
+
+TEST(PbrtMaterials, RoughnessAndPrefixes) {
+    auto m = material<ConductorMaterial>("Material \"conductor\" \"float roughness\" 0.3 \"float "
+                                         "vroughness\" 0.1 \"bool remaproughness\" false");
+    EXPECT_EQ(m.roughness.u.value, 0.3f);
+    EXPECT_EQ(m.roughness.v.value, 0.1f);
+    EXPECT_FALSE(m.roughness.remap);
+    auto c = material<CoatedConductorMaterial>(
+        "Material \"coatedconductor\" \"float interface.roughness\" 0.2 \"spectrum interface.eta\" "
+        "\"glass-BK7\" "
+        "\"float conductor.uroughness\" 0.4 \"rgb reflectance\" [ 0.5 0.25 0.125 ]");
+    EXPECT_EQ(c.coating.roughness.v.value, 0.2f);
+    expect_same(c.coating.eta, *find_named_spectrum("glass-BK7"));
+    EXPECT_EQ(c.conductor.roughness.u.value, 0.4f);
+    EXPECT_EQ(c.conductor.roughness.v.value, 0);
+    EXPECT_TRUE(c.conductor.from_reflectance);
+}
+
+TEST(PbrtMaterials, MeaningOfColours) {
+    auto m =
+        material<ConductorMaterial>("Material \"conductor\" \"rgb eta\" [ 3 2 1 ] \"rgb k\" [ 3.9 2.4 2.1 ]");
+    const RgbColorSpace& srgb = RgbColorSpace::srgb();
+    expect_same(m.eta.value, Spectrum(RgbUnboundedSpectrum(srgb, {3, 2, 1})));
+    auto d = material<DiffuseMaterial>("Material \"diffuse\" \"rgb reflectance\" [ 0.1 0.2 0.3 ]");
+    expect_same(d.reflectance.value, Spectrum(RgbAlbedoSpectrum(srgb, {0.1f, 0.2f, 0.3f})));
+    d = material<DiffuseMaterial>(
+        "ColorSpace \"rec2020\" Material \"diffuse\" \"rgb reflectance\" [ 0.1 0.2 0.3 ]");
+    expect_same(d.reflectance.value,
+                Spectrum(RgbAlbedoSpectrum(RgbColorSpace::rec2020(), {0.1f, 0.2f, 0.3f})));
+    d = material<DiffuseMaterial>("Material \"diffuse\" \"spectrum reflectance\" [ 400 0.2 600 0.6 ]");
+    EXPECT_FLOAT_EQ(d.reflectance.value(500), 0.4f);
+}
+
+TEST(PbrtMaterials, NamedOnesMayComeLaterAndUnusedOnesAreTold) {
+    Warnings told;
+    SceneDescription d = parse_world(
+        "LightSource \"point\" NamedMaterial \"a\" Shape \"sphere\" Shape \"disk\" MakeNamedMaterial "
+        "\"a\" \"string type\" \"dielectric\"\nMaterial \"hair\"",
+        &told);
+    EXPECT_EQ(d.scene.materials.size(), 1u);
+    EXPECT_TRUE(std::holds_alternative<DielectricMaterial>(d.scene.materials[d.scene.shapes[1].material]));
+    EXPECT_EQ(told.messages(),
+              std::vector<std::string>{"scene:3:1: material 'hair' is not supported yet; no shape uses it"});
+}
+
+TEST(PbrtTextures, NodesAndDefaults) {
+    SceneDescription d = parse_world(R"(
+        Texture "f" "float" "constant" "float value" 0.25
+        Texture "s" "float" "scale" "texture tex" "f" "float scale" 3
+        Texture "m" "spectrum" "mix" "rgb tex2" [ 0.5 0.5 0.5 ] "texture amount" "s"
+        Translate 1 0 0
+        Texture "c" "spectrum" "checkerboard" "texture tex1" "m" "float uscale" 20 "float vdelta" 0.5
+        Texture "c3" "float" "checkerboard" "integer dimension" 3
+        Material "diffuse" "texture reflectance" "c"
+        Shape "sphere" "texture alpha" "c3"
+        Material "conductor" "texture eta" "c"
+        Shape "disk")");
+    const auto& m = std::get<DiffuseMaterial>(d.scene.materials[d.scene.shapes[0].material]);
+    const auto& c =
+        std::get<CheckerboardTexture<SpectrumParameter>>(d.scene.spectrum_textures[m.reflectance.texture]);
+    EXPECT_EQ(c.mapping.su, 20);
+    EXPECT_EQ(c.mapping.sv, 1);
+    EXPECT_EQ(c.mapping.dv, 0.5f);
+    EXPECT_EQ(c.values[1].value(500), 0);
+    const auto& mix = std::get<MixTexture<SpectrumParameter>>(d.scene.spectrum_textures[c.values[0].texture]);
+    EXPECT_EQ(mix.first.value(500), 0);
+    EXPECT_NEAR(mix.second.value(500), 0.5f, 1e-3f);
+    const auto& scale = std::get<ScaleTexture<FloatParameter>>(d.scene.float_textures[mix.amount.texture]);
+    EXPECT_EQ(scale.scale.value, 3);
+    EXPECT_EQ(
+        std::get<ConstantTexture<FloatParameter>>(d.scene.float_textures[scale.texture.texture]).value.value,
+        0.25f);
+    const auto& c3 = std::get<CheckerboardTexture<FloatParameter>>(
+        d.scene.float_textures[d.scene.shapes[0].alpha.texture]);
+    EXPECT_EQ(c3.dimension, 3);
+    EXPECT_EQ(c3.values[0].value, 1);
+    EXPECT_EQ(c3.mapping.texture_from_world.point(Vec3f(1, 0, 0)), Vec3f());
+    // As an index of refraction the same texture is another node.
+    const auto& metal = std::get<ConductorMaterial>(d.scene.materials[d.scene.shapes[1].material]);
+    EXPECT_NE(metal.eta.texture, m.reflectance.texture);
+}
+
+TEST(PbrtTextures, PicturesAreReadOnceForEachEncoding) {
+    auto folder = std::filesystem::temp_directory_path() / "montelux_pbrt_pictures";
+    std::filesystem::create_directories(folder);
+    Image picture(4, 4, {"R", "G", "B"}, PixelFormat::u8, ColorEncoding::srgb());
+    write_image(folder / "a.png", picture);
+    Warnings told;
+    SceneDescription d = parse_pbrt(R"(WorldBegin
+        LightSource "point"
+        Texture "a" "spectrum" "imagemap" "string filename" "a.png" "bool invert" true "float scale" 2
+        Texture "b" "float" "imagemap" "string filename" "a.png" "string filter" "ewa" "string wrap" "clamp"
+        Texture "c" "float" "imagemap" "string filename" "a.png" "string encoding" "linear"
+        Texture "d" "float" "imagemap" "string filename" "a.png" "string encoding" "gamma 2.2"
+            "string mapping" "planar" "vector3 v1" [ 0 0 2 ]
+        Texture "unused" "float" "imagemap" "string filename" "none.png"
+        Material "coateddiffuse" "texture reflectance" "a" "texture roughness" "b" "texture thickness" "c"
+        Shape "sphere" "texture alpha" "d")",
+                                    "scene", folder, told);
+    std::filesystem::remove_all(folder);
+    ASSERT_EQ(d.scene.images.size(), 3u);
+    const auto& m = std::get<CoatedDiffuseMaterial>(d.scene.materials[d.scene.shapes[0].material]);
+    const auto& a = std::get<ImageTexture>(d.scene.spectrum_textures[m.reflectance.texture]);
+    const auto& b = std::get<ImageTexture>(d.scene.float_textures[m.coating.roughness.u.texture]);
+    const auto& c = std::get<ImageTexture>(d.scene.float_textures[m.coating.thickness.texture]);
+    const auto& e = std::get<ImageTexture>(d.scene.float_textures[d.scene.shapes[0].alpha.texture]);
+    EXPECT_EQ(a.image, b.image);
+    EXPECT_NE(a.image, c.image);
+    EXPECT_TRUE(a.invert);
+    EXPECT_EQ(a.scale, 2);
+    EXPECT_EQ(a.filter, TextureFilter::bilinear);
+    EXPECT_EQ(a.wrap, TextureWrap::repeat);
+    EXPECT_EQ(a.meaning, RgbMeaning::albedo);
+    EXPECT_EQ(b.filter, TextureFilter::ewa);
+    EXPECT_EQ(b.wrap, TextureWrap::clamp);
+    EXPECT_EQ(d.scene.images[a.image].encoding(), ColorEncoding::srgb());
+    EXPECT_EQ(d.scene.images[c.image].encoding(), ColorEncoding::linear());
+    EXPECT_EQ(d.scene.images[e.image].encoding(), ColorEncoding::gamma(2.2f));
+    EXPECT_EQ(e.mapping.kind, TextureMapping::Kind::planar);
+    EXPECT_EQ(e.mapping.vs, Vec3f(0, 0, 2));
+    EXPECT_EQ(told.messages(),
+              std::vector<std::string>{"scene:8:9: texture 'unused' is not used and was not read"});
+}
+
+template <typename T>
+T light(const std::string& directive) {
+    SceneDescription d = parse_world(directive);
+    return std::get<T>(d.scene.lights.at(0));
+}
+template <typename T>
+double photometric(const T& l) {
+    return l.scale * to_photometric(l.spectrum);
+}
+
+TEST(PbrtLights, UnitsOfEveryKind) {
+    auto point = light<PointLight>("Translate 1 0 0 LightSource \"point\" \"point3 from\" [ 0 2 0 ]");
+    EXPECT_EQ(point.position, Vec3f(1, 2, 0));
+    EXPECT_NEAR(photometric(point), 1, 1e-5);
+    EXPECT_NEAR(photometric(light<PointLight>("LightSource \"point\" \"float power\" 100 \"float scale\" 2")),
+                2 * 100 / (4 * pi), 1e-4);
+    // An RGB colour counts on top of its white.
+    auto red = light<PointLight>("LightSource \"point\" \"rgb I\" [ 2 2 2 ]");
+    double y = 0;
+    for (float lambda = 360; lambda <= 830; lambda += 1)
+        y += red.spectrum(lambda) * cie_y[static_cast<std::size_t>(lambda - 360)];
+    EXPECT_NEAR(red.scale * y, 2, 2e-3);
+    EXPECT_NEAR(
+        photometric(light<PointLight>("LightSource \"point\" \"blackbody I\" 3000 \"float scale\" 7")), 7,
+        1e-4);
+    EXPECT_EQ(photometric(light<PointLight>("LightSource \"point\" \"spectrum I\" [ 400 0 700 0 ]")), 0);
+
+    auto spot =
+        light<SpotLight>("LightSource \"spot\" \"point3 to\" [ 0 3 0 ] \"float coneangle\" 60 \"float "
+                         "conedeltaangle\" 15 \"float power\" 10");
+    EXPECT_FLOAT_EQ(spot.cos_total_width, 0.5f);
+    EXPECT_FLOAT_EQ(spot.cos_falloff_start, std::sqrt(0.5f));
+    EXPECT_EQ(spot.axis, Vec3f(0, 1, 0));
+    EXPECT_NEAR(photometric(spot), 10 / (2 * pi * ((1 - std::sqrt(0.5)) + (std::sqrt(0.5) - 0.5) / 2)), 1e-4);
+    auto usual = light<SpotLight>("LightSource \"spot\"");
+    EXPECT_FLOAT_EQ(usual.cos_total_width, std::cos(30 * static_cast<float>(pi) / 180));
+
+    auto distant = light<DistantLight>("Rotate 90 1 0 0 LightSource \"distant\" \"float illuminance\" 30");
+    EXPECT_LT(length(distant.to_light - Vec3f(0, 1, 0)), 1e-6f);
+    EXPECT_NEAR(photometric(distant), 30, 1e-4);
+    EXPECT_NEAR(photometric(light<UniformInfiniteLight>("LightSource \"infinite\" \"float illuminance\" 30")),
+                30 / pi, 1e-4);
+    EXPECT_NEAR(photometric(light<UniformInfiniteLight>("LightSource \"infinite\" \"rgb L\" [ 9 9 9 ]")), 1,
+                1e-5);
+}
+
+TEST(PbrtLights, AreaLightsOfEachTriangle) {
+    SceneDescription d = parse_world(R"(
+        LightSource "point"
+        AttributeBegin
+        AreaLightSource "diffuse" "rgb L" [ 5 5 5 ] "bool twosided" true "float power" 12
+        Scale 2 2 2
+        Shape "trianglemesh" "point3 P" [ 0 0 0 1 0 0 0 1 0 0 4 0 ] "integer indices" [ 0 1 2 0 1 3 ]
+        Shape "sphere" "float radius" 3
+        AttributeEnd
+        Shape "disk")");
+    ASSERT_EQ(d.scene.lights.size(), 4u);
+    EXPECT_EQ(d.scene.shapes[0].first_light, 1u);
+    EXPECT_EQ(d.scene.shapes[1].first_light, 3u);
+    EXPECT_EQ(d.scene.shapes[2].first_light, none);
+    double areas[] = {2, 8, 4 * pi * 9};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto& l = std::get<AreaLight>(d.scene.lights[1 + i]);
+        EXPECT_TRUE(l.two_sided);
+        EXPECT_EQ(l.shape, i / 2);
+        EXPECT_EQ(l.primitive, i % 2);
+        EXPECT_NEAR(photometric(l), 12 / (2 * areas[i] * pi), 1e-5);
+    }
+}
+
+TEST(PbrtLights, EnvironmentMaps) {
+    auto folder = std::filesystem::temp_directory_path() / "montelux_pbrt_environment";
+    std::filesystem::create_directories(folder);
+    Image map(64, 64, {"R", "G", "B"});
+    for (float& v : map.f32()) v = 1;
+    map.set(0, 0, 0, -1); // counts as 0
+    write_image(folder / "map.exr", map);
+    write_image(folder / "wide.exr", Image(16, 8, {"R", "G", "B"}));
+    auto load = [&](const std::string& text, Warnings& told) {
+        return parse_pbrt("WorldBegin\n" + text, "scene", folder, told);
+    };
+    Warnings told;
+    SceneDescription d =
+        load("Rotate 90 0 1 0 LightSource \"infinite\" \"string filename\" \"map.exr\" \"float scale\" 3 "
+             "LightSource \"infinite\" \"string filename\" \"map.exr\" \"float illuminance\" 10",
+             told);
+    ASSERT_EQ(d.scene.environments.size(), 1u);
+    EXPECT_EQ(d.scene.environments[0].value(0, 0, 0), 0);
+    EXPECT_EQ(told.messages().size(), 1u);
+    const auto& l = std::get<ImageInfiniteLight>(d.scene.lights[0]);
+    EXPECT_EQ(l.environment, 0u);
+    double white = to_photometric(Spectrum(RgbColorSpace::srgb().illuminant()));
+    EXPECT_NEAR(l.scale * white, 3, 1e-5);
+    EXPECT_LT(length(l.world_from_light.vector(Vec3f(0, 0, 1)) - Vec3f(1, 0, 0)), 1e-6f);
+    // pbrt takes pi / 2 for the illuminance of a map of 1.
+    EXPECT_NEAR(std::get<ImageInfiniteLight>(d.scene.lights[1]).scale * white, 10 / (pi / 2), 0.02);
+    try {
+        load("LightSource \"infinite\" \"string filename\" \"wide.exr\"", told);
+        ADD_FAILURE() << "a map that is not square was accepted";
+    } catch (const Error& e) {
+        EXPECT_EQ(std::string(e.what()),
+                  "scene:2:24: " + (folder / "wide.exr").string() +
+                      " has 16 x 8 pixels; an environment map must be square (equal-area "
+                      "octahedral)");
+    }
+    std::filesystem::remove_all(folder);
+}
+
+} // namespace
+} // namespace montelux

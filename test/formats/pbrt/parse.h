@@ -1,0 +1,35 @@
+// Helpers of the pbrt tests: scenes from text, and the sentence that a broken one gives.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "montelux/formats/pbrt/load_pbrt.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux::test {
+
+inline SceneDescription parse(std::string_view text, Warnings* told = nullptr) {
+    Warnings warnings;
+    return parse_pbrt(text, "scene", ".", told ? *told : warnings);
+}
+
+// The scene with `world` behind WorldBegin, which stands on line 1.
+inline SceneDescription parse_world(std::string_view world, Warnings* told = nullptr) {
+    return parse("WorldBegin\n" + std::string(world), told);
+}
+
+// What the parser says; empty if it finds nothing wrong.
+inline std::string error_of(std::string_view text) {
+    try {
+        parse(text);
+    } catch (const Error& e) {
+        return e.what();
+    }
+    return {};
+}
+inline std::string world_error(std::string_view world) {
+    return error_of("WorldBegin\n" + std::string(world));
+}
+
+} // namespace montelux::test
