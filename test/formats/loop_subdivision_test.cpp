@@ -65,6 +65,16 @@ TEST(LoopSubdivision, LimitPointsOfTheOctahedron) {
     }
 }
 
+// Valence 3 has weights of its own: the limit is (1 - 3/5) v + (1/5) (-v).
+TEST(LoopSubdivision, LimitPointsOfTheTetrahedron) {
+    std::vector<Vec3f> p = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    std::vector<Index> i = {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2};
+    for (int levels = 0; levels <= 3; ++levels) {
+        SubdividedMesh m = subdivide_loop(p, i, levels);
+        for (std::size_t v = 0; v < 4; ++v) EXPECT_LT(length(m.positions[v] - p[v] * 0.2f), 1e-6f) << levels;
+    }
+}
+
 TEST(LoopSubdivision, APlaneStaysInItsPlane) {
     Coarse c = grid(5);
     SubdividedMesh m = subdivide_loop(c.positions, c.indices, 2);

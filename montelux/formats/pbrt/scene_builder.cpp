@@ -178,6 +178,15 @@ void SceneBuilder::set_camera(Plugin plugin) {
     coordinate_systems_["camera"] = std::make_shared<TransformPair>(TransformPair{t, t});
 }
 
+void SceneBuilder::set_film(Plugin plugin) {
+    if (state_.color_space != &RgbColorSpace::srgb())
+        diagnostics_.warn_once("film colour space", plugin.at,
+                               "the film's colour space is sRGB; '" +
+                                   std::string(state_.color_space->name()) +
+                                   "' counts for RGB parameters alone");
+    set_option(film_, std::move(plugin), "Film");
+}
+
 void SceneBuilder::set_accelerator(const Plugin& plugin) {
     require_options("Accelerator", plugin.at);
     diagnostics_.warn_once(

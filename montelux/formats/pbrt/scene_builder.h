@@ -46,7 +46,7 @@ class SceneBuilder {
 
     // Before the world.
     void set_camera(Plugin plugin);
-    void set_film(Plugin plugin) { set_option(film_, std::move(plugin), "Film"); }
+    void set_film(Plugin plugin);
     void set_filter(Plugin plugin) { set_option(filter_, std::move(plugin), "PixelFilter"); }
     void set_sampler(Plugin plugin) { set_option(sampler_, std::move(plugin), "Sampler"); }
     void set_integrator(Plugin plugin) { set_option(integrator_, std::move(plugin), "Integrator"); }

@@ -92,6 +92,37 @@ TEST(PbrtOptions, FilmCameraSamplerIntegratorFilter) {
     EXPECT_EQ(d.integrator.max_depth, 3);
 }
 
+// Whatever is read but changes nothing is told.
+TEST(PbrtOptions, WhatIsLeftOutIsTold) {
+    Warnings told;
+    parse(R"(ColorSpace "rec2020"
+Film "gbuffer" "bool savefp16" true
+Accelerator "bvh" "integer maxnodeprims" 4
+Integrator "volpath" "bool regularize" true "string lightsampler" "power"
+Sampler "sobol" "string randomization" "none"
+Option "bool disablepixeljitter" true
+WorldBegin TransformBegin TransformEnd LightSource "point"
+Material "diffuse" "string normalmap" "a.png"
+WorldEnd)",
+          &told);
+    const char* expected[] = {
+        "scene:2:1: the film's colour space is sRGB",
+        "scene:3:1: 'Accelerator' is ignored",
+        "scene:6:8: option 'disablepixeljitter' is not supported; it is ignored",
+        "scene:2:1: film 'gbuffer' is rendered as 'rgb'",
+        "scene:2:16: 'savefp16' is ignored",
+        "scene:4:22: 'regularize' is not supported",
+        "scene:4:45: 'lightsampler' is ignored",
+        "scene:5:17: the points are randomised all the same",
+        "scene:7:12: TransformBegin is deprecated",
+        "scene:9:1: WorldEnd belongs to pbrt-v3",
+        "scene:8:20: parameter 'normalmap' is not supported yet",
+    };
+    ASSERT_EQ(told.messages().size(), std::size(expected));
+    for (std::size_t i = 0; i < std::size(expected); ++i)
+        EXPECT_EQ(told.messages()[i].substr(0, std::string(expected[i]).size()), expected[i]);
+}
+
 TEST(PbrtTransforms, OrderAndStack) {
     SceneDescription d = parse_world(R"(
         Translate 1 2 3
