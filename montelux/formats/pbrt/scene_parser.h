@@ -20,7 +20,7 @@ class SceneParser {
     // Carries out a whole text; returns where it ends.
     Location parse(std::string_view text, std::uint32_t file);
 
-    // A file reached by Include or Import, or the main one (which must be told of before parsing its text).
+    // Tells of the main file before its text is parsed, so that a file that includes it is found out.
     void enter(const std::filesystem::path& path);
 
   private:
