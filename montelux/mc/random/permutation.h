@@ -4,35 +4,29 @@
 #include <bit>
 #include <cstdint>
 
+#include "montelux/mc/random/hash.h"
+
 namespace montelux {
 
-// Image of i < n under the permutation that `seed` names. Kensler 2013, "Correlated Multi-Jittered Sampling",
-// section 3: an invertible hash on the next power of two, repeated until it lands below n (cycle walking).
-constexpr std::uint32_t permute(std::uint32_t i, std::uint32_t n, std::uint32_t seed) {
-    const std::uint32_t mask = n <= 1 ? 0 : ~std::uint32_t{0} >> std::countl_zero(n - 1);
+// Image of i < n under the permutation that `key` names: a keyed bijection on the next power of two, repeated
+// until it lands below n (cycle walking; Kensler 2013, "Correlated Multi-Jittered Sampling", section 3). Its
+// rounds are affine maps with keys of their own, and shifts that carry high bits down; over mixed keys the
+// images of two elements are spread like those of a random permutation, which for small n Kensler's own
+// rounds are not.
+constexpr std::uint32_t permute(std::uint32_t i, std::uint32_t n, std::uint64_t key) {
+    const int bits = n <= 1 ? 0 : std::bit_width(n - 1);
+    const std::uint32_t mask = bits == 0 ? 0 : ~std::uint32_t{0} >> (32 - bits);
+    const int half = (bits + 1) / 2;
     do {
-        i ^= seed;
-        i *= 0xe170893du;
-        i ^= seed >> 16;
-        i ^= (i & mask) >> 4;
-        i ^= seed >> 8;
-        i *= 0x0929eb3fu;
-        i ^= seed >> 23;
-        i ^= (i & mask) >> 1;
-        i *= 1 | seed >> 27;
-        i *= 0x6935fa69u;
-        i ^= (i & mask) >> 11;
-        i *= 0x74dcb303u;
-        i ^= (i & mask) >> 2;
-        i *= 0x9e501cc3u;
-        i ^= (i & mask) >> 2;
-        i *= 0xc860a3dfu;
-        i &= mask;
-        i ^= i >> 5;
+        std::uint64_t h = key;
+        for (int round = 0; round < 6; ++round) {
+            i = (i * (static_cast<std::uint32_t>(h >> 3) | 1u) + static_cast<std::uint32_t>(h >> 32)) & mask;
+            i ^= i >> half;
+            h = (h ^ h >> 29) * golden_gamma;
+        }
+        i = (i + static_cast<std::uint32_t>(h >> 32)) & mask;
     } while (i >= n);
-    // The rotation makes the image of every i uniform over well mixed seeds.
-    const std::uint32_t rotated = static_cast<std::uint32_t>((std::uint64_t{i} + seed) % n);
-    return rotated;
+    return i;
 }
 
 } // namespace montelux

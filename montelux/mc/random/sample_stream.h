@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "montelux/mc/math/vec.h"
+#include "montelux/mc/random/equidistant.h"
 #include "montelux/mc/random/hash.h"
 #include "montelux/mc/random/owen.h"
 #include "montelux/mc/random/philox.h"
@@ -75,7 +76,7 @@ class SampleStream {
         case SamplerKind::halton:
             return to_float(halton(d));
         case SamplerKind::hammersley:
-            return to_float(d == 0 ? equidistant() : halton(d - 1));
+            return to_float(d == 0 ? turned_equidistant(index_, count_, mix64(key_)) : halton(d - 1));
         case SamplerKind::sobol:
             return unit_float(sobol(d));
         default:
@@ -174,19 +175,8 @@ class SampleStream {
     double halton(std::uint32_t d) const {
         std::uint32_t index = index_;
         const std::uint32_t repetition = d / halton_dimensions;
-        if (repetition != 0)
-            index = permute(index, count_, static_cast<std::uint32_t>(mix64(key_ ^ repetition)));
+        if (repetition != 0) index = permute(index, count_, mix64(key_ ^ repetition));
         return scrambled_radical_inverse(index, prime_bases[d % halton_dimensions], key_of(d), count_);
-    }
-
-    // Cell i of count_ equal ones, turned by a random number of cells, jittered within.
-    double equidistant() const {
-        const std::uint64_t key = mix64(key_);
-        const std::uint64_t turned =
-            std::uint64_t{index_} + bounded(static_cast<std::uint32_t>(key >> 32), count_);
-        const auto cell = static_cast<std::uint32_t>(turned >= count_ ? turned - count_ : turned);
-        const double jitter = unit_double(mix64(key ^ (index_ + 1) * golden_gamma));
-        return (cell + jitter) / count_;
     }
 
     std::uint32_t index_mask() const {

@@ -13,7 +13,7 @@ namespace montelux {
 
 // One point in each of n equal intervals, in random order (i < n). Keys give independent sets.
 constexpr double stratified_1d(std::uint32_t i, std::uint32_t n, std::uint64_t key) {
-    const std::uint32_t stratum = permute(i, n, static_cast<std::uint32_t>(key >> 32));
+    const std::uint32_t stratum = permute(i, n, key);
     const double jitter = unit_double(mix64(key ^ (i + 1) * golden_gamma));
     return (stratum + jitter) / n;
 }
@@ -35,11 +35,12 @@ struct StrataGrid {
 // columns. Uniform on the unit square over keys for every i < n.
 constexpr Vec2d multi_jittered_2d(std::uint32_t i, std::uint32_t n, const StrataGrid& grid,
                                   std::uint64_t key) {
-    const std::uint64_t order = mix64(key), lines = mix64(key + golden_gamma);
-    const std::uint32_t s = permute(i, n, static_cast<std::uint32_t>(order));
+    const std::uint64_t order = mix64(key), columns = mix64(key + golden_gamma),
+                        rows = mix64(key - golden_gamma);
+    const std::uint32_t s = permute(i, n, order);
     const std::uint32_t row = s / grid.columns;
-    const std::uint32_t sx = permute(s - row * grid.columns, grid.columns, static_cast<std::uint32_t>(lines));
-    const std::uint32_t sy = permute(row, grid.rows, static_cast<std::uint32_t>(lines >> 32));
+    const std::uint32_t sx = permute(s - row * grid.columns, grid.columns, columns);
+    const std::uint32_t sy = permute(row, grid.rows, rows);
     const std::uint64_t jitter = mix64(order ^ (i + 1) * golden_gamma);
     const double jx = unit_double(static_cast<std::uint32_t>(jitter));
     const double jy = unit_double(static_cast<std::uint32_t>(jitter >> 32));
