@@ -51,12 +51,18 @@ TEST(Discrepancy, StarOnTheLine) {
 TEST(Discrepancy, StarInThePlane) {
     EXPECT_DOUBLE_EQ(star_discrepancy(std::vector<Vec2d>{{0.5, 0.5}}), 0.75);
     EXPECT_DOUBLE_EQ(star_discrepancy(std::vector<Vec2d>{{0.0, 0.0}}), 1);
+    EXPECT_DOUBLE_EQ(star_discrepancy(std::vector<Vec2d>{{0.9, 0.8}}), 0.9); // the empty box up to (0.9, 1)
     EXPECT_DOUBLE_EQ(star_discrepancy(std::vector<Vec2d>{}), 1);
     EXPECT_DOUBLE_EQ(star_discrepancy(std::vector<Vec2d>{{0.2, 0.3}, {0.2, 0.3}, {0.2, 0.9}}),
                      brute_force({{0.2, 0.3}, {0.2, 0.3}, {0.2, 0.9}})); // ties
     for (auto kind : {PointSetKind::independent, PointSetKind::halton, PointSetKind::sobol,
                       PointSetKind::weyl, PointSetKind::golden_ratio})
-        EXPECT_NEAR(star_discrepancy(planar(kind, 60)), brute_force(planar(kind, 60)), 1e-14);
+        for (bool mirrored : {false, true}) {
+            auto p = planar(kind, 60);
+            if (mirrored)
+                for (Vec2d& v : p) v = Vec2d(1, 1) - v;
+            EXPECT_NEAR(star_discrepancy(p), brute_force(p), 1e-14) << to_string(kind) << mirrored;
+        }
 }
 
 // n D* = m/3 + 13/9 - (-1)^m 4 / (9 n) for n = 2^m, m > 1: De Clerck 1986, "A method for exact calculation of

@@ -74,6 +74,22 @@ TEST(VanDerCorput, AgreesWithItsDefinition) {
     }
 }
 
+// Two digits with a common prefix go to every ordered pair of distinct digits alike. False alarms: 2 at 1e-9.
+TEST(VanDerCorput, ScrambledDigitsArePairwiseUniform) {
+    const PrimeBase& base = prime_bases[2];
+    for (std::uint32_t step : {1u, 5u}) { // the first digit, and the second
+        std::vector<double> observed(25, 0.0), expected(25, 40000 / 20.0);
+        for (int i = 0; i < 5; ++i) expected[6 * i] = 0;
+        for (std::uint64_t s = 0; s < 40000; ++s) {
+            const auto digit = [&](std::uint32_t index) {
+                return static_cast<int>(scrambled_radical_inverse(index, base, mix64(s), 25) * 5 * step) % 5;
+            };
+            ++observed[digit(1 * step) * 5 + digit(3 * step)];
+        }
+        EXPECT_GT(chi_squared_test(observed, expected).p_value, 1e-9) << step;
+    }
+}
+
 TEST(Sobol, AllMatricesAreTriangularAndTablesAgree) {
     for (int d = 0; d < sobol_dimensions; ++d)
         for (int k = 0; k < sobol_bits; ++k)

@@ -207,6 +207,24 @@ TEST(SampleStream, BlueNoisePixelsOfABlockShareANet) {
     }
 }
 
+// All 24 permutations alike at the top digit and below a prefix. False alarms: 2 at 1e-9.
+TEST(ShuffleQuads, IsANestedRandomPermutation) {
+    std::vector<bool> seen(1 << 9, false);
+    for (std::uint64_t i = 0; i < seen.size(); ++i) seen[shuffle_quads(i, 9, 77)] = true;
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), true), 1 << 9);
+    for (std::uint64_t prefix : {0u, 2u}) {
+        std::vector<double> observed(256, 0.0), expected(256, 0.0);
+        for (std::uint8_t p : quad_permutations) expected[p] = 24000 / 24.0;
+        for (std::uint64_t s = 0; s < 24000; ++s) {
+            std::uint64_t images = 0;
+            for (std::uint64_t d = 0; d < 4; ++d)
+                images |= (shuffle_quads(prefix << 2 | d, 4, mix64(s)) & 3u) << (2 * d);
+            ++observed[images];
+        }
+        EXPECT_GT(chi_squared_test(observed, expected).p_value, 1e-9) << prefix;
+    }
+}
+
 TEST(SampleStream, StratifiedDrawsFillStrata) {
     constexpr int n = 36;
     const auto pairs = pairs_of_replicate(SamplerKind::stratified, n, 2);
