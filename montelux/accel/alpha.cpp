@@ -11,7 +11,7 @@ namespace montelux {
 
 bool is_opaque(const Scene& scene, const SceneTables& tables, const Ray& ray, const Hit& hit) {
     // Instances: the ray is already in the space of the object, and so is the shape.
-    SurfacePoint s = surface_point(scene, ray, hit, false);
+    SurfacePoint s = surface_point(scene, ray, hit, true);
     TextureContext context{.p = s.p, .n = s.ns, .uv = s.uv, .dpdx = {}, .dpdy = {}, .duvdx = {}, .duvdy = {}};
     float alpha = evaluate(scene, tables, scene.shapes[hit.shape].alpha, context);
     if (alpha >= 1) return true;

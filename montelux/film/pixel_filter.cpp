@@ -57,52 +57,52 @@ float filter_value(const PixelFilter& filter, Vec2f offset) {
     return axis_factor(filter, 0, offset.x) * axis_factor(filter, 1, offset.y);
 }
 
-PixelFilterSampler::PixelFilterSampler(const PixelFilter& filter) : filter_(filter) {
+PixelFilterSampler::PixelFilterSampler(const PixelFilter& filter)
+    : is_box_(std::holds_alternative<BoxFilter>(filter)) {
     Vec2f radius = filter_radius(filter);
     for (int a = 0; a < 2; ++a) {
-        if (!(radius[a] > 0 && radius[a] < 1000))
+        Axis& axis = axes_[a];
+        axis.radius = radius[a];
+        if (!(axis.radius > 0 && axis.radius < 1000))
             throw Error("pixel filter", "the radius must be positive and at most 1000 pixels");
-        axes_[a].radius = radius[a];
-        if (std::holds_alternative<BoxFilter>(filter) || std::holds_alternative<TriangleFilter>(filter))
-            continue;
-        int n = std::max(64, static_cast<int>(std::ceil(radius[a] * 64)) * 2);
-        std::vector<double> magnitude;
+        if (is_box_ || std::holds_alternative<TriangleFilter>(filter)) continue;
+        // The factor is taken as linear between these nodes, so that its integral is known exactly.
+        const int n = std::max(64, static_cast<int>(std::ceil(axis.radius * 128)) * 2);
+        std::vector<double> value, magnitude;
         double integral = 0;
         for (int i = 0; i <= n; ++i) {
-            double x = double(radius[a]) * (2.0 * i / n - 1);
-            magnitude.push_back(std::abs(double(axis_factor(filter, a, static_cast<float>(x)))));
+            double x = double(axis.radius) * (2.0 * i / n - 1);
+            value.push_back(double(axis_factor(filter, a, static_cast<float>(x))));
+            integral += i == 0 || i == n ? 0.5 * value.back() : value.back();
         }
-        // Composite Simpson on a grid eight times finer.
-        int m = 8 * n;
-        for (int i = 0; i <= m; ++i) {
-            double x = double(radius[a]) * (2.0 * i / m - 1);
-            double w = i == 0 || i == m ? 1 : (i % 2 == 1 ? 4 : 2);
-            integral += w * double(axis_factor(filter, a, static_cast<float>(x)));
-        }
-        integral *= 2 * double(radius[a]) / m / 3;
+        integral *= 2 * double(axis.radius) / n;
         if (!(integral > 0)) throw Error("pixel filter", "the filter's integral is not positive");
-        axes_[a].inverse_integral = static_cast<float>(1 / integral);
+        for (double v : value) {
+            magnitude.push_back(std::abs(v));
+            axis.weight.push_back(static_cast<float>(v / integral));
+        }
         // A floor keeps the density from zero where the filter crosses it, and the weights bounded.
         double largest = *std::max_element(magnitude.begin(), magnitude.end());
         for (double& v : magnitude) v = std::max(v, 1e-3 * largest);
-        axes_[a].density.emplace(magnitude, -double(radius[a]), double(radius[a]));
+        axis.density.emplace(PiecewiseLinear1D(magnitude, -double(axis.radius), double(axis.radius)));
+        axis.steps_per_unit = static_cast<float>(n) / (2 * axis.radius);
     }
 }
 
-float PixelFilterSampler::sample_axis(const Axis& axis, int which, float u, float& weight) const {
-    if (!axis.density) {
-        if (std::holds_alternative<BoxFilter>(filter_)) return (2 * u - 1) * axis.radius;
-        return sample_tent(u, axis.radius);
-    }
-    auto s = axis.density->sample(u);
-    weight *= axis_factor(filter_, which, s.x) * axis.inverse_integral / s.pdf;
+float PixelFilterSampler::sample_axis(const Axis& axis, float u, float& weight) const {
+    if (!axis.density) return is_box_ ? (2 * u - 1) * axis.radius : sample_tent(u, axis.radius);
+    InverseTable1D::Sample s = axis.density->sample(u);
+    float step = std::max(0.0f, (s.x + axis.radius) * axis.steps_per_unit);
+    std::size_t i = std::min(static_cast<std::size_t>(step), axis.weight.size() - 2);
+    float t = step - static_cast<float>(i);
+    weight *= ((1 - t) * axis.weight[i] + t * axis.weight[i + 1]) * s.inverse_pdf;
     return s.x;
 }
 
 FilterSample PixelFilterSampler::sample(Vec2f u) const {
     FilterSample s;
-    s.offset.x = sample_axis(axes_[0], 0, u.x, s.weight);
-    s.offset.y = sample_axis(axes_[1], 1, u.y, s.weight);
+    s.offset.x = sample_axis(axes_[0], u.x, s.weight);
+    s.offset.y = sample_axis(axes_[1], u.y, s.weight);
     return s;
 }
 

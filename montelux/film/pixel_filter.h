@@ -2,8 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
-#include "montelux/mc/dist/piecewise_1d.h"
+#include "montelux/mc/dist/inverse_table_1d.h"
 #include "montelux/scene/film/film_settings.h"
 
 namespace montelux {
@@ -31,13 +32,14 @@ class PixelFilterSampler {
   private:
     // Every filter is a product of one factor an axis.
     struct Axis {
-        std::optional<PiecewiseLinear1D> density; // absent for box and triangle, which invert in closed form
+        std::optional<InverseTable1D> density; // absent for box and triangle, which invert in closed form
+        std::vector<float> weight;             // the factor over its integral, at equal steps from -radius
         float radius = 0.5f;
-        float inverse_integral = 1; // of the signed factor
+        float steps_per_unit = 0;
     };
-    float sample_axis(const Axis& axis, int which, float u, float& weight) const;
+    float sample_axis(const Axis& axis, float u, float& weight) const;
 
-    PixelFilter filter_;
+    bool is_box_ = false;
     Axis axes_[2];
 };
 

@@ -106,7 +106,7 @@ struct Path {
     void add_infinite_lights(Vec3f w) {
         const LightTables& lights = ps.tables.lights();
         for (Index light : lights.infinite_lights()) {
-            SampledSpectrum le = infinite_radiance(ps.scene, light, w, lambda);
+            SampledSpectrum le = infinite_radiance(ps.scene, lights, light, w, lambda);
             if (is_black(le)) continue;
             float weight =
                 sees_lights

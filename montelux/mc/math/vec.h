@@ -114,6 +114,10 @@ constexpr Vec3<T> max(Vec3<T> a, Vec3<T> b) {
     return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
 template <typename T>
+constexpr Vec3<T> abs(Vec3<T> a) {
+    return {a.x < 0 ? -a.x : a.x, a.y < 0 ? -a.y : a.y, a.z < 0 ? -a.z : a.z};
+}
+template <typename T>
 constexpr T max_component(Vec3<T> a) {
     return std::max(a.x, std::max(a.y, a.z));
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "montelux/mc/warp/cone.h"
+#include "montelux/mc/warp/disk.h"
 #include "montelux/mc/warp/equal_area_square.h"
 #include "montelux/mc/warp/sphere.h"
 #include "montelux/mc/warp/triangle.h"
@@ -114,13 +114,14 @@ Point2f map_point(const ImageInfiniteLight& light, Vec3f wi) {
     return equal_area_sphere_to_square(normalize(light.world_from_light.inverse().vector(wi)));
 }
 
-SampledSpectrum map_radiance(const Scene& scene, const ImageInfiniteLight& light, Point2f st,
-                             const SampledWavelengths& lambda) {
+SampledSpectrum map_radiance(const Scene& scene, const LightTables& tables, const ImageInfiniteLight& light,
+                             Point2f st, const SampledWavelengths& lambda) {
     const Image& map = scene.environments[light.environment];
     int x = std::clamp(static_cast<int>(st.x * static_cast<float>(map.width())), 0, map.width() - 1);
     int y = std::clamp(static_cast<int>(st.y * static_cast<float>(map.height())), 0, map.height() - 1);
-    Vec3f rgb{map.value(x, y, 0), map.value(x, y, 1), map.value(x, y, 2)};
-    return RgbIlluminantSpectrum(*light.color_space, max(rgb, Vec3f{0, 0, 0})).sample(lambda) * light.scale;
+    auto texel =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width()) + static_cast<std::size_t>(x);
+    return tables.map_radiance(scene, light, texel, lambda) * light.scale;
 }
 
 } // namespace
@@ -131,13 +132,13 @@ SampledSpectrum emitted_radiance(const AreaLight& light, Normal3f n, Vec3f w,
     return light.spectrum.sample(lambda) * light.scale;
 }
 
-SampledSpectrum infinite_radiance(const Scene& scene, Index index, Vec3f wi,
+SampledSpectrum infinite_radiance(const Scene& scene, const LightTables& tables, Index index, Vec3f wi,
                                   const SampledWavelengths& lambda) {
     const Light& any = scene.lights[index];
     if (const auto* light = std::get_if<UniformInfiniteLight>(&any))
         return light->spectrum.sample(lambda) * light->scale;
     if (const auto* light = std::get_if<ImageInfiniteLight>(&any))
-        return map_radiance(scene, *light, map_point(*light, wi), lambda);
+        return map_radiance(scene, tables, *light, map_point(*light, wi), lambda);
     return {};
 }
 
@@ -157,6 +158,14 @@ std::optional<LightSample> sample_light(const Scene& scene, const LightTables& t
         if (const auto& sphere = tables.sphere(index))
             if (auto cone = cone_of(*sphere, from.p))
                 return sample_sphere(*light, *sphere, *cone, shape.flip_normal, from, u, lambda);
+        if (const auto& disk = tables.disk(index)) {
+            Vec2f d = sample_uniform_disk_concentric(u);
+            Point3f p = disk->center + d.x * disk->s + d.y * disk->t;
+            return from_area_point(
+                *light, from, p, shape.flip_normal ? -disk->n : disk->n,
+                coordinate_error(size_of(Vec3d(disk->center)) + max_component(abs(disk->s) + abs(disk->t))),
+                1 / disk->area, lambda);
+        }
         QuadricAreaSample s = sample_area(scene.quadrics[shape.quadric], u);
         Normal3f n = Vec3f(shape.flip_normal ? -s.point.n : s.point.n);
         return from_area_point(*light, from, Vec3f(s.point.p), n, coordinate_error(size_of(s.point.p)),
@@ -187,7 +196,7 @@ std::optional<LightSample> sample_light(const Scene& scene, const LightTables& t
     if (!(s.pdf > 0)) return std::nullopt;
     Vec3f wi = light.world_from_light.vector(equal_area_square_to_sphere(s.p));
     wi = normalize(wi);
-    return LightSample{.radiance = map_radiance(scene, light, s.p, lambda),
+    return LightSample{.radiance = map_radiance(scene, tables, light, s.p, lambda),
                        .wi = wi,
                        .pdf = s.pdf * inv_four_pi_f,
                        .shadow = shadow_ray_to_infinity(from, wi)};
@@ -200,6 +209,8 @@ float area_light_pdf(const Scene& scene, const LightTables& tables, Index index,
     float area_density;
     if (shape.mesh != none) {
         area_density = 1 / tables.triangle(index).area;
+    } else if (const auto& disk = tables.disk(index)) {
+        area_density = 1 / disk->area;
     } else {
         if (const auto& sphere = tables.sphere(index))
             if (auto cone = cone_of(*sphere, from.p)) return cone->pdf();

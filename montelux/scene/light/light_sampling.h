@@ -40,7 +40,7 @@ float infinite_light_pdf(const Scene& scene, const LightTables& tables, Index li
 SampledSpectrum emitted_radiance(const AreaLight& light, Normal3f n, Vec3f w,
                                  const SampledWavelengths& lambda);
 // Radiance of an infinite light from direction wi; black for other lights.
-SampledSpectrum infinite_radiance(const Scene& scene, Index light, Vec3f wi,
+SampledSpectrum infinite_radiance(const Scene& scene, const LightTables& tables, Index light, Vec3f wi,
                                   const SampledWavelengths& lambda);
 
 } // namespace montelux

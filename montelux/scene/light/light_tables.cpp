@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "montelux/mc/math/constants.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/scene/shape/surface_point.h"
 
 namespace montelux {
@@ -59,7 +60,36 @@ std::unique_ptr<PiecewiseConstant2D> environment_density(const Image& map) {
                                                  static_cast<std::uint32_t>(map.height()));
 }
 
+RgbUnboundedSpectrum texel_spectrum(const Image& map, const RgbColorSpace& space, std::size_t texel) {
+    const std::size_t i = texel * static_cast<std::size_t>(map.channels());
+    Vec3f rgb{map.value_at(i), map.value_at(i + 1), map.value_at(i + 2)};
+    return {space, max(rgb, Vec3f{0, 0, 0})};
+}
+
+// Above this size (64 MiB of spectra) texels are uplifted when they are looked up.
+constexpr std::size_t max_precomputed_texels = std::size_t{1} << 22;
+
+std::vector<RgbUnboundedSpectrum> map_spectra(const Image& map, const RgbColorSpace& space) {
+    if (map.pixel_count() > max_precomputed_texels) return {};
+    std::vector<RgbUnboundedSpectrum> spectra(map.pixel_count());
+    parallel_for(map.height(), [&](std::int64_t y) {
+        for (std::size_t x = 0, i = static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width());
+             x < static_cast<std::size_t>(map.width()); ++x, ++i)
+            spectra[i] = texel_spectrum(map, space, i);
+    });
+    return spectra;
+}
+
 } // namespace
+
+SampledSpectrum LightTables::map_radiance(const Scene& scene, const ImageInfiniteLight& light,
+                                          std::size_t texel, const SampledWavelengths& lambda) const {
+    const auto& spectra = map_spectra_[light.environment];
+    SampledSpectrum white = light.color_space->illuminant().sample(lambda);
+    if (!spectra.empty()) return spectra[texel].sample(lambda) * white;
+    return texel_spectrum(scene.environments[light.environment], *light.color_space, texel).sample(lambda) *
+           white;
+}
 
 Bounds3 bounds_of(const Scene& scene) {
     Bounds3 bounds;
@@ -84,8 +114,9 @@ Bounds3 bounds_of(const Scene& scene) {
 
 LightTables::LightTables(const Scene& scene)
     : triangle_of_light_(scene.lights.size(), none), spheres_(scene.lights.size()),
-      bounds_(bounds_of(scene)) {
+      disks_(scene.lights.size()), bounds_(bounds_of(scene)) {
     for (const Image& map : scene.environments) environments_.push_back(environment_density(map));
+    map_spectra_.resize(scene.environments.size());
 
     double radius = std::max(bounds_.radius(), 1e-30);
     double cross_section = pi * radius * radius;
@@ -105,10 +136,13 @@ LightTables::LightTables(const Scene& scene)
                         const Quadric& quadric = scene.quadrics[shape.quadric];
                         area = world_area(quadric);
                         spheres_[i] = whole_sphere(quadric);
+                        disks_[i] = whole_disk(quadric);
                     }
                     return pi * area * (light.two_sided ? 2 : 1) * double(light.scale) * mean(light.spectrum);
                 } else if constexpr (std::is_same_v<L, ImageInfiniteLight>) {
                     infinite_lights_.push_back(static_cast<Index>(i));
+                    map_spectra_[light.environment] =
+                        map_spectra(scene.environments[light.environment], *light.color_space);
                     // The photometric normalisation is in `scale`; so is the mean of the white illuminant.
                     Spectrum white(RgbIlluminantSpectrum(*light.color_space, {1, 1, 1}));
                     return 4 * pi * cross_section * double(light.scale) * mean(white) *

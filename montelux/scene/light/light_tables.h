@@ -32,9 +32,13 @@ class LightTables {
     float probability(Index light) const { return by_power_->probability(light); }
     // Of a light on a mesh.
     const LightTriangle& triangle(Index light) const { return triangles_[triangle_of_light_[light]]; }
+    // Radiance of an environment map's texel before Light::scale, at index y * width + x.
+    SampledSpectrum map_radiance(const Scene& scene, const ImageInfiniteLight& light, std::size_t texel,
+                                 const SampledWavelengths& lambda) const;
     const PiecewiseConstant2D& environment(Index i) const { return *environments_[i]; }
     const std::vector<Index>& infinite_lights() const { return infinite_lights_; }
     const std::optional<WorldSphere>& sphere(Index light) const { return spheres_[light]; }
+    const std::optional<WorldDisk>& disk(Index light) const { return disks_[light]; }
     const Bounds3& scene_bounds() const { return bounds_; }
 
   private:
@@ -42,7 +46,10 @@ class LightTables {
     std::vector<LightTriangle> triangles_;
     std::vector<Index> triangle_of_light_;
     std::vector<std::optional<WorldSphere>> spheres_;
+    std::vector<std::optional<WorldDisk>> disks_;
     std::vector<std::unique_ptr<PiecewiseConstant2D>> environments_;
+    // Spectra of the texels of each environment, ready to be evaluated; empty for maps that are too large.
+    std::vector<std::vector<RgbUnboundedSpectrum>> map_spectra_;
     std::vector<Index> infinite_lights_;
     Bounds3 bounds_;
 };

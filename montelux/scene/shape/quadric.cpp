@@ -80,10 +80,11 @@ Point2f coordinates(const Disk& d, Vec3d p) {
 }
 
 template <typename S>
-QuadricPoint to_world(const S& s, Vec3d p) {
+QuadricPoint to_world(const S& s, Vec3d p, bool with_coordinates) {
     QuadricPoint q;
     q.p = s.world_from_object.point(p);
     q.n = normalize(s.world_from_object.normal(object_normal(s, p)));
+    if (!with_coordinates) return q;
     q.uv = coordinates(s, p);
     Vec3d dpdu{-p.y, p.x, 0};
     if (!(dot(dpdu, dpdu) > 0)) dpdu = {0, 1, 0};
@@ -176,11 +177,11 @@ std::optional<double> intersect(const Quadric& quadric, const Ray& ray, double t
         quadric);
 }
 
-QuadricPoint point_at(const Quadric& quadric, const Ray& ray, double t) {
+QuadricPoint point_at(const Quadric& quadric, const Ray& ray, double t, bool with_coordinates) {
     return std::visit(
         [&](const auto& s) {
             ObjectRay r = to_object(s.world_from_object, ray);
-            return to_world(s, project(s, r.o + t * r.d));
+            return to_world(s, project(s, r.o + t * r.d), with_coordinates);
         },
         quadric);
 }
@@ -190,7 +191,7 @@ QuadricAreaSample sample_area(const Quadric& quadric, Vec2f u) {
         [&](const auto& s) {
             Vec3d p = sample_object(s, Vec2d(u));
             double scale = area_scale(s.world_from_object, object_normal(s, p));
-            return QuadricAreaSample{to_world(s, p), 1 / (object_area(s) * scale)};
+            return QuadricAreaSample{to_world(s, p, false), 1 / (object_area(s) * scale)};
         },
         quadric);
 }
@@ -212,6 +213,17 @@ std::optional<WorldSphere> whole_sphere(const Quadric& quadric) {
     auto scale = uniform_scale(s->world_from_object);
     if (!scale) return std::nullopt;
     return WorldSphere{s->world_from_object.point(Vec3d{0, 0, 0}), *scale * double(s->radius)};
+}
+
+std::optional<WorldDisk> whole_disk(const Quadric& quadric) {
+    const auto* d = std::get_if<Disk>(&quadric);
+    if (d == nullptr || d->inner_radius > 0 || double(d->phi_max) < 2 * pi - 1e-6) return std::nullopt;
+    const Transform& t = d->world_from_object;
+    double r = d->radius;
+    Vec3d s = t.vector(Vec3d{r, 0, 0}), u = t.vector(Vec3d{0, r, 0});
+    return WorldDisk{Vec3f(t.point(Vec3d{0, 0, double(d->height)})), Vec3f(s), Vec3f(u),
+                     Vec3f(normalize(t.normal(Vec3d{0, 0, 1}))),
+                     static_cast<float>(pi * length(cross(s, u)))};
 }
 
 } // namespace montelux

@@ -10,8 +10,8 @@ namespace montelux {
 
 struct QuadricPoint {
     Vec3d p, n; // n: unit outward normal (sphere), +z (disc); both in world space
-    Point2f uv; // u = phi / phi_max; v as in pbrt-v4's file format
-    Vec3d dpdu;
+    Point2f uv; // u = phi / phi_max; v as in pbrt-v4's file format; only when asked for
+    Vec3d dpdu; // likewise
 };
 
 struct Bounds3 {
@@ -34,7 +34,7 @@ double world_area(const Quadric& quadric);
 std::optional<double> intersect(const Quadric& quadric, const Ray& ray, double t_min);
 
 // Geometry at the point where `ray` hits at t: the point is projected onto the surface.
-QuadricPoint point_at(const Quadric& quadric, const Ray& ray, double t);
+QuadricPoint point_at(const Quadric& quadric, const Ray& ray, double t, bool coordinates);
 
 // A point distributed uniformly over the area of object space, and its density per world-space area.
 struct QuadricAreaSample {
@@ -51,5 +51,14 @@ struct WorldSphere {
     double radius;
 };
 std::optional<WorldSphere> whole_sphere(const Quadric& quadric);
+
+// A whole disc, whatever its transform: an ellipse in world space, the points center + x s + y t with x^2 +
+// y^2 <= 1.
+struct WorldDisk {
+    Vec3f center, s, t;
+    Normal3f n; // of the disc's +z side
+    float area = 0;
+};
+std::optional<WorldDisk> whole_disk(const Quadric& quadric);
 
 } // namespace montelux

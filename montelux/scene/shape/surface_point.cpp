@@ -58,7 +58,7 @@ SurfacePoint triangle_point(const TriangleMesh& mesh, const Shape& shape, const 
 SurfacePoint quadric_point(const Quadric& quadric, const Shape& shape, const Ray& ray, const Hit& hit,
                            bool derivatives) {
     SurfacePoint s;
-    QuadricPoint q = point_at(quadric, ray, double(hit.t));
+    QuadricPoint q = point_at(quadric, ray, double(hit.t), derivatives);
     s.p = Vec3f(q.p);
     s.ng = Vec3f(shape.flip_normal ? -q.n : q.n);
     s.ns = s.ng;

@@ -9,10 +9,10 @@ namespace montelux {
 
 struct SurfacePoint {
     Point3f p;
-    Normal3f ng;     // geometric normal, unit, on the side that ns is on
-    Normal3f ns;     // shading normal, unit
-    float error = 0; // bound of the distance between p and the true surface along ng
-    Point2f uv;
+    Normal3f ng;      // geometric normal, unit, on the side that ns is on
+    Normal3f ns;      // shading normal, unit
+    float error = 0;  // bound of the distance between p and the true surface along ng
+    Point2f uv;       // of quadrics only when derivatives were asked for
     Vec3f dpdu, dpdv; // with respect to uv; set by surface_point when asked for
     const Shape* shape = nullptr;
     Index primitive = 0;

@@ -44,9 +44,12 @@ Vec3f image_lookup(const SceneTables& tables, const ImageTexture& t, const Textu
 
 SampledSpectrum as_spectrum(Vec3f rgb, const ImageTexture& t, const SampledWavelengths& lambda) {
     switch (t.meaning) {
-    case RgbMeaning::albedo: return RgbAlbedoSpectrum(*t.color_space, rgb).sample(lambda);
-    case RgbMeaning::unbounded: return RgbUnboundedSpectrum(*t.color_space, rgb).sample(lambda);
-    case RgbMeaning::illuminant: break;
+    case RgbMeaning::albedo:
+        return RgbAlbedoSpectrum(*t.color_space, rgb).sample(lambda);
+    case RgbMeaning::unbounded:
+        return RgbUnboundedSpectrum(*t.color_space, rgb).sample(lambda);
+    case RgbMeaning::illuminant:
+        break;
     }
     return RgbIlluminantSpectrum(*t.color_space, rgb).sample(lambda);
 }

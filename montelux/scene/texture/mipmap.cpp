@@ -91,13 +91,17 @@ Vec3f MipMap::texel(int l, int x, int y, TextureWrap wrap) const {
         if (x < 0 || y < 0) return {0, 0, 0};
     }
     std::size_t i = image.index(x, y);
-    std::array<float, 3> v{};
-    std::size_t components = is_color() ? 3 : 1;
-    for (std::size_t c = 0; c < components; ++c) {
-        std::size_t k = i + (l == 0 ? static_cast<std::size_t>(channels_[c]) : c);
-        v[c] = image.format() == PixelFormat::u8 ? decode8_[image.u8()[k]] : image.value_at(k);
+    if (l > 0) {
+        const float* v = &image.f32()[i];
+        return is_color() ? Vec3f{v[0], v[1], v[2]} : Vec3f{v[0], v[0], v[0]};
     }
-    return components == 3 ? Vec3f{v[0], v[1], v[2]} : Vec3f{v[0], v[0], v[0]};
+    auto decode = [&](int channel) {
+        std::size_t k = i + static_cast<std::size_t>(channel);
+        return image.format() == PixelFormat::u8 ? decode8_[image.u8()[k]] : image.value_at(k);
+    };
+    float first = decode(channels_[0]);
+    if (!is_color()) return {first, first, first};
+    return {first, decode(channels_[1]), decode(channels_[2])};
 }
 
 Vec3f MipMap::bilinear(int l, Point2f st, TextureWrap wrap) const {
