@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <embree3/rtcore.h>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,14 @@ struct GeometryData {
     const Scene* scene = nullptr;
     const SceneTables* tables = nullptr;
     Index shape = none;
+    std::optional<WorldSphere> sphere; // of a quadric that is one
+    bool cut_out = false;
 };
+
+std::optional<double> hit_quadric(const GeometryData& data, const Ray& ray, double t_min) {
+    if (data.sphere) return intersect(*data.sphere, ray, t_min);
+    return intersect(data.scene->quadrics[data.scene->shapes[data.shape].quadric], ray, t_min);
+}
 
 void fill_bounds(const RTCBoundsFunctionArguments* args) {
     const auto* data = static_cast<const GeometryData*>(args->geometryUserPtr);
@@ -36,10 +44,7 @@ void fill_bounds(const RTCBoundsFunctionArguments* args) {
 Ray ray_of(const RTCRay& r) { return {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar}; }
 
 bool passes_cut_out(const GeometryData& data, const Ray& ray, const Hit& hit) {
-    return !data.scene->shapes[data.shape].alpha.is_constant() ||
-                   data.scene->shapes[data.shape].alpha.value < 1
-               ? is_opaque(*data.scene, *data.tables, ray, hit)
-               : true;
+    return !data.cut_out || is_opaque(*data.scene, *data.tables, ray, hit);
 }
 
 // Quadrics: Embree calls with one ray at a time (N = 1), since only rtcIntersect1 and rtcOccluded1 are used.
@@ -48,10 +53,9 @@ void intersect_quadric(const RTCIntersectFunctionNArguments* args) {
     const auto* data = static_cast<const GeometryData*>(args->geometryUserPtr);
     auto* ray_hit = reinterpret_cast<RTCRayHit*>(args->rayhit);
     Ray ray = ray_of(ray_hit->ray);
-    const Quadric& quadric = data->scene->quadrics[data->scene->shapes[data->shape].quadric];
     double t_min = double(ray_hit->ray.tnear);
     for (;;) {
-        auto t = intersect(quadric, ray, t_min);
+        auto t = hit_quadric(*data, ray, t_min);
         if (!t) return;
         Hit hit{.t = static_cast<float>(*t), .shape = data->shape};
         if (passes_cut_out(*data, ray, hit)) {
@@ -71,9 +75,8 @@ void occlude_quadric(const RTCOccludedFunctionNArguments* args) {
     const auto* data = static_cast<const GeometryData*>(args->geometryUserPtr);
     auto* r = reinterpret_cast<RTCRay*>(args->ray);
     Ray ray = ray_of(*r);
-    const Quadric& quadric = data->scene->quadrics[data->scene->shapes[data->shape].quadric];
     double t_min = double(r->tnear);
-    while (auto t = intersect(quadric, ray, t_min)) {
+    while (auto t = hit_quadric(*data, ray, t_min)) {
         if (passes_cut_out(*data, ray, {.t = static_cast<float>(*t), .shape = data->shape})) {
             r->tfar = -std::numeric_limits<float>::infinity();
             return;
@@ -98,8 +101,7 @@ struct Accelerator::Impl {
     RTCDevice device = nullptr;
     RTCScene world = nullptr;
     std::vector<RTCScene> objects;
-    std::vector<GeometryData> data;       // one a shape
-    std::vector<Index> object_shape_base; // of each object's first shape in object_shapes
+    std::vector<GeometryData> data; // one a shape
     const Scene* scene = nullptr;
     Bounds3 bounds;
     std::string error;
@@ -120,7 +122,7 @@ struct Accelerator::Impl {
 
     void attach_shape(RTCScene to, unsigned id, Index shape_index) {
         const Shape& shape = scene->shapes[shape_index];
-        bool cut_out = !shape.alpha.is_constant() || shape.alpha.value < 1;
+        const bool cut_out = data[shape_index].cut_out;
         RTCGeometry geometry;
         if (shape.mesh != none) {
             const TriangleMesh& mesh = scene->meshes[shape.mesh];
@@ -186,8 +188,14 @@ Accelerator::Accelerator(const Scene& scene, const SceneTables& tables) : impl_(
         },
         &a.error);
     a.data.resize(scene.shapes.size());
-    for (std::size_t i = 0; i < scene.shapes.size(); ++i)
-        a.data[i] = {&scene, &tables, static_cast<Index>(i)};
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+        const Shape& shape = scene.shapes[i];
+        a.data[i].scene = &scene;
+        a.data[i].tables = &tables;
+        a.data[i].shape = static_cast<Index>(i);
+        a.data[i].cut_out = !shape.alpha.is_constant() || shape.alpha.value < 1;
+        if (shape.quadric != none) a.data[i].sphere = whole_sphere(scene.quadrics[shape.quadric]);
+    }
 
     for (const ObjectDefinition& object : scene.objects) {
         RTCScene s = a.objects.emplace_back(a.new_scene());

@@ -16,7 +16,9 @@ bool is_opaque(const Scene& scene, const SceneTables& tables, const Ray& ray, co
     float alpha = evaluate(scene, tables, scene.shapes[hit.shape].alpha, context);
     if (alpha >= 1) return true;
     if (!(alpha > 0)) return false;
-    std::uint64_t h = 0;
+    // Each surface along the ray decides for itself; a quadric may be hit twice.
+    std::uint64_t h = hash_key(hit.shape, hit.primitive);
+    if (scene.shapes[hit.shape].quadric != none) h = mix64(h ^ std::bit_cast<std::uint32_t>(hit.t));
     for (float v : {ray.o.x, ray.o.y, ray.o.z, ray.d.x, ray.d.y, ray.d.z})
         h = mix64(h ^ std::bit_cast<std::uint32_t>(v));
     return static_cast<float>(h >> 40) * 0x1p-24f < alpha;

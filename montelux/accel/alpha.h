@@ -8,8 +8,8 @@ namespace montelux {
 
 class SceneTables;
 
-// A point with alpha a is there with probability a. The decision is a function of the ray alone, so that a
-// sample stays a pure function of its key.
+// A point with alpha a is there with probability a. The decision is a function of the ray and the primitive
+// alone, so that a sample stays a pure function of its key.
 bool is_opaque(const Scene& scene, const SceneTables& tables, const Ray& ray, const Hit& hit);
 
 } // namespace montelux

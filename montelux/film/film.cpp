@@ -38,12 +38,14 @@ FilmError Film::error() const {
         samples.add(p.samples());
     }
     auto n = static_cast<double>(pixels_.size());
+    // The compensation of a sum with infinite terms, the errors of single units, is not a number.
+    const double infinity = std::numeric_limits<double>::infinity();
+    double total = std::isnan(variance.value()) ? infinity : variance.value();
     FilmError e;
     e.mean_luminance = luminance.value() / n;
     e.mean_samples = samples.value() / n;
-    e.relative = std::sqrt(variance.value() / n) / e.mean_luminance;
-    if (!(e.mean_luminance > 0))
-        e.relative = variance.value() > 0 ? std::numeric_limits<double>::infinity() : 0;
+    e.relative = std::sqrt(total / n) / e.mean_luminance;
+    if (!(e.mean_luminance > 0)) e.relative = total > 0 ? infinity : 0;
     return e;
 }
 

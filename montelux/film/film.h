@@ -88,6 +88,10 @@ class Film {
     Pixel& pixel(int x, int y) { return pixels_[index(x, y)]; }
     const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
 
+    // Ends the open unit of every pixel.
+    void end_units() {
+        for (Pixel& p : pixels_) p.end_unit();
+    }
     FilmError error() const;
     // Layers R, G, B (mean); stderr.R, G, B; samples; albedo.R, G, B; N.X, Y, Z; depth.Z, of the cropped
     // pixels. The standard error is infinite where fewer than two units have been taken.

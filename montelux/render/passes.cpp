@@ -1,8 +1,15 @@
 #include "montelux/render/passes.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace montelux {
+
+namespace {
+
+constexpr std::uint64_t longest_pass = 16;
+
+} // namespace
 
 SamplerSettings with_replicates(SamplerSettings settings) {
     if (settings.kind != SamplerKind::independent && settings.replicates < 2)
@@ -10,25 +17,19 @@ SamplerSettings with_replicates(SamplerSettings settings) {
     return settings;
 }
 
-std::vector<SamplePass> sample_passes(const SamplerSettings& settings) {
+std::optional<SamplePass> next_pass(const SamplerSettings& settings, std::uint64_t begin) {
     const std::uint64_t n = settings.samples_per_pixel;
-    std::vector<SamplePass> passes;
-    if (settings.kind == SamplerKind::independent) {
-        std::uint64_t length = 1;
-        for (std::uint64_t begin = 0; begin < n; length = std::min<std::uint64_t>(2 * length, 16)) {
-            std::uint64_t end = std::min(n, begin + length);
-            passes.push_back({begin, end, true});
-            begin = end;
-        }
-        return passes;
-    }
-    std::uint64_t begin = 0;
-    for (std::uint64_t i = 1; i <= n; ++i)
-        if (i == n || replicate_of(settings, i) != replicate_of(settings, begin)) {
-            passes.push_back({begin, i, false});
-            begin = i;
-        }
-    return passes;
+    if (begin >= n) return std::nullopt;
+    // 1, 1, 2, 4, 8, 16, 16, ... samples.
+    SamplePass pass{begin, begin + std::clamp<std::uint64_t>(std::bit_floor(begin), 1, longest_pass)};
+    pass.end = std::min(pass.end, n);
+    if (settings.kind == SamplerKind::independent) return pass;
+    const std::uint64_t points = points_per_replicate(settings);
+    const std::uint64_t replicate_end = std::min(n, (begin / points + 1) * points);
+    pass.end = std::min(pass.end, replicate_end);
+    pass.every_sample_is_a_unit = false;
+    pass.ends_unit = pass.end == replicate_end;
+    return pass;
 }
 
 } // namespace montelux

@@ -1,6 +1,7 @@
 #include "montelux/render/renderer.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <mutex>
@@ -155,7 +156,6 @@ RenderReport Renderer::render(Film& film, const ProgressCallback& progress, cons
             Sensor(RgbColorSpace::srgb(), {settings.exposure_time, settings.iso, settings.white_balance})};
 
     const std::vector<PixelBounds> tiles = tiles_of(film.bounds());
-    const std::vector<SamplePass> passes = sample_passes(sampler);
     const std::uint64_t pixels = static_cast<std::uint64_t>(film.bounds().width()) * film.bounds().height();
     RenderProgress state;
     state.samples_total = pixels * sampler.samples_per_pixel;
@@ -170,16 +170,26 @@ RenderReport Renderer::render(Film& film, const ProgressCallback& progress, cons
         progress(state);
     };
 
-    for (const SamplePass& pass : passes) {
-        bool complete = parallel_for(
+    std::atomic<bool> stopped{false};
+    std::uint64_t next_sample = 0;
+    while (auto pass_found = next_pass(sampler, next_sample)) {
+        const SamplePass pass = *pass_found;
+        next_sample = pass.end;
+        parallel_for(
             static_cast<std::int64_t>(tiles.size()),
             [&](std::int64_t t) {
                 auto tile_begin = Clock::now();
                 const PixelBounds& tile = tiles[static_cast<std::size_t>(t)];
                 RayTracer tracer(*accelerator_);
                 BadSampleReport bad;
+                std::uint64_t samples = 0;
                 for (int y = tile.y0; y < tile.y1; ++y)
                     for (int x = tile.x0; x < tile.x1; ++x) {
+                        // A pixel is never left in the middle of a pass.
+                        if (cancel != nullptr && cancel->requested()) {
+                            stopped = true;
+                            break;
+                        }
                         Pixel& pixel = film.pixel(x, y);
                         for (std::uint64_t i = pass.begin; i < pass.end; ++i) {
                             SampleContext::Result r = context.take(tracer, x, y, i);
@@ -191,10 +201,9 @@ RenderReport Renderer::render(Film& film, const ProgressCallback& progress, cons
                             }
                             if (pass.every_sample_is_a_unit) pixel.end_unit();
                         }
-                        pixel.end_unit();
+                        if (pass.ends_unit) pixel.end_unit();
+                        samples += pass.end - pass.begin;
                     }
-                std::uint64_t samples = (pass.end - pass.begin) * static_cast<std::uint64_t>(tile.width()) *
-                                        static_cast<std::uint64_t>(tile.height());
                 tally.add(tracer.statistics, bad, seconds_since(tile_begin), samples);
                 if (progress) {
                     std::lock_guard lock(tally.mutex);
@@ -206,11 +215,15 @@ RenderReport Renderer::render(Film& film, const ProgressCallback& progress, cons
                 }
             },
             cancel);
-        if (!complete) {
-            tally.report.cancelled = true;
+        if (cancel != nullptr && cancel->requested()) stopped = true;
+        if (stopped) {
+            // The samples of replicates that were cut short count all the same: each is unbiased.
+            film.end_units();
+            tally.report.cancelled =
+                next_sample < sampler.samples_per_pixel || tally.report.samples < state.samples_total;
             break;
         }
-        report_progress(film.error());
+        report_progress(pass.ends_unit ? std::optional(film.error()) : std::nullopt);
     }
 
     RenderReport report = tally.report;

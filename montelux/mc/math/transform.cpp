@@ -115,21 +115,6 @@ std::optional<Transform> Transform::look_at(Vec3d eye, Vec3d target, Vec3d up) {
     return Transform(*world_to_camera, camera_to_world);
 }
 
-Vec3d Transform::point(Vec3d p) const {
-    const auto& a = m_.m;
-    Vec3d r{a[0][0] * p.x + a[0][1] * p.y + a[0][2] * p.z + a[0][3],
-            a[1][0] * p.x + a[1][1] * p.y + a[1][2] * p.z + a[1][3],
-            a[2][0] * p.x + a[2][1] * p.y + a[2][2] * p.z + a[2][3]};
-    double w = a[3][0] * p.x + a[3][1] * p.y + a[3][2] * p.z + a[3][3];
-    return w == 1 ? r : r / w;
-}
-
-Vec3d Transform::vector(Vec3d v) const {
-    const auto& a = m_.m;
-    return {a[0][0] * v.x + a[0][1] * v.y + a[0][2] * v.z, a[1][0] * v.x + a[1][1] * v.y + a[1][2] * v.z,
-            a[2][0] * v.x + a[2][1] * v.y + a[2][2] * v.z};
-}
-
 Vec3d Transform::normal(Vec3d n) const {
     const auto& a = inv_.m;
     return {a[0][0] * n.x + a[1][0] * n.y + a[2][0] * n.z, a[0][1] * n.x + a[1][1] * n.y + a[2][1] * n.z,

@@ -44,16 +44,37 @@ class Transform {
     }
 
     // Points are divided by their homogeneous coordinate when it is not 1.
-    Vec3d point(Vec3d p) const;
-    Vec3d vector(Vec3d v) const;
+    Vec3d point(Vec3d p) const { return apply_point(m_, p); }
+    Vec3d vector(Vec3d v) const { return apply_vector(m_, v); }
     // Normals go by the inverse transpose; the length is not kept.
     Vec3d normal(Vec3d n) const;
+    // By the inverse, without making it.
+    Vec3d inverse_point(Vec3d p) const { return apply_point(inv_, p); }
+    Vec3d inverse_vector(Vec3d v) const { return apply_vector(inv_, v); }
     Point3f point(Point3f p) const { return Vec3f(point(Vec3d(p))); }
     Vec3f vector(Vec3f v) const { return Vec3f(vector(Vec3d(v))); }
     Vec3f normal(Vec3f n) const { return Vec3f(normal(Vec3d(n))); }
 
   private:
+    static Vec3d apply_point(const Matrix4& matrix, Vec3d p);
+    static Vec3d apply_vector(const Matrix4& matrix, Vec3d v);
+
     Matrix4 m_, inv_;
 };
+
+inline Vec3d Transform::apply_point(const Matrix4& matrix, Vec3d p) {
+    const auto& a = matrix.m;
+    Vec3d r{a[0][0] * p.x + a[0][1] * p.y + a[0][2] * p.z + a[0][3],
+            a[1][0] * p.x + a[1][1] * p.y + a[1][2] * p.z + a[1][3],
+            a[2][0] * p.x + a[2][1] * p.y + a[2][2] * p.z + a[2][3]};
+    double w = a[3][0] * p.x + a[3][1] * p.y + a[3][2] * p.z + a[3][3];
+    return w == 1 ? r : r / w;
+}
+
+inline Vec3d Transform::apply_vector(const Matrix4& matrix, Vec3d v) {
+    const auto& a = matrix.m;
+    return {a[0][0] * v.x + a[0][1] * v.y + a[0][2] * v.z, a[1][0] * v.x + a[1][1] * v.y + a[1][2] * v.z,
+            a[2][0] * v.x + a[2][1] * v.y + a[2][2] * v.z};
+}
 
 } // namespace montelux

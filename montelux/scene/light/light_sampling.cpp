@@ -111,7 +111,7 @@ std::optional<LightSample> sample_point(Point3f position, SampledSpectrum intens
 }
 
 Point2f map_point(const ImageInfiniteLight& light, Vec3f wi) {
-    return equal_area_sphere_to_square(normalize(light.world_from_light.inverse().vector(wi)));
+    return equal_area_sphere_to_square(normalize(Vec3f(light.world_from_light.inverse_vector(Vec3d(wi)))));
 }
 
 SampledSpectrum map_radiance(const Scene& scene, const LightTables& tables, const ImageInfiniteLight& light,

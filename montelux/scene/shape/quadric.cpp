@@ -31,8 +31,7 @@ struct ObjectRay {
     Vec3d o, d;
 };
 ObjectRay to_object(const Transform& world_from_object, const Ray& ray) {
-    Transform inverse = world_from_object.inverse();
-    return {inverse.point(Vec3d(ray.o)), inverse.vector(Vec3d(ray.d))};
+    return {world_from_object.inverse_point(Vec3d(ray.o)), world_from_object.inverse_vector(Vec3d(ray.d))};
 }
 
 std::optional<double> intersect_object(const Sphere& s, const ObjectRay& r, double t_min, double t_max) {
@@ -199,7 +198,7 @@ QuadricAreaSample sample_area(const Quadric& quadric, Vec2f u) {
 double area_pdf(const Quadric& quadric, Vec3d world_point) {
     return std::visit(
         [&](const auto& s) {
-            Vec3d p = project(s, s.world_from_object.inverse().point(world_point));
+            Vec3d p = project(s, s.world_from_object.inverse_point(world_point));
             return 1 / (object_area(s) * area_scale(s.world_from_object, object_normal(s, p)));
         },
         quadric);
@@ -213,6 +212,19 @@ std::optional<WorldSphere> whole_sphere(const Quadric& quadric) {
     auto scale = uniform_scale(s->world_from_object);
     if (!scale) return std::nullopt;
     return WorldSphere{s->world_from_object.point(Vec3d{0, 0, 0}), *scale * double(s->radius)};
+}
+
+std::optional<double> intersect(const WorldSphere& sphere, const Ray& ray, double t_min) {
+    Vec3d d(ray.d), o = Vec3d(ray.o) - sphere.center;
+    double inverse_a = 1 / dot(d, d);
+    double t_mid = -dot(o, d) * inverse_a;
+    Vec3d closest = o + t_mid * d;
+    double h2 = sphere.radius * sphere.radius - dot(closest, closest);
+    if (!(h2 >= 0)) return std::nullopt;
+    double half = std::sqrt(h2 * inverse_a);
+    for (double t : {t_mid - half, t_mid + half})
+        if (t > t_min && t < double(ray.t_max)) return t;
+    return std::nullopt;
 }
 
 std::optional<WorldDisk> whole_disk(const Quadric& quadric) {

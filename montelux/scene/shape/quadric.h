@@ -51,6 +51,8 @@ struct WorldSphere {
     double radius;
 };
 std::optional<WorldSphere> whole_sphere(const Quadric& quadric);
+// As for the quadric.
+std::optional<double> intersect(const WorldSphere& sphere, const Ray& ray, double t_min);
 
 // A whole disc, whatever its transform: an ellipse in world space, the points center + x s + y t with x^2 +
 // y^2 <= 1.

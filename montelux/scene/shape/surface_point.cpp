@@ -99,8 +99,7 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, b
                                : quadric_point(scene.quadrics[shape.quadric], shape, ray, hit, derivatives);
     } else {
         const Transform& t = scene.instances[hit.instance].world_from_object;
-        Transform inverse = t.inverse();
-        Ray local{inverse.point(ray.o), inverse.vector(ray.d), ray.t_max};
+        Ray local{Vec3f(t.inverse_point(Vec3d(ray.o))), Vec3f(t.inverse_vector(Vec3d(ray.d))), ray.t_max};
         s = shape.mesh != none ? triangle_point(scene.meshes[shape.mesh], shape, hit, derivatives)
                                : quadric_point(scene.quadrics[shape.quadric], shape, local, hit, derivatives);
         transform_by(t, s, stretch(t));

@@ -110,6 +110,22 @@ Vec3f MipMap::bilinear(int l, Point2f st, TextureWrap wrap) const {
     float fx = std::floor(x), fy = std::floor(y);
     int xi = static_cast<int>(fx), yi = static_cast<int>(fy);
     float dx = x - fx, dy = y - fy;
+    const Image& image = level(l);
+    if (l == 0 && image.format() == PixelFormat::u8 && xi >= 0 && yi >= 0 && xi + 1 < image.width() &&
+        yi + 1 < image.height()) {
+        // Most lookups: inside an 8-bit image.
+        const std::uint8_t* row0 = &image.u8()[image.index(xi, yi)];
+        const std::uint8_t* row1 = row0 + image.index(0, 1);
+        const int next = image.channels();
+        auto channel = [&](int c) {
+            float top = (1 - dx) * decode8_[row0[c]] + dx * decode8_[row0[next + c]];
+            float bottom = (1 - dx) * decode8_[row1[c]] + dx * decode8_[row1[next + c]];
+            return (1 - dy) * top + dy * bottom;
+        };
+        float first = channel(channels_[0]);
+        if (!is_color()) return {first, first, first};
+        return {first, channel(channels_[1]), channel(channels_[2])};
+    }
     return (1 - dx) * (1 - dy) * texel(l, xi, yi, wrap) + dx * (1 - dy) * texel(l, xi + 1, yi, wrap) +
            (1 - dx) * dy * texel(l, xi, yi + 1, wrap) + dx * dy * texel(l, xi + 1, yi + 1, wrap);
 }
