@@ -165,7 +165,8 @@ class SampleStream {
     std::array<std::uint32_t, 2> blue_noise_pair(std::uint32_t d) const {
         const std::uint64_t key = key_of(d);
         const std::uint64_t at = shuffle_quads(z_index_, tile_bits + index_bits_, key);
-        const std::uint64_t seeds = mix64(key);
+        // Not mix64(key): shuffle_quads takes that for the pixel at the start of the curve.
+        const std::uint64_t seeds = mix64(key ^ golden_gamma);
         const auto x = static_cast<std::uint32_t>(at);
         const auto y = static_cast<std::uint32_t>(sobol_second_reversed(at));
         return {reverse_bits(owen_scramble_reversed(x, static_cast<std::uint32_t>(seeds))),

@@ -259,6 +259,27 @@ TEST(SampleStream, HaltonAndHammersleyNumbersFillTheirStrata) {
     EXPECT_NE(counts(SamplerKind::independent, 64, 0), std::vector<int>(64, 1));
 }
 
+// The corner pixel of a tile and the first samples of a replicate have all indices zero: hashes of such keys
+// must not meet. False alarms: 72 tests at 6 standard errors, 1.4e-7.
+TEST_P(SampleStreamOf, FirstSamplesOfTheFirstPixelHaveIndependentNumbers) {
+    constexpr int seeds = 20000, numbers = 4;
+    for (std::uint32_t points : {1u, 2u, 4u, 8u})
+        for (std::uint32_t i = 0; i < std::min(points, 3u); ++i) {
+            int all_low = 0;
+            for (int seed = 0; seed < seeds; ++seed) {
+                SampleStream stream({GetParam(), static_cast<std::uint64_t>(seed), points, 1}, 0, 0, i);
+                bool low = true;
+                for (int d = 0; d < numbers; ++d) {
+                    const float u = stream.next_1d();
+                    low = low && u < 0.5f;
+                }
+                all_low += low;
+            }
+            const double p = std::pow(0.5, numbers);
+            EXPECT_NEAR(double(all_low) / seeds, p, 6 * std::sqrt(p * (1 - p) / seeds)) << points << ' ' << i;
+        }
+}
+
 TEST(SamplerSettings, ReplicatesAreConsecutiveRuns) {
     const SamplerSettings s{SamplerKind::sobol, 0, 10, 4};
     EXPECT_EQ(points_per_replicate(s), 3u);
