@@ -101,6 +101,7 @@ void print_json(const CompareSettings& s, const Side& a, const Side& b, const Co
         out["channels"].push_back(channel);
     }
     out["z"] = r.a_has_error || r.b_has_error ? json_of(r.z) : Json(nullptr);
+    out["z_skew_corrected"] = r.skew_known ? json_of(r.skew_corrected) : Json(nullptr);
     if (!s.difference.empty()) {
         out["difference"]["file"] = s.difference;
         out["difference"]["measure"] = s.measure;
@@ -111,6 +112,14 @@ void print_json(const CompareSettings& s, const Side& a, const Side& b, const Co
 
 unsigned long long count(std::uint64_t n) { return n; }
 
+void print_scores(const char* what, const ZScores& z) {
+    std::printf("%s of %llu samples: mean %.4f, standard deviation %.4f, largest %.2f\n", what,
+                count(z.count), z.mean, z.standard_deviation, z.largest);
+    for (int k = 0; k < 3; ++k)
+        std::printf("  within %d: %7.3f%%  (Gaussian errors: %.3f%%)\n", k + 1, 100 * z.within[k],
+                    100 * ZScores::expected_within[k]);
+}
+
 void print_z(const Comparison& r) {
     if (!r.a_has_error && !r.b_has_error) {
         std::printf("z-scores: none, for neither picture has standard errors\n");
@@ -120,11 +129,8 @@ void print_z(const Comparison& r) {
         std::printf("z-scores use the standard errors of %s alone, as if %s were exact\n",
                     r.a_has_error ? "A" : "B", r.a_has_error ? "B" : "A");
     const ZScores& z = r.z;
-    std::printf("z-scores of %llu samples: mean %.4f, standard deviation %.4f, largest %.2f\n",
-                count(z.count), z.mean, z.standard_deviation, z.largest);
-    for (int k = 0; k < 3; ++k)
-        std::printf("  within %d: %7.3f%%  (Gaussian errors: %.3f%%)\n", k + 1, 100 * z.within[k],
-                    100 * ZScores::expected_within[k]);
+    print_scores("z-scores", z);
+    if (r.skew_known) print_scores("z-scores corrected for skewness", r.skew_corrected);
     if (z.equal_without_error)
         std::printf("  %llu samples are equal and have no error\n", count(z.equal_without_error));
     if (z.unexplained)
@@ -132,6 +138,14 @@ void print_z(const Comparison& r) {
     if (z.invalid_errors)
         std::printf("  %llu samples have an error that is negative, NaN or infinite\n",
                     count(z.invalid_errors));
+}
+
+// "-" for what is not known: an error without standard errors, a ratio to a black picture.
+std::string percent(double fraction) {
+    if (!std::isfinite(fraction)) return "-";
+    char buffer[64];
+    std::snprintf(buffer, sizeof buffer, "%.4f%%", 100 * fraction);
+    return buffer;
 }
 
 void print_text(const CompareSettings& s, const Side& a, const Side& b, const Comparison& r,
@@ -149,9 +163,9 @@ void print_text(const CompareSettings& s, const Side& a, const Side& b, const Co
     std::printf("\n%-8s %13s %13s %12s %12s %12s %12s\n", "channel", "mean A", "mean B", "A/B - 1",
                 "its error", "RMSE", "relMSE");
     for (const ChannelComparison& c : r.channels)
-        std::printf("%-8s %13.6g %13.6g %11.4f%% %11.4f%% %12.5g %12.5g\n", c.name.c_str(), c.mean_a,
-                    c.mean_b, 100 * c.relative_mean_difference,
-                    100 * c.mean_difference_error / std::abs(c.mean_b), c.rmse, c.rel_mse);
+        std::printf("%-8s %13.6g %13.6g %12s %12s %12.5g %12.5g\n", c.name.c_str(), c.mean_a, c.mean_b,
+                    percent(c.relative_mean_difference).c_str(),
+                    percent(c.mean_difference_error / std::abs(c.mean_b)).c_str(), c.rmse, c.rel_mse);
     std::printf("RMSE %.6g, relMSE %.6g (epsilon %g)\n", r.rmse, r.rel_mse, s.options.relative_epsilon);
     print_z(r);
     if (!s.difference.empty())
@@ -207,6 +221,11 @@ void add_compare(CLI::App& app, int& exit_code) {
         ->check(CLI::PositiveNumber)
         ->needs(difference);
     command->add_flag("--json", s->json, "Print JSON");
+    command->footer("Examples:\n"
+                    "  montelux compare out.exr ref/mean.exr\n"
+                    "  montelux compare out.exr other.exr --difference d.png --difference-of z\n"
+                    "\n"
+                    "The exit code is 0 however far apart the pictures are.");
     command->callback([s, &exit_code] {
         run_compare(*s);
         exit_code = exit_done;

@@ -51,23 +51,19 @@ FilmError Film::error() const {
 
 Image Film::develop() const {
     Image image(bounds().width(), bounds().height(),
-                {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B", "samples", "albedo.R", "albedo.G",
-                 "albedo.B", "N.X", "N.Y", "N.Z", "depth.Z"});
-    auto out = image.f32();
-    std::size_t i = 0;
+                {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B", "skewness.R", "skewness.G", "skewness.B",
+                 "samples", "albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z", "depth.Z"});
+    auto out = image.f32().begin();
+    auto put = [&](double v) { *out++ = static_cast<float>(v); };
     for (const Pixel& p : pixels_) {
-        const Moments3& units = p.units();
-        for (int c = 0; c < 3; ++c) {
-            out[i + static_cast<std::size_t>(c)] = static_cast<float>(units.mean(c));
-            out[i + 3 + static_cast<std::size_t>(c)] = static_cast<float>(units.standard_error(c));
-        }
-        out[i + 6] = static_cast<float>(p.samples());
-        for (int c = 0; c < 3; ++c) {
-            out[i + 7 + static_cast<std::size_t>(c)] = p.albedo()[c];
-            out[i + 10 + static_cast<std::size_t>(c)] = p.normal()[c];
-        }
-        out[i + 13] = p.depth();
-        i += 14;
+        const SkewMoments<3>& units = p.units();
+        for (int c = 0; c < 3; ++c) put(units.mean(c));
+        for (int c = 0; c < 3; ++c) put(units.standard_error(c));
+        for (int c = 0; c < 3; ++c) put(units.skewness_of_mean(c));
+        put(p.samples());
+        for (int c = 0; c < 3; ++c) put(double(p.albedo()[c]));
+        for (int c = 0; c < 3; ++c) put(double(p.normal()[c]));
+        put(double(p.depth()));
     }
     return image;
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "montelux/image/image.h"
-#include "montelux/mc/stats/moments.h"
+#include "montelux/mc/stats/skew_moments.h"
 #include "montelux/scene/film/film_settings.h"
 
 namespace montelux {
@@ -56,7 +56,7 @@ class Pixel {
     }
 
     // All units must have ended.
-    const Moments3& units() const { return units_; }
+    const SkewMoments<3>& units() const { return units_; }
     std::uint32_t samples() const { return samples_; }
     std::uint32_t bad() const { return bad_; }
     Vec3f albedo() const { return samples_ > 0 ? albedo_ / static_cast<float>(samples_) : Vec3f{}; }
@@ -64,7 +64,7 @@ class Pixel {
     float depth() const { return samples_ > 0 ? depth_ / static_cast<float>(samples_) : 0; }
 
   private:
-    Moments3 units_;
+    SkewMoments<3> units_;
     Vec3d unit_sum_;
     Vec3f albedo_, normal_;
     float depth_ = 0;
@@ -93,8 +93,9 @@ class Film {
         for (Pixel& p : pixels_) p.end_unit();
     }
     FilmError error() const;
-    // Layers R, G, B (mean); stderr.R, G, B; samples; albedo.R, G, B; N.X, Y, Z; depth.Z, of the cropped
-    // pixels. The standard error is infinite where fewer than two units have been taken.
+    // Layers R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples; albedo.R, G, B; N.X, Y,
+    // Z; depth.Z, of the cropped pixels. The standard error is infinite where fewer than two units have been
+    // taken.
     Image develop() const;
 
   private:

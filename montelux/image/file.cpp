@@ -35,10 +35,12 @@ class Descriptor {
 std::vector<std::uint8_t> read_file_bytes(const std::filesystem::path& path, std::size_t max_bytes) {
     // O_NONBLOCK: opening a pipe that nobody writes to would wait for ever.
     Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-    if (file.get() < 0) throw Error(path.string(), "cannot be opened: " + reason(errno));
+    if (file.get() < 0)
+        throw Error(path.empty() ? "''" : path.string(), "cannot be opened: " + reason(errno));
     struct stat info {};
     if (::fstat(file.get(), &info) != 0) throw Error(path.string(), "cannot be read: " + reason(errno));
-    if (!S_ISREG(info.st_mode)) throw Error(path.string(), "is not a regular file");
+    if (S_ISDIR(info.st_mode)) throw Error(path.string(), "cannot be read: it is a folder");
+    if (!S_ISREG(info.st_mode)) throw Error(path.string(), "cannot be read: it is not a regular file");
     auto size = static_cast<std::uint64_t>(info.st_size);
     if (size > max_bytes)
         throw Error(path.string(), "has " + std::to_string(size) + " bytes; the limit is " +

@@ -22,7 +22,10 @@ FileFormat format_of(const std::filesystem::path& path) {
     if (extension == ".png") return FileFormat::png;
     if (extension == ".hdr") return FileFormat::hdr;
     if (extension == ".pfm") return FileFormat::pfm;
-    throw Error(path.string(),
+    std::string name = path.empty() ? "''" : path.string();
+    if (extension.empty())
+        throw Error(name, "cannot be written: the name has no extension; expected .exr, .png, .hdr or .pfm");
+    throw Error(name,
                 "cannot be written: the extension '" + extension + "' is not one of .exr, .png, .hdr, .pfm");
 }
 

@@ -8,6 +8,7 @@
 #include "montelux/mc/math/compensated.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/stats/moments.h"
+#include "montelux/mc/stats/skew_moments.h"
 
 namespace montelux {
 
@@ -86,13 +87,14 @@ class ZCollector {
         return sum;
     }
 
-    void add(double difference, double variance) {
+    // `skewness` is that of the difference.
+    void add(double difference, double variance, double skewness = 0) {
         if (variance < 0) {
             ++z_.invalid_errors;
         } else if (variance == 0) {
             ++(difference == 0 ? z_.equal_without_error : z_.unexplained);
         } else {
-            double z = difference / std::sqrt(variance), magnitude = std::abs(z);
+            double z = skew_corrected_z(difference / std::sqrt(variance), skewness), magnitude = std::abs(z);
             moments_.add(z);
             for (int k = 0; k < 3; ++k) inside_[k] += magnitude <= k + 1;
             z_.largest = std::max(z_.largest, magnitude);
@@ -118,8 +120,9 @@ class ZCollector {
 } // namespace
 
 MeasuredPicture measured_picture(const std::string& name, const Image& image) {
-    MeasuredPicture p{name, &image, image.color_channels(), nullptr, {}};
+    MeasuredPicture p{name, &image, image.color_channels(), nullptr, {}, image.color_channels("skewness.")};
     if (p.channels.empty()) throw Error(name, "has neither the channels R, G, B nor Y");
+    if (p.skewness_channels.size() != p.channels.size()) p.skewness_channels.clear();
     auto errors = image.color_channels("stderr.");
     if (errors.size() == p.channels.size()) {
         p.error = &image;
@@ -167,7 +170,8 @@ Comparison compare_pictures(const MeasuredPicture& a, const MeasuredPicture& b,
 
     bool any_error = a.has_error() || b.has_error();
     double n = static_cast<double>(result.pixels);
-    ZCollector scores;
+    ZCollector scores, corrected;
+    result.skew_known = any_error && !(a.skewness_channels.empty() && b.skewness_channels.empty());
     CompensatedSum all_squares, all_relative;
     for (int c = 0; c < static_cast<int>(a.channels.size()); ++c) {
         CompensatedSum sum_a, sum_b, squares, relative, variances;
@@ -182,6 +186,11 @@ Comparison compare_pictures(const MeasuredPicture& a, const MeasuredPicture& b,
                 if (!any_error) continue;
                 double variance = ZCollector::variance(a, b, x, y, c);
                 scores.add(d, variance);
+                if (result.skew_known) {
+                    double cumulant = a.third_cumulant(x, y, c) - b.third_cumulant(x, y, c);
+                    corrected.add(d, variance,
+                                  variance > 0 ? cumulant / (variance * std::sqrt(variance)) : 0);
+                }
                 variances.add(std::max(variance, 0.0));
             }
         ChannelComparison channel;
@@ -201,6 +210,7 @@ Comparison compare_pictures(const MeasuredPicture& a, const MeasuredPicture& b,
     result.rmse = std::sqrt(all_squares.value() / samples);
     result.rel_mse = all_relative.value() / samples;
     if (any_error) result.z = scores.finish();
+    if (result.skew_known) result.skew_corrected = corrected.finish();
     return result;
 }
 

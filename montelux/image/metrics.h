@@ -19,15 +19,24 @@ struct MeasuredPicture {
     const Image* error = nullptr;
     std::vector<int> error_channels; // in *error, in the same order
 
+    // Skewness of each sample's mean, in *image; empty when it is not known.
+    std::vector<int> skewness_channels;
+
     bool has_error() const { return error != nullptr; }
     double value(int x, int y, int c) const { return static_cast<double>(image->linear(x, y, channels[c])); }
     double standard_error(int x, int y, int c) const {
         return static_cast<double>(error->linear(x, y, error_channels[c]));
     }
+    // Third cumulant of the sample's error: skewness times the cube of the standard error; 0 when not known.
+    double third_cumulant(int x, int y, int c) const {
+        if (skewness_channels.empty() || !has_error()) return 0;
+        double s = standard_error(x, y, c);
+        return static_cast<double>(image->linear(x, y, skewness_channels[c])) * s * s * s;
+    }
 };
 
 // Takes the colour channels, and the layer "stderr.R", "stderr.G", "stderr.B" (or "stderr.Y") if there is
-// one. Throws Error for an image without colour; `name` begins the message.
+// one, and the layer "skewness.". Throws Error for an image without colour; `name` begins the message.
 MeasuredPicture measured_picture(const std::string& name, const Image& image);
 // The same with the errors in an image of their own: its "stderr." layer, or else its colour channels.
 // Throws Error when the sizes or channels differ.
@@ -80,6 +89,10 @@ struct Comparison {
     std::uint64_t not_finite = 0; // pixels with NaN or infinity in either picture, left out of every figure
     bool a_has_error = false, b_has_error = false;
     ZScores z; // empty when neither picture has errors
+    // The same scores corrected for the skewness of the pictures' samples (skew_corrected_z), where a picture
+    // has the layer "skewness."; `skew_known` tells.
+    ZScores skew_corrected;
+    bool skew_known = false;
 };
 
 // `b` is the reference. Throws Error when sizes or channels differ, or when no pixel is left.
