@@ -19,16 +19,16 @@ build: dependencies ## the program, at build/release/montelux
 	cmake --build $(BUILD) --parallel $(JOBS) --target montelux
 
 test: dependencies ## fast tests, then the same tests under the address and undefined-behaviour sanitizers
-	cmake --preset release
-	cmake --build $(BUILD) --parallel $(JOBS)
+	cmake --preset test
+	cmake --build build/test --parallel $(JOBS)
 	cmake --preset asan
 	cmake --build build/asan --parallel $(JOBS)
-	cmake/run-tests.sh fast $(JOBS) $(BUILD) build/asan
+	cmake/run-tests.sh fast $(JOBS) build/test build/asan
 
 test-all: dependencies ## every test, the slow ones too (without sanitizers)
-	cmake --preset release
-	cmake --build $(BUILD) --parallel $(JOBS)
-	cmake/run-tests.sh 'fast|slow' $(JOBS) $(BUILD)
+	cmake --preset test
+	cmake --build build/test --parallel $(JOBS)
+	cmake/run-tests.sh 'fast|slow' $(JOBS) build/test
 
 bench: dependencies ## speed of the parts, then of whole pictures
 	cmake --preset bench
