@@ -36,8 +36,11 @@ std::vector<PixelBounds> tiles_of(const PixelBounds& crop) {
 
 // Radiance that may enter a sum, or why it may not.
 std::optional<BadSample::Kind> badness(Vec3f rgb, SampledSpectrum radiance) {
-    if (std::isnan(rgb.x + rgb.y + rgb.z) || has_nan(radiance)) return BadSample::Kind::nan;
-    if (!is_finite(rgb) || !all_finite(radiance)) return BadSample::Kind::infinite;
+    // The radiance first: infinite light makes differences of infinities in RGB.
+    if (has_nan(radiance)) return BadSample::Kind::nan;
+    if (!all_finite(radiance)) return BadSample::Kind::infinite;
+    if (std::isnan(rgb.x + rgb.y + rgb.z)) return BadSample::Kind::nan;
+    if (!is_finite(rgb)) return BadSample::Kind::infinite;
     // RGB may be negative for colours outside the gamut; the spectrum may not.
     if (has_negative(radiance)) return BadSample::Kind::negative;
     return std::nullopt;

@@ -152,7 +152,7 @@ TEST(Film, DevelopsTheCropWithItsLayers) {
         if (!c) ADD_FAILURE() << "no channel " << channel;
         return c ? image.value(x, y, *c) : 0;
     };
-    EXPECT_EQ(image.channels(), 14);
+    EXPECT_EQ(image.channels(), 17);
     for (int y = 0; y < 2; ++y)
         for (int x = 0; x < 3; ++x) {
             EXPECT_EQ(value("R", x, y), static_cast<float>(x + 3));
@@ -170,6 +170,27 @@ TEST(Film, DevelopsTheCropWithItsLayers) {
             EXPECT_EQ(value("depth.Z", x, y), static_cast<float>((x + 3) * (y + 2)));
         }
     EXPECT_EQ(image.color_channels("stderr.").size(), 3u);
+}
+
+TEST(Film, TellsTheSkewnessOfTheMean) {
+    Film film(settings(1, 1, {0, 0, 1, 1}));
+    // 0, 0, 0, 4: deviations -1, -1, -1, 3; m2 = 3, m3 = 6.
+    for (float v : {0.0f, 0.0f, 4.0f, 0.0f}) {
+        film.pixel(0, 0).add_sample(gray_sample(v));
+        film.pixel(0, 0).end_unit();
+    }
+    Image image = film.develop();
+    auto c = image.find_channel("skewness.G");
+    ASSERT_TRUE(c.has_value());
+    EXPECT_NEAR(image.value(0, 0, *c), 6 / std::pow(3, 1.5) / 2, 1e-6);
+}
+
+TEST(Film, EndsUnitsThatWereCutShort) {
+    Film film(settings(2, 1, {0, 0, 2, 1}));
+    film.pixel(0, 0).add_sample(gray_sample(3));
+    film.end_units();
+    EXPECT_EQ(film.pixel(0, 0).units().count(), 1u);
+    EXPECT_EQ(film.pixel(1, 0).units().count(), 0u);
 }
 
 TEST(Film, OneUnitHasNoError) {

@@ -12,6 +12,7 @@
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/stats/chi_squared.h"
+#include "montelux/mc/stats/moments.h"
 
 namespace montelux {
 namespace {

@@ -99,6 +99,17 @@ inline PictureMean picture_mean(const Film& film, int channel = 1) {
     return {sum / n, std::sqrt(variance) / n};
 }
 
+// To the last bit.
+inline bool same_pixel(const Pixel& a, const Pixel& b) {
+    auto same = [](Vec3f v, Vec3f w) { return v.x == w.x && v.y == w.y && v.z == w.z; };
+    for (int c = 0; c < 3; ++c)
+        if (a.units().mean(c) != b.units().mean(c) || a.units().variance(c) != b.units().variance(c) ||
+            a.units().skewness(c) != b.units().skewness(c))
+            return false;
+    return a.units().count() == b.units().count() && a.samples() == b.samples() && a.bad() == b.bad() &&
+           same(a.albedo(), b.albedo()) && same(a.normal(), b.normal()) && a.depth() == b.depth();
+}
+
 inline Film render(const SceneDescription& description) {
     Film film(description.film);
     Renderer(description).render(film);
