@@ -24,7 +24,7 @@ void triangle_derivatives(SurfacePoint& s, Vec3f e1, Vec3f e2, Vec2f duv1, Vec2f
     s.dpdv = frame.t;
 }
 
-SurfacePoint triangle_point(const TriangleMesh& mesh, const Shape& shape, const Hit& hit, bool derivatives) {
+SurfacePoint triangle_point(const TriangleMesh& mesh, const Shape& shape, const Hit& hit, bool coordinates) {
     SurfacePoint s;
     const Index* v = &mesh.indices[3 * std::size_t{hit.primitive}];
     Point3f p0 = mesh.positions[v[0]], p1 = mesh.positions[v[1]], p2 = mesh.positions[v[2]];
@@ -44,6 +44,7 @@ SurfacePoint triangle_point(const TriangleMesh& mesh, const Shape& shape, const 
     }
     s.error = coordinate_error(
         std::max(largest_coordinate(p0), std::max(largest_coordinate(p1), largest_coordinate(p2))));
+    if (!coordinates) return s;
     Point2f uv0{0, 0}, uv1{1, 0}, uv2{1, 1};
     if (!mesh.uvs.empty()) {
         uv0 = mesh.uvs[v[0]];
@@ -51,21 +52,21 @@ SurfacePoint triangle_point(const TriangleMesh& mesh, const Shape& shape, const 
         uv2 = mesh.uvs[v[2]];
     }
     s.uv = b0 * uv0 + hit.b1 * uv1 + hit.b2 * uv2;
-    if (derivatives) triangle_derivatives(s, e1, e2, uv1 - uv0, uv2 - uv0);
+    triangle_derivatives(s, e1, e2, uv1 - uv0, uv2 - uv0);
     return s;
 }
 
 SurfacePoint quadric_point(const Quadric& quadric, const Shape& shape, const Ray& ray, const Hit& hit,
-                           bool derivatives) {
+                           bool coordinates) {
     SurfacePoint s;
-    QuadricPoint q = point_at(quadric, ray, double(hit.t), derivatives);
+    QuadricPoint q = point_at(quadric, ray, double(hit.t), coordinates);
     s.p = Vec3f(q.p);
     s.ng = Vec3f(shape.flip_normal ? -q.n : q.n);
     s.ns = s.ng;
     s.uv = q.uv;
     s.error = coordinate_error(largest_coordinate(s.p) +
                                std::visit([](const auto& x) { return x.radius; }, quadric) * 0.25f);
-    if (derivatives) {
+    if (coordinates) {
         s.dpdu = Vec3f(q.dpdu);
         s.dpdv = cross(s.ng, s.dpdu);
     }
@@ -91,17 +92,17 @@ float stretch(const Transform& t) {
 
 } // namespace
 
-SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, bool derivatives) {
+SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, bool coordinates) {
     const Shape& shape = scene.shapes[hit.shape];
     SurfacePoint s;
     if (hit.instance == none) {
-        s = shape.mesh != none ? triangle_point(scene.meshes[shape.mesh], shape, hit, derivatives)
-                               : quadric_point(scene.quadrics[shape.quadric], shape, ray, hit, derivatives);
+        s = shape.mesh != none ? triangle_point(scene.meshes[shape.mesh], shape, hit, coordinates)
+                               : quadric_point(scene.quadrics[shape.quadric], shape, ray, hit, coordinates);
     } else {
         const Transform& t = scene.instances[hit.instance].world_from_object;
         Ray local{Vec3f(t.inverse_point(Vec3d(ray.o))), Vec3f(t.inverse_vector(Vec3d(ray.d))), ray.t_max};
-        s = shape.mesh != none ? triangle_point(scene.meshes[shape.mesh], shape, hit, derivatives)
-                               : quadric_point(scene.quadrics[shape.quadric], shape, local, hit, derivatives);
+        s = shape.mesh != none ? triangle_point(scene.meshes[shape.mesh], shape, hit, coordinates)
+                               : quadric_point(scene.quadrics[shape.quadric], shape, local, hit, coordinates);
         transform_by(t, s, stretch(t));
     }
     s.shape = &shape;

@@ -12,15 +12,15 @@ struct SurfacePoint {
     Normal3f ng;      // geometric normal, unit, on the side that ns is on
     Normal3f ns;      // shading normal, unit
     float error = 0;  // bound of the distance between p and the true surface along ng
-    Point2f uv;       // of quadrics only when derivatives were asked for
-    Vec3f dpdu, dpdv; // with respect to uv; set by surface_point when asked for
+    Point2f uv;       // these three by surface_point only when asked for
+    Vec3f dpdu, dpdv; // with respect to uv
     const Shape* shape = nullptr;
     Index primitive = 0;
 };
 
-// Everything at a hit of `ray`. The derivatives are computed only when asked for: textures that are filtered
-// and anisotropic BSDFs need them.
-SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, bool derivatives);
+// Everything at a hit of `ray`. Texture coordinates and derivatives are computed only when asked for:
+// textures and anisotropic BSDFs need them.
+SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, bool coordinates);
 
 // Bound of the rounding error of coordinates of that size, for offset_origin.
 inline float coordinate_error(float largest) { return 0x1p-20f * largest; }
