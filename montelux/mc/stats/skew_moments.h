@@ -1,6 +1,7 @@
 // Running mean, variance and skewness in one pass: errors of estimates whose samples are far from Gaussian.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -74,6 +75,7 @@ class SkewMoments {
 // Johnson 1978, "Modified t Tests and Confidence Intervals for Asymmetrical Populations", JASA 73(363): z =
 // (mean - truth) / standard error has the mean -g/2 when the mean's own skewness is g, because samples that
 // are low also say that the spread is small. The corrected score is free of this to first order.
-inline double skew_corrected_z(double z, double g) { return z + g / 6 + g * z * z / 3; }
+// The series holds for ordinary scores; beyond 3 its square term stays at its value there.
+inline double skew_corrected_z(double z, double g) { return z + g / 6 + g * std::min(z * z, 9.0) / 3; }
 
 } // namespace montelux
