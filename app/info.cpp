@@ -111,9 +111,10 @@ void add_info(CLI::App& app, int& exit_code) {
     auto settings = std::make_shared<InfoSettings>();
     CLI::App* command =
         app.add_subcommand("info", "Tell what is in a picture: size, channels, header, values");
-    command->add_option("file", settings->file, "The picture (EXR, PNG, JPEG, HDR, PFM, PNM, TGA, BMP)")
+    command->add_option("FILE", settings->file, "The picture (EXR, PNG, JPEG, HDR, PFM, PNM, TGA, BMP)")
         ->required();
     command->add_flag("--json", settings->json, "Print JSON");
+    command->footer("Example:\n  montelux info out.exr --json");
     command->callback([settings, &exit_code] {
         Image image = read_image(settings->file);
         if (settings->json)

@@ -1,28 +1,82 @@
 #include "app/commands.h"
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <exception>
+#include <fcntl.h>
 #include <new>
+#include <string>
+#include <string_view>
+#include <unistd.h>
+#include <vector>
 
+#include "montelux/formats/nearest_name.h"
 #include "montelux/mc/math/error.h"
 
+namespace {
+
+using namespace montelux::app;
+
+// A file that is opened while a standard stream is closed would get its number, and messages inside it.
+void occupy_standard_streams() {
+    int fd = 0;
+    do fd = ::open("/dev/null", O_RDONLY);
+    while (fd >= 0 && fd <= STDERR_FILENO);
+    if (fd >= 0) ::close(fd);
+}
+
+// A mistake of the command line in the program's own style.
+int report_usage(const CLI::App& app, const CLI::ParseError& e, int argc, char** argv) {
+    std::string command = "montelux", message = e.what();
+    for (const CLI::App* sub : app.get_subcommands()) command += " " + sub->get_name();
+    if (app.get_subcommands().empty()) {
+        std::vector<std::string_view> names;
+        for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
+        std::string known;
+        for (std::string_view name : names) known += (known.empty() ? "" : ", ") + std::string(name);
+        std::string_view first = argc > 1 ? argv[1] : "";
+        if (first.empty())
+            message = "a command is expected: " + known;
+        else if (first.starts_with('-'))
+            message =
+                "there is no option '" + std::string(first) + "' without a command; expected one of " + known;
+        else
+            message = "there is no command '" + std::string(first) + "'" +
+                      montelux::did_you_mean(first, names) + "; expected one of " + known;
+    }
+    std::fprintf(stderr, "montelux: error: %s\nRun '%s --help' for what it understands.\n", message.c_str(),
+                 command.c_str());
+    return exit_usage;
+}
+
+} // namespace
+
 int main(int argc, char** argv) {
-    using namespace montelux::app;
+    occupy_standard_streams();
+    // Writing beyond a limit on the size of files is to fail with a sentence, not to end the program.
+    std::signal(SIGXFSZ, SIG_IGN);
     int exit_code = exit_done;
     try {
         CLI::App app("Montelux: Monte Carlo integration and light transport", "montelux");
         app.set_version_flag("--version", "montelux " MONTELUX_VERSION);
         app.require_subcommand(1);
-        app.footer("Exit codes: 0 done, 1 could not do it, 2 wrong usage, 130 interrupted (what there was is "
+        app.footer("Examples:\n"
+                   "  montelux render scene.pbrt --spp 64 -o out.exr\n"
+                   "  montelux info out.exr\n"
+                   "  montelux compare out.exr reference.exr\n"
+                   "\n"
+                   "'montelux COMMAND --help' tells of a command's options.\n"
+                   "Exit codes: 0 done, 1 could not do it, 2 wrong usage, 130 interrupted (what there was is "
                    "saved).");
         add_render(app, exit_code);
         add_compare(app, exit_code);
         add_info(app, exit_code);
         try {
             app.parse(argc, argv);
+        } catch (const CLI::Success& e) { // asking for help or the version
+            app.exit(e);
         } catch (const CLI::ParseError& e) {
-            // Asking for help or the version is no mistake.
-            return app.exit(e) == 0 ? exit_done : exit_usage;
+            return report_usage(app, e, argc, argv);
         }
         // A full disk behind a redirection is a failure too.
         if (std::fflush(stdout) != 0) throw montelux::Error("standard output", "cannot be written");

@@ -16,8 +16,8 @@ std::string text(const char* format, Args... args) {
     return buffer;
 }
 
-// Between two plain lines, in seconds.
-constexpr double line_interval = 10;
+// Between two plain lines, and between two pictures of the bar, in seconds.
+constexpr double line_interval = 10, bar_interval = 0.1;
 
 } // namespace
 
@@ -46,10 +46,12 @@ void ProgressPrinter::update(const RenderProgress& p) {
     if (quiet_ || p.samples_total == 0) return;
     double fraction = static_cast<double>(p.samples_done) / static_cast<double>(p.samples_total);
     bool end = p.samples_done == p.samples_total;
-    if (!terminal_ && !end && p.seconds - last_line_seconds_ < line_interval) return;
-    last_line_seconds_ = p.seconds;
+    double interval = terminal_ ? bar_interval : line_interval;
+    if (!end && p.seconds - last_update_seconds_ < interval) return;
+    last_update_seconds_ = p.seconds;
     double rate = p.seconds > 0 ? static_cast<double>(p.samples_done) / p.seconds : 0;
-    std::string numbers = text("%3.0f %%", 100 * fraction) + "  " + duration_text(p.seconds) + " elapsed";
+    std::string numbers =
+        text("%3.0f %%", std::floor(100 * fraction)) + "  " + duration_text(p.seconds) + " elapsed";
     if (!end && fraction > 0) numbers += ", " + duration_text(p.seconds * (1 / fraction - 1)) + " left";
     numbers += ", " + count_text(rate) + "samples/s";
     if (p.error) numbers += ", error " + percent_text(p.error->relative);

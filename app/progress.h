@@ -15,7 +15,7 @@ class ProgressPrinter {
 
   private:
     bool quiet_, terminal_, drawn_ = false;
-    double last_line_seconds_ = 0;
+    double last_update_seconds_ = 0;
 };
 
 // 75 -> "1:15", 3700 -> "1:01:40", 2.5 -> "2.5 s"

@@ -1,14 +1,17 @@
 // montelux render: from a scene file to a picture with error bars.
 #include "app/commands.h"
+#include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/render_options.h"
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "montelux/formats/pbrt/load_pbrt.h"
 #include "montelux/image/image_write.h"
@@ -18,28 +21,50 @@ namespace montelux::app {
 
 namespace {
 
-CancelFlag cancel_flag;
-
-extern "C" void on_signal(int) { cancel_flag.request(); }
-
-// The first signal asks the render to stop, the second one ends the program.
-void catch_signals() {
-    struct sigaction action {};
-    action.sa_handler = on_signal;
-    action.sa_flags = SA_RESETHAND;
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
-}
-
 double seconds_since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 std::vector<std::string> outputs_of(const RenderOptions& options, const SceneDescription& description) {
-    if (!options.outputs.empty()) return options.outputs;
+    if (!options.outputs.empty()) {
+        std::vector<std::string> outputs;
+        for (const std::string& output : options.outputs)
+            if (std::find(outputs.begin(), outputs.end(), output) == outputs.end()) outputs.push_back(output);
+        return outputs;
+    }
     // The file's own wish, in the current folder, always with the layers that only EXR can hold.
     std::filesystem::path name = description.output_file.empty() ? options.scene : description.output_file;
     return {name.filename().replace_extension(".exr").string()};
+}
+
+void check_output(const std::string& output, const std::vector<std::filesystem::path>& files_read) {
+    check_writable(output);
+    std::error_code ignored;
+    for (const std::filesystem::path& file : files_read)
+        if (std::filesystem::equivalent(output, file, ignored))
+            throw UsageError(output, "the scene is read from this file; the picture needs another name");
+}
+
+// Asking for more than there is would end in the killing of some program, seconds or hours later.
+void check_memory(const FilmSettings& film) {
+    auto pages = static_cast<double>(sysconf(_SC_PHYS_PAGES));
+    double there = pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+    constexpr double layers = 14, copies = 2; // the picture, and its encoding
+    double pixels = static_cast<double>(film.crop.width()) * film.crop.height();
+    double needed = pixels * (sizeof(Pixel) + layers * copies * sizeof(float));
+    if (pages <= 0 || needed <= there) return;
+    constexpr double gib = 1 << 30;
+    char text[160];
+    std::snprintf(text, sizeof text, "%d x %d pixels need %.1f GiB of memory; this machine has %.1f GiB",
+                  film.crop.width(), film.crop.height(), needed / gib, there / gib);
+    throw Error("film", text);
+}
+
+void print_warnings(const Warnings& warnings) {
+    for (const std::string& w : warnings.messages())
+        std::fprintf(stderr, "montelux: warning: %s\n", w.c_str());
+    if (warnings.left_out() > 0)
+        std::fprintf(stderr, "montelux: warning: %zu more warnings were left out\n", warnings.left_out());
 }
 
 void add_header(Image& image, const RenderOptions& options, const SceneDescription& description,
@@ -51,9 +76,13 @@ void add_header(Image& image, const RenderOptions& options, const SceneDescripti
     a["scene"] = std::filesystem::path(options.scene).filename().string();
     a["sceneHash"] = std::string(hash);
     a["samplesPerPixel"] = static_cast<int>(description.sampler.samples_per_pixel);
+    a["samplesTaken"] = static_cast<float>(error.mean_samples);
+    a["interrupted"] = report.cancelled ? 1 : 0;
     a["sampler"] = name_of(description.sampler.kind);
     a["replicates"] = static_cast<int>(renderer.sampler().replicates);
     a["strategy"] = name_of(description.integrator.strategy);
+    a["heuristic"] = name_of(description.integrator.heuristic);
+    a["maxDepth"] = description.integrator.max_depth;
     a["seed"] = std::to_string(description.sampler.seed);
     a["renderSeconds"] = static_cast<float>(report.seconds);
     a["relativeError"] = static_cast<float>(error.relative);
@@ -101,31 +130,31 @@ void print_statistics(const RenderReport& report, double load_seconds, double bu
 
 int run(const RenderOptions& options) {
     using Clock = std::chrono::steady_clock;
-    const ThreadLimit limit(static_cast<int>(std::clamp(options.threads, 0ll, 4096ll)));
+    end_on_signals();
+    // A closed pipe behind the messages must not end the render.
+    std::signal(SIGPIPE, SIG_IGN);
+    const ThreadLimit limit(options.threads);
     for (const std::string& output : options.outputs) check_writable(output);
 
     auto load_begin = Clock::now();
     Warnings warnings;
-    SceneDescription description = load_pbrt(options.scene, warnings);
-    apply(options, description);
+    std::vector<std::filesystem::path> files_read;
+    SceneDescription description = load_pbrt(options.scene, warnings, &files_read);
     double load_seconds = seconds_since(load_begin);
-    if (!options.quiet) {
-        for (const std::string& w : warnings.messages())
-            std::fprintf(stderr, "montelux: warning: %s\n", w.c_str());
-        if (warnings.left_out() > 0)
-            std::fprintf(stderr, "montelux: warning: %zu more warnings were left out\n", warnings.left_out());
-    }
+    if (!options.quiet) print_warnings(warnings);
+    apply(options, description);
     const std::vector<std::string> outputs = outputs_of(options, description);
-    for (const std::string& output : outputs) check_writable(output);
+    for (const std::string& output : outputs) check_output(output, files_read);
+    check_memory(description.film);
 
     Film film(description.film);
     Renderer renderer(description);
     ProgressPrinter printer(options.quiet);
-    catch_signals();
+    const CancelFlag& cancel = cancel_on_signals();
     RenderReport report = renderer.render(
-        film, [&](const RenderProgress& p) { printer.update(p); }, &cancel_flag);
+        film, [&](const RenderProgress& p) { printer.update(p); }, &cancel);
     printer.finish();
-    print_bad_samples(report.bad, description.sampler.seed);
+    if (!options.quiet) print_bad_samples(report.bad, description.sampler.seed);
 
     FilmError error = film.error();
     Image image = film.develop();
@@ -133,7 +162,7 @@ int run(const RenderOptions& options) {
     for (const std::string& output : outputs) write_image(output, image);
     if (!options.quiet) {
         for (const std::string& output : outputs)
-            std::printf("%s: %dx%d, %.4g samples a pixel, relative error %s, %s%s\n", output.c_str(),
+            std::printf("%s: %d x %d pixels, %.7g samples a pixel, relative error %s, %s%s\n", output.c_str(),
                         image.width(), image.height(), error.mean_samples,
                         percent_text(error.relative).c_str(), duration_text(report.seconds).c_str(),
                         report.cancelled ? ", stopped before the end" : "");
@@ -146,7 +175,7 @@ int run(const RenderOptions& options) {
 
 void add_render(CLI::App& app, int& exit_code) {
     auto options = std::make_shared<RenderOptions>();
-    CLI::App* command = app.add_subcommand("render", "render a scene; every pixel with its standard error");
+    CLI::App* command = app.add_subcommand("render", "Render a scene: every pixel with its standard error");
     declare(*command, *options);
     command->callback([options, &exit_code] {
         try {

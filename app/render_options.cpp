@@ -5,9 +5,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
-#include "montelux/mc/math/error.h"
+#include "montelux/image/image.h"
 
 namespace montelux::app {
 
@@ -34,11 +35,48 @@ std::string names(const Table& table) {
     return list;
 }
 
-template <typename Table>
-auto find(const Table& table, const std::string& name, const char* option) {
-    for (const auto& [known, value] : table)
-        if (name == known) return value;
-    throw UsageError(option, "'" + name + "' is not one of " + names(table));
+template <typename Table, typename Value>
+std::string name_in(const Table& table, Value value) {
+    for (const auto& [name, known] : table)
+        if (known == value) return name;
+    return "?";
+}
+
+[[noreturn]] void refuse(const std::string& option, const std::string& given, const std::string& expected) {
+    throw CLI::ValidationError(option, "'" + given + "' was given; " + expected);
+}
+
+// An option that takes a whole number of [lowest, highest]. "1e9", signs and fractions are no whole numbers.
+template <typename Target>
+void add_whole_number(CLI::App& c, const std::string& name, Target& target, std::uint64_t lowest,
+                      std::uint64_t highest, const std::string& help) {
+    auto read = [name, &target, lowest, highest](const std::string& text) {
+        std::uint64_t v = 0;
+        const char* end = text.data() + text.size();
+        auto [stop, error] = std::from_chars(text.data(), end, v);
+        if (error != std::errc() || stop != end || v < lowest || v > highest)
+            refuse(name, text,
+                   "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest) +
+                       " is expected");
+        using Value = std::conditional_t<std::is_same_v<Target, int>, int, std::uint64_t>;
+        target = static_cast<Value>(v);
+    };
+    c.add_option_function<std::string>(name, read, help)->type_name("N")->take_last();
+}
+
+// An option that takes one of the names of a table.
+template <typename Table, typename Target>
+void add_choice(CLI::App& c, const std::string& name, Target& target, const Table& table,
+                const std::string& help) {
+    auto read = [name, &target, &table](const std::string& text) {
+        for (const auto& [known, value] : table)
+            if (text == known) {
+                target = value;
+                return;
+            }
+        refuse(name, text, "one of " + names(table) + " is expected");
+    };
+    c.add_option_function<std::string>(name, read, help + names(table))->type_name("NAME")->take_last();
 }
 
 std::pair<int, int> parse_resolution(const std::string& s) {
@@ -51,56 +89,84 @@ std::pair<int, int> parse_resolution(const std::string& s) {
             h <= Image::max_dimension)
             return {w, h};
     }
-    throw UsageError("--resolution", "'" + s +
-                                         "' was given; WIDTHxHEIGHT in pixels is expected, each from 1 to " +
-                                         std::to_string(Image::max_dimension) + ", for example 640x480");
+    refuse("--resolution", s,
+           "WIDTHxHEIGHT in pixels is expected, each from 1 to " + std::to_string(Image::max_dimension) +
+               ", for example 640x480");
 }
 
-PixelBounds crop_of(const std::vector<double>& c, int width, int height) {
-    if (c.size() != 4) throw UsageError("--crop", "four numbers are expected: x0,x1,y0,y1");
-    for (double v : c)
-        if (!(v >= 0 && v <= 1))
-            throw UsageError("--crop", "the numbers are fractions of the film, from 0 to 1: x0,x1,y0,y1");
+std::array<double, 4> parse_crop(const std::string& s) {
+    std::array<double, 4> crop{};
+    const char *at = s.data(), *end = s.data() + s.size();
+    bool good = true;
+    for (std::size_t i = 0; i < 4 && good; ++i) {
+        auto [stop, error] = std::from_chars(at, end, crop[i]);
+        good = error == std::errc() && crop[i] >= 0 && crop[i] <= 1 &&
+               (i == 3 ? stop == end : stop != end && *stop == ',');
+        at = stop + 1;
+    }
+    if (!good || !(crop[0] < crop[1]) || !(crop[2] < crop[3]))
+        refuse("--crop", s,
+               "x0,x1,y0,y1 is expected: fractions of the film from 0 to 1 with x0 < x1 and y0 < y1, for "
+               "example 0.25,0.75,0,0.5");
+    return crop;
+}
+
+PixelBounds crop_of(const std::array<double, 4>& c, int width, int height) {
     auto pixel = [](double v, int n) { return static_cast<int>(std::ceil(v * n - 1e-9)); };
     PixelBounds b{pixel(c[0], width), pixel(c[2], height), pixel(c[1], width), pixel(c[3], height)};
     if (b.width() < 1 || b.height() < 1)
-        throw UsageError("--crop", "no pixel lies within; x0 < x1 and y0 < y1 are expected");
+        throw UsageError("--crop", "no pixel of the " + std::to_string(width) + "x" + std::to_string(height) +
+                                       " film lies within");
     return b;
 }
 
 } // namespace
 
-std::string name_of(SamplerKind kind) {
-    for (const auto& [name, value] : samplers)
-        if (value == kind) return name;
-    return "?";
-}
-std::string name_of(Strategy strategy) {
-    for (const auto& [name, value] : strategies)
-        if (value == strategy) return name;
-    return "?";
-}
+std::string name_of(SamplerKind kind) { return name_in(samplers, kind); }
+std::string name_of(Strategy strategy) { return name_in(strategies, strategy); }
+std::string name_of(Heuristic heuristic) { return name_in(heuristics, heuristic); }
 
 void declare(CLI::App& c, RenderOptions& o) {
-    c.add_option("SCENE", o.scene, "scene file (pbrt-v4; .gz too)")->required();
-    c.add_option("-o,--output", o.outputs, "output file, .exr .png .hdr or .pfm; may be given several times");
-    c.add_option("--spp", o.spp, "samples a pixel");
-    c.add_option("--seed", o.seed, "seed of all random numbers (default 0)");
-    c.add_option("--threads", o.threads,
-                 "threads (default: one a processor); the picture does not depend on it");
-    c.add_option("--resolution", o.resolution, "WIDTHxHEIGHT in pixels");
-    c.add_option("--crop", o.crop, "x0,x1,y0,y1 as fractions of the film")->delimiter(',')->expected(4);
-    c.add_option("--sampler", o.sampler, names(samplers));
-    c.add_option("--strategy", o.strategy, "how light is found: " + names(strategies));
-    c.add_option("--heuristic", o.heuristic, "weights of --strategy mis: " + names(heuristics));
-    c.add_option("--max-depth", o.max_depth, "scattering events of a path");
-    c.add_flag("--stats", o.stats, "print rays/s, share of time inside Embree, memory, ...");
-    c.add_flag("--quiet", o.quiet, "print nothing but errors");
+    c.add_option("SCENE", o.scene, "Scene file of pbrt-v4; .gz is unpacked")->required();
+    c.add_option(
+         "-o,--output", o.outputs,
+         "Picture to write: .exr, .png, .hdr or .pfm; may be given several times. Default: the name that "
+         "the scene asks for, in this folder, as .exr")
+        ->type_name("FILE")
+        ->allow_extra_args(false); // the scene may stand behind it
+    add_whole_number(c, "--spp", o.spp, 1, 1u << 30, "Samples a pixel, in place of the scene's");
+    add_whole_number(c, "--seed", o.seed, 0, UINT64_MAX,
+                     "Seed of all random numbers, in place of the scene's");
+    add_whole_number(c, "--threads", o.threads, 0, 4096,
+                     "Threads; 0: one a processor. The picture does not depend on it");
+    c.add_option_function<std::string>(
+         "--resolution", [&o](const std::string& s) { o.resolution = parse_resolution(s); },
+         "Size of the film in pixels; the scene's crop keeps its place")
+        ->type_name("WxH")
+        ->take_last();
+    c.add_option_function<std::string>(
+         "--crop", [&o](const std::string& s) { o.crop = parse_crop(s); },
+         "Render a part of the film alone, as fractions from the top left")
+        ->type_name("x0,x1,y0,y1")
+        ->take_last();
+    add_choice(c, "--sampler", o.sampler, samplers, "Where samples are taken: ");
+    add_choice(c, "--strategy", o.strategy, strategies, "How light is found: ");
+    add_choice(c, "--heuristic", o.heuristic, heuristics, "Weights of the strategy mis: ");
+    add_whole_number(c, "--max-depth", o.max_depth, 0, 1'000'000, "Scattering events of a path at most");
+    c.add_flag("--stats", o.stats, "Print times, rays a second, memory");
+    c.add_flag("--quiet", o.quiet, "Print nothing but errors");
+    c.footer("Examples:\n"
+             "  montelux render scene.pbrt --spp 64 -o out.exr -o out.png\n"
+             "  montelux render scene.pbrt --resolution 320x240 --crop 0.5,1,0,0.5 -o corner.exr\n"
+             "\n"
+             "An EXR file holds every layer: mean, standard error, samples, albedo, normal, depth.\n"
+             "SIGINT (Ctrl-C) or SIGTERM ends the render early and saves what there is; a second one does "
+             "not save.");
 }
 
 void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.resolution) {
-        auto [w, h] = parse_resolution(*o.resolution);
+        auto [w, h] = *o.resolution;
         // The crop of the file keeps its place on the film.
         auto scaled = [](int v, int from, int to) {
             return static_cast<int>(static_cast<long long>(v) * to / from);
@@ -113,26 +179,13 @@ void apply(const RenderOptions& o, SceneDescription& d) {
         d.film.width = w;
         d.film.height = h;
     }
-    if (!o.crop.empty()) d.film.crop = crop_of(o.crop, d.film.width, d.film.height);
-    if (o.spp) {
-        if (*o.spp < 1 || *o.spp > (1ll << 30))
-            throw UsageError("--spp", std::to_string(*o.spp) +
-                                          " was given; 1 to 1073741824 samples a pixel are expected");
-        d.sampler.samples_per_pixel = static_cast<std::uint32_t>(*o.spp);
-    }
-    if (o.seed) d.sampler.seed = static_cast<std::uint64_t>(*o.seed);
-    if (o.sampler) d.sampler.kind = find(samplers, *o.sampler, "--sampler");
-    if (o.strategy) d.integrator.strategy = find(strategies, *o.strategy, "--strategy");
-    if (o.heuristic) d.integrator.heuristic = find(heuristics, *o.heuristic, "--heuristic");
-    if (o.max_depth) {
-        if (*o.max_depth < 0 || *o.max_depth > 1'000'000)
-            throw UsageError("--max-depth",
-                             std::to_string(*o.max_depth) + " was given; 0 to 1000000 is expected");
-        d.integrator.max_depth = static_cast<int>(*o.max_depth);
-    }
-    if (o.threads < 0 || o.threads > 4096)
-        throw UsageError("--threads",
-                         std::to_string(o.threads) + " was given; 0 (all processors) to 4096 is expected");
+    if (o.crop) d.film.crop = crop_of(*o.crop, d.film.width, d.film.height);
+    if (o.spp) d.sampler.samples_per_pixel = static_cast<std::uint32_t>(*o.spp);
+    if (o.seed) d.sampler.seed = *o.seed;
+    if (o.sampler) d.sampler.kind = *o.sampler;
+    if (o.strategy) d.integrator.strategy = *o.strategy;
+    if (o.heuristic) d.integrator.heuristic = *o.heuristic;
+    if (o.max_depth) d.integrator.max_depth = static_cast<int>(*o.max_depth);
 }
 
 } // namespace montelux::app

@@ -1,8 +1,11 @@
 // What the render command can be told, and how that overrides a scene file.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "montelux/mc/math/error.h"
@@ -17,16 +20,20 @@ namespace montelux::app {
 struct RenderOptions {
     std::string scene;
     std::vector<std::string> outputs;
-    std::optional<long long> spp, seed, max_depth;
-    std::optional<std::string> resolution, sampler, strategy, heuristic;
-    std::vector<double> crop;
-    long long threads = 0;
+    std::optional<std::uint64_t> spp, seed, max_depth;
+    std::optional<std::pair<int, int>> resolution;
+    std::optional<std::array<double, 4>> crop; // x0, x1, y0, y1 as fractions of the film
+    std::optional<SamplerKind> sampler;
+    std::optional<Strategy> strategy;
+    std::optional<Heuristic> heuristic;
+    int threads = 0;
     bool stats = false, quiet = false;
 };
 
+// A value that makes no sense ends the parse with a CLI::ValidationError.
 void declare(CLI::App& command, RenderOptions& options);
 
-// Throws UsageError (montelux::Error) with a sentence when an option's value makes no sense.
+// Throws UsageError when a crop holds no pixel of the film.
 void apply(const RenderOptions& options, SceneDescription& description);
 
 // A mistake of the command line, as opposed to one of a file: exit code 2.
@@ -36,5 +43,6 @@ struct UsageError : Error {
 
 std::string name_of(SamplerKind kind);
 std::string name_of(Strategy strategy);
+std::string name_of(Heuristic heuristic);
 
 } // namespace montelux::app

@@ -1,38 +1,21 @@
 #!/bin/sh
-# Exit codes and sentences of the command line program: cli_test.sh path/to/montelux
-set -u
-montelux=$1
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-
-# expect CODE TEXT arguments...: runs the program; its output and errors must contain TEXT.
-expect() {
-    code=$1 text=$2
-    shift 2
-    "$montelux" "$@" >out 2>&1
-    got=$?
-    if [ $got -ne "$code" ]; then
-        echo "montelux $*: exit code $got instead of $code"
-        cat out
-        failures=$((failures + 1))
-    elif ! grep -qF -- "$text" out; then
-        echo "montelux $*: '$text' is missing in:"
-        cat out
-        failures=$((failures + 1))
-    fi
-}
+# Commands, help, info and compare: cli_test.sh path/to/montelux
+. "$(dirname "$0")/common.sh"
 
 # Two grey float pictures of two pixels, 1 and 0.5 (bottom up, little-endian), and one of other size.
 printf 'Pf\n1 2\n-1\n\000\000\200\077\000\000\000\077' >a.pfm
 printf 'Pf\n1 2\n-1\n\000\000\200\077\000\000\200\077' >b.pfm
 printf 'Pf\n2 1\n-1\n\000\000\200\077\000\000\200\077' >wide.pfm
 
-expect 0 "Usage" --help
+expect 0 "montelux render scene.pbrt --spp 64 -o out.exr" --help
 expect 0 "montelux " --version
-expect 2 "subcommand" # no arguments
+for command in render info compare; do expect 0 "Example" $command --help; done
+expect 0 "--max-depth N" render --help
+expect 2 "a command is expected: render, compare, info" # no arguments
+expect 2 "there is no command 'rendr' (did you mean 'render'?)" rendr
+expect 2 "--nonsense" --nonsense
 expect 2 "--nonsense" info --nonsense a.pfm
+expect 2 "Run 'montelux info --help'" info
 expect 2 "required" compare a.pfm
 expect 2 "set-aside" compare a.pfm b.pfm --set-aside 100
 expect 2 "difference" compare a.pfm b.pfm --full-scale 1
@@ -40,11 +23,13 @@ expect 2 "difference" compare a.pfm b.pfm --full-scale 1
 expect 0 "1 x 2 pixels" info a.pfm
 expect 0 '"maximum": 1.0' info a.pfm --json
 expect 1 "montelux: error: none.exr: cannot be opened" info none.exr
+expect 1 "it is a folder" info .
 printf 'no picture' >text.png
 expect 1 "montelux: error: text.png: is not a picture" info text.png
 
 expect 0 "RMSE 0.353553" compare a.pfm b.pfm
 expect 0 "neither picture has standard errors" compare a.pfm b.pfm
+if "$montelux" compare a.pfm b.pfm | grep -q nan; then fail "compare prints 'nan' where nothing is known"; fi
 expect 0 "full at 0.4995" compare a.pfm b.pfm --difference d.png
 expect 0 "1 x 2 pixels, 3 channels, 8-bit integer, sRGB" info d.png
 expect 0 "standard errors of B alone" compare a.pfm b.pfm --stderr-b b.pfm
@@ -54,9 +39,6 @@ expect 1 "'.gif'" compare a.pfm b.pfm --difference d.gif
 expect 1 "standard errors" compare a.pfm b.pfm --set-aside 1
 expect 1 "standard errors" compare a.pfm b.pfm --difference d.png --difference-of z
 
-if "$montelux" info a.pfm >/dev/full 2>err; then
-    echo "a full disk behind standard output went unnoticed"
-    failures=$((failures + 1))
-fi
-
-[ $failures -eq 0 ]
+if "$montelux" info a.pfm >/dev/full 2>err; then fail "a full disk behind standard output went unnoticed"; fi
+if "$montelux" info a.pfm >&- 2>err; then fail "a closed standard output went unnoticed"; fi
+finish

@@ -36,6 +36,7 @@ std::vector<std::uint8_t> Files::read_alone(const std::filesystem::path& path, C
 }
 
 std::vector<std::uint8_t> Files::read(const std::filesystem::path& path, Location at) {
+    count_as_read(path);
     try {
         return read_alone(path, hash_);
     } catch (const Error& e) {

@@ -25,6 +25,10 @@ class Files {
     // As `read`, told about without a place in a scene file.
     static std::vector<std::uint8_t> read_alone(const std::filesystem::path& path, ContentHash& hash);
 
+    // Every file that was read, in order.
+    const std::vector<std::filesystem::path>& files_read() const { return files_read_; }
+    void count_as_read(const std::filesystem::path& path) { files_read_.push_back(path); }
+
     std::uint64_t content_hash() const { return hash_.value(); }
     ContentHash& hash() { return hash_; }
 
@@ -32,6 +36,7 @@ class Files {
     std::filesystem::path main_folder_;
     Diagnostics& diagnostics_;
     ContentHash hash_;
+    std::vector<std::filesystem::path> files_read_;
 };
 
 } // namespace montelux::pbrt

@@ -51,6 +51,19 @@ double upper_illuminance(const Image& map) {
     return sum * 2 * pi / (static_cast<double>(size) * size);
 }
 
+// The linear channels R, G, B of a picture, or three times its Y; empty when it has neither.
+Image rgb_map(const Image& picture) {
+    std::vector<std::string> names;
+    for (int c : picture.color_channels())
+        names.push_back(picture.channel_names()[static_cast<std::size_t>(c)]);
+    if (names.empty()) return {};
+    Image colors = picture.select(names).to_linear_f32();
+    if (names.size() == 3) return colors;
+    Image map(picture.width(), picture.height(), {"R", "G", "B"});
+    for (std::size_t i = 0; i < map.sample_count(); ++i) map.f32()[i] = colors.f32()[i / 3];
+    return map;
+}
+
 } // namespace
 
 AreaLight Emission::light(Index shape, Index primitive, float area) const {
@@ -166,20 +179,21 @@ Index LightReader::environment(const std::string& file, Location at) {
     try {
         Image picture = read_image(bytes, path.string());
         if (picture.width() != picture.height())
-            diagnostics_.error(at, path.string() + " has " + std::to_string(picture.width()) + " x " +
-                                       std::to_string(picture.height()) +
-                                       " pixels; an environment map must be square (equal-area octahedral)");
-        if (!picture.find_channel("R") || !picture.find_channel("G") || !picture.find_channel("B"))
-            diagnostics_.error(at, path.string() + " has no channels R, G and B");
-        constexpr std::array<const char*, 3> rgb = {"R", "G", "B"};
-        std::vector<std::string> channels(rgb.begin(), rgb.end());
-        Image map = picture.select(channels).to_linear_f32();
-        bool negative = false;
+            diagnostics_.error(at,
+                               path.string() + " has " + std::to_string(picture.width()) + " x " +
+                                   std::to_string(picture.height()) +
+                                   " pixels; an environment map must be square (equal-area octahedral); a "
+                                   "latitude-longitude map must be converted first");
+        Image map = rgb_map(picture);
+        if (map.empty()) diagnostics_.error(at, path.string() + " has neither channels R, G and B nor Y");
+        bool negative = false, black = true;
         for (float& v : map.f32()) {
             if (!std::isfinite(v)) diagnostics_.error(at, path.string() + " has a pixel that is not finite");
             negative = negative || v < 0;
             v = std::max(v, 0.0f);
+            black = black && v == 0;
         }
+        if (black) diagnostics_.warn(at, path.string() + " is black; the light gives nothing");
         if (negative) diagnostics_.warn(at, path.string() + " has negative pixels; they count as 0");
         scene_.environments.push_back(std::move(map));
     } catch (const Error& e) {

@@ -6,16 +6,20 @@
 
 namespace montelux {
 
-SceneDescription load_pbrt(const std::filesystem::path& path, Warnings& warnings) {
+SceneDescription load_pbrt(const std::filesystem::path& path, Warnings& warnings,
+                           std::vector<std::filesystem::path>* files_read) {
     pbrt::Diagnostics diagnostics(warnings);
     std::uint32_t file = diagnostics.add_file(path.string());
     pbrt::Files files(path.parent_path(), diagnostics);
     std::vector<std::uint8_t> bytes = pbrt::Files::read_alone(path, files.hash());
+    files.count_as_read(path);
     pbrt::SceneBuilder builder(files, diagnostics);
     pbrt::SceneParser parser(files, builder, diagnostics);
     parser.enter(path);
     pbrt::Location end = parser.parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file);
-    return builder.finish(end);
+    SceneDescription description = builder.finish(end);
+    if (files_read) *files_read = files.files_read();
+    return description;
 }
 
 SceneDescription parse_pbrt(std::string_view text, const std::string& name,

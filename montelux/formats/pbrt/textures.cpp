@@ -1,6 +1,7 @@
 #include "montelux/formats/pbrt/textures.h"
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 #include <utility>
 
@@ -37,6 +38,18 @@ std::optional<ColorEncoding> parse_encoding(const std::string& name) {
     } catch (const Error&) {
         return std::nullopt;
     }
+}
+
+// A NaN would spread to every texel that filtering joins it with.
+std::size_t zero_what_is_not_finite(Image& picture) {
+    std::size_t count = 0;
+    if (picture.format() == PixelFormat::f32)
+        for (float& v : picture.f32())
+            if (!std::isfinite(v)) v = 0, ++count;
+    if (picture.format() == PixelFormat::f16)
+        for (std::uint16_t& v : picture.u16())
+            if (!std::isfinite(half_to_float(v))) v = 0, ++count;
+    return count;
 }
 
 } // namespace
@@ -228,8 +241,13 @@ Index TextureLibrary::image(const std::string& file, const std::optional<std::st
     std::vector<std::uint8_t> bytes = files_.read(path, at);
     try {
         Image picture = read_image(bytes, path.string());
+        if (picture.color_channels().empty())
+            throw Error(path.string(), "has neither channels R, G and B nor Y");
         bool integers = picture.format() == PixelFormat::u8 || picture.format() == PixelFormat::u16;
         if (asked && integers) picture.set_encoding(*asked);
+        if (std::size_t replaced = zero_what_is_not_finite(picture))
+            diagnostics_.warn(at, path.string() + " has " + std::to_string(replaced) +
+                                      " values that are not finite; they count as 0");
         scene_.images.push_back(std::move(picture));
     } catch (const Error& e) {
         diagnostics_.error(at, e.what());

@@ -176,7 +176,7 @@ TEST(PbrtErrors, SentencesInTheWorld) {
          "scene:2:32: there is no file './no.png'"},
         {"Texture \"t\" \"float\" \"imagemap\" \"string filename\" \".\" Shape \"sphere\" \"texture alpha\" "
          "\"t\"",
-         "scene:2:32: ./.: not a regular file"},
+         "scene:2:32: ./.: cannot be read: it is a folder"},
         {"Texture \"t\" \"float\" \"imagemap\" \"string wrap\" \"repeal\" Shape \"sphere\" \"texture alpha\" "
          "\"t\"",
          "scene:2:32: parameter 'wrap' is 'repeal'; expected one of repeat, black, clamp, octahedralsphere "
@@ -204,13 +204,13 @@ TEST(PbrtErrors, SentencesInTheWorld) {
         {"MediumInterface \"fog\" \"\"", "scene:2:1: participating media are not supported yet"},
         // Files.
         {"Include \"no.pbrt\"", "scene:2:1: there is no file './no.pbrt'"},
-        {"Include \"/\"", "scene:2:1: /: not a regular file"},
+        {"Include \"/\"", "scene:2:1: /: cannot be read: it is a folder"},
         {"Include \"\"", "scene:2:1: an empty file name"},
     };
     for (const Case& c : cases) {
         std::string error = world_error(c.text);
         // What the operating system says about a file is not ours.
-        if (std::string(c.error).ends_with("not a regular file"))
+        if (std::string(c.error).ends_with("it is a folder"))
             EXPECT_EQ(error.substr(0, 10), std::string(c.error).substr(0, 10)) << error;
         else
             EXPECT_EQ(error, c.error) << c.text;

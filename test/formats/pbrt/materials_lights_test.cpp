@@ -277,7 +277,7 @@ TEST(PbrtLights, EnvironmentMaps) {
         EXPECT_EQ(std::string(e.what()),
                   "scene:2:24: " + (folder / "wide.exr").string() +
                       " has 16 x 8 pixels; an environment map must be square (equal-area "
-                      "octahedral)");
+                      "octahedral); a latitude-longitude map must be converted first");
     }
     std::filesystem::remove_all(folder);
 }

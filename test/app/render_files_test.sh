@@ -1,0 +1,77 @@
+#!/bin/sh
+# Pictures in and out of the render command.
+. "$(dirname "$0")/common.sh"
+scene ok "$sky Shape \"sphere\""
+
+# What cannot be written is told before the render: this one would take hours.
+scene long "$sky Shape \"sphere\"" 2000 2000 1000000
+expect 1 "nowhere/x.exr: cannot be written" render long.pbrt -o nowhere/x.exr
+expect 1 "cannot be written" render long.pbrt -o long.pbrt/x.exr
+mkdir folder.exr
+expect 1 "it is a folder" render long.pbrt -o folder.exr
+expect 1 "the extension '.gif' is not one of .exr, .png, .hdr, .pfm" render long.pbrt -o x.gif
+expect 1 "the extension '.pbrt'" render long.pbrt -o long.pbrt
+expect 1 "the name has no extension" render long.pbrt -o x
+expect 1 "the name has no extension" render long.pbrt -o ''
+mkdir locked && chmod 500 locked
+if [ "$(id -u)" -ne 0 ]; then expect 1 "Permission denied" render long.pbrt -o locked/x.exr; fi
+
+# A full disk leaves the older file as it was, and nothing else.
+printf 'old' >limited.exr
+(trap '' XFSZ && ulimit -f 1 && "$montelux" render ok.pbrt --resolution 300x200 -o limited.exr >out 2>&1)
+[ $? -eq 1 ] || fail "a full disk: exit code is not 1"
+[ "$(cat limited.exr)" = old ] || fail "a full disk: the older file is damaged"
+find . -name '.montelux-*' | grep -q . && fail "a temporary file was left behind"
+"$montelux" render ok.pbrt >/dev/full 2>err && fail "a full disk behind standard output went unnoticed"
+# Messages must not get into a picture that is opened while the standard streams are closed.
+"$montelux" render ok.pbrt -o closed.exr >&- 2>&- <&-
+expect 0 "8 x 6 pixels" info closed.exr
+# Nor may a reader of the messages that goes away stop the render.
+rm -f ok.exr
+"$montelux" render ok.pbrt --spp 64 2>&1 | true
+[ -e ok.exr ] || fail "a closed pipe stopped the render"
+
+# with KIND FILE: a scene with the picture as texture or as environment.
+with() {
+    if [ "$1" = texture ]; then
+        scene picture "$sky
+Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"$2\"
+Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\""
+    else
+        scene picture "LightSource \"infinite\" \"string filename\" \"$2\" Shape \"sphere\""
+    fi
+}
+pfm one.pfm 1 1 "$one" "$one" "$one"
+pfm wide.pfm 2 1 "$one" "$one" "$one" "$one" "$one" "$one"
+pfm negative.pfm 1 1 "$one" "$one" "$minus_one"
+pfm nan.pfm 1 1 "$one" "$one" "$not_a_number"
+pfm black.pfm 1 1 "$zero" "$zero" "$zero"
+printf 'Pf\n1 1\n-1\n\000\000\200\077' >grey.pfm
+for kind in texture environment; do
+    for file in one grey; do
+        with $kind $file.pfm
+        expect 0 "picture.exr" render picture.pbrt
+    done
+done
+with environment wide.pfm
+expect 1 "an environment map must be square" render picture.pbrt
+with environment negative.pfm
+expect 0 "negative.pfm has negative pixels; they count as 0" render picture.pbrt
+with environment nan.pfm
+expect 1 "nan.pfm has a pixel that is not finite" render picture.pbrt
+with environment black.pfm
+expect 0 "black.pfm is black; the light gives nothing" render picture.pbrt
+with texture nan.pfm
+expect 0 "nan.pfm has 1 values that are not finite; they count as 0" render picture.pbrt
+# A grey map is a white one.
+with environment one.pfm
+expect 0 "" render picture.pbrt -o a.pfm
+with environment grey.pfm
+expect 0 "" render picture.pbrt -o b.pfm
+cmp -s a.pfm b.pfm || fail "a grey environment is not a white one"
+
+# The picture must not replace what the scene is made of.
+with texture one.pfm
+expect 2 "one.pfm: the scene is read from this file" render picture.pbrt -o one.pfm
+expect 0 "1 x 1 pixels" info one.pfm
+finish

@@ -1,0 +1,69 @@
+#!/bin/sh
+# Options of the render command: what is refused, and what they change in the picture.
+. "$(dirname "$0")/common.sh"
+scene ok "$sky
+LightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [2 2 3]
+Material \"coateddiffuse\" Shape \"sphere\" Translate 1 0 0 Shape \"sphere\"" 64 48
+
+expect 2 "SCENE is required" render
+expect 2 "extra" render ok.pbrt extra
+expect 2 "--nonsense" render ok.pbrt --nonsense
+for value in 0x0 axb 8 8x 8x8x8 -8x8 1e9x1 99999x9 8,8 ''; do
+    expect 2 "--resolution: '$value' was given" render ok.pbrt --resolution "$value"
+done
+for value in 0,1 0,1,0,1,1 a,b,c,d 1,0,0,1 0,0,0,0 -1,1,0,1 nan,1,0,1 0,1,0,2 ''; do
+    expect 2 "--crop: '$value' was given" render ok.pbrt --crop "$value"
+done
+expect 2 "no pixel of the 64x48 film" render ok.pbrt --crop 0.001,0.002,0,1
+for option in --spp --seed --threads --max-depth; do
+    for value in -1 1.5 1e9 99999999999999999999 0x10 x ''; do
+        expect 2 "$option: '$value' was given" render ok.pbrt $option "$value"
+    done
+done
+expect 2 "--spp: '0' was given; a whole number from 1 to" render ok.pbrt --spp 0
+expect 2 "--threads: '5000'" render ok.pbrt --threads 5000
+for option in --sampler --strategy --heuristic; do
+    expect 2 "$option: 'foo' was given; one of" render ok.pbrt $option foo
+done
+expect 1 "GiB of memory; this machine has" render ok.pbrt --resolution 65536x65536
+[ -e ok.exr ] && fail "a picture was written in spite of an error"
+
+expect 0 "32 x 12 pixels, 2 samples a pixel" render -o a.exr -o a.png -o a.hdr -o a.pfm ok.pbrt \
+    --resolution 64x48 --spp 2 --seed 18446744073709551615 --sampler halton --crop 0,0.5,0.5,0.75 --max-depth 3
+expect 0 "32 x 12 pixels, 14 channels" info a.exr
+for entry in '"samplesPerPixel" = 2' '"seed" = "18446744073709551615"' '"sampler" = "halton"' '"maxDepth" = 3' \
+    '"cropPixels" = [0.0,24.0,32.0,36.0]' '"fullResolution" = [64.0,48.0]' '"scene" = "ok.pbrt"' \
+    '"sceneHash" = "' '"software" = "Montelux ' '"renderSeconds" = ' '"worldToCamera" = [[' '"interrupted" = 0'; do
+    expect 0 "$entry" info a.exr
+done
+expect 0 "32 x 12 pixels, 3 channels, 8-bit integer, sRGB" info a.png
+expect 0 "z-scores use the standard errors of B alone" compare a.hdr a.exr
+
+render() { "$montelux" render ok.pbrt --quiet --spp 8 "$@" >out 2>&1 || fail "montelux render $*: $(cat out)"; }
+# The words (of 4 bytes; 3 are the header) of columns 16 to 47 of the lower 24 of 48 rows of 64; rows go upwards.
+lower_middle() {
+    row=0
+    while [ $row -lt 24 ]; do
+        dd if="$1" bs=4 skip=$((3 + row * 192 + 48)) count=96 2>/dev/null
+        row=$((row + 1))
+    done
+}
+for sampler in independent stratified halton hammersley sobol sobol-blue-noise; do
+    render --sampler $sampler --threads 1 -o one.pfm
+    render --sampler $sampler --threads 2 -o two.pfm
+    cmp -s one.pfm two.pfm || fail "$sampler: the picture depends on the number of threads"
+    render --sampler $sampler --seed 1 -o seed.pfm
+    cmp -s one.pfm seed.pfm && fail "$sampler: another seed gives the same picture"
+    render --sampler $sampler --crop 0.25,0.75,0.5,1 -o crop.pfm
+    lower_middle one.pfm >expected
+    dd if=crop.pfm bs=4 skip=3 of=got 2>/dev/null
+    [ -s expected ] && cmp -s expected got || fail "$sampler: a crop differs from that part of the picture"
+done
+for change in "--max-depth 1" "--spp 9" "--sampler halton" "--strategy bsdf" "--heuristic balance"; do
+    render -o one.pfm
+    render -o two.pfm $change
+    cmp -s one.pfm two.pfm && fail "$change changes nothing"
+done
+[ -s out ] && fail "--quiet printed something: $(cat out)"
+expect 0 "inside Embree" render ok.pbrt --stats
+finish

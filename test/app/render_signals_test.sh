@@ -1,0 +1,53 @@
+#!/bin/sh
+# A signal saves what there is; progress on a terminal and elsewhere.
+. "$(dirname "$0")/common.sh"
+scene long "$sky Material \"diffuse\" Shape \"sphere\"" 400 300 1000000
+
+# A program that does not heed the signal must not keep the test waiting: end_later PID.
+end_later() { (sleep 20 && kill -KILL "$1" 2>/dev/null) >/dev/null 2>&1 & }
+now() { date +%s%N; }
+for sampler in independent sobol; do
+    for signal in INT TERM; do
+        rm -f long.exr
+        "$montelux" render long.pbrt --sampler $sampler --spp 4096 >out 2>&1 &
+        pid=$!
+        end_later $pid
+        sleep 1
+        begin=$(now)
+        kill -$signal $pid
+        wait $pid
+        code=$?
+        milliseconds=$((($(now) - begin) / 1000000))
+        [ $code -eq 130 ] || fail "$signal, $sampler: exit code $code instead of 130"
+        [ $milliseconds -lt 2000 ] || fail "$signal, $sampler: it took $milliseconds ms to end"
+        grep -q "stopped before the end" out || fail "$signal, $sampler: $(cat out)"
+        expect 0 '"interrupted" = 1' info long.exr
+        # Pixels without samples are 0, no channel of the mean has anything that is not a number.
+        "$montelux" info long.exr | awk '$1 ~ /^[RGB]$/ { seen++; if ($5 + $6 > 0) bad = 1 }
+            END { exit bad || seen != 3 }' || fail "$signal, $sampler: the mean is not finite"
+    done
+done
+
+# While the scene is being read there is nothing to save.
+(cat long.pbrt && yes 'AttributeBegin AttributeEnd' | head -n 3000000) >slow.pbrt
+rm -f long.exr
+"$montelux" render slow.pbrt >out 2>&1 &
+pid=$!
+end_later $pid
+sleep 0.2
+kill -INT $pid
+wait $pid
+code=$?
+[ $code -eq 130 ] || fail "a signal while reading: exit code $code instead of 130"
+[ -e long.exr ] && fail "a signal while reading: a picture was written"
+
+# Lines where there is no terminal, a bar on one.
+scene short "$sky Shape \"sphere\""
+expect 0 "rendering: 100 %" render short.pbrt
+if command -v script >/dev/null; then
+    script -qec "'$montelux' render short.pbrt" /dev/null >out 2>&1 </dev/null
+    for text in '\[####' '100 %' 'elapsed' 'samples/s' 'error'; do
+        grep -q "$text" out || fail "the bar does not show '$text': $(cat out)"
+    done
+fi
+finish
