@@ -116,15 +116,15 @@ void print_statistics(const RenderReport& report, double load_seconds, double bu
     auto samples = static_cast<double>(report.samples), rays = static_cast<double>(report.rays.rays());
     std::printf("load               %.3f s\n", load_seconds);
     std::printf("build              %.3f s\n", build_seconds);
-    std::printf("render             %.3f s, %.3f s of all threads\n", report.seconds, report.thread_seconds);
-    std::printf("samples            %ssamples/s, %.3f us of a thread each\n",
-                count_text(samples / report.seconds).c_str(), 1e6 * report.thread_seconds / samples);
+    std::printf("render             %.3f s, %.3f s of CPU\n", report.seconds, report.cpu_seconds);
+    std::printf("samples            %ssamples/s, %.3f us of CPU each\n",
+                count_text(samples / report.seconds).c_str(), 1e6 * report.cpu_seconds / samples);
     std::printf(
-        "rays               %srays/s, %srays/s a thread, %.2f a sample (%.2f closest hit, %.2f occlusion)\n",
-        count_text(rays / report.seconds).c_str(), count_text(rays / report.thread_seconds).c_str(),
+        "rays               %srays/s, %srays/s of CPU, %.2f a sample (%.2f closest hit, %.2f occlusion)\n",
+        count_text(rays / report.seconds).c_str(), count_text(rays / report.cpu_seconds).c_str(),
         rays / samples, static_cast<double>(report.rays.closest) / samples,
         static_cast<double>(report.rays.occlusion) / samples);
-    std::printf("inside Embree      %.1f %% of the time\n", 100 * report.ray_seconds / report.thread_seconds);
+    std::printf("inside Embree      %.1f %% of the CPU time\n", 100 * report.ray_seconds / report.cpu_seconds);
     std::printf("peak memory        %.1f MiB\n", static_cast<double>(usage.ru_maxrss) / 1024);
 }
 

@@ -18,7 +18,7 @@ least() { sort -n | head -n 1; }
 ours() {
     for _ in 1 2 3; do
         "$montelux" render "$1" --spp "$spp" --sampler independent --threads 1 -o "$out/m.exr" --stats 2>/dev/null |
-            sed -n 's/.* \([0-9.]*\) us of a thread each.*/\1/p'
+            sed -n 's/.* \([0-9.]*\) us of CPU each.*/\1/p'
     done | least
 }
 theirs() { # microseconds of CPU a sample; loading is taken off by a run with 1 spp

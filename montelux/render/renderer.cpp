@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <mutex>
 #include <vector>
 
@@ -22,6 +23,13 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) {
     return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// CPU time of the calling thread: what other programs take away does not count.
+double thread_cpu_seconds() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 constexpr int tile_size = 16;
@@ -103,7 +111,7 @@ struct Tally {
         std::lock_guard lock(mutex);
         report.rays.merge(rays);
         report.bad.merge(bad);
-        report.thread_seconds += seconds;
+        report.cpu_seconds += seconds;
         report.samples += samples;
     }
 };
@@ -181,7 +189,7 @@ RenderReport Renderer::render(Film& film, const ProgressCallback& progress, cons
         parallel_for(
             static_cast<std::int64_t>(tiles.size()),
             [&](std::int64_t t) {
-                auto tile_begin = Clock::now();
+                const double tile_begin = thread_cpu_seconds();
                 const PixelBounds& tile = tiles[static_cast<std::size_t>(t)];
                 RayTracer tracer(*accelerator_);
                 BadSampleReport bad;
@@ -207,7 +215,7 @@ RenderReport Renderer::render(Film& film, const ProgressCallback& progress, cons
                         if (pass.ends_unit) pixel.end_unit();
                         samples += pass.end - pass.begin;
                     }
-                tally.add(tracer.statistics, bad, seconds_since(tile_begin), samples);
+                tally.add(tracer.statistics, bad, thread_cpu_seconds() - tile_begin, samples);
                 if (progress) {
                     std::lock_guard lock(tally.mutex);
                     state.samples_done += samples;

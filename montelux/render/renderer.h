@@ -37,9 +37,9 @@ struct BadSampleReport {
 
 struct RenderReport {
     std::uint64_t samples = 0;
-    double seconds = 0;        // of the loop, wall clock
-    double thread_seconds = 0; // of the loop, summed over threads
-    double ray_seconds = 0;    // of those, spent in Embree (extrapolated from timed rays)
+    double seconds = 0;     // of the loop, wall clock
+    double cpu_seconds = 0; // of the loop, CPU time summed over threads
+    double ray_seconds = 0; // of those, spent in Embree (extrapolated from timed rays)
     RayStatistics rays;
     BadSampleReport bad;
     bool cancelled = false;
