@@ -124,7 +124,8 @@ void print_statistics(const RenderReport& report, double load_seconds, double bu
         count_text(rays / report.seconds).c_str(), count_text(rays / report.cpu_seconds).c_str(),
         rays / samples, static_cast<double>(report.rays.closest) / samples,
         static_cast<double>(report.rays.occlusion) / samples);
-    std::printf("inside Embree      %.1f %% of the CPU time\n", 100 * report.ray_seconds / report.cpu_seconds);
+    std::printf("inside Embree      %.1f %% of the CPU time\n",
+                100 * report.ray_seconds / report.cpu_seconds);
     std::printf("peak memory        %.1f MiB\n", static_cast<double>(usage.ru_maxrss) / 1024);
 }
 

@@ -132,7 +132,8 @@ TEST(HdrFile, DamageIsAnError) {
     expect_error([&] { read("#?RADIANCE\nFORMAT=8-bit\n\n-Y 1 +X 1\n1234"); }, {"8-bit"});
     expect_error([&] { read("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n"); }, {"no end"});
     expect_error([&] { read(head + "-Y 60000 +X 60000\n"); }, {"MiB", "limit"});
-    expect_error([&] { read(head + "-Y 5000 +X 5000\n" + std::string(30000, '\x01')); }, {"out of proportion"});
+    expect_error([&] { read(head + "-Y 5000 +X 5000\n" + std::string(30000, '\x01')); },
+                 {"out of proportion"});
 }
 
 TEST(JpegFile, GreyColorAndProgressive) {

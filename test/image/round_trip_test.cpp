@@ -13,8 +13,8 @@ TEST(ExrFile, KeepsEveryBitOfEveryChannel) {
     image.set(3, 4, 0, std::numeric_limits<float>::infinity());
     image.set(4, 4, 0, std::numeric_limits<float>::quiet_NaN());
     image.set(5, 4, 0, std::numeric_limits<float>::denorm_min());
-    for (ExrCompression compression : {ExrCompression::uncompressed, ExrCompression::rle, ExrCompression::zips,
-                                       ExrCompression::zip, ExrCompression::piz}) {
+    for (ExrCompression compression : {ExrCompression::uncompressed, ExrCompression::rle,
+                                       ExrCompression::zips, ExrCompression::zip, ExrCompression::piz}) {
         write_image(folder / "a.exr", image, {.exr_compression = compression});
         Image back = read_image(folder / "a.exr");
         ASSERT_EQ(back.width(), 37);

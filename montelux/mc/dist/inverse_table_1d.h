@@ -10,9 +10,10 @@
 
 namespace montelux {
 
-// Approximates a density by one that is constant on `pieces` pieces of probability 1/pieces each. The density that
-// is reported is the one that is sampled, so weights f / pdf stay exact; the pieces only decide how even they
-// are. For densities that are drawn from in every sample; PiecewiseLinear1D draws from the density itself.
+// Approximates a density by one that is constant on `pieces` pieces of probability 1/pieces each. The density
+// that is reported is the one that is sampled, so weights f / pdf stay exact; the pieces only decide how even
+// they are. For densities that are drawn from in every sample; PiecewiseLinear1D draws from the density
+// itself.
 class InverseTable1D {
   public:
     explicit InverseTable1D(const PiecewiseLinear1D& density, std::size_t pieces = 512) {

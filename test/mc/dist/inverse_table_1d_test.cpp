@@ -1,7 +1,6 @@
-#include "montelux/mc/dist/inverse_table_1d.h"
-
 #include <gtest/gtest.h>
 
+#include "montelux/mc/dist/inverse_table_1d.h"
 #include "montelux/mc/stats/chi_squared.h"
 #include "montelux/mc/stats/moments.h"
 
@@ -17,8 +16,9 @@ InverseTable1D bell() {
 // False alarm: 1e-8.
 TEST(InverseTable1D, SamplesFollowThePdf) {
     InverseTable1D table = bell();
-    auto r = interval_chi_squared_test([&](double u) { return double(table.sample(static_cast<float>(u)).x); },
-                                       [&](double x) { return double(table.pdf(static_cast<float>(x))); }, -1, 1);
+    auto r =
+        interval_chi_squared_test([&](double u) { return double(table.sample(static_cast<float>(u)).x); },
+                                  [&](double x) { return double(table.pdf(static_cast<float>(x))); }, -1, 1);
     EXPECT_TRUE(r.passes(1e-8)) << r.description;
 }
 

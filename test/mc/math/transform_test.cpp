@@ -1,6 +1,6 @@
-#include "montelux/mc/math/transform.h"
-
 #include <gtest/gtest.h>
+
+#include "montelux/mc/math/transform.h"
 
 namespace montelux {
 namespace {
@@ -12,8 +12,8 @@ void expect_near(Vec3d a, Vec3d b) {
 }
 
 TEST(Transform, InverseUndoesAComposition) {
-    Transform t = Transform::translate({1, -2, 3}) * Transform::rotate(37, {1, 2, -1}) *
-                  Transform::scale({2, -3, 0.5});
+    Transform t =
+        Transform::translate({1, -2, 3}) * Transform::rotate(37, {1, 2, -1}) * Transform::scale({2, -3, 0.5});
     Vec3d p{0.3, 0.7, -1.1};
     expect_near(t.inverse().point(t.point(p)), p);
     expect_near(t.inverse().vector(t.vector(p)), p);
