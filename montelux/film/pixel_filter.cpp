@@ -32,7 +32,7 @@ float factor(const MitchellFilter& f, float x, float radius) {
     return ((-b - 6 * c) * x * x * x + (6 * b + 30 * c) * x * x + (-12 * b - 48 * c) * x + (8 * b + 24 * c)) /
            6;
 }
-// Sinc windowed by the central lobe of a sinc that ends at the radius.
+// Sinc windowed by the central lobe of a wider sinc, which ends at tau; the radius cuts both off.
 float factor(const LanczosFilter& f, float x, float radius) {
     (void)radius;
     return sinc(x) * sinc(x / f.tau);
