@@ -47,6 +47,21 @@ bool passes_cut_out(const GeometryData& data, const Ray& ray, const Hit& hit) {
     return !data.cut_out || is_opaque(*data.scene, *data.tables, ray, hit);
 }
 
+RTCRay embree_ray(const Ray& ray) {
+    return {.org_x = ray.o.x,
+            .org_y = ray.o.y,
+            .org_z = ray.o.z,
+            .tnear = 0,
+            .dir_x = ray.d.x,
+            .dir_y = ray.d.y,
+            .dir_z = ray.d.z,
+            .time = 0,
+            .tfar = ray.t_max,
+            .mask = ~0u,
+            .id = 0,
+            .flags = 0};
+}
+
 // Quadrics: Embree calls with one ray at a time (N = 1), since only rtcIntersect1 and rtcOccluded1 are used.
 void intersect_quadric(const RTCIntersectFunctionNArguments* args) {
     if (args->valid[0] == 0) return;
@@ -231,18 +246,7 @@ bool Accelerator::intersect(const Ray& ray, Hit& hit) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     RTCRayHit r;
-    r.ray = {.org_x = ray.o.x,
-             .org_y = ray.o.y,
-             .org_z = ray.o.z,
-             .tnear = 0,
-             .dir_x = ray.d.x,
-             .dir_y = ray.d.y,
-             .dir_z = ray.d.z,
-             .time = 0,
-             .tfar = ray.t_max,
-             .mask = ~0u,
-             .id = 0,
-             .flags = 0};
+    r.ray = embree_ray(ray);
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(impl_->world, &context, &r);
@@ -265,18 +269,7 @@ bool Accelerator::intersect(const Ray& ray, Hit& hit) const {
 bool Accelerator::occluded(const Ray& ray) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    RTCRay r{.org_x = ray.o.x,
-             .org_y = ray.o.y,
-             .org_z = ray.o.z,
-             .tnear = 0,
-             .dir_x = ray.d.x,
-             .dir_y = ray.d.y,
-             .dir_z = ray.d.z,
-             .time = 0,
-             .tfar = ray.t_max,
-             .mask = ~0u,
-             .id = 0,
-             .flags = 0};
+    RTCRay r = embree_ray(ray);
     rtcOccluded1(impl_->world, &context, &r);
     return r.tfar < 0;
 }
