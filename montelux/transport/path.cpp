@@ -135,9 +135,14 @@ struct Path {
     void add_direct_light(const B& bsdf, const Frame& frame, Vec3f wo, const ReferencePoint& here) {
         const LightTables& lights = ps.tables.lights();
         if (lights.empty()) return;
-        float u_light = stream.next_1d();
+        // Among few lights the choice takes the first number's leading digits and leaves the others for the
+        // point: one dimension less keeps point sets better stratified. Among many too few digits would be
+        // left.
+        const bool few = lights.by_power().size() <= 64;
         Vec2f u = stream.next_2d();
+        float u_light = few ? u.x : stream.next_1d();
         auto chosen = lights.by_power().sample(u_light);
+        if (few) u.x = chosen.remapped;
         auto light = sample_light(ps.scene, lights, chosen.index, here, u, lambda);
         if (!light || (!light->delta && !samples_lights())) return;
         BsdfEvaluation e = bsdf.evaluate(wo, frame.to_local(light->wi), TransportMode::radiance, stream);

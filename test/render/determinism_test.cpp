@@ -2,7 +2,6 @@
 #include "test/render/mixed_scene.h"
 #include <cstring>
 #include <gtest/gtest.h>
-#include <oneapi/tbb/task_arena.h>
 
 namespace montelux::testing {
 namespace {
@@ -27,9 +26,7 @@ TEST(Determinism, AnyNumberOfThreads) {
         b.description.sampler.kind = kind;
         std::vector<Film> films;
         for (int threads : {1, 2, 7}) {
-            ThreadLimit limit(threads);
-            tbb::task_arena arena(threads);
-            arena.execute([&] { films.push_back(render(b.description)); });
+            with_threads(threads, [&] { films.push_back(render(b.description)); });
         }
         for (std::size_t i = 1; i < films.size(); ++i)
             EXPECT_EQ(differing_pixels(films[0], films[i], films[0].bounds()), 0) << "sampler " << int(kind);

@@ -42,6 +42,15 @@ inline int thread_count() {
                     tbb::this_task_arena::max_concurrency());
 }
 
+// Runs f with loops on exactly this many threads, more than there are processors too; 0 leaves the number as
+// it is.
+template <typename F>
+decltype(auto) with_threads(int threads, const F& f) {
+    ThreadLimit limit(threads);
+    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+    return arena.execute(f);
+}
+
 // Asked between iterations; may be requested from any thread or from a signal handler.
 class CancelFlag {
   public:
