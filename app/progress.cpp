@@ -24,7 +24,7 @@ constexpr double line_interval = 10, bar_interval = 0.1;
 std::string duration_text(double seconds) {
     if (!std::isfinite(seconds)) return "?";
     if (seconds < 60) return text("%.1f s", seconds);
-    auto s = static_cast<long long>(seconds + 0.5);
+    const long long s = std::llround(seconds);
     if (s < 3600) return text("%lld:%02lld", s / 60, s % 60);
     return text("%lld:%02lld:%02lld", s / 3600, s / 60 % 60, s % 60);
 }
