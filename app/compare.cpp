@@ -101,6 +101,7 @@ void print_json(const CompareSettings& s, const Side& a, const Side& b, const Co
         out["channels"].push_back(channel);
     }
     out["z"] = r.a_has_error || r.b_has_error ? json_of(r.z) : Json(nullptr);
+    out["z_pooled"] = r.a_has_error || r.b_has_error ? json_of(r.pooled) : Json(nullptr);
     out["z_skew_corrected"] = r.skew_known ? json_of(r.skew_corrected) : Json(nullptr);
     if (!s.difference.empty()) {
         out["difference"]["file"] = s.difference;
@@ -130,6 +131,7 @@ void print_z(const Comparison& r) {
                     r.a_has_error ? "A" : "B", r.a_has_error ? "B" : "A");
     const ZScores& z = r.z;
     print_scores("z-scores", z);
+    print_scores("z-scores with errors pooled over 3 x 3 pixels", r.pooled);
     if (r.skew_known) print_scores("z-scores corrected for skewness", r.skew_corrected);
     if (z.equal_without_error)
         std::printf("  %llu samples are equal and have no error\n", count(z.equal_without_error));

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "montelux/image/variance_pool.h"
 #include "montelux/mc/math/compensated.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/stats/moments.h"
@@ -73,20 +74,27 @@ std::vector<bool> choose_pixels(const MeasuredPicture& a, const MeasuredPicture&
     return chosen;
 }
 
+// Variance of a - b in one channel, by rows, from the known errors; negative where it is not usable.
+std::vector<double> difference_variances(const MeasuredPicture& a, const MeasuredPicture& b, int c) {
+    int width = a.image->width(), height = a.image->height();
+    std::vector<double> variances(a.image->pixel_count());
+    for (const MeasuredPicture* p : {&a, &b}) {
+        if (!p->has_error()) continue;
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                double& variance = variances[static_cast<std::size_t>(y) * width + x];
+                double s = p->standard_error(x, y, c);
+                if (!(s >= 0) || !std::isfinite(s))
+                    variance = -1;
+                else if (variance >= 0)
+                    variance += s * s;
+            }
+    }
+    return variances;
+}
+
 class ZCollector {
   public:
-    // Variance of a - b from the known errors; negative when it is not usable.
-    static double variance(const MeasuredPicture& a, const MeasuredPicture& b, int x, int y, int c) {
-        double sum = 0;
-        for (const MeasuredPicture* p : {&a, &b})
-            if (p->has_error()) {
-                double s = p->standard_error(x, y, c);
-                if (!(s >= 0) || !std::isfinite(s)) return -1;
-                sum += s * s;
-            }
-        return sum;
-    }
-
     // `skewness` is that of the difference.
     void add(double difference, double variance, double skewness = 0) {
         if (variance < 0) {
@@ -170,28 +178,36 @@ Comparison compare_pictures(const MeasuredPicture& a, const MeasuredPicture& b,
 
     bool any_error = a.has_error() || b.has_error();
     double n = static_cast<double>(result.pixels);
-    ZCollector scores, corrected;
+    ZCollector scores, corrected, pooled_scores;
     result.skew_known = any_error && !(a.skewness_channels.empty() && b.skewness_channels.empty());
     CompensatedSum all_squares, all_relative;
     for (int c = 0; c < static_cast<int>(a.channels.size()); ++c) {
-        CompensatedSum sum_a, sum_b, squares, relative, variances;
+        CompensatedSum sum_a, sum_b, squares, relative, variance_sum;
+        std::vector<double> variances, pooled;
+        if (any_error) {
+            variances = difference_variances(a, b, c);
+            pooled = pool_variances(variances, a.image->width(), a.image->height());
+        }
         for (int y = 0; y < a.image->height(); ++y)
             for (int x = 0; x < a.image->width(); ++x) {
-                if (!chosen[static_cast<std::size_t>(y) * a.image->width() + x]) continue;
+                std::size_t pixel = static_cast<std::size_t>(y) * a.image->width() + x;
+                if (!chosen[pixel]) continue;
                 double va = a.value(x, y, c), vb = b.value(x, y, c), d = va - vb;
                 sum_a.add(va);
                 sum_b.add(vb);
                 squares.add(d * d);
                 relative.add(d * d / (vb * vb + options.relative_epsilon));
                 if (!any_error) continue;
-                double variance = ZCollector::variance(a, b, x, y, c);
+                double variance = variances[pixel];
                 scores.add(d, variance);
+                // What is equal and has no error is no random number: it has no score here either.
+                pooled_scores.add(d, variance == 0 && d == 0 ? 0 : pooled[pixel]);
                 if (result.skew_known) {
                     double cumulant = a.third_cumulant(x, y, c) - b.third_cumulant(x, y, c);
                     corrected.add(d, variance,
                                   variance > 0 ? cumulant / (variance * std::sqrt(variance)) : 0);
                 }
-                variances.add(std::max(variance, 0.0));
+                variance_sum.add(std::max(variance, 0.0));
             }
         ChannelComparison channel;
         channel.name = a.image->channel_names()[a.channels[c]];
@@ -199,7 +215,7 @@ Comparison compare_pictures(const MeasuredPicture& a, const MeasuredPicture& b,
         channel.mean_b = sum_b.value() / n;
         channel.relative_mean_difference =
             channel.mean_b != 0 ? (channel.mean_a - channel.mean_b) / channel.mean_b : nan;
-        channel.mean_difference_error = any_error ? std::sqrt(variances.value()) / n : nan;
+        channel.mean_difference_error = any_error ? std::sqrt(variance_sum.value()) / n : nan;
         channel.rmse = std::sqrt(squares.value() / n);
         channel.rel_mse = relative.value() / n;
         result.channels.push_back(channel);
@@ -209,7 +225,10 @@ Comparison compare_pictures(const MeasuredPicture& a, const MeasuredPicture& b,
     double samples = n * static_cast<double>(a.channels.size());
     result.rmse = std::sqrt(all_squares.value() / samples);
     result.rel_mse = all_relative.value() / samples;
-    if (any_error) result.z = scores.finish();
+    if (any_error) {
+        result.z = scores.finish();
+        result.pooled = pooled_scores.finish();
+    }
     if (result.skew_known) result.skew_corrected = corrected.finish();
     return result;
 }

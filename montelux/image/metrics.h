@@ -93,6 +93,11 @@ struct Comparison {
     // has the layer "skewness."; `skew_known` tells.
     ZScores skew_corrected;
     bool skew_known = false;
+    // The same scores with each pixel's variance pooled from the 3 x 3 pixels around it (pool_variances): of
+    // unbiased pictures their mean is near 0 however skewed the samples are. Pixels that are set aside have
+    // no score, but count among their neighbours. A sample that differs although its own errors are 0 has a
+    // score where its surroundings have errors. Empty when neither picture has errors.
+    ZScores pooled;
 };
 
 // `b` is the reference. Throws Error when sizes or channels differ, or when no pixel is left.

@@ -38,6 +38,8 @@ for entry in '"samplesPerPixel" = 2' '"seed" = "18446744073709551615"' '"sampler
 done
 expect 0 "32 x 12 pixels, 3 channels, 8-bit integer, sRGB" info a.png
 expect 0 "z-scores use the standard errors of B alone" compare a.hdr a.exr
+expect 0 "z-scores with errors pooled over 3 x 3 pixels of" compare a.hdr a.exr
+expect 0 '"z_pooled": {' compare a.hdr a.exr --json
 
 render() { "$montelux" render ok.pbrt --quiet --spp 8 "$@" >out 2>&1 || fail "montelux render $*: $(cat out)"; }
 # The words (of 4 bytes; 3 are the header) of columns 16 to 47 of the lower 24 of 48 rows of 64; rows go upwards.
