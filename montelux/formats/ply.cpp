@@ -10,7 +10,7 @@
 #include "montelux/formats/gunzip.h"
 #include "montelux/formats/number.h"
 #include "montelux/formats/ply_header.h"
-#include "montelux/image/file.h"
+#include "montelux/mc/io/file.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {

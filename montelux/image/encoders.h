@@ -1,7 +1,7 @@
 // One encoder a file format, internal to the image room: Image in, bytes out.
 #pragma once
 
-#include "montelux/image/file.h"
+#include "montelux/mc/io/file.h"
 #include "montelux/image/image.h"
 #include "montelux/image/image_write.h"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "montelux/image/decoders.h"
-#include "montelux/image/file.h"
+#include "montelux/mc/io/file.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "montelux/formats/gunzip.h"
-#include "montelux/image/file.h"
+#include "montelux/mc/io/file.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux::pbrt {

@@ -1,4 +1,4 @@
-#include "montelux/image/file.h"
+#include "montelux/mc/io/file.h"
 
 #include <atomic>
 #include <cerrno>

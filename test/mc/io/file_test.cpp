@@ -5,7 +5,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-#include "montelux/image/file.h"
+#include "montelux/mc/io/file.h"
 #include "montelux/image/image_read.h"
 #include "montelux/image/image_write.h"
 
