@@ -1,6 +1,7 @@
 // What is in force at a place of a pbrt scene file: transformation, material, area light, defaults.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,7 +34,8 @@ struct GraphicsState {
     const RgbColorSpace* color_space = nullptr;
     MaterialReference material;
     std::shared_ptr<const Emission> emission; // null: shapes do not shine
-    Defaults shape_defaults, light_defaults, material_defaults, texture_defaults;
+    // From Attribute directives, by PluginKind.
+    std::array<Defaults, plugin_kind_names.size()> defaults;
 };
 
 } // namespace montelux::pbrt

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "montelux/formats/pbrt/plugin_parameters.h"
 #include "montelux/formats/pbrt/tokenizer.h"
 
 namespace montelux {
@@ -51,16 +52,20 @@ struct Parameter {
 class ParameterList {
   public:
     ParameterList() = default;
-    explicit ParameterList(std::vector<Parameter> own, std::vector<Parameter> defaults = {})
-        : own_(std::move(own)), defaults_(std::move(defaults)) {}
+    explicit ParameterList(std::vector<Parameter> own) : own_(std::move(own)) {}
+    ParameterList(std::vector<Parameter> own, std::vector<Parameter> defaults, PluginKind kind)
+        : own_(std::move(own)), defaults_(std::move(defaults)), kind_(kind) {}
 
     const std::vector<Parameter>& own() const { return own_; }
+    // Of plugins that take defaults.
+    std::optional<PluginKind> kind() const { return kind_; }
     // Null when there is none with that name (and type).
     const Parameter* find(std::string_view name) const;
     const Parameter* find(std::string_view name, ParameterType type) const;
 
   private:
     std::vector<Parameter> own_, defaults_;
+    std::optional<PluginKind> kind_;
 };
 
 // Reads the parameters that stand at the tokenizer up to the next word. Errors: an unknown type, a missing

@@ -1,6 +1,7 @@
 #include "montelux/formats/pbrt/parameter_reader.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "montelux/formats/nearest_name.h"
@@ -12,6 +13,8 @@ ParameterReader::ParameterReader(const ParameterList& list, std::string plugin, 
     : list_(list), plugin_(std::move(plugin)), at_(at), diagnostics_(diagnostics) {}
 
 void ParameterReader::know(std::string_view name) {
+    // Else an Attribute that gives it would be told to be wrong.
+    assert(!list_.kind() || has_parameter(*list_.kind(), name));
     if (std::find(known_.begin(), known_.end(), name) == known_.end()) known_.push_back(name);
 }
 

@@ -1,5 +1,6 @@
 #include "montelux/formats/pbrt/scene_builder.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -233,26 +234,31 @@ void SceneBuilder::set_color_space(std::string_view name, Location at) {
 }
 
 void SceneBuilder::add_defaults(std::string_view target, std::vector<Parameter> parameters, Location at) {
-    constexpr std::array<std::string_view, 5> names = {"shape", "light", "material", "medium", "texture"};
-    std::array<Defaults*, 5> lists = {&state_.shape_defaults, &state_.light_defaults,
-                                      &state_.material_defaults, nullptr, &state_.texture_defaults};
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        if (target != names[i]) continue;
-        if (!lists[i]) return; // media themselves are an error
-        auto list = std::make_shared<std::vector<Parameter>>();
-        if (*lists[i]) *list = **lists[i];
-        for (Parameter& p : parameters) list->push_back(std::move(p));
-        if (list->size() > 10000) diagnostics_.error(at, "more than 10000 default parameters");
-        *lists[i] = std::move(list);
-        return;
+    const auto* found = std::find(plugin_kind_names.begin(), plugin_kind_names.end(), target);
+    if (found == plugin_kind_names.end())
+        diagnostics_.error(at, "Attribute of " + in_quotes(target) +
+                                   "; expected shape, light, material, medium or texture" +
+                                   did_you_mean(target, plugin_kind_names));
+    auto kind = static_cast<PluginKind>(found - plugin_kind_names.begin());
+    Defaults& defaults = state_.defaults[static_cast<std::size_t>(kind)];
+    auto list = std::make_shared<std::vector<Parameter>>();
+    if (defaults) *list = *defaults;
+    for (Parameter& p : parameters) {
+        // A name may fit plugins other than those that follow, but one that fits none is a mistake.
+        if (has_parameter(kind, p.name))
+            list->push_back(std::move(p));
+        else
+            diagnostics_.warn_once("Attribute " + std::string(target) + "/" + p.name, p.at,
+                                   "no " + std::string(target) + " has a parameter " + in_quotes(p.name) +
+                                       did_you_mean(p.name, parameter_names(kind)) + "; it is ignored");
     }
-    diagnostics_.error(at, "Attribute of " + in_quotes(target) +
-                               "; expected shape, light, material, medium or texture" +
-                               did_you_mean(target, names));
+    if (list->size() > 10000) diagnostics_.error(at, "more than 10000 default parameters");
+    defaults = std::move(list);
 }
 
-ParameterList SceneBuilder::with_defaults(std::vector<Parameter> own, const Defaults& defaults) const {
-    return defaults ? ParameterList(std::move(own), *defaults) : ParameterList(std::move(own));
+ParameterList SceneBuilder::with_defaults(std::vector<Parameter> own, PluginKind kind) const {
+    const Defaults& defaults = state_.defaults[static_cast<std::size_t>(kind)];
+    return {std::move(own), defaults ? *defaults : std::vector<Parameter>(), kind};
 }
 
 void SceneBuilder::medium_interface(std::string_view inside, std::string_view outside, Location at) {

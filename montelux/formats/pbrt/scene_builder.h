@@ -103,7 +103,7 @@ class SceneBuilder {
     void pop(Block::Kind kind, std::string_view directive, Location at);
     // The transformation where it may not move.
     const Transform& still_transform(Location at) const;
-    ParameterList with_defaults(std::vector<Parameter> own, const Defaults& defaults) const;
+    ParameterList with_defaults(std::vector<Parameter> own, PluginKind kind) const;
     void add_lights(Shape& shape, Index index, const Geometry& geometry, Location at);
     void finish_options();
     void finish_materials();

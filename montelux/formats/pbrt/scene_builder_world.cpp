@@ -12,14 +12,13 @@ namespace montelux::pbrt {
 void SceneBuilder::material(std::string type, std::vector<Parameter> parameters, Location at) {
     require_world("Material", at);
     state_.material = {false, materials_.size()};
-    materials_.push_back(
-        {std::move(type), with_defaults(std::move(parameters), state_.material_defaults), at});
+    materials_.push_back({std::move(type), with_defaults(std::move(parameters), PluginKind::material), at});
 }
 
 void SceneBuilder::make_named_material(const std::string& name, std::vector<Parameter> parameters,
                                        Location at) {
     require_world("MakeNamedMaterial", at);
-    ParameterList list = with_defaults(std::move(parameters), state_.material_defaults);
+    ParameterList list = with_defaults(std::move(parameters), PluginKind::material);
     std::optional<std::string> type =
         ParameterReader(list, "named material", at, diagnostics_).string("type");
     if (!type)
@@ -40,19 +39,19 @@ void SceneBuilder::texture(const std::string& name, std::string_view type, std::
                            std::vector<Parameter> parameters, Location at) {
     require_world("Texture", at);
     textures_.declare(type, name,
-                      {std::move(plugin), with_defaults(std::move(parameters), state_.texture_defaults), at,
+                      {std::move(plugin), with_defaults(std::move(parameters), PluginKind::texture), at,
                        still_transform(at)});
 }
 
 void SceneBuilder::light_source(std::string name, std::vector<Parameter> parameters, Location at) {
     require_world("LightSource", at);
-    Plugin plugin{std::move(name), with_defaults(std::move(parameters), state_.light_defaults), at};
+    Plugin plugin{std::move(name), with_defaults(std::move(parameters), PluginKind::light), at};
     result_.scene.lights.push_back(lights_.read(plugin, still_transform(at), *state_.color_space));
 }
 
 void SceneBuilder::area_light_source(std::string name, std::vector<Parameter> parameters, Location at) {
     require_world("AreaLightSource", at);
-    Plugin plugin{std::move(name), with_defaults(std::move(parameters), state_.light_defaults), at};
+    Plugin plugin{std::move(name), with_defaults(std::move(parameters), PluginKind::light), at};
     state_.emission = std::make_shared<Emission>(lights_.read_area(plugin, *state_.color_space));
 }
 
@@ -60,7 +59,7 @@ void SceneBuilder::shape(const std::string& name, std::vector<Parameter> paramet
     require_world("Shape", at);
     Scene& scene = result_.scene;
     const Transform& world_from_object = still_transform(at);
-    ParameterList list = with_defaults(std::move(parameters), state_.shape_defaults);
+    ParameterList list = with_defaults(std::move(parameters), PluginKind::shape);
     ParameterReader r(list, "shape " + in_quotes(name), at, diagnostics_);
     Geometry geometry = read_shape(r, name, world_from_object, state_.reverse_orientation, files_);
 

@@ -267,6 +267,30 @@ TEST(PbrtAttributes, DefaultsOfShapesMaterialsLights) {
     EXPECT_NEAR(light.scale * to_photometric(light.spectrum), 2, 1e-5);
 }
 
+// A name that fits some plugin of the kind is for those that follow; one that fits none is a mistake, told
+// like an unknown parameter of a plugin, once.
+TEST(PbrtAttributes, NamesThatFitNoPluginAreTold) {
+    Warnings told;
+    SceneDescription d = parse_world(R"(LightSource "infinite"
+        Attribute "shape" "float radios" 3
+        Attribute "shape" "float radios" 4 "float innerradius" 0.5 "string basis" "bspline"
+        Attribute "light" "float scaale" 2 "float fov" 20
+        Attribute "material" "float radius" 0.5 "float interface.roughness" 0.5
+        Attribute "medium" "float gg" 0.5 "float g" 0.5
+        Attribute "texture" "string filenam" "a.png" "float octaves" 2
+        Shape "sphere")",
+                                     &told);
+    EXPECT_EQ(told.messages(),
+              (std::vector<std::string>{
+                  "scene:3:27: no shape has a parameter 'radios' (did you mean 'radius'?); it is ignored",
+                  "scene:5:27: no light has a parameter 'scaale' (did you mean 'scale'?); it is ignored",
+                  "scene:6:30: no material has a parameter 'radius'; it is ignored",
+                  "scene:7:28: no medium has a parameter 'gg' (did you mean 'g'?); it is ignored",
+                  "scene:8:29: no texture has a parameter 'filenam' (did you mean 'filename'?); it is "
+                  "ignored"}));
+    EXPECT_EQ(sphere(d, 0).radius, 1);
+}
+
 TEST(PbrtFiles, SameTextSameHash) {
     EXPECT_EQ(parse_world("Shape \"sphere\"").content_hash, parse_world("Shape \"sphere\"").content_hash);
     EXPECT_NE(parse_world("Shape \"sphere\"").content_hash, parse_world("Shape \"disk\"").content_hash);

@@ -1,0 +1,131 @@
+#include "montelux/formats/pbrt/plugin_parameters.h"
+
+#include <algorithm>
+
+namespace montelux::pbrt {
+namespace {
+
+constexpr std::string_view shape_parameters[] = {"N",
+                                                 "P",
+                                                 "S",
+                                                 "alpha",
+                                                 "basis",
+                                                 "degree",
+                                                 "displacement",
+                                                 "edgelength",
+                                                 "emissionfilename",
+                                                 "faceIndices",
+                                                 "filename",
+                                                 "height",
+                                                 "indices",
+                                                 "innerradius",
+                                                 "levels",
+                                                 "phimax",
+                                                 "radius",
+                                                 "scheme",
+                                                 "splitdepth",
+                                                 "type",
+                                                 "uv",
+                                                 "width",
+                                                 "width0",
+                                                 "width1",
+                                                 "zmax",
+                                                 "zmin"};
+
+constexpr std::string_view light_parameters[] = {"I",     "L",    "conedeltaangle", "coneangle", "filename",
+                                                 "fov",   "from", "illuminance",    "portal",    "power",
+                                                 "scale", "to",   "twosided"};
+
+constexpr std::string_view material_parameters[] = {"albedo",
+                                                    "alpha",
+                                                    "amount",
+                                                    "beta_m",
+                                                    "beta_n",
+                                                    "color",
+                                                    "conductor.eta",
+                                                    "conductor.k",
+                                                    "conductor.roughness",
+                                                    "conductor.uroughness",
+                                                    "conductor.vroughness",
+                                                    "displacement",
+                                                    "eta",
+                                                    "eumelanin",
+                                                    "filename",
+                                                    "g",
+                                                    "interface.eta",
+                                                    "interface.roughness",
+                                                    "interface.uroughness",
+                                                    "interface.vroughness",
+                                                    "k",
+                                                    "materials",
+                                                    "maxdepth",
+                                                    "mfp",
+                                                    "name",
+                                                    "normalmap",
+                                                    "nsamples",
+                                                    "pheomelanin",
+                                                    "reflectance",
+                                                    "remaproughness",
+                                                    "roughness",
+                                                    "scale",
+                                                    "sigma_a",
+                                                    "sigma_s",
+                                                    "thickness",
+                                                    "transmittance",
+                                                    "type",
+                                                    "uroughness",
+                                                    "vroughness"};
+
+constexpr std::string_view medium_parameters[] = {"Le",
+                                                  "LeScale",
+                                                  "Lescale",
+                                                  "density",
+                                                  "filename",
+                                                  "frequency",
+                                                  "g",
+                                                  "nx",
+                                                  "ny",
+                                                  "nz",
+                                                  "p0",
+                                                  "p1",
+                                                  "preset",
+                                                  "scale",
+                                                  "sigma_a",
+                                                  "sigma_s",
+                                                  "temperature",
+                                                  "temperaturecutoff",
+                                                  "temperatureoffset",
+                                                  "temperaturescale",
+                                                  "type",
+                                                  "wispiness"};
+
+constexpr std::string_view texture_parameters[] = {
+    "amount",  "dimension",     "dir",       "encoding", "filename",  "filter", "inside", "invert",
+    "mapping", "maxanisotropy", "octaves",   "outside",  "roughness", "scale",  "tex",    "tex1",
+    "tex2",    "udelta",        "uscale",    "v00",      "v01",       "v1",     "v10",    "v11",
+    "v2",      "value",         "variation", "vdelta",   "vscale",    "wrap"};
+
+} // namespace
+
+std::span<const std::string_view> parameter_names(PluginKind kind) {
+    switch (kind) {
+    case PluginKind::shape:
+        return shape_parameters;
+    case PluginKind::light:
+        return light_parameters;
+    case PluginKind::material:
+        return material_parameters;
+    case PluginKind::medium:
+        return medium_parameters;
+    case PluginKind::texture:
+        return texture_parameters;
+    }
+    return {};
+}
+
+bool has_parameter(PluginKind kind, std::string_view name) {
+    std::span<const std::string_view> names = parameter_names(kind);
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+} // namespace montelux::pbrt
