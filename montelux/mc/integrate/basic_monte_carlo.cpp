@@ -1,0 +1,64 @@
+#include "montelux/mc/integrate/basic_monte_carlo.h"
+
+#include "montelux/mc/integrate/sampling.h"
+#include "montelux/mc/integrate/unit_points.h"
+
+namespace montelux {
+namespace {
+
+class BasicEstimator final : public Estimator {
+  public:
+    explicit BasicEstimator(const Problem& problem) : problem_(problem), sum_(empty()) {}
+
+    StepOutcome step(const StepRequest& request) override {
+        const std::uint64_t done = sum_.moments.count();
+        const std::uint64_t size = next_step_size(done, 4096, request.max_evaluations);
+        if (size == 0) return StepOutcome::exhausted;
+        const Evaluator& g = problem_.evaluator;
+        auto sum = sum_batches(
+            size, [&] { return empty(); },
+            [&](std::uint64_t first, std::uint64_t count, SampleMoments& to) {
+                PointBuffer u(count, g.dimensions());
+                ValueBuffer values(count, g.components());
+                fill_random(u, problem_.seed, 0, done + first);
+                g(u, values, to.non_finite);
+                to.add(values);
+            },
+            request.cancel);
+        if (!sum) return StepOutcome::cancelled;
+        sum_.merge(*sum);
+        return StepOutcome::advanced;
+    }
+
+    Tally tally() const override {
+        Tally tally;
+        tally_mean(sum_.moments, tally);
+        tally.evaluations = sum_.moments.count();
+        tally.non_finite = sum_.non_finite;
+        return tally;
+    }
+    void save(StateWriter& state) const override {
+        montelux::save(state, sum_.moments);
+        montelux::save(state, sum_.non_finite);
+    }
+    void load(StateReader& state) override {
+        montelux::load(state, sum_.moments);
+        montelux::load(state, sum_.non_finite);
+    }
+
+  private:
+    SampleMoments empty() const {
+        return {CovarianceMoments(problem_.evaluator.components(), problem_.full_covariance), {}};
+    }
+
+    Problem problem_;
+    SampleMoments sum_;
+};
+
+} // namespace
+
+std::unique_ptr<Estimator> BasicMonteCarlo::estimator(const Problem& problem) const {
+    return std::make_unique<BasicEstimator>(problem);
+}
+
+} // namespace montelux

@@ -1,0 +1,69 @@
+// The one shape of all estimators: steps that add evaluations, a tally at any time, a state that can be
+// saved.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "montelux/mc/integrate/evaluator.h"
+#include "montelux/mc/integrate/state_archive.h"
+#include "montelux/mc/parallel/parallel_for.h"
+
+namespace montelux {
+
+// What an estimator is asked for.
+struct Problem {
+    const Evaluator& evaluator; // outlives the estimator
+    std::uint64_t seed = 0;
+    bool full_covariance = true; // else variances of the components alone
+};
+
+struct StepRequest {
+    // The step must not evaluate the integrand more often than this.
+    std::uint64_t max_evaluations = 0;
+    // The step should aim at these; 0 where there is no such target.
+    double relative_error = 0, absolute_error = 0;
+    const CancelFlag* cancel = nullptr;
+};
+
+enum class StepOutcome : std::uint8_t {
+    advanced,
+    exhausted, // the smallest step does not fit into `max_evaluations`; the state did not change
+    finished,  // no further evaluations would change the estimate; the state did not change
+    cancelled, // the state did not change
+};
+
+// Where an estimate stands.
+struct Tally {
+    std::vector<double> value, standard_error; // infinite errors while nothing is known
+    std::vector<double> covariance;            // components x components, or empty
+    bool statistical = true;
+    std::uint64_t evaluations = 0; // pilots included
+    NonFiniteCount non_finite;
+    double chi_squared = 0;
+    int degrees_of_freedom = 0;
+    // The target must not be believed before this is true (a pilot is running, too few replicates).
+    bool ready = true;
+    std::vector<std::string> doubts;
+    std::string method, reason; // filled by estimators that choose among others
+};
+
+// An estimate that grows step by step. What a step does depends on the problem, the settings, the state and
+// the request alone, never on time or threads; so a run that is saved, restored and continued ends with the
+// same bits as one that was not broken. Steps are short enough to be waited for (about a million evaluations
+// or a tenth of those made so far).
+class Estimator {
+  public:
+    virtual ~Estimator() = default;
+
+    virtual StepOutcome step(const StepRequest& request) = 0;
+    virtual Tally tally() const = 0;
+    // The state between two steps. `load` gets what `save` of an estimator with equal settings wrote.
+    virtual void save(StateWriter& state) const = 0;
+    virtual void load(StateReader& state) = 0;
+};
+
+} // namespace montelux

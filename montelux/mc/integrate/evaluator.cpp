@@ -1,0 +1,83 @@
+#include "montelux/mc/integrate/evaluator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+
+void NonFiniteCount::merge(const NonFiniteCount& later) {
+    if (count == 0) first_point = later.first_point;
+    count += later.count;
+}
+
+Evaluator::Evaluator(Integrand integrand, Domain domain, NonFinitePolicy policy)
+    : integrand_(std::move(integrand)), domain_(std::move(domain)), policy_(policy) {
+    if (integrand_.components() < 1)
+        throw Error("integrate", "expected an integrand with at least one component");
+    const int fixed = integrand_.fixed_dimensions();
+    if (fixed != 0 && fixed != domain_.dimensions())
+        throw Error("integrate", "the integrand takes one number, but the domain (" + domain_.description() +
+                                     ") has " + std::to_string(domain_.dimensions()) +
+                                     " dimensions; expected f(std::span<const double>)");
+}
+
+void Evaluator::screen(const PointBatch& x, ValueBatch values, NonFiniteCount& non_finite) const {
+    for (int c = 0; c < values.components(); ++c) {
+        // A sum is finite if all its terms are (or overflow, which the closer look then sorts out).
+        double sum = 0;
+        for (double v : values.component(c)) sum += v * 0;
+        if (sum == 0) continue;
+        for (std::size_t i = 0; i < values.count(); ++i) {
+            if (std::isfinite(values(i, c))) continue;
+            std::vector<double> point(static_cast<std::size_t>(x.dimensions()));
+            x.gather(i, point.data());
+            if (policy_ == NonFinitePolicy::throw_error) {
+                std::ostringstream what;
+                what.precision(17);
+                what << "the integrand is " << values(i, c) << " at (";
+                for (std::size_t d = 0; d < point.size(); ++d) what << (d ? ", " : "") << point[d];
+                what << ")";
+                throw Error("integrate", what.str());
+            }
+            NonFiniteCount one{1, std::move(point)};
+            non_finite.merge(one);
+            // One point counts once, and contributes to no component.
+            for (int other = 0; other < values.components(); ++other) values(i, other) = 0;
+        }
+    }
+}
+
+void Evaluator::at_points(const PointBatch& x, ValueBatch f, NonFiniteCount& non_finite) const {
+    integrand_(x, f);
+    screen(x, f, non_finite);
+}
+
+void Evaluator::operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& non_finite) const {
+    thread_local PointBuffer x_buffer;
+    thread_local std::vector<double> volume_buffer;
+    // Taken, not borrowed: an integrand may itself integrate on this thread.
+    PointBuffer x = std::move(x_buffer);
+    std::vector<double> volume = std::move(volume_buffer);
+    x.resize(u.count(), domain_.dimensions());
+    const double constant = domain_.constant_volume();
+    volume.assign(u.count(), 1.0);
+    domain_.map(u, x, volume);
+    integrand_(x, g);
+    for (int c = 0; c < g.components(); ++c) {
+        std::span<double> values = g.component(c);
+        if (constant != 0)
+            for (double& v : values) v *= constant;
+        else // 0 * infinity: far out the integrand may underflow where the volume overflows
+            for (std::size_t i = 0; i < values.size(); ++i)
+                values[i] = values[i] == 0 ? 0 : values[i] * volume[i];
+    }
+    screen(x, g, non_finite);
+    x_buffer = std::move(x);
+    volume_buffer = std::move(volume);
+}
+
+} // namespace montelux

@@ -1,0 +1,55 @@
+// An integrand over the unit cube: the user's function, its domain, and what happens to values that are not
+// finite.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "montelux/mc/integrate/domain.h"
+#include "montelux/mc/integrate/integrand.h"
+
+namespace montelux {
+
+enum class NonFinitePolicy : std::uint8_t {
+    skip,       // counted, reported, and left out as zero
+    throw_error // ends the integration with an Error that names the point
+};
+
+// NaN and infinite values that were met, and the point x of the first.
+struct NonFiniteCount {
+    std::uint64_t count = 0;
+    std::vector<double> first_point; // empty while the count is zero
+
+    // In the order of the samples.
+    void merge(const NonFiniteCount& later);
+};
+
+// g(u) = f(x(u)) |dx/du|, whose integral over the unit cube is that of f over the domain. One evaluator
+// serves all threads.
+class Evaluator {
+  public:
+    // Throws Error where integrand and domain do not fit.
+    Evaluator(Integrand integrand, Domain domain, NonFinitePolicy policy = NonFinitePolicy::skip);
+
+    // Variables u.
+    int dimensions() const { return domain_.uniforms(); }
+    int components() const { return integrand_.components(); }
+    const Domain& domain() const { return domain_; }
+    const Integrand& integrand() const { return integrand_; }
+    NonFinitePolicy policy() const { return policy_; }
+
+    // g at points u; values that are not finite become zero and are counted. Scratch memory is the thread's.
+    void operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& non_finite) const;
+
+    // f at points x of the domain, for estimators that draw them themselves; same treatment.
+    void at_points(const PointBatch& x, ValueBatch f, NonFiniteCount& non_finite) const;
+
+  private:
+    void screen(const PointBatch& x, ValueBatch values, NonFiniteCount& non_finite) const;
+
+    Integrand integrand_;
+    Domain domain_;
+    NonFinitePolicy policy_;
+};
+
+} // namespace montelux

@@ -1,0 +1,90 @@
+// What is integrated: a function of a number, of a point or of many points; scalar or vector-valued.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "montelux/mc/integrate/points.h"
+
+namespace montelux {
+
+// A function in one of the forms that users write, behind one call a batch. Functions are called from
+// several threads at once and must not depend on the order of calls. They may throw: the integration then
+// ends with that exception.
+class Integrand {
+  public:
+    using BatchFunction = std::function<void(const PointBatch&, ValueBatch)>;
+
+    // From f(double) -> double, for one variable; or f(std::span<const double>) -> double, for any number.
+    template <typename F>
+    requires(!std::same_as<std::remove_cvref_t<F>, Integrand> &&
+             (std::is_invocable_r_v<double, const std::remove_cvref_t<F>&, double> ||
+              std::is_invocable_r_v<double, const std::remove_cvref_t<F>&, std::span<const double>>)) //
+        Integrand(F&& f)
+        : components_(1) {
+        using Function = std::remove_cvref_t<F>;
+        if constexpr (std::is_invocable_r_v<double, const Function&, double>) {
+            dimensions_ = 1;
+            function_ = [f = Function(std::forward<F>(f))](const PointBatch& x, ValueBatch y) {
+                std::span<const double> in = x.coordinate(0);
+                std::span<double> out = y.component(0);
+                for (std::size_t i = 0; i < in.size(); ++i) out[i] = f(in[i]);
+            };
+        } else {
+            function_ = [f = Function(std::forward<F>(f))](const PointBatch& x, ValueBatch y) {
+                std::span<double> out = y.component(0);
+                for_each_point(x, [&](std::size_t i, std::span<const double> point) { out[i] = f(point); });
+            };
+        }
+    }
+
+    // From f(std::span<const double> x, std::span<double> y), which fills y with `components` values.
+    template <typename F>
+    static Integrand vector_valued(int components, F f) {
+        return Integrand(components, [components, f = std::move(f)](const PointBatch& x, ValueBatch y) {
+            std::vector<double> values(static_cast<std::size_t>(components));
+            for_each_point(x, [&](std::size_t i, std::span<const double> point) {
+                f(point, std::span<double>(values));
+                for (int c = 0; c < components; ++c) y(i, c) = values[static_cast<std::size_t>(c)];
+            });
+        });
+    }
+
+    // From f(const PointBatch& x, ValueBatch y), which fills y for all points at once.
+    static Integrand batch(BatchFunction f, int components = 1) {
+        return Integrand(components, std::move(f));
+    }
+
+    // Number of variables that the form fixes: 1 for f(double), 0 where any will do.
+    int fixed_dimensions() const { return dimensions_; }
+    int components() const { return components_; }
+
+    void operator()(const PointBatch& x, ValueBatch y) const { function_(x, y); }
+
+  private:
+    Integrand(int components, BatchFunction f) : function_(std::move(f)), components_(components) {}
+
+    template <typename Visit>
+    static void for_each_point(const PointBatch& x, const Visit& visit) {
+        auto dimensions = static_cast<std::size_t>(x.dimensions());
+        std::array<double, 16> small;
+        std::vector<double> large(dimensions > small.size() ? dimensions : 0);
+        double* point = large.empty() ? small.data() : large.data();
+        for (std::size_t i = 0; i < x.count(); ++i) {
+            x.gather(i, point);
+            visit(i, std::span<const double>(point, dimensions));
+        }
+    }
+
+    BatchFunction function_;
+    int dimensions_ = 0;
+    int components_;
+};
+
+} // namespace montelux

@@ -1,0 +1,53 @@
+// The front door: integrate a function over a domain until an error, a budget or a time is reached.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "montelux/mc/integrate/domain.h"
+#include "montelux/mc/integrate/evaluator.h"
+#include "montelux/mc/integrate/integrand.h"
+#include "montelux/mc/integrate/method.h"
+#include "montelux/mc/integrate/result.h"
+#include "montelux/mc/parallel/parallel_for.h"
+
+namespace montelux {
+
+// When to stop, whichever comes first; and what else is common to all methods.
+struct Budget {
+    // Each component stops at whichever of the two errors is larger; zero means none. The errors are one
+    // standard deviation.
+    double relative_error = 0, absolute_error = 0;
+    std::uint64_t evaluations = 0; // 0: no limit where an error or a time is asked for, else one million
+    std::chrono::duration<double> time{0}; // wall time; 0: no limit
+};
+
+struct IntegrationOptions {
+    std::uint64_t seed = 0;
+    // 0: one a processor. The result does not depend on it.
+    int threads = 0;
+    NonFinitePolicy non_finite = NonFinitePolicy::skip;
+    // Covariances of the components; without them memory grows linearly with their number.
+    bool full_covariance = true;
+    // Called between steps, from the thread that called integrate().
+    std::function<void(const IntegrationResult&)> progress;
+    const CancelFlag* cancel = nullptr;
+    // Where the running state is kept: written every `checkpoint_every` and at the end; a run goes on from it
+    // where `resume` is set and the file exists. Empty: nowhere.
+    std::string checkpoint;
+    std::chrono::duration<double> checkpoint_every{60};
+    bool resume = false;
+};
+
+// The integral of f over the domain. With relative error 0 and absolute error 0 the evaluations or the time
+// must be limited (default: one million evaluations). Throws Error for arguments that make no sense, for a
+// method that cannot do the problem, and for files that cannot be written; rethrows what f throws.
+//
+//     auto result = integrate([](double x) { return std::sin(x); }, Domain::interval(0, pi / 2),
+//                             Method(), {.relative_error = 1e-6});
+IntegrationResult integrate(const Integrand& f, const Domain& domain, const Method& method = {},
+                            const Budget& budget = {}, const IntegrationOptions& options = {});
+
+} // namespace montelux

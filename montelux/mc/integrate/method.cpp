@@ -1,0 +1,50 @@
+#include "montelux/mc/integrate/method.h"
+
+#include <algorithm>
+#include <array>
+
+#include "montelux/mc/integrate/basic_monte_carlo.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+namespace {
+
+// The methods that need nothing but a name.
+using Make = Method (*)();
+template <MethodSettings S>
+Method make() {
+    return S{};
+}
+struct Entry {
+    std::string_view name;
+    Make make;
+};
+template <MethodSettings S>
+constexpr Entry entry() {
+    return {S::name, make<S>};
+}
+constexpr std::array entries{
+    entry<BasicMonteCarlo>(),
+};
+constexpr auto method_names = [] {
+    std::array<std::string_view, entries.size()> names{};
+    for (std::size_t i = 0; i < names.size(); ++i) names[i] = entries[i].name;
+    return names;
+}();
+
+} // namespace
+
+Method::Method() : Method(BasicMonteCarlo{}) {}
+
+Method Method::named(std::string_view name) {
+    for (const Entry& e : entries)
+        if (e.name == name) return e.make();
+    std::string what = "there is no method '" + std::string(name) + "'; expected one of";
+    for (std::string_view known : method_names)
+        what += (known == method_names.front() ? " " : ", ") + std::string(known);
+    throw Error("method", what);
+}
+
+std::span<const std::string_view> Method::names() { return method_names; }
+
+} // namespace montelux

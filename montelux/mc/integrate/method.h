@@ -1,0 +1,45 @@
+// Which estimator: the settings of any of them, as one value.
+#pragma once
+
+#include <concepts>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "montelux/mc/integrate/estimator.h"
+
+namespace montelux {
+
+// Settings of an estimator: plain values with a name, and the estimator for a problem. `estimator` throws
+// Error where the method cannot do the problem (too many dimensions, settings out of range).
+template <typename S>
+concept MethodSettings = std::copyable<S> && requires(const S& settings, const Problem& problem) {
+    { S::name } -> std::convertible_to<std::string_view>;
+    { settings.estimator(problem) } -> std::convertible_to<std::unique_ptr<Estimator>>;
+};
+
+class Method {
+  public:
+    // Auto.
+    Method();
+    template <MethodSettings S>
+    Method(S settings)
+        : name_(S::name), make_([settings](const Problem& problem) { return settings.estimator(problem); }) {}
+
+    // A method by name with its default settings; throws Error that lists the names.
+    static Method named(std::string_view name);
+    // The names that `named` knows.
+    static std::span<const std::string_view> names();
+
+    const std::string& name() const { return name_; }
+    std::unique_ptr<Estimator> estimator(const Problem& problem) const { return make_(problem); }
+
+  private:
+    std::string name_;
+    std::function<std::unique_ptr<Estimator>(const Problem&)> make_;
+};
+
+} // namespace montelux

@@ -1,0 +1,71 @@
+// What an integration returns: values, errors, how it got there and whether it can be believed.
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "montelux/mc/stats/estimate.h"
+
+namespace montelux {
+
+enum class StopReason : std::uint8_t {
+    error_target, // each component reached its absolute or relative error
+    evaluations,  // the next step would exceed the number of evaluations allowed
+    time,
+    cancelled,
+    finished, // the method has nothing further to do (a fixed grid)
+};
+// "error_target", ...
+std::string_view to_string(StopReason reason);
+
+// The state after one step.
+struct IterationRecord {
+    std::uint64_t evaluations = 0; // so far
+    double value = 0;              // of the first component
+    double standard_error = 0;
+    double seconds = 0; // wall time so far; the only field that differs between equal runs
+};
+
+struct IntegrationResult {
+    // One a component.
+    std::vector<double> value;
+    // Standard deviation of each value; for deterministic rules their error estimate (see `statistical`).
+    std::vector<double> standard_error;
+    // Of the values, row by row, components x components; empty where the method or the options leave it out.
+    std::vector<double> covariance;
+    // True where the errors are standard deviations of a random estimate; false for deterministic rules,
+    // whose errors are differences of rules, and for grids, whose errors are unknown (infinite).
+    bool statistical = true;
+    std::uint64_t evaluations = 0; // of the integrand, pilots included
+    std::uint64_t non_finite = 0;
+    std::vector<double> first_non_finite_point;
+    std::vector<IterationRecord> history;
+    // Do independent parts of the run (iterations, replicates) agree? Zero degrees of freedom where there is
+    // nothing to compare; the p-value is then 1.
+    double chi_squared = 0;
+    int degrees_of_freedom = 0;
+    double p_value = 1;
+    std::string method; // the name that was asked for, or that Auto picked
+    std::string reason; // of Auto's choice; else empty
+    StopReason stop = StopReason::finished;
+    // Reasons to doubt the value or its error, as sentences. Empty is the normal case.
+    std::vector<std::string> doubts;
+    double seconds = 0; // wall time
+
+    // The targets were met, and nothing speaks against the result.
+    bool converged() const { return stop == StopReason::error_target && doubts.empty(); }
+    // One component as a value with its error.
+    Estimate estimate(int component = 0) const;
+    double chi_squared_per_degree() const {
+        return degrees_of_freedom > 0 ? chi_squared / degrees_of_freedom : 0;
+    }
+};
+
+// One line a component, as 1.2345(67); then evaluations, method, what stopped it, and each doubt.
+std::string to_string(const IntegrationResult& result);
+std::ostream& operator<<(std::ostream& out, const IntegrationResult& result);
+
+} // namespace montelux

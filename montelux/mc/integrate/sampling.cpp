@@ -1,0 +1,79 @@
+#include "montelux/mc/integrate/sampling.h"
+
+#include <array>
+#include <cmath>
+
+namespace montelux {
+
+void SampleMoments::add(const ValueBuffer& values) {
+    const std::size_t n = values.count();
+    if (values.components() == 1) {
+        // Two passes over values in the cache are exact enough and vectorise; a running mean does neither.
+        constexpr std::size_t lanes = 8;
+        std::span<const double> v = values.component(0);
+        auto lane_sum = [&](auto term) {
+            std::array<double, lanes> sums{};
+            std::size_t i = 0;
+            for (; i + lanes <= n; i += lanes)
+                for (std::size_t l = 0; l < lanes; ++l) sums[l] += term(v[i + l]);
+            for (; i < n; ++i) sums[i % lanes] += term(v[i]);
+            double sum = 0;
+            for (double s : sums) sum += s;
+            return sum;
+        };
+        const double mean = lane_sum([](double x) { return x; }) / static_cast<double>(n);
+        moments.merge(n, mean, lane_sum([mean](double x) { return (x - mean) * (x - mean); }));
+        return;
+    }
+    std::vector<double> one(static_cast<std::size_t>(values.components()));
+    for (std::size_t i = 0; i < n; ++i) {
+        for (int c = 0; c < values.components(); ++c) one[static_cast<std::size_t>(c)] = values(i, c);
+        moments.add(one);
+    }
+}
+
+void tally_mean(const CovarianceMoments& moments, Tally& tally) {
+    const int m = moments.components();
+    const double inverse = 1 / static_cast<double>(moments.count());
+    tally.value = moments.means();
+    tally.standard_error.resize(static_cast<std::size_t>(m));
+    for (int c = 0; c < m; ++c)
+        tally.standard_error[static_cast<std::size_t>(c)] = std::sqrt(moments.variance(c) * inverse);
+    tally.covariance.clear();
+    if (!moments.full()) return;
+    for (int a = 0; a < m; ++a)
+        for (int b = 0; b < m; ++b) tally.covariance.push_back(moments.covariance(a, b) * inverse);
+}
+
+void save(StateWriter& state, const CovarianceMoments& moments) {
+    state.put(moments.count());
+    state.put(moments.means());
+    state.put(moments.products());
+}
+
+void load(StateReader& state, CovarianceMoments& moments) {
+    const std::uint64_t count = state.get_word();
+    std::vector<double> means = state.get_doubles();
+    std::vector<double> products = state.get_doubles();
+    if (means.size() != moments.means().size() || products.size() != moments.products().size())
+        throw Error("the saved state has another number of components");
+    moments.restore(count, std::move(means), std::move(products));
+}
+
+void save(StateWriter& state, const NonFiniteCount& count) {
+    state.put(count.count);
+    state.put(count.first_point);
+}
+
+void load(StateReader& state, NonFiniteCount& count) {
+    count.count = state.get_word();
+    count.first_point = state.get_doubles();
+}
+
+std::uint64_t next_step_size(std::uint64_t done, std::uint64_t first, std::uint64_t limit) {
+    constexpr std::uint64_t large = 1 << 20;
+    std::uint64_t size = done == 0 ? first : done <= large ? done : std::max(large, done / 10);
+    return std::min(size, limit);
+}
+
+} // namespace montelux

@@ -1,0 +1,68 @@
+// The loop under all estimators: batches of points, evaluated on all threads, added up in a fixed order.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include "montelux/mc/integrate/estimator.h"
+#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/stats/covariance_moments.h"
+
+namespace montelux {
+
+// Points of a batch; so many keep the buffers of a batch in the caches and the cost of a call small.
+inline constexpr std::uint64_t batch_size = 1024;
+// Batches that one task takes: its sums are merged once.
+inline constexpr std::uint64_t batches_per_task = 4;
+
+// Runs add(first, count, sum) for consecutive runs [first, first + count) of [0, count_all), on all threads,
+// and merges the sums in order. `Sum` is default constructible by make() and has merge(const Sum&). Empty
+// when cancelled.
+template <typename Make, typename Add, typename Sum = std::invoke_result_t<const Make&>>
+std::optional<Sum> sum_batches(std::uint64_t count, const Make& make, const Add& add,
+                               const CancelFlag* cancel) {
+    const std::uint64_t task = batch_size * batches_per_task;
+    const auto tasks = static_cast<std::int64_t>((count + task - 1) / task);
+    auto run = [&](std::int64_t t) {
+        Sum sum = make();
+        const std::uint64_t begin = static_cast<std::uint64_t>(t) * task, end = std::min(count, begin + task);
+        for (std::uint64_t first = begin; first < end; first += batch_size)
+            add(first, std::min(batch_size, end - first), sum);
+        return sum;
+    };
+    auto combine = [](Sum a, const Sum& b) {
+        a.merge(b);
+        return a;
+    };
+    if (tasks == 0) return make();
+    return parallel_reduce_ordered(tasks, run, combine, cancel);
+}
+
+// Moments of samples, and what was not finite among them.
+struct SampleMoments {
+    CovarianceMoments moments;
+    NonFiniteCount non_finite;
+
+    // All values of a batch.
+    void add(const ValueBuffer& values);
+    void merge(const SampleMoments& later) {
+        moments.merge(later.moments);
+        non_finite.merge(later.non_finite);
+    }
+};
+
+// Fills value, standard_error and covariance of `tally` from moments whose mean is the estimate and whose
+// covariance, divided by `count`, is that of the mean.
+void tally_mean(const CovarianceMoments& moments, Tally& tally);
+
+void save(StateWriter& state, const CovarianceMoments& moments);
+void load(StateReader& state, CovarianceMoments& moments);
+void save(StateWriter& state, const NonFiniteCount& count);
+void load(StateReader& state, NonFiniteCount& count);
+
+// The size of the next step of an estimator that has made `done` evaluations: a doubling at first, a tenth
+// later on, so that there are steps enough to stop at, and within `limit`.
+std::uint64_t next_step_size(std::uint64_t done, std::uint64_t first, std::uint64_t limit);
+
+} // namespace montelux
