@@ -10,13 +10,17 @@ namespace montelux::app {
 
 namespace {
 
+enum class Phase { nothing_to_save, cancellable, writing };
+
 CancelFlag cancel_flag;
-std::atomic<bool> saving{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
+std::atomic<Phase> phase{Phase::nothing_to_save};
+static_assert(std::atomic<Phase>::is_always_lock_free);
 
 // Async-signal-safe calls alone.
 extern "C" void on_signal(int) {
-    if (saving.load() && !cancel_flag.requested()) {
+    const Phase now = phase.load();
+    if (now == Phase::writing) return;
+    if (now == Phase::cancellable && !cancel_flag.requested()) {
         cancel_flag.request();
         return;
     }
@@ -39,8 +43,10 @@ void end_on_signals() {
 }
 
 const CancelFlag& cancel_on_signals() {
-    saving.store(true);
+    phase.store(Phase::cancellable);
     return cancel_flag;
 }
+
+void finish_on_signals() { phase.store(Phase::writing); }
 
 } // namespace montelux::app

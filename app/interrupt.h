@@ -9,5 +9,8 @@ namespace montelux::app {
 void end_on_signals();
 // From now on the first signal sets the flag that is returned; the second one ends the program at once.
 const CancelFlag& cancel_on_signals();
+// While files are being written: signals change nothing, for the end of the program is near and one in the
+// middle of a file would leave a part of it behind.
+void finish_on_signals();
 
 } // namespace montelux::app

@@ -15,6 +15,7 @@
 
 #include "montelux/formats/pbrt/load_pbrt.h"
 #include "montelux/image/image_write.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/render/renderer.h"
 
 namespace montelux::app {
@@ -129,12 +130,8 @@ void print_statistics(const RenderReport& report, double load_seconds, double bu
     std::printf("peak memory        %.1f MiB\n", static_cast<double>(usage.ru_maxrss) / 1024);
 }
 
-int run(const RenderOptions& options) {
+int load_and_render(const RenderOptions& options) {
     using Clock = std::chrono::steady_clock;
-    end_on_signals();
-    // A closed pipe behind the messages must not end the render.
-    std::signal(SIGPIPE, SIG_IGN);
-    const ThreadLimit limit(options.threads);
     for (const std::string& output : options.outputs) check_writable(output);
 
     auto load_begin = Clock::now();
@@ -160,6 +157,7 @@ int run(const RenderOptions& options) {
     FilmError error = film.error();
     Image image = film.develop();
     add_header(image, options, description, report, error, renderer);
+    finish_on_signals();
     for (const std::string& output : outputs) write_image(output, image);
     if (!options.quiet) {
         for (const std::string& output : outputs)
@@ -170,6 +168,13 @@ int run(const RenderOptions& options) {
         if (options.stats) print_statistics(report, load_seconds, renderer.build_seconds());
     }
     return report.cancelled ? exit_interrupted : exit_done;
+}
+
+int run(const RenderOptions& options) {
+    end_on_signals();
+    // A closed pipe behind the messages must not end the render.
+    std::signal(SIGPIPE, SIG_IGN);
+    return with_threads(options.threads, [&] { return load_and_render(options); });
 }
 
 } // namespace

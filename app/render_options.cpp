@@ -137,8 +137,9 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_whole_number(c, "--spp", o.spp, 1, 1u << 30, "Samples a pixel, in place of the scene's");
     add_whole_number(c, "--seed", o.seed, 0, UINT64_MAX,
                      "Seed of all random numbers, in place of the scene's");
-    add_whole_number(c, "--threads", o.threads, 0, 4096,
-                     "Threads; 0: one a processor. The picture does not depend on it");
+    add_whole_number(
+        c, "--threads", o.threads, 0, 4096,
+        "Threads, also more than processors; 0: one a processor. The picture does not depend on it");
     c.add_option_function<std::string>(
          "--resolution", [&o](const std::string& s) { o.resolution = parse_resolution(s); },
          "Size of the film in pixels; the scene's crop keeps its place")

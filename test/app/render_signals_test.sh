@@ -41,6 +41,39 @@ code=$?
 [ $code -eq 130 ] || fail "a signal while reading: exit code $code instead of 130"
 [ -e long.exr ] && fail "a signal while reading: a picture was written"
 
+# Once the picture is being written, signals neither stop it nor leave a part of it behind.
+"$montelux" render long.pbrt --resolution 2000x1500 --spp 1 --quiet -o large.exr >out 2>&1 &
+pid=$!
+end_later $pid
+in_time=0
+while kill -0 $pid 2>/dev/null; do
+    if find . -name '.montelux-*' -size +64k | grep -q . && kill -INT $pid 2>/dev/null; then
+        in_time=$((in_time + 1))
+    fi
+    sleep 0.02
+done
+wait $pid
+code=$?
+[ $in_time -ge 2 ] || fail "signals while writing: $in_time came in time, two are needed"
+[ $code -eq 0 ] || fail "signals while writing: exit code $code instead of 0"
+expect 0 "2000 x 1500 pixels, 17 channels" info large.exr
+find . -name '.montelux-*' | grep -q . && fail "a signal while writing left a temporary file behind"
+rm -f large.exr
+
+# As many threads as asked for, more than there are processors too.
+"$montelux" render long.pbrt --threads 11 --quiet -o threads.exr >out 2>&1 &
+pid=$!
+end_later $pid
+tries=0 threads=0
+while [ "$threads" -lt 11 ] && [ $tries -lt 100 ]; do
+    sleep 0.1
+    threads=$(ls "/proc/$pid/task" 2>/dev/null | wc -l)
+    tries=$((tries + 1))
+done
+kill -INT $pid
+wait $pid
+[ "$threads" -ge 11 ] || fail "--threads 11: $threads threads"
+
 # Lines where there is no terminal, a bar on one.
 scene short "$sky Shape \"sphere\""
 expect 0 "rendering: 100 %" render short.pbrt
