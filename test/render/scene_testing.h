@@ -35,6 +35,9 @@ class SceneBuilder {
         description.sampler.samples_per_pixel = 64;
         description.integrator.max_depth = 5;
     }
+    // `scene` of a copy refers into the copy.
+    SceneBuilder(const SceneBuilder& other) : description(other.description) {}
+    SceneBuilder& operator=(const SceneBuilder&) = delete;
 
     SceneDescription description;
     Scene& scene = description.scene;
