@@ -1,9 +1,9 @@
 // One encoder a file format, internal to the image room: Image in, bytes out.
 #pragma once
 
-#include "montelux/mc/io/file.h"
 #include "montelux/image/image.h"
 #include "montelux/image/image_write.h"
+#include "montelux/mc/io/file.h"
 
 namespace montelux {
 

@@ -5,9 +5,9 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
-#include "montelux/mc/io/file.h"
 #include "montelux/image/image_read.h"
 #include "montelux/image/image_write.h"
+#include "montelux/mc/io/file.h"
 
 namespace montelux {
 namespace {
