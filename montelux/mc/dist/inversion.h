@@ -5,116 +5,243 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <sstream>
+#include <cstdint>
+#include <limits>
+#include <queue>
 #include <utility>
 #include <vector>
 
+#include "montelux/mc/dist/distribution_1d.h"
+#include "montelux/mc/dist/increasing_root.h"
+#include "montelux/mc/dist/inversion_pieces.h"
 #include "montelux/mc/dist/search.h"
 #include "montelux/mc/math/compensated.h"
-#include "montelux/mc/math/error.h"
 
 namespace montelux {
 
-// F is integrated panel by panel (Gauss-Legendre, panels halved until they agree), so that c = F(b) - F(a);
-// then P(x) = (F(x) - F(a)) / c, the density is f / c, and X = P^-1(xi) by bisection over the panels and
-// safeguarded Newton steps within one. f may jump, and may be infinite at a and b as long as it is
-// integrable. A peak narrower than (b - a) / 256 can be missed: give such an f in pieces. Satisfies
-// Distribution1D.
-template <typename F>
-class NumericalInversion {
-  public:
-    // Throws Error when [a, b] is empty or infinite, f is negative or not finite at a node, or f is zero
-    // at all of them. The relative tolerance is that of c.
-    NumericalInversion(F f, double a, double b, double tolerance = 1e-12) : f_(std::move(f)) {
-        if (!(a < b && std::isfinite(b - a)))
-            throw Error("NumericalInversion", "expected a finite interval that is not empty");
-        constexpr int first_panels = 32;
-        CompensatedSum rough;
-        std::array<double, first_panels> whole;
-        auto edge = [&](int i) { return i == first_panels ? b : a + (b - a) * i / first_panels; };
-        for (int i = 0; i < first_panels; ++i) {
-            whole[i] = gauss(edge(i), edge(i + 1), true);
-            rough.add(whole[i]);
-        }
-        edges_.push_back(a);
-        cumulative_.push_back(0);
-        CompensatedSum total;
-        for (int i = 0; i < first_panels; ++i)
-            refine(edge(i), edge(i + 1), whole[i], tolerance * rough.value() / first_panels, 0, total);
-        if (!(cumulative_.back() > 0))
-            throw Error("NumericalInversion",
-                        "the function is zero wherever it was asked; it has no density");
-    }
+struct InversionOptions {
+    // Where f is infinite, jumps, or has a narrow peak, inside the interval: panels end there and are graded
+    // towards it. Any order.
+    std::vector<double> break_points;
+    // Of c, relative. What was reached is relative_error().
+    double tolerance = 1e-12;
+};
 
-    double lower() const { return edges_.front(); }
-    double upper() const { return edges_.back(); }
-    // The integral c of f.
-    double integral() const { return cumulative_.back(); }
-    double pdf(double x) const { return x >= lower() && x <= upper() ? f_(x) / integral() : 0; }
-    double cdf(double x) const {
-        if (x <= lower()) return 0;
-        if (x >= upper()) return 1;
-        std::size_t i = find_last_not_above(edges_.data(), edges_.size() - 1, x);
-        return std::min(1.0, (cumulative_[i] + gauss(edges_[i], x, false)) / integral());
+// F is integrated panel by panel (Gauss-Legendre, the worst panel halved until the total settles), so that
+// c = F(b) - F(a); then P(x) = (F(x) - F(a)) / c, the density is f / c, and X = P^-1(xi) by bisection over
+// the panels and safeguarded Newton steps within one. a may be -infinity and b infinity. f may jump, and be
+// infinite at a, at b and at break points as long as it is integrable there: next to a point x0, f is only
+// told apart down to distances of |x0| epsilon, so put strong singularities at 0. Found without help are
+// features wider than a 256th of the interval and, next to 0, finite ends and break points, at scales from
+// 1e-7 to 1e7; give narrower peaks a break point. Satisfies TwoTailedDistribution1D; the error of P is
+// absolute, about the tolerance.
+template <typename F>
+class NumericalInversion : public SampledByInversion<NumericalInversion<F>> {
+  public:
+    // Throws Error when the interval or a break point is wrong, f is negative or not finite at a node, f is
+    // zero at all of them, or its integral does not settle (f is not integrable).
+    NumericalInversion(F f, double a, double b, const InversionOptions& options = {})
+        : f_(std::move(f)), a_(a), b_(b), pieces_(inversion_pieces(a, b, options.break_points)) {
+        build(options.tolerance);
     }
-    // xi in [0, 1).
+    NumericalInversion(F f, double a, double b, double tolerance)
+        : NumericalInversion(std::move(f), a, b, InversionOptions{{}, tolerance}) {}
+
+    double lower() const { return a_; }
+    double upper() const { return b_; }
+    // The integral c of f, and the estimate of its relative error.
+    double integral() const { return below_.back(); }
+    double relative_error() const { return relative_error_; }
+
+    double pdf(double x) const { return x >= a_ && x <= b_ ? f_(x) / integral() : 0; }
+    double cdf(double x) const {
+        if (!(x > a_)) return 0;
+        if (!(x < b_)) return 1;
+        std::size_t i = panel_of(x);
+        const Panel& panel = panels_[i];
+        double part = gauss(panel.piece, panel.from, parameter(panel, x));
+        return std::min(below_[i] + part, below_[i + 1]) / integral();
+    }
+    double cdf_complement(double x) const {
+        if (!(x > a_)) return 1;
+        if (!(x < b_)) return 0;
+        std::size_t i = panel_of(x);
+        const Panel& panel = panels_[i];
+        double part = gauss(panel.piece, parameter(panel, x), panel.to);
+        return std::min(above_[i + 1] + part, above_[i]) / integral();
+    }
     double quantile(double xi) const {
-        double target = xi * integral();
-        std::size_t i = find_last_not_above(cumulative_.data(), cumulative_.size() - 1, target);
-        while (i > 0 && cumulative_[i] == cumulative_[i + 1]) --i; // only for xi >= 1, outside the contract
-        double start = edges_[i], lo = start, hi = edges_[i + 1];
-        double rest = target - cumulative_[i], share = rest / (cumulative_[i + 1] - cumulative_[i]);
-        double x = lo + std::clamp(share, 0.0, 1.0) * (hi - lo);
-        for (int step = 0; step < 100; ++step) {
-            double miss = gauss(start, x, false) - rest, slope = f_(x);
-            (miss > 0 ? hi : lo) = x;
-            double next = x - miss / slope;
-            if (!(next > lo && next < hi)) next = lo + 0.5 * (hi - lo);
-            if (std::abs(next - x) <= 1e-15 * std::max(std::abs(x), upper() - lower())) return next;
-            x = next;
-        }
-        return x;
+        return xi <= 0.5 ? from_left(xi * integral()) : from_right((1 - xi) * integral());
+    }
+    double quantile_complement(double q) const {
+        return q < 0.5 ? from_right(q * integral()) : from_left((1 - q) * integral());
     }
 
   private:
-    // Eight points on [-1, 1], by symmetry.
-    double gauss(double a, double b, bool check) const {
+    // `from` is the parameter of its left end, whether or not it is the smaller one.
+    struct Panel {
+        std::uint32_t piece;
+        double from, to, value;
+    };
+    // A panel, the values of its halves and how far they are from its own.
+    struct Split {
+        Panel left, right;
+        double error;
+        double value() const { return left.value + right.value; }
+        bool operator<(const Split& other) const { return error < other.error; }
+    };
+
+    // f as a density in the parameter of a piece.
+    double density(std::uint32_t piece, double t) const {
+        const InversionPiece& p = pieces_[piece];
+        return p.jacobian(t, f_(p.x(t)));
+    }
+    // Eight points, by symmetry, between any two parameters in either order.
+    template <typename Function>
+    static double gauss(double from, double to, const Function& g) {
         constexpr std::array<double, 4> node{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
                                              0.9602898564975363};
         constexpr std::array<double, 4> weight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
                                                0.1012285362903763};
-        double middle = 0.5 * (a + b), half = 0.5 * (b - a), sum = 0;
-        for (std::size_t i = 0; i < 4; ++i)
-            for (double x : {middle - half * node[i], middle + half * node[i]}) {
-                double y = f_(x);
-                if (check && !(y >= 0 && std::isfinite(y))) {
-                    std::ostringstream what;
-                    what << "the function is " << y << " at x = " << x
-                         << "; expected a finite number that is not negative";
-                    throw Error("NumericalInversion", what.str());
-                }
-                sum += weight[i] * y;
-            }
-        return sum * half;
-    }
-    void refine(double a, double b, double whole, double tolerance, int depth, CompensatedSum& total) {
-        double middle = 0.5 * (a + b), left = gauss(a, middle, true), right = gauss(middle, b, true);
-        constexpr int first_depth = 1, last_depth = 44; // halved so often, a panel is lost in rounding
-        bool agree = std::abs(left + right - whole) <= tolerance;
-        if ((depth >= first_depth && agree) || depth >= last_depth) {
-            for (auto [end, part] : {std::pair(middle, left), std::pair(b, right)}) {
-                total.add(part);
-                edges_.push_back(end);
-                cumulative_.push_back(std::max(cumulative_.back(), total.value()));
-            }
-            return;
+        double middle = 0.5 * (from + to), half = 0.5 * (to - from), sum = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+            double low = g(middle - half * node[i]);
+            double high = g(middle + half * node[i]);
+            sum += weight[i] * (low + high);
         }
-        refine(a, middle, left, tolerance, depth + 1, total);
-        refine(middle, b, right, tolerance, depth + 1, total);
+        return sum * std::abs(half);
+    }
+    double gauss(std::uint32_t piece, double from, double to) const {
+        return gauss(from, to, [&](double t) { return density(piece, t); });
+    }
+    Panel checked_panel(std::uint32_t piece, double from, double to) const {
+        auto checked = [&](double t) {
+            double x = pieces_[piece].x(t), y = f_(x);
+            if (!(y >= 0 && std::isfinite(y))) throw_bad_density(x, y);
+            return pieces_[piece].jacobian(t, y);
+        };
+        return {piece, from, to, gauss(from, to, checked)};
+    }
+    Split split(const Panel& whole) const {
+        double middle = 0.5 * (whole.from + whole.to);
+        Panel left = checked_panel(whole.piece, whole.from, middle);
+        Panel right = checked_panel(whole.piece, middle, whole.to);
+        double error = std::abs(left.value + right.value - whole.value);
+        double rounding = 8 * std::numeric_limits<double>::epsilon() * whole.value;
+        return {left, right, error > rounding ? error : 0};
+    }
+
+    void build(double tolerance) {
+        std::priority_queue<Split> open;
+        std::vector<Split> done;
+        for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece)
+            for (auto [from, to] : pieces_[piece].first_panels())
+                open.push(split(checked_panel(piece, from, to)));
+        std::size_t budget = 20000;
+        double total = 0, error = 0;
+        for (std::size_t since_sum = 0;; ++since_sum) {
+            // Running sums drift where a panel's first value was far off, so they are renewed now and then.
+            if (since_sum % 64 == 0) {
+                total = error = 0;
+                for (auto copy = open; !copy.empty(); copy.pop()) {
+                    total += copy.top().value();
+                    error += copy.top().error;
+                }
+                for (const Split& s : done) {
+                    total += s.value();
+                    error += s.error;
+                }
+            }
+            if (open.empty() || open.top().error == 0 || error <= tolerance * total || budget-- == 0) break;
+            Split worst = open.top();
+            open.pop();
+            total -= worst.value();
+            error -= worst.error;
+            for (const Panel& half : {worst.left, worst.right}) {
+                Split next = split(half);
+                total += next.value();
+                error += next.error;
+                if (pieces_[half.piece].divisible(half.from, half.to))
+                    open.push(next);
+                else
+                    done.push_back(next);
+            }
+        }
+        collect(open, done);
+    }
+    void collect(std::priority_queue<Split>& open, std::vector<Split>& done) {
+        CompensatedSum error;
+        std::size_t indivisible = done.size();
+        for (; !open.empty(); open.pop()) done.push_back(open.top());
+        for (const Split& s : done) {
+            panels_.push_back(s.left);
+            panels_.push_back(s.right);
+            error.add(s.error);
+        }
+        std::sort(panels_.begin(), panels_.end(), [&](const Panel& p, const Panel& q) {
+            if (p.piece != q.piece) return p.piece < q.piece;
+            return pieces_[p.piece].rising() ? p.from < q.from : p.from > q.from;
+        });
+        CompensatedSum left, right;
+        below_.assign(1, 0);
+        for (const Panel& p : panels_) {
+            starts_.push_back(pieces_[p.piece].x(p.from));
+            left.add(p.value);
+            below_.push_back(std::max(below_.back(), left.value()));
+        }
+        above_.assign(panels_.size() + 1, 0);
+        for (std::size_t i = panels_.size(); i-- > 0;) {
+            right.add(panels_[i].value);
+            above_[i] = std::max(above_[i + 1], right.value());
+        }
+        double total = below_.back();
+        if (!(total > 0)) throw_no_density(a_, b_);
+        relative_error_ = error.value() / total;
+        // A panel that cannot be halved any more and still matters, or errors that halving does not shrink.
+        for (std::size_t i = 0; i < indivisible; ++i)
+            if (done[i].value() > 1e-4 * total)
+                throw_not_integrable(pieces_[done[i].left.piece].x(done[i].left.to));
+        const Split& worst = *std::max_element(done.begin(), done.end());
+        if (!(std::isfinite(total) && relative_error_ < 1e-4))
+            throw_not_integrable(pieces_[worst.left.piece].x(worst.left.to));
+    }
+
+    std::size_t panel_of(double x) const { return find_last_not_above(starts_.data(), starts_.size(), x); }
+    double parameter(const Panel& panel, double x) const {
+        double t = pieces_[panel.piece].parameter(x);
+        return std::clamp(t, std::min(panel.from, panel.to), std::max(panel.from, panel.to));
+    }
+    // The x with the integral `target` of f to its left, and to its right.
+    double from_left(double target) const {
+        std::size_t i = find_last_not_above(below_.data(), panels_.size(), target);
+        while (i > 0 && below_[i] == below_[i + 1]) --i;
+        return invert(panels_[i], panels_[i].from, panels_[i].to, target - below_[i]);
+    }
+    double from_right(double target) const {
+        // above_ falls: the last entry above the target.
+        auto last = std::partition_point(above_.begin(), above_.end(), [&](double v) { return v > target; });
+        auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, last - above_.begin() - 1));
+        return invert(panels_[i], panels_[i].to, panels_[i].from, target - above_[i + 1]);
+    }
+    // The point at which the integral from `anchor` towards `end` is `rest`.
+    double invert(const Panel& panel, double anchor, double end, double rest) const {
+        if (!(rest > 0)) return pieces_[panel.piece].x(anchor);
+        double lo = std::min(anchor, end), hi = std::max(anchor, end);
+        double start = anchor + std::min(1.0, rest / panel.value) * (end - anchor);
+        double sign = end > anchor ? 1 : -1;
+        double t = increasing_root(lo, hi, start, [&](double at) {
+            double miss = gauss(panel.piece, anchor, at) - rest;
+            return std::pair(sign * miss, density(panel.piece, at));
+        });
+        return pieces_[panel.piece].x(t);
     }
 
     F f_;
-    std::vector<double> edges_, cumulative_; // of the panels; integral of f from a to each edge
+    double a_, b_, relative_error_ = 0;
+    std::vector<InversionPiece> pieces_;
+    std::vector<Panel> panels_;         // from left to right
+    std::vector<double> starts_;        // x of the left end of each panel
+    std::vector<double> below_, above_; // integral left of the start of panel i, and right of it
 };
 
 } // namespace montelux

@@ -98,7 +98,7 @@ double PiecewiseLinear1D::density(double x) const {
     return density_[i] + t * (density_[i + 1] - density_[i]);
 }
 
-double PiecewiseLinear1D::cdf(double x) const {
+double PiecewiseLinear1D::integral_to(double x) const {
     std::size_t i = find_last_not_above(x_.data(), size(), x);
     double h = x_[i + 1] - x_[i], t = (x - x_[i]) / h;
     double q = t * density_[i] + 0.5 * t * t * (density_[i + 1] - density_[i]);

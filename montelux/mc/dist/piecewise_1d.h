@@ -53,6 +53,9 @@ class PiecewiseConstant1D {
         std::size_t i = std::min(static_cast<std::size_t>(s), size() - 1);
         return static_cast<T>((cdf_[i + 1] - cdf_[i]) / width_);
     }
+    // The cumulative distribution and its inverse, so that this is a Distribution1D.
+    double cdf(double x) const { return x <= lower_ ? 0 : (x >= upper_ ? 1 : *inverse(x)); }
+    double quantile(double xi) const { return sample(xi).x; }
     // The u that `sample` maps to x: the cumulative distribution. Empty outside [lower, upper].
     template <std::floating_point T>
     std::optional<T> inverse(T x) const {
@@ -92,11 +95,14 @@ class PiecewiseLinear1D {
     T pdf(T x) const {
         return static_cast<T>(density(static_cast<double>(x)));
     }
+    // The cumulative distribution and its inverse, so that this is a Distribution1D.
+    double cdf(double x) const { return x <= lower() ? 0 : (x >= upper() ? 1 : integral_to(x)); }
+    double quantile(double xi) const { return sample(xi).x; }
     template <std::floating_point T>
     std::optional<T> inverse(T x) const {
         double v = static_cast<double>(x);
         if (!(v >= lower() && v <= upper())) return std::nullopt;
-        return static_cast<T>(cdf(v));
+        return static_cast<T>(integral_to(v));
     }
 
   private:
@@ -107,7 +113,7 @@ class PiecewiseLinear1D {
     void build();
     Inverted invert_cdf(double u) const;
     double density(double x) const;
-    double cdf(double x) const;
+    double integral_to(double x) const;
 
     std::vector<double> x_, density_, cdf_; // at the nodes; density_ is normalised
     double integral_ = 0;

@@ -1,0 +1,47 @@
+#include "montelux/mc/dist/inversion_checks.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "montelux/mc/dist/inversion_pieces.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+namespace {
+
+constexpr const char* where = "inversion of a density";
+
+} // namespace
+
+void require_interval(double a, double b) {
+    if (a < b) return;
+    std::ostringstream what;
+    what << "the interval [" << a << ", " << b << "] is empty; expected a < b";
+    throw Error(where, what.str());
+}
+
+void require_growth(double a, double at_a, double b, double at_b) {
+    if (at_b - at_a > 0 && std::isfinite(at_b - at_a)) return;
+    std::ostringstream what;
+    what << "the antiderivative is " << at_a << " at " << a << " and " << at_b << " at " << b
+         << "; expected finite values that grow (at an infinite end, the limit)";
+    throw Error(where, what.str());
+}
+
+void require_antiderivative(double x, double density, double value, double target, double integral) {
+    if (!(density >= 0)) throw_bad_density(x, density);
+    if (std::isfinite(x) && std::abs(value - target) <= 1e-6 * integral) return;
+    std::ostringstream what;
+    what << "the antiderivative is " << value << " at x = " << x << ", which its inverse gave for " << target
+         << "; expected a continuous antiderivative that does not fall, and its own inverse";
+    throw Error(where, what.str());
+}
+
+void throw_wrong_slope(double x, double slope, double density) {
+    std::ostringstream what;
+    what << "the antiderivative rises by " << slope << " per unit at x = " << x << ", where the density is "
+         << density << "; expected one whose derivative is the density";
+    throw Error(where, what.str());
+}
+
+} // namespace montelux

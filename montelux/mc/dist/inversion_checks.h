@@ -1,0 +1,13 @@
+// What is checked of a density and its antiderivative before they are sampled.
+#pragma once
+
+namespace montelux {
+
+// Each throws Error with a sentence.
+void require_interval(double a, double b);
+void require_growth(double a, double at_a, double b, double at_b);
+// f(x) is a density, and F(x) is the `target` that x was made for, to 1e-6 of the whole integral.
+void require_antiderivative(double x, double density, double value, double target, double integral);
+[[noreturn]] void throw_wrong_slope(double x, double slope, double density);
+
+} // namespace montelux
