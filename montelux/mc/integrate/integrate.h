@@ -32,11 +32,11 @@ struct IntegrationOptions {
     // Covariances of the components; without them memory grows linearly with their number.
     bool full_covariance = true;
     // Called between steps, from the thread that called integrate().
-    std::function<void(const IntegrationResult&)> progress;
+    std::function<void(const IntegrationResult&)> progress = {};
     const CancelFlag* cancel = nullptr;
     // Where the running state is kept: written every `checkpoint_every` and at the end; a run goes on from it
     // where `resume` is set and the file exists. Empty: nowhere.
-    std::string checkpoint;
+    std::string checkpoint = {};
     std::chrono::duration<double> checkpoint_every{60};
     bool resume = false;
 };
