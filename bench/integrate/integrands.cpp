@@ -96,7 +96,7 @@ Group line_group(Line line) {
     }
 }
 
-BenchIntegrand::BenchIntegrand(Line line, std::uint64_t seed) : line_(line) {
+BenchIntegrand::BenchIntegrand(Line line, std::uint64_t seed) : line_(line), seed_(seed) {
     const bool flat = line_group(line) == Group::one_dimensional;
     const int least = line.family == discontinuous ? 2 : 1;
     if (line.dimensions < least || line.dimensions > (flat ? 1 : max_dimensions))

@@ -85,6 +85,7 @@ class BenchIntegrand {
 
     Line line() const { return line_; }
     int dimensions() const { return line_.dimensions; }
+    std::uint64_t seed() const { return seed_; }
     // Range of a coordinate; all coordinates have the same one. The upper end may be infinite.
     double lower() const { return lower_; }
     double upper() const { return upper_; }
@@ -121,6 +122,7 @@ class BenchIntegrand {
     double ridge_value(double mean, double mean_square) const;
 
     Line line_;
+    std::uint64_t seed_;
     double lower_ = 0, upper_ = 1;
     std::array<double, max_dimensions> w_{}, c_{};
     double phase_ = 0;

@@ -1,0 +1,106 @@
+// montelux_bench_integrate: Montelux's integrators beside those of others, one thread each.
+#include "bench/integrate/montelux_methods.h"
+#include "bench/integrate/options.h"
+#include "bench/integrate/report.h"
+#include "bench/integrate/rivals/rivals.h"
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
+
+namespace {
+
+using namespace montelux::bench;
+
+bool asked_for(const std::vector<std::string>& beginnings, const std::string& name) {
+    return std::any_of(beginnings.begin(), beginnings.end(),
+                       [&](const std::string& beginning) { return name.starts_with(beginning); });
+}
+
+std::vector<Method> all_methods(const Options& options) {
+    std::vector<Method> methods = montelux_methods();
+    auto add = [&](std::vector<Method> more) {
+        for (Method& method : more) methods.push_back(std::move(method));
+    };
+    add(sobol_methods());
+    std::string message;
+    add(vegas_methods(options.vegas_python, message));
+    if (!message.empty()) std::cerr << "Without vegas+: " << message << "\n";
+#ifdef MONTELUX_BENCH_GSL
+    add(gsl_methods());
+#else
+    std::cerr << "Without GSL: it was not found when this program was configured\n";
+#endif
+#ifdef MONTELUX_BENCH_CUBATURE
+    add(cubature_methods());
+#else
+    std::cerr << "Without cubature: it was not found when this program was configured\n";
+#endif
+    return methods;
+}
+
+Plan plan_of(const Options& options, const std::vector<Method>& methods) {
+    Plan plan;
+    plan.seeds = options.seeds;
+    for (Line line : bench_lines())
+        if (options.lines.empty() || asked_for(options.lines, line_name(line))) plan.lines.push_back(line);
+    for (const Method& method : methods)
+        if (options.methods.empty() ? method.by_default : asked_for(options.methods, method.name))
+            plan.methods.push_back(method);
+    for (double target : options.targets)
+        plan.goals.push_back({target, static_cast<std::uint64_t>(options.cap)});
+    if (options.fixed > 0) plan.goals.push_back({0, static_cast<std::uint64_t>(options.fixed)});
+    if (plan.lines.empty()) throw montelux::Error("--lines", "there is no such line; --list names them");
+    if (plan.methods.empty())
+        throw montelux::Error("--methods", "there is no such method; --list names them");
+    return plan;
+}
+
+int run(const Options& options) {
+    const std::vector<Method> methods = all_methods(options);
+    if (options.list) {
+        for (Line line : bench_lines()) std::cout << "line " << line_name(line) << "\n";
+        for (const Method& method : methods) std::cout << "method " << method.name << "\n";
+        return 0;
+    }
+    const Plan plan = plan_of(options, methods);
+    const std::vector<Run> runs =
+        run_all(plan, [](const Line& line, const Goal& goal, const Method& method, double cpu_seconds) {
+            std::fprintf(stderr, "%-12s %-16s %-22s %8.2f s\n", line_name(line).c_str(), goal.name().c_str(),
+                         method.name.c_str(), cpu_seconds);
+        });
+    const Summary summary(plan, runs);
+    std::cout << "# Integrators compared\n\nOne thread, " << plan.seeds << " seeds, at most "
+              << static_cast<std::uint64_t>(options.cap)
+              << " evaluations a run; pilots and reruns are counted.\n";
+    print_report(std::cout, plan, runs, summary);
+    std::vector<Overhead> overheads;
+    if (options.overhead > 0) {
+        std::vector<Method> measured;
+        for (const Method& method : plan.methods)
+            if (method.name != "pcubature") measured.push_back(method); // exact after a few points
+        overheads = measure_overhead(measured, static_cast<std::uint64_t>(options.overhead));
+        print_overheads(std::cout, overheads);
+    }
+    if (!options.json.empty()) write_json(options.json, plan, runs, summary, overheads);
+    return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        const Options options = parse_options({argv + 1, argv + argc});
+        if (options.help) {
+            std::cout << options_help();
+            return 0;
+        }
+        const montelux::ThreadLimit one(1);
+        return run(options);
+    } catch (const std::exception& error) {
+        std::cerr << "montelux_bench_integrate: " << error.what() << "\n";
+        return 1;
+    }
+}
