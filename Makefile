@@ -2,14 +2,14 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo build test test-all bench lint format install dependencies clean
+.PHONY: help demo build test test-all bench bench-integrate lint format install dependencies clean
 
 JOBS ?= $(shell cmake/jobs.sh)
 BUILD := build/release
 DEMO_SPP ?= 64
 
 help: ## this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-13s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-15s %s\n", $$1, $$2}' Makefile
 
 demo: build ## build, then render a scene of our own (about a minute on two cores)
 	$(BUILD)/montelux render scenes/demo/studio.pbrt --spp $(DEMO_SPP) -o build/demo.exr -o build/demo.png
@@ -34,6 +34,16 @@ bench: dependencies ## speed of the parts, then of whole pictures
 	cmake --preset bench
 	cmake --build build/bench --parallel $(JOBS)
 	cmake/run-benchmarks.sh build/bench
+
+INTEGRATE := build/bench-integrate
+bench-integrate: dependencies ## integrators beside GSL, cubature and vegas (an hour; less with SEEDS=5 LINES=gauss,osc-5 METHODS=... TARGETS=1e-3)
+	@cmake/install-dependencies.sh bench || echo "Going on without the rivals that are missing."
+	bench/integrate/vegas-environment.sh $(INTEGRATE)/vegas
+	cmake --preset mc -B $(INTEGRATE) -D MONTELUX_BENCH=ON -D MONTELUX_TESTS=OFF -D MONTELUX_LTO=ON
+	cmake --build $(INTEGRATE) --parallel $(JOBS) --target montelux_bench_integrate
+	$(INTEGRATE)/bench/integrate/montelux_bench_integrate --vegas-python $(INTEGRATE)/vegas/bin/python \
+	    --json $(INTEGRATE)/result.json $(if $(SEEDS),--seeds $(SEEDS)) $(if $(LINES),--lines $(LINES)) \
+	    $(if $(METHODS),--methods $(METHODS)) $(if $(TARGETS),--targets $(TARGETS)) | tee $(INTEGRATE)/result.md
 
 lint: ## formatting and static analysis (FILES="a.cpp b.cpp" for some, else all)
 	cmake/install-dependencies.sh lint

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs the Debian packages that are missing, and only those; as root, or with sudo.
-# Usage: install-dependencies.sh [build|lint] [--dry-run]
+# Usage: install-dependencies.sh [build|bench|lint] [--dry-run]
 set -eu
 
 # docs/dependencies.md says what each is for.
@@ -10,9 +10,10 @@ dry_run=no
 for argument in "$@"; do
     case $argument in
     build) ;;
+    bench) packages="$packages libgsl-dev libcubature-dev python3-venv" ;;
     lint) packages="$packages clang-format clang-tidy" ;;
     --dry-run) dry_run=yes ;;
-    *) echo "install-dependencies.sh: unknown argument '$argument' (expected build, lint or --dry-run)" >&2
+    *) echo "install-dependencies.sh: unknown argument '$argument' (expected build, bench, lint or --dry-run)" >&2
        exit 2 ;;
     esac
 done
