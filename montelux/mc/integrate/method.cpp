@@ -4,6 +4,7 @@
 #include <array>
 
 #include "montelux/mc/integrate/basic_monte_carlo.h"
+#include "montelux/mc/integrate/grid.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
@@ -25,6 +26,9 @@ constexpr Entry entry() {
 }
 constexpr std::array entries{
     entry<BasicMonteCarlo>(),
+    entry<RiemannSum>(),
+    entry<MidpointRule>(),
+    entry<TrapezoidRule>(),
 };
 constexpr auto method_names = [] {
     std::array<std::string_view, entries.size()> names{};
