@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <fstream>
 #include <future>
+#include <iterator>
 #include <vector>
 
 #include "montelux/spectrum/rgb_uplift.h"
@@ -14,6 +15,7 @@ int main(int argc, char** argv) {
         return 2;
     }
     std::vector<std::future<std::vector<montelux::Float4>>> tables;
+    tables.reserve(std::size(montelux::rgb_uplift_layouts));
     for (const montelux::RgbUpliftLayout& layout : montelux::rgb_uplift_layouts)
         tables.push_back(std::async(std::launch::async, [&layout] {
             const montelux::RgbColorSpace& space = *montelux::find_rgb_color_space(layout.space);

@@ -184,8 +184,8 @@ Vec3d limit_normal(const std::vector<Vec3d>& p, Index vertex, const Ring& ring) 
 } // namespace
 
 SubdividedMesh subdivide_loop(std::span<const Vec3f> positions, std::span<const Index> indices, int levels) {
-    double triangles = static_cast<double>(indices.size() / 3) * std::pow(4.0, levels);
-    if (triangles > 268435456.0)
+    std::size_t triangles = indices.size() / 3;
+    if (static_cast<double>(triangles) * std::pow(4.0, levels) > 268435456.0)
         throw Error("loop subdivision",
                     std::to_string(levels) + " levels would give more than 2^28 triangles");
     Mesh mesh = make_mesh(positions, indices);

@@ -16,9 +16,10 @@ namespace {
 class ReferenceSlowTest : public ::testing::TestWithParam<const char*> {};
 
 // At 64 samples a pixel, without the hundredth of the pixels where the reference itself is the noisiest.
-// Scores are corrected for the skewness of a pixel's samples, without which those below the truth claim too
-// small an error. What is left is not the normal law: the reference's errors come from eight pictures
-// (Student's t), and fireflies have no law at 64 samples, so bounds are wide.
+// Scores have errors pooled over 3 x 3 pixels, without which those below the truth claim too small an error.
+// What is left is not the normal law: the reference's errors come from eight pictures (Student's t), and
+// errors differ between neighbours, so bounds of the shares are wide. On killeroo-simple pbrt's weights of
+// rough coats, which do not sum to one, add a true difference (docs/rendering.md).
 TEST_P(ReferenceSlowTest, AgreesWithPbrt) {
     namespace fs = std::filesystem;
     fs::path folder = fs::path(MONTELUX_SHARED_DIR) / "scenes" / "pbrt" / GetParam();
@@ -37,7 +38,6 @@ TEST_P(ReferenceSlowTest, AgreesWithPbrt) {
     MeasuredPicture b = measured_picture("reference", mean, "its error", error);
     Comparison c = compare_pictures(a, b, {.relative_epsilon = 0.01, .set_aside_percent = 1});
     EXPECT_EQ(c.not_finite, 0u);
-    EXPECT_TRUE(c.skew_known);
     for (const ChannelComparison& channel : c.channels) {
         double tolerance = std::max(0.01, 4 * channel.mean_difference_error / channel.mean_b);
         RecordProperty("relative difference " + channel.name,
@@ -46,7 +46,7 @@ TEST_P(ReferenceSlowTest, AgreesWithPbrt) {
                        std::to_string(channel.mean_difference_error / channel.mean_b));
         EXPECT_NEAR(channel.relative_mean_difference, 0, tolerance) << channel.name;
     }
-    const ZScores& z = c.skew_corrected;
+    const ZScores& z = c.pooled;
     RecordProperty("z mean", std::to_string(z.mean));
     RecordProperty("z sd", std::to_string(z.standard_deviation));
     RecordProperty("naive z mean", std::to_string(c.z.mean));
@@ -55,17 +55,14 @@ TEST_P(ReferenceSlowTest, AgreesWithPbrt) {
     for (int k = 0; k < 3; ++k)
         RecordProperty("within " + std::to_string(k + 1),
                        std::to_string(z.within[static_cast<std::size_t>(k)]));
-    EXPECT_GT(z.within[0], 0.58);
-    EXPECT_GT(z.within[1], 0.90);
-    EXPECT_GT(z.within[2], 0.98);
-    EXPECT_LT(z.within[0], 0.73);
+    EXPECT_GT(z.within[0], 0.65);
+    EXPECT_LT(z.within[0], 0.77);
+    EXPECT_GT(z.within[1], 0.92);
     EXPECT_LT(z.within[1], 0.97);
-    EXPECT_NEAR(z.mean, 0, 0.2);
-    // A few caustics of the gold killeroo are wholly missed by one of the two pictures.
-    if (std::string(GetParam()) != "killeroo-gold") {
-        EXPECT_GT(z.standard_deviation, 0.9);
-        EXPECT_LT(z.standard_deviation, 1.2);
-    }
+    EXPECT_GT(z.within[2], 0.985);
+    EXPECT_NEAR(z.mean, 0, std::string(GetParam()) == "killeroo-simple" ? 0.15 : 0.1);
+    EXPECT_GT(z.standard_deviation, 0.9);
+    EXPECT_LT(z.standard_deviation, 1.2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ReferenceSlowTest,
