@@ -36,7 +36,7 @@ bench: dependencies ## speed of the parts, then of whole pictures
 	cmake/run-benchmarks.sh build/bench
 
 INTEGRATE := build/bench-integrate
-bench-integrate: dependencies ## integrators beside GSL, cubature and vegas (an hour; less with SEEDS=5 LINES=gauss,osc-5 METHODS=... TARGETS=1e-3)
+bench-integrate: dependencies ## integrators beside GSL, cubature, vegas (hours; less with SEEDS=5 LINES=gauss,osc-5 METHODS= TARGETS=)
 	@cmake/install-dependencies.sh bench || echo "Going on without the rivals that are missing."
 	bench/integrate/vegas-environment.sh $(INTEGRATE)/vegas
 	cmake --preset mc -B $(INTEGRATE) -D MONTELUX_BENCH=ON -D MONTELUX_TESTS=OFF -D MONTELUX_LTO=ON

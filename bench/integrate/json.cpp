@@ -16,7 +16,8 @@ const char* name_of(Kind kind) {
 } // namespace
 
 void write_json(const std::string& path, const Plan& plan, const std::vector<Run>& runs,
-                const Summary& summary, std::span<const Overhead> overheads) {
+                const Summary& summary, std::span<const Overhead> overheads,
+                std::span<const Scaling> scaling) {
     using nlohmann::json;
     json root;
     root["seeds"] = plan.seeds;
@@ -61,6 +62,7 @@ void write_json(const std::string& path, const Plan& plan, const std::vector<Run
                 if (!plan.goals[g].spends()) {
                     row["answered"] = cell.answered;
                     row["silent_failures"] = cell.silent;
+                    row["silent_failures_unheeded"] = cell.silent_unheeded;
                     row["honest"] = cell.honest;
                 }
                 row["median_evaluations"] = cell.median_evaluations ? json(*cell.median_evaluations) : json();
@@ -71,6 +73,10 @@ void write_json(const std::string& path, const Plan& plan, const std::vector<Run
                                      {"form", row.form == Form::batch ? "batch" : "scalar"},
                                      {"nanoseconds", row.nanoseconds},
                                      {"evaluations", row.evaluations}});
+    for (const Scaling& row : scaling)
+        root["scaling"].push_back({{"method", row.method},
+                                   {"nanoseconds_on_one_thread", row.nanoseconds_on_one},
+                                   {"speedup_on_two_threads", row.speedup_on_two}});
     std::ofstream out(path);
     out << root.dump(1) << "\n";
     out.close();

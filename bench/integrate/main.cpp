@@ -58,6 +58,17 @@ Plan plan_of(const Options& options, const std::vector<Method>& methods) {
     return plan;
 }
 
+void show_progress(const Line& line, const Goal& goal, const Method& method, double cpu_seconds) {
+    std::fprintf(stderr, "%-12s %-16s %-22s %8.2f s\n", line_name(line).c_str(), goal.name().c_str(),
+                 method.name.c_str(), cpu_seconds);
+}
+
+template <typename F>
+auto with_one_thread(const F& f) {
+    const montelux::ThreadLimit one(1);
+    return f();
+}
+
 int run(const Options& options) {
     const std::vector<Method> methods = all_methods(options);
     if (options.list) {
@@ -66,25 +77,25 @@ int run(const Options& options) {
         return 0;
     }
     const Plan plan = plan_of(options, methods);
-    const std::vector<Run> runs =
-        run_all(plan, [](const Line& line, const Goal& goal, const Method& method, double cpu_seconds) {
-            std::fprintf(stderr, "%-12s %-16s %-22s %8.2f s\n", line_name(line).c_str(), goal.name().c_str(),
-                         method.name.c_str(), cpu_seconds);
-        });
+    const std::vector<Run> runs = with_one_thread([&] { return run_all(plan, show_progress); });
     const Summary summary(plan, runs);
     std::cout << "# Integrators compared\n\nOne thread, " << plan.seeds << " seeds, at most "
               << static_cast<std::uint64_t>(options.cap)
               << " evaluations a run; pilots and reruns are counted.\n";
     print_report(std::cout, plan, runs, summary);
     std::vector<Overhead> overheads;
+    std::vector<Scaling> scaling;
     if (options.overhead > 0) {
+        const auto evaluations = static_cast<std::uint64_t>(options.overhead);
         std::vector<Method> measured;
         for (const Method& method : plan.methods)
             if (method.name != "pcubature") measured.push_back(method); // exact after a few points
-        overheads = measure_overhead(measured, static_cast<std::uint64_t>(options.overhead));
+        overheads = with_one_thread([&] { return measure_overhead(measured, evaluations); });
         print_overheads(std::cout, overheads);
+        scaling = measure_scaling(plan.methods, evaluations);
+        print_scaling(std::cout, scaling);
     }
-    if (!options.json.empty()) write_json(options.json, plan, runs, summary, overheads);
+    if (!options.json.empty()) write_json(options.json, plan, runs, summary, overheads, scaling);
     return 0;
 }
 
@@ -97,7 +108,6 @@ int main(int argc, char** argv) {
             std::cout << options_help();
             return 0;
         }
-        const montelux::ThreadLimit one(1);
         return run(options);
     } catch (const std::exception& error) {
         std::cerr << "montelux_bench_integrate: " << error.what() << "\n";

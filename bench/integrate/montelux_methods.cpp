@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <limits>
 #include <string>
 
 #include "montelux/mc/integrate/integrate.h"
@@ -40,28 +42,76 @@ Answer run(const montelux::Method& method, const CountedIntegrand& f, const Requ
             .cpu_seconds = {}};
 }
 
+bool is_grid(std::string_view name) {
+    for (std::string_view grid : {"riemann", "midpoint", "trapezoid", "grid"})
+        if (name.find(grid) != std::string_view::npos) return true;
+    return false;
+}
+
 Kind kind_of(std::string_view name) {
     if (name == "auto") return Kind::either;
-    for (std::string_view rule : {"cubature", "genz-malik", "gauss-kronrod", "tanh-sinh", "grid", "midpoint",
-                                  "trapezoid", "riemann", "quadrature"})
+    for (std::string_view rule : {"cubature", "genz", "gauss", "tanh", "quadrature"})
         if (name.find(rule) != std::string_view::npos) return Kind::cubature;
-    return Kind::sampling;
+    return is_grid(name) ? Kind::cubature : Kind::sampling;
 }
+
+// The default method may or may not be among the names.
+montelux::Method named(const std::string& name) {
+    return montelux::Method().name() == name ? montelux::Method() : montelux::Method::named(name);
+}
+
+constexpr std::string_view prefix = "montelux-";
 
 } // namespace
 
 std::vector<Method> montelux_methods() {
     std::vector<Method> methods;
-    for (std::string_view name : montelux::Method::names())
-        methods.push_back({.name = "montelux-" + std::string(name),
-                           .kind = kind_of(name),
+    auto add = [&](const montelux::Method& method) {
+        const std::string name = std::string(prefix) + method.name();
+        for (const Method& known : methods)
+            if (known.name == name) return;
+        methods.push_back({.name = name,
+                           .kind = kind_of(method.name()),
                            .ours = true,
                            .forms = {Form::batch, Form::scalar},
-                           .run = [method = montelux::Method::named(name)](const CountedIntegrand& f,
-                                                                           const Request& request) {
-                               return run(method, f, request);
-                           }});
+                           .run = [method](const CountedIntegrand& f,
+                                           const Request& request) { return run(method, f, request); },
+                           .by_default = !is_grid(method.name())});
+    };
+    add(montelux::Method());
+    for (std::string_view name : montelux::Method::names()) add(montelux::Method::named(name));
     return methods;
+}
+
+std::vector<Scaling> measure_scaling(const std::vector<Method>& methods, std::uint64_t evaluations) {
+    const Integrand slow([](std::span<const double> x) {
+        double t = 0.5 * (x[0] + x[1]);
+        for (int i = 0; i < 18; ++i) t = 3.9 * t * (1 - t); // a chain of dependent operations
+        return 1 + t;
+    });
+    const Domain cube = Domain::unit_cube(8);
+    std::vector<Scaling> table;
+    for (const Method& method : methods) {
+        if (!method.ours || method.kind == Kind::cubature) continue;
+        std::array<double, 2> seconds;
+        for (int threads : {1, 2}) {
+            double& best = seconds[threads - 1];
+            best = std::numeric_limits<double>::infinity();
+            for (int repeat = 0; repeat < 3; ++repeat) {
+                Budget budget;
+                budget.evaluations = evaluations;
+                IntegrationOptions options;
+                options.threads = threads;
+                const auto begin = std::chrono::steady_clock::now();
+                const IntegrationResult result =
+                    integrate(slow, cube, named(method.name.substr(prefix.size())), budget, options);
+                const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+                best = std::min(best, wall.count() / static_cast<double>(result.evaluations));
+            }
+        }
+        table.push_back({method.name, 1e9 * seconds[0], seconds[0] / seconds[1]});
+    }
+    return table;
 }
 
 } // namespace montelux::bench

@@ -3,8 +3,10 @@
 #include "bench/integrate/markdown.h"
 #include "bench/integrate/published.h"
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <ostream>
+#include <utility>
 
 namespace montelux::bench {
 
@@ -132,27 +134,28 @@ void print_honesty(std::ostream& out, const Plan& plan, const Summary& summary, 
         out << "Silent failures: target claimed without a doubt, true error above 3 targets. Coverage: share "
                "of the "
                "runs that answered whose true error is within 1/2/3 claimed errors.\n\n";
-    MarkdownTable table(
-        {"method", "runs", "answered", "doubted", "silent", "smooth", "discontinuous", "1-D", "hard"});
+    MarkdownTable table({"method", "runs", "answered", "doubted", "silent", "unheeded", "smooth",
+                         "discontinuous", "1-D", "hard"});
     for (std::size_t m = 0; m < plan.methods.size(); ++m) {
-        int runs = 0, answered = 0, doubted = 0, silent = 0;
+        int runs = 0, answered = 0, doubted = 0, silent = 0, unheeded = 0;
         for (std::size_t l = 0; l < plan.lines.size(); ++l) {
             const Cell& cell = summary.cell(l, m, goal);
             runs += cell.runs - cell.failed;
             answered += cell.answered;
             doubted += cell.doubted;
             silent += cell.silent;
+            unheeded += cell.silent_unheeded;
         }
         auto share = [&](int count) { return runs > 0 ? formatted("%.1f %%", 100.0 * count / runs) : ""; };
         auto covered = [&](Group group) { return coverage_text(summary.coverage(group, m, goal)); };
         table.add({plan.methods[m].name, std::to_string(runs), spends ? "" : share(answered), share(doubted),
-                   spends ? "" : share(silent), covered(Group::smooth), covered(Group::discontinuous),
-                   covered(Group::one_dimensional), covered(Group::hard)});
+                   spends ? "" : share(silent), spends ? "" : share(unheeded), covered(Group::smooth),
+                   covered(Group::discontinuous), covered(Group::one_dimensional), covered(Group::hard)});
     }
     if (plan.goals[goal].relative_error == 1e-3)
         for (const PublishedHonesty& row : published_honesty())
             if (only_published(row.method))
-                table.add({std::string(row.method) + "*", "", "", "", std::string(row.silent_1e3),
+                table.add({std::string(row.method) + "*", "", "", "", "", std::string(row.silent_1e3),
                            std::string(row.smooth), std::string(row.discontinuous)});
     out << table << "\n`*`: not measured in this run, from the published table.\n";
 }
@@ -178,7 +181,25 @@ void print_errors(std::ostream& out, const Plan& plan, const Summary& summary, s
     if (published) out << "\n`*`: not measured in this run, from the published table.\n";
 }
 
-// What went wrong, and what `auto` picked: once for each line.
+// What automatic methods picked, with the number of runs.
+void print_choices(std::ostream& out, const Plan& plan, const std::vector<Run>& runs, std::size_t goal) {
+    std::map<std::pair<std::size_t, std::size_t>, std::map<std::string, int>> picked; // by line and method
+    for (const Run& run : runs)
+        if (run.goal == goal && plan.methods[run.method].kind == Kind::either && !run.answer.chosen.empty())
+            ++picked[{run.line, run.method}][run.answer.chosen];
+    if (picked.empty()) return;
+    out << "\n## What was picked at " << plan.goals[goal].name() << "\n\n";
+    MarkdownTable table({"line", "method", "picked"});
+    for (const auto& [key, choices] : picked) {
+        std::string text;
+        for (const auto& [name, count] : choices)
+            text += (text.empty() ? "" : ", ") + name + " (" + std::to_string(count) + ")";
+        table.add({line_name(plan.lines[key.first]), plan.methods[key.second].name, text});
+    }
+    out << table;
+}
+
+// Each message of a method that gave no answer, once a line.
 void print_notes(std::ostream& out, const Plan& plan, const std::vector<Run>& runs) {
     std::vector<std::string> notes;
     for (const Run& run : runs)
@@ -202,8 +223,18 @@ void print_report(std::ostream& out, const Plan& plan, const std::vector<Run>& r
             print_ratios(out, plan, summary, goal);
         }
         print_honesty(out, plan, summary, goal);
+        print_choices(out, plan, runs, goal);
     }
     print_notes(out, plan, runs);
+}
+
+void print_scaling(std::ostream& out, std::span<const Scaling> scaling) {
+    out << "\n## Two threads: wall time with an integrand of about 100 ns in 8 dimensions\n\n";
+    MarkdownTable table({"method", "ns on one thread", "speedup on two"});
+    for (const Scaling& row : scaling)
+        table.add(
+            {row.method, formatted("%.0f", row.nanoseconds_on_one), formatted("%.2f", row.speedup_on_two)});
+    out << table;
 }
 
 void print_overheads(std::ostream& out, std::span<const Overhead> overheads) {

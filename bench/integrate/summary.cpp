@@ -29,8 +29,10 @@ Cell summarise(const std::vector<const Run*>& runs, const Goal& goal) {
         cpu_seconds.push_back(run->cpu_seconds);
         evaluations.push_back(counts ? static_cast<double>(run->evaluations)
                                      : std::numeric_limits<double>::infinity());
-        if (!counts) continue;
         const double error = std::abs(run->relative_error());
+        cell.silent_unheeded +=
+            run->failure.empty() && run->answer.converged && error > 3 * goal.relative_error;
+        if (!counts) continue;
         cell.silent += run->answered() && error > 3 * goal.relative_error;
         squares += error * error;
         ++cell.coverage.runs;
