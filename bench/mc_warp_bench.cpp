@@ -7,10 +7,12 @@
 
 #include "montelux/mc/dist/alias_table.h"
 #include "montelux/mc/dist/discrete.h"
+#include "montelux/mc/dist/families.h"
 #include "montelux/mc/dist/inversion.h"
 #include "montelux/mc/dist/piecewise_1d.h"
 #include "montelux/mc/dist/piecewise_2d.h"
 #include "montelux/mc/integrate/importance.h"
+#include "montelux/mc/integrate/integrate.h"
 #include "montelux/mc/integrate/mis.h"
 #include "montelux/mc/random/philox_stream.h"
 #include "montelux/mc/stats/moments.h"
@@ -144,9 +146,11 @@ BENCHMARK(moments_of_a_pixel);
 
 void importance_sampled_integral(benchmark::State& state) {
     for (auto _ : state) {
-        Estimate e = importance_sampling([](double x) { return std::sin(x); }, LinearDistribution(0, pi / 2),
-                                         {.samples = 1 << 16});
-        benchmark::DoNotOptimize(e);
+        IntegrationResult r =
+            integrate([](double x) { return std::sin(x); }, Domain::interval(0, pi / 2),
+                      Importance{LinearDistribution(0, pi / 2), ImportancePoints::random, false},
+                      {.evaluations = 1 << 16});
+        benchmark::DoNotOptimize(r);
     }
     state.SetItemsProcessed(state.iterations() * (1 << 16));
 }

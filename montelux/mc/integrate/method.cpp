@@ -5,6 +5,7 @@
 
 #include "montelux/mc/integrate/basic_monte_carlo.h"
 #include "montelux/mc/integrate/grid.h"
+#include "montelux/mc/integrate/quasi.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
@@ -25,6 +26,7 @@ constexpr Entry entry() {
     return {S::name, make<S>};
 }
 constexpr std::array entries{
+    entry<Quasi>(),
     entry<BasicMonteCarlo>(),
     entry<RiemannSum>(),
     entry<MidpointRule>(),

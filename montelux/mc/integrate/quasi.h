@@ -1,63 +1,41 @@
-// Randomised quasi-Monte Carlo: low-discrepancy points, with an honest error from independent replicates.
+// Randomised quasi-Monte Carlo (A6): low-discrepancy points, with an honest error from independent
+// replicates.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
+#include <string_view>
 
-#include "montelux/mc/integrate/sample_loop.h"
-#include "montelux/mc/integrate/technique.h"
+#include "montelux/mc/integrate/estimator.h"
+#include "montelux/mc/random/point_set.h"
 
 namespace montelux {
 
-struct QuasiSettings {
-    std::uint64_t points = 4096;   // of each replicate
-    std::uint32_t replicates = 16; // independent randomisations; at least 2 for an error
+// The mean of the integrand over a point set, for several independent randomisations of it; the estimate is
+// the mean over these replicates and its error comes from their spread, with Student's law of replicates - 1
+// degrees of freedom (Owen 2013, "Monte Carlo theory, methods and examples", section 17). Unbiased, for every
+// point of a randomised set is uniform. The number of points doubles from step to step, and only whole
+// doublings count: such a number is balanced for Sobol' points. Where the evaluations are limited, the other
+// sets take the rest of them at last; Hammersley sets, which have no prefix, start anew for each number.
+//
+// An error target is believed where three standard errors by Student's law, t, stay within three targets, or
+// where it is met at two successive doublings: a spread that is small by luck seldom passes.
+//
+// The plain sets (Randomisation::none, but for independent points) give one deterministic value; its error is
+// unknown, infinite.
+struct Quasi {
+    static constexpr std::string_view name = "quasi";
+
+    PointSetKind points = PointSetKind::sobol;
+    // Empty: Owen's scrambling where it exists, else a random shift (independent points need neither).
+    std::optional<Randomisation> randomisation = {};
+    // At least 2. 0: 16; or, for Sobol' points where the evaluations are limited, the number of 12 to 23 with
+    // which a power of two of points makes most use of them.
+    int replicates = 0;
+
+    // Throws Error where the set has fewer dimensions or not this randomisation.
+    std::unique_ptr<Estimator> estimator(const Problem& problem) const;
 };
-
-// The mean over replicates of 1/N * sum of f(X_i) / p(X_i), where X_i comes from the i-th point of the unit
-// cube of that replicate: point(i, replicate) -> std::array<double, D> in [0, 1)^D, D the dimensions of the
-// technique. Each point must be uniform over randomisations, so that the estimate is unbiased, and replicates
-// must be independent: their spread gives the standard error (Owen 2013, "Monte Carlo theory, methods and
-// examples", section 17). It has replicates - 1 degrees of freedom, so with few of them intervals follow
-// Student's law.
-template <typename F, typename Technique, typename PointSet>
-Estimate randomised_quasi_monte_carlo(const F& f, const Technique& technique, const PointSet& point,
-                                      const QuasiSettings& settings = {}) {
-    auto s = as_technique(technique);
-    constexpr std::size_t dimensions = decltype(s)::dimensions;
-    if (settings.points == 0 || settings.replicates == 0)
-        throw Error("randomised_quasi_monte_carlo", "expected at least one point and one replicate");
-    RunningMoments replicates;
-    Estimate total;
-    for (std::uint32_t r = 0; r < settings.replicates; ++r) {
-        SampleSum sum = sum_samples(settings.points, [&](std::uint64_t i) {
-            const std::array<double, dimensions> xi = point(i, r);
-            auto x = s.sample(xi);
-            double y = f(x);
-            return y == 0 ? 0 : y / s.pdf(x);
-        });
-        replicates.add(sum.moments.mean());
-        total.evaluations += settings.points;
-        if (sum.non_finite > 0 && total.non_finite == 0)
-            total.first_non_finite = r * settings.points + sum.first_non_finite;
-        total.non_finite += sum.non_finite;
-    }
-    total.value = replicates.mean();
-    total.standard_error = replicates.standard_error();
-    return total;
-}
-
-// Rank-1 points shifted at random modulo 1 (Cranley and Patterson 1976, "Randomization of Number Theoretic
-// Methods for Multiple Integration"): the shift of `replicate`, uniform in the unit cube.
-template <std::size_t D>
-std::array<double, D> random_shift(std::array<double, D> point, std::uint64_t seed, std::uint32_t replicate) {
-    std::array<double, D> shift = sample_uniforms<D>(seed, 0xffffffffu, replicate);
-    for (std::size_t d = 0; d < D; ++d) {
-        point[d] += shift[d];
-        if (point[d] >= 1) point[d] -= 1;
-    }
-    return point;
-}
 
 } // namespace montelux

@@ -1,74 +1,91 @@
-// A sampling technique: uniform numbers to a point, and the density of that point.
+// A sampling technique: uniform numbers to points of a domain, and the density of any point.
 #pragma once
 
 #include <array>
-#include <concepts>
-#include <cstddef>
-#include <cstdint>
-#include <utility>
+#include <functional>
+#include <span>
+#include <vector>
 
-#include "montelux/mc/dist/families.h"
+#include "montelux/mc/dist/distribution.h"
+#include "montelux/mc/dist/product.h"
+#include "montelux/mc/integrate/domain.h"
+#include "montelux/mc/integrate/points.h"
 
 namespace montelux {
 
-// `sample` maps `dimensions` uniform numbers in [0, 1) to a point x that follows `pdf`, in any measure that
-// the integral is taken in.
-template <typename S>
-concept SamplingTechnique = requires(const S& s, const std::array<double, S::dimensions>& xi) {
-    { s.pdf(s.sample(xi)) } -> std::convertible_to<double>;
-};
+// Points X that follow a density p, with respect to the measure in which the integral is taken. p must
+// integrate to 1 and be above zero wherever the integrand is not zero; points outside the domain may be drawn
+// and count as zeros. The functions are called from several threads at once.
+class Technique {
+  public:
+    // Fills x, which has room for as many points as u.
+    using BatchSample = std::function<void(const PointBatch& u, PointBuffer& x)>;
+    // p[i] = density of point i.
+    using BatchDensity = std::function<void(const PointBatch& x, std::span<double> p)>;
+    using PointSample = std::function<void(std::span<const double> u, std::span<double> x)>;
+    using PointDensity = std::function<double(std::span<const double> x)>;
 
-// From a pair of functions.
-template <std::size_t D, typename Sample, typename Pdf>
-struct FunctionTechnique {
-    static constexpr std::size_t dimensions = D;
-    Sample sample_function;
-    Pdf pdf_function;
+    // Independent coordinates, each by inversion.
+    Technique(std::vector<Distribution> factors);
+    // One coordinate.
+    Technique(Distribution distribution) : Technique(std::vector<Distribution>{std::move(distribution)}) {}
+    template <Distribution1D D>
+    Technique(D distribution) : Technique(Distribution(std::move(distribution))) {}
+    template <Distribution1D... Ds>
+    Technique(ProductDistribution<Ds...> product) : Technique(from_product(std::move(product))) {}
+    template <Distribution1D D>
+    Technique(RuntimeProduct<D> product) : Technique(from_product(std::move(product))) {}
 
-    auto sample(const std::array<double, D>& xi) const { return sample_function(xi); }
-    template <typename X>
-    double pdf(const X& x) const {
-        return pdf_function(x);
+    // From functions: `uniforms` numbers in (0, 1) to a point of `dimensions` coordinates.
+    static Technique functions(int uniforms, int dimensions, PointSample sample, PointDensity density);
+    // The same for numbers, one to one: double(double) both.
+    static Technique functions(std::function<double(double)> sample, std::function<double(double)> density);
+    static Technique batch(int uniforms, int dimensions, BatchSample sample, BatchDensity density);
+    // Uniform over a domain; its map must change volume by a constant factor (a finite box), or Error is
+    // thrown.
+    static Technique uniform(const Domain& domain);
+
+    int uniforms() const { return uniforms_; }
+    int dimensions() const { return dimensions_; }
+
+    // x is resized to as many points as u has. Where a technique fails to give finite coordinates, so be it:
+    // the point then has no density.
+    void sample(const PointBatch& u, PointBuffer& x) const;
+    // Throws Error for a density that is negative or NaN, with the point.
+    void density(const PointBatch& x, std::span<double> p) const;
+
+  private:
+    Technique(int uniforms, int dimensions, BatchSample sample, BatchDensity density);
+
+    template <typename... Ds>
+    static Technique from_product(ProductDistribution<Ds...> product) {
+        constexpr int n = sizeof...(Ds);
+        using Point = std::array<double, sizeof...(Ds)>;
+        return functions(
+            n, n,
+            [product](std::span<const double> u, std::span<double> x) {
+                Point xi;
+                std::copy_n(u.begin(), n, xi.begin());
+                const Point at = product.sample(xi);
+                std::copy_n(at.begin(), n, x.begin());
+            },
+            [product](std::span<const double> x) {
+                Point at;
+                std::copy_n(x.begin(), n, at.begin());
+                return product.pdf(at);
+            });
     }
-};
-template <std::size_t D, typename Sample, typename Pdf>
-FunctionTechnique<D, Sample, Pdf> make_technique(Sample sample, Pdf pdf) {
-    return {std::move(sample), std::move(pdf)};
-}
-
-// From a distribution of one variable, by inversion: X = P^-1(xi).
-template <Distribution1D D>
-struct InversionTechnique {
-    static constexpr std::size_t dimensions = 1;
-    D distribution;
-
-    double sample(const std::array<double, 1>& xi) const { return distribution.quantile(xi[0]); }
-    double pdf(double x) const { return distribution.pdf(x); }
-};
-
-// From a product of distributions.
-template <typename... Ds>
-struct ProductTechnique {
-    static constexpr std::size_t dimensions = sizeof...(Ds);
-    ProductDistribution<Ds...> distribution;
-
-    std::array<double, dimensions> sample(const std::array<double, dimensions>& xi) const {
-        return distribution.quantile(xi);
+    template <typename D>
+    static Technique from_product(RuntimeProduct<D> product) {
+        const int n = static_cast<int>(product.dimensions());
+        return functions(
+            n, n, [product](std::span<const double> u, std::span<double> x) { product.sample(u, x); },
+            [product](std::span<const double> x) { return product.pdf(x); });
     }
-    double pdf(const std::array<double, dimensions>& x) const { return distribution.pdf(x); }
-};
 
-template <Distribution1D D>
-InversionTechnique<D> as_technique(D distribution) {
-    return {std::move(distribution)};
-}
-template <typename... Ds>
-ProductTechnique<Ds...> as_technique(ProductDistribution<Ds...> distribution) {
-    return {std::move(distribution)};
-}
-template <SamplingTechnique S>
-S as_technique(S technique) {
-    return technique;
-}
+    int uniforms_, dimensions_;
+    BatchSample sample_;
+    BatchDensity density_;
+};
 
 } // namespace montelux

@@ -1,0 +1,39 @@
+// Looks for places where an integrand is not zero but no technique can draw a point.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "montelux/mc/integrate/estimator.h"
+#include "montelux/mc/integrate/technique.h"
+
+namespace montelux {
+
+// Where all densities are zero but the integrand is not, a part of the integral is missing from the estimate
+// and from its error, and no sample can tell. Uniform points of the unit cube that the domain's map takes its
+// points from can. They never enter the estimate; what they add up is the missing part itself.
+class CoverageProbe {
+  public:
+    explicit CoverageProbe(std::vector<Technique> techniques) : techniques_(std::move(techniques)) {}
+
+    std::uint64_t evaluations() const { return evaluations_; }
+    // Evaluates further points; false, and nothing changed, when cancelled.
+    bool run(const Problem& problem, std::uint64_t points, const CancelFlag* cancel);
+    // A sentence that names a point, if one was found.
+    void doubt(std::vector<std::string>& doubts) const;
+
+    void save(StateWriter& state) const;
+    void load(StateReader& state);
+
+  private:
+    std::vector<Technique> techniques_;
+    std::uint64_t evaluations_ = 0, uncovered_ = 0;
+    std::vector<double> first_point_; // empty while none is uncovered
+    double first_value_ = 0;
+    double missing_ = 0, missing_square_ = 0; // sums of |f| |dx/du| of the first component
+};
+
+// The probes that are due beside a number of samples: one to 32, at least 32.
+std::uint64_t coverage_probes(std::uint64_t samples);
+
+} // namespace montelux
