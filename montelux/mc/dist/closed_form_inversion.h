@@ -95,6 +95,11 @@ class ClosedFormInversion : public SampledByInversion<ClosedFormInversion<Densit
     static double largest(double sign) { return std::copysign(std::numeric_limits<double>::max(), sign); }
 
     void build() {
+        // Where F falls again, no quantile leads: so points all over the interval are asked as well.
+        for (std::size_t i = 1; i < parts; ++i) {
+            double x = point_inside(a_, b_, static_cast<double>(i) / parts);
+            require_rising(x, f_(x), antiderivative_(x), at_a_, at_b_);
+        }
         knots_.front() = a_;
         knots_.back() = b_;
         knot_values_.front() = at_a_;

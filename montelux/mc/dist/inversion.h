@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <queue>
 #include <utility>
 #include <vector>
 
@@ -22,7 +21,7 @@ namespace montelux {
 struct InversionOptions {
     // Where f is infinite, jumps, or has a narrow peak, inside the interval: panels end there and are graded
     // towards it. Any order.
-    std::vector<double> break_points;
+    std::vector<double> break_points = {};
     // Of c, relative. What was reached is relative_error().
     double tolerance = 1e-12;
 };
@@ -132,47 +131,47 @@ class NumericalInversion : public SampledByInversion<NumericalInversion<F>> {
     }
 
     void build(double tolerance) {
-        std::priority_queue<Split> open;
-        std::vector<Split> done;
+        std::vector<Split> open, done; // open is a heap, the worst first; done cannot be halved any more
         for (std::uint32_t piece = 0; piece < pieces_.size(); ++piece)
             for (auto [from, to] : pieces_[piece].first_panels())
-                open.push(split(checked_panel(piece, from, to)));
-        std::size_t budget = 20000;
+                open.push_back(split(checked_panel(piece, from, to)));
+        std::make_heap(open.begin(), open.end());
+        constexpr int budget = 20000;
         double total = 0, error = 0;
-        for (std::size_t since_sum = 0;; ++since_sum) {
+        for (int step = 0; step < budget && !open.empty(); ++step) {
             // Running sums drift where a panel's first value was far off, so they are renewed now and then.
-            if (since_sum % 64 == 0) {
+            if (step % 64 == 0) {
                 total = error = 0;
-                for (auto copy = open; !copy.empty(); copy.pop()) {
-                    total += copy.top().value();
-                    error += copy.top().error;
-                }
-                for (const Split& s : done) {
+                for (const Split& s : done) total += s.value();
+                for (const Split& s : open) {
                     total += s.value();
                     error += s.error;
                 }
             }
-            if (open.empty() || open.top().error == 0 || error <= tolerance * total || budget-- == 0) break;
-            Split worst = open.top();
-            open.pop();
+            if (open.front().error == 0 || error <= tolerance * total) break;
+            std::pop_heap(open.begin(), open.end());
+            Split worst = open.back();
+            open.pop_back();
             total -= worst.value();
             error -= worst.error;
             for (const Panel& half : {worst.left, worst.right}) {
                 Split next = split(half);
                 total += next.value();
-                error += next.error;
-                if (pieces_[half.piece].divisible(half.from, half.to))
-                    open.push(next);
-                else
+                if (pieces_[half.piece].divisible(half.from, half.to)) {
+                    error += next.error;
+                    open.push_back(next);
+                    std::push_heap(open.begin(), open.end());
+                } else {
                     done.push_back(next);
+                }
             }
         }
         collect(open, done);
     }
-    void collect(std::priority_queue<Split>& open, std::vector<Split>& done) {
+    void collect(const std::vector<Split>& open, std::vector<Split>& done) {
         CompensatedSum error;
         std::size_t indivisible = done.size();
-        for (; !open.empty(); open.pop()) done.push_back(open.top());
+        done.insert(done.end(), open.begin(), open.end());
         for (const Split& s : done) {
             panels_.push_back(s.left);
             panels_.push_back(s.right);

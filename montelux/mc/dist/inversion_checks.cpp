@@ -28,6 +28,21 @@ void require_growth(double a, double at_a, double b, double at_b) {
     throw Error(where, what.str());
 }
 
+double point_inside(double a, double b, double t) {
+    if (std::isfinite(a)) return std::isfinite(b) ? a + t * (b - a) : a + t / (1 - t);
+    return std::isfinite(b) ? b - (1 - t) / t : (2 * t - 1) / (t * (1 - t));
+}
+
+void require_rising(double x, double density, double value, double at_a, double at_b) {
+    if (!(density >= 0)) throw_bad_density(x, density);
+    double slack = 1e-9 * (at_b - at_a);
+    if (value >= at_a - slack && value <= at_b + slack) return;
+    std::ostringstream what;
+    what << "the antiderivative is " << value << " at x = " << x << ", and " << at_a << " and " << at_b
+         << " at the ends; expected one that does not fall";
+    throw Error(where, what.str());
+}
+
 void require_antiderivative(double x, double density, double value, double target, double integral) {
     if (!(density >= 0)) throw_bad_density(x, density);
     if (std::isfinite(x) && std::abs(value - target) <= 1e-6 * integral) return;

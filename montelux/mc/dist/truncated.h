@@ -12,8 +12,8 @@ namespace montelux {
 // D conditioned on lower <= X <= upper (either may be infinite): p / mass, with mass the probability of the
 // interval under D, and X = P^-1(P(lower) + xi mass). Worked from whichever tail of D is nearer, so that an
 // interval far out in a tail keeps the digits that the tail has: a normal law beyond 30 deviations is as
-// exact as one beyond 0. The ends of a narrow interval cancel: relative error about 1e-16 / mass in its
-// middle.
+// exact as one beyond 0. Where an end cuts through the bulk of D, probabilities are differences, with an
+// absolute error of about 1e-16 / mass.
 template <Distribution1D D>
 class Truncated : public SampledByInversion<Truncated<D>> {
   public:

@@ -23,7 +23,9 @@ class CosineDistribution : public SampledByInversion<CosineDistribution> {
         return 2 * s * s;
     }
     double quantile(double xi) const { return std::asin(xi); }
-    double quantile_complement(double q) const { return pi / 2 - 2 * std::asin(std::sqrt(0.5 * q)); }
+    double quantile_complement(double q) const {
+        return q < 0.5 ? pi / 2 - 2 * std::asin(std::sqrt(0.5 * q)) : std::asin(1 - q);
+    }
 };
 
 } // namespace montelux
