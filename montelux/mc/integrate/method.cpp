@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "montelux/mc/integrate/adaptive.h"
 #include "montelux/mc/integrate/basic_monte_carlo.h"
 #include "montelux/mc/integrate/grid.h"
 #include "montelux/mc/integrate/quasi.h"
@@ -26,6 +27,7 @@ constexpr Entry entry() {
     return {S::name, make<S>};
 }
 constexpr std::array entries{
+    entry<Adaptive>(),
     entry<Quasi>(),
     entry<BasicMonteCarlo>(),
     entry<RiemannSum>(),

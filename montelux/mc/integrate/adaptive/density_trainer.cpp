@@ -1,0 +1,279 @@
+#include "montelux/mc/integrate/adaptive/density_trainer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "montelux/mc/integrate/adaptive/mode_search.h"
+#include "montelux/mc/random/hash.h"
+
+namespace montelux {
+namespace {
+
+constexpr int max_gaussian_dimensions = 32;   // their covariances grow with the square
+constexpr double enough_even = 0.3;           // relative variance below which no Gaussians are added
+constexpr int first_fit_before_gaussians = 2; // rounds that maps alone are given
+constexpr int em_steps = 20;
+constexpr double safe_width = 1.1;
+
+// Components split along their longest axis, or several where there were few.
+std::vector<Gaussian> split(const std::vector<Gaussian>& components) {
+    std::vector<Gaussian> result;
+    const int parts = components.size() <= 2 ? 4 : 2;
+    for (const Gaussian& g : components) {
+        const int n = g.dimensions();
+        const auto size = static_cast<std::size_t>(n);
+        std::vector<double> covariance(size * size, 0.0);
+        for (std::size_t i = 0; i < size; ++i)
+            for (std::size_t j = 0; j < size; ++j)
+                for (std::size_t k = 0; k <= std::min(i, j); ++k)
+                    covariance[i * size + j] += g.cholesky()[i * size + k] * g.cholesky()[j * size + k];
+        const Eigensystem axes = symmetric_eigensystem(covariance, n);
+        const auto longest = static_cast<std::size_t>(
+            std::max_element(axes.values.begin(), axes.values.end()) - axes.values.begin());
+        const double variance = axes.values[longest], kept = 2.0 / (parts * parts);
+        std::vector<double> narrower = covariance;
+        for (std::size_t i = 0; i < size; ++i)
+            for (std::size_t j = 0; j < size; ++j)
+                narrower[i * size + j] -= 0.8 * (1 - kept) * variance * axes.vectors[i * size + longest] *
+                                          axes.vectors[j * size + longest];
+        const std::vector<double> factor = cholesky_factor(narrower, n);
+        if (factor.empty()) {
+            result.push_back(g);
+            continue;
+        }
+        for (int p = 0; p < parts; ++p) {
+            const double offset = 1.5 * std::sqrt(variance) * ((2 * p + 1.0) / parts - 1);
+            std::vector<double> mean(g.mean().begin(), g.mean().end());
+            for (std::size_t i = 0; i < size; ++i) mean[i] += offset * axes.vectors[i * size + longest];
+            result.emplace_back(std::move(mean), factor);
+        }
+    }
+    return result;
+}
+
+} // namespace
+
+DensityTrainer::DensityTrainer(const Problem& problem, int uniform_units)
+    : problem_(problem), uniform_units_(uniform_units), density_(problem.evaluator.dimensions()) {}
+
+std::vector<double> DensityTrainer::steering(const ValueBuffer& g) const {
+    std::vector<double> h(g.count());
+    if (g.components() == 1) {
+        for (std::size_t i = 0; i < h.size(); ++i) h[i] = std::abs(g(i));
+        return h;
+    }
+    for (int c = 0; c < g.components(); ++c) {
+        const double inverse =
+            scale_[static_cast<std::size_t>(c)] > 0 ? 1 / scale_[static_cast<std::size_t>(c)] : 0;
+        for (std::size_t i = 0; i < h.size(); ++i) h[i] += g(i, c) * inverse * (g(i, c) * inverse);
+    }
+    for (double& v : h) v = std::sqrt(v);
+    return h;
+}
+
+void DensityTrainer::start(SamplePoints&& points) {
+    scale_.assign(static_cast<std::size_t>(points.g.components()), 0.0);
+    for (int c = 0; c < points.g.components(); ++c)
+        for (double v : std::as_const(points.g).component(c))
+            scale_[static_cast<std::size_t>(c)] += std::abs(v) / static_cast<double>(points.g.count());
+    std::vector<double> h = steering(points.g);
+    double sum = 0, squares = 0;
+    for (double v : h) {
+        nonzero_ += v > 0;
+        sum += v;
+        squares += v * v;
+    }
+    effective_share_ = squares > 0 ? sum * sum / squares / static_cast<double>(h.size()) : 0;
+    recent_.push_back({density_, std::move(points.x), std::move(h)});
+}
+
+void DensityTrainer::find_peaks(std::uint64_t max_evaluations) {
+    if (density_.dimensions() > max_gaussian_dimensions) return;
+    const DensityFunction h = [&](const PointBatch& x, std::span<double> values) {
+        ValueBuffer g(x.count(), problem_.evaluator.components());
+        problem_.evaluator(x, g, non_finite_);
+        evaluations_ += x.count();
+        std::ranges::copy(steering(g), values.begin());
+    };
+    const Round& seen = recent_.back();
+    std::vector<Gaussian> modes = find_modes(h, seen.x, seen.h, {.max_evaluations = max_evaluations});
+    if (modes.empty()) return;
+    for (Gaussian& g : modes) g = g.widened(1.2);
+    density_ = MixtureDensity(density_.dimensions(), {}, std::move(modes));
+    std::vector<int> shares(static_cast<std::size_t>(density_.channels()),
+                            (MixtureDensity::units - uniform_units_) / (density_.channels() - 1));
+    shares[0] = MixtureDensity::units - shares.back() * (density_.channels() - 1);
+    density_.set_shares(std::move(shares));
+}
+
+bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
+    n = std::max<std::uint64_t>(1, n / MixtureDensity::units) * MixtureDensity::units;
+    // With peaks just found, the density is tried before it is fitted.
+    SamplePoints points;
+    const auto sums = sample_mixture(problem_.evaluator, density_, hash_key(problem_.seed, 1, rounds_), 1, 0,
+                                     n, &points, cancel);
+    if (!sums) return false;
+    ++rounds_;
+    evaluations_ += sums->evaluations;
+    non_finite_.merge(sums->non_finite);
+    const double mean = sums->sums.sum(0, 0) / static_cast<double>(n),
+                 variance = sums->independent_variance(n);
+    checks_.push_back({mean, variance});
+    if (checks_.size() > 2) checks_.erase(checks_.begin());
+    std::vector<double> h = steering(points.g);
+    double total = 0;
+    for (std::size_t i = 0; i < h.size(); ++i) total += h[i] / points.density[i];
+    const double mean_size = total / static_cast<double>(n); // of the first component for scalars
+    double spread = variance;
+    if (points.g.components() > 1) {
+        double squares = 0;
+        for (std::size_t i = 0; i < h.size(); ++i)
+            squares += std::pow(h[i] / points.density[i] - mean_size, 2);
+        spread = squares / (static_cast<double>(n) * static_cast<double>(n));
+    }
+    relative_variance_ = mean_size > 0 ? spread * static_cast<double>(n) / (mean_size * mean_size) : 0;
+    recent_.push_back({density_, std::move(points.x), std::move(h)});
+    if (recent_.size() > 2) recent_.erase(recent_.begin());
+    fit();
+    return true;
+}
+
+void DensityTrainer::fit() {
+    // All recent points, weighted by the mixture of the densities that drew them.
+    const int dimensions = density_.dimensions();
+    std::size_t count = 0;
+    for (const Round& r : recent_) count += r.h.size();
+    PointBuffer x(count, dimensions);
+    std::vector<double> h, p(count, 0.0), part(count);
+    for (const Round& r : recent_) {
+        const std::size_t at = h.size();
+        for (int d = 0; d < dimensions; ++d)
+            std::ranges::copy(r.x.view().coordinate(d),
+                              x.coordinate(d).begin() + static_cast<std::ptrdiff_t>(at));
+        h.insert(h.end(), r.h.begin(), r.h.end());
+    }
+    for (const Round& r : recent_) {
+        r.density.pdf(x, part);
+        for (std::size_t i = 0; i < count; ++i)
+            p[i] += part[i] * static_cast<double>(r.h.size()) / static_cast<double>(count);
+    }
+    std::vector<double> weights(count);
+    for (std::size_t i = 0; i < count; ++i) weights[i] = h[i] / p[i];
+    if (!(std::accumulate(weights.begin(), weights.end(), 0.0) > 0)) return;
+
+    // The maps follow the last round alone, whose weights are the evenest.
+    const Round& last = recent_.back();
+    std::vector<double> density(last.h.size()), last_weights(last.h.size());
+    last.density.pdf(last.x, density);
+    for (std::size_t i = 0; i < density.size(); ++i) last_weights[i] = last.h[i] / density[i];
+    MapFit settings;
+    settings.bins = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(last.h.size())) / 3), 8, 48);
+    std::vector<MonotoneMap> maps;
+    for (int d = 0; d < dimensions; ++d)
+        maps.push_back(fit_monotone_map(last.x.view().coordinate(d), last_weights, settings));
+
+    std::vector<Gaussian> gaussians(density_.gaussians().begin(), density_.gaussians().end());
+    density_ = MixtureDensity(dimensions, std::move(maps), std::move(gaussians));
+    if (!enriched_ && rounds_ > first_fit_before_gaussians && relative_variance_ > enough_even &&
+        dimensions <= max_gaussian_dimensions) {
+        enriched_ = true;
+        add_gaussians(x, weights);
+    }
+    gaussians.assign(density_.gaussians().begin(), density_.gaussians().end());
+    fit_gaussians(gaussians, x, weights, em_steps);
+    for (Gaussian& g : gaussians) g = g.widened(safe_width); // tails cost little, and their absence much
+    density_ =
+        MixtureDensity(dimensions, {density_.maps().begin(), density_.maps().end()}, std::move(gaussians));
+    density_.optimise_shares(x, h, p, uniform_units_);
+}
+
+void DensityTrainer::add_gaussians(const PointBatch& x, std::span<const double> weights) {
+    std::vector<Gaussian> gaussians(density_.gaussians().begin(), density_.gaussians().end());
+    if (!gaussians.empty()) {
+        gaussians = split(gaussians);
+    } else {
+        // Centred at four points drawn by weight, half as wide as the whole.
+        const auto n = static_cast<std::size_t>(x.dimensions());
+        const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+        std::vector<double> factor(n * n, 0.0);
+        for (std::size_t d = 0; d < n; ++d) {
+            std::span<const double> coordinate = x.coordinate(static_cast<int>(d));
+            double mean = 0, variance = 0;
+            for (std::size_t i = 0; i < weights.size(); ++i) mean += weights[i] / total * coordinate[i];
+            for (std::size_t i = 0; i < weights.size(); ++i)
+                variance += weights[i] / total * std::pow(coordinate[i] - mean, 2);
+            factor[d * n + d] = std::sqrt(0.5 * std::max(variance, 1e-12));
+        }
+        double sum = 0;
+        constexpr int count = 4;
+        std::size_t i = 0;
+        for (int k = 0; k < count; ++k) {
+            for (; i + 1 < weights.size() && sum + weights[i] <= (k + 0.5) / count * total; ++i)
+                sum += weights[i];
+            std::vector<double> mean(n);
+            x.gather(i, mean.data());
+            gaussians.emplace_back(std::move(mean), factor);
+        }
+    }
+    density_ = MixtureDensity(density_.dimensions(), {density_.maps().begin(), density_.maps().end()},
+                              std::move(gaussians));
+}
+
+void DensityTrainer::save(StateWriter& state) const {
+    density_.save(state);
+    state.put(scale_);
+    state.put(static_cast<std::uint64_t>(recent_.size()));
+    for (const Round& r : recent_) {
+        r.density.save(state);
+        state.put(static_cast<std::uint64_t>(r.h.size()));
+        for (int d = 0; d < density_.dimensions(); ++d)
+            for (double v : r.x.view().coordinate(d)) state.put(v);
+        for (double v : r.h) state.put(v);
+    }
+    state.put(static_cast<std::uint64_t>(checks_.size()));
+    for (const Check& c : checks_) {
+        state.put(c.value);
+        state.put(c.variance);
+    }
+    state.put(rounds_);
+    state.put(enriched_);
+    state.put(relative_variance_);
+    state.put(effective_share_);
+    state.put(nonzero_);
+    state.put(evaluations_);
+    montelux::save(state, non_finite_);
+}
+
+void DensityTrainer::load(StateReader& state) {
+    const int dimensions = density_.dimensions();
+    density_ = MixtureDensity::load(state, dimensions);
+    scale_ = state.get_doubles();
+    recent_.clear();
+    for (std::uint64_t rounds = state.get_word(); rounds > 0; --rounds) {
+        Round r{MixtureDensity::load(state, dimensions), {}, {}};
+        const std::uint64_t count = state.get_word();
+        if (count > (std::uint64_t{1} << 32)) throw Error("the saved state is damaged");
+        r.x.resize(count, dimensions);
+        for (int d = 0; d < dimensions; ++d)
+            for (double& v : r.x.coordinate(d)) v = state.get_double();
+        r.h.resize(count);
+        for (double& v : r.h) v = state.get_double();
+        recent_.push_back(std::move(r));
+    }
+    checks_.clear();
+    for (std::uint64_t n = state.get_word(); n > 0; --n) {
+        const double value = state.get_double();
+        checks_.push_back({value, state.get_double()});
+    }
+    rounds_ = state.get<int>();
+    enriched_ = state.get<int>() != 0;
+    relative_variance_ = state.get_double();
+    effective_share_ = state.get_double();
+    nonzero_ = state.get_word();
+    evaluations_ = state.get_word();
+    montelux::load(state, non_finite_);
+}
+
+} // namespace montelux

@@ -1,0 +1,70 @@
+// Fits a mixture density to an integrand, round by round.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "montelux/mc/integrate/adaptive/mixture_sampling.h"
+
+namespace montelux {
+
+// Each round draws points from the density fitted so far and fits it again to the last rounds; the weights
+// get evener and the fit with them. The rounds' estimates of the integral do not enter the final one, which
+// is therefore unbiased; they only check it.
+class DensityTrainer {
+  public:
+    DensityTrainer(const Problem& problem, int uniform_units);
+
+    // Takes the points of the exploration, which were uniform.
+    void start(SamplePoints&& points);
+    // Of |g| over the exploration: number of points with any, and effective number, (sum h)^2 / sum h^2.
+    std::uint64_t nonzero() const { return nonzero_; }
+    double effective_share() const { return effective_share_; }
+
+    // Looks for peaks; evaluations are counted in evaluations().
+    void find_peaks(std::uint64_t max_evaluations);
+    // One round of n points, about (a multiple of MixtureDensity::units). False when cancelled: nothing
+    // changed.
+    bool round(std::uint64_t n, const CancelFlag* cancel);
+
+    const MixtureDensity& density() const { return density_; }
+    int rounds() const { return rounds_; }
+    std::uint64_t evaluations() const { return evaluations_; }
+    const NonFiniteCount& non_finite() const { return non_finite_; }
+    // Relative variance of g / q within channels, of the last round.
+    double relative_variance() const { return relative_variance_; }
+    // The last two rounds' estimates of the first component, with variances as of independent points.
+    struct Check {
+        double value = 0, variance = 0;
+    };
+    const std::vector<Check>& checks() const { return checks_; }
+
+    void save(StateWriter& state) const;
+    void load(StateReader& state);
+
+  private:
+    struct Round {
+        MixtureDensity density;
+        PointBuffer x;
+        std::vector<double> h;
+    };
+    // One number for all components: the root of the sum of squares, each relative to its mean size.
+    std::vector<double> steering(const ValueBuffer& g) const;
+    void fit();
+    void add_gaussians(const PointBatch& x, std::span<const double> weights);
+
+    Problem problem_;
+    int uniform_units_;
+    MixtureDensity density_;
+    std::vector<double> scale_; // one a component
+    std::vector<Round> recent_; // two at most
+    std::vector<Check> checks_;
+    int rounds_ = 0;
+    bool enriched_ = false;
+    double relative_variance_ = 0, effective_share_ = 0;
+    std::uint64_t nonzero_ = 0, evaluations_ = 0;
+    NonFiniteCount non_finite_;
+};
+
+} // namespace montelux

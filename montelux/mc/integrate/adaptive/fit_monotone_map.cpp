@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+#include "montelux/mc/integrate/adaptive/monotone_map.h"
+
+namespace montelux {
+namespace {
+
+constexpr std::size_t margin = 3;      // points kept on the far side of a place where weights vanish
+constexpr double least_gain = 0.25;    // of likelihood, in units of the noise of one effective point
+constexpr std::size_t candidates = 64; // split places that are tried first
+
+// Sorted points with running sums of their weights.
+struct Profile {
+    std::vector<double> x, cumulative; // cumulative[i]: of the first i
+    double mass(std::size_t first, std::size_t last) const { return cumulative[last] - cumulative[first]; }
+};
+
+// Points [first, last) in the interval [lower, upper], and the best place to split it.
+struct Leaf {
+    std::size_t first, last;
+    double lower, upper;
+    double gain = 0; // of log likelihood, times the total weight
+    std::size_t split = 0;
+    double at = 0;
+    bool empty_side = false;
+};
+
+class Splitter {
+  public:
+    Splitter(const Profile& profile, std::size_t least) : profile_(profile), least_(least) {}
+
+    void find_split(Leaf& leaf) const {
+        leaf.gain = 0;
+        const std::size_t count = leaf.last - leaf.first;
+        if (count < 2 * least_ || !(profile_.mass(leaf.first, leaf.last) > 0)) return;
+        const std::size_t step = std::max<std::size_t>(1, count / candidates);
+        for (std::size_t k = leaf.first + least_; k + least_ <= leaf.last; k += step) consider(leaf, k);
+        if (step == 1 || !(leaf.gain > 0)) return;
+        const std::size_t near = leaf.split;
+        for (std::size_t k = near - std::min(near, step); k <= near + step; ++k)
+            if (k >= leaf.first + least_ && k + least_ <= leaf.last) consider(leaf, k);
+    }
+
+  private:
+    void consider(Leaf& leaf, std::size_t k) const {
+        const double all = profile_.mass(leaf.first, leaf.last), left = profile_.mass(leaf.first, k),
+                     right = all - left;
+        const bool no_left = !(profile_.mass(leaf.first, k) > 0),
+                   no_right = !(profile_.mass(k, leaf.last) > 0);
+        double at = 0.5 * (profile_.x[k - 1] + profile_.x[k]);
+        if (no_right) at = profile_.x[std::min(k + margin, leaf.last - 1)];
+        if (no_left) at = profile_.x[k - 1 - std::min(margin, k - 1 - leaf.first)];
+        if (!(at > leaf.lower && at < leaf.upper)) return;
+        const double width = leaf.upper - leaf.lower;
+        auto term = [&](double mass, double part) {
+            return mass > 0 ? mass * std::log(mass / all * width / part) : 0;
+        };
+        const double gain = term(left, at - leaf.lower) + term(right, leaf.upper - at);
+        if (!(gain > leaf.gain)) return;
+        leaf.gain = gain;
+        leaf.split = k;
+        leaf.at = at;
+        leaf.empty_side = no_left || no_right;
+    }
+
+    const Profile& profile_;
+    std::size_t least_;
+};
+
+} // namespace
+
+MonotoneMap fit_monotone_map(std::span<const double> positions, std::span<const double> weights,
+                             const MapFit& settings) {
+    const std::size_t n = positions.size();
+    std::vector<std::size_t> order(n);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return positions[a] < positions[b] || (positions[a] == positions[b] && a < b);
+    });
+    Profile profile;
+    profile.cumulative.push_back(0);
+    double squares = 0;
+    for (std::size_t i : order) {
+        profile.x.push_back(positions[i]);
+        profile.cumulative.push_back(profile.cumulative.back() + weights[i]);
+        squares += weights[i] * weights[i];
+    }
+    const double total = profile.cumulative.back();
+    if (!(total > 0 && std::isfinite(squares))) return {};
+
+    // The likelihood that one point's worth of noise would gain.
+    const double noise = least_gain * squares / total;
+    const Splitter splitter(profile, static_cast<std::size_t>(settings.points_per_bin));
+    std::vector<Leaf> leaves{{0, n, 0, 1}};
+    splitter.find_split(leaves.front());
+    while (static_cast<int>(leaves.size()) < settings.bins) {
+        auto best = std::max_element(leaves.begin(), leaves.end(),
+                                     [](const Leaf& a, const Leaf& b) { return a.gain < b.gain; });
+        if (!(best->gain > 1e-7 * total) || (!best->empty_side && best->gain < noise)) break;
+        Leaf left = *best, right = *best;
+        left.last = right.first = best->split;
+        left.upper = right.lower = best->at;
+        splitter.find_split(left);
+        splitter.find_split(right);
+        *best = left;
+        leaves.push_back(right);
+    }
+    std::sort(leaves.begin(), leaves.end(), [](const Leaf& a, const Leaf& b) { return a.lower < b.lower; });
+    std::vector<double> edges{0}, masses;
+    for (const Leaf& leaf : leaves) {
+        edges.push_back(leaf.upper);
+        // One point's worth more: a bin in which nothing was seen is not known to be empty.
+        masses.push_back(profile.mass(leaf.first, leaf.last) + total / static_cast<double>(n));
+    }
+    return {std::move(edges), std::move(masses)};
+}
+
+} // namespace montelux

@@ -1,0 +1,143 @@
+#include "montelux/mc/integrate/adaptive/mixture_density.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+
+MixtureDensity::MixtureDensity(int dimensions, std::vector<MonotoneMap> maps, std::vector<Gaussian> gaussians)
+    : dimensions_(dimensions), maps_(std::move(maps)), gaussians_(std::move(gaussians)) {
+    const std::size_t n = 1 + (maps_.empty() ? 0 : 1) + gaussians_.size();
+    shares_.assign(n, units / static_cast<int>(n));
+    shares_[0] += units - std::accumulate(shares_.begin(), shares_.end(), 0);
+}
+
+void MixtureDensity::sample(int channel, const PointBatch& u, PointBuffer& x,
+                            std::vector<double>& density) const {
+    const std::size_t count = u.count();
+    if (channel == 0 || (channel == 1 && !maps_.empty())) {
+        x.resize(count, dimensions_);
+        density.assign(count, 1.0);
+        for (int d = 0; d < dimensions_; ++d) {
+            if (channel == 0)
+                std::copy_n(u.coordinate(d).data(), count, x.coordinate(d).data());
+            else
+                maps_[static_cast<std::size_t>(d)].sample(u.coordinate(d), x.coordinate(d), density);
+        }
+        if (channels() == 1) return;
+        const double own = share(channel);
+        for (double& p : density) p *= own;
+        add_pdf(x, density, channel);
+        return;
+    }
+    PointBuffer all(count, dimensions_);
+    gaussian(channel).sample(u, all);
+    std::vector<std::size_t> inside;
+    for (std::size_t i = 0; i < count; ++i) {
+        bool in = true;
+        for (int d = 0; d < dimensions_; ++d) in = in && all(i, d) > 0 && all(i, d) < 1;
+        if (in) inside.push_back(i);
+    }
+    x.resize(inside.size(), dimensions_);
+    for (int d = 0; d < dimensions_; ++d)
+        for (std::size_t j = 0; j < inside.size(); ++j) x(j, d) = all(inside[j], d);
+    density.assign(inside.size(), 0.0);
+    add_pdf(x, density, -1);
+}
+
+void MixtureDensity::channel_pdf(int channel, const PointBatch& x, std::span<double> density) const {
+    if (channel >= 1 + (maps_.empty() ? 0 : 1)) {
+        gaussian(channel).log_pdf(x, density);
+        for (std::size_t i = 0; i < x.count(); ++i) density[i] = std::exp(density[i]);
+        return;
+    }
+    std::fill_n(density.begin(), x.count(), 1.0);
+    if (channel == 0) return;
+    for (int d = 0; d < dimensions_; ++d)
+        maps_[static_cast<std::size_t>(d)].multiply_pdf(x.coordinate(d), density);
+}
+
+void MixtureDensity::add_pdf(const PointBatch& x, std::span<double> density, int except) const {
+    std::vector<double> part(x.count());
+    for (int k = 0; k < channels(); ++k) {
+        if (k == except || shares_[static_cast<std::size_t>(k)] == 0) continue;
+        const double a = share(k);
+        if (k == 0) {
+            for (std::size_t i = 0; i < x.count(); ++i) density[i] += a;
+            continue;
+        }
+        channel_pdf(k, x, part);
+        for (std::size_t i = 0; i < x.count(); ++i) density[i] += a * part[i];
+    }
+}
+
+void MixtureDensity::pdf(const PointBatch& x, std::span<double> density) const {
+    std::fill_n(density.begin(), x.count(), 0.0);
+    add_pdf(x, density, -1);
+}
+
+void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double> h,
+                                     std::span<const double> p, int uniform_units) {
+    const auto n = static_cast<std::size_t>(channels());
+    if (n == 1) return;
+    std::vector<std::vector<double>> q(n, std::vector<double>(x.count()));
+    for (std::size_t k = 0; k < n; ++k) channel_pdf(static_cast<int>(k), x, q[k]);
+    const double least = static_cast<double>(uniform_units) / units;
+    std::vector<double> a(n, 1 / static_cast<double>(n)), moment(n), scale(x.count());
+    auto normalise = [&] {
+        const double sum = std::accumulate(a.begin(), a.end(), 0.0);
+        for (double& v : a) v /= sum;
+    };
+    for (int step = 0; step < 40; ++step) {
+        for (std::size_t i = 0; i < x.count(); ++i) {
+            double mixture = 0;
+            for (std::size_t k = 0; k < n; ++k) mixture += a[k] * q[k][i];
+            scale[i] = h[i] > 0 ? h[i] * h[i] / (mixture * mixture * p[i]) : 0;
+        }
+        for (std::size_t k = 0; k < n; ++k)
+            moment[k] = std::inner_product(scale.begin(), scale.end(), q[k].begin(), 0.0);
+        for (std::size_t k = 0; k < n; ++k) a[k] *= std::sqrt(moment[k]);
+        if (!(std::isfinite(std::accumulate(a.begin(), a.end(), 0.0)) &&
+              std::accumulate(a.begin(), a.end(), 0.0) > 0))
+            return;
+        normalise();
+        a[0] = std::max(a[0], least);
+        normalise();
+    }
+    int left = units;
+    for (std::size_t k = 0; k < n; ++k) {
+        shares_[k] = static_cast<int>(std::lround(a[k] * units));
+        if (k == 0) shares_[k] = std::max(shares_[k], uniform_units);
+        left -= shares_[k];
+    }
+    *std::max_element(shares_.begin(), shares_.end()) += left;
+}
+
+void MixtureDensity::save(StateWriter& state) const {
+    state.put(static_cast<std::uint64_t>(maps_.size()));
+    for (const MonotoneMap& map : maps_) map.save(state);
+    state.put(static_cast<std::uint64_t>(gaussians_.size()));
+    for (const Gaussian& g : gaussians_) g.save(state);
+    state.put_all(shares_);
+}
+
+MixtureDensity MixtureDensity::load(StateReader& state, int dimensions) {
+    std::vector<MonotoneMap> maps;
+    for (std::uint64_t n = state.get_word(); n > 0; --n) maps.push_back(MonotoneMap::load(state));
+    std::vector<Gaussian> gaussians;
+    for (std::uint64_t n = state.get_word(); n > 0; --n) gaussians.push_back(Gaussian::load(state));
+    MixtureDensity density(dimensions, std::move(maps), std::move(gaussians));
+    std::vector<int> shares = state.get_all<int>();
+    if (shares.size() != density.shares_.size() ||
+        std::accumulate(shares.begin(), shares.end(), 0) != units ||
+        (!density.maps_.empty() && static_cast<int>(density.maps_.size()) != dimensions))
+        throw Error("the saved density does not fit the problem");
+    density.shares_ = std::move(shares);
+    return density;
+}
+
+} // namespace montelux

@@ -1,0 +1,74 @@
+// The density that adaptive integration samples from: uniform + product of one-dimensional maps + Gaussians.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "montelux/mc/integrate/adaptive/gaussian.h"
+#include "montelux/mc/integrate/adaptive/monotone_map.h"
+#include "montelux/mc/integrate/points.h"
+
+namespace montelux {
+
+// q(x) = sum over channels k of a_k q_k(x) on the unit cube. Channel 0 is uniform, and always has a share, so
+// that no part of the cube is left out (a defensive mixture: Owen and Zhou 2000, "Safe and effective
+// importance sampling"); then the product of maps, if there is one; then the Gaussians, whose points outside
+// the cube count as zeros. Each channel draws its own share of the points, from a point set of its own, and
+// every point is weighted by the whole mixture (Veach's balance heuristic), so that channels that miss
+// something do no harm.
+class MixtureDensity {
+  public:
+    // Shares are multiples of 1 / units, so that every multiple of `units` points is divided exactly.
+    static constexpr int units = 64;
+
+    // Uniform.
+    explicit MixtureDensity(int dimensions) : dimensions_(dimensions), shares_{units} {}
+    // Shares are equal until set.
+    MixtureDensity(int dimensions, std::vector<MonotoneMap> maps, std::vector<Gaussian> gaussians);
+
+    int dimensions() const { return dimensions_; }
+    int channels() const { return static_cast<int>(shares_.size()); }
+    std::span<const int> shares() const { return shares_; }
+    // One a channel, summing to `units`.
+    void set_shares(std::vector<int> shares) { shares_ = std::move(shares); }
+    std::span<const MonotoneMap> maps() const { return maps_; }
+    std::span<const Gaussian> gaussians() const { return gaussians_; }
+
+    // Number of points of a channel among the first n of the mixture.
+    std::uint64_t channel_points(int channel, std::uint64_t n) const {
+        return n * static_cast<std::uint64_t>(shares_[static_cast<std::size_t>(channel)]) / units;
+    }
+    // The points of a channel for uniform numbers u, those inside the cube one after the other, and q at
+    // each.
+    void sample(int channel, const PointBatch& u, PointBuffer& x, std::vector<double>& density) const;
+    // q_k at each point, and q.
+    void channel_pdf(int channel, const PointBatch& x, std::span<double> density) const;
+    void pdf(const PointBatch& x, std::span<double> density) const;
+
+    // Shares that make the second moment of h / q small, given points x drawn with density p and h there
+    // (Kleiss and Pittau 1994, "Weight optimization in multichannel Monte Carlo"). The uniform channel keeps
+    // `uniform_units` at least.
+    void optimise_shares(const PointBatch& x, std::span<const double> h, std::span<const double> p,
+                         int uniform_units);
+
+    void save(StateWriter& state) const;
+    static MixtureDensity load(StateReader& state, int dimensions);
+
+  private:
+    // Adds the shares of all channels but `except`.
+    void add_pdf(const PointBatch& x, std::span<double> density, int except) const;
+    double share(int channel) const {
+        return static_cast<double>(shares_[static_cast<std::size_t>(channel)]) / units;
+    }
+    const Gaussian& gaussian(int channel) const {
+        return gaussians_[static_cast<std::size_t>(channel) - (maps_.empty() ? 1 : 2)];
+    }
+
+    int dimensions_;
+    std::vector<MonotoneMap> maps_; // one a dimension, or none
+    std::vector<Gaussian> gaussians_;
+    std::vector<int> shares_;
+};
+
+} // namespace montelux

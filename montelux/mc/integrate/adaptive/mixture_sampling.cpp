@@ -1,0 +1,125 @@
+#include "montelux/mc/integrate/adaptive/mixture_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "montelux/mc/integrate/unit_points.h"
+#include "montelux/mc/random/hash.h"
+
+namespace montelux {
+namespace {
+
+// Consecutive points of one channel and replicate.
+struct Chunk {
+    int replicate, channel;
+    std::uint64_t first, count;
+};
+
+// The points of one chunk, kept until all are put in order.
+struct Kept {
+    PointBuffer x;
+    ValueBuffer g;
+    std::vector<double> density;
+};
+
+} // namespace
+
+void MixtureSums::merge(const MixtureSums& later) {
+    sums.merge(later.sums);
+    non_finite.merge(later.non_finite);
+    evaluations += later.evaluations;
+    largest = std::max(largest, later.largest);
+    channels.resize(std::max(channels.size(), later.channels.size()));
+    for (std::size_t k = 0; k < later.channels.size(); ++k) {
+        channels[k].count += later.channels[k].count;
+        channels[k].sum += later.channels[k].sum;
+        channels[k].squares += later.channels[k].squares;
+    }
+}
+
+double MixtureSums::independent_variance(std::uint64_t n) const {
+    double variance = 0;
+    for (const Channel& c : channels)
+        if (c.count > 0) variance += std::max(0.0, c.squares - c.sum * c.sum / static_cast<double>(c.count));
+    return variance / (static_cast<double>(n) * static_cast<double>(n));
+}
+
+std::optional<MixtureSums> sample_mixture(const Evaluator& evaluator, const MixtureDensity& mixture,
+                                          std::uint64_t key, int replicates, std::uint64_t begin,
+                                          std::uint64_t end, SamplePoints* points, const CancelFlag* cancel) {
+    constexpr std::uint64_t longest = 4096;
+    std::vector<Chunk> chunks;
+    for (int r = 0; r < replicates; ++r)
+        for (int k = 0; k < mixture.channels(); ++k) {
+            const std::uint64_t last = mixture.channel_points(k, end);
+            for (std::uint64_t i = mixture.channel_points(k, begin); i < last; i += longest)
+                chunks.push_back({r, k, i, std::min(longest, last - i)});
+        }
+    const int components = evaluator.components();
+    std::vector<Kept> kept(points ? chunks.size() : 0);
+    auto run = [&](std::int64_t c) {
+        const Chunk& chunk = chunks[static_cast<std::size_t>(c)];
+        MixtureSums total;
+        total.sums = ReplicateSums(replicates, components);
+        total.channels.resize(static_cast<std::size_t>(mixture.channels()));
+        MixtureSums::Channel& channel = total.channels[static_cast<std::size_t>(chunk.channel)];
+        channel.count = chunk.count;
+        const ScrambledSobol sobol(mixture.dimensions(), hash_key(key, chunk.channel),
+                                   static_cast<std::uint32_t>(chunk.replicate));
+        // Points that are kept stay in one piece.
+        const std::uint64_t batch = points ? longest : batch_size;
+        PointBuffer u, x;
+        ValueBuffer g;
+        std::vector<double> density;
+        for (std::uint64_t i = 0; i < chunk.count; i += batch) {
+            u.resize(std::min(batch, chunk.count - i), mixture.dimensions());
+            sobol.fill(u, chunk.first + i);
+            mixture.sample(chunk.channel, u, x, density);
+            if (x.count() == 0) continue;
+            g.resize(x.count(), components);
+            evaluator(x, g, total.non_finite);
+            total.evaluations += x.count();
+            const bool weighted = mixture.channels() > 1;
+            for (int m = 0; m < components; ++m) {
+                double sum = 0, squares = 0, largest = 0;
+                std::span<const double> values = g.component(m);
+                for (std::size_t j = 0; j < values.size(); ++j) {
+                    const double w = weighted ? values[j] / density[j] : values[j];
+                    sum += w;
+                    squares += w * w;
+                    largest = std::max(largest, std::abs(w));
+                }
+                total.sums.sum(chunk.replicate, m) += sum;
+                if (m > 0) continue;
+                channel.sum += sum;
+                channel.squares += squares;
+                total.largest = std::max(total.largest, largest);
+            }
+            if (points) kept[static_cast<std::size_t>(c)] = {x, g, density};
+        }
+        return total;
+    };
+    auto combine = [](MixtureSums a, const MixtureSums& b) {
+        a.merge(b);
+        return a;
+    };
+    auto sums = parallel_reduce_ordered(static_cast<std::int64_t>(chunks.size()), run, combine, cancel);
+    if (!sums || !points) return sums;
+
+    std::size_t count = 0;
+    for (const Kept& part : kept) count += part.density.size();
+    points->x.resize(count, mixture.dimensions());
+    points->g.resize(count, components);
+    points->density.clear();
+    for (const Kept& part : kept) {
+        const std::size_t at = points->density.size();
+        for (std::size_t i = 0; i < part.density.size(); ++i) {
+            for (int d = 0; d < mixture.dimensions(); ++d) points->x(at + i, d) = part.x.view()(i, d);
+            for (int m = 0; m < components; ++m) points->g.view()(at + i, m) = part.g(i, m);
+        }
+        points->density.insert(points->density.end(), part.density.begin(), part.density.end());
+    }
+    return sums;
+}
+
+} // namespace montelux

@@ -1,0 +1,199 @@
+#include "montelux/mc/integrate/adaptive/mode_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace montelux {
+namespace {
+
+constexpr double nowhere = -std::numeric_limits<double>::max();
+constexpr double least_excess = 3; // of log h above what known modes explain, for another search
+
+class Climber {
+  public:
+    Climber(const DensityFunction& h, int dimensions, std::uint64_t budget)
+        : h_(h), n_(static_cast<std::size_t>(dimensions)), budget_(budget) {}
+
+    std::uint64_t left() const { return budget_; }
+
+    // log h at points of the cube; far below everything outside it.
+    std::vector<double> log_at(const std::vector<std::vector<double>>& points) {
+        PointBuffer x(points.size(), static_cast<int>(n_));
+        std::vector<char> inside(points.size(), 1);
+        for (std::size_t i = 0; i < points.size(); ++i)
+            for (std::size_t d = 0; d < n_; ++d) {
+                inside[i] = inside[i] && points[i][d] > 0 && points[i][d] < 1;
+                x(i, static_cast<int>(d)) = std::clamp(points[i][d], 1e-12, 1 - 1e-12);
+            }
+        std::vector<double> values(points.size());
+        h_(x, values);
+        budget_ -= std::min<std::uint64_t>(budget_, points.size());
+        for (std::size_t i = 0; i < points.size(); ++i)
+            values[i] = inside[i] && values[i] > 0 ? std::log(values[i]) : nowhere;
+        return values;
+    }
+
+    // Moves x uphill, coordinate-wise Newton steps with a backtracking line search; returns log h there.
+    double climb(std::vector<double>& x) {
+        double top = log_at({x})[0];
+        double width = 0.02;
+        for (int step = 0; step < 30 && budget_ > 4 * n_; ++step) {
+            std::vector<std::vector<double>> around;
+            std::vector<double> h(n_);
+            for (std::size_t d = 0; d < n_; ++d) {
+                h[d] = std::min({width, 0.5 * x[d], 0.5 * (1 - x[d])});
+                for (double sign : {1.0, -1.0}) {
+                    around.push_back(x);
+                    around.back()[d] += sign * h[d];
+                }
+            }
+            const std::vector<double> f = log_at(around);
+            std::vector<double> direction(n_);
+            double expected = 0;
+            for (std::size_t d = 0; d < n_; ++d) {
+                const double up = f[2 * d], down = f[2 * d + 1];
+                const double gradient = (up - down) / (2 * h[d]),
+                             curvature = (up + down - 2 * top) / (h[d] * h[d]);
+                direction[d] = curvature < 0 ? -gradient / curvature : gradient > 0 ? 0.1 : -0.1;
+                direction[d] = std::clamp(direction[d], -0.3, 0.3);
+                expected += std::abs(gradient * direction[d]);
+            }
+            if (!(expected > 1e-3)) break;
+            std::vector<std::vector<double>> tries;
+            for (double length : {1.0, 0.4, 0.16, 0.064, 0.026, 0.01}) {
+                tries.push_back(x);
+                for (std::size_t d = 0; d < n_; ++d)
+                    tries.back()[d] = std::clamp(x[d] + length * direction[d], 1e-6, 1 - 1e-6);
+            }
+            const double before = top;
+            for (auto& point : tries) { // one at a time: the first is nearly always the best
+                const double f_try = log_at({point})[0];
+                if (!(f_try > top)) continue;
+                top = f_try;
+                x = point;
+                break;
+            }
+            if (top > before) {
+                if (top - before < 1e-3) break;
+            } else {
+                width *= 0.3;
+                if (width < 1e-4) break;
+            }
+        }
+        return top;
+    }
+
+    // The Gaussian whose logarithm is curved like log h at x.
+    std::optional<Gaussian> laplace(const std::vector<double>& x, double top, double widest) {
+        if (budget_ < 8 * n_ + 2 * n_ * n_) return std::nullopt;
+        // Steps over which log h falls by something like one half.
+        std::vector<double> h(n_, 0.02);
+        for (int round = 0; round < 6; ++round) {
+            std::vector<std::vector<double>> around;
+            for (std::size_t d = 0; d < n_; ++d)
+                for (double sign : {1.0, -1.0}) {
+                    around.push_back(x);
+                    around.back()[d] += sign * h[d];
+                }
+            const std::vector<double> f = log_at(around);
+            bool good = true;
+            for (std::size_t d = 0; d < n_; ++d) {
+                const double fall = top - 0.5 * (f[2 * d] + f[2 * d + 1]);
+                double next = h[d];
+                if (fall > 1) next *= 0.4;
+                if (fall < 0.02) next *= 2.5;
+                next = std::min(next, 0.49 * std::min(x[d], 1 - x[d]));
+                good = good && next == h[d];
+                h[d] = next;
+            }
+            if (good || budget_ < 2 * n_ + 2 * n_ * n_) break;
+        }
+        std::vector<std::vector<double>> stencil;
+        auto shifted = [&](std::size_t i, double a, std::size_t j, double b) {
+            stencil.push_back(x);
+            stencil.back()[i] += a;
+            stencil.back()[j] += b;
+        };
+        for (std::size_t i = 0; i < n_; ++i) {
+            shifted(i, h[i], i, 0);
+            shifted(i, -h[i], i, 0);
+            for (std::size_t j = 0; j < i; ++j)
+                for (auto [a, b] : {std::pair(1, 1), std::pair(-1, -1), std::pair(1, -1), std::pair(-1, 1)})
+                    shifted(i, a * h[i], j, b * h[j]);
+        }
+        const std::vector<double> f = log_at(stencil);
+        std::vector<double> precision(n_ * n_);
+        std::size_t at = 0;
+        for (std::size_t i = 0; i < n_; ++i) {
+            precision[i * n_ + i] = -(f[at] + f[at + 1] - 2 * top) / (h[i] * h[i]);
+            at += 2;
+            for (std::size_t j = 0; j < i; ++j, at += 4)
+                precision[i * n_ + j] = precision[j * n_ + i] =
+                    -(f[at] + f[at + 1] - f[at + 2] - f[at + 3]) / (4 * h[i] * h[j]);
+        }
+        for (double v : precision)
+            if (!std::isfinite(v) || std::abs(v) > 1e100) return std::nullopt;
+        // Flat and rising directions (ridges) get the greatest width allowed.
+        const Eigensystem axes = symmetric_eigensystem(precision, static_cast<int>(n_));
+        std::vector<double> covariance(n_ * n_, 0.0);
+        for (std::size_t k = 0; k < n_; ++k) {
+            const double variance = 1 / std::max(axes.values[k], 1 / (widest * widest));
+            for (std::size_t i = 0; i < n_; ++i)
+                for (std::size_t j = 0; j < n_; ++j)
+                    covariance[i * n_ + j] += variance * axes.vectors[i * n_ + k] * axes.vectors[j * n_ + k];
+        }
+        std::vector<double> factor = cholesky_factor(covariance, static_cast<int>(n_));
+        if (factor.empty()) return std::nullopt;
+        return Gaussian(x, std::move(factor));
+    }
+
+  private:
+    const DensityFunction& h_;
+    std::size_t n_;
+    std::uint64_t budget_;
+};
+
+} // namespace
+
+std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
+                                 std::span<const double> h_at_x, const ModeSearch& settings) {
+    Climber climber(h, x.dimensions(), settings.max_evaluations);
+    const std::size_t n = x.count();
+    std::vector<Gaussian> modes;
+    std::vector<double> excess(
+        n); // log h above the highest of the known modes' Gaussians, scaled to their tops
+    for (std::size_t i = 0; i < n; ++i) excess[i] = h_at_x[i] > 0 ? std::log(h_at_x[i]) : nowhere;
+    std::vector<double> explained(n, nowhere), log_h = excess;
+    std::vector<double> log_pdf(n), point(static_cast<std::size_t>(x.dimensions()));
+    int fruitless = 0;
+    while (fruitless < settings.fruitless && static_cast<int>(modes.size()) < settings.most_modes) {
+        const auto best = std::max_element(excess.begin(), excess.end());
+        if (best == excess.end() || *best == nowhere || (!modes.empty() && *best < least_excess)) break;
+        const auto index = static_cast<std::size_t>(best - excess.begin());
+        x.gather(index, point.data());
+        excess[index] = log_h[index] = nowhere; // each start once
+        const double top = climber.climb(point);
+        const bool known = std::any_of(modes.begin(), modes.end(), [&](const Gaussian& g) {
+            return g.squared_distance(point) < 1 + 0.5 * x.dimensions();
+        });
+        std::optional<Gaussian> mode;
+        if (!known) mode = climber.laplace(point, top, settings.widest);
+        if (!mode) {
+            ++fruitless;
+            if (climber.left() == 0) break;
+            continue;
+        }
+        fruitless = 0;
+        mode->log_pdf(x, log_pdf);
+        for (std::size_t i = 0; i < n; ++i) {
+            explained[i] = std::max(explained[i], top + log_pdf[i] - mode->log_norm());
+            excess[i] = log_h[i] == nowhere ? nowhere : log_h[i] - explained[i];
+        }
+        modes.push_back(std::move(*mode));
+    }
+    return modes;
+}
+
+} // namespace montelux

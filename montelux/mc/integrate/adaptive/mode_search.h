@@ -1,0 +1,31 @@
+// Peaks of a non-negative function on the unit cube, found one after the other.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "montelux/mc/integrate/adaptive/gaussian.h"
+#include "montelux/mc/integrate/points.h"
+
+namespace montelux {
+
+struct ModeSearch {
+    int most_modes = 12;
+    int fruitless = 2;                 // searches in a row that lead to a known mode, before giving up
+    std::uint64_t max_evaluations = 0; // in all
+    double widest = 0.3;               // largest standard deviation of a Gaussian, of the cube's width
+};
+
+// h at a batch of points.
+using DensityFunction = std::function<void(const PointBatch&, std::span<double>)>;
+
+// Climbs log h from points where h is known, each time from where h stands highest above the Gaussians that
+// describe the modes found so far, so that a narrow peak among wide ones is not passed over: even where h is
+// astronomically small, its logarithm shows the way. Each mode gives the Gaussian of its curvature (Laplace's
+// approximation).
+std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
+                                 std::span<const double> h_at_x, const ModeSearch& settings);
+
+} // namespace montelux

@@ -1,0 +1,58 @@
+// A density on the unit interval by its inverse distribution function, a monotone rational-quadratic spline.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "montelux/mc/integrate/state_archive.h"
+
+namespace montelux {
+
+// Bins of given probability; between bin edges the quantile function x(u) is a quotient of quadratics
+// (Gregory, Delbourgo 1982, "Piecewise rational quadratic interpolation to monotonic data"), which is
+// increasing, has its inverse in closed form, and joins the bins with a continuous slope. So the density is
+// continuous too, and an integrand divided by it stays as smooth as low-discrepancy points like it. Between
+// bins whose densities differ by more than a factor of five the slope may jump, for so do some integrands.
+class MonotoneMap {
+  public:
+    // The identity.
+    MonotoneMap() : MonotoneMap({0, 1}, {1}) {}
+    // Bin k is [edges[k], edges[k + 1]], strictly increasing from 0 to 1; masses are positive and are
+    // normalised here.
+    MonotoneMap(std::vector<double> edges, std::vector<double> masses);
+
+    int bins() const { return static_cast<int>(masses_.size()); }
+    // x = quantile(u) at each u, and density[i] *= p(x).
+    void sample(std::span<const double> u, std::span<double> x, std::span<double> density) const;
+    // density[i] *= p(x[i]).
+    void multiply_pdf(std::span<const double> x, std::span<double> density) const;
+    double quantile(double u) const;
+    double pdf(double x) const;
+
+    void save(StateWriter& state) const;
+    static MonotoneMap load(StateReader& state);
+
+  private:
+    // One bin: u in [u0, u0 + du] to x in [x0, x0 + dx], slopes dx/du at its ends.
+    struct Bin {
+        double u0, du, x0, dx, slope0, slope1;
+    };
+    double quantile(double u, double& density) const;
+    const Bin& bin_of(const std::vector<double>& starts, double at) const;
+
+    std::vector<double> edges_, masses_, u_starts_, x_starts_;
+    std::vector<Bin> bins_;
+};
+
+struct MapFit {
+    int bins = 16;
+    int points_per_bin = 24; // at least
+};
+
+// The map whose density follows weighted points of the unit interval: bins are split where that raises the
+// likelihood most. Where the weights vanish from some place on, the last bin keeps a margin of a few points,
+// since the place is known no better.
+MonotoneMap fit_monotone_map(std::span<const double> positions, std::span<const double> weights,
+                             const MapFit& settings = {});
+
+} // namespace montelux
