@@ -77,6 +77,7 @@ void encode_png(AtomicFile& file, const std::string& name, const Image& image, c
     Image picture;
     if (is_ready(image, options)) {
         std::vector<std::string> names;
+        names.reserve(colors.size() + 1);
         for (int c : colors) names.push_back(image.channel_names()[c]);
         if (image.find_channel("A")) names.push_back("A");
         picture = image.select(names);

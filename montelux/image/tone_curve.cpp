@@ -39,6 +39,7 @@ Image apply_tone_curve(const Image& image, const ToneCurve& curve, int bits) {
     auto colors = image.color_channels();
     if (colors.empty()) throw Error("tone curve", "the image has neither the channels R, G, B nor Y");
     std::vector<std::string> names;
+    names.reserve(colors.size() + 1);
     for (int c : colors) names.push_back(image.channel_names()[c]);
     std::vector<int> sources = colors;
     if (auto alpha = image.find_channel("A")) {
