@@ -5,8 +5,10 @@
 
 #include "montelux/mc/integrate/adaptive.h"
 #include "montelux/mc/integrate/basic_monte_carlo.h"
+#include "montelux/mc/integrate/cubature.h"
 #include "montelux/mc/integrate/grid.h"
 #include "montelux/mc/integrate/quasi.h"
+#include "montelux/mc/integrate/stratified.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
@@ -30,9 +32,11 @@ constexpr std::array entries{
     entry<Adaptive>(),
     entry<Quasi>(),
     entry<BasicMonteCarlo>(),
+    entry<Stratified>(),
     entry<RiemannSum>(),
     entry<MidpointRule>(),
     entry<TrapezoidRule>(),
+    entry<Cubature>(),
 };
 constexpr auto method_names = [] {
     std::array<std::string_view, entries.size()> names{};

@@ -1,0 +1,411 @@
+#include "montelux/mc/integrate/cubature.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <sstream>
+
+#include "montelux/mc/integrate/cubature_regions.h"
+#include "montelux/mc/integrate/cubature_rules.h"
+#include "montelux/mc/integrate/sampling.h"
+#include "montelux/mc/math/compensated.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+namespace {
+
+// One evaluator call takes at least so many points where there are regions enough.
+constexpr std::size_t points_per_task = 512;
+constexpr std::uint64_t points_per_step = 1'000'000;
+// While all values were zero, so many evaluations in so many regions are made before that is believed.
+constexpr std::uint64_t search_evaluations = 4096;
+constexpr std::size_t search_regions = 16;
+
+class CubatureEstimator final : public Estimator {
+  public:
+    CubatureEstimator(const Problem& problem, std::uint64_t max_memory)
+        : problem_(problem), n_(problem.evaluator.dimensions()), m_(problem.evaluator.components()),
+          regions_(n_, m_), max_regions_(max_memory / regions_.bytes_each()), totals_(m_), nonzero_(m_, 0),
+          disagreement_(m_, 0.0), expected_(m_, 0.0) {
+        if (max_regions_ < 64)
+            throw Error("cubature", "expected memory for at least 64 regions, " +
+                                        std::to_string(64 * regions_.bytes_each()) + " bytes, got " +
+                                        std::to_string(max_memory));
+        // The first rule is the one that regions start with, the second what they go on with where the
+        // integrand is smooth; the coarse one is for where it is not.
+        if (n_ == 1) {
+            fine_.emplace(gauss_kronrod_rule());
+        } else {
+            coarse_.emplace(genz_malik_7(n_));
+            fine_.emplace(n_ == 2   ? two_dimensional_rule()
+                          : n_ == 3 ? three_dimensional_rule()
+                                    : genz_malik_9(n_));
+        }
+    }
+
+    StepOutcome step(const StepRequest& request) override {
+        CubatureRegions fresh(n_, m_);
+        std::vector<const SymmetricRule*> rules;
+        std::vector<std::size_t> parents;
+        // In four dimensions and more the cube is first tried by the cheaper rule, which may do.
+        const bool retry = regions_.count() == 1 && started_coarse() && !regions_.marks(0).rough && !refined_;
+        if (regions_.empty() || retry) {
+            fresh.add_cube();
+            rules.push_back(regions_.empty() && started_coarse() ? &*coarse_ : &*fine_);
+        } else {
+            parents = choose(request);
+            if (parents.empty()) return StepOutcome::finished;
+            if (regions_.count() + parents.size() > max_regions_)
+                parents.resize(max_regions_ - regions_.count());
+            if (parents.empty()) return StepOutcome::finished;
+            for (std::size_t p : parents) rules.insert(rules.end(), 2, rule_for_halves(p));
+        }
+        fit(rules, parents, request.max_evaluations);
+        if (rules.empty()) return StepOutcome::exhausted;
+        for (std::size_t p : parents) fresh.add_halves(regions_, p);
+        NonFiniteCount non_finite;
+        std::vector<char> nonzero(nonzero_);
+        if (!evaluate(fresh, rules, non_finite, nonzero, request.cancel)) return StepOutcome::cancelled;
+
+        for (const SymmetricRule* rule : rules) evaluations_ += rule->points();
+        non_finite_.merge(non_finite);
+        nonzero_ = std::move(nonzero);
+        if (parents.empty()) {
+            refined_ = !regions_.empty();
+            regions_ = std::move(fresh);
+        } else {
+            replace(parents, fresh);
+        }
+        add_up();
+        return StepOutcome::advanced;
+    }
+
+    Tally tally() const override {
+        Tally tally;
+        tally.statistical = false;
+        tally.evaluations = evaluations_;
+        tally.non_finite = non_finite_;
+        tally.value.assign(m_, 0.0);
+        tally.standard_error.assign(m_, std::numeric_limits<double>::infinity());
+        if (regions_.empty()) {
+            tally.ready = false;
+            return tally;
+        }
+        tally.value = totals_.value;
+        tally.standard_error = totals_.error;
+        tally.ready = !searching();
+        say_doubts(tally);
+        return tally;
+    }
+
+    void save(StateWriter& state) const override {
+        regions_.save(state);
+        state.put(evaluations_);
+        state.put(refined_);
+        montelux::save(state, non_finite_);
+        state.put_all(std::vector<std::uint64_t>(nonzero_.begin(), nonzero_.end()));
+        state.put(disagreement_);
+        state.put(expected_);
+    }
+    void load(StateReader& state) override {
+        regions_.load(state);
+        evaluations_ = state.get_word();
+        refined_ = state.get<bool>();
+        montelux::load(state, non_finite_);
+        const auto nonzero = state.get_all<std::uint64_t>();
+        nonzero_.assign(nonzero.begin(), nonzero.end());
+        disagreement_ = state.get_doubles();
+        expected_ = state.get_doubles();
+        const auto components = static_cast<std::size_t>(m_);
+        if (nonzero_.size() != components || disagreement_.size() != components ||
+            expected_.size() != components)
+            throw Error("the saved state has another number of components");
+        if (!regions_.empty()) add_up();
+    }
+
+  private:
+    struct Totals {
+        explicit Totals(int components)
+            : value(static_cast<std::size_t>(components)), error(value.size()), inflation(value.size(), 1.0) {
+        }
+        std::vector<double> value, error, inflation;
+    };
+
+    std::size_t components() const { return static_cast<std::size_t>(m_); }
+    bool started_coarse() const { return n_ >= 4; }
+
+    // All values of a component were zero so far: its part may not have been found.
+    bool searching() const {
+        const bool all_seen = std::ranges::all_of(nonzero_, [](char c) { return c != 0; });
+        return !all_seen && (evaluations_ < search_evaluations || regions_.count() < search_regions);
+    }
+
+    const SymmetricRule* rule_for_halves(std::size_t parent) const {
+        return coarse_ && regions_.marks(parent).rough ? &*coarse_ : &*fine_;
+    }
+
+    // The regions to halve next, those of the largest errors first: at most a sixteenth of all, and of these
+    // the ones within a factor of four of the worst, but no fewer than a 64th, so that the time it takes to
+    // choose is small beside the evaluations.
+    std::vector<std::size_t> choose(const StepRequest& request) const {
+        const std::size_t count = regions_.count();
+        const bool search = searching();
+        const std::vector<double> scale = scales(request);
+        std::vector<double> key(count, 0.0);
+        std::vector<std::size_t> order;
+        for (std::size_t r = 0; r < count; ++r) {
+            const CubatureRegions::Marks& marks = regions_.marks(r);
+            if (marks.indivisible) continue;
+            if (search) {
+                key[r] = regions_.volume(r);
+            } else if (!marks.exhausted) {
+                for (std::size_t c = 0; c < components(); ++c)
+                    if (scale[c] > 0) key[r] = std::max(key[r], regions_.error(r)[c] / scale[c]);
+            }
+            if (key[r] > 0) order.push_back(r);
+        }
+        const std::size_t most = std::min(order.size(), std::max<std::size_t>(1, count / 16));
+        const std::size_t least = std::max<std::size_t>(1, count / 64);
+        auto worse = [&](std::size_t a, std::size_t b) { return key[a] != key[b] ? key[a] > key[b] : a < b; };
+        std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(most), order.end(),
+                          worse);
+        order.resize(most);
+        while (order.size() > least && key[order.back()] < key[order.front()] / 4) order.pop_back();
+        return order;
+    }
+
+    // What errors of the components are measured by: their targets, or their values where there is none.
+    // Zero for components that need no further work while others do.
+    std::vector<double> scales(const StepRequest& request) const {
+        std::vector<double> scale(components());
+        bool all_reached = true;
+        const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
+        for (std::size_t c = 0; c < scale.size(); ++c) {
+            const double size = std::abs(totals_.value[c]);
+            scale[c] = targeted ? std::max(request.absolute_error, request.relative_error * size) : size;
+            if (scale[c] == 0) scale[c] = totals_.error[c];
+            all_reached = all_reached && totals_.error[c] <= scale[c];
+        }
+        if (targeted && !all_reached)
+            for (std::size_t c = 0; c < scale.size(); ++c)
+                if (totals_.error[c] <= scale[c]) scale[c] = 0;
+        return scale;
+    }
+
+    // Leaves out what does not fit into the step or the evaluations allowed.
+    static void fit(std::vector<const SymmetricRule*>& rules, std::vector<std::size_t>& parents,
+                    std::uint64_t max_evaluations) {
+        const std::size_t group = parents.empty() ? 1 : 2;
+        std::uint64_t sum = 0;
+        std::size_t kept = 0;
+        for (; kept < rules.size(); kept += group) {
+            sum += group * rules[kept]->points();
+            if (sum > max_evaluations || (kept > 0 && sum > points_per_step)) break;
+        }
+        rules.resize(kept);
+        if (!parents.empty()) parents.resize(kept / 2);
+    }
+
+    // Evaluates all regions of `fresh`. Returns false when cancelled.
+    bool evaluate(CubatureRegions& fresh, const std::vector<const SymmetricRule*>& rules,
+                  NonFiniteCount& non_finite, std::vector<char>& nonzero, const CancelFlag* cancel) const {
+        std::vector<std::size_t> starts; // of the tasks
+        std::size_t points = points_per_task;
+        for (std::size_t r = 0; r < rules.size(); ++r) {
+            if (points >= points_per_task) {
+                starts.push_back(r);
+                points = 0;
+            }
+            points += rules[r]->points();
+        }
+        const std::size_t tasks = starts.size();
+        starts.push_back(rules.size());
+        std::vector<NonFiniteCount> counts(tasks);
+        std::vector<std::vector<char>> seen(tasks, std::vector<char>(components(), 0));
+        auto run = [&](std::int64_t task) {
+            const auto t = static_cast<std::size_t>(task);
+            evaluate_some(fresh, rules, starts[t], starts[t + 1], counts[t], seen[t]);
+        };
+        if (!parallel_for(static_cast<std::int64_t>(tasks), run, cancel)) return false;
+        for (std::size_t t = 0; t < tasks; ++t) {
+            non_finite.merge(counts[t]);
+            for (std::size_t c = 0; c < components(); ++c) nonzero[c] |= seen[t][c];
+        }
+        return true;
+    }
+
+    void evaluate_some(CubatureRegions& fresh, const std::vector<const SymmetricRule*>& rules,
+                       std::size_t begin, std::size_t end, NonFiniteCount& non_finite,
+                       std::vector<char>& nonzero) const {
+        std::size_t count = 0;
+        for (std::size_t r = begin; r < end; ++r) count += rules[r]->points();
+        PointBuffer u(count, n_);
+        for (int d = 0; d < n_; ++d) {
+            double* to = u.coordinate(d).data();
+            for (std::size_t r = begin; r < end; ++r) {
+                const double c = fresh.centre(r)[static_cast<std::size_t>(d)];
+                const double h = fresh.half_width(r)[static_cast<std::size_t>(d)];
+                for (double x : rules[r]->offsets().view().coordinate(d)) *to++ = c + h * x;
+            }
+        }
+        ValueBuffer values(count, m_);
+        problem_.evaluator(u, values, non_finite);
+        std::size_t first = 0;
+        std::vector<std::span<const double>> of_region(components());
+        for (std::size_t r = begin; r < end; ++r) {
+            for (std::size_t c = 0; c < components(); ++c) {
+                of_region[c] =
+                    std::as_const(values).component(static_cast<int>(c)).subspan(first, rules[r]->points());
+                if (nonzero[c] == 0)
+                    nonzero[c] = std::ranges::any_of(of_region[c], [](double v) { return v != 0; });
+            }
+            assess(fresh, r, *rules[r], of_region);
+            first += rules[r]->points();
+        }
+    }
+
+    // Value, error and marks of a region from the integrand's values.
+    void assess(CubatureRegions& fresh, std::size_t r, const SymmetricRule& rule,
+                const std::vector<std::span<const double>>& values) const {
+        std::vector<double> nulls(static_cast<std::size_t>(rule.null_rules()));
+        std::vector<double> differences(static_cast<std::size_t>(n_), 0.0);
+        const double volume = fresh.volume(r);
+        CubatureRegions::Marks& marks = fresh.marks(r);
+        marks = {};
+        marks.exhausted = true;
+        double worst = -1, ratio = 0;
+        for (std::size_t c = 0; c < components(); ++c) {
+            const double mean = rule.apply(values[c], nulls);
+            const SymmetricRule::Assessment found = rule.assess(nulls);
+            double size = 0;
+            for (double v : values[c]) size += std::abs(v);
+            size /= static_cast<double>(values[c].size());
+            const double rounding = 8 * std::numeric_limits<double>::epsilon() * size;
+            const double error = found.error + rule.edge_surprise(values[c]);
+            marks.exhausted = marks.exhausted && error <= rounding;
+            fresh.value(r)[c] = volume * mean;
+            fresh.error(r)[c] = volume * std::max(error, rounding);
+            // The component that is worst for its size decides how to go on.
+            const double weight = totals_.value[c] != 0 ? 1 / std::abs(totals_.value[c])
+                                  : size > 0            ? 1 / (volume * size)
+                                                        : 0;
+            if (n_ > 1) rule.add_fourth_differences(values[c], weight, differences);
+            if (error * weight > worst) {
+                worst = error * weight;
+                ratio = found.ratio;
+            }
+        }
+        // Degree 13 in two dimensions pays only where the integrand is very smooth.
+        const double smooth = n_ <= 3 ? 0.15 : 1;
+        marks.rough = ratio >= smooth;
+        std::span<const double> h = fresh.half_width(r);
+        std::size_t axis = 0;
+        for (std::size_t d = 1; d < differences.size(); ++d) {
+            const double here = differences[d], best = differences[axis];
+            constexpr double rounding = 1e-10;
+            if (here > best * (1 + rounding) || (here >= best * (1 - rounding) && h[d] > h[axis])) axis = d;
+        }
+        marks.axis = static_cast<std::uint8_t>(axis);
+        marks.indivisible = h[axis] < 64 * std::numeric_limits<double>::epsilon() * fresh.centre(r)[axis] ||
+                            volume < std::numeric_limits<double>::min() * 1e8;
+    }
+
+    // Puts the halves in the place of the regions that were halved.
+    void replace(const std::vector<std::size_t>& parents, CubatureRegions& halves) {
+        constexpr double memory = 0.9; // of a step, in the comparison of regions with their halves
+        for (double& x : disagreement_) x *= memory;
+        for (double& x : expected_) x *= memory;
+        for (std::size_t p = 0; p < parents.size(); ++p) {
+            const std::size_t parent = parents[p], a = 2 * p, b = a + 1;
+            for (std::size_t c = 0; c < components(); ++c) {
+                const double expected = regions_.error(parent)[c];
+                const double difference =
+                    std::abs(regions_.value(parent)[c] - halves.value(a)[c] - halves.value(b)[c]);
+                disagreement_[c] += difference * difference;
+                expected_[c] += expected * expected;
+                double &of_a = halves.error(a)[c], &of_b = halves.error(b)[c];
+                if (const double sum = of_a + of_b; sum > 0) {
+                    const double factor = 1 + difference / 4 / sum;
+                    of_a *= factor;
+                    of_b *= factor;
+                    if (factor > 2) halves.marks(a).exhausted = halves.marks(b).exhausted = false;
+                } else { // what the region saw, its halves did not
+                    of_a = of_b = difference / 2;
+                    halves.marks(a).exhausted = halves.marks(b).exhausted = false;
+                }
+            }
+        }
+        std::size_t next = regions_.count();
+        regions_.resize(next + parents.size());
+        for (std::size_t p = 0; p < parents.size(); ++p, ++next) {
+            regions_.copy(parents[p], halves, 2 * p);
+            regions_.copy(next, halves, 2 * p + 1);
+        }
+    }
+
+    void add_up() {
+        for (std::size_t c = 0; c < components(); ++c) {
+            CompensatedSum value, error;
+            for (std::size_t r = 0; r < regions_.count(); ++r) {
+                value.add(regions_.value(r)[c]);
+                error.add(regions_.error(r)[c]);
+            }
+            totals_.value[c] = value.value();
+            totals_.inflation[c] =
+                expected_[c] > 0 ? std::max(1.0, std::sqrt(disagreement_[c] / expected_[c])) : 1;
+            totals_.error[c] =
+                error.value() * totals_.inflation[c] * (1 + 8 / static_cast<double>(regions_.count()));
+        }
+    }
+
+    void say_doubts(Tally& tally) const {
+        std::size_t unseen = 0;
+        for (char c : nonzero_) unseen += c == 0;
+        if (unseen > 0 && !searching()) {
+            std::string what = m_ == 1 ? "the integrand was" : std::to_string(unseen) + " components were";
+            tally.doubts.push_back(what + " zero at each of " + std::to_string(evaluations_) +
+                                   " points; a part where it is not may have been missed");
+        }
+        if (regions_.count() >= max_regions_)
+            tally.doubts.push_back("the memory for regions is used up at " + std::to_string(max_regions_) +
+                                   " regions; raise max_memory, or take a method that samples");
+        for (std::size_t c = 0; c < components(); ++c) {
+            if (totals_.inflation[c] < 4) continue;
+            std::ostringstream text;
+            text.precision(2);
+            text << "the errors of regions halved of late were " << totals_.inflation[c]
+                 << " times too small, and were enlarged by as much; the integrand is rougher than the rules "
+                    "can tell";
+            tally.doubts.push_back(text.str());
+            break;
+        }
+    }
+
+    Problem problem_;
+    int n_, m_;
+    std::optional<SymmetricRule> coarse_, fine_;
+    CubatureRegions regions_;
+    std::size_t max_regions_;
+    Totals totals_;
+    std::uint64_t evaluations_ = 0;
+    bool refined_ = false; // the cube was evaluated again by the fine rule
+    NonFiniteCount non_finite_;
+    std::vector<char> nonzero_; // a component: was it ever seen to be other than zero?
+    // Squared differences of regions from their halves, and what their errors expected, of late.
+    std::vector<double> disagreement_, expected_;
+};
+
+} // namespace
+
+std::unique_ptr<Estimator> Cubature::estimator(const Problem& problem) const {
+    if (problem.evaluator.dimensions() > max_dimensions)
+        throw Error("cubature", "takes at most " + std::to_string(max_dimensions) +
+                                    " variables, since a region costs 2^n evaluations; the domain has " +
+                                    std::to_string(problem.evaluator.dimensions()) +
+                                    ". Take a method that samples");
+    return std::make_unique<CubatureEstimator>(problem, max_memory);
+}
+
+} // namespace montelux

@@ -1,0 +1,36 @@
+// Deterministic adaptive integration: the regions of the largest errors are halved until the errors add up
+// to the target.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include "montelux/mc/integrate/estimator.h"
+
+namespace montelux {
+
+// Globally adaptive cubature on the unit cube (Genz & Malik 1980; Berntsen, Espelid & Genz 1991): Gauss-
+// Kronrod in one dimension, degree 13 in two, 11 in three, the Genz-Malik rules of degree 7 and 9 in 2 to 15.
+// Best for integrands that are smooth, or piecewise so in few dimensions; a region costs 2^n points and more,
+// and jumps or kinks across many variables need more regions than any budget allows.
+//
+// Errors are not standard deviations: each is the sum over the regions of what the null rules of a region
+// suspect, meant to be above the true error rather than near it. Above these stand
+// - what points close to the faces of a region see that the rule did not expect (a jump at the face),
+// - a quarter of what the halves of a region disagree with it by,
+// - a factor 1 + 8 / regions, since few regions have not yet tested one another, and
+// - the factor by which errors of the regions halved of late were too small, where they were.
+// The same target, at any number of threads, gives the same bits; the seed has no effect.
+struct Cubature {
+    static constexpr std::string_view name = "cubature";
+    static constexpr int max_dimensions = 15;
+
+    // Bytes that the regions may take; the integration ends with a doubt when they are used up.
+    std::uint64_t max_memory = std::uint64_t{1} << 30;
+
+    // Throws Error for more than max_dimensions variables, and for memory that does not hold 64 regions.
+    std::unique_ptr<Estimator> estimator(const Problem& problem) const;
+};
+
+} // namespace montelux

@@ -1,0 +1,70 @@
+#include "montelux/mc/integrate/cubature_regions.h"
+
+#include <algorithm>
+
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+
+double CubatureRegions::volume(std::size_t r) const {
+    double volume = 1;
+    for (double h : half_width(r)) volume *= 2 * h;
+    return volume;
+}
+
+void CubatureRegions::resize(std::size_t count) {
+    centre_.resize(count * n_);
+    half_width_.resize(count * n_);
+    value_.resize(count * m_);
+    error_.resize(count * m_);
+    marks_.resize(count);
+}
+
+void CubatureRegions::add_cube() {
+    resize(count() + 1);
+    std::ranges::fill(centre(count() - 1), 0.5);
+    std::ranges::fill(half_width(count() - 1), 0.5);
+}
+
+void CubatureRegions::add_halves(const CubatureRegions& from, std::size_t region) {
+    const std::size_t first = count(), axis = from.marks(region).axis;
+    resize(first + 2);
+    for (std::size_t side = 0; side < 2; ++side) {
+        std::ranges::copy(from.centre(region), centre(first + side).begin());
+        std::ranges::copy(from.half_width(region), half_width(first + side).begin());
+        double& h = half_width(first + side)[axis];
+        h /= 2;
+        centre(first + side)[axis] += side == 0 ? -h : h;
+    }
+}
+
+void CubatureRegions::copy(std::size_t to, const CubatureRegions& from, std::size_t r) {
+    std::ranges::copy(from.centre(r), centre(to).begin());
+    std::ranges::copy(from.half_width(r), half_width(to).begin());
+    std::ranges::copy(from.value(r), value(to).begin());
+    std::ranges::copy(from.error(r), error(to).begin());
+    marks(to) = from.marks(r);
+}
+
+void CubatureRegions::save(StateWriter& state) const {
+    for (const auto* numbers : {&centre_, &half_width_, &value_, &error_}) state.put(*numbers);
+    for (const Marks& m : marks_)
+        state.put(static_cast<std::uint64_t>(m.axis | m.rough << 8 | m.exhausted << 9 | m.indivisible << 10));
+}
+
+void CubatureRegions::load(StateReader& state) {
+    for (auto* numbers : {&centre_, &half_width_, &value_, &error_}) *numbers = state.get_doubles();
+    const std::size_t regions = centre_.size() / n_;
+    if (centre_.size() != regions * n_ || half_width_.size() != regions * n_ ||
+        value_.size() != regions * m_ || error_.size() != regions * m_)
+        throw Error("the saved regions do not fit the dimensions or components");
+    marks_.resize(regions);
+    for (Marks& m : marks_) {
+        const std::uint64_t word = state.get_word();
+        m = {static_cast<std::uint8_t>(word & 0xff), (word & 0x100) != 0, (word & 0x200) != 0,
+             (word & 0x400) != 0};
+        if (m.axis >= n_) throw Error("a saved region is to be halved along an axis that there is not");
+    }
+}
+
+} // namespace montelux

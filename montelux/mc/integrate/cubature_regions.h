@@ -1,0 +1,62 @@
+// The regions of an adaptive integration: boxes that fill the unit cube, with what is known of each.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "montelux/mc/integrate/state_archive.h"
+
+namespace montelux {
+
+// Regions in structure of arrays, each with a box, a value and an error a component.
+class CubatureRegions {
+  public:
+    // What became known of a region when it was evaluated.
+    struct Marks {
+        std::uint8_t axis = 0;    // to halve it along
+        bool rough = false;       // the integrand is not smooth at its scale
+        bool exhausted = false;   // its errors are rounding alone
+        bool indivisible = false; // its halves could not be told apart in floating point
+    };
+
+    CubatureRegions(int dimensions, int components) : n_(size(dimensions)), m_(size(components)) {}
+
+    std::size_t count() const { return marks_.size(); }
+    bool empty() const { return marks_.empty(); }
+    // Bytes that one region takes.
+    std::size_t bytes_each() const { return 8 * 2 * (n_ + m_) + sizeof(Marks); }
+
+    std::span<double> centre(std::size_t r) { return {&centre_[r * n_], n_}; }
+    std::span<const double> centre(std::size_t r) const { return {&centre_[r * n_], n_}; }
+    std::span<double> half_width(std::size_t r) { return {&half_width_[r * n_], n_}; }
+    std::span<const double> half_width(std::size_t r) const { return {&half_width_[r * n_], n_}; }
+    std::span<double> value(std::size_t r) { return {&value_[r * m_], m_}; }
+    std::span<const double> value(std::size_t r) const { return {&value_[r * m_], m_}; }
+    std::span<double> error(std::size_t r) { return {&error_[r * m_], m_}; }
+    std::span<const double> error(std::size_t r) const { return {&error_[r * m_], m_}; }
+    Marks& marks(std::size_t r) { return marks_[r]; }
+    const Marks& marks(std::size_t r) const { return marks_[r]; }
+    double volume(std::size_t r) const;
+
+    void resize(std::size_t count);
+    // Adds the unit cube, not yet evaluated.
+    void add_cube();
+    // Adds both halves of a region of `from`, not yet evaluated.
+    void add_halves(const CubatureRegions& from, std::size_t region);
+    // Region `to` becomes a copy of region `r` of `from`.
+    void copy(std::size_t to, const CubatureRegions& from, std::size_t r);
+
+    void save(StateWriter& state) const;
+    // Throws Error where the state does not fit.
+    void load(StateReader& state);
+
+  private:
+    static std::size_t size(int n) { return static_cast<std::size_t>(n); }
+
+    std::size_t n_, m_;
+    std::vector<double> centre_, half_width_, value_, error_;
+    std::vector<Marks> marks_;
+};
+
+} // namespace montelux

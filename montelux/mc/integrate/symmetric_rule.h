@@ -1,0 +1,87 @@
+// Fully symmetric rules on a box: one value and a graded family of null rules from the same points.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "montelux/mc/integrate/points.h"
+
+namespace montelux {
+
+// Points of [-1, 1]^n, all permutations and changes of sign of a few generators, with weights that integrate
+// polynomials up to a degree exactly; and null rules: weights at the same points that give zero for all
+// polynomials up to a lower degree, so that what they give for an integrand tells how far it is from such a
+// polynomial (Berntsen, Espelid & Genz 1991, "An adaptive algorithm for the approximate calculation of
+// multiple integrals"; Berntsen & Espelid 1991, "Error estimation in automatic quadrature routines").
+// Generators are all that is tabulated: weights and null rules follow from the moment equations.
+class SymmetricRule {
+  public:
+    // Coordinates of a generator that are not zero, each above zero.
+    using Generator = std::vector<double>;
+
+    // Weights of a rule of this odd degree on the orbits of the generators, the first of which is the centre.
+    // Where these leave a choice of weights, the one of least square sum is taken. `probe` above zero adds
+    // points at this distance on the axes that no rule uses, see edge_surprise(). Throws Error where no
+    // weights reach the degree.
+    SymmetricRule(int dimensions, int degree, std::vector<Generator> generators, double probe = 0);
+
+    int dimensions() const { return dimensions_; }
+    // Polynomials of total degree up to this one are integrated exactly.
+    int degree() const { return degree_; }
+    std::size_t points() const { return points_.count(); }
+    // Points in [-1, 1]^n, orbit after orbit.
+    const PointBuffer& offsets() const { return points_; }
+
+    // Null rules, from the highest degree to the lowest, orthonormal with respect to the sum over the points
+    // and scaled so that each has the square sum of weights of the rule.
+    int null_rules() const { return static_cast<int>(null_degrees_.size()); }
+    // Polynomials up to this degree give zero.
+    int null_degree(int k) const { return null_degrees_[static_cast<std::size_t>(k)]; }
+
+    // The mean of a function over the box from its values at the points, and what the null rules give, one
+    // number each into `nulls`.
+    double apply(std::span<const double> values, std::span<double> nulls) const;
+
+    // How far the integrand is from what the rule can do.
+    struct Assessment {
+        double error; // of the mean over the box: an estimate that should rarely be too small
+        double ratio; // the largest ratio of null rules of successive degrees; below 1 they fall, as they do
+                      // where the integrand is smooth at the scale of the box
+    };
+    // From what the null rules gave. While they fall by a factor r from degree to degree, the error is taken
+    // as 3 r times that of the highest degree (the rule's own degree is higher by 2 than that, and falls on
+    // by another factor of r); where they do not, as the largest of them (Berntsen & Espelid 1991).
+    Assessment assess(std::span<const double> nulls) const;
+
+    // Fourth differences along each axis, from the two innermost orbits on the axes; they vanish for
+    // cubics. Adds scale times their absolute values to `sums`, one an axis. Needs two such orbits.
+    void add_fourth_differences(std::span<const double> values, double scale, std::span<double> sums) const;
+
+    // An error of the mean over the box that no rule sees: what the probes differ from the quartic through
+    // the points on their axis, beyond twice its fourth difference, times the part of the box that lies
+    // beyond the outermost point. It is large where a jump runs along a face. Zero without probes.
+    double edge_surprise(std::span<const double> values) const;
+
+  private:
+    struct Orbit {
+        std::size_t first = 0, count = 0;
+    };
+
+    static PointBuffer orbit(int dimensions, const Generator& generator);
+    void solve(const std::vector<Generator>& generators);
+
+    int dimensions_, degree_;
+    PointBuffer points_;
+    std::vector<Orbit> orbits_;
+    std::vector<double> weights_;      // of a point of each orbit; sum over all points is 1
+    std::vector<double> null_weights_; // null rule after null rule, as `weights_`
+    std::vector<int> null_degrees_;
+    // The two innermost orbits on the axes, and their distances from the centre.
+    std::size_t inner_ = 0, outer_ = 0;
+    double inner_at_ = 0, outer_at_ = 0;
+    double probe_at_ = 0;
+    std::size_t first_probe_ = 0;
+};
+
+} // namespace montelux
