@@ -120,15 +120,11 @@ TEST(Grid, KeepsPromises) {
 
 TEST(Grid, BudgetsThatAreTooSmall) {
     auto one = [](std::span<const double>) { return 1.0; };
-    const IntegrationResult r =
-        integrate(one, Domain::unit_cube(2), MidpointRule{100}, {.evaluations = 9999});
-    EXPECT_EQ(r.evaluations, 0u);
-    EXPECT_EQ(r.stop, StopReason::evaluations);
-    EXPECT_FALSE(r.doubts.empty());
+    EXPECT_THROW(integrate(one, Domain::unit_cube(2), MidpointRule{100}, {.evaluations = 9999}), Error);
     // 2^40 points do not fit, one does.
-    EXPECT_EQ(integrate(one, Domain::unit_cube(40), MidpointRule{}, {.evaluations = 1000}).value[0], 1);
-    EXPECT_EQ(integrate(one, Domain::unit_cube(10000), MidpointRule{}, {.evaluations = 1000}).value[0], 1);
-    EXPECT_EQ(integrate(one, Domain::unit_cube(40), TrapezoidRule{}, {.evaluations = 1000}).evaluations, 0u);
+    for (int d : {40, 10000})
+        EXPECT_EQ(integrate(one, Domain::unit_cube(d), MidpointRule{}, {.evaluations = 1000}).value[0], 1);
+    EXPECT_THROW(integrate(one, Domain::unit_cube(40), TrapezoidRule{}, {.evaluations = 1000}), Error);
 }
 
 } // namespace

@@ -1,0 +1,135 @@
+#include "montelux/mc/integrate/stratified.h"
+
+#include <cmath>
+#include <utility>
+
+#include "montelux/mc/integrate/sampling.h"
+#include "montelux/mc/integrate/strata.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+namespace {
+
+constexpr std::uint64_t samples_a_stratum = 16; // beside a pilot
+constexpr std::uint64_t most_pilot_numbers = 1 << 24;
+constexpr double even_share = 0.1;
+
+class StratifiedEstimator final : public Estimator {
+  public:
+    StratifiedEstimator(const Problem& problem, const Stratified& settings)
+        : problem_(problem), settings_(settings),
+          average_(problem.evaluator.components(), problem.full_covariance) {
+        if (settings.pilot < 2)
+            throw Error("stratified", "a pilot of " + std::to_string(settings.pilot) +
+                                          " samples a stratum; expected at least 2");
+        if (settings.strata == 0) return;
+        const double count = std::pow(static_cast<double>(settings.strata), problem.evaluator.dimensions());
+        if (count > 1 << 24)
+            throw Error("stratified", std::to_string(settings.strata) + " strata along each of " +
+                                          std::to_string(problem.evaluator.dimensions()) +
+                                          " variables; expected at most 2^24 in all");
+    }
+
+    StepOutcome step(const StepRequest& request) override {
+        const std::uint64_t pilot =
+            settings_.allocation == Allocation::neyman ? static_cast<std::uint64_t>(settings_.pilot) : 0;
+        std::uint64_t size = next_pass_size(evaluations_, request);
+        std::uint64_t most = pilot == 0 ? size / 2 : size / (pilot + samples_a_stratum);
+        if (pilot != 0)
+            most = std::min(most,
+                            most_pilot_numbers / static_cast<std::uint64_t>(problem_.evaluator.components()));
+        const int d = problem_.evaluator.dimensions();
+        const std::vector<std::uint64_t> cells =
+            settings_.strata != 0 ? std::vector<std::uint64_t>(static_cast<std::size_t>(d), settings_.strata)
+                                  : balanced_cells(d, std::max<std::uint64_t>(most, 1));
+        const Strata strata = grid_strata(cells);
+        // A grid that is given may need more than the pass would have.
+        size = std::max(size, strata.count * (pilot + 2));
+        if (size > request.max_evaluations) return StepOutcome::exhausted;
+        // A small rest beside finer strata would hardly count.
+        if (passes_ > 0 && size < std::min<std::uint64_t>(1 << 20, evaluations_ / 16))
+            return StepOutcome::exhausted;
+
+        std::vector<double> shares;
+        NonFiniteCount non_finite;
+        if (pilot != 0) {
+            std::vector<double> variances;
+            const auto offsets = allocate_samples(strata.count, strata.count * pilot, pilot, {});
+            auto sum = sample_strata(problem_, strata, offsets, stream(1), &variances, request.cancel);
+            if (!sum) return StepOutcome::cancelled;
+            non_finite = std::move(sum->non_finite);
+            shares = neyman_shares(variances, strata.count);
+        }
+        std::uint64_t samples = size - strata.count * pilot;
+        if (pilot == 0) samples -= samples % strata.count; // equal numbers
+        const auto offsets =
+            allocate_samples(strata.count, samples, pilot == 0 ? samples / strata.count : 2, shares);
+        auto sum = sample_strata(problem_, strata, offsets, stream(0), nullptr, request.cancel);
+        if (!sum) return StepOutcome::cancelled;
+        non_finite.merge(sum->non_finite);
+
+        const double exponent = settings_.strata != 0 ? 1 : 1 + 2.0 / d;
+        average_.add(std::pow(static_cast<double>(samples), exponent), sum->estimate);
+        non_finite_.merge(non_finite);
+        evaluations_ += samples + strata.count * pilot;
+        ++passes_;
+        return StepOutcome::advanced;
+    }
+
+    Tally tally() const override {
+        Tally tally;
+        average_.tally(tally);
+        tally.evaluations = evaluations_;
+        tally.non_finite = non_finite_;
+        return tally;
+    }
+    void save(StateWriter& state) const override {
+        average_.save(state);
+        state.put(evaluations_);
+        state.put(passes_);
+        montelux::save(state, non_finite_);
+    }
+    void load(StateReader& state) override {
+        average_.load(state);
+        evaluations_ = state.get_word();
+        passes_ = state.get<std::uint32_t>();
+        montelux::load(state, non_finite_);
+    }
+
+  private:
+    std::uint32_t stream(std::uint32_t part) const { return 2 * passes_ + part; }
+
+    // Standard deviations within strata; those of several components relative to their means over strata.
+    std::vector<double> neyman_shares(const std::vector<double>& variances, std::uint64_t strata) const {
+        const auto m = static_cast<std::size_t>(problem_.evaluator.components());
+        std::vector<double> total(m);
+        for (std::uint64_t k = 0; k < strata; ++k)
+            for (std::size_t c = 0; c < m; ++c) total[c] += variances[k * m + c];
+        std::vector<double> shares(strata);
+        double sum = 0;
+        for (std::uint64_t k = 0; k < strata; ++k) {
+            double square = 0;
+            for (std::size_t c = 0; c < m; ++c)
+                if (total[c] > 0) square += variances[k * m + c] / total[c];
+            sum += shares[k] = std::sqrt(square);
+        }
+        const double even = even_share / (1 - even_share) * sum / static_cast<double>(strata);
+        for (double& s : shares) s += even;
+        return shares;
+    }
+
+    Problem problem_;
+    Stratified settings_;
+    IterationAverage average_;
+    NonFiniteCount non_finite_;
+    std::uint64_t evaluations_ = 0;
+    std::uint32_t passes_ = 0;
+};
+
+} // namespace
+
+std::unique_ptr<Estimator> Stratified::estimator(const Problem& problem) const {
+    return std::make_unique<StratifiedEstimator>(problem, *this);
+}
+
+} // namespace montelux
