@@ -9,6 +9,7 @@
 #include "montelux/mc/integrate/grid.h"
 #include "montelux/mc/integrate/quasi.h"
 #include "montelux/mc/integrate/stratified.h"
+#include "montelux/mc/integrate/vegas.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
@@ -30,6 +31,8 @@ constexpr Entry entry() {
 }
 constexpr std::array entries{
     entry<Adaptive>(),
+    entry<Vegas>(),
+    entry<VegasSobol>(),
     entry<Quasi>(),
     entry<BasicMonteCarlo>(),
     entry<Stratified>(),

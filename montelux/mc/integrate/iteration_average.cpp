@@ -1,0 +1,101 @@
+#include "montelux/mc/integrate/iteration_average.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/math/special.h"
+
+namespace montelux {
+namespace {
+
+constexpr double significance = 1e-3;
+// Of a value, relative: constants would else disagree with themselves.
+constexpr double rounding_error = 1e-13;
+
+} // namespace
+
+IterationAverage::IterationAverage(int components, bool full_covariance)
+    : full_(full_covariance), value_(static_cast<std::size_t>(components)),
+      covariance_(value_.size() * (full_covariance ? value_.size() : 1)), chi_squared_(value_) {}
+
+double IterationAverage::variance(int component) const {
+    const auto c = static_cast<std::size_t>(component);
+    return covariance_[full_ ? c * value_.size() + c : c] / (weight_ * weight_);
+}
+
+void IterationAverage::compare(const IterationEstimate& iteration) {
+    if (iterations_ == 0) return;
+    for (std::size_t c = 0; c < value_.size(); ++c) {
+        const double own = iteration.covariance[full_ ? c * value_.size() + c : c];
+        const double rounding = rounding_error * value_[c];
+        const double sum = own + variance(static_cast<int>(c)) + rounding * rounding;
+        if (!(sum > 0)) continue;
+        double z = std::abs(iteration.value[c] - value_[c]) / std::sqrt(sum);
+        // Student's law where the variance comes from a few replicates, carried over to the normal one.
+        if (iteration.degrees_of_freedom > 0)
+            z = -normal_quantile(std::max(1e-300, student_t_cdf(-z, iteration.degrees_of_freedom)));
+        chi_squared_[c] += z * z;
+    }
+    ++degrees_of_freedom_;
+}
+
+void IterationAverage::add(double weight, const IterationEstimate& iteration) {
+    compare(iteration);
+    ++iterations_;
+    weight_ += weight;
+    for (std::size_t c = 0; c < value_.size(); ++c)
+        value_[c] += weight / weight_ * (iteration.value[c] - value_[c]);
+    for (std::size_t k = 0; k < covariance_.size(); ++k)
+        covariance_[k] += weight * weight * iteration.covariance[k];
+}
+
+void IterationAverage::tally(Tally& tally) const {
+    tally.value = value_;
+    tally.standard_error.assign(value_.size(), std::numeric_limits<double>::infinity());
+    tally.ready = iterations_ > 0;
+    if (iterations_ == 0) return;
+    for (std::size_t c = 0; c < value_.size(); ++c)
+        tally.standard_error[c] = std::sqrt(variance(static_cast<int>(c)));
+    tally.covariance.clear();
+    const std::size_t m = value_.size();
+    if (full_)
+        for (std::size_t a = 0; a < m; ++a)
+            for (std::size_t b = 0; b < m; ++b)
+                tally.covariance.push_back(covariance_[std::max(a, b) * m + std::min(a, b)] /
+                                           (weight_ * weight_));
+    tally.degrees_of_freedom = degrees_of_freedom_;
+    if (degrees_of_freedom_ == 0) return;
+    tally.chi_squared = *std::max_element(chi_squared_.begin(), chi_squared_.end());
+    const double p = chi_squared_p_value(tally.chi_squared, degrees_of_freedom_);
+    if (p * static_cast<double>(value_.size()) >= significance) return;
+    char text[192];
+    std::snprintf(text, sizeof text,
+                  "the iterations disagree: chi-squared %.3g for %d degrees of freedom, p = %.2g",
+                  tally.chi_squared, degrees_of_freedom_, p);
+    tally.doubts.emplace_back(text);
+}
+
+void IterationAverage::save(StateWriter& state) const {
+    state.put(iterations_);
+    state.put(weight_);
+    state.put(value_);
+    state.put(covariance_);
+    state.put(chi_squared_);
+    state.put(degrees_of_freedom_);
+}
+
+void IterationAverage::load(StateReader& state) {
+    iterations_ = state.get<int>();
+    weight_ = state.get_double();
+    for (std::vector<double>* part : {&value_, &covariance_, &chi_squared_}) {
+        std::vector<double> numbers = state.get_doubles();
+        if (numbers.size() != part->size()) throw Error("the saved state has another number of components");
+        *part = std::move(numbers);
+    }
+    degrees_of_freedom_ = state.get<int>();
+}
+
+} // namespace montelux

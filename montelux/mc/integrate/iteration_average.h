@@ -1,0 +1,51 @@
+// The mean over iterations of an adaptive estimate, and whether they agree.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "montelux/mc/integrate/estimator.h"
+
+namespace montelux {
+
+// One iteration's estimate: values of the components and their covariances, row by row with the lower
+// triangle alone filled (or variances alone).
+struct IterationEstimate {
+    std::vector<double> value, covariance;
+    // Degrees of freedom of the variances; 0 where they are as good as known.
+    int degrees_of_freedom = 0;
+};
+
+// Iterations are weighted by numbers that are fixed before they run. (Weights by the variances that
+// iterations find for themselves would be biased: low ones come with low values.) Agreement is told by
+// comparing each iteration with the mean of those before it.
+class IterationAverage {
+  public:
+    IterationAverage() = default;
+    IterationAverage(int components, bool full_covariance);
+
+    void add(double weight, const IterationEstimate& iteration);
+    // Compares only: the iteration takes no part in the mean.
+    void compare(const IterationEstimate& iteration);
+
+    int iterations() const { return iterations_; }
+    // Fills values, errors, covariance, and chi-squared of the component whose iterations agree worst;
+    // doubts when the probability of such disagreement, with so many components, is below 1e-3.
+    void tally(Tally& tally) const;
+
+    void save(StateWriter& state) const;
+    void load(StateReader& state);
+
+  private:
+    double variance(int component) const;
+
+    bool full_ = true;
+    int iterations_ = 0;
+    double weight_ = 0;
+    std::vector<double> value_;      // weighted mean
+    std::vector<double> covariance_; // sum of squared weights times covariances
+    std::vector<double> chi_squared_;
+    int degrees_of_freedom_ = 0;
+};
+
+} // namespace montelux
