@@ -8,6 +8,7 @@
 #include "montelux/mc/integrate/cubature.h"
 #include "montelux/mc/integrate/grid.h"
 #include "montelux/mc/integrate/quasi.h"
+#include "montelux/mc/integrate/recursive.h"
 #include "montelux/mc/integrate/stratified.h"
 #include "montelux/mc/integrate/vegas.h"
 #include "montelux/mc/math/error.h"
@@ -36,6 +37,7 @@ constexpr std::array entries{
     entry<Quasi>(),
     entry<BasicMonteCarlo>(),
     entry<Stratified>(),
+    entry<Recursive>(),
     entry<RiemannSum>(),
     entry<MidpointRule>(),
     entry<TrapezoidRule>(),
