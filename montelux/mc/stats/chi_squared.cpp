@@ -117,7 +117,7 @@ void CellCounts::add(Vec2d p) {
         return std::min(static_cast<int>((v - lo) / (hi - lo) * n), n - 1);
     };
     int i = cell(p.x, lower_.x, upper_.x, nx_), j = cell(p.y, lower_.y, upper_.y, ny_);
-    observed_[static_cast<std::size_t>(j * nx_ + i)] += 1;
+    observed_[static_cast<std::size_t>(j) * nx_ + i] += 1;
 }
 
 TestResult CellCounts::test(const std::function<double(Vec2d)>& pdf, double pool_below) const {
@@ -133,7 +133,7 @@ TestResult CellCounts::test(const std::function<double(Vec2d)>& pdf, double pool
             // A small part of the standard deviation of the count, for the coarser of the two rules.
             double tolerance = 0.02 * std::sqrt((std::max(rough, 0.0) + 1 / n) / n);
             double p = adaptive(pdf, lo, hi, rough, tolerance, 0);
-            expected[static_cast<std::size_t>(j * nx_ + i)] = n * p;
+            expected[static_cast<std::size_t>(j) * nx_ + i] = n * p;
             integral.add(p);
         }
     double missing = 1 - integral.value();
