@@ -21,6 +21,8 @@ constexpr int max_retrainings = 4;
 constexpr double fixed_cost_share =
     0.4; // of a fixed number of evaluations, what training is measured against
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::uint64_t enough_nonzero = 16;        // points that must see anything before training begins,
+constexpr std::uint64_t most_exploration = 1 << 20; // or evaluations without
 constexpr double peaky = 0.01; // effective share of exploring points below which peaks are searched for
 constexpr double trusted_exploration = 0.05; // the same, above which the error of uniform points is believed
 constexpr double uniform_reach = 24576; // evaluations within which uniform points may be expected to arrive
@@ -144,25 +146,29 @@ class AdaptiveEstimator final : public Estimator {
         return request.relative_error > 0 || request.absolute_error > 0;
     }
 
+    // Goes on, doubling, while hardly any point sees anything.
     StepOutcome explore(const StepRequest& request) {
-        std::uint64_t points = std::min(explored_, request.max_evaluations / replicates() / units * units);
-        if (points == 0) {
-            // Too few for a balanced set: any number will do.
-            points = request.max_evaluations / replicates();
-            if (points == 0) return StepOutcome::exhausted;
-        }
+        std::uint64_t points = uniform_points_ == 0 ? explored_ : uniform_points_;
+        points = std::min(points, request.max_evaluations / replicates() / units * units);
+        if (points == 0 && uniform_points_ == 0)
+            points = request.max_evaluations / replicates(); // too few for balance
+        if (points == 0) return StepOutcome::exhausted;
         SamplePoints drawn;
-        auto sums = sample_mixture(problem_.evaluator, uniform_, hash_key(problem_.seed, 0),
-                                   settings_.replicates, 0, points, &drawn, request.cancel);
+        auto sums =
+            sample_mixture(problem_.evaluator, uniform_, hash_key(problem_.seed, 0), settings_.replicates,
+                           uniform_points_, uniform_points_ + points, &drawn, request.cancel);
         if (!sums) return StepOutcome::cancelled;
-        uniform_sums_ = std::move(*sums);
-        uniform_points_ = points;
+        uniform_sums_.merge(*sums);
+        uniform_points_ += points;
         trainer_.start(std::move(drawn));
-        const std::uint64_t left = request.max_evaluations - uniform_sums_.evaluations;
-        const bool room = points == explored_ && left >= smallest_budget * training_points;
-        phase_ = !room || trainer_.nonzero() == 0 || uniform_will_do(request) ? Phase::uniform
-                 : trainer_.effective_share() < peaky                         ? Phase::search
-                                                                              : Phase::train;
+        const std::uint64_t left = request.max_evaluations - sums->evaluations;
+        const bool room = uniform_points_ >= explored_ && left >= smallest_budget * training_points;
+        if (!room || uniform_will_do(request))
+            phase_ = Phase::uniform;
+        else if (trainer_.nonzero() >= enough_nonzero || uniform_sums_.evaluations >= most_exploration)
+            phase_ = trainer_.nonzero() == 0              ? Phase::uniform
+                     : trainer_.effective_share() < peaky ? Phase::search
+                                                          : Phase::train;
         return StepOutcome::advanced;
     }
 
@@ -274,7 +280,7 @@ class AdaptiveEstimator final : public Estimator {
         if (trainer_.nonzero() == 0 && tally.value[0] == 0)
             tally.doubts.push_back(
                 "the integrand was zero at every point; a narrow peak may have been missed");
-        else if (trainer_.nonzero() < 5)
+        else if (trainer_.nonzero() < enough_nonzero)
             tally.doubts.push_back(
                 "only " + std::to_string(trainer_.nonzero()) +
                 " of the exploring points saw anything but zero; other places may have been missed");

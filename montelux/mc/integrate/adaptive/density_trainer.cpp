@@ -80,12 +80,14 @@ void DensityTrainer::start(SamplePoints&& points) {
             scale_[static_cast<std::size_t>(c)] += std::abs(v) / static_cast<double>(points.g.count());
     std::vector<double> h = steering(points.g);
     double sum = 0, squares = 0;
+    nonzero_ = 0;
     for (double v : h) {
         nonzero_ += v > 0;
         sum += v;
         squares += v * v;
     }
     effective_share_ = squares > 0 ? sum * sum / squares / static_cast<double>(h.size()) : 0;
+    recent_.clear();
     recent_.push_back({density_, std::move(points.x), std::move(h)});
 }
 

@@ -16,9 +16,10 @@ class DensityTrainer {
   public:
     DensityTrainer(const Problem& problem, int uniform_units);
 
-    // Takes the points of the exploration, which were uniform.
+    // Takes the points of the exploration, which were uniform; once more if it went on.
     void start(SamplePoints&& points);
-    // Of |g| over the exploration: number of points with any, and effective number, (sum h)^2 / sum h^2.
+    // Of |g| over the points last taken: number of points with any, and effective number, (sum h)^2 / sum
+    // h^2.
     std::uint64_t nonzero() const { return nonzero_; }
     double effective_share() const { return effective_share_; }
 

@@ -9,13 +9,17 @@
 namespace montelux {
 namespace {
 
-constexpr std::size_t margin = 3;      // points kept on the far side of a place where weights vanish
+// Where weights vanish from some place on, so many points beyond it are kept that one of them would probably
+// have been seen, given how many nearby are seen where weights do not vanish.
+constexpr double margin = 5;
+constexpr std::size_t nearby = 32;
 constexpr double least_gain = 0.25;    // of likelihood, in units of the noise of one effective point
 constexpr std::size_t candidates = 64; // split places that are tried first
 
 // Sorted points with running sums of their weights.
 struct Profile {
     std::vector<double> x, cumulative; // cumulative[i]: of the first i
+    std::vector<std::size_t> nonzero;  // the same for the number of weights that are not zero
     double mass(std::size_t first, std::size_t last) const { return cumulative[last] - cumulative[first]; }
 };
 
@@ -51,9 +55,30 @@ class Splitter {
                      right = all - left;
         const bool no_left = !(profile_.mass(leaf.first, k) > 0),
                    no_right = !(profile_.mass(k, leaf.last) > 0);
+        // A few points that saw something among many that did not say too little to part with them.
+        auto too_few = [&](std::size_t first, std::size_t last) {
+            const std::size_t seen = profile_.nonzero[last] - profile_.nonzero[first];
+            return seen > 0 && seen < least_;
+        };
+        if (too_few(leaf.first, k) || too_few(k, leaf.last)) return;
         double at = 0.5 * (profile_.x[k - 1] + profile_.x[k]);
-        if (no_right) at = profile_.x[std::min(k + margin, leaf.last - 1)];
-        if (no_left) at = profile_.x[k - 1 - std::min(margin, k - 1 - leaf.first)];
+        // Points [first, last) do not all vanish.
+        auto kept_points = [&](std::size_t first, std::size_t last) {
+            const double seen = static_cast<double>(profile_.nonzero[last] - profile_.nonzero[first]);
+            return static_cast<std::size_t>(margin * static_cast<double>(last - first) /
+                                            std::max(1.0, seen)) +
+                   1;
+        };
+        if (no_right) {
+            const std::size_t end = k + kept_points(k - std::min(nearby, k - leaf.first), k);
+            if (end >= leaf.last) return;
+            at = profile_.x[end];
+        }
+        if (no_left) {
+            const std::size_t kept = kept_points(k, std::min(k + nearby, leaf.last));
+            if (leaf.first + kept + 1 >= k) return;
+            at = profile_.x[k - 1 - kept];
+        }
         if (!(at > leaf.lower && at < leaf.upper)) return;
         const double width = leaf.upper - leaf.lower;
         auto term = [&](double mass, double part) {
@@ -83,10 +108,12 @@ MonotoneMap fit_monotone_map(std::span<const double> positions, std::span<const 
     });
     Profile profile;
     profile.cumulative.push_back(0);
+    profile.nonzero.push_back(0);
     double squares = 0;
     for (std::size_t i : order) {
         profile.x.push_back(positions[i]);
         profile.cumulative.push_back(profile.cumulative.back() + weights[i]);
+        profile.nonzero.push_back(profile.nonzero.back() + (weights[i] > 0 ? 1 : 0));
         squares += weights[i] * weights[i];
     }
     const double total = profile.cumulative.back();
@@ -110,11 +137,12 @@ MonotoneMap fit_monotone_map(std::span<const double> positions, std::span<const 
         leaves.push_back(right);
     }
     std::sort(leaves.begin(), leaves.end(), [](const Leaf& a, const Leaf& b) { return a.lower < b.lower; });
+    const double one = total / static_cast<double>(profile.nonzero.back());
     std::vector<double> edges{0}, masses;
     for (const Leaf& leaf : leaves) {
         edges.push_back(leaf.upper);
-        // One point's worth more: a bin in which nothing was seen is not known to be empty.
-        masses.push_back(profile.mass(leaf.first, leaf.last) + total / static_cast<double>(n));
+        // The weight of one point more: a bin in which nothing was seen is not known to be empty.
+        masses.push_back(profile.mass(leaf.first, leaf.last) + one);
     }
     return {std::move(edges), std::move(masses)};
 }
