@@ -29,7 +29,11 @@ struct Found {
 
 } // namespace
 
-std::uint64_t coverage_probes(std::uint64_t samples) { return std::max<std::uint64_t>(32, samples / 32); }
+std::uint64_t CoverageProbe::due(std::uint64_t samples, std::uint64_t limit) const {
+    constexpr std::uint64_t least = 32, ratio = 32, most = 1 << 16;
+    const std::uint64_t wanted = std::max(least, std::min(2 * samples / ratio, samples / ratio + most));
+    return wanted > evaluations_ ? std::min(wanted - evaluations_, limit / (ratio + 1)) : 0;
+}
 
 bool CoverageProbe::run(const Problem& problem, std::uint64_t points, const CancelFlag* cancel) {
     // Values that are not finite at probes say nothing of the estimate.

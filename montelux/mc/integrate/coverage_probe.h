@@ -17,6 +17,9 @@ class CoverageProbe {
     explicit CoverageProbe(std::vector<Technique> techniques) : techniques_(std::move(techniques)) {}
 
     std::uint64_t evaluations() const { return evaluations_; }
+    // How many more to evaluate before the next step of an estimator that has `samples` samples and may make
+    // `limit` evaluations: for one probe to 32 samples after a doubling, and 32 at first.
+    std::uint64_t due(std::uint64_t samples, std::uint64_t limit) const;
     // Evaluates further points; false, and nothing changed, when cancelled.
     bool run(const Problem& problem, std::uint64_t points, const CancelFlag* cancel);
     // A sentence that names a point, if one was found.
@@ -32,8 +35,5 @@ class CoverageProbe {
     double first_value_ = 0;
     double missing_ = 0, missing_square_ = 0; // sums of |f| |dx/du| of the first component
 };
-
-// The probes that are due beside a number of samples: one to 32, at least 32.
-std::uint64_t coverage_probes(std::uint64_t samples);
 
 } // namespace montelux

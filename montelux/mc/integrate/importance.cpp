@@ -42,11 +42,7 @@ class ImportanceEstimator final : public Estimator {
     StepOutcome step(const StepRequest& request) override {
         StepRequest inner = request;
         if (!probes_) return samples_->step(inner);
-        // Probes first, for those that the samples so far and the step after them call for.
-        const std::uint64_t done = samples_->tally().evaluations;
-        const std::uint64_t due = std::min(coverage_probes(2 * done), coverage_probes(done) + most_probes);
-        std::uint64_t now = due > probe_.evaluations() ? due - probe_.evaluations() : 0;
-        now = std::min(now, request.max_evaluations / 33);
+        const std::uint64_t now = probe_.due(samples_->tally().evaluations, request.max_evaluations);
         CoverageProbe probed = probe_;
         if (now > 0 && !probed.run(problem_, now, request.cancel)) return StepOutcome::cancelled;
         inner.max_evaluations -= now;
@@ -71,8 +67,6 @@ class ImportanceEstimator final : public Estimator {
     }
 
   private:
-    static constexpr std::uint64_t most_probes = 1 << 16; // in one step
-
     Problem problem_;
     Evaluator weighted_; // f / p over the technique's uniform numbers
     std::unique_ptr<Estimator> samples_;
