@@ -76,6 +76,12 @@ class Replicate {
     std::uint32_t index_ = 0;
 };
 
+// The sequence is at its best at powers of two: the largest one that fits, where a tenth more counts as
+// fitting.
+std::uint64_t points_of_replicate(std::uint64_t evaluations) {
+    return std::bit_floor(evaluations / replicates);
+}
+
 Trial mean_of(const std::array<double, replicates>& sums, std::uint64_t points) {
     RunningMoments moments;
     for (double sum : sums) moments.add(sum / static_cast<double>(points));
@@ -86,7 +92,7 @@ Trial mean_of(const std::array<double, replicates>& sums, std::uint64_t points) 
 Answer sobol8(const CountedIntegrand& f, const Request& request) {
     std::uint64_t runs = 0;
     return escalate(f, request, replicates * first_points, Growth::by(4), [&](std::uint64_t n) {
-        const std::uint64_t points = n / replicates;
+        const std::uint64_t points = points_of_replicate(n);
         std::array<double, replicates> sums;
         for (double& sum : sums)
             sum = Replicate(f.dimensions(), request.seed, runs++).next_sum(f, points, request.form);
@@ -113,7 +119,7 @@ Answer sobol8_doubling(const CountedIntegrand& f, const Request& request) {
             request.relative_error > 0 && trial.error <= request.relative_error * std::abs(trial.value);
     };
     if (!(request.relative_error > 0)) {
-        extend(request.evaluations / replicates);
+        extend(points_of_replicate(request.evaluations));
         return answer;
     }
     for (std::uint64_t to = first_points; to * replicates <= request.evaluations && !answer.converged;
