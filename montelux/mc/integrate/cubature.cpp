@@ -67,15 +67,21 @@ class CubatureEstimator final : public Estimator {
         for (std::size_t p : parents) fresh.add_halves(regions_, p);
         NonFiniteCount non_finite;
         std::vector<char> nonzero(nonzero_);
-        if (!evaluate(fresh, rules, non_finite, nonzero, request.cancel)) return StepOutcome::cancelled;
+        std::vector<SymmetricRule::FaceValue> faces(parents.empty() ? 0 : rules.size() * components());
+        const Work work{rules, parents, fresh, faces};
+        if (!evaluate(work, non_finite, nonzero, request.cancel)) return StepOutcome::cancelled;
 
         for (const SymmetricRule* rule : rules) evaluations_ += rule->points();
         non_finite_.merge(non_finite);
         nonzero_ = std::move(nonzero);
         if (parents.empty()) {
             refined_ = !regions_.empty();
+            // What two rules differ by is known better than what null rules say of one box.
+            for (std::size_t c = 0; refined_ && c < components(); ++c)
+                fresh.error(0)[c] += std::abs(regions_.value(0)[c] - fresh.value(0)[c]) / 32;
             regions_ = std::move(fresh);
         } else {
+            look_at_shared_faces(work);
             replace(parents, fresh);
         }
         add_up();
@@ -131,6 +137,15 @@ class CubatureEstimator final : public Estimator {
             : value(static_cast<std::size_t>(components)), error(value.size()), inflation(value.size(), 1.0) {
         }
         std::vector<double> value, error, inflation;
+    };
+
+    // The regions that a step evaluates.
+    struct Work {
+        const std::vector<const SymmetricRule*>& rules;
+        const std::vector<std::size_t>& parents; // fresh regions are their halves, two by two; or empty
+        CubatureRegions& fresh;
+        // The face that halves share, as each sees it; a number for each region and component.
+        std::vector<SymmetricRule::FaceValue>& faces;
     };
 
     std::size_t components() const { return static_cast<std::size_t>(m_); }
@@ -209,8 +224,9 @@ class CubatureEstimator final : public Estimator {
     }
 
     // Evaluates all regions of `fresh`. Returns false when cancelled.
-    bool evaluate(CubatureRegions& fresh, const std::vector<const SymmetricRule*>& rules,
-                  NonFiniteCount& non_finite, std::vector<char>& nonzero, const CancelFlag* cancel) const {
+    bool evaluate(const Work& work, NonFiniteCount& non_finite, std::vector<char>& nonzero,
+                  const CancelFlag* cancel) const {
+        const std::vector<const SymmetricRule*>& rules = work.rules;
         std::vector<std::size_t> starts; // of the tasks
         std::size_t points = points_per_task;
         for (std::size_t r = 0; r < rules.size(); ++r) {
@@ -226,7 +242,7 @@ class CubatureEstimator final : public Estimator {
         std::vector<std::vector<char>> seen(tasks, std::vector<char>(components(), 0));
         auto run = [&](std::int64_t task) {
             const auto t = static_cast<std::size_t>(task);
-            evaluate_some(fresh, rules, starts[t], starts[t + 1], counts[t], seen[t]);
+            evaluate_some(work, starts[t], starts[t + 1], counts[t], seen[t]);
         };
         if (!parallel_for(static_cast<std::int64_t>(tasks), run, cancel)) return false;
         for (std::size_t t = 0; t < tasks; ++t) {
@@ -236,9 +252,10 @@ class CubatureEstimator final : public Estimator {
         return true;
     }
 
-    void evaluate_some(CubatureRegions& fresh, const std::vector<const SymmetricRule*>& rules,
-                       std::size_t begin, std::size_t end, NonFiniteCount& non_finite,
+    void evaluate_some(const Work& work, std::size_t begin, std::size_t end, NonFiniteCount& non_finite,
                        std::vector<char>& nonzero) const {
+        const std::vector<const SymmetricRule*>& rules = work.rules;
+        CubatureRegions& fresh = work.fresh;
         std::size_t count = 0;
         for (std::size_t r = begin; r < end; ++r) count += rules[r]->points();
         PointBuffer u(count, n_);
@@ -262,6 +279,11 @@ class CubatureEstimator final : public Estimator {
                     nonzero[c] = std::ranges::any_of(of_region[c], [](double v) { return v != 0; });
             }
             assess(fresh, r, *rules[r], of_region);
+            if (!work.parents.empty()) {
+                const int axis = regions_.marks(work.parents[r / 2]).axis;
+                for (std::size_t c = 0; c < components(); ++c)
+                    work.faces[r * components() + c] = rules[r]->face_value(of_region[c], axis, r % 2 == 0);
+            }
             first += rules[r]->points();
         }
     }
@@ -272,6 +294,7 @@ class CubatureEstimator final : public Estimator {
         std::vector<double> nulls(static_cast<std::size_t>(rule.null_rules()));
         std::vector<double> differences(static_cast<std::size_t>(n_), 0.0);
         const double volume = fresh.volume(r);
+        std::ranges::fill(fresh.face_error(r), 0.0);
         CubatureRegions::Marks& marks = fresh.marks(r);
         marks = {};
         marks.exhausted = true;
@@ -310,6 +333,45 @@ class CubatureEstimator final : public Estimator {
         marks.axis = static_cast<std::uint8_t>(axis);
         marks.indivisible = h[axis] < 64 * std::numeric_limits<double>::epsilon() * fresh.centre(r)[axis] ||
                             volume < std::numeric_limits<double>::min() * 1e8;
+    }
+
+    // A jump close beyond the face that two halves share is seen by neither, but they disagree about the
+    // face. As long as halving does not show it, half of that error goes to each half that still has the
+    // face.
+    void look_at_shared_faces(const Work& work) const {
+        for (std::size_t r = 0; r < work.fresh.count(); ++r) {
+            const std::size_t parent = work.parents[r / 2];
+            const CubatureRegions::Marks& from = regions_.marks(parent);
+            CubatureRegions::Marks& marks = work.fresh.marks(r);
+            const bool upper_half = r % 2 == 1;
+            const bool keeps_face = from.face_axis != from.axis || from.face_upper == upper_half;
+            const double volume = work.fresh.volume(r);
+            double largest_inherited = 0, largest_new = 0;
+            bool decides = false;
+            for (std::size_t c = 0; c < components(); ++c) {
+                const SymmetricRule::FaceValue &own = work.faces[r * components() + c],
+                                               &other = work.faces[(r ^ 1) * components() + c];
+                // Slopes and curvature are no jump.
+                const double expected = 2 * (own.slack + other.slack) +
+                                        0.25 * std::max(std::abs(own.value), std::abs(other.value));
+                const double jump = std::max(0.0, std::abs(own.value - other.value) - expected);
+                const double inherited = keeps_face ? regions_.face_error(parent)[c] / 2 : 0;
+                const double added = volume * own.unseen * jump;
+                double& error = work.fresh.error(r)[c];
+                decides = decides || inherited + added > error;
+                work.fresh.face_error(r)[c] = inherited + added;
+                error += inherited + added;
+                largest_inherited = std::max(largest_inherited, inherited);
+                largest_new = std::max(largest_new, added);
+            }
+            const bool shared = largest_new >= largest_inherited;
+            marks.face_axis = shared ? from.axis : from.face_axis;
+            marks.face_upper = shared ? !upper_half : from.face_upper;
+            if (decides) {
+                marks.axis = marks.face_axis;
+                marks.exhausted = false;
+            }
+        }
     }
 
     // Puts the halves in the place of the regions that were halved.

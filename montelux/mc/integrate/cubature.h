@@ -17,7 +17,8 @@ namespace montelux {
 //
 // Errors are not standard deviations: each is the sum over the regions of what the null rules of a region
 // suspect, meant to be above the true error rather than near it. Above these stand
-// - what points close to the faces of a region see that the rule did not expect (a jump at the face),
+// - what points close to the faces of a region see that the rule did not expect, and what the halves of a
+//   region disagree on at the face between them (a jump at the face),
 // - a quarter of what the halves of a region disagree with it by,
 // - a factor 1 + 8 / regions, since few regions have not yet tested one another, and
 // - the factor by which errors of the regions halved of late were too small, where they were.

@@ -17,6 +17,7 @@ void CubatureRegions::resize(std::size_t count) {
     half_width_.resize(count * n_);
     value_.resize(count * m_);
     error_.resize(count * m_);
+    face_error_.resize(count * m_);
     marks_.resize(count);
 }
 
@@ -43,26 +44,33 @@ void CubatureRegions::copy(std::size_t to, const CubatureRegions& from, std::siz
     std::ranges::copy(from.half_width(r), half_width(to).begin());
     std::ranges::copy(from.value(r), value(to).begin());
     std::ranges::copy(from.error(r), error(to).begin());
+    std::ranges::copy(from.face_error(r), face_error(to).begin());
     marks(to) = from.marks(r);
 }
 
 void CubatureRegions::save(StateWriter& state) const {
-    for (const auto* numbers : {&centre_, &half_width_, &value_, &error_}) state.put(*numbers);
+    for (const auto* numbers : {&centre_, &half_width_, &value_, &error_, &face_error_}) state.put(*numbers);
     for (const Marks& m : marks_)
-        state.put(static_cast<std::uint64_t>(m.axis | m.rough << 8 | m.exhausted << 9 | m.indivisible << 10));
+        state.put(static_cast<std::uint64_t>(m.axis | m.face_axis << 8 | m.rough << 16 | m.exhausted << 17 |
+                                             m.indivisible << 18 | m.face_upper << 19));
 }
 
 void CubatureRegions::load(StateReader& state) {
-    for (auto* numbers : {&centre_, &half_width_, &value_, &error_}) *numbers = state.get_doubles();
+    for (auto* numbers : {&centre_, &half_width_, &value_, &error_, &face_error_})
+        *numbers = state.get_doubles();
     const std::size_t regions = centre_.size() / n_;
     if (centre_.size() != regions * n_ || half_width_.size() != regions * n_ ||
-        value_.size() != regions * m_ || error_.size() != regions * m_)
+        value_.size() != regions * m_ || error_.size() != regions * m_ || face_error_.size() != regions * m_)
         throw Error("the saved regions do not fit the dimensions or components");
     marks_.resize(regions);
     for (Marks& m : marks_) {
         const std::uint64_t word = state.get_word();
-        m = {static_cast<std::uint8_t>(word & 0xff), (word & 0x100) != 0, (word & 0x200) != 0,
-             (word & 0x400) != 0};
+        m.axis = static_cast<std::uint8_t>(word);
+        m.face_axis = static_cast<std::uint8_t>(word >> 8);
+        m.rough = (word >> 16 & 1) != 0;
+        m.exhausted = (word >> 17 & 1) != 0;
+        m.indivisible = (word >> 18 & 1) != 0;
+        m.face_upper = (word >> 19 & 1) != 0;
         if (m.axis >= n_) throw Error("a saved region is to be halved along an axis that there is not");
     }
 }

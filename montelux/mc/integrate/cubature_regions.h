@@ -14,10 +14,12 @@ class CubatureRegions {
   public:
     // What became known of a region when it was evaluated.
     struct Marks {
-        std::uint8_t axis = 0;    // to halve it along
-        bool rough = false;       // the integrand is not smooth at its scale
-        bool exhausted = false;   // its errors are rounding alone
-        bool indivisible = false; // its halves could not be told apart in floating point
+        std::uint8_t axis = 0;      // to halve it along
+        bool rough = false;         // the integrand is not smooth at its scale
+        bool exhausted = false;     // its errors are rounding alone
+        bool indivisible = false;   // its halves could not be told apart in floating point
+        std::uint8_t face_axis = 0; // the face that face_error() is about
+        bool face_upper = false;
     };
 
     CubatureRegions(int dimensions, int components) : n_(size(dimensions)), m_(size(components)) {}
@@ -25,7 +27,7 @@ class CubatureRegions {
     std::size_t count() const { return marks_.size(); }
     bool empty() const { return marks_.empty(); }
     // Bytes that one region takes.
-    std::size_t bytes_each() const { return 8 * 2 * (n_ + m_) + sizeof(Marks); }
+    std::size_t bytes_each() const { return 8 * (2 * n_ + 3 * m_) + sizeof(Marks); }
 
     std::span<double> centre(std::size_t r) { return {&centre_[r * n_], n_}; }
     std::span<const double> centre(std::size_t r) const { return {&centre_[r * n_], n_}; }
@@ -35,6 +37,9 @@ class CubatureRegions {
     std::span<const double> value(std::size_t r) const { return {&value_[r * m_], m_}; }
     std::span<double> error(std::size_t r) { return {&error_[r * m_], m_}; }
     std::span<const double> error(std::size_t r) const { return {&error_[r * m_], m_}; }
+    // The part of the error that comes of a jump suspected at a face.
+    std::span<double> face_error(std::size_t r) { return {&face_error_[r * m_], m_}; }
+    std::span<const double> face_error(std::size_t r) const { return {&face_error_[r * m_], m_}; }
     Marks& marks(std::size_t r) { return marks_[r]; }
     const Marks& marks(std::size_t r) const { return marks_[r]; }
     double volume(std::size_t r) const;
@@ -55,7 +60,7 @@ class CubatureRegions {
     static std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
     std::size_t n_, m_;
-    std::vector<double> centre_, half_width_, value_, error_;
+    std::vector<double> centre_, half_width_, value_, error_, face_error_;
     std::vector<Marks> marks_;
 };
 

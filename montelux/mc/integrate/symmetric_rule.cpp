@@ -111,6 +111,11 @@ SymmetricRule::SymmetricRule(int dimensions, int degree, std::vector<Generator> 
         outer_ = probe > 0 ? axes.back() : axes[1];
         inner_at_ = generators[inner_][0];
         outer_at_ = generators[outer_][0];
+        const std::size_t last = axes.back(), before = axes[axes.size() - 2];
+        first_last_ = probe > 0 ? first_probe_ : orbits_[last].first;
+        last_at_ = probe > 0 ? probe : generators[last][0];
+        first_before_ = orbits_[probe > 0 ? last : before].first;
+        before_at_ = generators[probe > 0 ? last : before][0];
     }
     solve(generators);
 }
@@ -236,7 +241,7 @@ SymmetricRule::Assessment SymmetricRule::assess(std::span<const double> nulls) c
             result.ratio = std::max(result.ratio, size[g + 1] > 0 ? size[g] / size[g + 1]
                                                                   : std::numeric_limits<double>::infinity());
     result.error = *std::ranges::max_element(size);
-    constexpr double caution = 3;
+    constexpr double caution = 4;
     if (result.ratio < 1) result.error = std::min(result.error, caution * result.ratio * size[0]);
     return result;
 }
@@ -267,13 +272,22 @@ double SymmetricRule::edge_surprise(std::span<const double> values) const {
         const double even = centre + near * p * (p - b) / (a * (a - b)) + far * p * (p - a) / (b * (b - a));
         const double odd = probe_at_ * (odd_part(inner) / inner_at_ * (p - b) / (a - b) +
                                         odd_part(outer) / outer_at_ * (p - a) / (b - a));
-        const double expected = 4 * std::abs(near - far * a / b);
+        // As much as the next terms of a smooth function may add: of the order of the quartic's own.
+        const double expected = 0.8 * std::abs((near / a - far / b) / (a - b));
         for (const double surprise : {probe[2 * d] - even - odd, probe[2 * d + 1] - even + odd}) {
             const double beyond = std::max(0.0, std::abs(surprise) - expected);
             squares += beyond * beyond;
         }
     }
     return std::sqrt(squares) * (1 - outer_at_) / 2;
+}
+
+SymmetricRule::FaceValue SymmetricRule::face_value(std::span<const double> values, int axis,
+                                                   bool upper) const {
+    const std::size_t at = 2 * static_cast<std::size_t>(axis) + (upper ? 0 : 1);
+    const double last = values[first_last_ + at], before = values[first_before_ + at];
+    const double step = (last - before) * (1 - last_at_) / (last_at_ - before_at_);
+    return {last + step, std::abs(step), (1 - last_at_) / 2};
 }
 
 } // namespace montelux

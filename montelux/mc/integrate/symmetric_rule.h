@@ -50,7 +50,7 @@ class SymmetricRule {
                       // where the integrand is smooth at the scale of the box
     };
     // From what the null rules gave. While they fall by a factor r from degree to degree, the error is taken
-    // as 3 r times that of the highest degree (the rule's own degree is higher by 2 than that, and falls on
+    // as 4 r times that of the highest degree (the rule's own degree is higher by 2 than that, and falls on
     // by another factor of r); where they do not, as the largest of them (Berntsen & Espelid 1991).
     Assessment assess(std::span<const double> nulls) const;
 
@@ -59,9 +59,18 @@ class SymmetricRule {
     void add_fourth_differences(std::span<const double> values, double scale, std::span<double> sums) const;
 
     // An error of the mean over the box that no rule sees: what the probes differ from the quartic through
-    // the points on their axis, beyond twice its fourth difference, times the part of the box that lies
+    // the points on their axis, beyond 0.8 times its coefficient of x^4, times the part of the box that lies
     // beyond the outermost point. It is large where a jump runs along a face. Zero without probes.
     double edge_surprise(std::span<const double> values) const;
+
+    // What the two outermost points on one side of an axis say of the middle of the face there.
+    struct FaceValue {
+        double value;  // by a straight line through them
+        double slack;  // what the line adds to the outermost value
+        double unseen; // part of the box that lies beyond the outermost point
+    };
+    // Needs two orbits on the axes, or one and probes.
+    FaceValue face_value(std::span<const double> values, int axis, bool upper) const;
 
   private:
     struct Orbit {
@@ -82,6 +91,9 @@ class SymmetricRule {
     double inner_at_ = 0, outer_at_ = 0;
     double probe_at_ = 0;
     std::size_t first_probe_ = 0;
+    // Where the values of the two outermost sets of points on the axes start, and their distances.
+    std::size_t first_last_ = 0, first_before_ = 0;
+    double last_at_ = 0, before_at_ = 0;
 };
 
 } // namespace montelux

@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Goal{{Family::continuous, 2}, 1e-3, 2000}, Goal{{Family::discontinuous, 2}, 1e-3, 6000},
                     Goal{{Family::oscillatory, 5}, 1e-4, 800}, Goal{{Family::product_peak, 5}, 1e-3, 16000},
                     Goal{{Family::corner_peak, 5}, 1e-4, 9400}, Goal{{Family::gaussian, 5}, 1e-3, 9800},
-                    Goal{{Family::oscillatory, 8}, 1e-4, 3300}, Goal{{Family::corner_peak, 8}, 1e-3, 3300},
+                    Goal{{Family::oscillatory, 8}, 1e-4, 3300}, Goal{{Family::corner_peak, 8}, 1e-3, 4000},
                     Goal{{Family::gaussian, 8}, 1e-3, 50000}, Goal{{Family::sine, 1}, 1e-4, 50},
                     Goal{{Family::exponential, 1}, 1e-4, 50}, Goal{{Family::quadratic, 1}, 1e-4, 50},
                     Goal{{Family::inverse_root, 1}, 1e-4, 800}, Goal{{Family::jump, 1}, 1e-4, 500},
@@ -208,6 +208,16 @@ TEST(Cubature, DoubtsThatAnIntegrandIsZeroEverywhere) {
     EXPECT_FALSE(r.converged());
     ASSERT_EQ(r.doubts.size(), 1u);
     EXPECT_NE(r.doubts[0].find("was zero at each of"), std::string::npos);
+}
+
+TEST(Cubature, FindsAJumpCloseBeyondAHalvingPlane) {
+    // The first halves end at 1/2: what lies between that and the jump is closer to the face than any point.
+    const double jump = 0.5 + 1e-3;
+    auto f = [&](std::span<const double> x) { return x[0] <= jump ? 1.0 + 0.1 * x[1] : 0.0; };
+    const IntegrationResult r =
+        integrate(f, Domain::unit_cube(2), Cubature{}, {.relative_error = 1e-4, .evaluations = 100'000});
+    EXPECT_TRUE(r.converged());
+    EXPECT_NEAR(r.value[0] / (jump * 1.05), 1, 1e-4);
 }
 
 TEST(Cubature, MemoryIsBounded) {
