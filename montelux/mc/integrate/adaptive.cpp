@@ -16,6 +16,8 @@ namespace {
 constexpr std::uint64_t units = MixtureDensity::units;
 constexpr std::uint64_t training_points = 2048;      // of a round, at first
 constexpr std::uint64_t max_training_points = 65536; // of a round
+constexpr double heavy_weight = 5;                   // times the mean, of one sample,
+constexpr double heavy_influence = 0.5;              // and times the standard error, of what it adds
 constexpr int max_rounds = 24;
 constexpr int max_retrainings = 4;
 constexpr double fixed_cost_share =
@@ -73,14 +75,19 @@ class AdaptiveEstimator final : public Estimator {
         tally.non_finite.merge(uniform_sums_.non_finite);
         tally.non_finite.merge(weighted_sums_.non_finite);
         tally.non_finite.merge(abandoned_non_finite_);
-        tally.ready = confirmed_ && (phase_ == Phase::uniform || weighted);
+        tally.ready = before_points_ > 0 && (phase_ == Phase::uniform || weighted);
         if (points == 0) {
             const auto m = static_cast<std::size_t>(problem_.evaluator.components());
             tally.value.assign(m, 0.0);
             tally.standard_error.assign(m, infinity);
             return tally;
         }
-        tally_mean(sums.sums.moments(points, problem_.full_covariance), tally);
+        const Spread s = spread(sums, points, problem_.full_covariance);
+        tally_mean(s.moments, tally);
+        const std::size_t m = tally.value.size();
+        for (std::size_t c = 0; c < m; ++c) tally.standard_error[c] *= s.inflation[c];
+        for (std::size_t i = 0; i < tally.covariance.size(); ++i)
+            tally.covariance[i] *= s.inflation[i / m] * s.inflation[i % m];
         if (weighted)
             for (const DensityTrainer::Check& check : trainer_.checks()) {
                 const double variance = check.variance + tally.standard_error[0] * tally.standard_error[0];
@@ -88,6 +95,7 @@ class AdaptiveEstimator final : public Estimator {
                 tally.chi_squared += std::pow(check.value - tally.value[0], 2) / variance;
                 ++tally.degrees_of_freedom;
             }
+        if (heavy(sums, points, tally.standard_error[0])) tally.ready = false;
         add_doubts(sums, points, tally);
         return tally;
     }
@@ -98,7 +106,8 @@ class AdaptiveEstimator final : public Estimator {
         state.put(round_points_);
         state.put(training_goal_);
         state.put(retrained_);
-        state.put(confirmed_);
+        state.put(before_points_);
+        state.put(before_errors_);
         state.put(abandoned_evaluations_);
         montelux::save(state, abandoned_non_finite_);
         trainer_.save(state);
@@ -111,7 +120,11 @@ class AdaptiveEstimator final : public Estimator {
         round_points_ = state.get_word();
         training_goal_ = state.get_double();
         retrained_ = state.get<int>();
-        confirmed_ = state.get<int>() != 0;
+        before_points_ = state.get_word();
+        before_errors_ = state.get_doubles();
+        if (before_points_ > 0 &&
+            before_errors_.size() != static_cast<std::size_t>(problem_.evaluator.components()))
+            throw Error("the saved state has another number of components");
         abandoned_evaluations_ = state.get_word();
         montelux::load(state, abandoned_non_finite_);
         trainer_.load(state);
@@ -128,17 +141,43 @@ class AdaptiveEstimator final : public Estimator {
     }
     std::uint64_t replicates() const { return static_cast<std::uint64_t>(settings_.replicates); }
 
+    // Moments over replicates, with variances no lower than those of the step before allow: an error that
+    // seems to fall faster than points of bounded variation make it fall was luck, and stopping there would
+    // select luck.
+    struct Spread {
+        CovarianceMoments moments;
+        std::vector<double> inflation; // of each component's standard error
+    };
+    Spread spread(const MixtureSums& sums, std::uint64_t points, bool full) const {
+        Spread s{sums.sums.moments(points, full), {}};
+        for (int c = 0; c < s.moments.components(); ++c) {
+            double factor = 1;
+            if (before_points_ > 0 && before_points_ < points) {
+                const double fall =
+                    std::pow(static_cast<double>(before_points_) / static_cast<double>(points), 1.5);
+                const double least = before_errors_[static_cast<std::size_t>(c)] * fall;
+                const double error = std::sqrt(s.moments.variance(c) / static_cast<double>(replicates()));
+                if (error > 0) factor = std::clamp(least / error, 1.0, 3.0);
+            }
+            s.inflation.push_back(factor);
+        }
+        return s;
+    }
+    double error(const Spread& s, int c) const {
+        return s.inflation[static_cast<std::size_t>(c)] *
+               std::sqrt(s.moments.variance(c) / static_cast<double>(replicates()));
+    }
+
     // How far the estimate is from its target: the largest quotient of error and tolerance over the
-    // components; the relative error itself of the first component where there is no target.
+    // components; the relative error itself where there is no target.
     double error_ratio(const MixtureSums& sums, std::uint64_t points, const StepRequest& request) const {
-        const CovarianceMoments moments = sums.sums.moments(points, false);
+        const Spread s = spread(sums, points, false);
         double ratio = 0;
-        for (int c = 0; c < moments.components(); ++c) {
-            const double error = std::sqrt(moments.variance(c) / static_cast<double>(replicates()));
-            const double size = std::abs(moments.mean(c));
+        for (int c = 0; c < s.moments.components(); ++c) {
+            const double size = std::abs(s.moments.mean(c));
             const double tolerance =
                 targeted(request) ? std::max(request.absolute_error, request.relative_error * size) : size;
-            if (error > 0) ratio = std::max(ratio, error / tolerance);
+            if (error(s, c) > 0) ratio = std::max(ratio, error(s, c) / tolerance);
         }
         return ratio;
     }
@@ -234,11 +273,13 @@ class AdaptiveEstimator final : public Estimator {
         auto added = sample_mixture(problem_.evaluator, density, hash_key(problem_.seed, stream),
                                     settings_.replicates, points, end, nullptr, request.cancel);
         if (!added) return StepOutcome::cancelled;
-        // An error that fell faster than points can make it fall was luck; it has to be confirmed.
-        const double best =
-            points > 0 ? ratio * std::pow(static_cast<double>(points) / static_cast<double>(end), 1.5)
-                       : infinity;
-        confirmed_ = best <= 1;
+        if (points > 0) {
+            const Spread s = spread(sums, points, false);
+            std::vector<double> errors;
+            for (int c = 0; c < s.moments.components(); ++c) errors.push_back(error(s, c));
+            before_errors_ = std::move(errors);
+        }
+        before_points_ = points;
         const bool first = points == 0;
         sums.merge(*added);
         points = end;
@@ -253,6 +294,7 @@ class AdaptiveEstimator final : public Estimator {
         if (first && trainer_.effective_share() > trusted_exploration &&
             uniform_points_ == weighted_points_ &&
             error_ratio(uniform_sums_, uniform_points_, request) < ratio) {
+            before_points_ = 0;
             phase_ = Phase::uniform;
             return;
         }
@@ -269,14 +311,23 @@ class AdaptiveEstimator final : public Estimator {
         abandoned_non_finite_.merge(weighted_sums_.non_finite);
         weighted_sums_ = {};
         weighted_sums_.sums = ReplicateSums(settings_.replicates, problem_.evaluator.components());
-        weighted_points_ = 0;
+        weighted_points_ = before_points_ = 0;
         training_goal_ = settings_.training_share * left;
         phase_ = Phase::train;
     }
 
+    // Does one sample make up a good part of the error? Then others like it were probably not drawn yet.
+    bool heavy(const MixtureSums& sums, std::uint64_t points, double error) const {
+        // Of uniform points the best may weigh much, and yet be no surprise.
+        if (phase_ != Phase::weighted) return false;
+        const double n = static_cast<double>(points * replicates());
+        double size = 0;
+        for (const MixtureSums::Channel& c : sums.channels) size += std::abs(c.sum) / n;
+        return sums.largest > heavy_weight * size && sums.largest > heavy_influence * n * error;
+    }
+
     void add_doubts(const MixtureSums& sums, std::uint64_t points, Tally& tally) const {
         const int m = settings_.replicates;
-        const double n = static_cast<double>(points) * m, error = tally.standard_error[0];
         if (trainer_.nonzero() == 0 && tally.value[0] == 0)
             tally.doubts.push_back(
                 "the integrand was zero at every point; a narrow peak may have been missed");
@@ -284,11 +335,9 @@ class AdaptiveEstimator final : public Estimator {
             tally.doubts.push_back(
                 "only " + std::to_string(trainer_.nonzero()) +
                 " of the exploring points saw anything but zero; other places may have been missed");
-        double mean_size = 0;
-        for (const MixtureSums::Channel& c : sums.channels) mean_size += std::abs(c.sum) / n;
-        if (sums.largest > n * error && sums.largest > 50 * mean_size && error > 0)
+        if (heavy(sums, points, tally.standard_error[0]))
             tally.doubts.push_back(
-                "one sample weighs more than the standard error; the weights have a heavy tail");
+                "one sample makes up much of the standard error; the weights have a heavy tail");
         // Of normal replicates one alone hardly ever makes up three quarters of the spread.
         double squares = 0, greatest = 0;
         for (int r = 0; r < m; ++r) {
@@ -346,7 +395,8 @@ class AdaptiveEstimator final : public Estimator {
     std::uint64_t round_points_; // of the next round of training
     double training_goal_ = 0;   // evaluations that training may take in any case
     int retrained_ = 0;
-    bool confirmed_ = false; // by two steps, that the error is where it is
+    std::uint64_t before_points_ = 0; // the estimate's points before the last step, and its errors
+    std::vector<double> before_errors_;
     std::uint64_t abandoned_evaluations_ = 0;
     NonFiniteCount abandoned_non_finite_;
     MixtureSums uniform_sums_, weighted_sums_;
