@@ -64,9 +64,6 @@ class SampledByInversion {
         double xi = std::generate_canonical<double, 53>(engine);
         return sample(xi);
     }
-
-  protected:
-    SampledByInversion() = default;
 };
 
 } // namespace montelux

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace montelux {
@@ -21,9 +20,11 @@ inline double bracket_middle(double lo, double hi) {
 
 // residual(x) gives the pair (value, slope) of a function that does not decrease from lo to hi, is at most 0
 // at lo and at least 0 at hi. Newton steps from `start`; a step that leaves the bracket, or does not halve
-// the residual's distance to go, gives way to halving the bracket. Converges to the last digits.
+// the step before, gives way to halving the bracket. Ends with the step that is shorter than `tolerance`
+// times x, whose own error is far smaller where the slope is smooth.
 template <typename Residual>
-double increasing_root(double lo, double hi, double start, const Residual& residual) {
+double increasing_root(double lo, double hi, double start, const Residual& residual,
+                       double tolerance = 1e-14) {
     double x = std::clamp(start, lo, hi), last_step = hi - lo;
     for (int i = 0; i < 400; ++i) {
         auto [value, slope] = residual(x);
@@ -36,7 +37,7 @@ double increasing_root(double lo, double hi, double start, const Residual& resid
             step = next - x;
             if (!(next > lo && next < hi)) return x;
         }
-        if (std::abs(step) <= std::numeric_limits<double>::epsilon() * std::abs(next)) return next;
+        if (std::abs(step) <= tolerance * std::abs(next)) return next;
         last_step = std::abs(step);
         x = next;
     }
