@@ -20,8 +20,8 @@ constexpr double heavy_weight = 5;                   // times the mean, of one s
 constexpr double heavy_influence = 0.5;              // and times the standard error, of what it adds
 constexpr int max_rounds = 24;
 constexpr int max_retrainings = 4;
-constexpr double fixed_cost_share =
-    0.4; // of a fixed number of evaluations, what training is measured against
+constexpr double fixed_training_share = 0.1; // of a fixed number of evaluations,
+constexpr double least_training = 20000;     // or so many, if they are no more than a third
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t enough_nonzero = 16;        // points that must see anything before training begins,
 constexpr std::uint64_t most_exploration = 1 << 20; // or evaluations without
@@ -240,11 +240,14 @@ class AdaptiveEstimator final : public Estimator {
         const double trained = static_cast<double>(trainer_.evaluations() + uniform_sums_.evaluations);
         if (stuck || trained > 5 * static_cast<double>(round_points_))
             round_points_ = std::min(4 * round_points_, max_training_points);
-        // What the target will cost with this density, if the Sobol' points help as they usually do.
-        double expected = fixed_cost_share * (static_cast<double>(request.max_evaluations) + trained);
+        // A share of the evaluations there are, a greater one of few; or of what the target will cost with
+        // this density, if the Sobol' points help as they usually do.
+        const double all = static_cast<double>(request.max_evaluations) + trained;
+        double allowed = std::max(fixed_training_share * all, std::min(all / 3, least_training));
         if (request.relative_error > 0)
-            expected = std::min(expected, std::pow(std::sqrt(variance) / request.relative_error, 1.4));
-        const double allowed = std::max(training_goal_, settings_.training_share * expected);
+            allowed = std::min(allowed, settings_.training_share *
+                                            std::pow(std::sqrt(variance) / request.relative_error, 1.4));
+        allowed = std::max(allowed, training_goal_);
         if (trainer_.rounds() >= 2 &&
             (trained + static_cast<double>(round_points_) > allowed || trainer_.rounds() >= max_rounds))
             phase_ = Phase::weighted;
