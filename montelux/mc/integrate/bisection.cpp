@@ -85,7 +85,7 @@ class Bisector {
         }
     }
 
-    std::optional<Split> split(Node node, const CancelFlag* cancel) const {
+    std::optional<Split> split(Node& node, const CancelFlag* cancel) const {
         Split result;
         std::size_t count = node.pilot.size() / (d_ + m_);
         const std::uint64_t wanted = std::max(
@@ -106,36 +106,41 @@ class Bisector {
         const std::size_t stride = d_ + m_;
         std::size_t best = d_;
         double best_sum = 0, best_lower = 0, best_upper = 0;
-        std::vector<double> sums(2 * m_), means(2 * m_);
+        // Of what lies in the upper halves: counts, and sums and squares of values less the node's means,
+        // which keeps their digits. One pass; the inner loops run over variables.
+        std::vector<double> mean(m_), total(m_), squares(m_), middle(d_);
+        std::vector<double> above(d_), above_sum(m_ * d_), above_squares(m_ * d_), in_upper(d_);
+        for (std::size_t j = 0; j < d_; ++j) middle[j] = node.lower[j] + 0.5 * node.width[j];
+        for (std::size_t i = 0; i < count; ++i)
+            for (std::size_t c = 0; c < m_; ++c) mean[c] += node.pilot[i * stride + d_ + c];
+        for (double& v : mean) v /= static_cast<double>(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double* p = &node.pilot[i * stride];
+            for (std::size_t j = 0; j < d_; ++j) in_upper[j] = p[j] >= middle[j] ? 1.0 : 0.0;
+            for (std::size_t j = 0; j < d_; ++j) above[j] += in_upper[j];
+            for (std::size_t c = 0; c < m_; ++c) {
+                const double v = p[d_ + c] - mean[c], square = v * v;
+                total[c] += v;
+                squares[c] += square;
+                double *sums = &above_sum[c * d_], *sums_of_squares = &above_squares[c * d_];
+                for (std::size_t j = 0; j < d_; ++j) sums[j] += in_upper[j] * v;
+                for (std::size_t j = 0; j < d_; ++j) sums_of_squares[j] += in_upper[j] * square;
+            }
+        }
         for (std::size_t j = 0; j < d_; ++j) {
-            const double middle = node.lower[j] + 0.5 * node.width[j];
-            std::size_t in[2] = {0, 0};
-            std::fill(means.begin(), means.end(), 0.0);
-            for (std::size_t i = 0; i < count; ++i) {
-                const double* p = &node.pilot[i * stride];
-                const std::size_t h = p[j] >= middle;
-                ++in[h];
-                for (std::size_t c = 0; c < m_; ++c) means[h * m_ + c] += p[d_ + c];
+            const double upper_count = above[j], lower_count = static_cast<double>(count) - upper_count;
+            if (lower_count < 3 || upper_count < 3) continue;
+            auto variance = [](double n, double sum, double sum_of_squares) {
+                return std::max(0.0, sum_of_squares - sum * sum / n) / (n - 1);
+            };
+            double lower_variance = 0, upper_variance = 0;
+            for (std::size_t c = 0; c < m_; ++c) {
+                const double sum = above_sum[c * d_ + j], square = above_squares[c * d_ + j];
+                upper_variance += inverse_variance_[c] * variance(upper_count, sum, square);
+                lower_variance +=
+                    inverse_variance_[c] * variance(lower_count, total[c] - sum, squares[c] - square);
             }
-            if (in[0] < 3 || in[1] < 3) continue;
-            for (std::size_t h = 0; h < 2; ++h)
-                for (std::size_t c = 0; c < m_; ++c) means[h * m_ + c] /= static_cast<double>(in[h]);
-            std::fill(sums.begin(), sums.end(), 0.0);
-            for (std::size_t i = 0; i < count; ++i) {
-                const double* p = &node.pilot[i * stride];
-                const std::size_t h = p[j] >= middle;
-                for (std::size_t c = 0; c < m_; ++c) {
-                    const double off = p[d_ + c] - means[h * m_ + c];
-                    sums[h * m_ + c] += off * off;
-                }
-            }
-            double root[2];
-            for (std::size_t h = 0; h < 2; ++h) {
-                double variance = 0;
-                for (std::size_t c = 0; c < m_; ++c)
-                    variance += inverse_variance_[c] * sums[h * m_ + c] / static_cast<double>(in[h] - 1);
-                root[h] = std::cbrt(variance);
-            }
+            const double root[2] = {std::cbrt(lower_variance), std::cbrt(upper_variance)};
             // The wider side first where nothing tells them apart.
             const double sum = root[0] + root[1];
             if (best == d_ || sum < best_sum || (sum == best_sum && node.width[j] > node.width[best])) {
@@ -231,7 +236,7 @@ std::optional<Bisection> bisect(const Problem& problem, std::uint64_t samples, d
                 const Node& box = level[k];
                 found.lower.insert(found.lower.end(), box.lower.begin(), box.lower.end());
                 found.width.insert(found.width.end(), box.width.begin(), box.width.end());
-                found.offsets.push_back(found.offsets.back() + box.samples - split.pilot);
+                found.offsets.push_back(found.offsets.back() + box.samples);
             }
             for (Node& half : split.halves) next.push_back(std::move(half));
         }
