@@ -314,7 +314,7 @@ class CubatureEstimator final : public Estimator {
             const double weight = totals_.value[c] != 0 ? 1 / std::abs(totals_.value[c])
                                   : size > 0            ? 1 / (volume * size)
                                                         : 0;
-            if (n_ > 1) rule.add_fourth_differences(values[c], weight, differences);
+            if (n_ > 1) rule.add_roughness(values[c], weight, differences);
             if (error * weight > worst) {
                 worst = error * weight;
                 ratio = found.ratio;

@@ -246,35 +246,39 @@ SymmetricRule::Assessment SymmetricRule::assess(std::span<const double> nulls) c
     return result;
 }
 
-void SymmetricRule::add_fourth_differences(std::span<const double> values, double scale,
-                                           std::span<double> sums) const {
-    const double centre = values[0], ratio = inner_at_ * inner_at_ / (outer_at_ * outer_at_);
+SymmetricRule::AxisTerms SymmetricRule::axis_terms(std::span<const double> values, std::size_t d) const {
+    const double a = inner_at_ * inner_at_, b = outer_at_ * outer_at_, p = probe_at_ * probe_at_;
+    const double centre = values[0];
     const double *inner = &values[orbits_[inner_].first], *outer = &values[orbits_[outer_].first];
+    // The quartic's even part is centre + x^2 (...), its odd part x (...), both linear in x^2 within.
+    auto even_part = [&](const double* f) { return (f[2 * d] + f[2 * d + 1]) / 2 - centre; };
+    auto odd_part = [&](const double* f) { return (f[2 * d] - f[2 * d + 1]) / 2; };
+    const double near = even_part(inner), far = even_part(outer);
+    AxisTerms terms{(near / a - far / b) / (a - b), 0, 0};
+    if (probe_at_ == 0) return terms;
+    const double* probe = &values[first_probe_];
+    terms.even = even_part(probe) - near * p * (p - b) / (a * (a - b)) - far * p * (p - a) / (b * (b - a));
+    terms.odd = odd_part(probe) - probe_at_ * (odd_part(inner) / inner_at_ * (p - b) / (a - b) +
+                                               odd_part(outer) / outer_at_ * (p - a) / (b - a));
+    return terms;
+}
+
+void SymmetricRule::add_roughness(std::span<const double> values, double scale,
+                                  std::span<double> sums) const {
     for (std::size_t d = 0; d < sums.size(); ++d) {
-        const double near = inner[2 * d] + inner[2 * d + 1] - 2 * centre;
-        const double far = outer[2 * d] + outer[2 * d + 1] - 2 * centre;
-        sums[d] += scale * std::abs(near - ratio * far);
+        const AxisTerms terms = axis_terms(values, d);
+        sums[d] += scale * (0.1 * std::abs(terms.quartic) + std::abs(terms.even) + std::abs(terms.odd));
     }
 }
 
 double SymmetricRule::edge_surprise(std::span<const double> values) const {
     if (probe_at_ == 0) return 0;
-    const double a = inner_at_ * inner_at_, b = outer_at_ * outer_at_, p = probe_at_ * probe_at_;
-    const double centre = values[0];
-    const double *inner = &values[orbits_[inner_].first], *outer = &values[orbits_[outer_].first],
-                 *probe = &values[first_probe_];
     double squares = 0;
     for (std::size_t d = 0; d < static_cast<std::size_t>(dimensions_); ++d) {
-        // The quartic's even part is centre + x^2 (...), its odd part x (...), both linear in x^2 within.
-        auto even_part = [&](const double* f) { return (f[2 * d] + f[2 * d + 1]) / 2 - centre; };
-        auto odd_part = [&](const double* f) { return (f[2 * d] - f[2 * d + 1]) / 2; };
-        const double near = even_part(inner), far = even_part(outer);
-        const double even = centre + near * p * (p - b) / (a * (a - b)) + far * p * (p - a) / (b * (b - a));
-        const double odd = probe_at_ * (odd_part(inner) / inner_at_ * (p - b) / (a - b) +
-                                        odd_part(outer) / outer_at_ * (p - a) / (b - a));
+        const AxisTerms terms = axis_terms(values, d);
         // As much as the next terms of a smooth function may add: of the order of the quartic's own.
-        const double expected = 0.8 * std::abs((near / a - far / b) / (a - b));
-        for (const double surprise : {probe[2 * d] - even - odd, probe[2 * d + 1] - even + odd}) {
+        const double expected = 0.8 * std::abs(terms.quartic);
+        for (const double surprise : {terms.even + terms.odd, terms.even - terms.odd}) {
             const double beyond = std::max(0.0, std::abs(surprise) - expected);
             squares += beyond * beyond;
         }

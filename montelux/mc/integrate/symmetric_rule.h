@@ -54,9 +54,11 @@ class SymmetricRule {
     // by another factor of r); where they do not, as the largest of them (Berntsen & Espelid 1991).
     Assessment assess(std::span<const double> nulls) const;
 
-    // Fourth differences along each axis, from the two innermost orbits on the axes; they vanish for
-    // cubics. Adds scale times their absolute values to `sums`, one an axis. Needs two such orbits.
-    void add_fourth_differences(std::span<const double> values, double scale, std::span<double> sums) const;
+    // How far the integrand is from a cubic along each axis: a tenth of the coefficient of x^4 of the quartic
+    // through the centre and two orbits on the axis, and what the probes differ from that quartic, so that a
+    // zero of one alone does not hide an axis. Adds scale times these to `sums`, one an axis. Needs two
+    // orbits on the axes.
+    void add_roughness(std::span<const double> values, double scale, std::span<double> sums) const;
 
     // An error of the mean over the box that no rule sees: what the probes differ from the quartic through
     // the points on their axis, beyond 0.8 times its coefficient of x^4, times the part of the box that lies
@@ -77,6 +79,12 @@ class SymmetricRule {
         std::size_t first = 0, count = 0;
     };
 
+    // Along an axis: the coefficient of x^4 of the quartic through its points, and the parts, even and odd in
+    // x, by which the probes differ from the quartic.
+    struct AxisTerms {
+        double quartic, even, odd;
+    };
+    AxisTerms axis_terms(std::span<const double> values, std::size_t axis) const;
     static PointBuffer orbit(int dimensions, const Generator& generator);
     void solve(const std::vector<Generator>& generators);
 

@@ -123,13 +123,13 @@ TEST(SymmetricRule, ProbesSeeAJumpAtAFace) {
     EXPECT_LT(rule.edge_surprise(values), 1e-13);
 }
 
-TEST(SymmetricRule, FourthDifferencesFindTheAxis) {
+TEST(SymmetricRule, RoughnessFindsTheAxis) {
     for (const SymmetricRule& rule : {genz_malik_7(3), three_dimensional_rule(), genz_malik_9(3)}) {
         std::vector<double> values(rule.points()), sums(3, 0.0);
         const PointBatch x = rule.offsets().view();
         for (std::size_t i = 0; i < values.size(); ++i)
             values[i] = std::pow(x(i, 0), 3) + std::pow(x(i, 1), 4) + 0.1 * std::pow(x(i, 2), 4);
-        rule.add_fourth_differences(values, 1, sums);
+        rule.add_roughness(values, 1, sums);
         EXPECT_NEAR(sums[0], 0, 1e-13);
         EXPECT_NEAR(sums[2] / sums[1], 0.1, 1e-10);
         EXPECT_GT(sums[1], 1e-4);
