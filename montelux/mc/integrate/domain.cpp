@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -66,6 +66,13 @@ void check_sphere(const char* what, const std::vector<double>& centre, double ra
     if (!(radius > 0 && std::isfinite(radius))) throw Error(what, "expected a finite radius above zero");
 }
 
+// Volumes shrink and grow fast with the dimensions.
+double checked_volume(const char* what, int dimensions, double volume) {
+    if (volume >= std::numeric_limits<double>::min() && std::isfinite(volume)) return volume;
+    throw Error(what, "the volume in " + std::to_string(dimensions) + " dimensions is too " +
+                          (volume < 1 ? "small" : "large") + " for double precision");
+}
+
 // Area of the unit sphere in n dimensions, 2 pi^(n/2) / Gamma(n/2).
 double sphere_area(int n) { return 2 * std::exp(0.5 * n * std::log(pi) - std::lgamma(0.5 * n)); }
 
@@ -91,6 +98,8 @@ void unit_sphere(const PointBatch& u, int first, PointBuffer& x) {
             x(i, d) = normal_quantile(u(i, first + d));
             square += x(i, d) * x(i, d);
         }
+        // The middle of the cube, which grids meet, has no direction; any will do.
+        if (square == 0) x(i, 0) = square = 1;
         const double scale = 1 / std::sqrt(square);
         for (int d = 0; d < n; ++d) x(i, d) *= scale;
     }
@@ -155,7 +164,8 @@ Domain Domain::simplex(int dimensions) {
     auto made = std::make_shared<Implementation>();
     made->dimensions = made->uniforms = dimensions;
     made->description = "simplex in " + std::to_string(dimensions) + " dimensions";
-    const double volume = std::exp(-std::lgamma(dimensions + 1.0));
+    const double volume =
+        checked_volume("Domain::simplex", dimensions, std::exp(-std::lgamma(dimensions + 1.0)));
     made->constant_volume = volume;
     made->map = [volume](const PointBatch& u, PointBuffer& x, std::span<double> v) {
         const int n = x.dimensions();
@@ -180,7 +190,7 @@ Domain Domain::ball(std::vector<double> centre, double radius) {
     made->dimensions = n;
     made->uniforms = 1 + direction_uniforms(n);
     made->description = "ball in " + std::to_string(n) + " dimensions";
-    const double volume = sphere_area(n) / n * std::pow(radius, n);
+    const double volume = checked_volume("Domain::ball", n, sphere_area(n) / n * std::pow(radius, n));
     made->constant_volume = volume;
     made->map = [centre = std::move(centre), radius, volume](const PointBatch& u, PointBuffer& x,
                                                              std::span<double> v) {
@@ -202,7 +212,7 @@ Domain Domain::sphere(std::vector<double> centre, double radius) {
     made->dimensions = n;
     made->uniforms = direction_uniforms(n);
     made->description = "sphere in " + std::to_string(n) + " dimensions";
-    const double area = sphere_area(n) * std::pow(radius, n - 1);
+    const double area = checked_volume("Domain::sphere", n, sphere_area(n) * std::pow(radius, n - 1));
     made->constant_volume = area;
     made->map = [centre = std::move(centre), radius, area](const PointBatch& u, PointBuffer& x,
                                                            std::span<double> v) {
@@ -239,16 +249,18 @@ Domain Domain::mapped(int uniforms, int dimensions, PointMap map, std::string de
 }
 
 Domain Domain::product(const Domain& a, const Domain& b) {
-    auto made = std::make_shared<Implementation>();
-    made->dimensions = a.dimensions() + b.dimensions();
-    made->uniforms = a.uniforms() + b.uniforms();
-    made->description = a.description() + " x " + b.description();
-    made->constant_volume = a.constant_volume() * b.constant_volume();
     if (!a.ranges().empty() && !b.ranges().empty()) {
         std::vector<Range> ranges(a.ranges().begin(), a.ranges().end());
         ranges.insert(ranges.end(), b.ranges().begin(), b.ranges().end());
         return Domain(std::move(ranges));
     }
+    auto made = std::make_shared<Implementation>();
+    made->dimensions = a.dimensions() + b.dimensions();
+    made->uniforms = a.uniforms() + b.uniforms();
+    made->description = a.description() + " x " + b.description();
+    if (a.constant_volume() != 0 && b.constant_volume() != 0)
+        made->constant_volume =
+            checked_volume("Domain::product", made->dimensions, a.constant_volume() * b.constant_volume());
     made->map = [a, b](const PointBatch& u, PointBuffer& x, std::span<double> v) {
         PointBuffer part;
         int to = 0, from = 0;

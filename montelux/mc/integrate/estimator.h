@@ -53,8 +53,9 @@ struct Tally {
 
 // An estimate that grows step by step. What a step does depends on the problem, the settings, the state and
 // the request alone, never on time or threads; so a run that is saved, restored and continued ends with the
-// same bits as one that was not broken. Steps are short enough to be waited for (about a million evaluations
-// or a tenth of those made so far).
+// same bits as one that was not broken. An exception of the integrand (IntegrandInterrupted among them) that
+// leaves a step leaves the state as it was before, as cancelling does. Steps are short enough to be waited
+// for (about a million evaluations or a tenth of those made so far).
 class Estimator {
   public:
     virtual ~Estimator() = default;

@@ -27,7 +27,7 @@ Evaluator::Evaluator(Integrand integrand, Domain domain, NonFinitePolicy policy)
 
 void Evaluator::screen(const PointBatch& x, ValueBatch values, NonFiniteCount& non_finite) const {
     for (int c = 0; c < values.components(); ++c) {
-        // A sum is finite if all its terms are (or overflow, which the closer look then sorts out).
+        // Zero times a finite number is zero, else NaN, which stays in a sum.
         double sum = 0;
         for (double v : values.component(c)) sum += v * 0;
         if (sum == 0) continue;
@@ -38,7 +38,11 @@ void Evaluator::screen(const PointBatch& x, ValueBatch values, NonFiniteCount& n
             if (policy_ == NonFinitePolicy::throw_error) {
                 std::ostringstream what;
                 what.precision(17);
-                what << "the integrand is " << values(i, c) << " at (";
+                what << "the integrand is ";
+                if (std::isnan(values(i, c))) // whose sign says nothing
+                    what << "nan at (";
+                else
+                    what << values(i, c) << " at (";
                 for (std::size_t d = 0; d < point.size(); ++d) what << (d ? ", " : "") << point[d];
                 what << ")";
                 throw Error("integrate", what.str());

@@ -24,11 +24,11 @@ class Integrand {
     // From f(double) -> double, for one variable; or f(std::span<const double>) -> double, for any number.
     template <typename F>
     requires(!std::same_as<std::remove_cvref_t<F>, Integrand> &&
-             (std::is_invocable_r_v<double, const std::remove_cvref_t<F>&, double> ||
-              std::is_invocable_r_v<double, const std::remove_cvref_t<F>&, std::span<const double>>)) //
+             (std::is_invocable_r_v<double, const std::decay_t<F>&, double> ||
+              std::is_invocable_r_v<double, const std::decay_t<F>&, std::span<const double>>)) //
         Integrand(F&& f)
         : components_(1) {
-        using Function = std::remove_cvref_t<F>;
+        using Function = std::decay_t<F>; // a pointer for plain functions
         if constexpr (std::is_invocable_r_v<double, const Function&, double>) {
             dimensions_ = 1;
             function_ = [f = Function(std::forward<F>(f))](const PointBatch& x, ValueBatch y) {
@@ -66,6 +66,13 @@ class Integrand {
     int components() const { return components_; }
 
     void operator()(const PointBatch& x, ValueBatch y) const { function_(x, y); }
+
+    // Another function of the same variables and components.
+    Integrand with_function(BatchFunction f) const {
+        Integrand other(components_, std::move(f));
+        other.dimensions_ = dimensions_;
+        return other;
+    }
 
   private:
     Integrand(int components, BatchFunction f) : function_(std::move(f)), components_(components) {}

@@ -4,9 +4,12 @@
 #include <bit>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <sstream>
 #include <utility>
 
+#include "montelux/mc/integrate/interruptible.h"
+#include "montelux/mc/io/file.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/special.h"
 #include "montelux/mc/random/hash.h"
@@ -26,13 +29,25 @@ void check_error(const char* what, double error) {
     throw Error("integrate", text.str());
 }
 
+std::string point_text(const std::vector<double>& point) {
+    std::ostringstream text;
+    text.precision(17);
+    text << "(";
+    constexpr std::size_t most = 8;
+    for (std::size_t d = 0; d < std::min(most, point.size()); ++d) text << (d ? ", " : "") << point[d];
+    text << (point.size() > most ? ", ...)" : ")");
+    return text.str();
+}
+
 // One run: the estimator and what drives it.
 class Run {
   public:
     Run(const Integrand& f, const Domain& domain, const Method& method, const Budget& budget,
         const IntegrationOptions& options)
-        : evaluator_(f, domain, options.non_finite), budget_(budget), options_(options),
-          method_(method.name()), targeted_(budget.relative_error > 0 || budget.absolute_error > 0) {
+        : interruption_(options.cancel),
+          evaluator_(interruptible(f, interruption_), domain, options.non_finite), budget_(budget),
+          options_(options), method_(method.name()),
+          targeted_(budget.relative_error > 0 || budget.absolute_error > 0) {
         check_error("relative", budget.relative_error);
         check_error("absolute", budget.absolute_error);
         if (!(budget.time.count() >= 0)) throw Error("integrate", "expected a time that is not negative");
@@ -40,45 +55,24 @@ class Run {
             throw Error("integrate", "expected a number of threads that is not negative");
         if (options.resume && options.checkpoint.empty())
             throw Error("integrate", "resume was asked for without a checkpoint file to resume from");
-        limit_ = budget.evaluations > 0                 ? budget.evaluations
-                 : targeted_ || budget.time.count() > 0 ? no_limit
-                                                        : default_evaluations;
+        limit_ = budget.evaluations > 0    ? budget.evaluations
+                 : targeted_ || has_time() ? no_limit
+                                           : default_evaluations;
         estimator_ = method.estimator({evaluator_, options.seed, options.full_covariance});
     }
 
     IntegrationResult operator()() {
-        if (options_.resume && std::filesystem::exists(options_.checkpoint)) restore();
+        if (!options_.checkpoint.empty()) {
+            AtomicFile probe(options_.checkpoint); // that it can be written is known before the work begins
+            fingerprint_ = fingerprint();
+            if (options_.resume && std::filesystem::exists(options_.checkpoint)) restore();
+        }
         Clock::time_point saved = Clock::now();
-        StopReason stop;
-        for (;;) {
-            const Tally tally = estimator_->tally();
-            // The first evaluations are always made: nothing is known without them.
-            if (tally.evaluations > 0) {
-                if (targeted_ && tally.ready && reached(tally)) {
-                    stop = StopReason::error_target;
-                    break;
-                }
-                if (tally.evaluations >= limit_) {
-                    stop = StopReason::evaluations;
-                    break;
-                }
-                if (budget_.time.count() > 0 && elapsed() >= budget_.time.count()) {
-                    stop = StopReason::time;
-                    break;
-                }
-            }
-            if (options_.cancel && options_.cancel->requested()) {
-                stop = StopReason::cancelled;
-                break;
-            }
-            const StepOutcome outcome = estimator_->step({limit_ - tally.evaluations, budget_.relative_error,
-                                                          budget_.absolute_error, options_.cancel});
-            if (outcome != StepOutcome::advanced) {
-                stop = outcome == StepOutcome::cancelled  ? StopReason::cancelled
-                       : outcome == StepOutcome::finished ? StopReason::finished
-                                                          : StopReason::evaluations;
-                break;
-            }
+        std::optional<StopReason> stop;
+        while (!(stop = reason_to_stop())) {
+            stop = step();
+            if (stop) break;
+            check_finite();
             record();
             if (options_.progress) options_.progress(result(StopReason::finished));
             if (!options_.checkpoint.empty() && Clock::now() - saved >= options_.checkpoint_every) {
@@ -87,15 +81,128 @@ class Run {
             }
         }
         if (!options_.checkpoint.empty()) save();
-        return result(stop);
+        return result(*stop);
     }
 
   private:
+    bool has_time() const { return budget_.time.count() > 0; }
+
+    std::optional<StopReason> reason_to_stop() const {
+        const Tally tally = estimator_->tally();
+        // Nothing is known without evaluations.
+        if (tally.evaluations > 0) {
+            if (targeted_ && tally.ready && reached(tally)) return StopReason::error_target;
+            if (tally.evaluations + lost_ >= limit_) return StopReason::evaluations;
+            if (has_time() && elapsed() >= budget_.time.count()) return StopReason::time;
+        }
+        if (interruption_.cancelled()) return StopReason::cancelled;
+        return std::nullopt;
+    }
+
+    // One step of the estimator; the reason to stop where it did not advance.
+    std::optional<StopReason> step() {
+        const std::uint64_t done = estimator_->tally().evaluations;
+        StepRequest request{limit_ - done - lost_, budget_.relative_error, budget_.absolute_error,
+                            options_.cancel};
+        if (!has_time()) return outcome_of(attempt(request), false);
+
+        const double remaining = budget_.time.count() - elapsed();
+        if (done > 0) {
+            // The last step is as short as the time is. What is being made when it is over would be lost.
+            const double fits = std::max(1.0, 0.95 * rate_ * std::max(remaining, 0.0));
+            const bool shortened = rate_ > 0 && fits < static_cast<double>(request.max_evaluations);
+            if (shortened) request.max_evaluations = static_cast<std::uint64_t>(fits);
+            return timed(request, deadline(), shortened);
+        }
+        // How long the first step takes is not known. Where half of the time does not do, the evaluations
+        // that it did were for nothing but to know how many the other half has room for, on one thread at
+        // least.
+        if (remaining <= 0) return StopReason::time;
+        const std::uint64_t before = interruption_.evaluations();
+        const auto half = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                             std::chrono::duration<double>(0.5 * remaining));
+        std::optional<StopReason> stop = timed(request, half, false);
+        if (stop != StopReason::time) return stop;
+        const std::uint64_t made = interruption_.evaluations() - before;
+        if (made >= request.max_evaluations) return stop;
+        lost_ += made;
+        const double fits = 0.8 * static_cast<double>(made) / thread_count();
+        request.max_evaluations = std::min(request.max_evaluations - made, static_cast<std::uint64_t>(fits));
+        if (request.max_evaluations == 0) return stop;
+        return timed(request, deadline(), true);
+    }
+
+    // A step that is interrupted at a point in time. `shortened`: more evaluations were allowed than time.
+    std::optional<StopReason> timed(const StepRequest& request, Clock::time_point until, bool shortened) {
+        const std::uint64_t before = estimator_->tally().evaluations;
+        const Clock::time_point begin = Clock::now();
+        interruption_.set_deadline(until);
+        const StepOutcome outcome = attempt(request);
+        interruption_.clear_deadline();
+        const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+        if (outcome == StepOutcome::advanced && seconds > 0)
+            rate_ = static_cast<double>(estimator_->tally().evaluations - before) / seconds;
+        if (outcome == StepOutcome::cancelled && !interruption_.cancelled()) return StopReason::time;
+        return outcome_of(outcome, shortened);
+    }
+
+    std::optional<StopReason> outcome_of(StepOutcome outcome, bool shortened) const {
+        switch (outcome) {
+        case StepOutcome::advanced:
+            return std::nullopt;
+        case StepOutcome::cancelled:
+            return StopReason::cancelled;
+        case StepOutcome::finished:
+            return StopReason::finished;
+        case StepOutcome::exhausted:
+            break;
+        }
+        if (shortened) return StopReason::time;
+        if (estimator_->tally().evaluations == 0)
+            throw Error("integrate", "the method '" + method_ + "' takes more than " +
+                                         std::to_string(limit_) + " evaluations for its first step in " +
+                                         std::to_string(evaluator_.dimensions()) +
+                                         " dimensions; expected a larger limit");
+        return StopReason::evaluations;
+    }
+
+    StepOutcome attempt(const StepRequest& request) {
+        try {
+            return estimator_->step(request);
+        } catch (const IntegrandInterrupted&) {
+            return StepOutcome::cancelled;
+        }
+    }
+
+    Clock::time_point deadline() const {
+        // Times beyond a hundred years do not fit into the clock.
+        const double seconds = std::min(budget_.time.count() - seconds_before_, 3.2e9);
+        return start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    }
+
+    // Zeros in the place of values that are not numbers must not pass for a result.
+    void check_finite() const {
+        const Tally tally = estimator_->tally();
+        if (tally.evaluations == 0 || tally.non_finite.count < tally.evaluations) return;
+        throw Error("integrate", "none of the " + std::to_string(tally.evaluations) +
+                                     " values of the integrand is a finite number; the first point was " +
+                                     point_text(tally.non_finite.first_point));
+    }
+
     double elapsed() const {
         return seconds_before_ + std::chrono::duration<double>(Clock::now() - start_).count();
     }
 
+    // Nothing but zeros was met: a function that is zero, or peaks that no point has hit yet.
+    static bool nothing_found(const Tally& tally) {
+        if (!tally.statistical || tally.evaluations == 0) return false;
+        for (std::size_t c = 0; c < tally.value.size(); ++c)
+            if (tally.value[c] == 0 && tally.standard_error[c] == 0) return true;
+        return false;
+    }
+
     bool reached(const Tally& tally) const {
+        if (nothing_found(tally) && tally.evaluations < default_evaluations) return false;
         for (std::size_t c = 0; c < tally.value.size(); ++c) {
             const double target =
                 std::max(budget_.absolute_error, budget_.relative_error * std::abs(tally.value[c]));
@@ -106,6 +213,7 @@ class Run {
 
     void record() {
         const Tally tally = estimator_->tally();
+        if (tally.value.empty()) return;
         history_.push_back({tally.evaluations, tally.value.at(0), tally.standard_error.at(0), elapsed()});
         // Memory stays bounded however long a run is: every second of the older records goes.
         constexpr std::size_t most = 4096;
@@ -122,7 +230,7 @@ class Run {
         r.standard_error = std::move(tally.standard_error);
         r.covariance = std::move(tally.covariance);
         r.statistical = tally.statistical;
-        r.evaluations = tally.evaluations;
+        r.evaluations = tally.evaluations + lost_;
         r.non_finite = tally.non_finite.count;
         r.first_non_finite_point = std::move(tally.non_finite.first_point);
         r.history = history_;
@@ -134,16 +242,14 @@ class Run {
         r.reason = std::move(tally.reason);
         r.stop = stop;
         r.doubts = std::move(tally.doubts);
-        if (r.non_finite > 0) {
-            std::ostringstream text;
-            text.precision(17);
-            text << r.non_finite << " of " << r.evaluations
-                 << " values of the integrand were not finite and were left out, the first at (";
-            for (std::size_t d = 0; d < r.first_non_finite_point.size(); ++d)
-                text << (d ? ", " : "") << r.first_non_finite_point[d];
-            text << ")";
-            r.doubts.push_back(text.str());
-        }
+        if (nothing_found(estimator_->tally()))
+            r.doubts.push_back(
+                "a value is zero because every value of the integrand was: there is nothing to "
+                "judge the error by, and a narrow peak would not have been seen");
+        if (r.non_finite > 0)
+            r.doubts.push_back(std::to_string(r.non_finite) + " of " + std::to_string(r.evaluations) +
+                               " values of the integrand were not finite and were left out, the first at " +
+                               point_text(r.first_non_finite_point));
         r.seconds = elapsed();
         return r;
     }
@@ -153,26 +259,30 @@ class Run {
     std::uint64_t fingerprint() const {
         std::uint64_t key = hash_key(options_.seed, evaluator_.dimensions(), evaluator_.components(),
                                      options_.full_covariance);
+        auto mix = [&key](double v) { key = hash_key(key, std::bit_cast<std::uint64_t>(v)); };
         for (char c : method_ + evaluator_.domain().description())
             key = hash_key(key, static_cast<std::uint64_t>(c));
-        PointBuffer u(4, evaluator_.dimensions());
+        PointBuffer u(4, evaluator_.dimensions()), x(4, evaluator_.domain().dimensions());
         for (std::size_t i = 0; i < u.count(); ++i)
             for (int d = 0; d < u.dimensions(); ++d)
                 u(i, d) = 0.1 + 0.2 * static_cast<double>(i) + 0.05 * (d % 3);
+        std::vector<double> volume(u.count(), 1.0);
+        evaluator_.domain().map(u, x, volume);
+        for (double v : volume) mix(v);
+        for (int d = 0; d < x.dimensions(); ++d)
+            for (double v : x.coordinate(d)) mix(v);
         ValueBuffer g(u.count(), evaluator_.components());
-        NonFiniteCount ignored;
-        Evaluator lenient(evaluator_.integrand(), evaluator_.domain());
-        lenient(u, g, ignored);
+        evaluator_.integrand()(x, g);
         for (int c = 0; c < g.components(); ++c)
-            for (double v : std::as_const(g).component(c))
-                key = hash_key(key, std::bit_cast<std::uint64_t>(v));
+            for (double v : std::as_const(g).component(c)) mix(v);
         return key;
     }
 
     void save() const {
         StateWriter state;
-        state.put(fingerprint());
+        state.put(fingerprint_);
         state.put(elapsed());
+        state.put(lost_);
         state.put(static_cast<std::uint64_t>(history_.size()));
         for (const IterationRecord& h : history_) {
             state.put(h.evaluations);
@@ -186,9 +296,10 @@ class Run {
 
     void restore() {
         StateReader state = read_state(options_.checkpoint, "integration");
-        if (state.get_word() != fingerprint())
+        if (state.get_word() != fingerprint_)
             throw Error(options_.checkpoint, "belongs to another integrand, domain, method or seed");
         seconds_before_ = state.get_double();
+        lost_ = state.get_word();
         history_.resize(std::min<std::uint64_t>(state.get_word(), 1 << 16));
         for (IterationRecord& h : history_) {
             h.evaluations = state.get_word();
@@ -204,12 +315,16 @@ class Run {
         if (!state.at_end()) throw Error(options_.checkpoint, "holds more than the method can use");
     }
 
+    Interruption interruption_;
     Evaluator evaluator_;
     Budget budget_;
     const IntegrationOptions& options_;
     std::string method_;
     bool targeted_;
     std::uint64_t limit_ = 0;
+    std::uint64_t lost_ = 0; // evaluations of a first step that had to be given up
+    double rate_ = 0;        // evaluations a second in the last step
+    std::uint64_t fingerprint_ = 0;
     std::unique_ptr<Estimator> estimator_;
     std::vector<IterationRecord> history_;
     double seconds_before_ = 0; // in earlier parts of a run that was resumed

@@ -21,7 +21,9 @@ struct Budget {
     // standard deviation.
     double relative_error = 0, absolute_error = 0;
     std::uint64_t evaluations = 0; // 0: no limit where an error or a time is asked for, else one million
-    std::chrono::duration<double> time{0}; // wall time; 0: no limit
+    // Wall time, of all parts of a run that is resumed; 0: no limit. The last steps are made to fit; a step
+    // that is not done when it is over is given up.
+    std::chrono::duration<double> time{0};
 };
 
 struct IntegrationOptions {
@@ -34,8 +36,9 @@ struct IntegrationOptions {
     // Called between steps, from the thread that called integrate().
     std::function<void(const IntegrationResult&)> progress = {};
     const CancelFlag* cancel = nullptr;
-    // Where the running state is kept: written every `checkpoint_every` and at the end; a run goes on from it
-    // where `resume` is set and the file exists. Empty: nowhere.
+    // Where the running state is kept: written every `checkpoint_every` and at the end, over a file that is
+    // there; a run goes on from it where `resume` is set and the file exists. Empty: nowhere. To tell other
+    // integrands apart, the integrand is evaluated at four points beside those of the method.
     std::string checkpoint = {};
     std::chrono::duration<double> checkpoint_every{60};
     bool resume = false;
@@ -43,7 +46,12 @@ struct IntegrationOptions {
 
 // The integral of f over the domain. With relative error 0 and absolute error 0 the evaluations or the time
 // must be limited (default: one million evaluations). Throws Error for arguments that make no sense, for a
-// method that cannot do the problem, and for files that cannot be written; rethrows what f throws.
+// method that cannot do the problem, for an integrand that is nowhere finite, and for files that cannot be
+// written; rethrows what f throws.
+//
+// A target is not believed while nothing but zeros was met, up to a million evaluations. Cancelling and the
+// end of the time take effect between evaluations of f; the step that was being made then is given up, so
+// that a run which ends before its first step has no value (zero evaluations, infinite error).
 //
 //     auto result = integrate([](double x) { return std::sin(x); }, Domain::interval(0, pi / 2),
 //                             Method(), {.relative_error = 1e-6});

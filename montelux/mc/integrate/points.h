@@ -87,6 +87,10 @@ class ValueBatch {
     double& operator()(std::size_t point, int c = 0) const {
         return data_[static_cast<std::size_t>(c) * stride_ + point];
     }
+    // Those of points [first, first + count).
+    ValueBatch slice(std::size_t first, std::size_t count) const {
+        return {data_ + first, count, components_, stride_};
+    }
 
   private:
     double* data_;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "montelux/mc/integrate/estimator.h"
+#include "montelux/mc/integrate/interruptible.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/stats/covariance_moments.h"
 
@@ -18,7 +19,7 @@ inline constexpr std::uint64_t batches_per_task = 4;
 
 // Runs add(first, count, sum) for consecutive runs [first, first + count) of [0, count_all), on all threads,
 // and merges the sums in order. `Sum` is default constructible by make() and has merge(const Sum&). Empty
-// when cancelled.
+// when cancelled or interrupted.
 template <typename Make, typename Add, typename Sum = std::invoke_result_t<const Make&>>
 std::optional<Sum> sum_batches(std::uint64_t count, const Make& make, const Add& add,
                                const CancelFlag* cancel) {
@@ -36,7 +37,11 @@ std::optional<Sum> sum_batches(std::uint64_t count, const Make& make, const Add&
         return a;
     };
     if (tasks == 0) return make();
-    return parallel_reduce_ordered(tasks, run, combine, cancel);
+    try {
+        return parallel_reduce_ordered(tasks, run, combine, cancel);
+    } catch (const IntegrandInterrupted&) {
+        return std::nullopt;
+    }
 }
 
 // Moments of samples, and what was not finite among them.

@@ -53,6 +53,8 @@ std::string StateReader::get_text() {
     for (std::size_t i = 0; i < size; i += 8) {
         const std::uint64_t word = get_word();
         std::memcpy(text.data() + i, &word, std::min<std::size_t>(8, size - i));
+        if (word != name_word(std::string_view(text).substr(i, 8)))
+            throw Error("the saved state has a text that does not end where it should");
     }
     return text;
 }
@@ -82,8 +84,9 @@ StateReader read_state(const std::string& path, std::string_view kind) {
     if (!words.empty()) std::memcpy(words.data(), bytes.data(), words.size() * 8);
     StateReader reader(std::move(words));
     try {
-        if (bytes.size() % 8 != 0 || reader.get_word() != name_word(magic))
+        if (reader.at_end() || reader.get_word() != name_word(magic))
             throw Error(path, "is not a saved state of Montelux");
+        if (bytes.size() % 8 != 0) throw Error(path, "is damaged: it does not end with a whole number");
         const std::uint64_t found = reader.get_word();
         if (found != version)
             throw Error(path, "was saved in version " + std::to_string(found) + " of the format; expected " +

@@ -1,0 +1,50 @@
+// An integrand that can be stopped between points, however slow it is: by a flag or at a point in time.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+#include "montelux/mc/integrate/integrand.h"
+#include "montelux/mc/parallel/parallel_for.h"
+
+namespace montelux {
+
+// Thrown by the integrand when it was asked to stop. No std::exception, so that nobody takes it for an error.
+struct IntegrandInterrupted {};
+
+// Asks an integrand to stop, and counts its evaluations; outlives it.
+class Interruption {
+  public:
+    using Clock = std::chrono::steady_clock;
+
+    explicit Interruption(const CancelFlag* cancel) : cancel_(cancel) {}
+    Interruption(const Interruption&) = delete;
+    Interruption& operator=(const Interruption&) = delete;
+
+    // Not while the integrand is being evaluated.
+    void set_deadline(Clock::time_point deadline) { deadline_ = deadline; }
+    void clear_deadline() { deadline_ = Clock::time_point::max(); }
+
+    bool cancelled() const { return cancel_ && cancel_->requested(); }
+    bool late() const { return deadline_ != Clock::time_point::max() && Clock::now() >= deadline_; }
+    std::uint64_t evaluations() const { return evaluations_.load(std::memory_order_relaxed); }
+
+  private:
+    friend Integrand interruptible(const Integrand& f, Interruption& interruption);
+    void evaluate(const Integrand& f, const PointBatch& x, ValueBatch y);
+
+    const CancelFlag* cancel_;
+    Clock::time_point deadline_ = Clock::time_point::max();
+    std::atomic<std::uint64_t> evaluations_{0};
+    // Points that take about a fiftieth of a second; learned from what they took so far.
+    std::atomic<std::size_t> slice_{8};
+};
+
+// f, called for slices of a batch that take about a fiftieth of a second each. Before each slice the
+// interruption is asked, and IntegrandInterrupted thrown. Slices are multiples of eight points, where points
+// are not slower than that, so that vectorised functions see no remainders that they would not see else.
+Integrand interruptible(const Integrand& f, Interruption& interruption);
+
+} // namespace montelux
