@@ -9,8 +9,10 @@ class App;
 namespace montelux::app {
 
 // Exit codes of the program.
-inline constexpr int exit_done = 0, exit_failed = 1, exit_usage = 2, exit_interrupted = 130;
+inline constexpr int exit_done = 0, exit_failed = 1, exit_usage = 2, exit_stopped = 3, exit_interrupted = 130;
 
+void add_integrate(CLI::App& app, int& exit_code);
+void add_sample(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);

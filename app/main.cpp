@@ -1,4 +1,5 @@
 #include "app/commands.h"
+#include "app/usage_error.h"
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
@@ -60,17 +61,24 @@ int main(int argc, char** argv) {
         CLI::App app("Montelux: Monte Carlo integration and light transport", "montelux");
         app.set_version_flag("--version", "montelux " MONTELUX_VERSION);
         app.require_subcommand(1);
-        app.footer("Examples:\n"
-                   "  montelux render scene.pbrt --spp 64 -o out.exr\n"
-                   "  montelux info out.exr\n"
-                   "  montelux compare out.exr reference.exr\n"
-                   "\n"
-                   "'montelux COMMAND --help' tells of a command's options.\n"
-                   "Exit codes: 0 done, 1 could not do it, 2 wrong usage, 130 interrupted (what there was is "
-                   "saved).");
+        app.footer(
+            "Examples:\n"
+            "  montelux integrate 'sin(x)*y' --over x=0:pi/2 --over y=0:1 --relative-error 1e-4\n"
+            "  montelux sample --set sobol --n 1024 --dim 2 -o points.csv\n"
+            "  montelux render scene.pbrt --spp 64 -o out.exr\n"
+            "  montelux info out.exr\n"
+            "  montelux compare out.exr reference.exr\n"
+            "\n"
+            "'montelux COMMAND --help' tells of a command's options.\n"
+            "Exit codes: 0 done, 1 could not do it, 2 wrong usage, 3 stopped before the error that was "
+            "asked for,\n130 interrupted (what there was is saved).");
+        add_integrate(app, exit_code);
+        add_sample(app, exit_code);
+#ifdef MONTELUX_WITH_RENDER
         add_render(app, exit_code);
         add_compare(app, exit_code);
         add_info(app, exit_code);
+#endif
         try {
             app.parse(argc, argv);
         } catch (const CLI::Success& e) { // asking for help or the version
@@ -80,6 +88,9 @@ int main(int argc, char** argv) {
         }
         // A full disk behind a redirection is a failure too.
         if (std::fflush(stdout) != 0) throw montelux::Error("standard output", "cannot be written");
+    } catch (const UsageError& e) {
+        std::fprintf(stderr, "montelux: error: %s\n", e.what());
+        return exit_usage;
     } catch (const montelux::Error& e) {
         std::fprintf(stderr, "montelux: error: %s\n", e.what());
         return exit_failed;

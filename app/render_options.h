@@ -1,6 +1,7 @@
 // What the render command can be told, and how that overrides a scene file.
 #pragma once
 
+#include "app/usage_error.h"
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -8,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "montelux/mc/math/error.h"
 #include "montelux/scene/render_settings.h"
 
 namespace CLI {
@@ -35,11 +35,6 @@ void declare(CLI::App& command, RenderOptions& options);
 
 // Throws UsageError when a crop holds no pixel of the film.
 void apply(const RenderOptions& options, SceneDescription& description);
-
-// A mistake of the command line, as opposed to one of a file: exit code 2.
-struct UsageError : Error {
-    using Error::Error;
-};
 
 std::string name_of(SamplerKind kind);
 std::string name_of(Strategy strategy);

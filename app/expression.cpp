@@ -1,0 +1,256 @@
+#include "app/expression.h"
+
+#include "app/usage_error.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <muParser.h>
+#include <mutex>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+#include "montelux/formats/nearest_name.h"
+
+namespace montelux::app {
+namespace {
+
+constexpr std::array<std::pair<const char*, double>, 4> constants{
+    {{"pi", std::numbers::pi},
+     {"e", std::numbers::e},
+     {"inf", std::numeric_limits<double>::infinity()},
+     {"nan", std::numeric_limits<double>::quiet_NaN()}}};
+
+// What muParser does not bring itself.
+template <typename Define>
+void define_functions(const Define& define) {
+    define("erf", [](double x) { return std::erf(x); });
+    define("erfc", [](double x) { return std::erfc(x); });
+    define("gamma", [](double x) { return std::tgamma(x); });
+    define("lgamma", [](double x) { return std::lgamma(x); });
+    define("expm1", [](double x) { return std::expm1(x); });
+    define("log1p", [](double x) { return std::log1p(x); });
+    define("cbrt", [](double x) { return std::cbrt(x); });
+    define("floor", [](double x) { return std::floor(x); });
+    define("ceil", [](double x) { return std::ceil(x); });
+    define("pow", [](double x, double y) { return std::pow(x, y); });
+    define("hypot", [](double x, double y) { return std::hypot(x, y); });
+    define("mod", [](double x, double y) { return x - y * std::floor(x / y); });
+}
+
+// A parser with the functions and those constants whose names the user does not want for variables.
+mu::Parser make_parser(const std::vector<std::string>& variables) {
+    mu::Parser parser;
+    parser.ClearConst();
+    parser.ResetLocale();
+    define_functions([&](const char* name, auto function) { parser.DefineFun(name, +function); });
+    for (const auto& [name, value] : constants)
+        if (std::find(variables.begin(), variables.end(), name) == variables.end())
+            parser.DefineConst(name, value);
+    return parser;
+}
+
+bool starts_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool in_name(char c) { return starts_name(c) || (c >= '0' && c <= '9'); }
+
+std::string name_at(const std::string& text, std::size_t at) {
+    std::size_t end = at;
+    if (at < text.size() && starts_name(text[at]))
+        while (end < text.size() && in_name(text[end])) ++end;
+    return text.substr(at, end - at);
+}
+
+[[noreturn]] void refuse(const std::string& option, const std::string& text, std::size_t at,
+                         const std::string& what) {
+    std::string message = "at character " + std::to_string(at + 1) + ": " + what;
+    const bool one_line = std::all_of(text.begin(), text.end(), [](char c) { return c >= ' '; });
+    if (one_line && text.size() <= 400) message += "\n    " + text + "\n    " + std::string(at, ' ') + "^";
+    throw UsageError(option.empty() ? "formula" : option, message);
+}
+
+std::string unknown_name(const std::string& name, bool called, const mu::Parser& parser,
+                         const std::vector<std::string>& variables, const std::string& option) {
+    std::vector<std::string> known;
+    if (!called) {
+        known = variables;
+        for (const auto& [constant_name, value] : parser.GetConst()) known.push_back(constant_name);
+    }
+    for (const auto& [function_name, callback] : parser.GetFunDef()) known.push_back(function_name);
+    const std::vector<std::string_view> views(known.begin(), known.end());
+    std::string what = "there is no " + std::string(called ? "function" : "variable") + " '" + name + "'" +
+                       did_you_mean(name, views);
+    if (called) return what + "; expected one of " + formula_functions();
+    if (variables.empty()) return what + "; a number is expected here, without variables";
+    if (variables.size() <= 12) {
+        what += variables.size() == 1 ? "; the variable is " : "; the variables are ";
+        for (std::size_t i = 0; i < variables.size(); ++i) what += (i ? ", " : "") + variables[i];
+    }
+    return option.empty() ? what + " (--over " + name + "=LOWER:UPPER adds one)" : what;
+}
+
+// What is wrong, in words, from muParser's code.
+[[noreturn]] void explain(const mu::ParserError& error, const std::string& text, const std::string& option,
+                          const mu::Parser& parser, const std::vector<std::string>& variables) {
+    auto at = static_cast<std::size_t>(std::max(0, static_cast<int>(error.GetPos())));
+    at = std::min(at, text.size());
+    const std::string token = error.GetToken();
+    switch (error.GetCode()) {
+    case mu::ecUNASSIGNABLE_TOKEN: {
+        const std::string name = name_at(text, at);
+        if (name.empty()) refuse(option, text, at, "this cannot be read");
+        const std::size_t next = text.find_first_not_of(' ', at + name.size());
+        const bool called = next != std::string::npos && text[next] == '(';
+        refuse(option, text, at, unknown_name(name, called, parser, variables, option));
+    }
+    case mu::ecUNEXPECTED_EOF:
+        refuse(option, text, text.size(), "the formula ends too early");
+    case mu::ecMISSING_PARENS:
+        refuse(option, text, text.size(), "a closing bracket is missing");
+    case mu::ecUNEXPECTED_PARENS:
+        refuse(option, text, at > 0 && text.substr(at - 1, 1) == token ? at - 1 : at,
+               "the bracket '" + token + "' is not expected here");
+    case mu::ecEMPTY_EXPRESSION:
+        refuse(option, text, 0, "the formula is empty");
+    case mu::ecTOO_MANY_PARAMS:
+        refuse(option, text, at > 0 ? at - 1 : 0, "the function '" + token + "' gets too many arguments");
+    case mu::ecTOO_FEW_PARAMS:
+        refuse(option, text, at > 0 ? at - 1 : 0, "the function '" + token + "' gets too few arguments");
+    case mu::ecUNEXPECTED_VAL:
+    case mu::ecUNEXPECTED_VAR:
+    case mu::ecUNEXPECTED_FUN:
+        refuse(option, text, at,
+               "an operator is expected before '" + token + "' (products need a '*', as in 3*x)");
+    case mu::ecUNEXPECTED_OPERATOR:
+        refuse(option, text, at, "the operator '" + token + "' is not expected here");
+    default:
+        refuse(option, text, at, error.GetMsg());
+    }
+}
+
+// Nothing is assigned and no formula is a list; muParser would take both.
+void check_form(const std::string& text, const std::string& option) {
+    int depth = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i], before = i > 0 ? text[i - 1] : ' ',
+                   after = i + 1 < text.size() ? text[i + 1] : ' ';
+        if (c == '(') ++depth;
+        if (c == ')') --depth;
+        const bool compares =
+            after == '=' || before == '=' || before == '<' || before == '>' || before == '!';
+        if (c == '=' && !compares) refuse(option, text, i, "'=' is not expected here; '==' compares");
+        if (c == ',' && depth == 0)
+            refuse(option, text, i, "',' is not expected here; each component is an argument of its own");
+        if (c == '"') refuse(option, text, i, "texts are not expected in a formula");
+    }
+}
+
+} // namespace
+
+struct Formulas::Pool {
+    // Parsers whose variables are this object's.
+    struct Lease {
+        std::vector<double> values;
+        std::vector<mu::Parser> parsers;
+    };
+
+    std::vector<std::string> texts, variables;
+    std::string option;
+    std::mutex mutex;
+    std::vector<std::unique_ptr<Lease>> free;
+
+    std::unique_ptr<Lease> make() const {
+        auto lease = std::make_unique<Lease>();
+        lease->values.resize(variables.size());
+        for (const std::string& text : texts) {
+            mu::Parser parser = make_parser(variables);
+            try {
+                for (std::size_t d = 0; d < variables.size(); ++d)
+                    parser.DefineVar(variables[d], &lease->values[d]);
+                parser.SetExpr(text);
+                parser.Eval();
+            } catch (const mu::ParserError& error) {
+                explain(error, text, option, parser, variables);
+            }
+            lease->parsers.push_back(std::move(parser));
+        }
+        return lease;
+    }
+    std::unique_ptr<Lease> take() {
+        {
+            const std::lock_guard lock(mutex);
+            if (!free.empty()) {
+                auto lease = std::move(free.back());
+                free.pop_back();
+                return lease;
+            }
+        }
+        return make();
+    }
+    void give_back(std::unique_ptr<Lease> lease) {
+        const std::lock_guard lock(mutex);
+        free.push_back(std::move(lease));
+    }
+};
+
+Formulas::Formulas(const std::vector<std::string>& texts, const std::vector<std::string>& variables,
+                   const std::string& option)
+    : pool_(std::make_shared<Pool>()) {
+    for (const std::string& text : texts) check_form(text, option);
+    pool_->texts = texts;
+    pool_->variables = variables;
+    pool_->option = option;
+    pool_->give_back(pool_->make());
+}
+
+int Formulas::count() const { return static_cast<int>(pool_->texts.size()); }
+const std::vector<std::string>& Formulas::texts() const { return pool_->texts; }
+
+void Formulas::operator()(const PointBatch& x, ValueBatch y) const {
+    auto lease = pool_->take();
+    for (std::size_t i = 0; i < x.count(); ++i) {
+        x.gather(i, lease->values.data());
+        for (std::size_t c = 0; c < lease->parsers.size(); ++c)
+            y(i, static_cast<int>(c)) = lease->parsers[c].Eval();
+    }
+    pool_->give_back(std::move(lease));
+}
+
+double Formulas::operator()(double x) const {
+    auto lease = pool_->take();
+    lease->values.at(0) = x;
+    const double y = lease->parsers.front().Eval();
+    pool_->give_back(std::move(lease));
+    return y;
+}
+
+double constant(const std::string& text, const std::string& option) {
+    check_form(text, option);
+    mu::Parser parser = make_parser({});
+    try {
+        parser.SetExpr(text);
+        return parser.Eval();
+    } catch (const mu::ParserError& error) {
+        explain(error, text, option, parser, {});
+    }
+}
+
+void check_variable_name(const std::string& name, const std::string& option) {
+    if (name.empty() || name_at(name, 0) != name)
+        throw UsageError(option, "'" + name +
+                                     "' is no name of a variable; expected letters, digits and '_', the "
+                                     "first no digit");
+    const mu::Parser parser = make_parser({});
+    if (parser.GetFunDef().contains(name))
+        throw UsageError(option, "'" + name + "' is a function; a variable needs another name");
+}
+
+std::string formula_functions() {
+    const mu::Parser parser = make_parser({});
+    std::string list;
+    for (const auto& [name, callback] : parser.GetFunDef()) list += (list.empty() ? "" : ", ") + name;
+    return list;
+}
+
+} // namespace montelux::app

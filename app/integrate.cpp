@@ -1,0 +1,103 @@
+// montelux integrate: from a formula to a value with its error.
+#include "app/commands.h"
+#include "app/convergence_plot.h"
+#include "app/integrate_options.h"
+#include "app/integration_report.h"
+#include "app/interrupt.h"
+#include "app/point_recorder.h"
+#include "app/progress_line.h"
+#include "app/table_file.h"
+#include "app/usage_error.h"
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+namespace montelux::app {
+namespace {
+
+void check_extension(const std::string& path, const std::string& option, const std::string& extension) {
+    if (std::filesystem::path(path).extension() != extension)
+        throw UsageError(option, "'" + path + "' was given; expected a name that ends in " + extension);
+}
+
+// Before the work begins, not after hours of it.
+void check_files(const IntegrateOptions& o) {
+    if (!o.plot.empty()) check_extension(o.plot, "--plot", ".svg");
+    if (!o.points.empty()) check_extension(o.points, "--points", ".csv");
+    for (const std::string& path : {o.plot, o.points, o.checkpoint})
+        if (!path.empty()) check_output(path);
+    std::error_code ignored;
+    if (!o.checkpoint.empty() && !o.resume && std::filesystem::exists(o.checkpoint, ignored))
+        throw Error(o.checkpoint,
+                    "exists already; add --resume to go on from it, or remove it to begin anew");
+}
+
+void show_progress(ProgressLine& line, const IntegrationTask& task, const IntegrationResult& r) {
+    if (!line.due(r.seconds)) return;
+    std::string text = to_string(r.estimate()) + "  " + count_text(static_cast<double>(r.evaluations)) +
+                       "evaluations, " + duration_text(r.seconds);
+    if (task.targeted()) text += ", relative error " + percent_text(r.estimate().relative_error());
+    line.show("integrating", text);
+}
+
+bool target_met(const IntegrationTask& task, const IntegrationResult& r) {
+    for (std::size_t c = 0; c < r.value.size(); ++c)
+        if (!(r.standard_error[c] <=
+              std::max(task.budget.absolute_error, task.budget.relative_error * std::abs(r.value[c]))))
+            return false;
+    return true;
+}
+
+int exit_code_of(const IntegrationTask& task, const IntegrationResult& r) {
+    if (r.stop == StopReason::cancelled) return exit_interrupted;
+    if (r.stop == StopReason::error_target || !task.targeted()) return exit_done;
+    return target_met(task, r) ? exit_done : exit_stopped;
+}
+
+int run(const IntegrateOptions& o) {
+    end_on_signals();
+    std::signal(SIGPIPE, SIG_IGN);
+    IntegrationTask task = make_task(o);
+    check_files(o);
+
+    PointRecorder recorder(task.points_limit);
+    auto evaluate = [&, record = !o.points.empty()](const PointBatch& x, ValueBatch y) {
+        task.formulas(x, y);
+        if (record) recorder.add(x, y);
+    };
+    ProgressLine line(o.quiet);
+    task.options.progress = [&](const IntegrationResult& r) { show_progress(line, task, r); };
+    task.options.cancel = &cancel_on_signals();
+    const IntegrationResult result = integrate(Integrand::batch(evaluate, task.formulas.count()), task.domain,
+                                               task.method, task.budget, task.options);
+    line.finish();
+
+    finish_on_signals();
+    if (!o.plot.empty()) write_convergence_plot(o.plot, task, result);
+    if (!o.points.empty()) recorder.write(o.points, task.variables, task.formulas.texts());
+    if (result.evaluations == 0)
+        std::fprintf(stderr,
+                     "montelux: warning: the run ended before its first step; nothing is known yet\n");
+    const std::string text =
+        o.json ? report_json(task, result)
+                         .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
+                     "\n"
+               : report_text(task, result);
+    std::fputs(text.c_str(), stdout);
+    return exit_code_of(task, result);
+}
+
+} // namespace
+
+void add_integrate(CLI::App& app, int& exit_code) {
+    auto options = std::make_shared<IntegrateOptions>();
+    CLI::App* command = app.add_subcommand("integrate", "Integrate formulas: values with standard errors");
+    declare(*command, *options);
+    command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+} // namespace montelux::app

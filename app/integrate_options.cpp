@@ -1,0 +1,204 @@
+#include "app/integrate_options.h"
+
+#include "app/usage_error.h"
+#include "app/variables.h"
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "montelux/formats/nearest_name.h"
+
+namespace montelux::app {
+namespace {
+
+constexpr std::array<std::string_view, 4> domain_names{"box", "simplex", "ball", "sphere"};
+constexpr std::array<std::string_view, 2> policy_names{"skip", "throw"};
+
+std::string list(std::span<const std::string_view> names) {
+    std::string text;
+    for (std::string_view name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+    return text;
+}
+
+void check_choice(const std::string& given, std::span<const std::string_view> names,
+                  const std::string& option, const std::string& what) {
+    if (std::find(names.begin(), names.end(), given) == names.end())
+        throw UsageError(option, "there is no " + what + " '" + given + "'" + did_you_mean(given, names) +
+                                     "; expected one of " + list(names));
+}
+
+// A finite number above zero; 0 where nothing was given.
+double positive(const std::string& text, const std::string& option, const std::string& hint) {
+    if (text.empty()) return 0;
+    const double value = constant(text, option);
+    if (!(value > 0 && std::isfinite(value)))
+        throw UsageError(option, "'" + text + "' was given; expected a finite number above 0" + hint);
+    return value;
+}
+
+std::vector<double> read_centre(const std::string& text, std::size_t dimensions) {
+    if (text.empty()) return std::vector<double>(dimensions);
+    std::vector<double> centre;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        centre.push_back(constant(text.substr(begin, end - begin), "--centre"));
+        begin = end + 1;
+    }
+    if (centre.size() != dimensions)
+        throw UsageError("--centre", std::to_string(centre.size()) + " coordinates were given for " +
+                                         std::to_string(dimensions) + " variables");
+    return centre;
+}
+
+Domain make_domain(const IntegrateOptions& o, const Variables& variables) {
+    const std::size_t n = variables.names.size();
+    if (o.domain == "box") return box_domain(variables);
+    try {
+        if (o.domain == "simplex") return Domain::simplex(static_cast<int>(n));
+        const double radius = positive(o.radius, "--radius", "");
+        std::vector<double> centre = read_centre(o.centre, n);
+        return o.domain == "ball" ? Domain::ball(std::move(centre), radius)
+                                  : Domain::sphere(std::move(centre), radius);
+    } catch (const UsageError&) {
+        throw;
+    } catch (const Error& error) {
+        throw UsageError("--domain " + o.domain, error.what());
+    }
+}
+
+Method make_method(const std::string& name) {
+    if (name.empty()) return {};
+    check_choice(name, Method::names(), "--method", "method");
+    return Method::named(name);
+}
+
+} // namespace
+
+std::uint64_t whole_number(const std::string& text, const std::string& option, std::uint64_t lowest,
+                           std::uint64_t highest) {
+    // Digits alone are read exactly; doubles hold whole numbers up to 2^53.
+    std::uint64_t exact = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, exact);
+    bool good = error == std::errc() && stop == end && !text.empty();
+    if (!good) {
+        const double value = constant(text, option);
+        good = value >= 0 && value <= 0x1p53 && value == std::floor(value);
+        if (good) exact = static_cast<std::uint64_t>(value);
+    }
+    if (good && exact >= lowest && exact <= highest) return exact;
+    const std::string range = highest == UINT64_MAX
+                                  ? (lowest > 0 ? " from " + std::to_string(lowest) : std::string())
+                                  : " from " + std::to_string(lowest) + " to " + std::to_string(highest);
+    throw UsageError(option, "'" + text + "' was given; expected a whole number" + range);
+}
+
+void declare(CLI::App& c, IntegrateOptions& o) {
+    c.add_option("FORMULA", o.formulas,
+                 "The integrand, for example 'sin(x)*y'; several are the components of a vector")
+        ->required();
+    auto many = [&c](const std::string& name, std::vector<std::string>& target, const std::string& help,
+                     const std::string& type) {
+        c.add_option(name, target, help)->type_name(type)->allow_extra_args(false);
+    };
+    auto text = [&c](const std::string& name, std::string& target, const std::string& help,
+                     const std::string& type) {
+        return c.add_option(name, target, help)->type_name(type)->take_last();
+    };
+    many("--over", o.over, "A variable and its range, for example x=0:inf, x,y=-1:1 or x1..x8=0:1",
+         "NAME=LOWER:UPPER");
+    many("--density", o.densities,
+         "Draw a variable from a density that is proportional to this formula, for example x=exp(-5*x)",
+         "NAME=FORMULA");
+    text("--method", o.method, "How: " + list(Method::names()) + ". Default: " + Method().name(), "NAME");
+    text("--relative-error", o.relative_error, "Stop at this standard error relative to the value", "E");
+    text("--absolute-error", o.absolute_error, "Stop at this standard error; with both, at the larger one",
+         "E");
+    text("--evaluations", o.evaluations,
+         "Evaluate at most so often. Default: 1e6 where neither an error nor a time is asked for", "N");
+    text("--time", o.time, "Stop after this time", "SECONDS");
+    text("--seed", o.seed, "Seed of all random numbers. Default: 0", "N");
+    text("--threads", o.threads, "Threads; 0: one a processor. The result does not depend on it", "N");
+    text("--domain", o.domain,
+         "Where: " + list(domain_names) + "; all but the box take --over NAMES. Default: box", "NAME");
+    text("--radius", o.radius, "Radius of ball and sphere. Default: 1", "R");
+    text("--centre", o.centre, "Centre of ball and sphere. Default: the origin", "X,Y,...");
+    text("--non-finite", o.non_finite,
+         "Values that are not finite numbers: skip counts and reports them, throw ends with an error",
+         "POLICY");
+    text("--checkpoint", o.checkpoint, "Keep the running state in this file", "FILE");
+    text("--checkpoint-every", o.checkpoint_every, "How often it is written. Default: 60", "SECONDS");
+    c.add_flag("--resume", o.resume, "Go on from the checkpoint, where there is one");
+    text("--plot", o.plot, "Draw value and error against the evaluations (.svg)", "FILE");
+    text("--points", o.points, "Write the points and values of the integrand (.csv); uses one thread",
+         "FILE");
+    text("--points-limit", o.points_limit, "How many of them, from the first on. Default: 10000", "N");
+    c.add_flag("--json", o.json, "Print JSON");
+    c.add_flag("--quiet", o.quiet, "Show no progress");
+    c.footer(
+        "Examples:\n"
+        "  montelux integrate 'sin(x)*y' --over x=0:pi/2 --over y=0:1 --relative-error 1e-4\n"
+        "  montelux integrate 'exp(-5*x)*cos(x)' --over x=0:inf --density x='exp(-5*x)' --evaluations 1e5\n"
+        "  montelux integrate 1 x^2 --domain ball --over x,y,z --json\n"
+        "\n"
+        "Formulas know + - * / ^, comparisons, && ||, c ? a : b, pi, e, inf, and\n"
+        "  " +
+        formula_functions() +
+        ".\n"
+        "One that begins with '-' needs a blank or a bracket before it: ' -x^2'.\n"
+        "Exit codes: 0 done, 1 could not, 2 wrong usage, 3 stopped before the error asked for (the result "
+        "is\nprinted), 130 interrupted (so is what there was).");
+}
+
+IntegrationTask make_task(const IntegrateOptions& o) {
+    check_choice(o.domain, domain_names, "--domain", "domain");
+    check_choice(o.non_finite, policy_names, "--non-finite", "policy");
+    const bool box = o.domain == "box";
+    Variables variables = read_variables(o.over, box);
+    if (!box && !o.densities.empty()) throw UsageError("--density", "only a box takes densities");
+    Formulas formulas(o.formulas, variables.names, "");
+
+    Method method = make_method(o.method);
+    Budget budget;
+    budget.relative_error =
+        positive(o.relative_error, "--relative-error", "; leave it out to stop at --evaluations or --time");
+    budget.absolute_error =
+        positive(o.absolute_error, "--absolute-error", "; leave it out to stop at --evaluations or --time");
+    budget.time = std::chrono::duration<double>(positive(o.time, "--time", " of seconds"));
+    if (!o.evaluations.empty())
+        budget.evaluations = whole_number(o.evaluations, "--evaluations", 1, UINT64_MAX);
+
+    IntegrationOptions options;
+    options.seed = whole_number(o.seed, "--seed", 0, UINT64_MAX);
+    options.threads = static_cast<int>(whole_number(o.threads, "--threads", 0, 4096));
+    options.non_finite = o.non_finite == "skip" ? NonFinitePolicy::skip : NonFinitePolicy::throw_error;
+    options.checkpoint = o.checkpoint;
+    const double every = constant(o.checkpoint_every, "--checkpoint-every");
+    if (!(every >= 0 && every < 1e9))
+        throw UsageError("--checkpoint-every", "'" + o.checkpoint_every + "' was given; expected seconds");
+    options.checkpoint_every = std::chrono::duration<double>(every);
+    options.resume = o.resume;
+    if (o.resume && o.checkpoint.empty())
+        throw UsageError("--resume", "expected --checkpoint FILE, which says what to go on from");
+    if (!o.points.empty()) {
+        if (options.threads > 1)
+            throw UsageError("--points", "the points are written in their order, by one thread; leave out "
+                                         "--threads");
+        if (!o.checkpoint.empty())
+            throw UsageError("--points", "a run with a checkpoint may be a part of one; leave out one of "
+                                         "--points and --checkpoint");
+        options.threads = 1;
+    }
+    const std::uint64_t points_limit = whole_number(o.points_limit, "--points-limit", 1, 100'000'000);
+
+    read_densities(o.densities, variables);
+    check_densities(variables, formulas);
+    Domain domain = make_domain(o, variables);
+    return {variables.names, std::move(formulas), std::move(domain), std::move(method),
+            budget,          std::move(options),  points_limit};
+}
+
+} // namespace montelux::app

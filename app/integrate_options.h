@@ -1,0 +1,50 @@
+// What `montelux integrate` is asked for: flags as typed, and what they mean.
+#pragma once
+
+#include "app/expression.h"
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "montelux/mc/integrate/integrate.h"
+
+namespace CLI {
+class App;
+}
+
+namespace montelux::app {
+
+// As typed; numbers may be formulas ("1e6", "pi/2") and are read by make_task.
+struct IntegrateOptions {
+    std::vector<std::string> formulas, over, densities;
+    std::string domain = "box", radius = "1", centre;
+    std::string method;
+    std::string relative_error, absolute_error, evaluations, time, seed = "0", threads = "0";
+    std::string non_finite = "skip";
+    std::string checkpoint, checkpoint_every = "60", plot, points, points_limit = "10000";
+    bool resume = false, json = false, quiet = false;
+};
+
+// An integration that is ready to run. `options` lacks progress and cancel.
+struct IntegrationTask {
+    std::vector<std::string> variables;
+    Formulas formulas;
+    Domain domain;
+    Method method;
+    Budget budget;
+    IntegrationOptions options;
+    std::uint64_t points_limit;
+
+    bool targeted() const { return budget.relative_error > 0 || budget.absolute_error > 0; }
+};
+
+void declare(CLI::App& command, IntegrateOptions& options);
+
+// Throws UsageError for what makes no sense, and Error for a density that does not suit the integrand.
+IntegrationTask make_task(const IntegrateOptions& options);
+
+// A whole number of [lowest, highest], which may be written as 1e6; throws UsageError.
+std::uint64_t whole_number(const std::string& text, const std::string& option, std::uint64_t lowest,
+                           std::uint64_t highest);
+
+} // namespace montelux::app

@@ -1,0 +1,66 @@
+#include "app/progress_line.h"
+
+#include <cmath>
+#include <cstdio>
+#include <unistd.h>
+#include <utility>
+
+namespace montelux::app {
+namespace {
+
+template <typename... Args>
+std::string text(const char* format, Args... args) {
+    char buffer[128];
+    std::snprintf(buffer, sizeof buffer, format, args...);
+    return buffer;
+}
+
+// Between two lines where there is no terminal, and between two pictures of the line on one, in seconds.
+constexpr double line_interval = 10, picture_interval = 0.1;
+
+} // namespace
+
+ProgressLine::ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+bool ProgressLine::due(double seconds) {
+    if (quiet_ || seconds - last_ < (terminal_ ? picture_interval : line_interval)) return false;
+    last_ = seconds;
+    return true;
+}
+
+void ProgressLine::show(const char* what, const std::string& line) {
+    if (quiet_) return;
+    if (!terminal_) {
+        std::fprintf(stderr, "%s: %s\n", what, line.c_str());
+        return;
+    }
+    std::fprintf(stderr, "\r%s\033[K", line.c_str());
+    std::fflush(stderr);
+    drawn_ = true;
+}
+
+void ProgressLine::finish() {
+    if (drawn_) std::fputc('\n', stderr);
+    drawn_ = false;
+}
+
+std::string duration_text(double seconds) {
+    if (!std::isfinite(seconds)) return "?";
+    if (seconds < 60) return text("%.1f s", seconds);
+    const long long s = std::llround(seconds);
+    if (s < 3600) return text("%lld:%02lld", s / 60, s % 60);
+    return text("%lld:%02lld:%02lld", s / 3600, s / 60 % 60, s % 60);
+}
+
+std::string percent_text(double fraction) {
+    return std::isfinite(fraction) ? text("%.3g %%", 100 * fraction) : "?";
+}
+
+std::string count_text(double count) {
+    if (!std::isfinite(count)) return "?";
+    for (auto [scale, unit] : {std::pair(1e9, "G"), std::pair(1e6, "M"), std::pair(1e3, "k")})
+        if (count >= scale) return text("%.3g %s", count / scale, unit);
+    return text("%.3g ", count);
+}
+
+} // namespace montelux::app

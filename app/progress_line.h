@@ -1,0 +1,33 @@
+// One line of progress on standard error: redrawn in place on a terminal, a line now and then elsewhere.
+#pragma once
+
+#include <string>
+
+namespace montelux::app {
+
+class ProgressLine {
+  public:
+    explicit ProgressLine(bool quiet);
+
+    // Whether it is time for another line; `seconds` is the time since the work began.
+    bool due(double seconds);
+    // `what` stands before the text where there is no terminal.
+    void show(const char* what, const std::string& text);
+    // Ends the line, if one is being drawn.
+    void finish();
+
+    bool on_terminal() const { return terminal_; }
+
+  private:
+    bool quiet_, terminal_, drawn_ = false;
+    double last_ = 0;
+};
+
+// 75 -> "1:15", 3700 -> "1:01:40", 2.5 -> "2.5 s"
+std::string duration_text(double seconds);
+// 0.0213 -> "2.13 %"; infinite or unknown -> "?"
+std::string percent_text(double fraction);
+// 1234567 -> "1.23 M"
+std::string count_text(double count);
+
+} // namespace montelux::app

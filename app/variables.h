@@ -1,0 +1,36 @@
+// The variables of a formula with their ranges and densities, as typed: x=0:inf, x1..x8=0:1, x=exp(-x).
+#pragma once
+
+#include "app/expression.h"
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "montelux/mc/dist/distribution.h"
+#include "montelux/mc/integrate/domain.h"
+
+namespace montelux::app {
+
+struct Variables {
+    std::vector<std::string> names;
+    std::vector<Range> ranges; // empty where the domain is no box
+    // Importance densities; empty where none is given for any variable, else one a variable.
+    std::vector<std::optional<Distribution>> densities;
+};
+
+// From the values of --over: NAMES=LOWER:UPPER (or NAMES alone where `boxes` is false), NAMES being x or
+// x,y or x1..x8. Throws UsageError.
+Variables read_variables(const std::vector<std::string>& over, bool boxes);
+
+// Adds the values of --density: NAME=FORMULA in that variable alone, or FORMULA where there is one variable.
+void read_densities(const std::vector<std::string>& densities, Variables& variables);
+
+// The box of the ranges; variables with a density are mapped by its quantile, with the volume factor
+// 1 / density, so that uniform numbers become samples of the density for every method.
+Domain box_domain(const Variables& variables);
+
+// Throws Error where a density is zero in places in which a formula is not, for the integral would then be
+// wrong without a trace. Looks at 4096 points.
+void check_densities(const Variables& variables, const Formulas& formulas);
+
+} // namespace montelux::app
