@@ -86,7 +86,17 @@ Part part(const ChainTrace& chain, int k, std::size_t begin, std::size_t end) {
     return {means.mean(), states > 1 ? squares / (states - 1) : 0};
 }
 
-double split_r_hat(std::span<const ChainTrace> chains, int k, std::size_t batches) {
+// Batches that all chains have.
+std::size_t common_batches(std::span<const ChainTrace> chains) {
+    std::size_t batches = chains.empty() ? 0 : chains[0].batches();
+    for (const ChainTrace& chain : chains) batches = std::min(batches, chain.batches());
+    return batches;
+}
+
+} // namespace
+
+double split_r_hat(std::span<const ChainTrace> chains, int k) {
+    const std::size_t batches = common_batches(chains);
     const std::size_t half = batches / 2;
     if (half < 2) return std::numeric_limits<double>::infinity();
     RunningMoments means;
@@ -103,15 +113,6 @@ double split_r_hat(std::span<const ChainTrace> chains, int k, std::size_t batche
     if (!(within > 0)) return between > 0 ? std::numeric_limits<double>::infinity() : 1;
     return std::sqrt(((n - 1) / n * within + between) / within);
 }
-
-// Batches that all chains have.
-std::size_t common_batches(std::span<const ChainTrace> chains) {
-    std::size_t batches = chains.empty() ? 0 : chains[0].batches();
-    for (const ChainTrace& chain : chains) batches = std::min(batches, chain.batches());
-    return batches;
-}
-
-} // namespace
 
 ChainSummary summarize(std::span<const ChainTrace> chains, int k) {
     constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -134,7 +135,7 @@ ChainSummary summarize(std::span<const ChainTrace> chains, int k) {
             squares += chain.squares(k, i) + length * delta * delta;
         }
     summary.variance = squares / (all * length - 1);
-    summary.r_hat = split_r_hat(chains, k, batches);
+    summary.r_hat = split_r_hat(chains, k);
     summary.effective_sample_size = all * length;
     if (!(summary.variance > 0)) return summary;
 

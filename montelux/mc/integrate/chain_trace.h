@@ -61,6 +61,8 @@ struct ChainSummary {
 // the batch means by the initial monotone sequence of Geyer 1992, "Practical Markov Chain Monte Carlo",
 // section 3.3, about the mean over all chains, so that chains that disagree enlarge the error.
 ChainSummary summarize(std::span<const ChainTrace> chains, int observable);
+// Split R-hat alone; infinite while batches are too few.
+double split_r_hat(std::span<const ChainTrace> chains, int observable);
 // Correlation of the means of two observables, from the means of (at most) 16 blocks of each chain.
 double correlation_of_means(std::span<const ChainTrace> chains, int a, int b);
 

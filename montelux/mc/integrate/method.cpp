@@ -7,6 +7,7 @@
 #include "montelux/mc/integrate/basic_monte_carlo.h"
 #include "montelux/mc/integrate/cubature.h"
 #include "montelux/mc/integrate/grid.h"
+#include "montelux/mc/integrate/metropolis.h"
 #include "montelux/mc/integrate/quasi.h"
 #include "montelux/mc/integrate/recursive.h"
 #include "montelux/mc/integrate/stratified.h"
@@ -38,6 +39,7 @@ constexpr std::array entries{
     entry<BasicMonteCarlo>(),
     entry<Stratified>(),
     entry<Recursive>(),
+    entry<Metropolis>(),
     entry<RiemannSum>(),
     entry<MidpointRule>(),
     entry<TrapezoidRule>(),
