@@ -4,6 +4,7 @@
 #include "bench/integrate/report.h"
 #include "bench/integrate/rivals/rivals.h"
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <iostream>
 
@@ -13,6 +14,10 @@
 namespace {
 
 using namespace montelux::bench;
+
+// An interrupted comparison, which may take hours, still reports what it has.
+montelux::CancelFlag interrupted;
+void interrupt(int) { interrupted.request(); }
 
 bool asked_for(const std::vector<std::string>& beginnings, const std::string& name) {
     return std::any_of(beginnings.begin(), beginnings.end(),
@@ -77,7 +82,10 @@ int run(const Options& options) {
         return 0;
     }
     const Plan plan = plan_of(options, methods);
-    const std::vector<Run> runs = with_one_thread([&] { return run_all(plan, show_progress); });
+    std::signal(SIGINT, interrupt);
+    std::signal(SIGTERM, interrupt);
+    const std::vector<Run> runs = with_one_thread([&] { return run_all(plan, show_progress, &interrupted); });
+    if (interrupted.requested()) std::cout << "Interrupted: what follows is of the runs made until then.\n\n";
     const Summary summary(plan, runs);
     std::cout << "# Integrators compared\n\nOne thread, " << plan.seeds << " seeds, at most "
               << static_cast<std::uint64_t>(options.cap)
@@ -85,7 +93,7 @@ int run(const Options& options) {
     print_report(std::cout, plan, runs, summary);
     std::vector<Overhead> overheads;
     std::vector<Scaling> scaling;
-    if (options.overhead > 0) {
+    if (options.overhead > 0 && !interrupted.requested()) {
         const auto evaluations = static_cast<std::uint64_t>(options.overhead);
         std::vector<Method> measured;
         for (const Method& method : plan.methods)

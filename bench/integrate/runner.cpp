@@ -49,13 +49,14 @@ Run run_one(const Method& method, const BenchIntegrand& integrand, const Request
 
 } // namespace
 
-std::vector<Run> run_all(const Plan& plan, const Progress& progress) {
+std::vector<Run> run_all(const Plan& plan, const Progress& progress, const CancelFlag* cancel) {
     std::vector<Run> runs;
     for (std::size_t l = 0; l < plan.lines.size(); ++l)
         for (std::size_t g = 0; g < plan.goals.size(); ++g)
             for (std::size_t m = 0; m < plan.methods.size(); ++m) {
                 double cpu_seconds = 0;
                 for (std::uint64_t seed = 0; seed < plan.seeds; ++seed) {
+                    if (cancel && cancel->requested()) return runs;
                     const BenchIntegrand integrand(plan.lines[l], seed);
                     const Request request{.relative_error = plan.goals[g].relative_error,
                                           .evaluations = plan.goals[g].evaluations,

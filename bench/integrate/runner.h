@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "montelux/mc/parallel/parallel_for.h"
+
 namespace montelux::bench {
 
 // A relative error to be reached, or a number of evaluations to be spent.
@@ -44,7 +46,8 @@ struct Plan {
 // Called after all seeds of a line, goal and method.
 using Progress = std::function<void(const Line&, const Goal&, const Method&, double cpu_seconds)>;
 
-std::vector<Run> run_all(const Plan& plan, const Progress& progress);
+// `cancel` is asked before each run; what was run until then is returned.
+std::vector<Run> run_all(const Plan& plan, const Progress& progress, const CancelFlag* cancel = nullptr);
 
 // CPU time of this process so far.
 double process_cpu_seconds();
