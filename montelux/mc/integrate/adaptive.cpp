@@ -27,6 +27,7 @@ constexpr std::uint64_t enough_nonzero = 16;        // points that must see anyt
 constexpr std::uint64_t most_exploration = 1 << 20; // or evaluations without
 constexpr double peaky = 0.01; // effective share of exploring points below which peaks are searched for
 constexpr double trusted_exploration = 0.05; // the same, above which the error of uniform points is believed
+constexpr double flat = 0.6; // the same, of integrands that uniform points are likely to be best for
 constexpr double uniform_reach = 24576; // evaluations within which uniform points may be expected to arrive
 constexpr std::uint64_t step_points = 65536; // of each replicate in one step
 constexpr std::uint64_t smallest_budget = 4; // rounds of training that must fit in for training to begin

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "montelux/mc/integrate/adaptive.h"
+#include "montelux/mc/integrate/auto.h"
 #include "montelux/mc/integrate/basic_monte_carlo.h"
 #include "montelux/mc/integrate/cubature.h"
 #include "montelux/mc/integrate/grid.h"
@@ -32,17 +33,9 @@ constexpr Entry entry() {
     return {S::name, make<S>};
 }
 constexpr std::array entries{
-    entry<Adaptive>(),
-    entry<Vegas>(),
-    entry<VegasSobol>(),
-    entry<Quasi>(),
-    entry<BasicMonteCarlo>(),
-    entry<Stratified>(),
-    entry<Recursive>(),
-    entry<Metropolis>(),
-    entry<RiemannSum>(),
-    entry<MidpointRule>(),
-    entry<TrapezoidRule>(),
+    entry<Auto>(),       entry<Adaptive>(),        entry<Vegas>(),        entry<VegasSobol>(),
+    entry<Quasi>(),      entry<BasicMonteCarlo>(), entry<Stratified>(),   entry<Recursive>(),
+    entry<Metropolis>(), entry<RiemannSum>(),      entry<MidpointRule>(), entry<TrapezoidRule>(),
     entry<Cubature>(),
 };
 constexpr auto method_names = [] {
@@ -53,7 +46,7 @@ constexpr auto method_names = [] {
 
 } // namespace
 
-Method::Method() : Method(BasicMonteCarlo{}) {}
+Method::Method() : Method(Auto{}) {}
 
 Method Method::named(std::string_view name) {
     for (const Entry& e : entries)

@@ -1,0 +1,166 @@
+#include "montelux/mc/integrate/auto.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "montelux/mc/integrate/adaptive.h"
+#include "montelux/mc/integrate/basic_monte_carlo.h"
+#include "montelux/mc/integrate/cubature.h"
+#include "montelux/mc/random/sobol.h"
+
+namespace montelux {
+namespace {
+
+constexpr int cubature_dimensions = 8; // a region of more costs more points than sampling takes to begin
+constexpr double least_pilot = 1500;   // evaluations of cubature before it is judged,
+constexpr double pilot_share = 0.25;   // or this share of what sampling is expected to need
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// What Adaptive needs for a relative error, roughly, as measured on Genz's families in 5 and 8 dimensions
+// (docs/integration.md): 10,000 evaluations for 1e-3, 35,000 for 1e-4.
+double sampling_cost(double relative_error) { return 35000 * std::pow(1e-4 / relative_error, 0.55); }
+double sampling_error(double evaluations) { return 1e-4 * std::pow(35000 / evaluations, 1 / 0.55); }
+
+std::string printed(double x) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2g", x);
+    return text;
+}
+
+class AutoEstimator final : public Estimator {
+  public:
+    explicit AutoEstimator(const Problem& problem)
+        : cubature_(Cubature{}.estimator(problem)), sampling_(Adaptive{}.estimator(problem)),
+          one_variable_(problem.evaluator.dimensions() == 1) {}
+
+    StepOutcome step(const StepRequest& request) override {
+        if (switched_) return sampling_->step(request);
+        const StepOutcome outcome = cubature_->step(request);
+        if (outcome == StepOutcome::cancelled) return outcome;
+        if (outcome == StepOutcome::advanced) {
+            judge(request);
+            return outcome;
+        }
+        // It can do no more: what is left goes to sampling, if its first step fits.
+        give_up("cubature could do no more");
+        const StepOutcome other = sampling_->step(request);
+        if (other != StepOutcome::advanced) switched_ = false;
+        return other == StepOutcome::advanced ? other : outcome;
+    }
+
+    Tally tally() const override {
+        const Tally rule = cubature_->tally();
+        if (!switched_) {
+            Tally tally = rule;
+            tally.method = Cubature::name;
+            tally.reason = reason_;
+            // A rule that doubts itself is replaced rather than believed.
+            tally.ready = tally.ready && tally.doubts.empty();
+            return tally;
+        }
+        Tally tally = sampling_->tally();
+        tally.method = Adaptive::name;
+        tally.reason = reason_;
+        tally.evaluations += rule.evaluations;
+        NonFiniteCount all = rule.non_finite;
+        all.merge(tally.non_finite);
+        tally.non_finite = std::move(all);
+        return tally;
+    }
+
+    void save(StateWriter& state) const override {
+        state.put(switched_);
+        state.put(reason_);
+        state.put(ratios_);
+        state.put(costs_);
+        cubature_->save(state);
+        sampling_->save(state);
+    }
+    void load(StateReader& state) override {
+        switched_ = state.get_word() != 0;
+        reason_ = state.get_text();
+        ratios_ = state.get_doubles();
+        costs_ = state.get_doubles();
+        if (ratios_.size() != costs_.size()) throw Error("the saved state is damaged");
+        cubature_->load(state);
+        sampling_->load(state);
+    }
+
+  private:
+    void give_up(std::string why) {
+        switched_ = true;
+        reason_ = std::move(why);
+    }
+
+    // Is cubature on its way to the target, sooner than sampling would be?
+    void judge(const StepRequest& request) {
+        const Tally tally = cubature_->tally();
+        const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
+        double ratio = 0, tightest = infinity;
+        for (std::size_t c = 0; c < tally.value.size(); ++c) {
+            const double size = std::abs(tally.value[c]);
+            const double tolerance =
+                targeted ? std::max(request.absolute_error, request.relative_error * size) : size;
+            if (tally.standard_error[c] > 0) ratio = std::max(ratio, tally.standard_error[c] / tolerance);
+            if (size > 0) tightest = std::min(tightest, tolerance / size);
+        }
+        const double cost = static_cast<double>(tally.evaluations);
+        ratios_.push_back(ratio);
+        costs_.push_back(cost);
+        reason_ = "cubature converges";
+        if (targeted && ratio <= 1) {
+            // A target that is reached with doubts is not reached.
+            if (!tally.doubts.empty()) give_up("cubature doubts itself: " + tally.doubts.front());
+            return;
+        }
+        const double rate = falling_rate();
+        if (targeted) {
+            // One variable is what the rules are best at.
+            const double alternative = sampling_cost(std::min(1.0, tightest)) * (one_variable_ ? 10 : 1);
+            if (cost < std::max(least_pilot, pilot_share * alternative)) return;
+            const double needed = cost * std::pow(ratio, 1 / std::max(rate, 0.05));
+            if (needed > alternative)
+                give_up("after " + printed(cost) + " evaluations cubature seemed to need " + printed(needed) +
+                        ", sampling about " + printed(alternative));
+            return;
+        }
+        if (cost < least_pilot) return;
+        const double budget = cost + static_cast<double>(request.max_evaluations);
+        const double reached = ratio * std::pow(cost / budget, rate), alternative = sampling_error(budget);
+        if (reached > alternative && !(one_variable_ && reached < 10 * alternative))
+            give_up("cubature seemed to reach a relative error of " + printed(reached) +
+                    ", sampling one of " + printed(alternative));
+    }
+
+    // Exponent p of error ~ evaluations^-p, between now and when half as many had been made.
+    double falling_rate() const {
+        std::size_t i = costs_.size() - 1;
+        while (i > 0 && costs_[i] > 0.5 * costs_.back()) --i;
+        if (i + 1 == costs_.size() || !(costs_[i] < costs_.back())) return 1;
+        if (!(ratios_[i] < infinity)) return 1;
+        return std::clamp(std::log(ratios_[i] / ratios_.back()) / std::log(costs_.back() / costs_[i]), 0.0,
+                          8.0);
+    }
+
+    std::unique_ptr<Estimator> cubature_, sampling_;
+    bool one_variable_;
+    bool switched_ = false;
+    std::string reason_;
+    std::vector<double> ratios_, costs_; // of error to target, and evaluations, after each step of cubature
+};
+
+} // namespace
+
+std::unique_ptr<Estimator> Auto::estimator(const Problem& problem) const {
+    const int dimensions = problem.evaluator.dimensions();
+    if (dimensions > sobol_dimensions) return BasicMonteCarlo{}.estimator(problem);
+    if (dimensions > cubature_dimensions) return Adaptive{}.estimator(problem);
+    return std::make_unique<AutoEstimator>(problem);
+}
+
+} // namespace montelux
