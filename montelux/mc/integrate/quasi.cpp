@@ -268,7 +268,7 @@ class QuasiEstimator final : public Estimator {
             const double share = largest / squares * replicates_ / (replicates_ - 1);
             const double p =
                 replicates_ * (1 - incomplete_beta(0.5, 0.5 * (replicates_ - 2), std::min(share, 1.0)));
-            if (p < 1e-5)
+            if (p < 1e-4)
                 tally.doubts.push_back(
                     "one of the " + std::to_string(replicates_) + " replicates" + which +
                     " lies far from all others: a part of the integral may be seen seldom");

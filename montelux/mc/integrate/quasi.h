@@ -22,6 +22,11 @@ namespace montelux {
 // An error target is believed where three standard errors by Student's law, t, stay within three targets, or
 // where it is met at two successive doublings: a spread that is small by luck seldom passes.
 //
+// The error is honest where the replicates' law is near the normal one. It is not for integrands of infinite
+// variance, nor for a jump in one dimension, which all replicates may have on the same side of the same
+// point: their replicates mostly agree, and seldom differ much. Where one of them stands alone the result is
+// doubted.
+//
 // The plain sets (Randomisation::none, but for independent points) give one deterministic value; its error is
 // unknown, infinite.
 struct Quasi {

@@ -10,9 +10,9 @@
 namespace montelux {
 namespace {
 
-constexpr std::uint64_t samples_a_stratum = 16; // beside a pilot
+constexpr std::uint64_t samples_a_stratum = 16; // on a line, and beside a pilot
 constexpr std::uint64_t most_pilot_numbers = 1 << 24;
-constexpr double even_share = 0.1;
+constexpr double even_share = 0.2;
 
 class StratifiedEstimator final : public Estimator {
   public:
@@ -34,7 +34,9 @@ class StratifiedEstimator final : public Estimator {
         const std::uint64_t pilot =
             settings_.allocation == Allocation::neyman ? static_cast<std::uint64_t>(settings_.pilot) : 0;
         std::uint64_t size = next_pass_size(evaluations_, request);
-        std::uint64_t most = pilot == 0 ? size / 2 : size / (pilot + samples_a_stratum);
+        std::uint64_t most = pilot != 0                             ? size / (pilot + samples_a_stratum)
+                             : problem_.evaluator.dimensions() == 1 ? size / samples_a_stratum
+                                                                    : size / 2;
         if (pilot != 0)
             most = std::min(most,
                             most_pilot_numbers / static_cast<std::uint64_t>(problem_.evaluator.components()));
@@ -47,7 +49,7 @@ class StratifiedEstimator final : public Estimator {
         size = std::max(size, strata.count * (pilot + 2));
         if (size > request.max_evaluations) return StepOutcome::exhausted;
         // A small rest beside finer strata would hardly count.
-        if (passes_ > 0 && size < std::min<std::uint64_t>(1 << 20, evaluations_ / 16))
+        if (passes_ > 0 && size < std::min<std::uint64_t>(1 << 20, evaluations_ / 4))
             return StepOutcome::exhausted;
 
         std::vector<double> shares;
@@ -58,7 +60,7 @@ class StratifiedEstimator final : public Estimator {
             auto sum = sample_strata(problem_, strata, offsets, stream(1), &variances, request.cancel);
             if (!sum) return StepOutcome::cancelled;
             non_finite = std::move(sum->non_finite);
-            shares = neyman_shares(variances, strata.count);
+            shares = neyman_shares(variances, cells);
         }
         std::uint64_t samples = size - strata.count * pilot;
         if (pilot == 0) samples -= samples % strata.count; // equal numbers
@@ -100,18 +102,31 @@ class StratifiedEstimator final : public Estimator {
     std::uint32_t stream(std::uint32_t part) const { return 2 * passes_ + part; }
 
     // Standard deviations within strata; those of several components relative to their means over strata.
-    std::vector<double> neyman_shares(const std::vector<double>& variances, std::uint64_t strata) const {
+    // Half of each variance is that of the neighbours in the grid: a few points tell little, and a stratum
+    // that hides an edge from them lies beside others which show it.
+    std::vector<double> neyman_shares(const std::vector<double>& variances,
+                                      const std::vector<std::uint64_t>& cells) const {
         const auto m = static_cast<std::size_t>(problem_.evaluator.components());
-        std::vector<double> total(m);
-        for (std::uint64_t k = 0; k < strata; ++k)
+        const std::size_t strata = variances.size() / m;
+        std::vector<double> total(m), own(strata), shares(strata);
+        for (std::size_t k = 0; k < strata; ++k)
             for (std::size_t c = 0; c < m; ++c) total[c] += variances[k * m + c];
-        std::vector<double> shares(strata);
-        double sum = 0;
-        for (std::uint64_t k = 0; k < strata; ++k) {
-            double square = 0;
+        for (std::size_t k = 0; k < strata; ++k)
             for (std::size_t c = 0; c < m; ++c)
-                if (total[c] > 0) square += variances[k * m + c] / total[c];
-            sum += shares[k] = std::sqrt(square);
+                if (total[c] > 0) own[k] += variances[k * m + c] / total[c];
+        double sum = 0;
+        for (std::size_t k = 0; k < strata; ++k) {
+            double beside = 0;
+            int neighbours = 0;
+            std::size_t stride = 1;
+            for (std::uint64_t n : cells) {
+                const std::size_t cell = k / stride % n;
+                if (cell > 0) beside += own[k - stride];
+                if (cell + 1 < n) beside += own[k + stride];
+                neighbours += (cell > 0) + (cell + 1 < n);
+                stride *= n;
+            }
+            sum += shares[k] = std::sqrt(neighbours == 0 ? own[k] : 0.5 * (own[k] + beside / neighbours));
         }
         const double even = even_share / (1 - even_share) * sum / static_cast<double>(strata);
         for (double& s : shares) s += even;

@@ -14,18 +14,22 @@ enum class Allocation : std::uint8_t {
     proportional,
     // n_k in proportion to the standard deviation within stratum k (Neyman 1934, "On the two different
     // aspects of the representative method"), as a pilot estimates it. The pilot decides the allocation alone
-    // and does not enter the estimate, which so stays unbiased; a tenth of the samples is spread evenly, for
+    // and does not enter the estimate, which so stays unbiased; a fifth of the samples is spread evenly, for
     // strata that the pilot did not understand.
     neyman
 };
 
 // The unit cube is divided into a grid of strata; the estimate is the sum of volume times mean over strata,
 // its error the sum of volume^2 s^2 / n, each from at least two samples. By itself (strata = 0) the grid is
-// the finest that the samples of a pass allow, two in a stratum (about 16 where a pilot takes part, for its
-// allocation to tell), so that the error of a smooth integrand in n dimensions falls as N^(-1/2 - 1/n): as
-// 1/N in two. One pass takes all evaluations that are allowed, up to a million; where there is an error to
-// reach, passes double. Passes are averaged with weights N^(1 + 2/n) that are fixed beforehand (for a grid
-// that is given: N).
+// the finest that the samples of a pass allow with two in a stratum, so that the error of a smooth integrand
+// in n dimensions falls as N^(-1/2 - 1/n): as 1/N in two. There are about 16 in a stratum where a pilot takes
+// part, for its allocation to tell, and in one dimension: there a jump lies in a single stratum, which alone
+// decides the error, and two samples would mostly not notice. (16 miss one that is close to an end of its
+// stratum still: the error of a jump in one dimension is the least reliable.)
+//
+// One pass takes all evaluations that are allowed, up to a million; where there is an error to reach, passes
+// double. Passes are averaged with weights N^(1 + 2/n) that are fixed beforehand (for a grid that is given:
+// N).
 struct Stratified {
     static constexpr std::string_view name = "stratified";
 

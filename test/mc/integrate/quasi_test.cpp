@@ -34,7 +34,7 @@ std::vector<Quasi> randomised_sets() {
 TEST(Quasi, EverySetIsUnbiasedWithAnHonestError) {
     for (const Quasi& set : randomised_sets()) {
         RunningMoments values, squared_errors;
-        for (std::uint64_t seed = 0; seed < 300; ++seed) {
+        for (std::uint64_t seed = 0; seed < 200; ++seed) {
             const KnownIntegral f = product(3);
             const IntegrationResult r =
                 integrate(f.f, f.domain, set, {.evaluations = 2100}, {.seed = seed, .threads = 1});
@@ -46,8 +46,8 @@ TEST(Quasi, EverySetIsUnbiasedWithAnHonestError) {
         const TestResult bias = unbiasedness_test(values, 1);
         EXPECT_TRUE(bias.passes(significance)) << to_string(set.points) << ": " << bias.description;
         // The squared standard error is unbiased for the variance that the seeds show; that variance is known
-        // to sqrt(2 / 300), five of which are 41 %.
-        EXPECT_NEAR(squared_errors.mean() / values.variance(), 1, 0.45) << to_string(set.points);
+        // to sqrt(2 / 200), five of which are 50 %.
+        EXPECT_NEAR(squared_errors.mean() / values.variance(), 1, 0.55) << to_string(set.points);
         // Random points would have sqrt(((pi^2 / 8)^3 - 1) / 2000).
         const double random = std::sqrt((std::pow(pi * pi / 8, 3) - 1) / 2000);
         if (set.points != PointSetKind::independent) {
@@ -58,9 +58,9 @@ TEST(Quasi, EverySetIsUnbiasedWithAnHonestError) {
 
 TEST(Quasi, CalibratedByStudentsLaw) {
     // 16 replicates of 64 points, and 17 of 128 that the budget suggests.
-    expect_unbiased_and_calibrated(product(4), Quasi{.replicates = 16}, {.evaluations = 1024}, 3000, 15);
-    expect_unbiased_and_calibrated(product(4), Quasi{}, {.evaluations = 2200}, 2000, 16);
-    expect_unbiased_and_calibrated(two_components(), Quasi{}, {.evaluations = 2200}, 1000, 16);
+    expect_unbiased_and_calibrated(product(4), Quasi{.replicates = 16}, {.evaluations = 1024}, 2000, 15);
+    expect_unbiased_and_calibrated(product(4), Quasi{}, {.evaluations = 2200}, 1000, 16);
+    expect_unbiased_and_calibrated(two_components(), Quasi{}, {.evaluations = 2200}, 600, 16);
 }
 
 TEST(Quasi, ErrorFallsFasterThanOneOverN) {
@@ -127,8 +127,8 @@ TEST(Quasi, TargetsAreMet) {
                                  Domain::unit_cube(d),
                                  {}};
         const double jump_truth =
-            integrate(jump.f, jump.domain, Quasi{}, {.evaluations = 1 << 22}, {.seed = 999}).value[0];
-        for (std::uint64_t seed = 0; seed < 150; ++seed)
+            integrate(jump.f, jump.domain, Quasi{}, {.evaluations = 1 << 20}, {.seed = 999}).value[0];
+        for (std::uint64_t seed = 0; seed < 60; ++seed)
             for (const KnownIntegral* f : {&smooth, &jump}) {
                 const IntegrationResult r =
                     integrate(f->f, f->domain, Quasi{}, {.relative_error = 2e-3}, {.seed = seed});
@@ -158,9 +158,9 @@ TEST(Quasi, DoubtsWhatOneReplicateSaw) {
 }
 
 TEST(Quasi, KeepsPromises) {
-    for (const Quasi& set : randomised_sets()) expect_keeps_promises(set, 5000);
+    for (const Quasi& set : randomised_sets()) expect_keeps_promises(set, 3000);
     for (PointSetKind kind : {PointSetKind::sobol, PointSetKind::halton, PointSetKind::hammersley})
-        expect_keeps_promises(Quasi{kind, Randomisation::none}, 9000);
+        expect_keeps_promises(Quasi{kind, Randomisation::none}, 3000);
 }
 
 TEST(QuasiSlowTest, ADoublingInSeveralStepsIsResumedAmidst) {

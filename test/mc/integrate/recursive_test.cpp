@@ -60,8 +60,8 @@ TEST(Bisection, BoxesFillTheCubeAndSamplesAddUp) {
 
 TEST(Recursive, UnbiasedAndCalibrated) {
     expect_unbiased_and_calibrated(two_components(), Recursive{}, {.evaluations = 3000}, 1000);
-    expect_unbiased_and_calibrated(peak(2), Recursive{}, {.evaluations = 10000}, 1000);
-    expect_unbiased_and_calibrated(jump(), Recursive{}, {.evaluations = 10000}, 1000);
+    expect_unbiased_and_calibrated(peak(2), Recursive{}, {.evaluations = 10000}, 400);
+    expect_unbiased_and_calibrated(jump(), Recursive{}, {.evaluations = 10000}, 400);
 }
 
 TEST(Recursive, FarBetterThanBasicOnPeaksAndJumps) {
