@@ -242,10 +242,10 @@ class Run {
         r.reason = std::move(tally.reason);
         r.stop = stop;
         r.doubts = std::move(tally.doubts);
-        if (nothing_found(estimator_->tally()))
+        if (r.doubts.empty() && nothing_found(estimator_->tally()))
             r.doubts.push_back(
-                "a value is zero because every value of the integrand was: there is nothing to "
-                "judge the error by, and a narrow peak would not have been seen");
+                "a value is zero with an error of zero: no point has met anything but zeros, and "
+                "a narrow peak would not have been seen");
         if (r.non_finite > 0)
             r.doubts.push_back(std::to_string(r.non_finite) + " of " + std::to_string(r.evaluations) +
                                " values of the integrand were not finite and were left out, the first at " +

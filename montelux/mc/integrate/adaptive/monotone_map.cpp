@@ -28,8 +28,8 @@ MonotoneMap::MonotoneMap(std::vector<double> edges, std::vector<double> masses)
     const double total = std::accumulate(masses_.begin(), masses_.end(), 0.0);
     double u = 0;
     for (std::size_t k = 0; k < n; ++k) {
-        masses_[k] /= total;
-        const double end = k + 1 == n ? 1 : u + masses_[k];
+        // The masses stay as given, so that a map that was saved has the same bits when it is loaded.
+        const double end = k + 1 == n ? 1 : u + masses_[k] / total;
         bins_.push_back({u, end - u, edges_[k], edges_[k + 1] - edges_[k], 0, 0});
         u_starts_.push_back(u);
         x_starts_.push_back(edges_[k]);
