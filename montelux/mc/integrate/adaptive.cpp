@@ -216,9 +216,10 @@ class AdaptiveEstimator final : public Estimator {
     bool uniform_will_do(const StepRequest& request) const {
         if (!targeted(request) || trainer_.effective_share() < trusted_exploration) return false;
         const double ratio = error_ratio(uniform_sums_, uniform_points_, request);
-        constexpr double rate = 1.2;
-        return static_cast<double>(uniform_sums_.evaluations) * std::pow(std::max(1.0, ratio), 1 / rate) <=
-               uniform_reach;
+        const bool even = trainer_.effective_share() > flat;
+        return static_cast<double>(uniform_sums_.evaluations) *
+                   std::pow(std::max(1.0, ratio), even ? 1 / 1.2 : 1) <=
+               (even ? uniform_reach : uniform_reach / 4);
     }
 
     StepOutcome search(const StepRequest& request) {
@@ -287,7 +288,14 @@ class AdaptiveEstimator final : public Estimator {
         const bool first = points == 0;
         sums.merge(*added);
         points = end;
-        if (phase_ == Phase::weighted) choose_again(request, first);
+        if (phase_ == Phase::weighted)
+            choose_again(request, first);
+        else if (trainer_.rounds() == 0 && targeted(request) && trainer_.nonzero() >= enough_nonzero &&
+                 error_ratio(sums, points, request) > 1 && !uniform_will_do(request) &&
+                 request.max_evaluations >= smallest_budget * training_points) {
+            before_points_ = 0; // slower than expected
+            phase_ = Phase::train;
+        }
         return StepOutcome::advanced;
     }
 
