@@ -46,7 +46,7 @@ struct Axis {
 
     double operator()(double v) const {
         const double t = logarithmic ? std::log(v / low) / std::log(high / low) : (v - low) / (high - low);
-        return begin + std::clamp(t, 0.0, 1.0) * (end - begin);
+        return begin + std::clamp(t, -100.0, 100.0) * (end - begin);
     }
 };
 
@@ -125,6 +125,14 @@ class Picture {
     void path(const std::string& d, const char* attributes) {
         svg_ += "<path d=\"" + d + "\" " + attributes + "/>\n";
     }
+    // Shows what follows within the panel alone, until end_clip().
+    void begin_clip(const char* name, const Axis& x, const Axis& y) {
+        svg_ += text(
+            "<clipPath id=\"%s\"><rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\"/></clipPath>\n",
+            name, x.begin, y.end, x.end - x.begin, y.begin - y.end);
+        svg_ += text("<g clip-path=\"url(#%s)\">\n", name);
+    }
+    void end_clip() { svg_ += "</g>\n"; }
     // The frame, grid and numbers of one panel.
     void frame(const Axis& x, const Axis& y, const std::vector<Tick>& x_ticks,
                const std::vector<Tick>& y_ticks) {
@@ -192,13 +200,19 @@ void draw_value(Picture& picture, const std::vector<IterationRecord>& records, c
         low = std::min(low, r.value - 2.2 * r.standard_error);
         high = std::max(high, r.value + 2.2 * r.standard_error);
     }
-    const double margin = high > low ? 0.05 * (high - low) : std::max(1e-12, 1e-6 * std::abs(high));
+    // No narrower than a billionth of the value, so that the numbers at the axis can be told apart.
+    const double margin =
+        std::max({0.05 * (high - low), 1e-9 * std::max(std::abs(low), std::abs(high)), 1e-300});
     const Axis y{low - margin, high + margin, 320, 44, false};
+    picture.begin_clip("bands", x, y);
     picture.path(band(records, x, y, 2), "fill=\"#dbe9f6\"");
     picture.path(band(records, x, y, 1), "fill=\"#a9cbe8\"");
+    picture.end_clip();
     picture.frame(x, y, x_ticks, linear_ticks(y.low, y.high));
+    picture.begin_clip("values", x, y);
     picture.path(polyline(records, x, y, [](const auto& r) { return r.value; }),
                  "fill=\"none\" stroke=\"#08519c\" stroke-width=\"1.6\"");
+    picture.end_clip();
     const double final_value = records.back().value;
     picture.line(x.begin, y(final_value), x.end, y(final_value),
                  "stroke=\"#444444\" stroke-dasharray=\"2 3\"");

@@ -19,8 +19,8 @@ value() {
 expect 0 "error target reached" integrate 'sin(x)*y' --over x=0:pi/2 --over y=0:1 --relative-error 1e-2
 value 0.5 0.02 'sin(x)*y' --over x=0:pi/2 --over y=0:1 --relative-error 5e-3
 # Ranges: infinite ones, formulas at their ends, several variables at once.
-value 1 0.02 'exp(-x)' --over x=0:inf --evaluations 1e5
-value 1.7724539 0.05 'exp(-x^2)' --over x=-inf:inf --evaluations 1e5
+value 1 0.02 'exp(-x)' --over x=0:inf --method basic --evaluations 1e5
+value 1.7724539 0.05 'exp(-x^2)' --over x=-inf:inf --method basic --evaluations 1e5
 value 8 1e-9 1 --over 'x,y=-1:1' --over 'z=0:sqrt(4)'
 value 32 1e-9 1 --over x1..x5=0:2
 value 2 0.01 'x<1 ? 2 : 2' --over x=0:1
@@ -28,7 +28,7 @@ value 1 0.02 '(x^2 - 2*x + 1)*3' --over x=0:1
 value 0.842700793 0.01 'erf(1) + 0*x' --over x=0:1
 value 2 0.01 'e' --over e=0:2 # a variable may be called like a constant
 # Densities: the integrand over its own density has no error.
-value 0.2 1e-9 'exp(-5*x)' --over x=0:inf --density 'x=exp(-5*x)' --evaluations 5000
+value 0.2 1e-9 'exp(-5*x)' --over x=0:inf --density 'x=exp(-5*x)' --method basic --evaluations 5000
 value 0.2 0.002 'exp(-5*x)*2*y' --over x=0:inf --over y=0:1 --density x='3*exp(-5*x)' --evaluations 1e5
 value 2 0.02 '1/sqrt(x)' --over x=0:1 --density '1/sqrt(x)' --evaluations 5000
 # Domains
@@ -48,9 +48,9 @@ for method in $("$montelux" integrate --help | sed -n 's/.*How: //p;/How: /,/Def
 done
 
 # JSON is JSON, for scalars, vectors and numbers that it does not know.
-"$montelux" integrate x x^2 --over x=0:1 --evaluations 5000 --json >vector.json
-"$montelux" integrate x --over x=0:1 --evaluations 1 --json >one.json # an infinite error
-"$montelux" integrate 'x<0.5 ? 1 : nan' --over x=0:1 --evaluations 5000 --json >nan.json
+"$montelux" integrate x x^2 --over x=0:1 --method basic --evaluations 5000 --json >vector.json
+"$montelux" integrate x --over x=0:1 --method basic --evaluations 1 --json >one.json # an infinite error
+"$montelux" integrate 'x<0.5 ? 1 : nan' --over x=0:1 --method basic --evaluations 5000 --json >nan.json
 if command -v python3 >/dev/null; then
     python3 - <<'END' || fail "the JSON is not as documented"
 import json
@@ -81,12 +81,12 @@ cmp -s threads1 threads2 && cmp -s threads1 threads5 || fail "the number of thre
 cmp -s threads1 seed && fail "the seed changes nothing"
 
 # Exit codes: 3 where a target was not reached.
-expect 3 "stopped at the number of evaluations" integrate x --over x=0:1 --relative-error 1e-9 --evaluations 1e4
+expect 3 "stopped at the number of evaluations" integrate x --over x=0:1 --method basic --relative-error 1e-9 --evaluations 1e4
 expect 3 "stopped by time" integrate x --over x=0:1 --method basic --relative-error 1e-12 --time 0.3
 expect 0 "stopped by time" integrate x --over x=0:1 --method basic --time 0.2
 
 # Files
-expect 0 "100000 evaluations" integrate 'x*y' --over x,y=0:1 --evaluations 1e5 --plot plot.svg --points points.csv --points-limit 100
+expect 0 "100000 evaluations" integrate 'x*y' --over x,y=0:1 --method basic --evaluations 1e5 --plot plot.svg --points points.csv --points-limit 100
 grep -q '</svg>' plot.svg || fail "the plot is not whole"
 for text in 'evaluations N' 'standard error' 'value' '1/√N'; do
     grep -q "$text" plot.svg || fail "the plot does not say '$text'"
@@ -95,7 +95,7 @@ done
 [ "$(head -n 1 points.csv)" = "x,y,x*y" ] || fail "columns of the points: $(head -n 1 points.csv)"
 awk -F, 'NR > 1 { d = $1 * $2 - $3; if (d > 1e-12 || d < -1e-12) exit 1 }' points.csv || fail "the values are not those of the points"
 cp points.csv first.csv
-expect 0 "100000 evaluations" integrate 'x*y' --over x,y=0:1 --evaluations 1e5 --points points.csv --points-limit 100
+expect 0 "100000 evaluations" integrate 'x*y' --over x,y=0:1 --method basic --evaluations 1e5 --points points.csv --points-limit 100
 cmp -s points.csv first.csv || fail "the points differ between two equal runs"
 if command -v python3 >/dev/null; then
     python3 -c 'import xml.etree.ElementTree as e; e.parse("plot.svg")' || fail "the plot is no XML"
