@@ -53,6 +53,33 @@ std::vector<Gaussian> split(const std::vector<Gaussian>& components) {
     return result;
 }
 
+// Centred at four points drawn by weight, half as wide as the whole.
+std::vector<Gaussian> scattered_gaussians(const PointBatch& x, std::span<const double> weights) {
+    const auto n = static_cast<std::size_t>(x.dimensions());
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    std::vector<double> factor(n * n, 0.0);
+    for (std::size_t d = 0; d < n; ++d) {
+        std::span<const double> coordinate = x.coordinate(static_cast<int>(d));
+        double mean = 0, variance = 0;
+        for (std::size_t i = 0; i < weights.size(); ++i) mean += weights[i] / total * coordinate[i];
+        for (std::size_t i = 0; i < weights.size(); ++i)
+            variance += weights[i] / total * std::pow(coordinate[i] - mean, 2);
+        factor[d * n + d] = std::sqrt(0.5 * std::max(variance, 1e-12));
+    }
+    std::vector<Gaussian> gaussians;
+    double sum = 0;
+    constexpr int count = 4;
+    std::size_t i = 0;
+    for (int k = 0; k < count; ++k) {
+        for (; i + 1 < weights.size() && sum + weights[i] <= (k + 0.5) / count * total; ++i)
+            sum += weights[i];
+        std::vector<double> mean(n);
+        x.gather(i, mean.data());
+        gaussians.emplace_back(std::move(mean), factor);
+    }
+    return gaussians;
+}
+
 } // namespace
 
 DensityTrainer::DensityTrainer(const Problem& problem, int uniform_units)
@@ -88,7 +115,7 @@ void DensityTrainer::start(SamplePoints&& points) {
     }
     effective_share_ = squares > 0 ? sum * sum / squares / static_cast<double>(h.size()) : 0;
     recent_.clear();
-    recent_.push_back({density_, std::move(points.x), std::move(h)});
+    recent_.push_back({density_, std::move(points.x), std::move(h), std::move(points.density)});
 }
 
 void DensityTrainer::find_peaks(std::uint64_t max_evaluations) {
@@ -136,91 +163,69 @@ bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
         spread = squares / (static_cast<double>(n) * static_cast<double>(n));
     }
     relative_variance_ = mean_size > 0 ? spread * static_cast<double>(n) / (mean_size * mean_size) : 0;
-    recent_.push_back({density_, std::move(points.x), std::move(h)});
+    recent_.push_back({density_, std::move(points.x), std::move(h), std::move(points.density)});
     if (recent_.size() > 2) recent_.erase(recent_.begin());
     fit();
     return true;
 }
 
-void DensityTrainer::fit() {
-    // All recent points, weighted by the mixture of the densities that drew them.
+DensityTrainer::Pool DensityTrainer::pool() const {
     const int dimensions = density_.dimensions();
     std::size_t count = 0;
     for (const Round& r : recent_) count += r.h.size();
-    PointBuffer x(count, dimensions);
-    std::vector<double> h, p(count, 0.0), part(count);
+    Pool pool;
+    pool.x.resize(count, dimensions);
+    pool.p.assign(count, 0.0);
     for (const Round& r : recent_) {
-        const std::size_t at = h.size();
+        const auto at = static_cast<std::ptrdiff_t>(pool.h.size());
         for (int d = 0; d < dimensions; ++d)
-            std::ranges::copy(r.x.view().coordinate(d),
-                              x.coordinate(d).begin() + static_cast<std::ptrdiff_t>(at));
-        h.insert(h.end(), r.h.begin(), r.h.end());
+            std::ranges::copy(r.x.view().coordinate(d), pool.x.coordinate(d).begin() + at);
+        pool.h.insert(pool.h.end(), r.h.begin(), r.h.end());
     }
+    std::vector<double> part(count);
     for (const Round& r : recent_) {
-        r.density.pdf(x, part);
+        r.density.pdf(pool.x, part);
         for (std::size_t i = 0; i < count; ++i)
-            p[i] += part[i] * static_cast<double>(r.h.size()) / static_cast<double>(count);
+            pool.p[i] += part[i] * static_cast<double>(r.h.size()) / static_cast<double>(count);
     }
-    std::vector<double> weights(count);
-    for (std::size_t i = 0; i < count; ++i) weights[i] = h[i] / p[i];
-    if (!(std::accumulate(weights.begin(), weights.end(), 0.0) > 0)) return;
-
-    // The maps follow the last round alone, whose weights are the evenest.
-    const Round& last = recent_.back();
-    std::vector<double> density(last.h.size()), last_weights(last.h.size());
-    last.density.pdf(last.x, density);
-    for (std::size_t i = 0; i < density.size(); ++i) last_weights[i] = last.h[i] / density[i];
-    MapFit settings;
-    settings.bins = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(last.h.size())) / 3), 8, 48);
-    std::vector<MonotoneMap> maps;
-    for (int d = 0; d < dimensions; ++d)
-        maps.push_back(fit_monotone_map(last.x.view().coordinate(d), last_weights, settings));
-
-    std::vector<Gaussian> gaussians(density_.gaussians().begin(), density_.gaussians().end());
-    density_ = MixtureDensity(dimensions, std::move(maps), std::move(gaussians));
-    if (!enriched_ && rounds_ > first_fit_before_gaussians && relative_variance_ > enough_even &&
-        dimensions <= max_gaussian_dimensions) {
-        enriched_ = true;
-        add_gaussians(x, weights);
-    }
-    gaussians.assign(density_.gaussians().begin(), density_.gaussians().end());
-    fit_gaussians(gaussians, x, weights, em_steps);
-    for (Gaussian& g : gaussians) g = g.widened(safe_width); // tails cost little, and their absence much
-    density_ =
-        MixtureDensity(dimensions, {density_.maps().begin(), density_.maps().end()}, std::move(gaussians));
-    density_.optimise_shares(x, h, p, uniform_units_);
+    return pool;
 }
 
-void DensityTrainer::add_gaussians(const PointBatch& x, std::span<const double> weights) {
+void DensityTrainer::fit() {
+    const int dimensions = density_.dimensions();
+    const Round& last = recent_.back();
+    // The maps follow the last round alone, whose weights are the evenest.
+    std::vector<double> weights(last.h.size());
+    for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = last.h[i] / last.p[i];
+    if (!(std::accumulate(weights.begin(), weights.end(), 0.0) > 0)) return;
+    MapFit settings;
+    settings.bins = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(last.h.size())) / 3), 8, 48);
+    std::vector<MonotoneMap> maps(static_cast<std::size_t>(dimensions));
+    parallel_for(dimensions, [&](std::int64_t d) {
+        maps[static_cast<std::size_t>(d)] =
+            fit_monotone_map(last.x.view().coordinate(static_cast<int>(d)), weights, settings);
+    });
     std::vector<Gaussian> gaussians(density_.gaussians().begin(), density_.gaussians().end());
-    if (!gaussians.empty()) {
-        gaussians = split(gaussians);
-    } else {
-        // Centred at four points drawn by weight, half as wide as the whole.
-        const auto n = static_cast<std::size_t>(x.dimensions());
-        const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
-        std::vector<double> factor(n * n, 0.0);
-        for (std::size_t d = 0; d < n; ++d) {
-            std::span<const double> coordinate = x.coordinate(static_cast<int>(d));
-            double mean = 0, variance = 0;
-            for (std::size_t i = 0; i < weights.size(); ++i) mean += weights[i] / total * coordinate[i];
-            for (std::size_t i = 0; i < weights.size(); ++i)
-                variance += weights[i] / total * std::pow(coordinate[i] - mean, 2);
-            factor[d * n + d] = std::sqrt(0.5 * std::max(variance, 1e-12));
-        }
-        double sum = 0;
-        constexpr int count = 4;
-        std::size_t i = 0;
-        for (int k = 0; k < count; ++k) {
-            for (; i + 1 < weights.size() && sum + weights[i] <= (k + 0.5) / count * total; ++i)
-                sum += weights[i];
-            std::vector<double> mean(n);
-            x.gather(i, mean.data());
-            gaussians.emplace_back(std::move(mean), factor);
-        }
+    const bool more = !enriched_ && rounds_ > first_fit_before_gaussians &&
+                      relative_variance_ > enough_even && dimensions <= max_gaussian_dimensions;
+    if (gaussians.empty() && !more) {
+        density_ = MixtureDensity(dimensions, std::move(maps), {});
+        density_.optimise_shares(last.x, last.h, last.p, uniform_units_);
+        return;
     }
-    density_ = MixtureDensity(density_.dimensions(), {density_.maps().begin(), density_.maps().end()},
-                              std::move(gaussians));
+    // Gaussians have more to learn: all recent points, weighted by the mixture of the densities that drew
+    // them.
+    const Pool all = pool();
+    weights.resize(all.h.size());
+    for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = all.h[i] / all.p[i];
+    if (more) {
+        enriched_ = true;
+        gaussians = gaussians.empty() ? scattered_gaussians(all.x, weights) : split(gaussians);
+    }
+    fit_gaussians(gaussians, all.x, weights, em_steps);
+    for (Gaussian& g : gaussians) g = g.widened(safe_width); // tails cost little, and their absence much
+    density_ = MixtureDensity(dimensions, std::move(maps), std::move(gaussians));
+    density_.optimise_shares(all.x, all.h, all.p, uniform_units_);
 }
 
 void DensityTrainer::save(StateWriter& state) const {
@@ -233,6 +238,7 @@ void DensityTrainer::save(StateWriter& state) const {
         for (int d = 0; d < density_.dimensions(); ++d)
             for (double v : r.x.view().coordinate(d)) state.put(v);
         for (double v : r.h) state.put(v);
+        for (double v : r.p) state.put(v);
     }
     state.put(static_cast<std::uint64_t>(checks_.size()));
     for (const Check& c : checks_) {
@@ -254,7 +260,7 @@ void DensityTrainer::load(StateReader& state) {
     scale_ = state.get_doubles();
     recent_.clear();
     for (std::uint64_t rounds = state.get_word(); rounds > 0; --rounds) {
-        Round r{MixtureDensity::load(state, dimensions), {}, {}};
+        Round r{MixtureDensity::load(state, dimensions), {}, {}, {}};
         const std::uint64_t count = state.get_word();
         if (count > (std::uint64_t{1} << 32)) throw Error("the saved state is damaged");
         r.x.resize(count, dimensions);
@@ -262,6 +268,8 @@ void DensityTrainer::load(StateReader& state) {
             for (double& v : r.x.coordinate(d)) v = state.get_double();
         r.h.resize(count);
         for (double& v : r.h) v = state.get_double();
+        r.p.resize(count);
+        for (double& v : r.p) v = state.get_double();
         recent_.push_back(std::move(r));
     }
     checks_.clear();

@@ -48,12 +48,17 @@ class DensityTrainer {
     struct Round {
         MixtureDensity density;
         PointBuffer x;
-        std::vector<double> h;
+        std::vector<double> h, p; // p: the density there
+    };
+    // The points of all recent rounds; p is the mixture of their densities.
+    struct Pool {
+        PointBuffer x;
+        std::vector<double> h, p;
     };
     // One number for all components: the root of the sum of squares, each relative to its mean size.
     std::vector<double> steering(const ValueBuffer& g) const;
     void fit();
-    void add_gaussians(const PointBatch& x, std::span<const double> weights);
+    Pool pool() const;
 
     Problem problem_;
     int uniform_units_;

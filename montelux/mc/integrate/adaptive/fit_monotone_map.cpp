@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <vector>
 
@@ -41,12 +43,15 @@ class Splitter {
         leaf.gain = 0;
         const std::size_t count = leaf.last - leaf.first;
         if (count < 2 * least_ || !(profile_.mass(leaf.first, leaf.last) > 0)) return;
-        const std::size_t step = std::max<std::size_t>(1, count / candidates);
+        std::size_t step = std::max<std::size_t>(1, count / candidates);
         for (std::size_t k = leaf.first + least_; k + least_ <= leaf.last; k += step) consider(leaf, k);
-        if (step == 1 || !(leaf.gain > 0)) return;
-        const std::size_t near = leaf.split;
-        for (std::size_t k = near - std::min(near, step); k <= near + step; ++k)
-            if (k >= leaf.first + least_ && k + least_ <= leaf.last) consider(leaf, k);
+        // Closer and closer to the best so far.
+        while (step > 1 && leaf.gain > 0) {
+            const std::size_t near = leaf.split, reach = step;
+            step = std::max<std::size_t>(1, step / (candidates / 4));
+            for (std::size_t k = near - std::min(near, reach); k <= near + reach; k += step)
+                if (k >= leaf.first + least_ && k + least_ <= leaf.last) consider(leaf, k);
+        }
     }
 
   private:
@@ -96,21 +101,38 @@ class Splitter {
     std::size_t least_;
 };
 
+// Indices in the order of the positions, to 33 binary digits, by a radix sort.
+std::vector<std::uint32_t> sorted_order(std::span<const double> positions) {
+    constexpr int digit_bits = 11, digits = 3;
+    constexpr std::uint64_t buckets = 1 << digit_bits;
+    std::vector<std::uint64_t> keys(positions.size());
+    std::vector<std::uint32_t> order(positions.size()), next(positions.size());
+    for (std::size_t i = 0; i < keys.size(); ++i)
+        keys[i] = static_cast<std::uint64_t>(positions[i] *
+                                             static_cast<double>(std::uint64_t{1} << (digit_bits * digits)));
+    std::iota(order.begin(), order.end(), std::uint32_t{0});
+    for (int digit = 0; digit < digits; ++digit) {
+        auto bucket = [&](std::uint32_t i) { return (keys[i] >> (digit_bits * digit)) % buckets; };
+        std::array<std::uint32_t, buckets + 1> start{};
+        for (std::uint32_t i : order) ++start[bucket(i) + 1];
+        std::partial_sum(start.begin(), start.end(), start.begin());
+        for (std::uint32_t i : order) next[start[bucket(i)]++] = i;
+        std::swap(order, next);
+    }
+    return order;
+}
+
 } // namespace
 
 MonotoneMap fit_monotone_map(std::span<const double> positions, std::span<const double> weights,
                              const MapFit& settings) {
     const std::size_t n = positions.size();
-    std::vector<std::size_t> order(n);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return positions[a] < positions[b] || (positions[a] == positions[b] && a < b);
-    });
+    const std::vector<std::uint32_t> order = sorted_order(positions);
     Profile profile;
     profile.cumulative.push_back(0);
     profile.nonzero.push_back(0);
     double squares = 0;
-    for (std::size_t i : order) {
+    for (std::uint32_t i : order) {
         profile.x.push_back(positions[i]);
         profile.cumulative.push_back(profile.cumulative.back() + weights[i]);
         profile.nonzero.push_back(profile.nonzero.back() + (weights[i] > 0 ? 1 : 0));
