@@ -27,6 +27,9 @@ value 2 0.01 'x<1 ? 2 : 2' --over x=0:1
 value 1 0.02 '(x^2 - 2*x + 1)*3' --over x=0:1
 value 0.842700793 0.01 'erf(1) + 0*x' --over x=0:1
 value 2 0.01 'e' --over e=0:2 # a variable may be called like a constant
+# Without a target, the method of choice does not throw away what it has.
+value 1 1e-6 'exp(-x)' --over x=0:inf --evaluations 1e5
+value 0.25 1e-6 'x*y' --over x,y=0:1 --evaluations 1e5
 # Densities: the integrand over its own density has no error.
 value 0.2 1e-9 'exp(-5*x)' --over x=0:inf --density 'x=exp(-5*x)' --method basic --evaluations 5000
 value 0.2 0.002 'exp(-5*x)*2*y' --over x=0:inf --over y=0:1 --density x='3*exp(-5*x)' --evaluations 1e5

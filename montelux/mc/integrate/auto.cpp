@@ -46,7 +46,13 @@ class AutoEstimator final : public Estimator {
             judge(request);
             return outcome;
         }
-        // It can do no more: what is left goes to sampling, if its first step fits.
+        // It can do no more. Sampling takes over where there is no result yet, or where a target is still
+        // open and much is left; a remainder that no region fits into would give a worse result than there
+        // is.
+        const std::uint64_t spent = cubature_->tally().evaluations;
+        const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
+        const bool open = outcome == StepOutcome::finished && targeted && request.max_evaluations > spent;
+        if (spent > 0 && !open) return outcome;
         give_up("cubature could do no more");
         const StepOutcome other = sampling_->step(request);
         if (other != StepOutcome::advanced) switched_ = false;
