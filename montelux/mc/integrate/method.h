@@ -25,8 +25,9 @@ class Method {
   public:
     // Auto.
     Method();
-    template <MethodSettings S>
-    Method(S settings)
+    template <typename S>
+    requires(!std::same_as<S, Method> && MethodSettings<S>) // copies of a Method are not asked what they are
+        Method(S settings)
         : name_(S::name), make_([settings](const Problem& problem) { return settings.estimator(problem); }) {}
 
     // A method by name with its default settings; throws Error that lists the names.
