@@ -17,6 +17,7 @@ struct Domain::Implementation {
     std::vector<Range> ranges;
     std::string description;
     double constant_volume = 0;
+    bool unit_cube = false;
     BatchMap map;
 };
 
@@ -141,6 +142,7 @@ Domain::Domain(std::vector<Range> ranges) {
     made->ranges = ranges;
     const bool unit = finite && std::all_of(ranges.begin(), ranges.end(),
                                             [](const Range& r) { return r.lower == 0 && r.upper == 1; });
+    made->unit_cube = unit;
     made->map = [ranges = std::move(ranges), unit](const PointBatch& u, PointBuffer& x, std::span<double> v) {
         for (int d = 0; d < x.dimensions(); ++d) {
             if (unit)
@@ -281,6 +283,7 @@ int Domain::dimensions() const { return implementation_->dimensions; }
 int Domain::uniforms() const { return implementation_->uniforms; }
 std::span<const Range> Domain::ranges() const { return implementation_->ranges; }
 const std::string& Domain::description() const { return implementation_->description; }
+bool Domain::is_unit_cube() const { return implementation_->unit_cube; }
 double Domain::constant_volume() const { return implementation_->constant_volume; }
 void Domain::map(const PointBatch& u, PointBuffer& x, std::span<double> volume) const {
     implementation_->map(u, x, volume);

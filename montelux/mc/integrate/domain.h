@@ -55,6 +55,8 @@ class Domain {
     // The ranges where the domain is a box, else empty.
     std::span<const Range> ranges() const;
     const std::string& description() const;
+    // The unit cube itself: x = u.
+    bool is_unit_cube() const;
     // Constant |dx/du|, where it is constant (a finite box), else 0.
     double constant_volume() const;
 

@@ -61,6 +61,7 @@ void Evaluator::at_points(const PointBatch& x, ValueBatch f, NonFiniteCount& non
 }
 
 void Evaluator::operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& non_finite) const {
+    if (domain_.is_unit_cube()) return at_points(u, g, non_finite);
     thread_local PointBuffer x_buffer;
     thread_local std::vector<double> volume_buffer;
     // Taken, not borrowed: an integrand may itself integrate on this thread.
