@@ -1,7 +1,8 @@
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <gtest/gtest.h>
 #include <random>
 #include <string>
@@ -21,7 +22,8 @@ void expect_float(const std::string& text, float expected) {
     NumberResult r = parse(text, value);
     EXPECT_EQ(r.status, NumberStatus::ok) << text;
     EXPECT_EQ(r.end, text.data() + text.size()) << text;
-    EXPECT_EQ(std::memcmp(&value, &expected, sizeof(float)), 0) << text << " gives " << value;
+    EXPECT_EQ(std::bit_cast<std::uint32_t>(value), std::bit_cast<std::uint32_t>(expected))
+        << text << " gives " << value;
 }
 
 TEST(Number, FormsOfFloats) {

@@ -277,17 +277,17 @@ TEST(PbrtAttributes, NamesThatFitNoPluginAreTold) {
         Attribute "light" "float scaale" 2 "float fov" 20
         Attribute "material" "float radius" 0.5 "float interface.roughness" 0.5
         Attribute "medium" "float gg" 0.5 "float g" 0.5
-        Attribute "texture" "string filenam" "a.png" "float octaves" 2
+        Attribute "texture" "string encodin" "linear" "float octaves" 2
         Shape "sphere")",
                                      &told);
-    EXPECT_EQ(told.messages(),
-              (std::vector<std::string>{
-                  "scene:3:27: no shape has a parameter 'radios' (did you mean 'radius'?); it is ignored",
-                  "scene:5:27: no light has a parameter 'scaale' (did you mean 'scale'?); it is ignored",
-                  "scene:6:30: no material has a parameter 'radius'; it is ignored",
-                  "scene:7:28: no medium has a parameter 'gg' (did you mean 'g'?); it is ignored",
-                  "scene:8:29: no texture has a parameter 'filenam' (did you mean 'filename'?); it is "
-                  "ignored"}));
+    EXPECT_EQ(
+        told.messages(),
+        (std::vector<std::string>{
+            "scene:3:27: no shape has a parameter 'radios' (did you mean 'radius'?); it is ignored",
+            "scene:5:27: no light has a parameter 'scaale' (did you mean 'scale'?); it is ignored",
+            "scene:6:30: no material has a parameter 'radius'; it is ignored",
+            "scene:7:28: no medium has a parameter 'gg' (did you mean 'g'?); it is ignored",
+            "scene:8:29: no texture has a parameter 'encodin' (did you mean 'encoding'?); it is ignored"}));
     EXPECT_EQ(sphere(d, 0).radius, 1);
 }
 
