@@ -21,10 +21,10 @@ class ReplicateSums {
     int replicates() const { return components_ == 0 ? 0 : static_cast<int>(sums_.size()) / components_; }
     int components() const { return components_; }
     double& sum(int replicate, int component) {
-        return sums_[static_cast<std::size_t>(replicate * components_ + component)];
+        return sums_[static_cast<std::size_t>(replicate) * components_ + component];
     }
     double sum(int replicate, int component) const {
-        return sums_[static_cast<std::size_t>(replicate * components_ + component)];
+        return sums_[static_cast<std::size_t>(replicate) * components_ + component];
     }
     void merge(const ReplicateSums& other) {
         for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += other.sums_[i];
