@@ -1,7 +1,9 @@
 // A sampling technique: uniform numbers to points of a domain, and the density of any point.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <concepts>
 #include <functional>
 #include <span>
 #include <vector>
@@ -12,6 +14,15 @@
 #include "montelux/mc/integrate/points.h"
 
 namespace montelux {
+
+// A joint distribution of as many variables as its type says: ProductDistribution, MarginalConditional, or a
+// class of the user's. sample(xi) maps the open unit cube to points that follow pdf(x).
+template <typename D>
+concept JointDistribution = std::same_as<typename D::Point, std::array<double, D::dimensions>> &&
+    requires(const D& d, const typename D::Point& x) {
+    { d.sample(x) } -> std::same_as<typename D::Point>;
+    { d.pdf(x) } -> std::convertible_to<double>;
+};
 
 // Points X that follow a density p, with respect to the measure in which the integral is taken. p must
 // integrate to 1 and be above zero wherever the integrand is not zero; points outside the domain may be drawn
@@ -31,8 +42,8 @@ class Technique {
     Technique(Distribution distribution) : Technique(std::vector<Distribution>{std::move(distribution)}) {}
     template <Distribution1D D>
     Technique(D distribution) : Technique(Distribution(std::move(distribution))) {}
-    template <Distribution1D... Ds>
-    Technique(ProductDistribution<Ds...> product) : Technique(from_product(std::move(product))) {}
+    template <JointDistribution D>
+    Technique(D joint) : Technique(from_joint(std::move(joint))) {}
     template <Distribution1D D>
     Technique(RuntimeProduct<D> product) : Technique(from_product(std::move(product))) {}
 
@@ -57,23 +68,21 @@ class Technique {
   private:
     Technique(int uniforms, int dimensions, BatchSample sample, BatchDensity density);
 
-    template <typename... Ds>
-    static Technique from_product(ProductDistribution<Ds...> product) {
-        constexpr int n = sizeof...(Ds);
-        using Point = std::array<double, sizeof...(Ds)>;
+    template <typename D>
+    static Technique from_joint(D joint) {
+        constexpr auto n = static_cast<int>(D::dimensions);
+        auto point = [](std::span<const double> x) {
+            typename D::Point p;
+            std::copy_n(x.begin(), n, p.begin());
+            return p;
+        };
         return functions(
             n, n,
-            [product](std::span<const double> u, std::span<double> x) {
-                Point xi;
-                std::copy_n(u.begin(), n, xi.begin());
-                const Point at = product.sample(xi);
+            [joint, point](std::span<const double> u, std::span<double> x) {
+                const typename D::Point at = joint.sample(point(u));
                 std::copy_n(at.begin(), n, x.begin());
             },
-            [product](std::span<const double> x) {
-                Point at;
-                std::copy_n(x.begin(), n, at.begin());
-                return product.pdf(at);
-            });
+            [joint, point](std::span<const double> x) { return joint.pdf(point(x)); });
     }
     template <typename D>
     static Technique from_product(RuntimeProduct<D> product) {

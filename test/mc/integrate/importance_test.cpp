@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "montelux/mc/dist/families.h"
+#include "montelux/mc/dist/marginal_conditional.h"
 #include "montelux/mc/integrate/importance.h"
 #include "montelux/mc/integrate/unit_points.h"
 
@@ -79,6 +80,29 @@ TEST(Importance, AllFormsOfATechniqueAgree) {
     for (double v : values) EXPECT_NEAR(v, values[0], 1e-13);
 }
 
+TEST(Importance, MarginalConditionalDrawsDependentVariables) {
+    // Integral of x e^-y over the triangle 0 <= y < x < 1 = 1/2 - (1 - 2/e), drawn by p(x) = 2x, p(y | x) =
+    // 1/x.
+    const MarginalConditional triangle(LinearDistribution(),
+                                       [](double x) { return UniformDistribution(0, x); });
+    auto f = [](std::span<const double> x) { return x[1] < x[0] ? x[0] * std::exp(-x[1]) : 0; };
+    const IntegrationResult r =
+        integrate(f, Domain::unit_cube(2), Importance{triangle}, {.evaluations = 50000}, {.seed = 5});
+    const TestResult test = unbiasedness_test(r.estimate(), 2 / std::exp(1.0) - 0.5);
+    EXPECT_TRUE(test.passes(significance)) << test.description;
+    EXPECT_LT(r.standard_error[0], 0.001);
+    EXPECT_TRUE(r.doubts.empty());
+
+    // Three variables: the same with z uniform on [0, x + y) behind them; the volume of where it can be.
+    const MarginalConditional chain(
+        triangle, [](const std::array<double, 2>& v) { return UniformDistribution(0, v[0] + v[1]); });
+    auto inside = [](std::span<const double> x) { return x[1] < x[0] && x[2] < x[0] + x[1] ? 1.0 : 0.0; };
+    const IntegrationResult volume = integrate(inside, Domain{{0, 1}, {0, 1}, {0, 2}}, Importance{chain},
+                                               {.evaluations = 50000}, {.seed = 6});
+    const TestResult volume_test = unbiasedness_test(volume.estimate(), 0.5);
+    EXPECT_TRUE(volume_test.passes(significance)) << volume_test.description;
+}
+
 TEST(Importance, PerfectDensityHasNoVariance) {
     const IntegrationResult r = integrate([](double x) { return 3 * std::cos(x); }, quarter,
                                           Importance{CosineDistribution()}, {.evaluations = 1000});
@@ -144,7 +168,8 @@ TEST(Importance, MistakesAreAnsweredWithASentence) {
 }
 
 TEST(Importance, KeepsPromises) {
-    const Technique p = std::vector<Distribution>{UniformDistribution(-0.2, 1.3), ExponentialDistribution(0.5)};
+    const Technique p =
+        std::vector<Distribution>{UniformDistribution(-0.2, 1.3), ExponentialDistribution(0.5)};
     const Technique cube = Technique::uniform(Domain::unit_cube(2));
     for (ImportancePoints points : {ImportancePoints::random, ImportancePoints::sobol}) {
         expect_same_bits_for_any_threads(two_components(), Importance{p, points}, 30000);
