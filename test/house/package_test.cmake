@@ -3,8 +3,9 @@
 #   build, config     what is installed
 #   components        of it, separated by commas
 #   without           packages that the project must not need, separated by commas
-#   source, program   the project, and the program that it builds
-#   expected          a pattern of what the program prints
+#   source            the project
+#   programs          programs that it builds, separated by commas; each must end with 0
+#   expected          a pattern of what they print together
 function(step)
     execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output
         WORKING_DIRECTORY ${work})
@@ -25,8 +26,13 @@ endforeach()
 step(${CMAKE_COMMAND} -S ${source} -B ${work}/build -G Ninja -D CMAKE_PREFIX_PATH=${work}/prefix
     -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_BUILD_TYPE=Release ${without})
 step(${CMAKE_COMMAND} --build ${work}/build)
-step(${work}/build/${program})
-message(STATUS "${output}")
-if(NOT output MATCHES "${expected}")
-    message(FATAL_ERROR "the program should print '${expected}', but it printed: ${output}")
+string(REPLACE "," ";" programs "${programs}")
+set(printed)
+foreach(program ${programs})
+    step(${work}/build/${program})
+    string(APPEND printed "${output}")
+endforeach()
+message(STATUS "${printed}")
+if(NOT printed MATCHES "${expected}")
+    message(FATAL_ERROR "it should have printed '${expected}', but what it printed was: ${printed}")
 endif()

@@ -1,0 +1,28 @@
+// Prints results beside what is known of them, and remembers whether they agree.
+#pragma once
+
+#include <cmath>
+#include <iostream>
+#include <montelux/mc/stats/estimate.h>
+#include <string>
+
+class Comparison {
+  public:
+    // `known` may have an error of its own, independent of the result's.
+    void add(const std::string& what, const montelux::Estimate& result, double known,
+             double known_error = 0) {
+        const double distance = std::abs(result.value - known);
+        const double error = std::hypot(result.standard_error, known_error);
+        const bool agrees = distance <= 3 * error + 1e-14 * std::abs(known);
+        const auto digits = std::cout.precision(10);
+        std::cout << what << " = " << result << "   known: " << known;
+        if (known_error > 0) std::cout << " +- " << known_error;
+        std::cout << (agrees ? "   agrees\n" : "   DISAGREES\n");
+        std::cout.precision(digits);
+        exit_code_ |= !agrees;
+    }
+    int exit_code() const { return exit_code_; }
+
+  private:
+    int exit_code_ = 0;
+};
