@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <regex>
 #include <sstream>
 
 namespace montelux::house {
 
 namespace {
+
+constexpr const char* test_macros[] = {"TEST", "TEST_F", "TEST_P", "TYPED_TEST"};
 
 std::string without_comments(std::string_view cmake) {
     std::istringstream in{std::string(cmake)};
@@ -211,6 +214,56 @@ std::vector<std::string> long_files(const std::vector<SourceFile>& files, std::s
         if (file.lines.size() > limit && file.path.find("_data.") == std::string::npos)
             wrong.push_back(at(file, limit) + std::to_string(file.lines.size()) + " lines, and " +
                             std::to_string(limit) + " are allowed");
+    return wrong;
+}
+
+namespace {
+
+// Without white space, so that a macro can be found however it is broken into lines.
+std::string dense_text(const SourceFile& file) {
+    std::string text;
+    for (const std::string& line : file.lines)
+        std::copy_if(line.begin(), line.end(), std::back_inserter(text), [](char c) { return c != ' '; });
+    return text;
+}
+
+bool has_test(const std::string& text, const std::string& prefix, const std::string& suite,
+              const std::string& name) {
+    if (!prefix.empty() && text.find("INSTANTIATE_TEST_SUITE_P(" + prefix + "," + suite + ",") == text.npos)
+        return false;
+    const std::string call = "(" + suite + "," + (name == "*" ? "" : name + ")");
+    return std::any_of(std::begin(test_macros), std::end(test_macros),
+                       [&](const char* macro) { return text.find(macro + call) != text.npos; });
+}
+
+} // namespace
+
+std::vector<std::string> missing_names(const SourceFile& page, const std::vector<SourceFile>& files) {
+    static const std::regex quoted("`([^`]+)`");
+    static const std::regex file_name(R"([\w./]+\.(h|cpp))");
+    static const std::regex test_name(R"((?:(\w+)/)?(\w*)\.(\w+|\*)(?:/.*)?)");
+    std::vector<std::string> wrong;
+    for (std::size_t i = 0; i < page.lines.size(); ++i) {
+        std::string text, suite;
+        bool in_file = false;
+        const std::string& line = page.lines[i];
+        for (std::sregex_iterator q(line.begin(), line.end(), quoted), end; q != end; ++q) {
+            const std::string name = (*q)[1];
+            std::smatch part;
+            if (std::regex_match(name, file_name)) {
+                const std::string path = (name.ends_with(".h") ? "montelux/" : "test/") + name;
+                auto file = std::find_if(files.begin(), files.end(),
+                                         [&](const SourceFile& f) { return f.path == path; });
+                in_file = file != files.end() && name.ends_with(".cpp");
+                if (file == files.end()) wrong.push_back(at(page, i + 1) + "there is no " + path);
+                text = in_file ? dense_text(*file) : "";
+            } else if (in_file && std::regex_match(name, part, test_name)) {
+                if (part[2].length() > 0) suite = part[2];
+                if (!has_test(text, part[1], suite, part[3]))
+                    wrong.push_back(at(page, i + 1) + "there is no test " + name);
+            }
+        }
+    }
     return wrong;
 }
 

@@ -46,5 +46,9 @@ std::vector<std::string> fenced_libraries(const std::vector<SourceFile>& files);
 std::vector<std::string> headers_without_purpose(const std::vector<SourceFile>& files);
 // Files of more than `limit` lines; tables of measured data (*_data.*, *_table_data.*) are left out.
 std::vector<std::string> long_files(const std::vector<SourceFile>& files, std::size_t limit);
+// What a page of documentation names in `backticks` but does not exist among these files: headers (`mc/a/b.h`
+// below montelux/), test files (`mc/a/b_test.cpp` below test/), and behind such a file, until the end of the
+// line, its tests: `Suite.Name`, `Suite.*`, `.Name` of the suite before, `Prefix/Suite.Name/...`.
+std::vector<std::string> missing_names(const SourceFile& page, const std::vector<SourceFile>& files);
 
 } // namespace montelux::house

@@ -49,6 +49,13 @@ TEST(House, FilesAreShort) {
     std::cout << "longer than they should be:\n" << joined(long_files(real_sources(), 400));
     EXPECT_EQ(joined(long_files(real_sources(), 600)), "");
 }
+TEST(House, TheMissionNamesTestsThatExist) {
+    SourceFile page{"docs/mission.md", {}};
+    std::ifstream in(root / page.path);
+    for (std::string line; std::getline(in, line);) page.lines.push_back(line);
+    EXPECT_GE(page.lines.size(), 30u);
+    EXPECT_EQ(joined(missing_names(page, real_sources())), "");
+}
 
 // The rules themselves: each finds the offence that it exists for.
 const RoomTable small = parse_rooms("set(low mc/math) # a comment (with brackets\n"
@@ -108,6 +115,25 @@ TEST(HouseRules, LongFileIsFound) {
     EXPECT_EQ(long_files({file}, 10).size(), 1u);
     EXPECT_TRUE(long_files({file}, 11).empty());
     EXPECT_TRUE(long_files({{"montelux/spectrum/cie_data.cpp", file.lines}}, 10).empty());
+}
+TEST(HouseRules, MissingTestsAndFilesAreFound) {
+    const SourceFile tests{"test/mc/math/vec_test.cpp",
+                           {"TEST(Vec, Adds) {}", "TEST_P(Each,", "       Holds) {}",
+                            "INSTANTIATE_TEST_SUITE_P(All, Each, x);"}};
+    auto wrong = [&](const std::string& line) {
+        return joined(missing_names({"docs/a.md", {"", line}}, {math, tests}));
+    };
+    EXPECT_EQ(wrong("`sin x` by `mc/math/vec.h`, in `mc/math/vec_test.cpp`: `Vec.Adds`, `Each.*`, `.Holds`, "
+                    "`All/Each.Holds/Long` and `x = 0.5`"),
+              "");
+    EXPECT_EQ(wrong("`mc/math/vec_test.cpp`: `Vec.Add`"), "docs/a.md:2: there is no test Vec.Add\n");
+    EXPECT_EQ(wrong("`mc/math/vec_test.cpp`: `Vek.*`"), "docs/a.md:2: there is no test Vek.*\n");
+    EXPECT_EQ(wrong("`mc/math/vec_test.cpp`: `Vec.Adds`, `.Holds`"),
+              "docs/a.md:2: there is no test .Holds\n");
+    EXPECT_EQ(wrong("`mc/math/vec_test.cpp`: `Some/Each.*`"), "docs/a.md:2: there is no test Some/Each.*\n");
+    EXPECT_EQ(wrong("`mc/math/no_test.cpp`, `mc/math/no.h`"),
+              "docs/a.md:2: there is no test/mc/math/no_test.cpp\ndocs/a.md:2: there is no "
+              "montelux/mc/math/no.h\n");
 }
 
 } // namespace
