@@ -230,10 +230,7 @@ class AdaptiveEstimator final : public Estimator {
     }
 
     StepOutcome train(const StepRequest& request) {
-        if (request.max_evaluations < 2 * round_points_) {
-            phase_ = trainer_.rounds() > 0 ? Phase::weighted : Phase::uniform;
-            return step(request);
-        }
+        if (request.max_evaluations < 2 * round_points_) return stop_training(request);
         if (!trainer_.round(round_points_, request.cancel)) return StepOutcome::cancelled;
         const double variance = trainer_.relative_variance();
         const bool stuck = trainer_.rounds() > 3 && variance > 0.9 * previous_variance_;
@@ -254,6 +251,19 @@ class AdaptiveEstimator final : public Estimator {
             (trained + static_cast<double>(round_points_) > allowed || trainer_.rounds() >= max_rounds))
             phase_ = Phase::weighted;
         return StepOutcome::advanced;
+    }
+
+    // The next phase's first step; if that is not made, nothing changes.
+    StepOutcome stop_training(const StepRequest& request) {
+        phase_ = trainer_.rounds() > 0 ? Phase::weighted : Phase::uniform;
+        try {
+            const StepOutcome outcome = step(request);
+            if (outcome != StepOutcome::advanced) phase_ = Phase::train;
+            return outcome;
+        } catch (...) {
+            phase_ = Phase::train;
+            throw;
+        }
     }
 
     StepOutcome sample(const StepRequest& request, const MixtureDensity& density, std::uint64_t stream,

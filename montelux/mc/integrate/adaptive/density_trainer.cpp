@@ -120,14 +120,19 @@ void DensityTrainer::start(SamplePoints&& points) {
 
 void DensityTrainer::find_peaks(std::uint64_t max_evaluations) {
     if (density_.dimensions() > max_gaussian_dimensions) return;
+    // Taken over at the end, so that an exception of the integrand leaves everything as it was.
+    std::uint64_t evaluations = 0;
+    NonFiniteCount non_finite;
     const DensityFunction h = [&](const PointBatch& x, std::span<double> values) {
         ValueBuffer g(x.count(), problem_.evaluator.components());
-        problem_.evaluator(x, g, non_finite_);
-        evaluations_ += x.count();
+        problem_.evaluator(x, g, non_finite);
+        evaluations += x.count();
         std::ranges::copy(steering(g), values.begin());
     };
     const Round& seen = recent_.back();
     std::vector<Gaussian> modes = find_modes(h, seen.x, seen.h, {.max_evaluations = max_evaluations});
+    evaluations_ += evaluations;
+    non_finite_.merge(non_finite);
     if (modes.empty()) return;
     for (Gaussian& g : modes) g = g.widened(1.2);
     density_ = MixtureDensity(density_.dimensions(), {}, std::move(modes));

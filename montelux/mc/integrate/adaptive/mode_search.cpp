@@ -1,6 +1,7 @@
 #include "montelux/mc/integrate/adaptive/mode_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -39,7 +40,8 @@ class Climber {
     double climb(std::vector<double>& x) {
         double top = log_at({x})[0];
         double width = 0.02;
-        for (int step = 0; step < 30 && budget_ > 4 * n_; ++step) {
+        constexpr std::array lengths{1.0, 0.4, 0.16, 0.064, 0.026, 0.01};
+        for (int step = 0; step < 30 && budget_ >= 2 * n_ + lengths.size(); ++step) {
             std::vector<std::vector<double>> around;
             std::vector<double> h(n_);
             for (std::size_t d = 0; d < n_; ++d) {
@@ -62,7 +64,7 @@ class Climber {
             }
             if (!(expected > 1e-3)) break;
             std::vector<std::vector<double>> tries;
-            for (double length : {1.0, 0.4, 0.16, 0.064, 0.026, 0.01}) {
+            for (double length : lengths) {
                 tries.push_back(x);
                 for (std::size_t d = 0; d < n_; ++d)
                     tries.back()[d] = std::clamp(x[d] + length * direction[d], 1e-6, 1 - 1e-6);
@@ -168,7 +170,8 @@ std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
     std::vector<double> explained(n, nowhere), log_h = excess;
     std::vector<double> log_pdf(n), point(static_cast<std::size_t>(x.dimensions()));
     int fruitless = 0;
-    while (fruitless < settings.fruitless && static_cast<int>(modes.size()) < settings.most_modes) {
+    while (climber.left() > 0 && fruitless < settings.fruitless &&
+           static_cast<int>(modes.size()) < settings.most_modes) {
         const auto best = std::max_element(excess.begin(), excess.end());
         if (best == excess.end() || *best == nowhere || (!modes.empty() && *best < least_excess)) break;
         const auto index = static_cast<std::size_t>(best - excess.begin());
@@ -182,7 +185,6 @@ std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
         if (!known) mode = climber.laplace(point, top, settings.widest);
         if (!mode) {
             ++fruitless;
-            if (climber.left() == 0) break;
             continue;
         }
         fruitless = 0;
