@@ -59,7 +59,7 @@ std::string binary(bool big) {
         for (int k = 0; k < i; ++k) put<std::int16_t>(s, 77, big);
         for (float v : {0.25f, 0.5f, 0.75f, 0.125f, static_cast<float>(i)}) put(s, v, big);
     }
-    for (std::vector<std::uint16_t> face :
+    for (const std::vector<std::uint16_t>& face :
          {std::vector<std::uint16_t>{0, 1, 2, 3}, {2, 3, 4}, {0, 1}, {4, 3, 2, 1, 0}}) {
         put<std::int32_t>(s, 9, big);
         put<std::uint32_t>(s, static_cast<std::uint32_t>(face.size()), big);
