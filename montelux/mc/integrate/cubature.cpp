@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 
+#include "montelux/mc/integrate/cubature_evaluation.h"
 #include "montelux/mc/integrate/cubature_regions.h"
 #include "montelux/mc/integrate/cubature_rules.h"
 #include "montelux/mc/integrate/sampling.h"
@@ -16,8 +17,6 @@
 namespace montelux {
 namespace {
 
-// One evaluator call takes at least so many points where there are regions enough.
-constexpr std::size_t points_per_task = 512;
 constexpr std::uint64_t points_per_step = 1'000'000;
 // While all values were zero, so many evaluations in so many regions are made before that is believed.
 constexpr std::uint64_t search_evaluations = 4096;
@@ -68,8 +67,9 @@ class CubatureEstimator final : public Estimator {
         NonFiniteCount non_finite;
         std::vector<char> nonzero(nonzero_);
         std::vector<SymmetricRule::FaceValue> faces(parents.empty() ? 0 : rules.size() * components());
-        const Work work{rules, parents, fresh, faces};
-        if (!evaluate(work, non_finite, nonzero, request.cancel)) return StepOutcome::cancelled;
+        const CubatureWork work{rules, regions_, parents, fresh, faces};
+        if (!evaluate_regions(problem_.evaluator, work, totals_.value, non_finite, nonzero, request.cancel))
+            return StepOutcome::cancelled;
 
         for (const SymmetricRule* rule : rules) evaluations_ += rule->points();
         non_finite_.merge(non_finite);
@@ -137,15 +137,6 @@ class CubatureEstimator final : public Estimator {
             : value(static_cast<std::size_t>(components)), error(value.size()), inflation(value.size(), 1.0) {
         }
         std::vector<double> value, error, inflation;
-    };
-
-    // The regions that a step evaluates.
-    struct Work {
-        const std::vector<const SymmetricRule*>& rules;
-        const std::vector<std::size_t>& parents; // fresh regions are their halves, two by two; or empty
-        CubatureRegions& fresh;
-        // The face that halves share, as each sees it; a number for each region and component.
-        std::vector<SymmetricRule::FaceValue>& faces;
     };
 
     std::size_t components() const { return static_cast<std::size_t>(m_); }
@@ -223,122 +214,10 @@ class CubatureEstimator final : public Estimator {
         if (!parents.empty()) parents.resize(kept / 2);
     }
 
-    // Evaluates all regions of `fresh`. Returns false when cancelled.
-    bool evaluate(const Work& work, NonFiniteCount& non_finite, std::vector<char>& nonzero,
-                  const CancelFlag* cancel) const {
-        const std::vector<const SymmetricRule*>& rules = work.rules;
-        std::vector<std::size_t> starts; // of the tasks
-        std::size_t points = points_per_task;
-        for (std::size_t r = 0; r < rules.size(); ++r) {
-            if (points >= points_per_task) {
-                starts.push_back(r);
-                points = 0;
-            }
-            points += rules[r]->points();
-        }
-        const std::size_t tasks = starts.size();
-        starts.push_back(rules.size());
-        std::vector<NonFiniteCount> counts(tasks);
-        std::vector<std::vector<char>> seen(tasks, std::vector<char>(components(), 0));
-        auto run = [&](std::int64_t task) {
-            const auto t = static_cast<std::size_t>(task);
-            evaluate_some(work, starts[t], starts[t + 1], counts[t], seen[t]);
-        };
-        if (!parallel_for(static_cast<std::int64_t>(tasks), run, cancel)) return false;
-        for (std::size_t t = 0; t < tasks; ++t) {
-            non_finite.merge(counts[t]);
-            for (std::size_t c = 0; c < components(); ++c) nonzero[c] |= seen[t][c];
-        }
-        return true;
-    }
-
-    void evaluate_some(const Work& work, std::size_t begin, std::size_t end, NonFiniteCount& non_finite,
-                       std::vector<char>& nonzero) const {
-        const std::vector<const SymmetricRule*>& rules = work.rules;
-        CubatureRegions& fresh = work.fresh;
-        std::size_t count = 0;
-        for (std::size_t r = begin; r < end; ++r) count += rules[r]->points();
-        PointBuffer u(count, n_);
-        for (int d = 0; d < n_; ++d) {
-            double* to = u.coordinate(d).data();
-            for (std::size_t r = begin; r < end; ++r) {
-                const double c = fresh.centre(r)[static_cast<std::size_t>(d)];
-                const double h = fresh.half_width(r)[static_cast<std::size_t>(d)];
-                for (double x : rules[r]->offsets().view().coordinate(d)) *to++ = c + h * x;
-            }
-        }
-        ValueBuffer values(count, m_);
-        problem_.evaluator(u, values, non_finite);
-        std::size_t first = 0;
-        std::vector<std::span<const double>> of_region(components());
-        for (std::size_t r = begin; r < end; ++r) {
-            for (std::size_t c = 0; c < components(); ++c) {
-                of_region[c] =
-                    std::as_const(values).component(static_cast<int>(c)).subspan(first, rules[r]->points());
-                if (nonzero[c] == 0)
-                    nonzero[c] = std::ranges::any_of(of_region[c], [](double v) { return v != 0; });
-            }
-            assess(fresh, r, *rules[r], of_region);
-            if (!work.parents.empty()) {
-                const int axis = regions_.marks(work.parents[r / 2]).axis;
-                for (std::size_t c = 0; c < components(); ++c)
-                    work.faces[r * components() + c] = rules[r]->face_value(of_region[c], axis, r % 2 == 0);
-            }
-            first += rules[r]->points();
-        }
-    }
-
-    // Value, error and marks of a region from the integrand's values.
-    void assess(CubatureRegions& fresh, std::size_t r, const SymmetricRule& rule,
-                const std::vector<std::span<const double>>& values) const {
-        std::vector<double> nulls(static_cast<std::size_t>(rule.null_rules()));
-        std::vector<double> differences(static_cast<std::size_t>(n_), 0.0);
-        const double volume = fresh.volume(r);
-        std::ranges::fill(fresh.face_error(r), 0.0);
-        CubatureRegions::Marks& marks = fresh.marks(r);
-        marks = {};
-        marks.exhausted = true;
-        double worst = -1, ratio = 0;
-        for (std::size_t c = 0; c < components(); ++c) {
-            const double mean = rule.apply(values[c], nulls);
-            const SymmetricRule::Assessment found = rule.assess(nulls);
-            double size = 0;
-            for (double v : values[c]) size += std::abs(v);
-            size /= static_cast<double>(values[c].size());
-            const double rounding = 8 * std::numeric_limits<double>::epsilon() * size;
-            const double error = found.error + rule.edge_surprise(values[c]);
-            marks.exhausted = marks.exhausted && error <= rounding;
-            fresh.value(r)[c] = volume * mean;
-            fresh.error(r)[c] = volume * std::max(error, rounding);
-            // The component that is worst for its size decides how to go on.
-            const double weight = totals_.value[c] != 0 ? 1 / std::abs(totals_.value[c])
-                                  : size > 0            ? 1 / (volume * size)
-                                                        : 0;
-            if (n_ > 1) rule.add_roughness(values[c], weight, differences);
-            if (error * weight > worst) {
-                worst = error * weight;
-                ratio = found.ratio;
-            }
-        }
-        // Degree 13 in two dimensions pays only where the integrand is very smooth.
-        const double smooth = n_ <= 3 ? 0.15 : 1;
-        marks.rough = ratio >= smooth;
-        std::span<const double> h = fresh.half_width(r);
-        std::size_t axis = 0;
-        for (std::size_t d = 1; d < differences.size(); ++d) {
-            const double here = differences[d], best = differences[axis];
-            constexpr double rounding = 1e-10;
-            if (here > best * (1 + rounding) || (here >= best * (1 - rounding) && h[d] > h[axis])) axis = d;
-        }
-        marks.axis = static_cast<std::uint8_t>(axis);
-        marks.indivisible = h[axis] < 64 * std::numeric_limits<double>::epsilon() * fresh.centre(r)[axis] ||
-                            volume < std::numeric_limits<double>::min() * 1e8;
-    }
-
     // A jump close beyond the face that two halves share is seen by neither, but they disagree about the
     // face. As long as halving does not show it, half of that error goes to each half that still has the
     // face.
-    void look_at_shared_faces(const Work& work) const {
+    void look_at_shared_faces(const CubatureWork& work) const {
         for (std::size_t r = 0; r < work.fresh.count(); ++r) {
             const std::size_t parent = work.parents[r / 2];
             const CubatureRegions::Marks& from = regions_.marks(parent);

@@ -1,0 +1,131 @@
+#include "montelux/mc/integrate/cubature_evaluation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+namespace montelux {
+namespace {
+
+// One evaluator call takes at least so many points where there are regions enough.
+constexpr std::size_t points_per_task = 512;
+
+// Value, error and marks of a region from the integrand's values.
+void assess(CubatureRegions& fresh, std::size_t r, const SymmetricRule& rule,
+            const std::vector<std::span<const double>>& values, std::span<const double> totals) {
+    const std::size_t n = fresh.centre(r).size();
+    std::vector<double> nulls(static_cast<std::size_t>(rule.null_rules()));
+    std::vector<double> differences(n, 0.0);
+    const double volume = fresh.volume(r);
+    std::ranges::fill(fresh.face_error(r), 0.0);
+    CubatureRegions::Marks& marks = fresh.marks(r);
+    marks = {};
+    marks.exhausted = true;
+    double worst = -1, ratio = 0;
+    for (std::size_t c = 0; c < values.size(); ++c) {
+        const double mean = rule.apply(values[c], nulls);
+        const SymmetricRule::Assessment found = rule.assess(nulls);
+        double size = 0;
+        for (double v : values[c]) size += std::abs(v);
+        size /= static_cast<double>(values[c].size());
+        const double rounding = 8 * std::numeric_limits<double>::epsilon() * size;
+        const double error = found.error + rule.edge_surprise(values[c]);
+        marks.exhausted = marks.exhausted && error <= rounding;
+        fresh.value(r)[c] = volume * mean;
+        fresh.error(r)[c] = volume * std::max(error, rounding);
+        // The component that is worst for its size decides how to go on.
+        const double weight = totals[c] != 0 ? 1 / std::abs(totals[c]) : size > 0 ? 1 / (volume * size) : 0;
+        if (n > 1) rule.add_roughness(values[c], weight, differences);
+        if (error * weight > worst) {
+            worst = error * weight;
+            ratio = found.ratio;
+        }
+    }
+    // Degree 13 in two dimensions pays only where the integrand is very smooth.
+    const double smooth = n <= 3 ? 0.15 : 1;
+    marks.rough = ratio >= smooth;
+    std::span<const double> h = fresh.half_width(r);
+    std::size_t axis = 0;
+    for (std::size_t d = 1; d < differences.size(); ++d) {
+        const double here = differences[d], best = differences[axis];
+        constexpr double rounding = 1e-10;
+        if (here > best * (1 + rounding) || (here >= best * (1 - rounding) && h[d] > h[axis])) axis = d;
+    }
+    marks.axis = static_cast<std::uint8_t>(axis);
+    marks.indivisible = h[axis] < 64 * std::numeric_limits<double>::epsilon() * fresh.centre(r)[axis] ||
+                        volume < std::numeric_limits<double>::min() * 1e8;
+}
+
+// Regions [begin, end).
+void evaluate_some(const Evaluator& evaluator, const CubatureWork& work, std::span<const double> totals,
+                   std::size_t begin, std::size_t end, NonFiniteCount& non_finite,
+                   std::vector<char>& nonzero) {
+    const std::size_t components = nonzero.size();
+    const int n = evaluator.dimensions();
+    const std::vector<const SymmetricRule*>& rules = work.rules;
+    CubatureRegions& fresh = work.fresh;
+    std::size_t count = 0;
+    for (std::size_t r = begin; r < end; ++r) count += rules[r]->points();
+    PointBuffer u(count, n);
+    for (int d = 0; d < n; ++d) {
+        double* to = u.coordinate(d).data();
+        for (std::size_t r = begin; r < end; ++r) {
+            const double c = fresh.centre(r)[static_cast<std::size_t>(d)];
+            const double h = fresh.half_width(r)[static_cast<std::size_t>(d)];
+            for (double x : rules[r]->offsets().view().coordinate(d)) *to++ = c + h * x;
+        }
+    }
+    ValueBuffer values(count, evaluator.components());
+    evaluator(u, values, non_finite);
+    std::size_t first = 0;
+    std::vector<std::span<const double>> of_region(components);
+    for (std::size_t r = begin; r < end; ++r) {
+        for (std::size_t c = 0; c < components; ++c) {
+            of_region[c] =
+                std::as_const(values).component(static_cast<int>(c)).subspan(first, rules[r]->points());
+            if (nonzero[c] == 0)
+                nonzero[c] = std::ranges::any_of(of_region[c], [](double v) { return v != 0; });
+        }
+        assess(fresh, r, *rules[r], of_region, totals);
+        if (!work.parents.empty()) {
+            const int axis = work.regions.marks(work.parents[r / 2]).axis;
+            for (std::size_t c = 0; c < components; ++c)
+                work.faces[r * components + c] = rules[r]->face_value(of_region[c], axis, r % 2 == 0);
+        }
+        first += rules[r]->points();
+    }
+}
+
+} // namespace
+
+bool evaluate_regions(const Evaluator& evaluator, const CubatureWork& work, std::span<const double> totals,
+                      NonFiniteCount& non_finite, std::vector<char>& nonzero, const CancelFlag* cancel) {
+    const std::vector<const SymmetricRule*>& rules = work.rules;
+    std::vector<std::size_t> starts; // of the tasks
+    std::size_t points = points_per_task;
+    for (std::size_t r = 0; r < rules.size(); ++r) {
+        if (points >= points_per_task) {
+            starts.push_back(r);
+            points = 0;
+        }
+        points += rules[r]->points();
+    }
+    const std::size_t tasks = starts.size();
+    starts.push_back(rules.size());
+    std::vector<NonFiniteCount> counts(tasks);
+    std::vector<std::vector<char>> seen(tasks, std::vector<char>(nonzero.size(), 0));
+    auto run = [&](std::int64_t task) {
+        const auto t = static_cast<std::size_t>(task);
+        evaluate_some(evaluator, work, totals, starts[t], starts[t + 1], counts[t], seen[t]);
+    };
+    if (!parallel_for(static_cast<std::int64_t>(tasks), run, cancel)) return false;
+    for (std::size_t t = 0; t < tasks; ++t) {
+        non_finite.merge(counts[t]);
+        for (std::size_t c = 0; c < nonzero.size(); ++c) nonzero[c] |= seen[t][c];
+    }
+    return true;
+}
+
+} // namespace montelux
