@@ -32,6 +32,27 @@ std::string printed(double x) {
     return text;
 }
 
+// An estimator that was picked from the start: the same, with its name and why.
+class PickedEstimator final : public Estimator {
+  public:
+    PickedEstimator(std::unique_ptr<Estimator> estimator, std::string_view method, std::string reason)
+        : estimator_(std::move(estimator)), method_(method), reason_(std::move(reason)) {}
+
+    StepOutcome step(const StepRequest& request) override { return estimator_->step(request); }
+    Tally tally() const override {
+        Tally tally = estimator_->tally();
+        tally.method = method_;
+        tally.reason = reason_;
+        return tally;
+    }
+    void save(StateWriter& state) const override { estimator_->save(state); }
+    void load(StateReader& state) override { estimator_->load(state); }
+
+  private:
+    std::unique_ptr<Estimator> estimator_;
+    std::string method_, reason_;
+};
+
 class AutoEstimator final : public Estimator {
   public:
     explicit AutoEstimator(const Problem& problem)
@@ -164,8 +185,14 @@ class AutoEstimator final : public Estimator {
 
 std::unique_ptr<Estimator> Auto::estimator(const Problem& problem) const {
     const int dimensions = problem.evaluator.dimensions();
-    if (dimensions > sobol_dimensions) return BasicMonteCarlo{}.estimator(problem);
-    if (dimensions > cubature_dimensions) return Adaptive{}.estimator(problem);
+    auto picked = [&](const auto& settings, int most, const char* what) {
+        return std::make_unique<PickedEstimator>(settings.estimator(problem), settings.name,
+                                                 std::to_string(dimensions) + " dimensions, " + what +
+                                                     " at most " + std::to_string(most));
+    };
+    if (dimensions > sobol_dimensions)
+        return picked(BasicMonteCarlo{}, sobol_dimensions, "adaptive sampling takes");
+    if (dimensions > cubature_dimensions) return picked(Adaptive{}, cubature_dimensions, "cubature pays in");
     return std::make_unique<AutoEstimator>(problem);
 }
 
