@@ -1,5 +1,6 @@
 #include "montelux/mc/integrate/coverage_probe.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -9,20 +10,26 @@
 namespace montelux {
 namespace {
 
+// Less than so many standard errors may be missing without a word: where densities with thin tails underflow
+// to zero, integrands need not.
+constexpr double negligible = 1e-3;
 constexpr std::uint32_t probe_stream = 0xc07e7a9eu;
 
 struct Found {
     std::uint64_t uncovered = 0;
     std::vector<double> point;
-    double value = 0, missing = 0, missing_square = 0;
+    double value = 0;
+    std::vector<double> missing; // of each component; empty while nothing is uncovered
+    double missing_square = 0;
 
     void merge(const Found& later) {
+        if (later.uncovered == 0) return;
         if (uncovered == 0) {
-            point = later.point;
-            value = later.value;
+            *this = later;
+            return;
         }
         uncovered += later.uncovered;
-        missing += later.missing;
+        for (std::size_t c = 0; c < missing.size(); ++c) missing[c] += later.missing[c];
         missing_square += later.missing_square;
     }
 };
@@ -58,9 +65,11 @@ bool CoverageProbe::run(const Problem& problem, std::uint64_t points, const Canc
                 int c = 0;
                 while (c < values.components() && values(i, c) == 0) ++c;
                 if (c == values.components()) continue;
-                const double missing = std::abs(values(i, 0)) * volume[i];
-                Found one{1, std::vector<double>(static_cast<std::size_t>(x.dimensions())), values(i, c),
-                          missing, missing * missing};
+                Found one{
+                    1, std::vector<double>(static_cast<std::size_t>(x.dimensions())), values(i, c), {}, 0};
+                for (int k = 0; k < values.components(); ++k)
+                    one.missing.push_back(std::abs(values(i, k)) * volume[i]);
+                one.missing_square = one.missing[0] * one.missing[0];
                 x.view().gather(i, one.point.data());
                 to.merge(one);
             }
@@ -73,14 +82,20 @@ bool CoverageProbe::run(const Problem& problem, std::uint64_t points, const Canc
     uncovered_ = all.uncovered;
     first_point_ = std::move(all.point);
     first_value_ = all.value;
-    missing_ = all.missing;
+    missing_ = std::move(all.missing);
     missing_square_ = all.missing_square;
     return true;
 }
 
-void CoverageProbe::doubt(std::vector<std::string>& doubts) const {
+void CoverageProbe::doubt(Tally& tally) const {
     if (uncovered_ == 0) return;
-    const double n = static_cast<double>(evaluations_), mean = missing_ / n;
+    const double n = static_cast<double>(evaluations_), mean = missing_[0] / n;
+    bool matters = false;
+    for (std::size_t c = 0; c < missing_.size(); ++c) {
+        const double error = std::isfinite(tally.standard_error[c]) ? tally.standard_error[c] : 0;
+        matters |= missing_[c] / n > std::max(negligible * error, 1e-15 * std::abs(tally.value[c]));
+    }
+    if (!matters) return;
     const double variance = std::max(0.0, missing_square_ / n - mean * mean);
     std::ostringstream text;
     text << "the density is zero at (";
@@ -90,7 +105,7 @@ void CoverageProbe::doubt(std::vector<std::string>& doubts) const {
     text.precision(3);
     text << mean << " +- " << std::sqrt(variance / n) << " in absolute value (by " << uncovered_ << " of "
          << evaluations_ << " probes)";
-    doubts.push_back(text.str());
+    tally.doubts.push_back(text.str());
 }
 
 void CoverageProbe::save(StateWriter& state) const {
@@ -107,7 +122,7 @@ void CoverageProbe::load(StateReader& state) {
     uncovered_ = state.get_word();
     first_point_ = state.get_doubles();
     first_value_ = state.get_double();
-    missing_ = state.get_double();
+    missing_ = state.get_doubles();
     missing_square_ = state.get_double();
 }
 

@@ -1,7 +1,6 @@
 // Looks for places where an integrand is not zero but no technique can draw a point.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "montelux/mc/integrate/estimator.h"
@@ -22,8 +21,8 @@ class CoverageProbe {
     std::uint64_t due(std::uint64_t samples, std::uint64_t limit) const;
     // Evaluates further points; false, and nothing changed, when cancelled.
     bool run(const Problem& problem, std::uint64_t points, const CancelFlag* cancel);
-    // A sentence that names a point, if one was found.
-    void doubt(std::vector<std::string>& doubts) const;
+    // Adds a sentence that names a point, if one was found and what is missing matters beside the errors.
+    void doubt(Tally& tally) const;
 
     void save(StateWriter& state) const;
     void load(StateReader& state);
@@ -33,7 +32,8 @@ class CoverageProbe {
     std::uint64_t evaluations_ = 0, uncovered_ = 0;
     std::vector<double> first_point_; // empty while none is uncovered
     double first_value_ = 0;
-    double missing_ = 0, missing_square_ = 0; // sums of |f| |dx/du| of the first component
+    std::vector<double> missing_; // sums of |f| |dx/du| of each component; empty while none is uncovered
+    double missing_square_ = 0;   // sum of squares of the first one's
 };
 
 } // namespace montelux

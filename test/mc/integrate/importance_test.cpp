@@ -135,6 +135,21 @@ TEST(Importance, DensityThatMissesTheIntegrandIsFoundByProbes) {
     EXPECT_NEAR(r.value[0], 1 - std::cos(1), 5 * r.standard_error[0]) << "what the density can see";
     const Method blind = Importance{LinearDistribution(0, 1), ImportancePoints::random, false};
     EXPECT_TRUE(integrate(sine, quarter, blind, {.evaluations = 20000}).doubts.empty());
+    // Where only the tails of the density underflow, nothing that could be seen is missing.
+    const auto wide = [](std::span<const double> x) { return std::exp(-x[0] * x[0] / 3); };
+    const Domain line = Domain::interval(-INFINITY, INFINITY);
+    const IntegrationResult tails =
+        integrate(wide, line, Importance{NormalDistribution()}, {.evaluations = 50000});
+    EXPECT_TRUE(tails.doubts.empty()) << tails;
+    EXPECT_NEAR(tails.value[0], std::sqrt(3 * pi), 5 * tails.standard_error[0]);
+    // One of two components that is not covered is enough.
+    const auto two = Integrand::vector_valued(2, [](std::span<const double> x, std::span<double> y) {
+        y[0] = x[0] < 1 ? std::sin(x[0]) : 0;
+        y[1] = std::sin(x[0]);
+    });
+    EXPECT_EQ(
+        integrate(two, quarter, Importance{LinearDistribution(0, 1)}, {.evaluations = 20000}).doubts.size(),
+        1u);
     // A sampler that contradicts its density is counted.
     const Technique wrong =
         Technique::functions([](double u) { return u; }, [](double x) { return x < 0.5 ? 2.0 : 0.0; });
