@@ -12,6 +12,7 @@ namespace montelux {
 namespace {
 
 constexpr std::uint64_t pilot_points = 1024;
+constexpr std::uint64_t least_points_per_variable = 128;
 // The map learns from about so many points of an iteration at most; more make it no better, only slower.
 constexpr std::uint64_t training_points = 1 << 17;
 // The sum hangs on one point that has this share of the squares of all.
@@ -117,7 +118,11 @@ void VegasEstimator::plan(VegasState& next, const StepRequest& request) const {
     const std::uint64_t budget = request.max_evaluations;
     const auto iterations = static_cast<std::uint64_t>(settings_.training_iterations);
     next.training_limit = std::min(budget / 4, std::uint64_t{1} << 22);
-    if (iterations == 0 || next.training_limit / iterations < static_cast<std::uint64_t>(least_)) {
+    // Fitted to fewer points, the maps of so many variables together would follow noise.
+    const std::uint64_t needed =
+        std::max(static_cast<std::uint64_t>(least_),
+                 least_points_per_variable * static_cast<std::uint64_t>(problem_.evaluator.dimensions()));
+    if (iterations == 0 || next.training_limit / iterations < needed) {
         next.trained = true;
         return;
     }
@@ -128,7 +133,7 @@ void VegasEstimator::plan(VegasState& next, const StepRequest& request) const {
         if (request.relative_error == 0 && request.absolute_error == 0)
             size = std::max(size, std::min<std::uint64_t>(budget / (20 * iterations), 1 << 15));
     }
-    next.training_size = std::max<std::uint64_t>(least_, std::min(size, next.training_limit / iterations));
+    next.training_size = std::max(needed, std::min(size, next.training_limit / iterations));
 }
 
 void VegasEstimator::sharpen(AdaptiveMap& map, std::uint64_t points) const {
@@ -139,6 +144,11 @@ void VegasEstimator::sharpen(AdaptiveMap& map, std::uint64_t points) const {
         std::min({std::bit_floor(std::max<std::uint64_t>(16, points / 8)), std::bit_floor(most),
                   static_cast<std::uint64_t>(settings_.increments)});
     if (static_cast<int>(wanted) > map.increments()) map = map.resampled(static_cast<int>(wanted));
+}
+
+void VegasEstimator::refine(AdaptiveMap& map, const MapTraining& training, std::uint64_t points) const {
+    if (points >= least_points_per_variable * static_cast<std::uint64_t>(map.dimensions()))
+        map.refine(training, settings_.alpha);
 }
 
 std::uint64_t VegasEstimator::uniform_points(std::uint64_t points) const {

@@ -51,6 +51,8 @@ class VegasEstimator : public Estimator {
     void plan(VegasState& next, const StepRequest& request) const;
     // More increments where points are many.
     void sharpen(AdaptiveMap& map, std::uint64_t points) const;
+    // Adapts the map to what so many points saw; too few for so many variables change nothing.
+    void refine(AdaptiveMap& map, const MapTraining& training, std::uint64_t points) const;
     // Points for the uniform check beside so many of the map.
     std::uint64_t uniform_points(std::uint64_t points) const;
     // Takes in what an iteration of `points` points showed: whether the training is over, and what the sum of

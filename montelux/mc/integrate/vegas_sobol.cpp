@@ -71,7 +71,7 @@ class SobolVegas final : public VegasEstimator {
         iteration.training.merge(pass->insight.training);
         if (iteration.points >= iteration.length) {
             next.average.add(weight(iteration), estimate(iteration));
-            next.map.refine(iteration.training, settings_.alpha);
+            refine(next.map, iteration.training, iteration.points * replicates());
             iteration.length *= growth;
             iteration.points = 0;
         }
@@ -97,7 +97,7 @@ class SobolVegas final : public VegasEstimator {
         next.evaluations += used + points * replicates();
         next.non_finite.merge(pass->insight.non_finite);
         note_training(next, all, relative_error(next, estimate(iteration), pass->insight));
-        next.map.refine(pass->insight.training, settings_.alpha);
+        refine(next.map, pass->insight.training, points * replicates());
         rescale(next, pass->insight);
         state_ = std::move(next);
         return StepOutcome::advanced;

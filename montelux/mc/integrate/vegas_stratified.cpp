@@ -131,7 +131,7 @@ class StratifiedVegas final : public VegasEstimator {
         }
         next.stream += 2;
         cubes.learn(variances);
-        next.map.refine(sum->insight.training, settings_.alpha);
+        refine(next.map, sum->insight.training, taken);
         if (!next.trained || next.average.iterations() == 0) rescale(next, sum->insight);
         state_ = std::move(next);
         cubes_ = std::move(cubes);

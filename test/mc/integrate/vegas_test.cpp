@@ -259,4 +259,20 @@ TEST(Vegas, SettingsOutOfRangeAreRefused) {
 }
 
 } // namespace
+// A map of many variables that is fitted to few points follows noise, and the product of its densities takes
+// the integral with it.
+TEST(Vegas, FewPointsOfManyVariablesLeaveTheMapAlone) {
+    const Integrand product([](std::span<const double> x) {
+        double p = 1;
+        for (double v : x) p *= 0.99 + 0.02 * v;
+        return p;
+    });
+    for (const Form& form : forms) {
+        const IntegrationResult r =
+            integrate(product, Domain::unit_cube(300), form.settings, {.evaluations = 20000});
+        EXPECT_LT(std::abs(r.value[0] - 1), 6 * r.standard_error[0]) << form.name;
+        EXPECT_LT(r.standard_error[0], 0.01) << form.name;
+    }
+}
+
 } // namespace montelux
