@@ -1,0 +1,347 @@
+#include "test/mc/integrate/coverage.h"
+#include "test/mc/integrate/estimator_checks.h"
+#include <atomic>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <set>
+#include <vector>
+
+#include "montelux/mc/integrate/adaptive.h"
+#include "montelux/mc/integrate/integrate.h"
+#include "montelux/mc/math/constants.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+namespace {
+
+// prod exp(-c_d x_d).
+KnownIntegral smooth() {
+    auto f = [](std::span<const double> x) { return std::exp(-x[0] - 2 * x[1] - 3 * x[2]); };
+    double truth = 1;
+    for (double c : {1.0, 2.0, 3.0}) truth *= -std::expm1(-c) / c;
+    return {f, Domain::unit_cube(3), {truth}};
+}
+// Hardly varies: what uniform points are best at.
+KnownIntegral flat() {
+    auto f = [](std::span<const double> x) { return 1 + x[0] * x[1] * x[2]; };
+    return {f, Domain::unit_cube(3), {1.125}};
+}
+// A box that is cut off.
+KnownIntegral discontinuous() {
+    auto f = [](std::span<const double> x) {
+        return x[0] < 0.37 && x[1] < 0.61 ? std::exp(x[0] + x[1] + x[2]) : 0.0;
+    };
+    return {f, Domain::unit_cube(3), {std::expm1(0.37) * std::expm1(0.61) * std::expm1(1.0)}};
+}
+// Gaussians of standard deviation 0.07 at 0.3 and 0.7 of the diagonal, each with an integral of about 1.
+double two_peaks_at(std::span<const double> x, double narrowness) {
+    double sum = 0;
+    for (double p : {0.3, 0.7}) {
+        double squares = 0;
+        for (double v : x) squares += (v - p) * (v - p);
+        sum += std::exp(-narrowness * squares);
+    }
+    return sum * std::pow(narrowness / pi, 0.5 * static_cast<double>(x.size()));
+}
+KnownIntegral two_peaks(int dimensions, double narrowness = 100) {
+    const double root = std::sqrt(narrowness);
+    const double one = 0.5 * (std::erf(0.3 * root) + std::erf(0.7 * root)); // of one coordinate
+    return {[narrowness](std::span<const double> x) { return two_peaks_at(x, narrowness); },
+            Domain::unit_cube(dimensions),
+            {2 * std::pow(one, dimensions)}};
+}
+
+// Doubted runs are left out of the shares, but not of the mean.
+void expect_unbiased_and_honest(const KnownIntegral& problem, int most_doubted) {
+    const int seeds = 200;
+    RunningMoments values;
+    int one = 0, two = 0, judged = 0;
+    for (int seed = 0; seed < seeds; ++seed) {
+        const IntegrationResult r = integrate(problem.f, problem.domain, Adaptive{}, {.evaluations = 20'000},
+                                              {.seed = static_cast<std::uint64_t>(seed), .threads = 1});
+        ASSERT_LE(r.evaluations, 20'000u);
+        ASSERT_GT(r.evaluations, 10'000u);
+        values.add(r.value[0]);
+        if (!r.doubts.empty()) continue;
+        const double deviation = std::abs(r.value[0] - problem.truth[0]);
+        ++judged;
+        one += deviation <= r.standard_error[0];
+        two += deviation <= 2 * r.standard_error[0];
+    }
+    const TestResult bias = unbiasedness_test(values, problem.truth[0]);
+    EXPECT_TRUE(bias.passes(significance)) << bias.description;
+    EXPECT_LE(seeds - judged, most_doubted);
+    expect_honest_errors(one, two, judged);
+}
+
+TEST(AdaptiveSlowTest, UnbiasedWithHonestErrorsForSmoothIntegrands) {
+    expect_unbiased_and_honest(smooth(), 5);
+}
+TEST(AdaptiveSlowTest, UnbiasedWithHonestErrorsForJumps) { expect_unbiased_and_honest(discontinuous(), 30); }
+TEST(AdaptiveSlowTest, UnbiasedWithHonestErrorsForTwoPeaks) { expect_unbiased_and_honest(two_peaks(4), 30); }
+
+// Steps with targets, which decide between the phases.
+struct Steps {
+    std::uint64_t evaluations; // in all
+    double relative_error = 0;
+};
+StepOutcome step(Estimator& estimator, const Steps& steps, const CancelFlag* cancel = nullptr) {
+    const std::uint64_t done = estimator.tally().evaluations;
+    if (done >= steps.evaluations) return StepOutcome::exhausted;
+    const StepOutcome outcome = estimator.step({.max_evaluations = steps.evaluations - done,
+                                                .relative_error = steps.relative_error,
+                                                .cancel = cancel});
+    EXPECT_LE(estimator.tally().evaluations, steps.evaluations);
+    return outcome;
+}
+std::vector<std::uint64_t> words_of(const Estimator& estimator) {
+    StateWriter state;
+    estimator.save(state);
+    return {state.words().begin(), state.words().end()};
+}
+
+struct Stop {};
+
+// Between any two steps: saved and loaded it goes on with the same bits, and a step that is cancelled, or in
+// which the integrand throws, changes nothing. Returns the phases it went through, which is the first word of
+// the state.
+std::set<std::uint64_t> check_every_step(const KnownIntegral& problem, const Steps& steps) {
+    std::atomic<bool> stop = false;
+    const Integrand f = problem.f.with_function([&](const PointBatch& x, ValueBatch y) {
+        if (stop) throw Stop();
+        problem.f(x, y);
+    });
+    const Evaluator evaluator(f, problem.domain);
+    auto estimator = Adaptive{}.estimator({evaluator, 11});
+    std::set<std::uint64_t> phases;
+    std::vector<std::vector<std::uint64_t>> states{words_of(*estimator)};
+    while (true) {
+        const std::vector<std::uint64_t>& before = states.back();
+        phases.insert(before.front());
+        CancelFlag cancel;
+        cancel.request();
+        EXPECT_NE(step(*estimator, steps, &cancel), StepOutcome::finished);
+        if (before.front() != 1) { // the search for peaks is too short to be cancelled
+            EXPECT_EQ(words_of(*estimator), before);
+        } else {
+            StateReader again(before);
+            estimator->load(again);
+        }
+        stop = true;
+        try {
+            step(*estimator, steps);
+        } catch (const Stop&) {
+        }
+        EXPECT_EQ(words_of(*estimator), before) << "phase " << before.front();
+        stop = false;
+        if (step(*estimator, steps) != StepOutcome::advanced) break;
+        states.push_back(words_of(*estimator));
+    }
+    EXPECT_EQ(words_of(*estimator), states.back());
+    for (std::size_t cut = 0; cut + 1 < states.size(); ++cut) {
+        StateReader reader(states[cut]);
+        auto loaded = Adaptive{}.estimator({evaluator, 11});
+        loaded->load(reader);
+        EXPECT_TRUE(reader.at_end());
+        EXPECT_EQ(words_of(*loaded), states[cut]);
+        EXPECT_EQ(step(*loaded, steps), StepOutcome::advanced);
+        EXPECT_EQ(words_of(*loaded), states[cut + 1]) << "phase " << states[cut].front();
+    }
+    return phases;
+}
+
+TEST(Adaptive, EveryPhaseResumesWithTheSameBitsAndCanBeBrokenOff) {
+    // explore 0, search 1, train 2, weighted 3, uniform 4
+    EXPECT_EQ(check_every_step(two_peaks(6, 300), {60'000}), (std::set<std::uint64_t>{0, 1, 2, 3}));
+    EXPECT_EQ(check_every_step(discontinuous(), {60'000, 1e-4}), (std::set<std::uint64_t>{0, 2, 3}));
+    EXPECT_EQ(check_every_step(flat(), {60'000, 1e-5}), (std::set<std::uint64_t>{0, 4}));
+    check_every_step(two_components(), {30'000});
+}
+
+TEST(Adaptive, SameBitsForAnyThreads) {
+    for (const KnownIntegral& problem : {smooth(), discontinuous(), two_peaks(5, 300), two_components()})
+        expect_same_bits_for_any_threads(problem, Adaptive{}, 40'000);
+}
+
+TEST(Adaptive, NeverExceedsItsBudget) {
+    for (const KnownIntegral& problem : {smooth(), discontinuous(), two_peaks(5, 300)}) {
+        for (std::uint64_t evaluations : {1u, 15u})
+            EXPECT_THROW(integrate(problem.f, problem.domain, Adaptive{}, {.evaluations = evaluations}),
+                         Error);
+        for (std::uint64_t evaluations : {16u, 17u, 100u, 1023u, 2048u, 5000u, 9999u, 20'000u, 50'001u}) {
+            std::atomic<std::uint64_t> counted = 0;
+            const Integrand f = problem.f.with_function([&](const PointBatch& x, ValueBatch y) {
+                counted += x.count();
+                problem.f(x, y);
+            });
+            const IntegrationResult r =
+                integrate(f, problem.domain, Adaptive{}, {.evaluations = evaluations}, {.threads = 1});
+            EXPECT_LE(r.evaluations, evaluations);
+            EXPECT_EQ(r.evaluations, counted);
+            EXPECT_EQ(r.stop, StopReason::evaluations);
+            EXPECT_TRUE(std::isfinite(r.value[0]) && std::isfinite(r.standard_error[0]));
+        }
+    }
+}
+
+TEST(Adaptive, ReachesItsTargets) {
+    for (const KnownIntegral& problem : {smooth(), discontinuous(), two_peaks(6, 300)})
+        for (double error : {1e-2, 1e-3}) {
+            const IntegrationResult r =
+                integrate(problem.f, problem.domain, Adaptive{},
+                          {.relative_error = error, .evaluations = 1'000'000}, {.seed = 2, .threads = 1});
+            EXPECT_TRUE(r.converged()) << (r.doubts.empty() ? "" : r.doubts[0]);
+            EXPECT_LE(r.standard_error[0], error * r.value[0]);
+            EXPECT_LT(std::abs(r.value[0] - problem.truth[0]), 5 * error * problem.truth[0]);
+            EXPECT_TRUE(r.statistical);
+            EXPECT_EQ(r.method, "adaptive");
+        }
+}
+
+// Peaks that uniform points hardly see: sigma 0.035 in 8 dimensions, a volume of 1e-8.
+TEST(Adaptive, FindsNarrowPeaksInEightDimensions) {
+    const KnownIntegral problem = two_peaks(8, 400);
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        const IntegrationResult r = integrate(problem.f, problem.domain, Adaptive{}, {.evaluations = 60'000},
+                                              {.seed = seed, .threads = 1});
+        EXPECT_TRUE(r.doubts.empty()) << r.doubts[0];
+        EXPECT_LT(r.standard_error[0], 0.01);
+        EXPECT_LT(std::abs(r.value[0] - 2), 5 * r.standard_error[0]);
+    }
+}
+
+TEST(Adaptive, ZeroIntegrandIsDoubted) {
+    auto zero = [](std::span<const double>) { return 0.0; };
+    const IntegrationResult r = integrate(zero, Domain::unit_cube(3), Adaptive{},
+                                          {.relative_error = 1e-3, .evaluations = 50'000}, {.threads = 1});
+    EXPECT_EQ(r.value[0], 0);
+    EXPECT_FALSE(r.converged());
+    ASSERT_FALSE(r.doubts.empty());
+    EXPECT_NE(r.doubts[0].find("zero at every point"), std::string::npos) << r.doubts[0];
+}
+
+// (x_1 + x_2 + x_3 mod 1)^-0.8 has mean 5 and no variance; it follows no coordinate, so that no map helps.
+TEST(Adaptive, HeavyTailsAreDoubted) {
+    auto f = [](std::span<const double> x) {
+        const double sum = x[0] + x[1] + x[2];
+        return std::pow(sum - std::floor(sum) + 1e-300, -0.8);
+    };
+    int doubted = 0, wrong = 0;
+    const int seeds = 20;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        const IntegrationResult r = integrate(f, Domain::unit_cube(3), Adaptive{}, {.evaluations = 50'000},
+                                              {.seed = seed, .threads = 1});
+        doubted += !r.doubts.empty();
+        wrong += r.doubts.empty() && std::abs(r.value[0] - 5) > 4 * r.standard_error[0];
+    }
+    EXPECT_GE(doubted, seeds / 2);
+    EXPECT_LE(wrong, seeds / 4);
+}
+
+TEST(Adaptive, ComponentsOfVeryDifferentSizeEachGetTheirError) {
+    const Integrand f = Integrand::vector_valued(3, [](std::span<const double> x, std::span<double> y) {
+        auto peak = [&](double centre) {
+            double squares = 0;
+            for (double v : x) squares += (v - centre) * (v - centre);
+            return std::exp(-100 * squares);
+        };
+        y[0] = 1e9 * peak(0.3);
+        y[1] = 1e-9 * peak(0.7);
+        y[2] = -3e-18 * y[0];
+    });
+    const double root = 10, one = 0.5 * std::sqrt(pi) / root * (std::erf(0.3 * root) + std::erf(0.7 * root)),
+                 truth = std::pow(one, 4);
+    const std::vector<double> scale{1e9, 1e-9, -3e-9};
+    RunningMoments values[2];
+    for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+        const IntegrationResult r = integrate(f, Domain::unit_cube(4), Adaptive{}, {.evaluations = 40'000},
+                                              {.seed = seed, .threads = 1});
+        ASSERT_EQ(r.covariance.size(), 9u);
+        for (std::size_t c = 0; c < 3; ++c) {
+            EXPECT_LT(r.standard_error[c], 0.02 * truth * std::abs(scale[c]));
+            EXPECT_NEAR(r.covariance[4 * c], r.standard_error[c] * r.standard_error[c],
+                        1e-9 * r.covariance[4 * c]);
+            for (std::size_t k = 0; k < c; ++k) {
+                EXPECT_EQ(r.covariance[3 * c + k], r.covariance[3 * k + c]);
+                EXPECT_LE(std::abs(r.covariance[3 * c + k]),
+                          1.000001 * r.standard_error[c] * r.standard_error[k]);
+            }
+        }
+        // The third is a multiple of the first.
+        EXPECT_NEAR(r.covariance[2] / (r.standard_error[0] * r.standard_error[2]), -1, 1e-6);
+        for (std::size_t c = 0; c < 2; ++c) values[c].add(r.value[c] / scale[c]);
+    }
+    for (const RunningMoments& v : values) {
+        const TestResult bias = unbiasedness_test(v, truth);
+        EXPECT_TRUE(bias.passes(significance)) << bias.description;
+    }
+}
+
+TEST(Adaptive, InfiniteRanges) {
+    const double infinity = std::numeric_limits<double>::infinity();
+    auto f = [](std::span<const double> x) { return std::exp(-x[0] * x[0] - 3 * x[1]); };
+    const IntegrationResult r = integrate(f, Domain({{-infinity, infinity}, {0, infinity}}), Adaptive{},
+                                          {.relative_error = 1e-4}, {.threads = 1});
+    EXPECT_TRUE(r.converged());
+    EXPECT_LT(std::abs(r.value[0] - std::sqrt(pi) / 3), 5e-4 * r.value[0]);
+}
+
+TEST(Adaptive, ValuesThatAreNotFiniteAreCounted) {
+    expect_non_finite_counted(Domain::unit_cube(2), Adaptive{}, 20'000);
+}
+
+TEST(Adaptive, OneDimension) {
+    const IntegrationResult r = integrate([](double x) { return x < 0.3 ? std::exp(x) : 0.0; },
+                                          Domain::interval(0, 1), Adaptive{}, {.evaluations = 20'000});
+    EXPECT_LT(r.standard_error[0], 1e-3);
+    EXPECT_LT(std::abs(r.value[0] - std::expm1(0.3)), 5 * r.standard_error[0]);
+}
+
+TEST(Adaptive, RefusesSettingsOutOfRange) {
+    auto one = [](std::span<const double>) { return 1.0; };
+    const Evaluator plane(one, Domain::unit_cube(2));
+    auto make = [&](const Adaptive& settings) { return settings.estimator({plane, 0}); };
+    for (int replicates : {-1, 0, 3, 4097}) EXPECT_THROW(make({.replicates = replicates}), Error);
+    for (double share : {-0.1, 0.0, 1.0, std::nan("")}) {
+        EXPECT_THROW(make({.uniform_share = share}), Error);
+        EXPECT_THROW(make({.training_share = share}), Error);
+    }
+    EXPECT_NO_THROW(make({.replicates = 4, .uniform_share = 0.9, .training_share = 0.9}));
+    const Evaluator most(one, Domain::unit_cube(1024)), too_many(one, Domain::unit_cube(1025));
+    EXPECT_NO_THROW(Adaptive{}.estimator({most, 0}));
+    EXPECT_THROW(Adaptive{}.estimator({too_many, 0}), Error);
+}
+
+TEST(Adaptive, SettingsAreUsed) {
+    const KnownIntegral problem = discontinuous();
+    auto run = [&](const Adaptive& settings) {
+        return integrate(problem.f, problem.domain, settings, {.evaluations = 30'000}, {.threads = 1});
+    };
+    const IntegrationResult base = run({}), replicates = run({.replicates = 32}),
+                            share = run({.uniform_share = 0.5});
+    EXPECT_NE(replicates.value[0], base.value[0]);
+    EXPECT_GT(share.standard_error[0], base.standard_error[0]); // half of the points are wasted
+    const Budget target{.relative_error = 1e-4, .evaluations = 1'000'000};
+    const IntegrationResult little = integrate(problem.f, problem.domain, Adaptive{.training_share = 0.02},
+                                               target, {.threads = 1}),
+                            much = integrate(problem.f, problem.domain, Adaptive{.training_share = 0.9},
+                                             target, {.threads = 1});
+    EXPECT_NE(little.evaluations, much.evaluations);
+}
+
+TEST(Adaptive, DamagedStatesAreRefused) {
+    const KnownIntegral problem = discontinuous();
+    const Evaluator evaluator(problem.f, problem.domain);
+    auto estimator = Adaptive{}.estimator({evaluator, 1});
+    advance(*estimator, 20'000);
+    std::vector<std::uint64_t> words = words_of(*estimator);
+    words.pop_back();
+    StateReader cut(words);
+    EXPECT_THROW(Adaptive{}.estimator({evaluator, 1})->load(cut), Error);
+    StateReader other(words_of(*estimator));
+    EXPECT_THROW((Adaptive{.replicates = 8}.estimator({evaluator, 1})->load(other)), Error);
+}
+
+} // namespace
+} // namespace montelux
