@@ -20,8 +20,8 @@ inline double bracket_middle(double lo, double hi) {
 
 // residual(x) gives the pair (value, slope) of a function that does not decrease from lo to hi, is at most 0
 // at lo and at least 0 at hi. Newton steps from `start`; a step that leaves the bracket, or does not halve
-// the step before, gives way to halving the bracket. Ends with the step that is shorter than `tolerance`
-// times x, whose own error is far smaller where the slope is smooth.
+// the step before, gives way to halving the bracket. Ends with the Newton step that is shorter than
+// `tolerance` times x, whose own error is far smaller where the slope is smooth, or where halving ends.
 template <typename Residual>
 double increasing_root(double lo, double hi, double start, const Residual& residual,
                        double tolerance = 1e-14) {
@@ -37,7 +37,7 @@ double increasing_root(double lo, double hi, double start, const Residual& resid
             step = next - x;
             if (!(next > lo && next < hi)) return x;
         }
-        if (std::abs(step) <= tolerance * std::abs(next)) return next;
+        if (newton && std::abs(step) <= tolerance * std::abs(next)) return next;
         last_step = std::abs(step);
         x = next;
     }
