@@ -112,8 +112,10 @@ class AdaptiveEstimator final : public Estimator {
         state.put(abandoned_evaluations_);
         montelux::save(state, abandoned_non_finite_);
         trainer_.save(state);
-        save_sums(state, uniform_sums_, uniform_points_);
-        save_sums(state, weighted_sums_, weighted_points_);
+        state.put(uniform_points_);
+        uniform_sums_.save(state);
+        state.put(weighted_points_);
+        weighted_sums_.save(state);
     }
     void load(StateReader& state) override {
         phase_ = static_cast<Phase>(std::clamp(state.get<int>(), 0, static_cast<int>(Phase::uniform)));
@@ -129,8 +131,10 @@ class AdaptiveEstimator final : public Estimator {
         abandoned_evaluations_ = state.get_word();
         montelux::load(state, abandoned_non_finite_);
         trainer_.load(state);
-        load_sums(state, uniform_sums_, uniform_points_);
-        load_sums(state, weighted_sums_, weighted_points_);
+        uniform_points_ = state.get_word();
+        uniform_sums_.load(state);
+        weighted_points_ = state.get_word();
+        weighted_sums_.load(state);
     }
 
   private:
@@ -373,38 +377,6 @@ class AdaptiveEstimator final : public Estimator {
         if (tally.degrees_of_freedom > 0 &&
             chi_squared_p_value(tally.chi_squared, tally.degrees_of_freedom) < 1e-4)
             tally.doubts.push_back("the training rounds disagree with the result");
-    }
-
-    static void save_sums(StateWriter& state, const MixtureSums& sums, std::uint64_t points) {
-        state.put(points);
-        state.put(sums.sums.all());
-        montelux::save(state, sums.non_finite);
-        state.put(sums.evaluations);
-        state.put(sums.largest);
-        state.put(static_cast<std::uint64_t>(sums.channels.size()));
-        for (const MixtureSums::Channel& c : sums.channels) {
-            state.put(c.count);
-            state.put(c.sum);
-            state.put(c.squares);
-        }
-    }
-    static void load_sums(StateReader& state, MixtureSums& sums, std::uint64_t& points) {
-        points = state.get_word();
-        std::vector<double> all = state.get_doubles();
-        if (all.size() != sums.sums.all().size())
-            throw Error("the saved state has another number of replicates or components");
-        sums.sums.restore(std::move(all));
-        montelux::load(state, sums.non_finite);
-        sums.evaluations = state.get_word();
-        sums.largest = state.get_double();
-        sums.channels.clear();
-        for (std::uint64_t n = state.get_word(); n > 0; --n) {
-            MixtureSums::Channel c;
-            c.count = state.get_word();
-            c.sum = state.get_double();
-            c.squares = state.get_double();
-            sums.channels.push_back(c);
-        }
     }
 
     Problem problem_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "montelux/mc/integrate/unit_points.h"
+#include "montelux/mc/math/error.h"
 #include "montelux/mc/random/hash.h"
 
 namespace montelux {
@@ -42,6 +43,37 @@ double MixtureSums::independent_variance(std::uint64_t n) const {
     for (const Channel& c : channels)
         if (c.count > 0) variance += std::max(0.0, c.squares - c.sum * c.sum / static_cast<double>(c.count));
     return variance / (static_cast<double>(n) * static_cast<double>(n));
+}
+
+void MixtureSums::save(StateWriter& state) const {
+    state.put(sums.all());
+    montelux::save(state, non_finite);
+    state.put(evaluations);
+    state.put(largest);
+    state.put(static_cast<std::uint64_t>(channels.size()));
+    for (const Channel& c : channels) {
+        state.put(c.count);
+        state.put(c.sum);
+        state.put(c.squares);
+    }
+}
+
+void MixtureSums::load(StateReader& state) {
+    std::vector<double> all = state.get_doubles();
+    if (all.size() != sums.all().size())
+        throw Error("the saved state has another number of replicates or components");
+    sums.restore(std::move(all));
+    montelux::load(state, non_finite);
+    evaluations = state.get_word();
+    largest = state.get_double();
+    channels.clear();
+    for (std::uint64_t n = state.get_word(); n > 0; --n) {
+        Channel c;
+        c.count = state.get_word();
+        c.sum = state.get_double();
+        c.squares = state.get_double();
+        channels.push_back(c);
+    }
 }
 
 std::optional<MixtureSums> sample_mixture(const Evaluator& evaluator, const MixtureDensity& mixture,

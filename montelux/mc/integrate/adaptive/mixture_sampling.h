@@ -35,6 +35,10 @@ struct MixtureSums {
     void merge(const MixtureSums& later);
     // Variance of the sum / n of the first component where the points of a channel are independent.
     double independent_variance(std::uint64_t n) const;
+
+    // `load` keeps the number of replicates and components. Throws Error where the saved ones differ.
+    void save(StateWriter& state) const;
+    void load(StateReader& state);
 };
 
 // Evaluates, for each replicate r in [0, replicates), points [begin, end) of the mixture (multiples of
