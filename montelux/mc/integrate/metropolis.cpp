@@ -120,15 +120,18 @@ class MetropolisEstimator final : public Estimator {
             tally.standard_error[c] =
                 std::sqrt(z * z * h.standard_error * h.standard_error + h.mean * h.mean * z_variance);
         }
-        if (problem_.full_covariance)
+        if (problem_.full_covariance) {
+            tally.covariance.resize(m * m);
             for (std::size_t a = 0; a < m; ++a)
-                for (std::size_t b = 0; b < m; ++b) {
-                    const double r = a == b ? 1
-                                            : correlation_of_means(traces, static_cast<int>(std::max(a, b)),
-                                                                   static_cast<int>(std::min(a, b)));
-                    tally.covariance.push_back(z * z * r * means[a].standard_error * means[b].standard_error +
-                                               means[a].mean * means[b].mean * z_variance);
+                for (std::size_t b = 0; b <= a; ++b) {
+                    const double r =
+                        a == b ? 1 : correlation_of_means(traces, static_cast<int>(a), static_cast<int>(b));
+                    // One number for both places: sums in another order could round otherwise.
+                    tally.covariance[a * m + b] = tally.covariance[b * m + a] =
+                        z * z * r * means[a].standard_error * means[b].standard_error +
+                        means[a].mean * means[b].mean * z_variance;
                 }
+        }
         add_doubts(tally);
         return tally;
     }
