@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <ctime>
 #include <mutex>
 #include <vector>
 
-#include "montelux/film/pixel_filter.h"
 #include "montelux/mc/math/error.h"
-#include "montelux/mc/random/sample_stream.h"
 #include "montelux/render/passes.h"
-#include "montelux/spectrum/sensor.h"
-#include "montelux/transport/path.h"
+#include "montelux/render/sample_context.h"
 
 namespace montelux {
 
@@ -41,66 +37,6 @@ std::vector<PixelBounds> tiles_of(const PixelBounds& crop) {
             tiles.push_back({x, y, std::min(x + tile_size, crop.x1), std::min(y + tile_size, crop.y1)});
     return tiles;
 }
-
-// Radiance that may enter a sum, or why it may not.
-std::optional<BadSample::Kind> badness(Vec3f rgb, SampledSpectrum radiance) {
-    // The radiance first: infinite light makes differences of infinities in RGB.
-    if (has_nan(radiance)) return BadSample::Kind::nan;
-    if (!all_finite(radiance)) return BadSample::Kind::infinite;
-    if (std::isnan(rgb.x + rgb.y + rgb.z)) return BadSample::Kind::nan;
-    if (!is_finite(rgb)) return BadSample::Kind::infinite;
-    // RGB may be negative for colours outside the gamut; the spectrum may not.
-    if (has_negative(radiance)) return BadSample::Kind::negative;
-    return std::nullopt;
-}
-
-// Everything that one sample needs, shared by all threads.
-struct SampleContext {
-    const SamplerSettings& sampler;
-    float max_component_value;
-    PathScene path;
-    PixelFilterSampler filter;
-    Sensor sensor;
-    Sensor albedo_sensor{};
-    // Spectrum of the white that albedos are seen under.
-    const SpectrumTable& white = RgbColorSpace::srgb().illuminant();
-    float white_scale = static_cast<float>(1 / integrate_luminance(white));
-
-    struct Result {
-        FilmSample film;
-        std::optional<BadSample::Kind> bad;
-    };
-
-    Result take(RayTracer& tracer, int x, int y, std::uint64_t index) const {
-        SampleStream stream(sampler, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), index);
-        Vec2f u_film = stream.next_2d();
-        float u_lambda = stream.next_1d();
-        Vec2f u_lens = path.camera.has_lens() ? stream.next_2d() : Vec2f{0.5f, 0.5f};
-        FilterSample point = filter.sample(u_film);
-        Point2f film{static_cast<float>(x) + 0.5f + point.offset.x,
-                     static_cast<float>(y) + 0.5f + point.offset.y};
-        Ray ray = path.camera.generate_ray(film, u_lens);
-        SampledWavelengths lambda = SampledWavelengths::sample_visible(u_lambda);
-        const SampledWavelengths all = lambda;
-        FirstHit first;
-        SampledSpectrum radiance = path_radiance(path, tracer, ray, lambda, stream, &first);
-
-        Result result;
-        Vec3f rgb = sensor.to_rgb(radiance, lambda);
-        float largest = max_component(rgb), limit = max_component_value;
-        if (largest > limit) rgb *= limit / largest;
-        rgb *= point.weight;
-        result.bad = badness(rgb, radiance);
-        if (result.bad) return result;
-        result.film.radiance = rgb;
-        if (first.found) {
-            result.film.albedo = albedo_sensor.to_rgb(first.albedo * white.sample(all) * white_scale, all);
-            result.film.normal = first.normal;
-            result.film.depth = first.depth;
-        }
-        return result;
-    }
-};
 
 // Statistics and bad samples of the tiles that have been rendered, merged in any order: counts and minima.
 struct Tally {
@@ -155,16 +91,7 @@ Renderer::Renderer(const SceneDescription& description)
 
 RenderReport Renderer::render(Film& film, const ProgressCallback& progress, const CancelFlag* cancel) const {
     const SamplerSettings& sampler = sampler_;
-    const FilmSettings& settings = description_.film;
-    const float footprint_scale =
-        std::max(0.125f, 1 / std::sqrt(static_cast<float>(sampler.samples_per_pixel)));
-    const SampleContext context{
-        .sampler = sampler,
-        .max_component_value = settings.max_component_value,
-        .path = {description_.scene, *tables_, camera_, description_.integrator, footprint_scale},
-        .filter = PixelFilterSampler(settings.filter),
-        .sensor =
-            Sensor(RgbColorSpace::srgb(), {settings.exposure_time, settings.iso, settings.white_balance})};
+    const SampleContext context(description_, sampler, *tables_, camera_);
 
     const std::vector<PixelBounds> tiles = tiles_of(film.bounds());
     const std::uint64_t pixels = static_cast<std::uint64_t>(film.bounds().width()) * film.bounds().height();

@@ -1,0 +1,70 @@
+#include "montelux/render/sample_context.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace montelux {
+
+namespace {
+
+// Why radiance may not enter a sum, if it may not.
+std::optional<BadSample::Kind> badness(Vec3f rgb, SampledSpectrum radiance) {
+    // The radiance first: infinite light makes differences of infinities in RGB.
+    if (has_nan(radiance)) return BadSample::Kind::nan;
+    if (!all_finite(radiance)) return BadSample::Kind::infinite;
+    if (std::isnan(rgb.x + rgb.y + rgb.z)) return BadSample::Kind::nan;
+    if (!is_finite(rgb)) return BadSample::Kind::infinite;
+    // RGB may be negative for colours outside the gamut; the spectrum may not.
+    if (has_negative(radiance)) return BadSample::Kind::negative;
+    return std::nullopt;
+}
+
+float footprint_scale(const SamplerSettings& sampler) {
+    return std::max(0.125f, 1 / std::sqrt(static_cast<float>(sampler.samples_per_pixel)));
+}
+
+} // namespace
+
+SampleContext::SampleContext(const SceneDescription& description, const SamplerSettings& sampler,
+                             const SceneTables& tables, const Camera& camera)
+    : sampler_(sampler),
+      max_component_value_(description.film.max_component_value), path_{description.scene, tables, camera,
+                                                                        description.integrator,
+                                                                        footprint_scale(sampler)},
+      filter_(description.film.filter),
+      sensor_(RgbColorSpace::srgb(),
+              {description.film.exposure_time, description.film.iso, description.film.white_balance}),
+      white_(RgbColorSpace::srgb().illuminant()),
+      white_scale_(static_cast<float>(1 / integrate_luminance(white_))) {}
+
+SampleContext::Result SampleContext::take(RayTracer& tracer, int x, int y, std::uint64_t index) const {
+    SampleStream stream(sampler_, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), index);
+    Vec2f u_film = stream.next_2d();
+    float u_lambda = stream.next_1d();
+    Vec2f u_lens = path_.camera.has_lens() ? stream.next_2d() : Vec2f{0.5f, 0.5f};
+    FilterSample point = filter_.sample(u_film);
+    Point2f film{static_cast<float>(x) + 0.5f + point.offset.x,
+                 static_cast<float>(y) + 0.5f + point.offset.y};
+    Ray ray = path_.camera.generate_ray(film, u_lens);
+    SampledWavelengths lambda = SampledWavelengths::sample_visible(u_lambda);
+    const SampledWavelengths all = lambda;
+    FirstHit first;
+    SampledSpectrum radiance = path_radiance(path_, tracer, ray, lambda, stream, &first);
+
+    Result result;
+    Vec3f rgb = sensor_.to_rgb(radiance, lambda);
+    float largest = max_component(rgb), limit = max_component_value_;
+    if (largest > limit) rgb *= limit / largest;
+    rgb *= point.weight;
+    result.bad = badness(rgb, radiance);
+    if (result.bad) return result;
+    result.film.radiance = rgb;
+    if (first.found) {
+        result.film.albedo = albedo_sensor_.to_rgb(first.albedo * white_.sample(all) * white_scale_, all);
+        result.film.normal = first.normal;
+        result.film.depth = first.depth;
+    }
+    return result;
+}
+
+} // namespace montelux

@@ -1,0 +1,46 @@
+// One sample of one pixel: from its random numbers to what the film adds up.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "montelux/film/film.h"
+#include "montelux/film/pixel_filter.h"
+#include "montelux/mc/random/sample_stream.h"
+#include "montelux/scene/render_settings.h"
+#include "montelux/spectrum/rgb_colorspace.h"
+#include "montelux/spectrum/sensor.h"
+#include "montelux/spectrum/spectrum_table.h"
+#include "montelux/transport/path.h"
+
+namespace montelux {
+
+// Everything that one sample needs, shared by all threads.
+class SampleContext {
+  public:
+    struct Result {
+        FilmSample film;
+        // Why the sample may not enter a sum; `film` is then empty.
+        std::optional<BadSample::Kind> bad;
+    };
+
+    // All arguments must outlive the context.
+    SampleContext(const SceneDescription& description, const SamplerSettings& sampler,
+                  const SceneTables& tables, const Camera& camera);
+
+    // A pure function of the pixel and the index (the tracer counts rays).
+    Result take(RayTracer& tracer, int x, int y, std::uint64_t index) const;
+
+  private:
+    const SamplerSettings& sampler_;
+    float max_component_value_;
+    PathScene path_;
+    PixelFilterSampler filter_;
+    Sensor sensor_;
+    Sensor albedo_sensor_;
+    // Spectrum of the white that albedos are seen under.
+    const SpectrumTable& white_;
+    float white_scale_;
+};
+
+} // namespace montelux
