@@ -63,7 +63,11 @@ class ControlVariateEstimator final : public Estimator {
             },
             request.cancel);
         if (!sum) return StepOutcome::cancelled;
-        if (!beta_.empty()) average_.add(static_cast<double>(size), estimate(sum->residual.moments));
+        if (!beta_.empty()) {
+            auto estimate = IterationEstimate::zero(components(), problem_.full_covariance);
+            estimate.add_mean(sum->residual.moments);
+            average_.add(static_cast<double>(size), estimate);
+        }
         joint_.merge(sum->joint);
         non_finite_.merge(sum->residual.non_finite);
         regress();
@@ -136,18 +140,6 @@ class ControlVariateEstimator final : public Estimator {
     }
     double beta(int component, int control) const {
         return beta_[static_cast<std::size_t>(component * controls() + control)];
-    }
-
-    IterationEstimate estimate(const CovarianceMoments& residuals) const {
-        const auto m = static_cast<std::size_t>(components());
-        const double n = static_cast<double>(residuals.count());
-        const bool full = problem_.full_covariance;
-        IterationEstimate estimate{residuals.means(), std::vector<double>(m * (full ? m : 1)), 0};
-        for (std::size_t a = 0; a < m; ++a)
-            for (std::size_t b = full ? 0 : a; b <= a; ++b)
-                estimate.covariance[full ? a * m + b : a] =
-                    residuals.covariance(static_cast<int>(a), static_cast<int>(b)) / n;
-        return estimate;
     }
 
     void regress() {

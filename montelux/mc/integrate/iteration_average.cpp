@@ -17,6 +17,23 @@ constexpr double rounding_error = 1e-13;
 
 } // namespace
 
+IterationEstimate IterationEstimate::zero(int components, bool full_covariance) {
+    const auto m = static_cast<std::size_t>(components);
+    return {std::vector<double>(m), std::vector<double>(m * (full_covariance ? m : 1)), 0};
+}
+
+void IterationEstimate::add_mean(const CovarianceMoments& samples) {
+    const std::size_t m = value.size();
+    const bool full = samples.full();
+    const double n = static_cast<double>(samples.count());
+    for (std::size_t a = 0; a < m; ++a) {
+        value[a] += samples.means()[a];
+        for (std::size_t b = full ? 0 : a; b <= a; ++b)
+            covariance[full ? a * m + b : a] +=
+                samples.covariance(static_cast<int>(a), static_cast<int>(b)) / n;
+    }
+}
+
 IterationAverage::IterationAverage(int components, bool full_covariance)
     : full_(full_covariance), value_(static_cast<std::size_t>(components)),
       covariance_(value_.size() * (full_covariance ? value_.size() : 1)), chi_squared_(value_) {}

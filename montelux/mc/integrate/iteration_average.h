@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "montelux/mc/integrate/estimator.h"
+#include "montelux/mc/stats/covariance_moments.h"
 
 namespace montelux {
 
@@ -14,6 +15,10 @@ struct IterationEstimate {
     std::vector<double> value, covariance;
     // Degrees of freedom of the variances; 0 where they are as good as known.
     int degrees_of_freedom = 0;
+
+    static IterationEstimate zero(int components, bool full_covariance);
+    // Adds an independent part: the mean of samples of these moments, with its own covariance.
+    void add_mean(const CovarianceMoments& samples);
 };
 
 // Iterations are weighted by numbers that are fixed before they run. (Weights by the variances that

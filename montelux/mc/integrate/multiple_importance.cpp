@@ -229,23 +229,12 @@ class OptimalEstimator final : public RoundsEstimator {
     }
 
     void take(std::uint64_t rounds, const std::vector<TechniqueSum>& sums) override {
-        const auto m = static_cast<std::size_t>(components());
         const std::size_t techniques = sampler_.techniques();
         if (!alpha_.empty()) {
-            IterationEstimate estimate{std::vector<double>(m), std::vector<double>(m * (full() ? m : 1)), 0};
-            for (std::size_t c = 0; c < m; ++c)
+            auto estimate = IterationEstimate::zero(components(), full());
+            for (std::size_t c = 0; c < estimate.value.size(); ++c)
                 for (std::size_t k = 0; k < techniques; ++k) estimate.value[c] += alpha_[c * techniques + k];
-            for (const TechniqueSum& s : sums) {
-                const CovarianceMoments& moments = s.samples.moments;
-                const double count = static_cast<double>(moments.count());
-                for (std::size_t a = 0; a < m; ++a) {
-                    const int ia = static_cast<int>(a);
-                    estimate.value[a] += moments.mean(ia);
-                    for (std::size_t b = full() ? 0 : a; b <= a; ++b)
-                        estimate.covariance[full() ? a * m + b : a] +=
-                            moments.covariance(ia, static_cast<int>(b)) / count;
-                }
-            }
+            for (const TechniqueSum& s : sums) estimate.add_mean(s.samples.moments);
             average_.add(static_cast<double>(rounds * sampler_.samples_in_round()), estimate);
         }
         for (const TechniqueSum& s : sums) {

@@ -1,9 +1,12 @@
 #include "montelux/mc/integrate/stratified.h"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "montelux/mc/integrate/sampling.h"
+#include "montelux/mc/integrate/pass_estimator.h"
 #include "montelux/mc/integrate/strata.h"
 #include "montelux/mc/math/error.h"
 
@@ -14,11 +17,10 @@ constexpr std::uint64_t samples_a_stratum = 16; // on a line, and beside a pilot
 constexpr std::uint64_t most_pilot_numbers = 1 << 24;
 constexpr double even_share = 0.2;
 
-class StratifiedEstimator final : public Estimator {
+class StratifiedEstimator final : public PassEstimator {
   public:
     StratifiedEstimator(const Problem& problem, const Stratified& settings)
-        : problem_(problem), settings_(settings),
-          average_(problem.evaluator.components(), problem.full_covariance) {
+        : PassEstimator(problem), settings_(settings) {
         if (settings.pilot < 2)
             throw Error("stratified", "a pilot of " + std::to_string(settings.pilot) +
                                           " samples a stratum; expected at least 2");
@@ -33,14 +35,14 @@ class StratifiedEstimator final : public Estimator {
     StepOutcome step(const StepRequest& request) override {
         const std::uint64_t pilot =
             settings_.allocation == Allocation::neyman ? static_cast<std::uint64_t>(settings_.pilot) : 0;
-        std::uint64_t size = next_pass_size(evaluations_, request);
-        std::uint64_t most = pilot != 0                             ? size / (pilot + samples_a_stratum)
-                             : problem_.evaluator.dimensions() == 1 ? size / samples_a_stratum
-                                                                    : size / 2;
+        std::uint64_t size = next_pass_size(evaluations(), request);
+        std::uint64_t most = pilot != 0                              ? size / (pilot + samples_a_stratum)
+                             : problem().evaluator.dimensions() == 1 ? size / samples_a_stratum
+                                                                     : size / 2;
         if (pilot != 0)
-            most = std::min(most,
-                            most_pilot_numbers / static_cast<std::uint64_t>(problem_.evaluator.components()));
-        const int d = problem_.evaluator.dimensions();
+            most = std::min(most, most_pilot_numbers /
+                                      static_cast<std::uint64_t>(problem().evaluator.components()));
+        const int d = problem().evaluator.dimensions();
         const std::vector<std::uint64_t> cells =
             settings_.strata != 0 ? std::vector<std::uint64_t>(static_cast<std::size_t>(d), settings_.strata)
                                   : balanced_cells(d, std::max<std::uint64_t>(most, 1));
@@ -49,64 +51,42 @@ class StratifiedEstimator final : public Estimator {
         size = std::max(size, strata.count * (pilot + 2));
         if (size > request.max_evaluations) return StepOutcome::exhausted;
         // A small rest beside finer strata would hardly count.
-        if (passes_ > 0 && size < std::min<std::uint64_t>(1 << 20, evaluations_ / 4))
+        if (passes() > 0 && size < std::min<std::uint64_t>(1 << 20, evaluations() / 4))
             return StepOutcome::exhausted;
 
         std::vector<double> shares;
-        NonFiniteCount non_finite;
+        Pass pass;
         if (pilot != 0) {
             std::vector<double> variances;
             const auto offsets = allocate_samples(strata.count, strata.count * pilot, pilot, {});
-            auto sum = sample_strata(problem_, strata, offsets, stream(1), &variances, request.cancel);
+            auto sum = sample_strata(problem(), strata, offsets, pilot_stream(), &variances, request.cancel);
             if (!sum) return StepOutcome::cancelled;
-            non_finite = std::move(sum->non_finite);
+            pass.non_finite = std::move(sum->non_finite);
             shares = neyman_shares(variances, cells);
         }
         std::uint64_t samples = size - strata.count * pilot;
         if (pilot == 0) samples -= samples % strata.count; // equal numbers
         const auto offsets =
             allocate_samples(strata.count, samples, pilot == 0 ? samples / strata.count : 2, shares);
-        auto sum = sample_strata(problem_, strata, offsets, stream(0), nullptr, request.cancel);
+        auto sum = sample_strata(problem(), strata, offsets, sample_stream(), nullptr, request.cancel);
         if (!sum) return StepOutcome::cancelled;
-        non_finite.merge(sum->non_finite);
+        pass.non_finite.merge(sum->non_finite);
 
         const double exponent = settings_.strata != 0 ? 1 : 1 + 2.0 / d;
-        average_.add(std::pow(static_cast<double>(samples), exponent), sum->estimate);
-        non_finite_.merge(non_finite);
-        evaluations_ += samples + strata.count * pilot;
-        ++passes_;
+        pass.weight = std::pow(static_cast<double>(samples), exponent);
+        pass.estimate = std::move(sum->estimate);
+        pass.evaluations = samples + strata.count * pilot;
+        add(pass);
         return StepOutcome::advanced;
     }
 
-    Tally tally() const override {
-        Tally tally;
-        average_.tally(tally);
-        tally.evaluations = evaluations_;
-        tally.non_finite = non_finite_;
-        return tally;
-    }
-    void save(StateWriter& state) const override {
-        average_.save(state);
-        state.put(evaluations_);
-        state.put(passes_);
-        montelux::save(state, non_finite_);
-    }
-    void load(StateReader& state) override {
-        average_.load(state);
-        evaluations_ = state.get_word();
-        passes_ = state.get<std::uint32_t>();
-        montelux::load(state, non_finite_);
-    }
-
   private:
-    std::uint32_t stream(std::uint32_t part) const { return 2 * passes_ + part; }
-
     // Standard deviations within strata; those of several components relative to their means over strata.
     // Half of each variance is that of the neighbours in the grid: a few points tell little, and a stratum
     // that hides an edge from them lies beside others which show it.
     std::vector<double> neyman_shares(const std::vector<double>& variances,
                                       const std::vector<std::uint64_t>& cells) const {
-        const auto m = static_cast<std::size_t>(problem_.evaluator.components());
+        const auto m = static_cast<std::size_t>(problem().evaluator.components());
         const std::size_t strata = variances.size() / m;
         std::vector<double> total(m), own(strata), shares(strata);
         for (std::size_t k = 0; k < strata; ++k)
@@ -133,12 +113,7 @@ class StratifiedEstimator final : public Estimator {
         return shares;
     }
 
-    Problem problem_;
     Stratified settings_;
-    IterationAverage average_;
-    NonFiniteCount non_finite_;
-    std::uint64_t evaluations_ = 0;
-    std::uint32_t passes_ = 0;
 };
 
 } // namespace

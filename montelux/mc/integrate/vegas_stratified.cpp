@@ -230,8 +230,7 @@ class StratifiedVegas final : public VegasEstimator {
     }
 
     IterationEstimate empty() const {
-        const auto m = static_cast<std::size_t>(problem_.evaluator.components());
-        return {std::vector<double>(m), std::vector<double>(m * (problem_.full_covariance ? m : 1)), 0};
+        return IterationEstimate::zero(problem_.evaluator.components(), problem_.full_covariance);
     }
 
     void save_more(StateWriter& state) const override { cubes_.save(state); }

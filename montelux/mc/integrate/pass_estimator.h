@@ -1,0 +1,46 @@
+// Base of stratified estimators that work in passes: each a whole estimate, averaged with fixed weights.
+#pragma once
+
+#include <cstdint>
+
+#include "montelux/mc/integrate/estimator.h"
+#include "montelux/mc/integrate/iteration_average.h"
+
+namespace montelux {
+
+// Holds what passes add up to; a derived class only makes the next one.
+class PassEstimator : public Estimator {
+  public:
+    Tally tally() const final;
+    void save(StateWriter& state) const final;
+    void load(StateReader& state) final;
+
+  protected:
+    struct Pass {
+        // Decided before the pass ran; see IterationAverage.
+        double weight = 0;
+        IterationEstimate estimate;
+        NonFiniteCount non_finite;
+        std::uint64_t evaluations = 0; // pilot included
+    };
+
+    explicit PassEstimator(const Problem& problem);
+
+    void add(const Pass& pass);
+
+    const Problem& problem() const { return problem_; }
+    std::uint64_t evaluations() const { return evaluations_; }
+    std::uint32_t passes() const { return passes_; }
+    // Streams of random numbers that no other pass has.
+    std::uint32_t sample_stream() const { return 2 * passes_; }
+    std::uint32_t pilot_stream() const { return 2 * passes_ + 1; }
+
+  private:
+    Problem problem_;
+    IterationAverage average_;
+    NonFiniteCount non_finite_;
+    std::uint64_t evaluations_ = 0;
+    std::uint32_t passes_ = 0;
+};
+
+} // namespace montelux
