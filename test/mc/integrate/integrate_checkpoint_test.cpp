@@ -1,0 +1,169 @@
+// Checkpoints of integrations: resumed runs have the bits of unbroken ones, wrong files are refused.
+#include "test/mc/integrate/integrate_testing.h"
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <string_view>
+
+namespace montelux {
+namespace {
+
+using std::chrono::duration;
+
+// A file name in the folder for temporary files, removed before and after.
+class TemporaryFile {
+  public:
+    explicit TemporaryFile(const std::string& name) : path_(testing::TempDir() + "montelux_" + name) {
+        std::filesystem::remove(path_);
+    }
+    ~TemporaryFile() { std::filesystem::remove(path_); }
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+    const std::string& path() const { return path_; }
+
+    std::string bytes() const {
+        std::ifstream in(path_, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+    void replace(const std::string& bytes) const { std::ofstream(path_, std::ios::binary) << bytes; }
+
+  private:
+    std::string path_;
+};
+
+TEST(IntegrateCheckpoint, ResumedRunHasTheBitsOfAnUnbrokenOne) {
+    const Budget budget{.evaluations = 400'000};
+    const Integrand f = Integrand::vector_valued(2, [](std::span<const double> x, std::span<double> y) {
+        y[0] = product(x);
+        y[1] = x[0] < 0.001 ? std::numeric_limits<double>::quiet_NaN() : x[1];
+    });
+    const IntegrationResult unbroken = integrate(f, Domain::unit_cube(2), basic, budget, {.seed = 3});
+    for (std::uint64_t stop_at : {1u, 10'000u, 100'000u, 250'000u}) {
+        const TemporaryFile file("resume");
+        CancelFlag cancel;
+        IntegrationOptions options{.seed = 3, .cancel = &cancel, .checkpoint = file.path()};
+        options.progress = [&](const IntegrationResult& r) {
+            if (r.evaluations >= stop_at) cancel.request();
+        };
+        const IntegrationResult part = integrate(f, Domain::unit_cube(2), basic, budget, options);
+        EXPECT_EQ(part.stop, StopReason::cancelled);
+        EXPECT_LT(part.evaluations, budget.evaluations);
+        const IntegrationResult rest =
+            integrate(f, Domain::unit_cube(2), basic, budget,
+                      {.seed = 3, .threads = 3, .checkpoint = file.path(), .resume = true});
+        EXPECT_TRUE(same_but_for_time(rest, unbroken)) << "stopped at " << stop_at;
+        // The state was saved with the time until then; writing it may take longer than all the rest.
+        ASSERT_FALSE(part.history.empty());
+        EXPECT_GE(rest.seconds, part.history.back().seconds);
+        // Once more from the end: nothing is left to do.
+        const IntegrationResult end = integrate(f, Domain::unit_cube(2), basic, budget,
+                                                {.seed = 3, .checkpoint = file.path(), .resume = true});
+        EXPECT_TRUE(same_but_for_time(end, unbroken));
+    }
+}
+// Cancelled in the middle of a step, by the integrand itself, at calls of all kinds: pilots, training,
+// sampling.
+TEST(IntegrateCheckpoint, EveryMethodResumesToTheSameBits) {
+    auto peak = [](std::span<const double> x) {
+        return std::exp(-40 * ((x[0] - 0.3) * (x[0] - 0.3) + x[1] * x[1]));
+    };
+    const Budget budget{.evaluations = 60'000};
+    for (std::string_view name : Method::names()) {
+        const Method method = Method::named(name);
+        const IntegrationResult unbroken = integrate(peak, Domain::unit_cube(2), method, budget, {.seed = 4});
+        EXPECT_LE(unbroken.evaluations, budget.evaluations) << name;
+        for (int stop_at : {500, 5000, 20'000, 45'000}) {
+            const TemporaryFile file("every_method");
+            CancelFlag cancel;
+            std::atomic<int> calls{0};
+            auto f = [&](std::span<const double> x) {
+                if (++calls == stop_at) cancel.request();
+                return peak(x);
+            };
+            const IntegrationResult part =
+                integrate(f, Domain::unit_cube(2), method, budget,
+                          {.seed = 4, .cancel = &cancel, .checkpoint = file.path()});
+            if (part.stop != StopReason::cancelled) continue; // had done all it wanted
+            const IntegrationResult rest = integrate(peak, Domain::unit_cube(2), method, budget,
+                                                     {.seed = 4, .checkpoint = file.path(), .resume = true});
+            EXPECT_TRUE(same_but_for_time(rest, unbroken)) << name << " stopped at " << stop_at;
+        }
+    }
+}
+TEST(IntegrateCheckpoint, IsWrittenWhileTheRunGoesOn) {
+    const TemporaryFile file("periodic");
+    std::size_t times = 0;
+    IntegrationOptions options{.checkpoint = file.path(), .checkpoint_every = duration<double>(0)};
+    options.progress = [&](const IntegrationResult&) { times += std::filesystem::exists(file.path()); };
+    integrate(product, Domain::unit_cube(2), basic, {.evaluations = 50'000}, options);
+    EXPECT_GE(times, 2u);
+}
+TEST(IntegrateCheckpoint, ResumeWithoutAFileBeginsAnew) {
+    const TemporaryFile file("fresh");
+    const IntegrationResult r = integrate(product, Domain::unit_cube(2), basic, {.evaluations = 10'000},
+                                          {.checkpoint = file.path(), .resume = true});
+    EXPECT_EQ(r.evaluations, 10'000u);
+    EXPECT_TRUE(std::filesystem::exists(file.path()));
+}
+TEST(IntegrateCheckpoint, OfAnotherProblemIsRefused) {
+    const TemporaryFile file("other");
+    const Domain square = Domain::unit_cube(2);
+    integrate(product, square, basic, {.evaluations = 5000}, {.seed = 1, .checkpoint = file.path()});
+    const IntegrationOptions resume{.seed = 1, .checkpoint = file.path(), .resume = true};
+    const Budget budget{.evaluations = 9000};
+    const std::string text = "belongs to another integrand, domain, method or seed";
+    IntegrationOptions other_seed = resume;
+    other_seed.seed = 2;
+    expect_error(text, [&] { integrate(product, square, basic, budget, other_seed); });
+    expect_error(text, [&] {
+        integrate([](std::span<const double> x) { return x[0]; }, square, basic, budget, resume);
+    });
+    expect_error(text, [&] { integrate(product, Domain({{0, 1}, {0, 1 + 1e-12}}), basic, budget, resume); });
+    expect_error(text, [&] { integrate(product, square, TenSteps{}, budget, resume); });
+    EXPECT_EQ(integrate(product, square, basic, budget, resume).evaluations, 9000u);
+}
+TEST(IntegrateCheckpoint, DamagedFilesAreRefused) {
+    const TemporaryFile file("damaged");
+    const IntegrationOptions resume{.checkpoint = file.path(), .resume = true};
+    auto run = [&] { integrate(product, Domain::unit_cube(2), basic, {.evaluations = 9000}, resume); };
+    integrate(product, Domain::unit_cube(2), basic, {.evaluations = 5000}, {.checkpoint = file.path()});
+    const std::string whole = file.bytes();
+    // Cut short anywhere.
+    for (std::size_t size = 0; size < whole.size(); size += size < 96 ? 1 : 13) {
+        file.replace(whole.substr(0, size));
+        expect_error(file.path() + ": is ", run);
+    }
+    // One wrong bit anywhere.
+    for (std::size_t at = 0; at < whole.size(); at += at < 96 ? 1 : 5) {
+        std::string wrong = whole;
+        wrong[at] = static_cast<char>(wrong[at] ^ 16);
+        file.replace(wrong);
+        expect_error(file.path() + ": ", run);
+    }
+    file.replace(whole + "12345678");
+    expect_error("is damaged", run);
+    file.replace("A text that is no state of anything.");
+    expect_error("is not a saved state of Montelux", run);
+    file.replace(whole);
+    EXPECT_NO_THROW(run());
+}
+TEST(IntegrateCheckpoint, UnwritableFileIsToldBeforeTheWork) {
+    std::atomic<int> calls{0};
+    auto f = [&](double x) {
+        ++calls;
+        return x;
+    };
+    expect_error("/no/such/folder/state", [&] {
+        integrate(f, Domain::interval(0, 1), basic, {}, {.checkpoint = "/no/such/folder/state"});
+    });
+    EXPECT_EQ(calls, 0);
+}
+
+} // namespace
+} // namespace montelux
