@@ -8,12 +8,15 @@
 
 class Comparison {
   public:
+    // Results agree that lie within so many standard errors of what is known.
+    explicit Comparison(double most_errors = 3) : most_errors_(most_errors) {}
+
     // `known` may have an error of its own, independent of the result's.
     void add(const std::string& what, const montelux::Estimate& result, double known,
              double known_error = 0) {
         const double distance = std::abs(result.value - known);
         const double error = std::hypot(result.standard_error, known_error);
-        const bool agrees = distance <= 3 * error + 1e-14 * std::abs(known);
+        const bool agrees = distance <= most_errors_ * error + 1e-14 * std::abs(known);
         const auto digits = std::cout.precision(10);
         std::cout << what << " = " << result << "   known: " << known;
         if (known_error > 0) std::cout << " +- " << known_error;
@@ -24,5 +27,6 @@ class Comparison {
     int exit_code() const { return exit_code_; }
 
   private:
+    double most_errors_;
     int exit_code_ = 0;
 };
