@@ -14,25 +14,25 @@ namespace montelux {
 // some q_i > 0. A strategy with q_i = 0 has weight 0; infinite densities (a delta) take all the weight
 // and share it by their counts.
 
-// Weight of strategy f beside strategy g: q_f / (q_f + q_g).
+// Weight of strategy f beside strategy g, which gets g_share(q_g / q_f) for each 1 of f. By the ratio no
+// power of a density can overflow.
+template <std::floating_point T, typename Share>
+constexpr T weight_of_two(int nf, T f_pdf, int ng, T g_pdf, Share g_share) {
+    T qf = static_cast<T>(nf) * f_pdf, qg = static_cast<T>(ng) * g_pdf;
+    if (!(qf > 0)) return 0;
+    if (qf > std::numeric_limits<T>::max())
+        return qg > std::numeric_limits<T>::max() ? static_cast<T>(nf) / static_cast<T>(nf + ng) : T(1);
+    return 1 / (1 + g_share(qg / qf));
+}
+// q_f / (q_f + q_g).
 template <std::floating_point T>
 constexpr T balance_heuristic(int nf, T f_pdf, int ng, T g_pdf) {
-    T qf = static_cast<T>(nf) * f_pdf, qg = static_cast<T>(ng) * g_pdf;
-    if (!(qf > 0)) return 0;
-    if (qf > std::numeric_limits<T>::max())
-        return qg > std::numeric_limits<T>::max() ? static_cast<T>(nf) / static_cast<T>(nf + ng) : T(1);
-    return 1 / (1 + qg / qf);
+    return weight_of_two(nf, f_pdf, ng, g_pdf, [](T ratio) { return ratio; });
 }
-
-// Power heuristic with exponent 2: q_f^2 / (q_f^2 + q_g^2), by the ratio so that squares cannot overflow.
+// Power heuristic with exponent 2: q_f^2 / (q_f^2 + q_g^2).
 template <std::floating_point T>
 constexpr T power_heuristic(int nf, T f_pdf, int ng, T g_pdf) {
-    T qf = static_cast<T>(nf) * f_pdf, qg = static_cast<T>(ng) * g_pdf;
-    if (!(qf > 0)) return 0;
-    if (qf > std::numeric_limits<T>::max())
-        return qg > std::numeric_limits<T>::max() ? static_cast<T>(nf) / static_cast<T>(nf + ng) : T(1);
-    T ratio = qg / qf;
-    return 1 / (1 + ratio * ratio);
+    return weight_of_two(nf, f_pdf, ng, g_pdf, [](T ratio) { return ratio * ratio; });
 }
 
 struct MisHeuristic {
