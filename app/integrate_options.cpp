@@ -1,5 +1,6 @@
 #include "app/integrate_options.h"
 
+#include "app/joined.h"
 #include "app/usage_error.h"
 #include "app/variables.h"
 #include <CLI/CLI.hpp>
@@ -17,17 +18,11 @@ namespace {
 constexpr std::array<std::string_view, 4> domain_names{"box", "simplex", "ball", "sphere"};
 constexpr std::array<std::string_view, 2> policy_names{"skip", "throw"};
 
-std::string list(std::span<const std::string_view> names) {
-    std::string text;
-    for (std::string_view name : names) text += (text.empty() ? "" : ", ") + std::string(name);
-    return text;
-}
-
 void check_choice(const std::string& given, std::span<const std::string_view> names,
                   const std::string& option, const std::string& what) {
     if (std::find(names.begin(), names.end(), given) == names.end())
         throw UsageError(option, "there is no " + what + " '" + given + "'" + did_you_mean(given, names) +
-                                     "; expected one of " + list(names));
+                                     "; expected one of " + joined(names));
 }
 
 // A finite number above zero; 0 where nothing was given.
@@ -113,7 +108,7 @@ void declare(CLI::App& c, IntegrateOptions& o) {
     many("--density", o.densities,
          "Draw a variable from a density that is proportional to this formula, for example x=exp(-5*x)",
          "NAME=FORMULA");
-    text("--method", o.method, "How: " + list(Method::names()) + ". Default: " + Method().name(), "NAME");
+    text("--method", o.method, "How: " + joined(Method::names()) + ". Default: " + Method().name(), "NAME");
     text("--relative-error", o.relative_error, "Stop at this standard error relative to the value", "E");
     text("--absolute-error", o.absolute_error, "Stop at this standard error; with both, at the larger one",
          "E");
@@ -123,7 +118,7 @@ void declare(CLI::App& c, IntegrateOptions& o) {
     text("--seed", o.seed, "Seed of all random numbers. Default: 0", "N");
     text("--threads", o.threads, "Threads; 0: one a processor. The result does not depend on it", "N");
     text("--domain", o.domain,
-         "Where: " + list(domain_names) + "; all but the box take --over NAMES. Default: box", "NAME");
+         "Where: " + joined(domain_names) + "; all but the box take --over NAMES. Default: box", "NAME");
     text("--radius", o.radius, "Radius of ball and sphere. Default: 1", "R");
     text("--centre", o.centre, "Centre of ball and sphere. Default: the origin", "X,Y,...");
     text("--non-finite", o.non_finite,

@@ -1,4 +1,5 @@
 #include "app/commands.h"
+#include "app/joined.h"
 #include "app/usage_error.h"
 #include <CLI/CLI.hpp>
 #include <csignal>
@@ -33,8 +34,7 @@ int report_usage(const CLI::App& app, const CLI::ParseError& e, int argc, char**
     if (app.get_subcommands().empty()) {
         std::vector<std::string_view> names;
         for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
-        std::string known;
-        for (std::string_view name : names) known += (known.empty() ? "" : ", ") + std::string(name);
+        const std::string known = joined(names);
         std::string_view first = argc > 1 ? argv[1] : "";
         if (first.empty())
             message = "a command is expected: " + known;

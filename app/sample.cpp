@@ -1,6 +1,7 @@
 // montelux sample: points of a set, or samples of a density.
 #include "app/commands.h"
 #include "app/integrate_options.h"
+#include "app/joined.h"
 #include "app/table_file.h"
 #include "app/usage_error.h"
 #include "app/variables.h"
@@ -29,16 +30,10 @@ std::vector<std::string_view> names_up_to(Enum last) {
 std::vector<std::string_view> set_names() { return names_up_to(PointSetKind::weyl); }
 std::vector<std::string_view> randomisation_names() { return names_up_to(Randomisation::scramble); }
 
-std::string list(std::span<const std::string_view> names) {
-    std::string text;
-    for (std::string_view name : names) text += (text.empty() ? "" : ", ") + std::string(name);
-    return text;
-}
-
 [[noreturn]] void refuse_name(const std::string& option, const std::string& given,
                               std::span<const std::string_view> names) {
     throw UsageError(option, "'" + given + "' is not known" + did_you_mean(given, names) +
-                                 "; expected one of " + list(names));
+                                 "; expected one of " + joined(names));
 }
 
 // By --format, else by the name of the file, else CSV.
@@ -132,11 +127,11 @@ void add_sample(CLI::App& app, int& exit_code) {
                     const std::string& type) {
         c->add_option(name, target, help)->type_name(type)->take_last();
     };
-    text("--set", o->set, "Which points of [0, 1)^d: " + list(set_names()), "NAME");
+    text("--set", o->set, "Which points of [0, 1)^d: " + joined(set_names()), "NAME");
     text("--n", o->n, "How many. Default: 1024", "N");
     text("--dim", o->dimensions, "Dimensions d. Default: 2", "D");
     text("--randomisation", o->randomisation,
-         "How the set is randomised: " + list(randomisation_names()) + ". Default: none", "NAME");
+         "How the set is randomised: " + joined(randomisation_names()) + ". Default: none", "NAME");
     text("--seed", o->seed, "Seed of independent points and of the randomisation. Default: 0", "N");
     c->add_option(
          "--density", o->densities,
