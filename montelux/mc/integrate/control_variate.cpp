@@ -93,7 +93,7 @@ class ControlVariateEstimator final : public Estimator {
         montelux::load(state, joint_);
         montelux::load(state, non_finite_);
         beta_ = state.get_doubles();
-        if (!beta_.empty() && beta_.size() != static_cast<std::size_t>(components() * controls()))
+        if (!beta_.empty() && beta_.size() != static_cast<std::size_t>(components()) * integrals_.size())
             throw Error("the saved state has another number of controls");
     }
 
@@ -139,7 +139,8 @@ class ControlVariateEstimator final : public Estimator {
         if (!beta_.empty()) to.residual.add(residuals);
     }
     double beta(int component, int control) const {
-        return beta_[static_cast<std::size_t>(component * controls() + control)];
+        return beta_[static_cast<std::size_t>(component) * integrals_.size() +
+                     static_cast<std::size_t>(control)];
     }
 
     void regress() {
