@@ -1,4 +1,5 @@
 #include "test/mc/dist/family_cases.h"
+#include "test/mc/dist/message_of.h"
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
@@ -131,15 +132,6 @@ TEST_P(FamilyTest, EndsAreWhatTheySay) {
 
 INSTANTIATE_TEST_SUITE_P(All, FamilyTest, testing::ValuesIn(family_cases()),
                          [](const auto& family) { return family.param.name; });
-
-std::string message_of(const std::function<void()>& build) {
-    try {
-        build();
-    } catch (const Error& e) {
-        return e.what();
-    }
-    return "no error";
-}
 
 TEST(Families, BadParametersGetASentence) {
     EXPECT_EQ(

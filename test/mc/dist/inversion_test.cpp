@@ -1,6 +1,8 @@
+#include "test/mc/dist/message_of.h"
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
+#include <limits>
 
 #include "montelux/mc/dist/closed_form_inversion.h"
 #include "montelux/mc/dist/families.h"
@@ -121,14 +123,6 @@ TEST(NumericalInversion, SaysWhatItReached) {
     EXPECT_LE(std::abs(coarse.integral() / fine.integral() - 1), coarse.relative_error() + 1e-13);
 }
 
-std::string message_of(const std::function<void()>& build) {
-    try {
-        build();
-    } catch (const Error& e) {
-        return e.what();
-    }
-    return "no error";
-}
 void expect_message(const std::function<void()>& build, const std::string& part) {
     std::string sentence = message_of(build);
     EXPECT_NE(sentence.find(part), std::string::npos) << "'" << sentence << "' should say '" << part << "'";
