@@ -139,7 +139,8 @@ class QuasiEstimator final : public Estimator {
         if (plain_) return 1;
         if (asked_ != 0) return asked_;
         if (kind_ != PointSetKind::sobol || evaluations >= limited || evaluations < 24) return 16;
-        return static_cast<int>(evaluations / std::bit_floor(evaluations / 12));
+        // At least 12 of them, each of as many points as a power of two can be.
+        return static_cast<int>(evaluations >> (std::bit_width(evaluations / 12) - 1));
     }
 
     // The points of each replicate that are to be reached next; 0 where the evaluations do not suffice.
@@ -179,6 +180,7 @@ class QuasiEstimator final : public Estimator {
         };
         std::vector<Slot> slots(static_cast<std::size_t>(sums.replicates()) * parts);
         std::vector<RandomisedPoints> sets;
+        sets.reserve(static_cast<std::size_t>(sums.replicates()));
         for (int r = 0; r < sums.replicates(); ++r)
             sets.emplace_back(kind_, randomisation_, problem_.evaluator.dimensions(),
                               static_cast<std::uint32_t>(std::min<std::uint64_t>(set, ~std::uint32_t{0})),
