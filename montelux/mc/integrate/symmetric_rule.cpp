@@ -60,6 +60,7 @@ long double orbit_mean(const Exponents& degrees, const SymmetricRule::Generator&
         }
     }
     std::vector<std::vector<long double>> p;
+    p.reserve(values.size());
     const int highest = degrees.empty() ? 1 : degrees.front();
     for (double v : values) p.push_back(legendre(highest, v));
     int remaining = dimensions;
