@@ -3,6 +3,7 @@
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/render_options.h"
+#include "app/sample_record_text.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -101,14 +102,16 @@ void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed) {
     const char* kind = bad.first->kind == BadSample::Kind::nan        ? "not a number"
                        : bad.first->kind == BadSample::Kind::infinite ? "infinite"
                                                                       : "negative";
-    std::fprintf(stderr,
-                 "montelux: warning: %llu samples were left out (%llu not a number, %llu infinite, %llu "
-                 "negative); the "
-                 "first, %s, is sample %llu of pixel %d,%d with seed %llu\n",
-                 static_cast<unsigned long long>(bad.count()), static_cast<unsigned long long>(bad.nan),
-                 static_cast<unsigned long long>(bad.infinite), static_cast<unsigned long long>(bad.negative),
-                 kind, static_cast<unsigned long long>(bad.first->sample), bad.first->x, bad.first->y,
-                 static_cast<unsigned long long>(seed));
+    std::fprintf(
+        stderr,
+        "montelux: warning: %llu samples were left out (%llu not a number, %llu infinite, %llu "
+        "negative); the first, %s, is sample %llu of pixel %d,%d with seed %llu; to see its path, add "
+        "--debug-sample %d,%d,%llu\n",
+        static_cast<unsigned long long>(bad.count()), static_cast<unsigned long long>(bad.nan),
+        static_cast<unsigned long long>(bad.infinite), static_cast<unsigned long long>(bad.negative), kind,
+        static_cast<unsigned long long>(bad.first->sample), bad.first->x, bad.first->y,
+        static_cast<unsigned long long>(seed), bad.first->x, bad.first->y,
+        static_cast<unsigned long long>(bad.first->sample));
 }
 
 void print_statistics(const RenderReport& report, double load_seconds, double build_seconds) {
@@ -130,6 +133,21 @@ void print_statistics(const RenderReport& report, double load_seconds, double bu
     std::printf("peak memory        %.1f MiB\n", static_cast<double>(usage.ru_maxrss) / 1024);
 }
 
+int replay(const RenderOptions& options, const SceneDescription& description) {
+    const SampleAddress& s = *options.debug_sample;
+    try {
+        check_sample(description, s.x, s.y, s.index);
+    } catch (const Error& e) {
+        throw UsageError("--debug-sample", e.what());
+    }
+    if (!options.quiet && (!options.outputs.empty() || options.stats))
+        std::fprintf(stderr, "montelux: warning: --debug-sample renders no picture: nothing is written, and "
+                             "there are no statistics\n");
+    const Renderer renderer(description);
+    std::fputs(sample_record_text(renderer.replay(s.x, s.y, s.index), description).c_str(), stdout);
+    return exit_done;
+}
+
 int load_and_render(const RenderOptions& options) {
     using Clock = std::chrono::steady_clock;
     for (const std::string& output : options.outputs) check_writable(output);
@@ -141,6 +159,7 @@ int load_and_render(const RenderOptions& options) {
     double load_seconds = seconds_since(load_begin);
     if (!options.quiet) print_warnings(warnings);
     apply(options, description);
+    if (options.debug_sample) return replay(options, description);
     const std::vector<std::string> outputs = outputs_of(options, description);
     for (const std::string& output : outputs) check_output(output, files_read);
     check_memory(description.film);

@@ -111,6 +111,23 @@ std::array<double, 4> parse_crop(const std::string& s) {
     return crop;
 }
 
+SampleAddress parse_sample(const std::string& s) {
+    SampleAddress a;
+    const char* end = s.data() + s.size();
+    auto comma = [end](std::from_chars_result r) {
+        return r.ec == std::errc() && r.ptr != end && *r.ptr == ',';
+    };
+    if (auto x = std::from_chars(s.data(), end, a.x); comma(x))
+        if (auto y = std::from_chars(x.ptr + 1, end, a.y); comma(y))
+            if (auto [stop, error] = std::from_chars(y.ptr + 1, end, a.index);
+                error == std::errc() && stop == end)
+                return a;
+    refuse(
+        "--debug-sample", s,
+        "x,y,index is expected: column and row of a pixel and the number of one of its samples, all from 0 "
+        "on, for example 320,240,7");
+}
+
 PixelBounds crop_of(const std::array<double, 4>& c, int width, int height) {
     auto pixel = [](double v, int n) { return static_cast<int>(std::ceil(v * n - 1e-9)); };
     PixelBounds b{pixel(c[0], width), pixel(c[2], height), pixel(c[1], width), pixel(c[3], height)};
@@ -154,11 +171,17 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_choice(c, "--strategy", o.strategy, strategies, "How light is found: ");
     add_choice(c, "--heuristic", o.heuristic, heuristics, "Weights of the strategy mis: ");
     add_whole_number(c, "--max-depth", o.max_depth, 0, 1'000'000, "Scattering events of a path at most");
+    c.add_option_function<std::string>(
+         "--debug-sample", [&o](const std::string& s) { o.debug_sample = parse_sample(s); },
+         "Render no picture: trace this one sample of the render and print its path, vertex by vertex")
+        ->type_name("x,y,index")
+        ->take_last();
     c.add_flag("--stats", o.stats, "Print times, rays a second, memory");
     c.add_flag("--quiet", o.quiet, "Print nothing but errors");
     c.footer("Examples:\n"
              "  montelux render scene.pbrt --spp 64 -o out.exr -o out.png\n"
              "  montelux render scene.pbrt --resolution 320x240 --crop 0.5,1,0,0.5 -o corner.exr\n"
+             "  montelux render scene.pbrt --spp 64 --debug-sample 320,240,7\n"
              "\n"
              "An EXR file holds every layer: mean, standard error, samples, albedo, normal, depth.\n"
              "SIGINT (Ctrl-C) or SIGTERM ends the render early and saves what there is; a second one does "

@@ -17,6 +17,12 @@ class App;
 
 namespace montelux::app {
 
+// Which sample of which pixel, as in messages about samples that were left out.
+struct SampleAddress {
+    int x = 0, y = 0;
+    std::uint64_t index = 0;
+};
+
 struct RenderOptions {
     std::string scene;
     std::vector<std::string> outputs;
@@ -26,6 +32,7 @@ struct RenderOptions {
     std::optional<SamplerKind> sampler;
     std::optional<Strategy> strategy;
     std::optional<Heuristic> heuristic;
+    std::optional<SampleAddress> debug_sample; // is traced alone, instead of a render
     int threads = 0;
     bool stats = false, quiet = false;
 };

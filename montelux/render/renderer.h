@@ -45,6 +45,8 @@ struct RenderReport {
     bool cancelled = false;
 };
 
+struct SampleRecord;
+
 // Holds what is built once for a scene. The description must outlive it.
 class Renderer {
   public:
@@ -61,6 +63,10 @@ class Renderer {
     // the number of threads, nor on when it was looked at.
     RenderReport render(Film& film, const ProgressCallback& progress = {},
                         const CancelFlag* cancel = nullptr) const;
+
+    // Traces one sample of the render again and writes it down (sample_record.h). The record refers to the
+    // renderer's scene and tables. Throws Error, as check_sample does, where the render takes no such sample.
+    SampleRecord replay(int x, int y, std::uint64_t index) const;
 
   private:
     const SceneDescription& description_;

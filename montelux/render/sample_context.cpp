@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "montelux/transport/one_copy.h"
+
 namespace montelux {
 
 namespace {
@@ -37,7 +39,9 @@ SampleContext::SampleContext(const SceneDescription& description, const SamplerS
       white_(RgbColorSpace::srgb().illuminant()),
       white_scale_(static_cast<float>(1 / integrate_luminance(white_))) {}
 
-SampleContext::Result SampleContext::take(RayTracer& tracer, int x, int y, std::uint64_t index) const {
+MONTELUX_ONE_COPY
+SampleContext::Result SampleContext::trace(RayTracer& tracer, int x, int y, std::uint64_t index,
+                                           SampleRecord* record) const {
     SampleStream stream(sampler_, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), index);
     Vec2f u_film = stream.next_2d();
     float u_lambda = stream.next_1d();
@@ -49,14 +53,26 @@ SampleContext::Result SampleContext::take(RayTracer& tracer, int x, int y, std::
     SampledWavelengths lambda = SampledWavelengths::sample_visible(u_lambda);
     const SampledWavelengths all = lambda;
     FirstHit first;
-    SampledSpectrum radiance = path_radiance(path_, tracer, ray, lambda, stream, &first);
+    PathRecord* path_record = record != nullptr ? &record->path : nullptr;
+    SampledSpectrum radiance = path_radiance(path_, tracer, ray, lambda, stream, &first, path_record);
 
     Result result;
-    Vec3f rgb = sensor_.to_rgb(radiance, lambda);
-    float largest = max_component(rgb), limit = max_component_value_;
-    if (largest > limit) rgb *= limit / largest;
-    rgb *= point.weight;
+    const Vec3f sensor_rgb = sensor_.to_rgb(radiance, lambda);
+    const float largest = max_component(sensor_rgb);
+    const float clamp = largest > max_component_value_ ? max_component_value_ / largest : 1;
+    const Vec3f rgb = sensor_rgb * clamp * point.weight;
     result.bad = badness(rgb, radiance);
+    if (record != nullptr) [[unlikely]] {
+        record->filter = point;
+        record->film = film;
+        record->lens = u_lens;
+        record->lambda = all;
+        record->lambda_end = lambda;
+        record->sensor_rgb = sensor_rgb;
+        record->clamp = clamp;
+        record->rgb = rgb;
+        record->bad = result.bad;
+    }
     if (result.bad) return result;
     result.film.radiance = rgb;
     if (first.found) {
@@ -65,6 +81,15 @@ SampleContext::Result SampleContext::take(RayTracer& tracer, int x, int y, std::
         result.film.depth = first.depth;
     }
     return result;
+}
+
+SampleRecord SampleContext::record(RayTracer& tracer, int x, int y, std::uint64_t index) const {
+    SampleRecord record;
+    record.x = x;
+    record.y = y;
+    record.index = index;
+    record.contribution = trace(tracer, x, y, index, &record).film;
+    return record;
 }
 
 } // namespace montelux

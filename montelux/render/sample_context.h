@@ -7,6 +7,7 @@
 #include "montelux/film/film.h"
 #include "montelux/film/pixel_filter.h"
 #include "montelux/mc/random/sample_stream.h"
+#include "montelux/render/sample_record.h"
 #include "montelux/scene/render_settings.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 #include "montelux/spectrum/sensor.h"
@@ -29,9 +30,15 @@ class SampleContext {
                   const SceneTables& tables, const Camera& camera);
 
     // A pure function of the pixel and the index (the tracer counts rays).
-    Result take(RayTracer& tracer, int x, int y, std::uint64_t index) const;
+    Result take(RayTracer& tracer, int x, int y, std::uint64_t index) const {
+        return trace(tracer, x, y, index, nullptr);
+    }
+    // The same sample, and how it came about.
+    SampleRecord record(RayTracer& tracer, int x, int y, std::uint64_t index) const;
 
   private:
+    Result trace(RayTracer& tracer, int x, int y, std::uint64_t index, SampleRecord* record) const;
+
     const SamplerSettings& sampler_;
     float max_component_value_;
     PathScene path_;

@@ -9,6 +9,8 @@
 #include "montelux/scene/light/light_sampling.h"
 #include "montelux/scene/material/make_bsdf.h"
 #include "montelux/scene/shape/surface_point.h"
+#include "montelux/transport/one_copy.h"
+#include "montelux/transport/path_recorder.h"
 
 namespace montelux {
 
@@ -85,6 +87,7 @@ struct Path {
     RayTracer& tracer;
     SampledWavelengths& lambda;
     SampleStream& stream;
+    PathRecorder recorder;
 
     SampledSpectrum radiance{}, throughput{1};
     ReferencePoint previous{}; // the last vertex that scattered
@@ -98,41 +101,48 @@ struct Path {
 
     // How much of the light that was found by following the path counts.
     float hit_weight(float light_pdf) const {
-        if (sees_lights || !samples_lights()) return 1;
+        if (!samples_lights()) return 1;
         if (ps.settings.strategy == Strategy::light) return light_pdf > 0 ? 0.0f : 1.0f;
         return mis_weight(ps.settings.heuristic, bsdf_pdf, light_pdf);
     }
 
+    // `light_pdf` is called where light sampling could have found the light as well.
+    template <typename Pdf>
+    void add_found_light(Index light, SampledSpectrum le, const Pdf& light_pdf) {
+        if (is_black(le)) return;
+        FoundLight found{.light = light, .radiance = le, .shared = !sees_lights};
+        if (found.shared) {
+            found.bsdf_pdf = bsdf_pdf;
+            found.light_pdf = light_pdf();
+            found.weight = hit_weight(found.light_pdf);
+        }
+        if (recorder) recorder.found_light(found);
+        radiance += throughput * le * found.weight;
+    }
+
     void add_infinite_lights(Vec3f w) {
         const LightTables& lights = ps.tables.lights();
-        for (Index light : lights.infinite_lights()) {
-            SampledSpectrum le = infinite_radiance(ps.scene, lights, light, w, lambda);
-            if (is_black(le)) continue;
-            float weight =
-                sees_lights
-                    ? 1
-                    : hit_weight(lights.probability(light) * infinite_light_pdf(ps.scene, lights, light, w));
-            radiance += throughput * le * weight;
-        }
+        for (Index light : lights.infinite_lights())
+            add_found_light(light, infinite_radiance(ps.scene, lights, light, w, lambda), [&] {
+                return lights.probability(light) * infinite_light_pdf(ps.scene, lights, light, w);
+            });
     }
 
     void add_emission(const SurfacePoint& s, Vec3f w) {
         if (s.shape->first_light == none) return;
         const LightTables& lights = ps.tables.lights();
-        Index index = s.shape->first_light + s.primitive;
+        const Index index = s.shape->first_light + s.primitive;
         const auto& light = std::get<AreaLight>(ps.scene.lights[index]);
-        SampledSpectrum le = emitted_radiance(light, s.ng, -w, lambda);
-        if (is_black(le)) return;
-        float weight = sees_lights ? 1
-                                   : hit_weight(lights.probability(index) *
-                                                area_light_pdf(ps.scene, lights, index, previous, s.p, s.ng));
-        radiance += throughput * le * weight;
+        add_found_light(index, emitted_radiance(light, s.ng, -w, lambda), [&] {
+            return lights.probability(index) * area_light_pdf(ps.scene, lights, index, previous, s.p, s.ng);
+        });
     }
 
     // Next-event estimation: one light, one point on it. Lights that scattering cannot find are sampled
     // whatever the strategy says.
     template <typename B>
     void add_direct_light(const B& bsdf, const Frame& frame, Vec3f wo, const ReferencePoint& here) {
+        using Outcome = DirectLight::Outcome;
         const LightTables& lights = ps.tables.lights();
         if (lights.empty()) return;
         // Among few lights the choice takes the first number's leading digits and leaves the others for the
@@ -144,23 +154,56 @@ struct Path {
         auto chosen = lights.by_power().sample(u_light);
         if (few) u.x = chosen.remapped;
         auto light = sample_light(ps.scene, lights, chosen.index, here, u, lambda);
-        if (!light || (!light->delta && !samples_lights())) return;
+        DirectLight told{.light = chosen.index, .choice = chosen.probability};
+        if (!light || (!light->delta && !samples_lights())) {
+            told.outcome = light ? Outcome::left_to_scattering : Outcome::dark;
+            if (recorder) recorder.sampled_light(told);
+            return;
+        }
         BsdfEvaluation e = bsdf.evaluate(wo, frame.to_local(light->wi), TransportMode::radiance, stream);
-        if (is_black(e.f) || is_black(light->radiance)) return;
         float light_pdf = chosen.probability * light->pdf;
+        told = {.outcome = Outcome::no_transport,
+                .light = chosen.index,
+                .choice = chosen.probability,
+                .delta = light->delta,
+                .wi = light->wi,
+                .shadow = light->shadow,
+                .radiance = light->radiance,
+                .f = e.f,
+                .light_pdf = light_pdf,
+                .bsdf_pdf = e.pdf};
+        if (is_black(e.f) || is_black(light->radiance)) {
+            if (recorder) recorder.sampled_light(told);
+            return;
+        }
         float weight = light->delta || ps.settings.strategy == Strategy::light
                            ? 1
                            : mis_weight(ps.settings.heuristic, light_pdf, e.pdf);
-        if (tracer.occluded(light->shadow)) return;
+        const bool occluded = tracer.occluded(light->shadow);
+        told.weight = weight;
+        told.outcome = occluded ? Outcome::occluded : Outcome::counted;
+        if (recorder) recorder.sampled_light(told);
+        if (occluded) return;
         radiance += throughput * e.f * light->radiance * (weight / light_pdf);
     }
 
     // Russian roulette on what the path can still carry to the film. Returns false at its end.
     bool survives(int depth) {
         float strength = max_value(throughput) * eta_scale;
-        if (!(strength < 1) || depth <= 1) return strength > 0;
+        if (!(strength > 0)) {
+            // What is not a number must not end unseen: the sample becomes bad with it.
+            radiance += throughput;
+            if (recorder)
+                recorder.ended(is_black(throughput) ? PathEnd::nothing_carried : PathEnd::bad_throughput);
+            return false;
+        }
+        if (!(strength < 1) || depth <= 1) return true;
         float u = stream.next_1d();
-        if (!(u < strength)) return false;
+        if (recorder) recorder.played_roulette({.survival = strength, .u = u});
+        if (!(u < strength)) {
+            if (recorder) recorder.ended(PathEnd::roulette);
+            return false;
+        }
         throughput /= strength;
         return true;
     }
@@ -168,33 +211,44 @@ struct Path {
 
 } // namespace
 
+MONTELUX_ONE_COPY
 SampledSpectrum path_radiance(const PathScene& ps, RayTracer& tracer, Ray ray, SampledWavelengths& lambda,
-                              SampleStream& stream, FirstHit* first) {
-    Path path{ps, tracer, lambda, stream};
+                              SampleStream& stream, FirstHit* first, PathRecord* record) {
+    Path path{ps, tracer, lambda, stream, PathRecorder(record)};
     for (int depth = 0;;) {
         Hit hit;
         if (!tracer.intersect(ray, hit)) {
+            if (path.recorder) path.recorder.left_scene(ray, path.throughput);
             path.add_infinite_lights(ray.d);
+            if (path.recorder) path.recorder.ended(PathEnd::left_scene);
             break;
         }
         const Shape& shape = ps.scene.shapes[hit.shape];
         const bool textured = ps.tables.is_textured(shape.material);
         const bool tangents = textured || ps.tables.is_anisotropic(shape.material);
         SurfacePoint s = surface_point(ps.scene, ray, hit, tangents);
+        if (path.recorder) path.recorder.hit_surface(ray, hit, s, path.throughput);
         path.add_emission(s, ray.d);
-        if (depth++ == ps.settings.max_depth) break;
+        if (depth++ == ps.settings.max_depth) {
+            if (path.recorder) path.recorder.ended(PathEnd::max_depth);
+            break;
+        }
 
         TextureContext context;
         if (textured) context = texture_context(ps, s);
         Bsdf bsdf = make_bsdf(ps.scene, ps.tables, shape.material, context, lambda);
         Frame frame = tangents ? Frame::from_normal_and_tangent(s.ns, s.dpdu) : Frame::from_normal(s.ns);
         Vec3f wo = frame.to_local(-ray.d);
+        if (path.recorder) path.recorder.made_bsdf(bsdf, wo);
         if (depth == 1 && first != nullptr)
             *first = {.albedo = std::visit([&](const auto& b) { return b.albedo(wo); }, bsdf),
                       .normal = s.ns,
                       .depth = hit.t,
                       .found = true};
-        if (wo.z == 0) break;
+        if (wo.z == 0) {
+            if (path.recorder) path.recorder.ended(PathEnd::grazing);
+            break;
+        }
         ReferencePoint here{s.p, s.ng, s.error};
 
         const bool uniform = ps.settings.strategy == Strategy::uniform;
@@ -207,7 +261,10 @@ SampledSpectrum path_radiance(const PathScene& ps, RayTracer& tracer, Ray ray, S
                 return b.sample(wo, TransportMode::radiance, stream);
             },
             bsdf);
-        if (!scattered) break;
+        if (!scattered) {
+            if (path.recorder) path.recorder.ended(PathEnd::no_direction);
+            break;
+        }
 
         path.throughput *= scattered->weight;
         path.bsdf_pdf = scattered->pdf;
@@ -215,9 +272,11 @@ SampledSpectrum path_radiance(const PathScene& ps, RayTracer& tracer, Ray ray, S
         path.previous = here;
         if (scattered->transmission) path.eta_scale *= scattered->eta * scattered->eta;
         Vec3f wi = frame.to_world(scattered->wi);
+        if (path.recorder) path.recorder.scattered({*scattered, wi});
         ray = {offset_origin(s.p, s.ng, s.error, wi), wi};
         if (!path.survives(depth)) break;
     }
+    if (path.recorder) path.recorder.traced(path.radiance);
     return path.radiance;
 }
 

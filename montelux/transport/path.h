@@ -9,6 +9,8 @@
 
 namespace montelux {
 
+struct PathRecord;
+
 // All that a path reads. The members outlive every path.
 struct PathScene {
     const Scene& scene;
@@ -31,8 +33,9 @@ struct FirstHit {
 // light is sampled by next-event estimation and by continuing the path, weighted by multiple importance
 // sampling, or by one of the two alone, as the settings say. Paths end after max_depth scattering events or
 // by Russian roulette; all strategies estimate the same integral. `lambda` may lose its secondary wavelengths
-// on the way.
+// on the way. `record`, where given, gets the path vertex by vertex; the radiance is the same to the last
+// bit.
 SampledSpectrum path_radiance(const PathScene& ps, RayTracer& tracer, Ray ray, SampledWavelengths& lambda,
-                              SampleStream& stream, FirstHit* first);
+                              SampleStream& stream, FirstHit* first, PathRecord* record = nullptr);
 
 } // namespace montelux

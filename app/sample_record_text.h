@@ -1,0 +1,14 @@
+// A sample that was traced again, as text: its path vertex by vertex, and what became of it.
+#pragma once
+
+#include <string>
+
+#include "montelux/mc/random/sampler_settings.h"
+#include "montelux/render/sample_record.h"
+
+namespace montelux::app {
+
+// The four columns are the wavelengths of the path. Ends with a newline.
+std::string sample_record_text(const SampleRecord& record, const SceneDescription& description);
+
+} // namespace montelux::app

@@ -1,0 +1,39 @@
+// Replaying single samples.
+#include <string>
+
+#include "montelux/mc/math/error.h"
+#include "montelux/render/renderer.h"
+#include "montelux/render/sample_context.h"
+#include "montelux/render/sample_record.h"
+
+namespace montelux {
+
+namespace {
+
+std::string range(int begin, int end) {
+    return std::to_string(begin) + (end - begin > 1 ? " to " + std::to_string(end - 1) : "");
+}
+
+} // namespace
+
+void check_sample(const SceneDescription& d, int x, int y, std::uint64_t index) {
+    const PixelBounds& crop = d.film.crop;
+    if (x < crop.x0 || x >= crop.x1 || y < crop.y0 || y >= crop.y1) {
+        const bool whole = crop == PixelBounds{0, 0, d.film.width, d.film.height};
+        throw Error("pixel " + std::to_string(x) + "," + std::to_string(y),
+                    std::string(whole ? "the film" : "the crop of the film") + " has columns " +
+                        range(crop.x0, crop.x1) + " and rows " + range(crop.y0, crop.y1));
+    }
+    if (index >= d.sampler.samples_per_pixel)
+        throw Error("sample " + std::to_string(index), "the pixel has " +
+                                                           std::to_string(d.sampler.samples_per_pixel) +
+                                                           " samples, counted from 0");
+}
+
+SampleRecord Renderer::replay(int x, int y, std::uint64_t index) const {
+    check_sample(description_, x, y, index);
+    RayTracer tracer(*accelerator_);
+    return SampleContext(description_, sampler_, *tables_, camera_).record(tracer, x, y, index);
+}
+
+} // namespace montelux
