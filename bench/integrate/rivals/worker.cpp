@@ -22,6 +22,7 @@ Worker::Worker(const std::vector<std::string>& command) {
         throw Error("Worker", "no pipe could be made");
     }
     std::vector<char*> arguments;
+    arguments.reserve(command.size() + 1);
     for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
     posix_spawn_file_actions_t actions;
