@@ -25,7 +25,7 @@ class Text {
     }
     Text& label(int level, const char* name) {
         const int indent = 2 * level;
-        return add("%*s%-*s", indent, "", 20 - indent, name);
+        return add("%*s%-*s", indent, "", 22 - indent, name);
     }
     Text& end() {
         text_ += '\n';
