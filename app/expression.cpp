@@ -95,7 +95,7 @@ std::string unknown_name(const std::string& name, bool called, const mu::Parser&
                           const mu::Parser& parser, const std::vector<std::string>& variables) {
     auto at = static_cast<std::size_t>(std::max(0, static_cast<int>(error.GetPos())));
     at = std::min(at, text.size());
-    const std::string token = error.GetToken();
+    const std::string& token = error.GetToken();
     switch (error.GetCode()) {
     case mu::ecUNASSIGNABLE_TOKEN: {
         const std::string name = name_at(text, at);
