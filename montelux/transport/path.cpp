@@ -110,14 +110,16 @@ struct Path {
     template <typename Pdf>
     void add_found_light(Index light, SampledSpectrum le, const Pdf& light_pdf) {
         if (is_black(le)) return;
-        FoundLight found{.light = light, .radiance = le, .shared = !sees_lights};
-        if (found.shared) {
-            found.bsdf_pdf = bsdf_pdf;
-            found.light_pdf = light_pdf();
-            found.weight = hit_weight(found.light_pdf);
-        }
-        if (recorder) recorder.found_light(found);
-        radiance += throughput * le * found.weight;
+        const float pdf = sees_lights ? 0 : light_pdf();
+        const float weight = sees_lights ? 1 : hit_weight(pdf);
+        if (recorder)
+            recorder.found_light({.light = light,
+                                  .radiance = le,
+                                  .shared = !sees_lights,
+                                  .bsdf_pdf = sees_lights ? 0 : bsdf_pdf,
+                                  .light_pdf = pdf,
+                                  .weight = weight});
+        radiance += throughput * le * weight;
     }
 
     void add_infinite_lights(Vec3f w) {
@@ -154,35 +156,38 @@ struct Path {
         auto chosen = lights.by_power().sample(u_light);
         if (few) u.x = chosen.remapped;
         auto light = sample_light(ps.scene, lights, chosen.index, here, u, lambda);
-        DirectLight told{.light = chosen.index, .choice = chosen.probability};
         if (!light || (!light->delta && !samples_lights())) {
-            told.outcome = light ? Outcome::left_to_scattering : Outcome::dark;
-            if (recorder) recorder.sampled_light(told);
+            if (recorder)
+                recorder.sampled_light({.outcome = light ? Outcome::left_to_scattering : Outcome::dark,
+                                        .light = chosen.index,
+                                        .choice = chosen.probability});
             return;
         }
         BsdfEvaluation e = bsdf.evaluate(wo, frame.to_local(light->wi), TransportMode::radiance, stream);
         float light_pdf = chosen.probability * light->pdf;
-        told = {.outcome = Outcome::no_transport,
-                .light = chosen.index,
-                .choice = chosen.probability,
-                .delta = light->delta,
-                .wi = light->wi,
-                .shadow = light->shadow,
-                .radiance = light->radiance,
-                .f = e.f,
-                .light_pdf = light_pdf,
-                .bsdf_pdf = e.pdf};
+        auto record = [&](Outcome outcome, float weight) {
+            if (recorder)
+                recorder.sampled_light({.outcome = outcome,
+                                        .light = chosen.index,
+                                        .choice = chosen.probability,
+                                        .delta = light->delta,
+                                        .wi = light->wi,
+                                        .shadow = light->shadow,
+                                        .radiance = light->radiance,
+                                        .f = e.f,
+                                        .light_pdf = light_pdf,
+                                        .bsdf_pdf = e.pdf,
+                                        .weight = weight});
+        };
         if (is_black(e.f) || is_black(light->radiance)) {
-            if (recorder) recorder.sampled_light(told);
+            record(Outcome::no_transport, 0);
             return;
         }
         float weight = light->delta || ps.settings.strategy == Strategy::light
                            ? 1
                            : mis_weight(ps.settings.heuristic, light_pdf, e.pdf);
         const bool occluded = tracer.occluded(light->shadow);
-        told.weight = weight;
-        told.outcome = occluded ? Outcome::occluded : Outcome::counted;
-        if (recorder) recorder.sampled_light(told);
+        record(occluded ? Outcome::occluded : Outcome::counted, weight);
         if (occluded) return;
         radiance += throughput * e.f * light->radiance * (weight / light_pdf);
     }
