@@ -105,6 +105,7 @@ TEST_P(FamilyTest, SamplesFollowThePdf) {
 TEST_P(FamilyTest, EnginesOfTheStandardLibraryDriveIt) {
     std::mt19937_64 engine(3);
     std::vector<double> values;
+    values.reserve(4000);
     for (int i = 0; i < 4000; ++i) values.push_back(d()(engine));
     auto r = kolmogorov_smirnov_test(values, [&](double x) { return d().cdf(x); });
     EXPECT_TRUE(r.passes(significance)) << r.description;
