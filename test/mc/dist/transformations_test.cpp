@@ -109,6 +109,7 @@ TEST(Mixture, OfOneFamilyAndOfMany) {
     // Quantiles where sampling composes instead: the same law.
     TestUniforms uniforms(8);
     std::vector<double> values;
+    values.reserve(5000);
     for (int i = 0; i < 5000; ++i) values.push_back(peaks.quantile(uniforms.next()));
     auto r = kolmogorov_smirnov_test(values, [&](double x) { return peaks.cdf(x); });
     EXPECT_TRUE(r.passes(significance)) << r.description;

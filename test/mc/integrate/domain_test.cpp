@@ -1,4 +1,5 @@
 // Domains: points lie where they should, volumes and moments are exact.
+#include "test/mc/integrate/integrate_testing.h"
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -9,7 +10,6 @@
 #include "montelux/mc/integrate/integrate.h"
 #include "montelux/mc/integrate/unit_points.h"
 #include "montelux/mc/math/constants.h"
-#include "test/mc/integrate/integrate_testing.h"
 
 namespace montelux {
 namespace {

@@ -84,7 +84,7 @@ TEST(ParallelReduceOrdered, BitIdenticalForAnyNumberOfThreads) {
 TEST(ParallelReduceOrdered, KeepsTheOrderOfACombinationThatDoesNotCommute) {
     auto digits = parallel_reduce_ordered(
         5000, [](std::int64_t i) { return std::to_string(i) + ","; },
-        [](std::string a, const std::string& b) { return a + b; });
+        [](const std::string& a, const std::string& b) { return a + b; });
     std::string expected;
     for (int i = 0; i < 5000; ++i) expected += std::to_string(i) + ",";
     EXPECT_EQ(digits, expected);
