@@ -68,11 +68,13 @@ class AutoEstimator final : public Estimator {
             return outcome;
         }
         // It can do no more. Sampling takes over where there is no result yet, or where a target is still
-        // open and much is left; a remainder that no region fits into would give a worse result than there
-        // is.
-        const std::uint64_t spent = cubature_->tally().evaluations;
+        // open or the result is doubted and much is left; a remainder that no region fits into would give a
+        // worse result than there is.
+        const Tally rule = cubature_->tally();
+        const std::uint64_t spent = rule.evaluations;
         const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
-        const bool open = outcome == StepOutcome::finished && targeted && request.max_evaluations > spent;
+        const bool open = outcome == StepOutcome::finished && (targeted || !rule.doubts.empty()) &&
+                          request.max_evaluations > spent;
         if (spent > 0 && !open) return outcome;
         give_up("cubature could do no more");
         const StepOutcome other = sampling_->step(request);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -16,6 +17,7 @@ constexpr double enough_even = 0.3;           // relative variance below which n
 constexpr int first_fit_before_gaussians = 2; // rounds that maps alone are given
 constexpr int em_steps = 20;
 constexpr double safe_width = 1.1;
+constexpr std::uint64_t least_seen = 16; // points of a round that saw anything, for the round to teach
 
 // Components split along their longest axis, or several where there were few.
 std::vector<Gaussian> split(const std::vector<Gaussian>& components) {
@@ -167,9 +169,16 @@ bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
             squares += std::pow(h[i] / points.density[i] - mean_size, 2);
         spread = squares / (static_cast<double>(n) * static_cast<double>(n));
     }
-    relative_variance_ = mean_size > 0 ? spread * static_cast<double>(n) / (mean_size * mean_size) : 0;
-    recent_.push_back({density_, std::move(points.x), std::move(h), std::move(points.density)});
-    if (recent_.size() > 2) recent_.erase(recent_.begin());
+    relative_variance_ = mean_size > 0 ? spread * static_cast<double>(n) / (mean_size * mean_size)
+                                       : std::numeric_limits<double>::infinity();
+    const auto seen = static_cast<std::uint64_t>(std::ranges::count_if(h, [](double v) { return v > 0; }));
+    if (seen < std::min(nonzero_, least_seen)) {
+        // Worse than the exploration: Gaussians of peaks at faces lie outside the cube, or off a jump.
+        density_ = MixtureDensity(density_.dimensions());
+    } else {
+        recent_.push_back({density_, std::move(points.x), std::move(h), std::move(points.density)});
+        if (recent_.size() > 2) recent_.erase(recent_.begin());
+    }
     fit();
     return true;
 }

@@ -66,6 +66,27 @@ TEST(DensityTrainer, LooksAtTheExploration) {
     EXPECT_NEAR(other.effective_share(), 1, 1e-12);
 }
 
+// A box at a corner, greatest at its far end: Gaussians around the peak lie outside the cube or beyond the
+// jump.
+TEST(DensityTrainer, PeaksThatSeeLessThanTheExplorationAreGivenUp) {
+    const Watched watched(
+        [](std::span<const double> x) {
+            double sum = 0;
+            for (double v : x) sum += v;
+            return x[0] < 0.1 && x[1] < 0.1 ? std::exp(5 * sum) : 0.0;
+        },
+        8);
+    DensityTrainer trainer(watched.problem(), 4);
+    explore(trainer, watched, 8192);
+    ASSERT_GE(trainer.nonzero(), 16u);
+    trainer.find_peaks(5000);
+    ASSERT_FALSE(trainer.density().gaussians().empty());
+    ASSERT_TRUE(trainer.round(1024, nullptr));
+    EXPECT_TRUE(trainer.density().gaussians().empty());
+    for (int i = 0; i < 6; ++i) ASSERT_TRUE(trainer.round(2048, nullptr));
+    EXPECT_LT(trainer.relative_variance(), 1);
+}
+
 TEST(DensityTrainer, RoundsMakeTheWeightsEven) {
     // A ridge across the diagonal, which maps of single coordinates cannot follow.
     const Watched watched(

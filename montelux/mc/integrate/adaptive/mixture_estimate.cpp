@@ -1,0 +1,138 @@
+#include "montelux/mc/integrate/adaptive/mixture_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+namespace {
+
+constexpr double fastest_fall = 1.5;    // exponent by which errors may fall with the number of points,
+constexpr double most_inflation = 3;    // and the largest factor by which a faster fall is undone
+constexpr double usual_fall = 1.2;      // exponent by which they usually fall
+constexpr double heavy_weight = 5;      // times the mean, of one sample,
+constexpr double heavy_influence = 0.5; // and times the standard error, of what it adds
+// Of normal replicates one alone hardly ever makes up so much of the spread.
+constexpr double outstanding = 0.8;
+constexpr int enough_replicates = 8;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+} // namespace
+
+MixtureEstimate::MixtureEstimate(int replicates, int components) {
+    sums_.sums = ReplicateSums(replicates, components);
+}
+
+void MixtureEstimate::explore(const MixtureSums& added, std::uint64_t end) {
+    sums_.merge(added);
+    points_ = end;
+}
+
+void MixtureEstimate::grow(const MixtureSums& added, std::uint64_t end) {
+    if (points_ > 0) {
+        const CovarianceMoments moments = sums_.sums.moments(points_, false);
+        std::vector<double> errors;
+        for (int c = 0; c < moments.components(); ++c) errors.push_back(standard_error(moments, c));
+        errors_before_ = std::move(errors);
+    }
+    points_before_ = points_;
+    explore(added, end);
+}
+
+double MixtureEstimate::inflation(double standard_error, int component) const {
+    if (points_before_ == 0 || points_before_ >= points_ || !(standard_error > 0)) return 1;
+    const double growth = static_cast<double>(points_before_) / static_cast<double>(points_);
+    const double least = errors_before_[static_cast<std::size_t>(component)] * std::pow(growth, fastest_fall);
+    return std::clamp(least / standard_error, 1.0, most_inflation);
+}
+
+double MixtureEstimate::standard_error(const CovarianceMoments& moments, int component) const {
+    const double error =
+        std::sqrt(moments.variance(component) / static_cast<double>(sums_.sums.replicates()));
+    return error * inflation(error, component);
+}
+
+double MixtureEstimate::error_ratio(const StepRequest& request) const {
+    const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
+    const CovarianceMoments moments = sums_.sums.moments(points_, false);
+    double ratio = 0;
+    for (int c = 0; c < moments.components(); ++c) {
+        const double size = std::abs(moments.mean(c)), error = standard_error(moments, c);
+        const double tolerance =
+            targeted ? std::max(request.absolute_error, request.relative_error * size) : size;
+        if (error > 0) ratio = std::max(ratio, error / tolerance);
+    }
+    return ratio;
+}
+
+double MixtureEstimate::expected_rest(const StepRequest& request) const {
+    const double ratio = std::max(1.0, error_ratio(request));
+    return static_cast<double>(evaluations()) * (std::pow(ratio, 1 / usual_fall) - 1);
+}
+
+void MixtureEstimate::tally(bool full_covariance, Tally& tally) const {
+    const auto m = static_cast<std::size_t>(sums_.sums.components());
+    if (points_ == 0) {
+        tally.value.assign(m, 0.0);
+        tally.standard_error.assign(m, infinity);
+        return;
+    }
+    tally_mean(sums_.sums.moments(points_, full_covariance), tally);
+    std::vector<double> factor(m);
+    for (std::size_t c = 0; c < m; ++c) factor[c] = inflation(tally.standard_error[c], static_cast<int>(c));
+    for (std::size_t c = 0; c < m; ++c) tally.standard_error[c] *= factor[c];
+    for (std::size_t i = 0; i < tally.covariance.size(); ++i)
+        tally.covariance[i] *= factor[i / m] * factor[i % m];
+}
+
+bool MixtureEstimate::heavy_tailed(double standard_error) const {
+    const double n = static_cast<double>(points_) * sums_.sums.replicates();
+    double size = 0;
+    for (const MixtureSums::Channel& c : sums_.channels) size += std::abs(c.sum) / n;
+    return sums_.largest > heavy_weight * size && sums_.largest > heavy_influence * n * standard_error;
+}
+
+bool MixtureEstimate::one_replicate_stands_out() const {
+    const int replicates = sums_.sums.replicates();
+    if (replicates < enough_replicates) return false;
+    double mean = 0, squares = 0, greatest = 0;
+    for (int r = 0; r < replicates; ++r) mean += sums_.sums.sum(r, 0) / replicates;
+    for (int r = 0; r < replicates; ++r) {
+        const double deviation = sums_.sums.sum(r, 0) - mean;
+        squares += deviation * deviation;
+        greatest = std::max(greatest, deviation * deviation);
+    }
+    return greatest > outstanding * squares;
+}
+
+bool MixtureEstimate::lost_what_is_in(const MixtureEstimate& other) const {
+    for (int c = 0; c < sums_.sums.components(); ++c) {
+        bool here = false, there = false;
+        for (int r = 0; r < sums_.sums.replicates(); ++r) {
+            here = here || sums_.sums.sum(r, c) != 0;
+            there = there || other.sums_.sums.sum(r, c) != 0;
+        }
+        if (there && !here) return true;
+    }
+    return false;
+}
+
+void MixtureEstimate::save(StateWriter& state) const {
+    state.put(points_);
+    state.put(points_before_);
+    state.put(errors_before_);
+    sums_.save(state);
+}
+
+void MixtureEstimate::load(StateReader& state) {
+    points_ = state.get_word();
+    points_before_ = state.get_word();
+    errors_before_ = state.get_doubles();
+    if (points_before_ > 0 && errors_before_.size() != static_cast<std::size_t>(sums_.sums.components()))
+        throw Error("the saved state has another number of components");
+    sums_.load(state);
+}
+
+} // namespace montelux
