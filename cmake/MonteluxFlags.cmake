@@ -41,5 +41,6 @@ endif()
 find_program(MONTELUX_CCACHE ccache)
 mark_as_advanced(MONTELUX_CCACHE)
 if(PROJECT_IS_TOP_LEVEL AND MONTELUX_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-    set(CMAKE_CXX_COMPILER_LAUNCHER ${MONTELUX_CCACHE})
+    # Sloppy in what precompiled headers need alone.
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${MONTELUX_CCACHE})
 endif()
