@@ -16,59 +16,89 @@ namespace {
 
 std::string reason(int error_number) { return std::strerror(error_number); }
 
-class Descriptor {
-  public:
-    explicit Descriptor(int fd) : fd_(fd) {}
-    ~Descriptor() {
-        if (fd_ >= 0) ::close(fd_);
-    }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    int get() const { return fd_; }
-
-  private:
-    int fd_;
-};
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+    return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+}
 
 } // namespace
 
-std::vector<std::uint8_t> read_file_bytes(const std::filesystem::path& path, std::size_t max_bytes) {
+InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
     // O_NONBLOCK: opening a pipe that nobody writes to would wait for ever.
-    Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-    if (file.get() < 0)
+    descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (descriptor_ < 0)
         throw Error(path.empty() ? "''" : path.string(), "cannot be opened: " + reason(errno));
     struct stat info {};
-    if (::fstat(file.get(), &info) != 0) throw Error(path.string(), "cannot be read: " + reason(errno));
-    if (S_ISDIR(info.st_mode)) throw Error(path.string(), "cannot be read: it is a folder");
-    if (!S_ISREG(info.st_mode)) throw Error(path.string(), "cannot be read: it is not a regular file");
-    auto size = static_cast<std::uint64_t>(info.st_size);
-    if (size > max_bytes)
-        throw Error(path.string(), "has " + std::to_string(size) + " bytes; the limit is " +
-                                       std::to_string(max_bytes) + " bytes");
-    std::vector<std::uint8_t> bytes(size);
+    std::string refusal;
+    if (::fstat(descriptor_, &info) != 0)
+        refusal = reason(errno);
+    else if (S_ISDIR(info.st_mode))
+        refusal = "it is a folder";
+    else if (!S_ISREG(info.st_mode))
+        refusal = "it is not a regular file";
+    if (!refusal.empty()) {
+        ::close(descriptor_);
+        throw Error(path.string(), "cannot be read: " + refusal);
+    }
+    size_ = static_cast<std::uint64_t>(info.st_size);
+}
+
+InputFile::~InputFile() { ::close(descriptor_); }
+
+void InputFile::read(std::span<std::uint8_t> bytes) {
     std::size_t done = 0;
     while (done < bytes.size()) {
-        ssize_t n = ::read(file.get(), bytes.data() + done, bytes.size() - done);
+        const ssize_t n = ::read(descriptor_, bytes.data() + done, bytes.size() - done);
         if (n < 0 && errno == EINTR) continue;
-        if (n < 0) throw Error(path.string(), "cannot be read: " + reason(errno));
-        if (n == 0) throw Error(path.string(), "became shorter while it was read");
+        if (n < 0) throw Error(path_.string(), "cannot be read: " + reason(errno));
+        if (n == 0) throw Error(path_.string(), "became shorter while it was read");
         done += static_cast<std::size_t>(n);
     }
+}
+
+std::vector<std::uint8_t> read_file_bytes(const std::filesystem::path& path, std::size_t max_bytes) {
+    InputFile file(path);
+    if (file.size() > max_bytes)
+        throw Error(path.string(), "has " + std::to_string(file.size()) + " bytes; the limit is " +
+                                       std::to_string(max_bytes) + " bytes");
+    std::vector<std::uint8_t> bytes(file.size());
+    file.read(bytes);
     return bytes;
 }
 
-AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_(path) {
-    std::error_code ignored;
-    if (std::filesystem::is_symlink(path, ignored)) {
-        auto resolved = std::filesystem::weakly_canonical(path, ignored);
-        if (!ignored) target_ = resolved;
+std::filesystem::path output_target(const std::filesystem::path& path) {
+    std::filesystem::path target = path;
+    // Links may form a circle; opening such a file fails with its own sentence.
+    for (int links = 0; links < 40; ++links) {
+        std::error_code error;
+        const auto next = std::filesystem::read_symlink(target, error);
+        if (error) break;
+        target = target.parent_path() / next;
     }
+    return target;
+}
+
+void sync_folder_of(const std::filesystem::path& path) {
+    const auto folder = folder_of(path);
+    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0 && errno == EACCES) return; // one may write to folders that one may not read
+    int error_number = descriptor < 0 ? errno : 0;
+    if (descriptor >= 0) {
+        if (::fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS) error_number = errno;
+        ::close(descriptor);
+    }
+    if (error_number != 0)
+        throw Error(path.string(), "is written, but a loss of power might undo that: folder '" +
+                                       folder.string() + "': " + reason(error_number));
+}
+
+AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_(output_target(path)) {
+    std::error_code ignored;
     auto status = std::filesystem::status(target_, ignored);
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
         throw Error(path.string(), std::filesystem::is_directory(status)
                                        ? "cannot be written: it is a folder"
                                        : "cannot be written: it is not a regular file");
-    auto folder = target_.has_parent_path() ? target_.parent_path() : std::filesystem::path(".");
+    const auto folder = folder_of(target_);
     static std::atomic<unsigned> counter{0};
     for (int attempt = 0; attempt < 100; ++attempt) {
         temporary_ = folder / (".montelux-" + std::to_string(::getpid()) + "-" +
@@ -116,13 +146,19 @@ void AtomicFile::seek(std::uint64_t position) {
     position_ = position;
 }
 
-void AtomicFile::commit() {
+void AtomicFile::finish() {
     if (failed_ || !file_) throw Error(path_.string(), "cannot be written: an earlier write failed");
     if (std::fflush(file_) != 0) fail("writing", errno);
     if (::fsync(::fileno(file_)) != 0 && errno != EINVAL) fail("writing", errno);
     std::FILE* file = file_;
     file_ = nullptr;
     if (std::fclose(file) != 0) fail("closing", errno);
+    finished_ = true;
+}
+
+void AtomicFile::commit() {
+    if (!finished_) finish();
+    finished_ = false;
     if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("renaming", errno);
     temporary_.clear();
 }

@@ -15,6 +15,31 @@ namespace montelux {
 // `max_bytes`.
 std::vector<std::uint8_t> read_file_bytes(const std::filesystem::path& path, std::size_t max_bytes);
 
+// A regular file that is read from its beginning. Throws Error, which names the path.
+class InputFile {
+  public:
+    // A pipe or a device is refused, for reading could wait for ever.
+    explicit InputFile(const std::filesystem::path& path);
+    ~InputFile();
+    InputFile(const InputFile&) = delete;
+    InputFile& operator=(const InputFile&) = delete;
+
+    std::uint64_t size() const { return size_; }
+    // Fills `bytes`, or throws.
+    void read(std::span<std::uint8_t> bytes);
+
+  private:
+    std::filesystem::path path_;
+    int descriptor_ = -1;
+    std::uint64_t size_ = 0;
+};
+
+// Where writing to `path` leads: behind a symbolic link, the file that it points to, which may be missing.
+std::filesystem::path output_target(const std::filesystem::path& path);
+
+// Makes names that were given or taken in the folder of `path` permanent, where its file system can do so.
+void sync_folder_of(const std::filesystem::path& path);
+
 // Collects output in a temporary file beside `path`, which commit() renames over it. Without a commit the
 // temporary file is removed and `path` is as it was. A symbolic link is followed, not replaced.
 // Every failure is an Error that names the path and the reason; after one, commit() fails as well.
@@ -29,6 +54,9 @@ class AtomicFile {
     void write(const void* data, std::size_t size);
     std::uint64_t position() const { return position_; }
     void seek(std::uint64_t position);
+    // Ends the writing: all bytes are on the disk, under the temporary name.
+    void finish();
+    // Gives the file its name, after finish() where that has not been called.
     void commit();
 
   private:
@@ -36,7 +64,7 @@ class AtomicFile {
     std::filesystem::path path_, target_, temporary_;
     std::FILE* file_ = nullptr;
     std::uint64_t position_ = 0;
-    bool failed_ = false;
+    bool failed_ = false, finished_ = false;
 };
 
 } // namespace montelux
