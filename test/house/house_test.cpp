@@ -104,6 +104,7 @@ TEST(HouseRules, EmbreeOutsideAccelIsFound) {
     EXPECT_TRUE(fenced_libraries({accel}).empty());
     EXPECT_EQ(fenced_libraries({{"montelux/transport/x.cpp", {"#include <embree4/rtcore.h>"}}}).size(), 1u);
     EXPECT_EQ(fenced_libraries({{"montelux/render/x.cpp", {"#include <tbb/parallel_for.h>"}}}).size(), 1u);
+    EXPECT_EQ(fenced_libraries({{"montelux/render/x.cpp", {"#include <dlfcn.h>"}}}).size(), 1u);
 }
 TEST(HouseRules, HeaderWithoutPurposeIsFound) {
     EXPECT_TRUE(headers_without_purpose({math}).empty());
