@@ -15,6 +15,7 @@ void add_integrate(CLI::App& app, int& exit_code);
 void add_sample(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
+void add_denoise(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 
 } // namespace montelux::app

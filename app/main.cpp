@@ -66,6 +66,7 @@ int main(int argc, char** argv) {
             "  montelux integrate 'sin(x)*y' --over x=0:pi/2 --over y=0:1 --relative-error 1e-4\n"
             "  montelux sample --set sobol --n 1024 --dim 2 -o points.csv\n"
             "  montelux render scene.pbrt --spp 64 -o out.exr\n"
+            "  montelux denoise out.exr -o out.png\n"
             "  montelux info out.exr\n"
             "  montelux compare out.exr reference.exr\n"
             "\n"
@@ -77,6 +78,7 @@ int main(int argc, char** argv) {
 #ifdef MONTELUX_WITH_RENDER
         add_render(app, exit_code);
         add_compare(app, exit_code);
+        add_denoise(app, exit_code);
         add_info(app, exit_code);
 #endif
         try {

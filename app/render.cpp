@@ -1,5 +1,6 @@
 // montelux render: from a scene file to a picture with error bars.
 #include "app/commands.h"
+#include "app/denoised_output.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/render_options.h"
@@ -163,6 +164,8 @@ int load_and_render(const RenderOptions& options) {
     const std::vector<std::string> outputs = outputs_of(options, description);
     for (const std::string& output : outputs) check_output(output, files_read);
     check_memory(description.film);
+    std::optional<Denoiser> denoiser; // one that is missing is told before the render
+    if (options.denoise) denoiser.emplace(Denoiser::load(options.threads));
 
     Film film(description.film);
     Renderer renderer(description);
@@ -177,15 +180,17 @@ int load_and_render(const RenderOptions& options) {
     Image image = film.develop();
     add_header(image, options, description, report, error, renderer);
     finish_on_signals();
-    for (const std::string& output : outputs) write_image(output, image);
+    const DenoiseOutcome denoised = denoise_render(denoiser, image, report.cancelled, options.quiet);
+    for (const std::string& output : outputs) write_picture(output, image);
     if (!options.quiet) {
         for (const std::string& output : outputs)
-            std::printf("%s: %d x %d pixels, %.7g samples a pixel, relative error %s, %s%s\n", output.c_str(),
-                        image.width(), image.height(), error.mean_samples,
+            std::printf("%s: %d x %d pixels, %.7g samples a pixel, relative error %s, %s%s%s\n",
+                        output.c_str(), image.width(), image.height(), error.mean_samples,
                         percent_text(error.relative).c_str(), duration_text(report.seconds).c_str(),
-                        report.cancelled ? ", stopped before the end" : "");
+                        report.cancelled ? ", stopped before the end" : "", denoised.note.c_str());
         if (options.stats) print_statistics(report, load_seconds, renderer.build_seconds());
     }
+    if (!denoised.failure.empty()) throw Error(denoised.failure);
     return report.cancelled ? exit_interrupted : exit_done;
 }
 

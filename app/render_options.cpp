@@ -176,6 +176,9 @@ void declare(CLI::App& c, RenderOptions& o) {
          "Render no picture: trace this one sample of the render and print its path, vertex by vertex")
         ->type_name("x,y,index")
         ->take_last();
+    c.add_flag("--denoise", o.denoise,
+               "Also denoise the picture by Open Image Denoise ('montelux denoise --help'): .exr keeps the "
+               "picture and gets the layers denoised.R, G, B; other formats show those");
     c.add_flag("--stats", o.stats, "Print times, rays a second, memory");
     c.add_flag("--quiet", o.quiet, "Print nothing but errors");
     c.footer("Examples:\n"

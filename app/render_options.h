@@ -34,7 +34,7 @@ struct RenderOptions {
     std::optional<Heuristic> heuristic;
     std::optional<SampleAddress> debug_sample; // is traced alone, instead of a render
     int threads = 0;
-    bool stats = false, quiet = false;
+    bool denoise = false, stats = false, quiet = false;
 };
 
 // A value that makes no sense ends the parse with a CLI::ValidationError.

@@ -1,0 +1,78 @@
+// montelux denoise: a smooth guess at what a noisy picture would become.
+#include "app/commands.h"
+#include "app/denoised_output.h"
+#include "app/interrupt.h"
+#include "app/progress_line.h"
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include "montelux/image/image_read.h"
+#include "montelux/image/image_write.h"
+#include "montelux/mc/parallel/parallel_for.h"
+
+namespace montelux::app {
+
+namespace {
+
+struct DenoiseSettings {
+    std::string input;
+    std::vector<std::string> outputs;
+    int threads = 0;
+    bool quiet = false;
+};
+
+int run(const DenoiseSettings& settings) {
+    end_on_signals();
+    for (const std::string& output : settings.outputs) check_writable(output);
+    const Denoiser denoiser = Denoiser::load(settings.threads);
+    Image image = read_image(settings.input);
+    auto begin = std::chrono::steady_clock::now();
+    const DenoiseReport report = denoise_image(denoiser, image);
+    double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const std::string note = describe(denoiser, report, settings.quiet);
+    finish_on_signals();
+    for (const std::string& output : settings.outputs) write_picture(output, image);
+    if (!settings.quiet)
+        for (const std::string& output : settings.outputs)
+            std::printf("%s: %d x %d pixels, %s, %s\n", output.c_str(), image.width(), image.height(),
+                        duration_text(seconds).c_str(), note.c_str());
+    return exit_done;
+}
+
+} // namespace
+
+void add_denoise(CLI::App& app, int& exit_code) {
+    auto settings = std::make_shared<DenoiseSettings>();
+    CLI::App* command =
+        app.add_subcommand("denoise", "Denoise a picture by Open Image Denoise, where that is installed");
+    command
+        ->add_option("FILE", settings->input,
+                     "The picture: its R, G, B; the layers albedo and N guide the denoiser where it has them")
+        ->required();
+    command
+        ->add_option(
+            "-o,--output", settings->outputs,
+            "Picture to write; may be given several times. .exr keeps every layer and gets the layers "
+            "denoised.R, G, B; .png, .hdr and .pfm show them")
+        ->type_name("FILE")
+        ->allow_extra_args(false)
+        ->required();
+    command->add_option("--threads", settings->threads, "Threads at most; 0: one a processor")
+        ->type_name("N")
+        ->check(CLI::Range(0, 4096));
+    command->add_flag("--quiet", settings->quiet, "Print nothing but errors");
+    command->footer(
+        "Example:\n  montelux denoise out.exr -o out.exr -o out.png\n"
+        "\n"
+        "The library is looked for as libOpenImageDenoise.so.2, .so.1 and .so, or is the file that the\n"
+        "variable MONTELUX_OIDN_LIBRARY names. A denoised picture is a guess: the layer stderr holds the\n"
+        "errors of the picture before denoising and says nothing of the guess.");
+    command->callback([settings, &exit_code] {
+        exit_code = with_threads(settings->threads, [&] { return run(*settings); });
+    });
+}
+
+} // namespace montelux::app

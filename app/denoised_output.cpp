@@ -1,0 +1,58 @@
+#include "app/denoised_output.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+
+#include "montelux/image/image_write.h"
+
+namespace montelux::app {
+
+namespace {
+
+bool holds_layers(const std::string& output) {
+    std::string extension = std::filesystem::path(output).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension == ".exr";
+}
+
+} // namespace
+
+std::string describe(const Denoiser& denoiser, const DenoiseReport& report, bool quiet) {
+    if (!quiet && report.not_finite > 0)
+        std::fprintf(
+            stderr,
+            "montelux: warning: %llu pixels have a colour, albedo or normal that is not a number or "
+            "infinite; for the denoiser such a colour is the mean of its neighbours, the others are 0\n",
+            static_cast<unsigned long long>(report.not_finite));
+    if (!quiet && report.negative > 0)
+        std::fprintf(stderr,
+                     "montelux: warning: %llu pixels have a colour below 0; for the denoiser it is 0\n",
+                     static_cast<unsigned long long>(report.negative));
+    return "denoised by " + denoiser.name() +
+           (report.guides.empty() ? " without albedo and normal" : " with " + report.guides) +
+           " (the error bars are those of the picture before denoising)";
+}
+
+DenoiseOutcome denoise_render(const std::optional<Denoiser>& denoiser, Image& image, bool stopped,
+                              bool quiet) {
+    if (!denoiser) return {};
+    if (stopped) return {", not denoised ('montelux denoise' can do it)", ""};
+    try {
+        return {", " + describe(*denoiser, denoise_image(*denoiser, image), quiet), ""};
+    } catch (const std::exception& e) {
+        return {", not denoised", e.what()};
+    }
+}
+
+void write_picture(const std::string& output, const Image& image) {
+    if (!holds_layers(output) && image.find_channel("denoised.R"))
+        write_image(output, denoised_picture(image));
+    else
+        write_image(output, image);
+}
+
+} // namespace montelux::app
