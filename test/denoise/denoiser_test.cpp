@@ -127,12 +127,19 @@ TEST(Denoiser, NothingBadReachesTheFilter) {
 
 TEST(Denoiser, FailuresOfTheLibraryAreErrorsAndNothingLeaks) {
     const Synthetic s(5, 4);
-    for (const char* call :
-         {"new_device", "commit_device", "new_filter", "commit_filter", "execute_filter"}) {
+    struct Case {
+        const char *call, *text;
+    };
+    for (auto [call, text] : {Case{"new_device", "no device could be made"},
+                              Case{"commit_device", "the device could not be started"},
+                              Case{"new_filter", "no filter could be made"},
+                              Case{"commit_filter", "the filter could not be prepared"},
+                              Case{"execute_filter", "the picture could not be filtered"}}) {
         StandIn stand_in;
         stand_in.fail_at = call;
         std::string message = error_of([&] { Denoiser(api_of(stand_in)).denoise(s.input()); });
-        EXPECT_NE(message.find(std::string(call) + " went wrong (error 2)"), std::string::npos) << message;
+        EXPECT_EQ(message, "stand-in: Open Image Denoise failed, " + std::string(text) + ": " + call +
+                               " went wrong (error 2)");
         EXPECT_EQ(stand_in.devices, 0) << call;
         EXPECT_EQ(stand_in.filters, 0) << call;
     }
