@@ -17,7 +17,9 @@
 
 #include "montelux/formats/pbrt/load_pbrt.h"
 #include "montelux/image/image_write.h"
+#include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/render/checkpoint.h"
 #include "montelux/render/renderer.h"
 
 namespace montelux::app {
@@ -79,8 +81,18 @@ void add_header(Image& image, const RenderOptions& options, const SceneDescripti
     a["scene"] = std::filesystem::path(options.scene).filename().string();
     a["sceneHash"] = std::string(hash);
     a["samplesPerPixel"] = static_cast<int>(description.sampler.samples_per_pixel);
+    a["stoppedBy"] = std::string(name_of(report.stop));
+    const RenderTarget& target = renderer.target();
+    if (target.error > 0) a["targetError"] = static_cast<float>(target.error);
+    if (target.quantile > 0) a["targetQuantile"] = static_cast<float>(target.quantile);
+    a["adaptive"] = target.adaptive ? 1 : 0;
+    a["slice"] = std::to_string(target.slice.index + 1) + "/" + std::to_string(target.slice.count);
+    a["pointsPerUnit"] = static_cast<int>(SampleOrder(renderer.sampler(), target.slice).unit());
+    if (report.clamped_samples > 0)
+        a["clampedLuminance"] =
+            static_cast<float>(report.clamped_luminance / static_cast<double>(report.samples));
     a["samplesTaken"] = static_cast<float>(error.mean_samples);
-    a["interrupted"] = report.cancelled ? 1 : 0;
+    a["interrupted"] = report.cancelled() ? 1 : 0;
     a["sampler"] = name_of(description.sampler.kind);
     a["replicates"] = static_cast<int>(renderer.sampler().replicates);
     a["strategy"] = name_of(description.integrator.strategy);
@@ -115,6 +127,45 @@ void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed) {
         static_cast<unsigned long long>(bad.first->sample));
 }
 
+void print_clamped(const RenderReport& report, const FilmError& error) {
+    if (report.clamped_samples == 0) return;
+    const double mean = report.clamped_luminance / static_cast<double>(report.samples);
+    std::fprintf(
+        stderr,
+        "montelux: warning: %llu samples were clamped, which took %s of the light away; the errors do not "
+        "know of that\n",
+        static_cast<unsigned long long>(report.clamped_samples),
+        percent_text(mean / (mean + error.mean_luminance)).c_str());
+}
+
+// Says so where the error sits in few pixels.
+void print_outliers(const Film& film) {
+    constexpr double few = 0.01;
+    const OutlierReport o = outliers_of(film);
+    if (o.share_of_half > 0 && o.share_of_half < few)
+        std::printf("half of the squared error sits in %llu pixels (%s of all)\n",
+                    static_cast<unsigned long long>(o.pixels_of_half), percent_text(o.share_of_half).c_str());
+    if (o.heavy_tailed > 0)
+        std::printf(
+            "%llu pixels owe most of their error to one bright sample and carry %s of the squared error: "
+            "their errors are rough (layer outlier)\n",
+            static_cast<unsigned long long>(o.heavy_tailed), percent_text(o.heavy_error_share).c_str());
+}
+
+// What ended the render, where that is not the number of samples.
+std::string ending_text(const RenderReport& report, const RenderTarget& target) {
+    switch (report.stop) {
+    case StopReason::cancelled:
+        return ", stopped before the end";
+    case StopReason::error:
+        return ", target reached";
+    case StopReason::time:
+        return target.error > 0 ? ", time is up before the target was reached" : ", time is up";
+    default:
+        return target.error > 0 ? ", samples are used up before the target was reached" : "";
+    }
+}
+
 void print_statistics(const RenderReport& report, double load_seconds, double build_seconds) {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -134,19 +185,36 @@ void print_statistics(const RenderReport& report, double load_seconds, double bu
     std::printf("peak memory        %.1f MiB\n", static_cast<double>(usage.ru_maxrss) / 1024);
 }
 
-int replay(const RenderOptions& options, const SceneDescription& description) {
+int replay(const RenderOptions& options, const SceneDescription& description, const RenderTarget& target) {
     const SampleAddress& s = *options.debug_sample;
     try {
-        check_sample(description, s.x, s.y, s.index);
+        check_sample(description, s.x, s.y, s.index, target);
     } catch (const Error& e) {
         throw UsageError("--debug-sample", e.what());
     }
     if (!options.quiet && (!options.outputs.empty() || options.stats))
         std::fprintf(stderr, "montelux: warning: --debug-sample renders no picture: nothing is written, and "
                              "there are no statistics\n");
-    const Renderer renderer(description);
+    const Renderer renderer(description, target);
     std::fputs(sample_record_text(renderer.replay(s.x, s.y, s.index), description).c_str(), stdout);
     return exit_done;
+}
+
+// A new render, or the one that is to be gone on with, whose replicates the description takes over.
+RenderState initial_state(const RenderOptions& options, SceneDescription& description,
+                          const RenderTarget& target) {
+    if (!options.resume || !generation_exists(options.checkpoint)) {
+        if (options.resume && !options.quiet)
+            std::fprintf(stderr, "montelux: %s is not there yet: rendering from the start\n",
+                         options.checkpoint.c_str());
+        return RenderState(description.film);
+    }
+    RestoredRender restored = load_checkpoint(options.checkpoint, description, target);
+    if (!restored.newest_refused_because.empty())
+        std::fprintf(stderr, "montelux: warning: going on from the checkpoint before the last: %s\n",
+                     restored.newest_refused_because.c_str());
+    description.sampler.replicate_points = restored.replicate_points;
+    return std::move(restored.state);
 }
 
 int load_and_render(const RenderOptions& options) {
@@ -160,38 +228,51 @@ int load_and_render(const RenderOptions& options) {
     double load_seconds = seconds_since(load_begin);
     if (!options.quiet) print_warnings(warnings);
     apply(options, description);
-    if (options.debug_sample) return replay(options, description);
+    const RenderTarget target = target_of(options);
+    if (options.debug_sample) return replay(options, description, target);
     const std::vector<std::string> outputs = outputs_of(options, description);
     for (const std::string& output : outputs) check_output(output, files_read);
+    if (!options.checkpoint.empty()) check_output(options.checkpoint, files_read);
     check_memory(description.film);
     std::optional<Denoiser> denoiser; // one that is missing is told before the render
     if (options.denoise) denoiser.emplace(Denoiser::load(options.threads));
 
-    Film film(description.film);
-    Renderer renderer(description);
+    RenderState state = initial_state(options, description, target);
+    Renderer renderer(description, target);
     ProgressPrinter printer(options.quiet);
-    const CancelFlag& cancel = cancel_on_signals();
-    RenderReport report = renderer.render(
-        film, [&](const RenderProgress& p) { printer.update(p); }, &cancel);
+    RenderControl control;
+    control.progress = [&](const RenderProgress& p) { printer.update(p); };
+    control.cancel = &cancel_on_signals();
+    control.checkpoint_seconds = options.checkpoint_every;
+    if (!options.checkpoint.empty())
+        control.checkpoint = [&](const RenderState& s) {
+            save_checkpoint(options.checkpoint, description, renderer.sampler(), target, s);
+        };
+    renderer.render(state, control);
     printer.finish();
-    if (!options.quiet) print_bad_samples(report.bad, description.sampler.seed);
+    const RenderReport& report = state.report;
 
-    FilmError error = film.error();
-    Image image = film.develop();
+    const FilmError error = state.film.error();
+    Image image = state.film.develop();
     add_header(image, options, description, report, error, renderer);
     finish_on_signals();
-    const DenoiseOutcome denoised = denoise_render(denoiser, image, report.cancelled, options.quiet);
+    const DenoiseOutcome denoised =
+        denoise_render(denoiser, image, report.cancelled(), options.quiet);
     for (const std::string& output : outputs) write_picture(output, image);
     if (!options.quiet) {
+        print_bad_samples(report.bad, description.sampler.seed);
+        print_clamped(report, error);
         for (const std::string& output : outputs)
-            std::printf("%s: %d x %d pixels, %.7g samples a pixel, relative error %s, %s%s%s\n",
-                        output.c_str(), image.width(), image.height(), error.mean_samples,
+            std::printf("%s: %d x %d pixels, %.7g samples a pixel, relative error %s, %s%s%s\n", output.c_str(),
+                        image.width(), image.height(), error.mean_samples,
                         percent_text(error.relative).c_str(), duration_text(report.seconds).c_str(),
-                        report.cancelled ? ", stopped before the end" : "", denoised.note.c_str());
+                        ending_text(report, target).c_str(), denoised.note.c_str());
+        print_outliers(state.film);
         if (options.stats) print_statistics(report, load_seconds, renderer.build_seconds());
     }
     if (!denoised.failure.empty()) throw Error(denoised.failure);
-    return report.cancelled ? exit_interrupted : exit_done;
+    if (report.cancelled()) return exit_interrupted;
+    return target.error > 0 && report.stop != StopReason::error ? exit_stopped : exit_done;
 }
 
 int run(const RenderOptions& options) {

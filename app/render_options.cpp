@@ -14,6 +14,9 @@ namespace montelux::app {
 
 namespace {
 
+// Where a target or a time alone is to end the render.
+constexpr std::uint32_t most_samples = 1u << 24;
+
 constexpr std::array<std::pair<const char*, SamplerKind>, 6> samplers{
     {{"independent", SamplerKind::independent},
      {"stratified", SamplerKind::stratified},
@@ -44,6 +47,57 @@ std::string name_in(const Table& table, Value value) {
 
 [[noreturn]] void refuse(const std::string& option, const std::string& given, const std::string& expected) {
     throw CLI::ValidationError(option, "'" + given + "' was given; " + expected);
+}
+
+double parse_positive(const std::string& option, const std::string& s) {
+    double v = 0;
+    auto [stop, error] = std::from_chars(s.data(), s.data() + s.size(), v);
+    if (error != std::errc() || stop != s.data() + s.size() || !(v > 0) || !std::isfinite(v))
+        refuse(option, s, "a number above 0 is expected");
+    return v;
+}
+
+// 0.01 or 1%.
+double parse_share(const std::string& option, const std::string& s) {
+    const bool percent = s.ends_with('%');
+    double v = 0;
+    const char* end = s.data() + s.size() - (percent ? 1 : 0);
+    auto [stop, error] = std::from_chars(s.data(), end, v);
+    v *= percent ? 0.01 : 1;
+    if (error != std::errc() || stop != end || !(v > 0 && v < 1))
+        refuse(option, s, "a number above 0 and below 1 is expected, or above 0% and below 100%");
+    return v;
+}
+
+// Seconds: 90, 90s, 1.5m, 1h30m.
+double parse_duration(const std::string& option, const std::string& s) {
+    const char *at = s.data(), *end = s.data() + s.size();
+    double seconds = 0, last_unit = 1e9;
+    bool good = at != end;
+    while (good && at != end) {
+        double v = 0, unit = 1;
+        auto [stop, error] = std::from_chars(at, end, v);
+        good = error == std::errc() && v >= 0 && std::isfinite(v);
+        if (!good) break;
+        if (stop != end) unit = *stop == 'h' ? 3600 : *stop == 'm' ? 60 : *stop == 's' ? 1 : 0;
+        good = unit > 0 && unit < last_unit;
+        last_unit = unit;
+        seconds += v * unit;
+        at = stop == end ? end : stop + 1;
+    }
+    if (!good || !(seconds > 0)) refuse(option, s, "a time is expected, for example 90, 90s, 10m or 1h30m");
+    return seconds;
+}
+
+Slice parse_slice(const std::string& s) {
+    std::uint32_t k = 0, n = 0;
+    const char* end = s.data() + s.size();
+    auto [p, e] = std::from_chars(s.data(), end, k);
+    if (e == std::errc() && p != end && *p == '/') {
+        auto [q, f] = std::from_chars(p + 1, end, n);
+        if (f == std::errc() && q == end && k >= 1 && k <= n && n <= 1'000'000) return {k - 1, n};
+    }
+    refuse("--slice", s, "K/N is expected with K from 1 to N, for example 3/16");
 }
 
 // An option that takes a whole number of [lowest, highest]. "1e9", signs and fractions are no whole numbers.
@@ -152,6 +206,52 @@ void declare(CLI::App& c, RenderOptions& o) {
         ->type_name("FILE")
         ->allow_extra_args(false); // the scene may stand behind it
     add_whole_number(c, "--spp", o.spp, 1, 1u << 30, "Samples a pixel, in place of the scene's");
+    add_whole_number(c, "--spp-max", o.spp_max, 1, 1u << 30,
+                     "Samples a pixel at most, where an error or a time is asked for");
+    c.add_option_function<std::string>(
+         "--target-error", [&o](const std::string& s) { o.target_error = parse_share("--target-error", s); },
+         "Stop when the picture's relative error is this, for example 0.01 or 1%")
+        ->type_name("ERROR")
+        ->take_last();
+    c.add_option_function<std::string>(
+         "--target-quantile",
+         [&o](const std::string& s) { o.target_quantile = parse_share("--target-quantile", s); },
+         "With --target-error: stop when this share of the pixels is within it")
+        ->type_name("SHARE")
+        ->take_last();
+    c.add_option_function<std::string>(
+         "--time", [&o](const std::string& s) { o.time = parse_duration("--time", s); },
+         "Stop after this time, for example 90, 90s, 10m or 1h30m")
+        ->type_name("TIME")
+        ->take_last();
+    c.add_option_function<std::string>(
+         "--adaptive",
+         [&o](const std::string& s) {
+             if (s != "on" && s != "off") refuse("--adaptive", s, "on or off is expected");
+             o.adaptive = s == "on";
+         },
+         "More samples where the error is: on, off. Default: on where an error is asked for")
+        ->type_name("on|off")
+        ->take_last();
+    c.add_option_function<std::string>(
+         "--clamp", [&o](const std::string& s) { o.clamp = parse_positive("--clamp", s); },
+         "Largest RGB value of a sample; what it takes away is said at the end. Default: none but the "
+         "scene's")
+        ->type_name("VALUE")
+        ->take_last();
+    c.add_option("--checkpoint", o.checkpoint, "Keep the running state in this file")->type_name("FILE");
+    c.add_option_function<std::string>(
+         "--checkpoint-every",
+         [&o](const std::string& s) { o.checkpoint_every = parse_duration("--checkpoint-every", s); },
+         "How often it is written. Default: 60s")
+        ->type_name("TIME")
+        ->take_last();
+    c.add_flag("--resume", o.resume, "Go on from the checkpoint, where there is one");
+    c.add_option_function<std::string>(
+         "--slice", [&o](const std::string& s) { o.slice = parse_slice(s); },
+         "Take a part of the samples, K/N with K from 1 to N; montelux merge joins the parts")
+        ->type_name("K/N")
+        ->take_last();
     add_whole_number(c, "--seed", o.seed, 0, UINT64_MAX,
                      "Seed of all random numbers, in place of the scene's");
     add_whole_number(
@@ -207,12 +307,37 @@ void apply(const RenderOptions& o, SceneDescription& d) {
         d.film.height = h;
     }
     if (o.crop) d.film.crop = crop_of(*o.crop, d.film.width, d.film.height);
-    if (o.spp) d.sampler.samples_per_pixel = static_cast<std::uint32_t>(*o.spp);
+    const bool open_ended = (o.target_error || o.time) && !o.spp && !o.spp_max;
+    if (open_ended) d.sampler.samples_per_pixel = most_samples;
+    if (o.spp_max) d.sampler.samples_per_pixel = static_cast<std::uint32_t>(*o.spp_max);
+    if (o.spp)
+        d.sampler.samples_per_pixel =
+            static_cast<std::uint32_t>(std::min(*o.spp, o.spp_max.value_or(*o.spp)));
     if (o.seed) d.sampler.seed = *o.seed;
     if (o.sampler) d.sampler.kind = *o.sampler;
     if (o.strategy) d.integrator.strategy = *o.strategy;
     if (o.heuristic) d.integrator.heuristic = *o.heuristic;
     if (o.max_depth) d.integrator.max_depth = static_cast<int>(*o.max_depth);
+    if (o.clamp) d.film.max_component_value = static_cast<float>(*o.clamp);
+}
+
+RenderTarget target_of(const RenderOptions& o) {
+    if (o.target_quantile && !o.target_error)
+        throw UsageError("--target-quantile",
+                         "expected --target-error ERROR, within which that share shall be");
+    if (o.resume && o.checkpoint.empty())
+        throw UsageError("--resume", "expected --checkpoint FILE, which says what to go on from");
+    RenderTarget target;
+    target.error = o.target_error.value_or(0);
+    target.quantile = o.target_quantile.value_or(0);
+    target.seconds = o.time.value_or(0);
+    target.adaptive = o.adaptive.value_or(o.target_error.has_value());
+    target.slice = o.slice;
+    if (target.slice.count > 1 && (target.error > 0 || target.adaptive))
+        throw UsageError("--slice",
+                         "slices share a number of samples a pixel; give --spp, without --target-error "
+                         "and --adaptive");
+    return target;
 }
 
 } // namespace montelux::app

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "montelux/render/render_control.h"
 #include "montelux/scene/render_settings.h"
 
 namespace CLI {
@@ -26,7 +27,14 @@ struct SampleAddress {
 struct RenderOptions {
     std::string scene;
     std::vector<std::string> outputs;
-    std::optional<std::uint64_t> spp, seed, max_depth;
+    std::optional<std::uint64_t> spp, spp_max, seed, max_depth;
+    std::optional<double> target_error, target_quantile, clamp;
+    std::optional<double> time; // seconds
+    std::optional<bool> adaptive;
+    Slice slice;
+    std::string checkpoint;
+    double checkpoint_every = 60; // seconds
+    bool resume = false;
     std::optional<std::pair<int, int>> resolution;
     std::optional<std::array<double, 4>> crop; // x0, x1, y0, y1 as fractions of the film
     std::optional<SamplerKind> sampler;
@@ -42,6 +50,8 @@ void declare(CLI::App& command, RenderOptions& options);
 
 // Throws UsageError when a crop holds no pixel of the film.
 void apply(const RenderOptions& options, SceneDescription& description);
+// Throws UsageError for options that do not go together.
+RenderTarget target_of(const RenderOptions& options);
 
 std::string name_of(SamplerKind kind);
 std::string name_of(Strategy strategy);

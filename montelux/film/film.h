@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "montelux/film/film_error.h"
 #include "montelux/image/image.h"
 #include "montelux/mc/stats/skew_moments.h"
 #include "montelux/scene/film/film_settings.h"
@@ -50,7 +52,10 @@ class Pixel {
     // Closes the unit that the samples since the last call make up.
     void end_unit() {
         if (unit_samples_ == 0) return;
-        units_.add(unit_sum_ / static_cast<double>(unit_samples_));
+        const Vec3d unit = unit_sum_ / static_cast<double>(unit_samples_);
+        units_.add(unit);
+        if (units_.count() == 1 || dot(unit, luminance_weight) > dot(largest_, luminance_weight))
+            largest_ = unit;
         unit_sum_ = {};
         unit_samples_ = 0;
     }
@@ -59,6 +64,9 @@ class Pixel {
     const SkewMoments<3>& units() const { return units_; }
     std::uint32_t samples() const { return samples_; }
     std::uint32_t bad() const { return bad_; }
+    // Share of the units' squared deviations from their mean that the brightest unit alone makes up, by
+    // luminance weights; 0 without any.
+    double largest_share() const;
     Vec3f albedo() const { return samples_ > 0 ? albedo_ / static_cast<float>(samples_) : Vec3f{}; }
     Vec3f normal() const { return samples_ > 0 ? normal_ / static_cast<float>(samples_) : Vec3f{}; }
     float depth() const { return samples_ > 0 ? depth_ / static_cast<float>(samples_) : 0; }
@@ -66,17 +74,10 @@ class Pixel {
   private:
     SkewMoments<3> units_;
     Vec3d unit_sum_;
+    Vec3d largest_; // the unit of greatest luminance
     Vec3f albedo_, normal_;
     float depth_ = 0;
     std::uint32_t unit_samples_ = 0, samples_ = 0, bad_ = 0;
-};
-
-// The error of the whole picture, as shown while rendering and written to the file.
-struct FilmError {
-    // Root mean square over pixels of the standard error of luminance, over the mean luminance.
-    double relative = 0;
-    double mean_luminance = 0;
-    double mean_samples = 0; // a pixel
 };
 
 class Film {
@@ -87,15 +88,18 @@ class Film {
     const PixelBounds& bounds() const { return settings_.crop; }
     Pixel& pixel(int x, int y) { return pixels_[index(x, y)]; }
     const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
+    // Row by row.
+    std::span<Pixel> pixels() { return pixels_; }
+    std::span<const Pixel> pixels() const { return pixels_; }
 
     // Ends the open unit of every pixel.
     void end_units() {
         for (Pixel& p : pixels_) p.end_unit();
     }
-    FilmError error() const;
-    // Layers R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples; albedo.R, G, B; N.X, Y,
-    // Z; depth.Z, of the cropped pixels. The standard error is infinite where fewer than two units have been
-    // taken.
+    FilmError error() const { return error_of(*this); }
+    // Layers R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples; units (of which the
+    // standard error is made); outlier (Pixel::largest_share); albedo.R, G, B; N.X, Y, Z; depth.Z, of the
+    // cropped pixels. The standard error is infinite where fewer than two units have been taken.
     Image develop() const;
 
   private:

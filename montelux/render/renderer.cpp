@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <ctime>
 #include <mutex>
 #include <vector>
 
 #include "montelux/mc/math/error.h"
-#include "montelux/render/passes.h"
+#include "montelux/render/rounds.h"
 #include "montelux/render/sample_context.h"
 
 namespace montelux {
@@ -38,138 +39,232 @@ std::vector<PixelBounds> tiles_of(const PixelBounds& crop) {
     return tiles;
 }
 
-// Statistics and bad samples of the tiles that have been rendered, merged in any order: counts and minima.
-struct Tally {
-    std::mutex mutex;
-    RenderReport report;
+// What the samples of a tile add beside the film.
+struct TileTally {
+    RayStatistics rays;
+    BadSampleReport bad;
+    double cpu_seconds = 0, clamped_luminance = 0;
+    std::uint64_t samples = 0, clamped_samples = 0;
+};
 
-    void add(const RayStatistics& rays, const BadSampleReport& bad, double seconds, std::uint64_t samples) {
-        std::lock_guard lock(mutex);
-        report.rays.merge(rays);
-        report.bad.merge(bad);
-        report.cpu_seconds += seconds;
-        report.samples += samples;
+// One run of Renderer::render.
+class RenderLoop {
+  public:
+    RenderLoop(const Renderer& renderer, const SampleContext& context, RenderState& state,
+               const RenderControl& control)
+        : renderer_(renderer), context_(context), state_(state), control_(control),
+          order_(renderer.sampler(), renderer.target().slice), tiles_(tiles_of(state.film.bounds())),
+          seconds_before_(state.report.seconds) {}
+
+    // The loop over rounds.
+    void run() {
+        for (;;) {
+            if (const auto reason = stop_between_rounds()) return end(*reason);
+            if (round_is_done()) {
+                std::vector<std::uint32_t> goals =
+                    next_goals(state_, renderer_.sampler(), renderer_.target());
+                if (goals.empty()) return end(StopReason::samples);
+                state_.goals = std::move(goals);
+            }
+            pause_ = false;
+            parallel_for(
+                static_cast<std::int64_t>(tiles_.size()),
+                [&](std::int64_t t) { render_tile(tiles_[static_cast<std::size_t>(t)]); }, control_.cancel);
+            state_.report.seconds = seconds();
+            if (cancelled()) return end(all_taken() ? StopReason::samples : StopReason::cancelled);
+            if (checkpoint_is_due()) save_checkpoint();
+        }
     }
+
+  private:
+    double seconds() const { return seconds_before_ + seconds_since(begin_); }
+    bool cancelled() const { return control_.cancel != nullptr && control_.cancel->requested(); }
+    bool checkpoint_is_due() const {
+        return control_.checkpoint && seconds_since(last_checkpoint_) >= control_.checkpoint_seconds;
+    }
+    bool out_of_time() const {
+        return renderer_.target().seconds > 0 && seconds() >= renderer_.target().seconds;
+    }
+    // Pixels of a restored film may lack samples of the present round, as those of a broken-off loop do.
+    bool round_is_done() const {
+        if (state_.goals.empty()) return true;
+        const std::span<const Pixel> pixels = state_.film.pixels();
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+            if (pixels[i].samples() < state_.goals[i]) return false;
+        return true;
+    }
+    bool all_taken() const {
+        return round_is_done() && next_goals(state_, renderer_.sampler(), renderer_.target()).empty();
+    }
+    bool no_unit_is_open() const {
+        return std::ranges::all_of(state_.goals, [&](std::uint32_t goal) { return order_.closed(goal); });
+    }
+
+    std::optional<StopReason> stop_between_rounds() {
+        if (out_of_time()) return StopReason::time;
+        if (state_.goals.empty() || !round_is_done() || !no_unit_is_open()) return std::nullopt;
+        const FilmError error = state_.film.error();
+        report_progress(error);
+        const RenderTarget& target = renderer_.target();
+        if (!(target.error > 0) || fewest_units() < least_units) return std::nullopt;
+        const double reached =
+            target.quantile > 0 ? error_quantile(state_.film, target.quantile) : error.relative;
+        if (reached <= target.error) return StopReason::error;
+        return std::nullopt;
+    }
+    std::uint64_t fewest_units() const {
+        std::uint64_t fewest = state_.film.pixels().front().units().count();
+        for (const Pixel& p : state_.film.pixels()) fewest = std::min(fewest, p.units().count());
+        return fewest;
+    }
+
+    void render_tile(const PixelBounds& tile) {
+        if (pause_) return;
+        const double begin = thread_cpu_seconds();
+        RayTracer tracer(renderer_.accelerator());
+        TileTally tally;
+        const PixelBounds& film = state_.film.bounds();
+        for (int y = tile.y0; y < tile.y1; ++y)
+            for (int x = tile.x0; x < tile.x1; ++x) {
+                if (pause_ || cancelled()) break;
+                const auto at =
+                    static_cast<std::size_t>(y - film.y0) * static_cast<std::size_t>(film.width()) +
+                    static_cast<std::size_t>(x - film.x0);
+                render_pixel(tracer, x, y, state_.goals[at], tally);
+            }
+        tally.rays = tracer.statistics;
+        tally.cpu_seconds = thread_cpu_seconds() - begin;
+        std::lock_guard lock(mutex_);
+        RenderReport& report = state_.report;
+        report.rays.merge(tally.rays);
+        report.bad.merge(tally.bad);
+        report.cpu_seconds += tally.cpu_seconds;
+        report.samples += tally.samples;
+        report.clamped_samples += tally.clamped_samples;
+        report.clamped_luminance += tally.clamped_luminance;
+        if (checkpoint_is_due() || out_of_time()) pause_ = true;
+        if (seconds_since(last_progress_) > 0.2) report_progress(std::nullopt);
+    }
+
+    // All samples up to the goal, or none: a pixel is never left in the middle of a round.
+    void render_pixel(RayTracer& tracer, int x, int y, std::uint32_t goal, TileTally& tally) {
+        Pixel& pixel = state_.film.pixel(x, y);
+        for (std::uint64_t i = pixel.samples(); i < goal; ++i) {
+            const std::uint64_t index = order_.index(i);
+            const SampleContext::Result r = context_.take(tracer, x, y, index);
+            if (r.bad) {
+                pixel.count_bad();
+                tally.bad.add({*r.bad, x, y, index});
+            } else {
+                pixel.add_sample(r.film);
+            }
+            if (r.clamped > 0) {
+                ++tally.clamped_samples;
+                tally.clamped_luminance += static_cast<double>(r.clamped);
+            }
+            if (order_.closed(i + 1)) pixel.end_unit();
+            ++tally.samples;
+        }
+    }
+
+    void report_progress(const std::optional<FilmError>& error) {
+        if (!control_.progress) return;
+        last_progress_ = Clock::now();
+        if (error) progress_.error = error;
+        progress_.seconds = seconds();
+        progress_.samples_done = state_.report.samples;
+        progress_.samples_total = expected_samples();
+        control_.progress(progress_);
+    }
+    // All, or what the last error makes expect.
+    std::uint64_t expected_samples() const {
+        const auto pixels = static_cast<double>(state_.film.pixels().size());
+        const double all = pixels * static_cast<double>(order_.share());
+        const RenderTarget& target = renderer_.target();
+        double expected = all;
+        if (target.error > 0 && target.quantile == 0 && progress_.error)
+            expected = pixels * progress_.error->mean_samples *
+                       std::pow(progress_.error->relative / target.error, 2);
+        if (!(expected < all)) expected = all;
+        return std::max(state_.report.samples, static_cast<std::uint64_t>(expected));
+    }
+
+    void save_checkpoint() {
+        control_.checkpoint(state_);
+        last_checkpoint_ = Clock::now();
+    }
+    void end(StopReason reason) {
+        state_.report.seconds = seconds();
+        state_.report.stop = reason;
+        if (state_.report.rays.timed > 0)
+            state_.report.ray_seconds = state_.report.rays.timed_seconds *
+                                        static_cast<double>(state_.report.rays.rays()) /
+                                        static_cast<double>(state_.report.rays.timed);
+        if (control_.checkpoint) save_checkpoint();
+        // The samples of replicates that were cut short count all the same: each is unbiased.
+        state_.film.end_units();
+    }
+
+    // Before the spread of fewer units is believed.
+    static constexpr std::uint64_t least_units = 4;
+
+    const Renderer& renderer_;
+    const SampleContext& context_;
+    RenderState& state_;
+    const RenderControl& control_;
+    SampleOrder order_;
+    std::vector<PixelBounds> tiles_;
+    double seconds_before_; // of earlier sessions
+    Clock::time_point begin_ = Clock::now(), last_checkpoint_ = begin_, last_progress_ = begin_;
+    std::atomic<bool> pause_{false};
+    std::mutex mutex_; // of the report and the progress
+    RenderProgress progress_;
 };
 
 } // namespace
 
-void BadSampleReport::add(const BadSample& bad) {
-    switch (bad.kind) {
-    case BadSample::Kind::nan:
-        ++nan;
-        break;
-    case BadSample::Kind::infinite:
-        ++infinite;
-        break;
-    case BadSample::Kind::negative:
-        ++negative;
-        break;
+std::string_view name_of(StopReason reason) {
+    switch (reason) {
+    case StopReason::samples:
+        return "samples";
+    case StopReason::error:
+        return "error";
+    case StopReason::time:
+        return "time";
+    default:
+        return "cancelled";
     }
-    auto key = [](const BadSample& b) { return std::tuple(b.sample, b.y, b.x); };
-    if (!first || key(bad) < key(*first)) first = bad;
 }
 
-void BadSampleReport::merge(const BadSampleReport& other) {
-    nan += other.nan;
-    infinite += other.infinite;
-    negative += other.negative;
-    auto key = [](const BadSample& b) { return std::tuple(b.sample, b.y, b.x); };
-    if (other.first && (!first || key(*other.first) < key(*first))) first = other.first;
-}
-
-Renderer::Renderer(const SceneDescription& description)
-    : description_(description), sampler_(with_replicates(description.sampler)),
+Renderer::Renderer(const SceneDescription& description, const RenderTarget& target)
+    : description_(description), target_(target), sampler_(with_replicates(description.sampler, target)),
       camera_(description.scene.camera, description.film.width, description.film.height) {
     if (description.sampler.samples_per_pixel < 1)
         throw Error("sampler", "at least 1 sample a pixel is needed");
+    if (target.slice.index >= target.slice.count)
+        throw Error("slice",
+                    "slices are counted from 0, and there are " + std::to_string(target.slice.count));
+    if (SampleOrder(sampler_, target.slice).share() == 0)
+        throw Error("slice", "there are fewer units of samples than slices; more samples a pixel are needed");
     auto begin = Clock::now();
     tables_ = std::make_unique<SceneTables>(description.scene);
     accelerator_ = std::make_unique<Accelerator>(description.scene, *tables_);
     build_seconds_ = seconds_since(begin);
 }
 
+void Renderer::render(RenderState& state, const RenderControl& control) const {
+    const SampleContext context(description_, sampler_, *tables_, camera_);
+    RenderLoop(*this, context, state, control).run();
+}
+
 RenderReport Renderer::render(Film& film, const ProgressCallback& progress, const CancelFlag* cancel) const {
-    const SamplerSettings& sampler = sampler_;
-    const SampleContext context(description_, sampler, *tables_, camera_);
-
-    const std::vector<PixelBounds> tiles = tiles_of(film.bounds());
-    const std::uint64_t pixels = static_cast<std::uint64_t>(film.bounds().width()) * film.bounds().height();
-    RenderProgress state;
-    state.samples_total = pixels * sampler.samples_per_pixel;
-
-    Tally tally;
-    auto begin = Clock::now();
-    Clock::time_point last_report = begin;
-    auto report_progress = [&](std::optional<FilmError> error) {
-        if (!progress) return;
-        state.seconds = seconds_since(begin);
-        if (error) state.error = error;
-        progress(state);
-    };
-
-    std::atomic<bool> stopped{false};
-    std::uint64_t next_sample = 0;
-    while (auto pass_found = next_pass(sampler, next_sample)) {
-        const SamplePass pass = *pass_found;
-        next_sample = pass.end;
-        parallel_for(
-            static_cast<std::int64_t>(tiles.size()),
-            [&](std::int64_t t) {
-                const double tile_begin = thread_cpu_seconds();
-                const PixelBounds& tile = tiles[static_cast<std::size_t>(t)];
-                RayTracer tracer(*accelerator_);
-                BadSampleReport bad;
-                std::uint64_t samples = 0;
-                for (int y = tile.y0; y < tile.y1; ++y)
-                    for (int x = tile.x0; x < tile.x1; ++x) {
-                        // A pixel is never left in the middle of a pass.
-                        if (cancel != nullptr && cancel->requested()) {
-                            stopped = true;
-                            break;
-                        }
-                        Pixel& pixel = film.pixel(x, y);
-                        for (std::uint64_t i = pass.begin; i < pass.end; ++i) {
-                            SampleContext::Result r = context.take(tracer, x, y, i);
-                            if (r.bad) {
-                                pixel.count_bad();
-                                bad.add({*r.bad, x, y, i});
-                            } else {
-                                pixel.add_sample(r.film);
-                            }
-                            if (pass.every_sample_is_a_unit) pixel.end_unit();
-                        }
-                        if (pass.ends_unit) pixel.end_unit();
-                        samples += pass.end - pass.begin;
-                    }
-                tally.add(tracer.statistics, bad, thread_cpu_seconds() - tile_begin, samples);
-                if (progress) {
-                    std::lock_guard lock(tally.mutex);
-                    state.samples_done += samples;
-                    if (seconds_since(last_report) > 0.2) {
-                        last_report = Clock::now();
-                        report_progress(std::nullopt);
-                    }
-                }
-            },
-            cancel);
-        if (cancel != nullptr && cancel->requested()) stopped = true;
-        if (stopped) {
-            // The samples of replicates that were cut short count all the same: each is unbiased.
-            film.end_units();
-            tally.report.cancelled =
-                next_sample < sampler.samples_per_pixel || tally.report.samples < state.samples_total;
-            break;
-        }
-        report_progress(pass.ends_unit ? std::optional(film.error()) : std::nullopt);
-    }
-
-    RenderReport report = tally.report;
-    report.seconds = seconds_since(begin);
-    if (report.rays.timed > 0)
-        report.ray_seconds = report.rays.timed_seconds * static_cast<double>(report.rays.rays()) /
-                             static_cast<double>(report.rays.timed);
-    return report;
+    RenderState state(film.settings());
+    RenderControl control;
+    control.progress = progress;
+    control.cancel = cancel;
+    render(state, control);
+    film = std::move(state.film);
+    return state.report;
 }
 
 } // namespace montelux

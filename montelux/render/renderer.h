@@ -2,13 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <optional>
 
 #include "montelux/accel/accelerator.h"
 #include "montelux/film/film.h"
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/render/render_control.h"
 #include "montelux/scene/camera/camera.h"
 #include "montelux/scene/render_settings.h"
 #include "montelux/scene/scene_tables.h"
@@ -16,42 +14,13 @@
 
 namespace montelux {
 
-struct RenderProgress {
-    std::uint64_t samples_done = 0, samples_total = 0;
-    double seconds = 0;
-    // After each whole pass.
-    std::optional<FilmError> error;
-};
-
-// Called from one thread at a time, several times a second.
-using ProgressCallback = std::function<void(const RenderProgress&)>;
-
-struct BadSampleReport {
-    std::uint64_t nan = 0, infinite = 0, negative = 0;
-    std::optional<BadSample> first; // the one of lowest sample index, then row, then column
-
-    std::uint64_t count() const { return nan + infinite + negative; }
-    void add(const BadSample& bad);
-    void merge(const BadSampleReport& other);
-};
-
-struct RenderReport {
-    std::uint64_t samples = 0;
-    double seconds = 0;     // of the loop, wall clock
-    double cpu_seconds = 0; // of the loop, CPU time summed over threads
-    double ray_seconds = 0; // of those, spent in Embree (extrapolated from timed rays)
-    RayStatistics rays;
-    BadSampleReport bad;
-    bool cancelled = false;
-};
-
 struct SampleRecord;
 
 // Holds what is built once for a scene. The description must outlive it.
 class Renderer {
   public:
     // Throws Error on settings that make no sense. Threads as the caller's ThreadLimit allows.
-    explicit Renderer(const SceneDescription& description);
+    explicit Renderer(const SceneDescription& description, const RenderTarget& target = {});
 
     const Accelerator& accelerator() const { return *accelerator_; }
     const Camera& camera() const { return camera_; }
@@ -59,8 +28,13 @@ class Renderer {
     const SamplerSettings& sampler() const { return sampler_; }
     double build_seconds() const { return build_seconds_; }
 
-    // Adds all samples to the film, which must be new. The film depends on the description alone: not on
-    // the number of threads, nor on when it was looked at.
+    const RenderTarget& target() const { return target_; }
+
+    // Goes on with a render, new or restored, until its target is reached or all samples are taken, and
+    // closes the film. Unless time or the caller stopped it, what the film holds depends on description and
+    // target alone: not on the number of threads, nor on when it was looked at, stopped, saved and restored.
+    void render(RenderState& state, const RenderControl& control = {}) const;
+    // A render from the start. The film must be new.
     RenderReport render(Film& film, const ProgressCallback& progress = {},
                         const CancelFlag* cancel = nullptr) const;
 
@@ -70,6 +44,7 @@ class Renderer {
 
   private:
     const SceneDescription& description_;
+    RenderTarget target_;
     SamplerSettings sampler_;
     double build_seconds_ = 0;
     std::unique_ptr<SceneTables> tables_;

@@ -16,7 +16,7 @@ std::string range(int begin, int end) {
 
 } // namespace
 
-void check_sample(const SceneDescription& d, int x, int y, std::uint64_t index) {
+void check_sample(const SceneDescription& d, int x, int y, std::uint64_t index, const RenderTarget& target) {
     const PixelBounds& crop = d.film.crop;
     if (x < crop.x0 || x >= crop.x1 || y < crop.y0 || y >= crop.y1) {
         const bool whole = crop == PixelBounds{0, 0, d.film.width, d.film.height};
@@ -24,14 +24,14 @@ void check_sample(const SceneDescription& d, int x, int y, std::uint64_t index) 
                     std::string(whole ? "the film" : "the crop of the film") + " has columns " +
                         range(crop.x0, crop.x1) + " and rows " + range(crop.y0, crop.y1));
     }
-    if (index >= d.sampler.samples_per_pixel)
+    if (!target.adaptive && index >= d.sampler.samples_per_pixel)
         throw Error("sample " + std::to_string(index), "the pixel has " +
                                                            std::to_string(d.sampler.samples_per_pixel) +
                                                            " samples, counted from 0");
 }
 
 SampleRecord Renderer::replay(int x, int y, std::uint64_t index) const {
-    check_sample(description_, x, y, index);
+    check_sample(description_, x, y, index, target_);
     RayTracer tracer(*accelerator_);
     return SampleContext(description_, sampler_, *tables_, camera_).record(tracer, x, y, index);
 }

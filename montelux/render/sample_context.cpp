@@ -21,9 +21,9 @@ std::optional<BadSample::Kind> badness(Vec3f rgb, SampledSpectrum radiance) {
     return std::nullopt;
 }
 
-float footprint_scale(const SamplerSettings& sampler) {
-    return std::max(0.125f, 1 / std::sqrt(static_cast<float>(sampler.samples_per_pixel)));
-}
+// Of the footprint of a pixel on a texture: what pbrt-v4 takes from 64 samples a pixel on. The pixel filter
+// does the rest; and a sample must not depend on how many others there are.
+constexpr float footprint_scale = 0.125f;
 
 } // namespace
 
@@ -32,7 +32,7 @@ SampleContext::SampleContext(const SceneDescription& description, const SamplerS
     : sampler_(sampler),
       max_component_value_(description.film.max_component_value), path_{description.scene, tables, camera,
                                                                         description.integrator,
-                                                                        footprint_scale(sampler)},
+                                                                        footprint_scale},
       filter_(description.film.filter),
       sensor_(RgbColorSpace::srgb(),
               {description.film.exposure_time, description.film.iso, description.film.white_balance}),
@@ -75,6 +75,9 @@ SampleContext::Result SampleContext::trace(RayTracer& tracer, int x, int y, std:
     }
     if (result.bad) return result;
     result.film.radiance = rgb;
+    if (clamp < 1) [[unlikely]]
+        result.clamped =
+            static_cast<float>(dot(Vec3d(sensor_rgb), luminance_weight)) * (1 - clamp) * point.weight;
     if (first.found) {
         result.film.albedo = albedo_sensor_.to_rgb(first.albedo * white_.sample(all) * white_scale_, all);
         result.film.normal = first.normal;

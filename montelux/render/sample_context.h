@@ -23,6 +23,7 @@ class SampleContext {
         FilmSample film;
         // Why the sample may not enter a sum; `film` is then empty.
         std::optional<BadSample::Kind> bad;
+        float clamped = 0; // luminance that the film's limit took away, filter weight applied
     };
 
     // All arguments must outlive the context.

@@ -6,6 +6,7 @@
 
 #include "montelux/film/film.h"
 #include "montelux/film/pixel_filter.h"
+#include "montelux/render/render_control.h"
 #include "montelux/scene/render_settings.h"
 #include "montelux/spectrum/wavelengths.h"
 #include "montelux/transport/path_record.h"
@@ -32,7 +33,8 @@ struct SampleRecord {
 };
 
 // Throws Error, naming what was expected, where the pixel is not one of the crop or the index not one of the
-// samples that the description asks for.
-void check_sample(const SceneDescription& description, int x, int y, std::uint64_t index);
+// samples that the description asks for. With adaptive allocation a pixel may have any number of them.
+void check_sample(const SceneDescription& description, int x, int y, std::uint64_t index,
+                  const RenderTarget& target = {});
 
 } // namespace montelux

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "montelux/mc/math/error.h"
-#include "montelux/render/passes.h"
 
 namespace montelux::testing {
 namespace {
@@ -117,7 +116,7 @@ TEST(Cancel, LeavesAValidFilm) {
                     if (p.samples_done >= after) cancel.request();
                 },
                 &cancel);
-            EXPECT_TRUE(report.cancelled);
+            EXPECT_TRUE(report.cancelled());
             std::uint64_t samples = 0;
             for (int y = 0; y < 24; ++y)
                 for (int x = 0; x < 24; ++x) {
@@ -142,7 +141,7 @@ TEST(Cancel, BeforeTheStart) {
     CancelFlag cancel;
     cancel.request();
     RenderReport report = Renderer(b.description).render(film, {}, &cancel);
-    EXPECT_TRUE(report.cancelled);
+    EXPECT_TRUE(report.cancelled());
     EXPECT_EQ(report.samples, 0u);
     EXPECT_EQ(film.error().mean_samples, 0);
 }
@@ -158,7 +157,7 @@ TEST(Cancel, AfterTheEndIsTooLate) {
                                       if (p.samples_done == p.samples_total) cancel.request();
                                   },
                                   &cancel);
-    EXPECT_FALSE(report.cancelled);
+    EXPECT_FALSE(report.cancelled());
     EXPECT_EQ(report.samples, 64u * 16);
 }
 
@@ -196,38 +195,6 @@ TEST(MaxComponentValue, ClampsSamples) {
                 EXPECT_NEAR(c.mean(k), factor * f.mean(k), 1e-5 * (1 + std::abs(f.mean(k))));
         }
     EXPECT_GT(above, 50);
-}
-
-TEST(Passes, CoverAllSamplesInOrder) {
-    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::sobol})
-        for (std::uint32_t spp : {1u, 2u, 7u, 8u, 64u, 100u, 1000u})
-            for (std::uint32_t replicates : {1u, 3u, 8u}) {
-                SamplerSettings s = with_replicates({kind, 0, spp, replicates});
-                if (kind != SamplerKind::independent && spp > 1) {
-                    EXPECT_GE(s.replicates, 2u);
-                    if (replicates > 1) {
-                        EXPECT_EQ(s.replicates, replicates);
-                    }
-                }
-                std::uint64_t at = 0, units = 0;
-                while (auto pass = next_pass(s, at)) {
-                    ASSERT_EQ(pass->begin, at);
-                    ASSERT_GT(pass->end, pass->begin);
-                    EXPECT_EQ(pass->every_sample_is_a_unit, kind == SamplerKind::independent);
-                    if (kind != SamplerKind::independent) {
-                        EXPECT_EQ(replicate_of(s, pass->begin), replicate_of(s, pass->end - 1));
-                        bool at_end =
-                            pass->end == spp || replicate_of(s, pass->end) != replicate_of(s, pass->begin);
-                        EXPECT_EQ(pass->ends_unit, at_end);
-                    }
-                    units += pass->ends_unit;
-                    at = pass->end;
-                }
-                EXPECT_EQ(at, spp);
-                if (kind != SamplerKind::independent) {
-                    EXPECT_EQ(units, (spp + points_per_replicate(s) - 1) / points_per_replicate(s));
-                }
-            }
 }
 
 TEST(Renderer, RefusesNoSamples) {

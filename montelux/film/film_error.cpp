@@ -1,0 +1,94 @@
+#include "montelux/film/film_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "montelux/film/film.h"
+#include "montelux/mc/math/compensated.h"
+
+namespace montelux {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::uint64_t enough_units = 16;
+constexpr double heavy_share = 0.5;
+
+double mean_luminance(const Film& film) {
+    CompensatedSum luminance;
+    for (const Pixel& p : film.pixels())
+        for (int c = 0; c < 3; ++c) luminance.add(luminance_weight[c] * p.units().mean(c));
+    return luminance.value() / static_cast<double>(film.pixels().size());
+}
+// In place of a quotient by a luminance that may be zero.
+double relative_to(double luminance, double error) {
+    if (luminance > 0) return error / luminance;
+    return error > 0 ? infinity : 0;
+}
+
+} // namespace
+
+double luminance_error(const Pixel& pixel) {
+    double error = 0;
+    for (int c = 0; c < 3; ++c) error += luminance_weight[c] * pixel.units().standard_error(c);
+    return error;
+}
+
+FilmError error_of(const Film& film) {
+    CompensatedSum variance, samples;
+    for (const Pixel& p : film.pixels()) {
+        const double error = luminance_error(p);
+        variance.add(error * error);
+        samples.add(p.samples());
+    }
+    const auto n = static_cast<double>(film.pixels().size());
+    // The compensation of a sum with infinite terms, the errors of single units, is not a number.
+    const double total = std::isnan(variance.value()) ? infinity : variance.value();
+    FilmError e;
+    e.mean_luminance = mean_luminance(film);
+    e.mean_samples = samples.value() / n;
+    e.relative = relative_to(e.mean_luminance, std::sqrt(total / n));
+    return e;
+}
+
+double error_quantile(const Film& film, double quantile) {
+    std::vector<double> errors;
+    errors.reserve(film.pixels().size());
+    for (const Pixel& p : film.pixels()) errors.push_back(luminance_error(p));
+    const auto at =
+        static_cast<std::size_t>(std::clamp(std::ceil(quantile * static_cast<double>(errors.size())) - 1, 0.0,
+                                            static_cast<double>(errors.size() - 1)));
+    std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(at), errors.end());
+    return relative_to(mean_luminance(film), errors[at]);
+}
+
+OutlierReport outliers_of(const Film& film) {
+    OutlierReport report;
+    std::vector<double> squares;
+    double total = 0, heavy = 0;
+    for (const Pixel& p : film.pixels()) {
+        const double error = luminance_error(p);
+        if (!std::isfinite(error)) continue;
+        squares.push_back(error * error);
+        total += error * error;
+        if (p.units().count() < enough_units || p.largest_share() <= heavy_share) continue;
+        ++report.heavy_tailed;
+        heavy += error * error;
+    }
+    if (!(total > 0)) return report;
+    report.heavy_error_share = heavy / total;
+    std::sort(squares.begin(), squares.end(), std::greater<>());
+    double sum = 0;
+    for (double s : squares) {
+        if (sum >= 0.5 * total) break;
+        sum += s;
+        ++report.pixels_of_half;
+    }
+    report.share_of_half =
+        static_cast<double>(report.pixels_of_half) / static_cast<double>(film.pixels().size());
+    return report;
+}
+
+} // namespace montelux

@@ -1,0 +1,44 @@
+// The error of a whole picture, and how it is spread over the pixels.
+#pragma once
+
+#include <cstdint>
+
+#include "montelux/mc/math/vec.h"
+
+namespace montelux {
+
+class Film;
+class Pixel;
+
+// The error of the whole picture, as shown while rendering and written to the file.
+struct FilmError {
+    // Root mean square over pixels of the standard error of luminance, over the mean luminance.
+    double relative = 0;
+    double mean_luminance = 0;
+    double mean_samples = 0; // a pixel
+};
+FilmError error_of(const Film& film);
+
+// Of linear sRGB (IEC 61966-2-1).
+inline constexpr Vec3d luminance_weight{0.2126, 0.7152, 0.0722};
+// Standard error of a pixel's luminance: channels rise and fall together, so that the bound by the triangle
+// inequality is close. Infinite below two units.
+double luminance_error(const Pixel& pixel);
+
+// The error, relative to the mean luminance of the picture, within which a share `quantile` of the pixels
+// lies.
+double error_quantile(const Film& film, double quantile);
+
+// Fireflies: where the error of a picture sits.
+struct OutlierReport {
+    // Pixels with the greatest errors that carry half of the squared error, and their share of all.
+    std::uint64_t pixels_of_half = 0;
+    double share_of_half = 0;
+    // Pixels whose largest unit alone carries more than half of their variance, with at least 16 units: their
+    // errors are known less well than they claim.
+    std::uint64_t heavy_tailed = 0;
+    double heavy_error_share = 0; // of the squared error, that those pixels carry
+};
+OutlierReport outliers_of(const Film& film);
+
+} // namespace montelux

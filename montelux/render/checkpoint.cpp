@@ -1,0 +1,155 @@
+#include "montelux/render/checkpoint.h"
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "montelux/mc/io/generation_file.h"
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/random/hash.h"
+
+namespace montelux {
+namespace {
+
+constexpr std::string_view kind = "render";
+// Of the layout below, and of what makes samples: raised when either changes.
+constexpr std::uint32_t version = 1;
+static_assert(std::is_trivially_copyable_v<Pixel> && std::endian::native == std::endian::little);
+
+class ByteWriter {
+  public:
+    template <typename T>
+    void put(const T& value) requires std::is_trivially_copyable_v<T> {
+        put_all(std::span<const T>(&value, 1));
+    }
+    template <typename T>
+    void put_all(std::span<const T> values) {
+        const auto* begin = reinterpret_cast<const std::uint8_t*>(values.data());
+        bytes_.insert(bytes_.end(), begin, begin + values.size_bytes());
+    }
+    std::vector<std::uint8_t>& bytes() { return bytes_; }
+
+  private:
+    std::vector<std::uint8_t> bytes_;
+};
+
+class ByteReader {
+  public:
+    explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+    template <typename T>
+    T get() {
+        T value;
+        get_all(std::span<T>(&value, 1));
+        return value;
+    }
+    template <typename T>
+    void get_all(std::span<T> values) {
+        if (bytes_.size() < values.size_bytes()) throw Error("checkpoint", "it ends too early");
+        if (!values.empty())
+            std::memcpy(static_cast<void*>(values.data()), bytes_.data(), values.size_bytes());
+        bytes_ = bytes_.subspan(values.size_bytes());
+    }
+    bool at_end() const { return bytes_.empty(); }
+
+  private:
+    std::span<const std::uint8_t> bytes_;
+};
+
+template <typename... T>
+std::uint64_t hash_of(const T&... values) {
+    std::uint64_t h = 0;
+    auto add = [&](const auto& v) {
+        using V = std::decay_t<decltype(v)>;
+        if constexpr (std::is_same_v<V, float>)
+            h = hash_key(h, std::bit_cast<std::uint32_t>(v));
+        else
+            h = hash_key(h, static_cast<std::uint64_t>(v));
+    };
+    (add(values), ...);
+    return h;
+}
+std::uint64_t hash_of_filter(const PixelFilter& filter) {
+    const std::uint64_t which = filter.index();
+    return std::visit(
+        [&](const auto& f) {
+            using F = std::decay_t<decltype(f)>;
+            const std::uint64_t h = hash_of(which, f.radius.x, f.radius.y);
+            if constexpr (std::is_same_v<F, GaussianFilter>) return hash_of(h, f.sigma);
+            if constexpr (std::is_same_v<F, MitchellFilter>) return hash_of(h, f.b, f.c);
+            if constexpr (std::is_same_v<F, LanczosFilter>) return hash_of(h, f.tau);
+            return h;
+        },
+        filter);
+}
+
+// What a continued render must share with the one that was saved.
+struct Fingerprint {
+    const char* what;
+    std::uint64_t hash;
+};
+std::array<Fingerprint, 6> fingerprints(const SceneDescription& d, const RenderTarget& target) {
+    const FilmSettings& f = d.film;
+    return {{{"scene (its files changed)", d.content_hash},
+             {"film",
+              hash_of(f.width, f.height, f.crop.x0, f.crop.y0, f.crop.x1, f.crop.y1, hash_of_filter(f.filter),
+                      f.iso, f.exposure_time, f.white_balance, f.max_component_value)},
+             {"sampler or seed", hash_of(static_cast<int>(d.sampler.kind), d.sampler.seed)},
+             {"integrator", hash_of(d.integrator.max_depth, static_cast<int>(d.integrator.strategy),
+                                    static_cast<int>(d.integrator.heuristic))},
+             {"allocation of samples (--adaptive)", hash_of(target.adaptive)},
+             {"slice", hash_of(target.slice.index, target.slice.count)}}};
+}
+
+} // namespace
+
+void save_checkpoint(const std::filesystem::path& path, const SceneDescription& description,
+                     const SamplerSettings& sampler, const RenderTarget& target, const RenderState& state) {
+    ByteWriter out;
+    const std::span<const Pixel> pixels = state.film.pixels();
+    out.bytes().reserve(pixels.size_bytes() + state.goals.size() * sizeof(std::uint32_t) + 1024);
+    out.put(version);
+    for (const Fingerprint& f : fingerprints(description, target)) out.put(f.hash);
+    out.put(points_per_replicate(sampler));
+    out.put(state.report);
+    out.put(static_cast<std::uint64_t>(pixels.size()));
+    out.put(static_cast<std::uint64_t>(state.goals.size()));
+    out.put_all(std::span<const std::uint32_t>(state.goals));
+    out.put_all(pixels);
+    write_generation(path, kind, out.bytes());
+}
+
+RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDescription& description,
+                               const RenderTarget& target) {
+    RestoredRender restored{RenderState(description.film), 0, {}};
+    RenderState& state = restored.state;
+    const std::span<Pixel> pixels = state.film.pixels();
+    // A file of the right film is no longer than this.
+    const std::size_t most = pixels.size_bytes() + pixels.size() * sizeof(std::uint32_t) + 1024;
+    const Generation generation = read_generation(path, kind, most);
+    restored.newest_refused_because = generation.newest_refused_because;
+    ByteReader in(generation.payload);
+    if (in.get<std::uint32_t>() != version)
+        throw Error(path.string(), "the checkpoint is of another version of the program");
+    for (const Fingerprint& f : fingerprints(description, target))
+        if (in.get<std::uint64_t>() != f.hash)
+            throw Error(path.string(),
+                        std::string("the checkpoint is of another render: the ") + f.what + " differs");
+    restored.replicate_points = in.get<std::uint32_t>();
+    state.report = in.get<RenderReport>();
+    const auto count = in.get<std::uint64_t>(), goals = in.get<std::uint64_t>();
+    if (count != pixels.size() || (goals != 0 && goals != count))
+        throw Error(path.string(), "the checkpoint has another number of pixels");
+    state.goals.resize(goals);
+    in.get_all(std::span<std::uint32_t>(state.goals));
+    in.get_all(pixels);
+    if (!in.at_end() || restored.replicate_points == 0)
+        throw Error(path.string(), "the checkpoint is not what its header says");
+    return restored;
+}
+
+} // namespace montelux

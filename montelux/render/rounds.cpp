@@ -1,0 +1,50 @@
+#include "montelux/render/rounds.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "montelux/render/allocation.h"
+
+namespace montelux {
+namespace {
+
+constexpr std::uint64_t longest_round = 16;
+constexpr std::uint32_t points_for_targets = 8;
+// Of adaptive renders, for the first errors: samples, and units.
+constexpr std::uint64_t pilot_samples = 16, pilot_units = 4;
+
+} // namespace
+
+SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& target) {
+    if (settings.kind == SamplerKind::independent || settings.replicates >= 2 ||
+        settings.replicate_points != 0)
+        return settings;
+    if (target.error > 0 || target.seconds > 0 || target.adaptive)
+        settings.replicate_points = points_for_targets;
+    else
+        settings.replicates = std::min(8u, settings.samples_per_pixel);
+    return settings;
+}
+
+std::vector<std::uint32_t> next_goals(const RenderState& state, const SamplerSettings& sampler,
+                                      const RenderTarget& target) {
+    const SampleOrder order(sampler, target.slice);
+    const std::uint64_t share = order.share();
+    const std::size_t pixels = state.film.pixels().size();
+    const bool first = state.goals.empty();
+    if (target.adaptive && !first) return allocate(state.film, order, target);
+
+    const std::uint64_t begin = first ? 0 : state.goals.front();
+    if (begin >= share) return {};
+    std::uint64_t end;
+    if (target.adaptive) {
+        end = std::max(pilot_samples, pilot_units * order.unit());
+        end = (end + order.unit() - 1) / order.unit() * order.unit();
+    } else { // 1, 2, 4, 8, 16, 32, 48, ... samples
+        end = begin + std::clamp<std::uint64_t>(std::bit_floor(begin), 1, longest_round);
+        if (order.unit() > 1) end = std::min(end, (begin / order.unit() + 1) * order.unit());
+    }
+    return std::vector<std::uint32_t>(pixels, static_cast<std::uint32_t>(std::min(end, share)));
+}
+
+} // namespace montelux

@@ -1,0 +1,27 @@
+// The rounds of a render: how many samples each pixel shall have next.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "montelux/film/film.h"
+#include "montelux/mc/random/sampler_settings.h"
+#include "montelux/render/render_control.h"
+
+namespace montelux {
+
+// With `replicates` 0 or 1 and a quasi-random sampler: the number that suits. Eight give an error estimate
+// with seven degrees of freedom and leave most samples to the point sets; with fewer than eight samples each
+// stands alone. A target needs many short replicates, since nobody knows how many samples it takes: eight
+// points each.
+SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& target);
+
+// The goals of the next round, one a pixel, after one whose goals (`state.goals`, empty at first) all pixels
+// have reached; empty when all samples are taken. A function of its arguments alone.
+//
+// The same for all pixels without adaptive allocation: rounds are short at first, so that a first look comes
+// early, and never long. Adaptively: a pilot of equal numbers, then rounds of whole units (allocation.h).
+std::vector<std::uint32_t> next_goals(const RenderState& state, const SamplerSettings& sampler,
+                                      const RenderTarget& target);
+
+} // namespace montelux

@@ -1,0 +1,142 @@
+// Renders that are stopped, saved and continued end with the bits of one that never was.
+#include "test/render/mixed_scene.h"
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/random/hash.h"
+#include "montelux/render/checkpoint.h"
+
+namespace montelux::testing {
+namespace {
+
+class Checkpoint : public ::testing::Test {
+  protected:
+    Checkpoint() {
+        folder_ =
+            std::filesystem::temp_directory_path() / ("montelux-checkpoint-" + std::to_string(getpid()));
+        std::filesystem::create_directories(folder_);
+        path_ = folder_ / "render.state";
+    }
+    ~Checkpoint() override { std::filesystem::remove_all(folder_); }
+
+    std::filesystem::path folder_, path_;
+};
+
+void expect_same(const Film& a, const Film& b) {
+    int differing = 0;
+    for (std::size_t i = 0; i < a.pixels().size(); ++i)
+        differing += !same_pixel(a.pixels()[i], b.pixels()[i]);
+    EXPECT_EQ(differing, 0);
+}
+
+// Breaks the render off after some more samples each time, and goes on from the file.
+TEST_F(Checkpoint, BrokenRendersEndWithTheSameBits) {
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol, SamplerKind::stratified})
+        for (bool adaptive : {false, true}) {
+            SceneBuilder b = mixed_scene(1, 24, 20);
+            b.description.sampler.kind = kind;
+            b.description.sampler.samples_per_pixel = 100;
+            const RenderTarget target{.adaptive = adaptive};
+            RenderState whole(b.description.film);
+            Renderer(b.description, target).render(whole);
+
+            int stops = 0;
+            for (bool ended = false; !ended;) {
+                RenderState state(b.description.film);
+                SceneDescription description = b.description;
+                if (stops > 0) {
+                    RestoredRender restored = load_checkpoint(path_, description, target);
+                    description.sampler.replicate_points = restored.replicate_points;
+                    state = std::move(restored.state);
+                }
+                const Renderer renderer(description, target);
+                CancelFlag cancel;
+                const std::uint64_t begin = state.report.samples, more = 1 + hash_key(7, stops) % 9000;
+                RenderControl control;
+                control.cancel = &cancel;
+                control.checkpoint_seconds = 0.002;
+                control.progress = [&](const RenderProgress& p) {
+                    if (p.samples_done >= begin + more) cancel.request();
+                };
+                control.checkpoint = [&](const RenderState& s) {
+                    save_checkpoint(path_, description, renderer.sampler(), target, s);
+                    if (s.report.samples >= begin + more) cancel.request();
+                };
+                renderer.render(state, control);
+                ended = !state.report.cancelled();
+                if (ended) expect_same(state.film, whole.film);
+                ++stops;
+                ASSERT_LT(stops, 1000);
+            }
+            EXPECT_GT(stops, 3) << int(kind);
+        }
+}
+
+// The last generation may end anywhere; a finished render may be continued to more samples.
+TEST_F(Checkpoint, FinishedRendersCanBeRaised) {
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
+        SceneBuilder b = mixed_scene(1, 16, 16);
+        b.description.sampler.kind = kind;
+        b.description.sampler.samples_per_pixel = 36;
+        RenderState first(b.description.film);
+        Renderer renderer(b.description);
+        RenderControl control;
+        control.checkpoint = [&](const RenderState& s) {
+            save_checkpoint(path_, b.description, renderer.sampler(), {}, s);
+        };
+        renderer.render(first, control);
+        b.description.sampler.samples_per_pixel = 90;
+        RestoredRender restored = load_checkpoint(path_, b.description, {});
+        b.description.sampler.replicate_points = restored.replicate_points;
+        Renderer(b.description).render(restored.state);
+        RenderState whole(b.description.film);
+        Renderer(b.description).render(whole);
+        expect_same(restored.state.film, whole.film);
+        EXPECT_EQ(restored.state.film.pixel(0, 0).samples(), 90u);
+    }
+}
+
+TEST_F(Checkpoint, OtherRendersAreRefusedWithTheReason) {
+    SceneBuilder b = mixed_scene(1, 8, 8);
+    const Renderer renderer(b.description);
+    save_checkpoint(path_, b.description, renderer.sampler(), {}, RenderState(b.description.film));
+    EXPECT_NO_THROW(load_checkpoint(path_, b.description, {}));
+    auto refused = [&](const SceneDescription& d, const RenderTarget& target, const std::string& why) {
+        try {
+            load_checkpoint(path_, d, target);
+            ADD_FAILURE() << why;
+        } catch (const Error& e) {
+            EXPECT_NE(std::string(e.what()).find(why), std::string::npos) << e.what();
+        }
+    };
+    auto changed = [&](auto change) {
+        SceneDescription d = b.description;
+        change(d);
+        return d;
+    };
+    refused(changed([](SceneDescription& d) { ++d.content_hash; }), {}, "scene");
+    refused(changed([](SceneDescription& d) { d.film.iso *= 2; }), {}, "film");
+    refused(changed([](SceneDescription& d) {
+                d.film.filter = GaussianFilter{{1.5f, 1.5f}, 0.4f};
+            }),
+            {}, "film");
+    refused(changed([](SceneDescription& d) { ++d.sampler.seed; }), {}, "sampler or seed");
+    refused(changed([](SceneDescription& d) { ++d.integrator.max_depth; }), {}, "integrator");
+    refused(b.description, {.adaptive = true}, "allocation");
+    refused(b.description, {.slice = {0, 2}}, "slice");
+    refused(changed([](SceneDescription& d) {
+                d.film.width = d.film.height = 4;
+                d.film.crop = {0, 0, 4, 4};
+            }),
+            {}, "");
+    // Damage is found by the file (generation_file_test); the one before is taken.
+    save_checkpoint(path_, b.description, renderer.sampler(), {}, RenderState(b.description.film));
+    std::filesystem::resize_file(path_, 1000);
+    EXPECT_FALSE(load_checkpoint(path_, b.description, {}).newest_refused_because.empty());
+}
+
+} // namespace
+} // namespace montelux::testing

@@ -1,0 +1,114 @@
+// Renders that are asked for an error or a time: they reach it, without bias, and say what stopped them.
+#include "test/render/mixed_scene.h"
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/stats/moments.h"
+
+namespace montelux::testing {
+namespace {
+
+RenderState run(const SceneDescription& description, const RenderTarget& target) {
+    RenderState state(description.film);
+    Renderer(description, target).render(state);
+    return state;
+}
+
+TEST(Target, ErrorIsReachedAndNotOvershot) {
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol})
+        for (bool adaptive : {false, true}) {
+            SceneBuilder b = mixed_scene(1, 32, 32);
+            b.description.sampler.kind = kind;
+            b.description.sampler.samples_per_pixel = 1u << 16;
+            const RenderState state = run(b.description, {.error = 0.03, .adaptive = adaptive});
+            EXPECT_EQ(state.report.stop, StopReason::error);
+            const FilmError e = state.film.error();
+            EXPECT_LE(e.relative, 0.03);
+            EXPECT_GT(e.relative, 0.03 * (adaptive ? 0.85 : 0.7)) << int(kind);
+            std::uint64_t samples = 0;
+            for (const Pixel& p : state.film.pixels()) samples += p.samples();
+            EXPECT_EQ(samples, state.report.samples);
+        }
+}
+
+TEST(Target, SamplesThatRunOutAreSaid) {
+    SceneBuilder b = mixed_scene(1, 16, 16);
+    b.description.sampler.samples_per_pixel = 32;
+    for (bool adaptive : {false, true}) {
+        const RenderState state = run(b.description, {.error = 1e-4, .adaptive = adaptive});
+        EXPECT_EQ(state.report.stop, StopReason::samples);
+        EXPECT_LE(state.report.samples, 32u * 256);
+        EXPECT_GE(state.report.samples, 28u * 256);
+    }
+}
+
+TEST(Target, TimeEndsTheRenderWithAValidFilm) {
+    SceneBuilder b = mixed_scene(1, 16, 16);
+    b.description.sampler.samples_per_pixel = 1u << 24;
+    const RenderState state = run(b.description, {.seconds = 0.3});
+    EXPECT_EQ(state.report.stop, StopReason::time);
+    EXPECT_GE(state.report.seconds, 0.3);
+    EXPECT_TRUE(std::isfinite(state.film.error().relative));
+}
+
+TEST(Target, QuantileOfThePixels) {
+    SceneBuilder b = mixed_scene(1, 24, 24);
+    b.description.sampler.kind = SamplerKind::independent;
+    b.description.sampler.samples_per_pixel = 1u << 16;
+    const RenderState state = run(b.description, {.error = 0.04, .quantile = 0.9});
+    EXPECT_EQ(state.report.stop, StopReason::error);
+    int within = 0;
+    const FilmError e = state.film.error();
+    for (const Pixel& p : state.film.pixels()) within += luminance_error(p) <= 0.04 * e.mean_luminance;
+    EXPECT_GE(within, 0.9 * 24 * 24);
+    EXPECT_LT(within, 0.97 * 24 * 24);
+}
+
+// Adaptive allocation looks at the samples and must not lean on them: the mean over many seeds is that of
+// renders with equal numbers. Pixels that take few samples because their first ones were dark would show here
+// at once.
+TEST(TargetSlowTest, AdaptiveIsUnbiased) {
+    RunningMoments adaptive, equal;
+    for (std::uint64_t seed = 0; seed < 64; ++seed) {
+        SceneBuilder b = mixed_scene(1, 24, 24);
+        b.description.sampler.kind = SamplerKind::independent;
+        b.description.sampler.seed = 1000 + seed;
+        b.description.sampler.samples_per_pixel = 64;
+        adaptive.add(picture_mean(run(b.description, {.adaptive = true}).film).mean);
+        b.description.sampler.seed = 2000 + seed;
+        equal.add(picture_mean(run(b.description, {}).film).mean);
+    }
+    const double error = std::sqrt(adaptive.variance_of_mean() + equal.variance_of_mean());
+    RecordProperty("relative difference in 1e-6",
+                   static_cast<int>(1e6 * (adaptive.mean() / equal.mean() - 1)));
+    EXPECT_LT(std::abs(adaptive.mean() - equal.mean()), 5 * error);
+    EXPECT_LT(error, 1e-3 * equal.mean());
+}
+
+TEST(Target, SlicesAddUpToTheWhole) {
+    SceneBuilder b = mixed_scene(1, 16, 16);
+    b.description.sampler.samples_per_pixel = 48;
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
+        b.description.sampler.kind = kind;
+        const Film whole = render(b.description);
+        std::vector<SkewMoments<3>> sums(256);
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const RenderState part = run(b.description, {.slice = {k, 3}});
+            for (std::size_t i = 0; i < sums.size(); ++i) sums[i].merge(part.film.pixels()[i].units());
+        }
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            const SkewMoments<3>& u = whole.pixels()[i].units();
+            ASSERT_EQ(sums[i].count(), u.count());
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_NEAR(sums[i].mean(c), u.mean(c), 1e-12 * (1 + u.mean(c)));
+                EXPECT_NEAR(sums[i].standard_error(c), u.standard_error(c), 1e-9 * (1 + u.mean(c)));
+            }
+        }
+    }
+    EXPECT_THROW(Renderer(b.description, {.slice = {3, 3}}), Error);
+    EXPECT_THROW(Renderer(b.description, {.slice = {48, 49}}), Error);
+}
+
+} // namespace
+} // namespace montelux::testing
