@@ -77,6 +77,9 @@ int run(const IntegrateOptions& o) {
     line.finish();
 
     finish_on_signals();
+    if (!result.checkpoint_refused_because.empty())
+        std::fprintf(stderr, "montelux: warning: %s; went on from the checkpoint before it\n",
+                     result.checkpoint_refused_because.c_str());
     if (!o.plot.empty()) write_convergence_plot(o.plot, task, result);
     if (!o.points.empty()) recorder.write(o.points, task.variables, task.formulas.texts());
     if (result.evaluations == 0)

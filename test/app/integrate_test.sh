@@ -107,7 +107,7 @@ fi
 # Checkpoints: what is continued has the digits of what was not broken; killed at any moment, too.
 "$montelux" integrate 'sin(x)*y' --over x,y=0:1 --method basic --evaluations 3e7 --quiet --json | grep -v seconds >unbroken
 for wait in 0.05 0.2 0.4; do
-    rm -f state
+    rm -f state state.previous
     "$montelux" integrate 'sin(x)*y' --over x,y=0:1 --method basic --evaluations 3e7 --quiet --checkpoint state \
         --checkpoint-every 0 >/dev/null 2>&1 &
     pid=$!
@@ -121,7 +121,11 @@ done
 expect 1 "exists already; add --resume" integrate 'sin(x)*y' --over x,y=0:1 --checkpoint state
 expect 1 "belongs to another integrand, domain, method or seed" integrate x --over x=0:1 --method basic --checkpoint state --resume
 head -c 100 state >cut
-expect 1 "is damaged" integrate 'sin(x)*y' --over x,y=0:1 --method basic --checkpoint cut --resume
+expect 1 "is cut short" integrate 'sin(x)*y' --over x,y=0:1 --method basic --checkpoint cut --resume
+cp state cut.previous
+expect 0 "is cut short" integrate 'sin(x)*y' --over x,y=0:1 --method basic --checkpoint cut --resume
+expect 0 "" integrate 'sin(x)*y' --over x,y=0:1 --method basic --checkpoint cut --resume
+grep -q warning out && fail "a whole checkpoint is warned of: $(cat out)"
 echo hello >text
 expect 1 "is not a saved state" integrate x --over x=0:1 --checkpoint text --resume
 

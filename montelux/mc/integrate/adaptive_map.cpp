@@ -319,9 +319,11 @@ void AdaptiveMap::save(const std::string& path) const {
 }
 
 AdaptiveMap AdaptiveMap::load(const std::string& path) {
-    StateReader state = read_state(path, file_kind);
+    SavedState saved = read_state(path, file_kind);
+    // The map before is another map.
+    if (!saved.newest_refused_because.empty()) throw Error(saved.newest_refused_because);
     try {
-        return load(state);
+        return load(saved.reader);
     } catch (const Error& error) {
         throw Error(path, error.what());
     }

@@ -10,6 +10,7 @@
 
 #include "montelux/mc/integrate/interruptible.h"
 #include "montelux/mc/io/file.h"
+#include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/special.h"
 #include "montelux/mc/random/hash.h"
@@ -65,7 +66,7 @@ class Run {
         if (!options_.checkpoint.empty()) {
             AtomicFile probe(options_.checkpoint); // that it can be written is known before the work begins
             fingerprint_ = fingerprint();
-            if (options_.resume && std::filesystem::exists(options_.checkpoint)) restore();
+            if (options_.resume && generation_exists(options_.checkpoint)) restore();
         }
         Clock::time_point saved = Clock::now();
         std::optional<StopReason> stop;
@@ -250,6 +251,7 @@ class Run {
             r.doubts.push_back(std::to_string(r.non_finite) + " of " + std::to_string(r.evaluations) +
                                " values of the integrand were not finite and were left out, the first at " +
                                point_text(r.first_non_finite_point));
+        r.checkpoint_refused_because = checkpoint_refused_because_;
         r.seconds = elapsed();
         return r;
     }
@@ -295,7 +297,9 @@ class Run {
     }
 
     void restore() {
-        StateReader state = read_state(options_.checkpoint, "integration");
+        SavedState saved = read_state(options_.checkpoint, "integration");
+        checkpoint_refused_because_ = std::move(saved.newest_refused_because);
+        StateReader& state = saved.reader;
         if (state.get_word() != fingerprint_)
             throw Error(options_.checkpoint, "belongs to another integrand, domain, method or seed");
         seconds_before_ = state.get_double();
@@ -325,6 +329,7 @@ class Run {
     std::uint64_t lost_ = 0; // evaluations of a first step that had to be given up
     double rate_ = 0;        // evaluations a second in the last step
     std::uint64_t fingerprint_ = 0;
+    std::string checkpoint_refused_because_;
     std::unique_ptr<Estimator> estimator_;
     std::vector<IterationRecord> history_;
     double seconds_before_ = 0; // in earlier parts of a run that was resumed

@@ -37,8 +37,9 @@ struct IntegrationOptions {
     std::function<void(const IntegrationResult&)> progress = {};
     const CancelFlag* cancel = nullptr;
     // Where the running state is kept: written every `checkpoint_every` and at the end, over a file that is
-    // there; a run goes on from it where `resume` is set and the file exists. Empty: nowhere. To tell other
-    // integrands apart, the integrand is evaluated at four points beside those of the method.
+    // there, which becomes CHECKPOINT.previous; a run goes on from it where `resume` is set and the file
+    // exists, or from the one before where it is damaged. Empty: nowhere. To tell other integrands apart, the
+    // integrand is evaluated at four points beside those of the method.
     std::string checkpoint = {};
     std::chrono::duration<double> checkpoint_every{60};
     bool resume = false;

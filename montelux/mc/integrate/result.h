@@ -53,6 +53,8 @@ struct IntegrationResult {
     StopReason stop = StopReason::finished;
     // Reasons to doubt the value or its error, as sentences. Empty is the normal case.
     std::vector<std::string> doubts;
+    // Not empty where the newest checkpoint could not be gone on from, and the one before it was: why.
+    std::string checkpoint_refused_because;
     double seconds = 0; // wall time
 
     // The targets were met, and nothing speaks against the result.

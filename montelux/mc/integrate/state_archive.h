@@ -1,4 +1,4 @@
-// Saved state of estimators: numbers in order, bit by bit, with a checksum.
+// Saved state of estimators: numbers in order, bit by bit.
 #pragma once
 
 #include <bit>
@@ -62,10 +62,17 @@ class StateReader {
     std::size_t next_ = 0;
 };
 
-// The file holds a header (what it is, version), the words and a checksum. It is written under a temporary
-// name and renamed, so that a file of this name is always whole. Throws Error.
+// Writes a generation file (mc/io/generation_file.h): what was saved before is kept as PATH.previous. Throws
+// Error.
 void write_state(const std::string& path, std::string_view kind, const StateWriter& state);
-// Throws Error when the file is missing, of another kind or version, cut short or damaged.
-StateReader read_state(const std::string& path, std::string_view kind);
+
+struct SavedState {
+    StateReader reader;
+    // Not empty where the newest file is missing, of another kind or version, cut short or damaged: why, as a
+    // sentence; the reader then reads the one before it.
+    std::string newest_refused_because;
+};
+// Throws Error when neither file is whole.
+SavedState read_state(const std::string& path, std::string_view kind);
 
 } // namespace montelux

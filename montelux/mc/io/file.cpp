@@ -7,6 +7,7 @@
 #include <string>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <utility>
 
 #include "montelux/mc/math/error.h"
 
@@ -14,7 +15,18 @@ namespace montelux {
 
 namespace {
 
+constexpr std::size_t buffer_size = std::size_t{1} << 18;
+constexpr const char* after_failure = "cannot be written: an earlier write failed";
+
 std::string reason(int error_number) { return std::strerror(error_number); }
+
+// A call that a signal interrupted before it did anything is made again.
+template <typename Call>
+auto retried(Call call) {
+    auto result = call();
+    while (result < 0 && errno == EINTR) result = call();
+    return result;
+}
 
 std::filesystem::path folder_of(const std::filesystem::path& path) {
     return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
@@ -24,7 +36,7 @@ std::filesystem::path folder_of(const std::filesystem::path& path) {
 
 InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
     // O_NONBLOCK: opening a pipe that nobody writes to would wait for ever.
-    descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    descriptor_ = retried([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK); });
     if (descriptor_ < 0)
         throw Error(path.empty() ? "''" : path.string(), "cannot be opened: " + reason(errno));
     struct stat info {};
@@ -47,8 +59,8 @@ InputFile::~InputFile() { ::close(descriptor_); }
 void InputFile::read(std::span<std::uint8_t> bytes) {
     std::size_t done = 0;
     while (done < bytes.size()) {
-        const ssize_t n = ::read(descriptor_, bytes.data() + done, bytes.size() - done);
-        if (n < 0 && errno == EINTR) continue;
+        const ssize_t n =
+            retried([&] { return ::read(descriptor_, bytes.data() + done, bytes.size() - done); });
         if (n < 0) throw Error(path_.string(), "cannot be read: " + reason(errno));
         if (n == 0) throw Error(path_.string(), "became shorter while it was read");
         done += static_cast<std::size_t>(n);
@@ -79,11 +91,13 @@ std::filesystem::path output_target(const std::filesystem::path& path) {
 
 void sync_folder_of(const std::filesystem::path& path) {
     const auto folder = folder_of(path);
-    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    const int descriptor =
+        retried([&] { return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); });
     if (descriptor < 0 && errno == EACCES) return; // one may write to folders that one may not read
     int error_number = descriptor < 0 ? errno : 0;
     if (descriptor >= 0) {
-        if (::fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS) error_number = errno;
+        if (retried([&] { return ::fsync(descriptor); }) != 0 && errno != EINVAL && errno != EROFS)
+            error_number = errno;
         ::close(descriptor);
     }
     if (error_number != 0)
@@ -103,28 +117,17 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_
     for (int attempt = 0; attempt < 100; ++attempt) {
         temporary_ = folder / (".montelux-" + std::to_string(::getpid()) + "-" +
                                std::to_string(counter.fetch_add(1)) + ".tmp");
-        int fd = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (fd < 0 && errno == EEXIST) continue;
-        if (fd < 0) {
-            int error_number = errno;
-            temporary_.clear();
-            throw Error(path.string(),
-                        "cannot be written: folder '" + folder.string() + "': " + reason(error_number));
-        }
-        file_ = ::fdopen(fd, "w+b");
-        if (!file_) {
-            int error_number = errno;
-            ::close(fd);
-            ::unlink(temporary_.c_str());
-            throw Error(path.string(), "cannot be written: " + reason(error_number));
-        }
-        return;
+        descriptor_ =
+            retried([&] { return ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
+        if (descriptor_ >= 0) return;
+        if (errno == EEXIST) continue;
+        throw Error(path.string(), "cannot be written: folder '" + folder.string() + "': " + reason(errno));
     }
     throw Error(path.string(), "cannot be written: no free temporary name in '" + folder.string() + "'");
 }
 
 AtomicFile::~AtomicFile() {
-    if (file_) std::fclose(file_);
+    if (descriptor_ >= 0) ::close(descriptor_);
     if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
@@ -136,23 +139,44 @@ void AtomicFile::fail(const char* doing, int error_number) {
 void AtomicFile::write(std::span<const std::uint8_t> bytes) { write(bytes.data(), bytes.size()); }
 
 void AtomicFile::write(const void* data, std::size_t size) {
-    if (size == 0) return;
-    if (std::fwrite(data, 1, size, file_) != size) fail("writing", errno);
-    position_ += size;
+    if (failed_ || descriptor_ < 0) throw Error(path_.string(), after_failure);
+    const std::span<const std::uint8_t> bytes(static_cast<const std::uint8_t*>(data), size);
+    if (buffer_.size() + size > buffer_size) flush();
+    if (size > buffer_size)
+        write_out(bytes);
+    else
+        buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
 }
 
 void AtomicFile::seek(std::uint64_t position) {
-    if (::fseeko(file_, static_cast<off_t>(position), SEEK_SET) != 0) fail("seeking", errno);
-    position_ = position;
+    flush();
+    written_to_ = position;
+}
+
+void AtomicFile::flush() {
+    write_out(buffer_);
+    buffer_.clear();
+}
+
+void AtomicFile::write_out(std::span<const std::uint8_t> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t n = retried([&] {
+            return ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(written_to_));
+        });
+        if (n <= 0) fail("writing", n < 0 ? errno : EIO);
+        written_to_ += static_cast<std::uint64_t>(n);
+        bytes = bytes.subspan(static_cast<std::size_t>(n));
+    }
 }
 
 void AtomicFile::finish() {
-    if (failed_ || !file_) throw Error(path_.string(), "cannot be written: an earlier write failed");
-    if (std::fflush(file_) != 0) fail("writing", errno);
-    if (::fsync(::fileno(file_)) != 0 && errno != EINVAL) fail("writing", errno);
-    std::FILE* file = file_;
-    file_ = nullptr;
-    if (std::fclose(file) != 0) fail("closing", errno);
+    if (failed_ || descriptor_ < 0) throw Error(path_.string(), after_failure);
+    flush();
+    // Some file systems cannot synchronise.
+    if (retried([&] { return ::fsync(descriptor_); }) != 0 && errno != EINVAL) fail("writing", errno);
+    const int descriptor = std::exchange(descriptor_, -1);
+    // An interrupted close has closed the file, and its bytes are on the disk already.
+    if (::close(descriptor) != 0 && errno != EINTR) fail("closing", errno);
     finished_ = true;
 }
 

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <span>
 #include <vector>
@@ -52,7 +51,7 @@ class AtomicFile {
 
     void write(std::span<const std::uint8_t> bytes);
     void write(const void* data, std::size_t size);
-    std::uint64_t position() const { return position_; }
+    std::uint64_t position() const { return written_to_ + buffer_.size(); }
     void seek(std::uint64_t position);
     // Ends the writing: all bytes are on the disk, under the temporary name.
     void finish();
@@ -61,9 +60,13 @@ class AtomicFile {
 
   private:
     [[noreturn]] void fail(const char* doing, int error_number);
+    void flush();
+    void write_out(std::span<const std::uint8_t> bytes);
+
     std::filesystem::path path_, target_, temporary_;
-    std::FILE* file_ = nullptr;
-    std::uint64_t position_ = 0;
+    int descriptor_ = -1;
+    std::vector<std::uint8_t> buffer_;
+    std::uint64_t written_to_ = 0; // where the buffer begins in the file
     bool failed_ = false, finished_ = false;
 };
 

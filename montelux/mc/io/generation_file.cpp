@@ -54,7 +54,7 @@ Header read_header(InputFile& file, const std::string& path, std::uint64_t max_b
     // A part of the magic word is the sign of a file that was cut short early.
     if (!std::equal(magic.begin(), magic.begin() + std::min<std::uint64_t>(size, magic.size()),
                     header.magic.begin()))
-        throw Error(path, "is not a file that Montelux saved its state in");
+        throw Error(path, "is not a saved state of Montelux");
     if (size < sizeof header)
         throw Error(path, "is cut short: it has " + bytes_text(size) + "; its header alone takes " +
                               bytes_text(sizeof header));

@@ -16,13 +16,13 @@ namespace {
 
 using std::chrono::duration;
 
-// A file name in the folder for temporary files, removed before and after.
+// A file name in the folder for temporary files; the file and the one before it are removed before and after.
 class TemporaryFile {
   public:
     explicit TemporaryFile(const std::string& name) : path_(testing::TempDir() + "montelux_" + name) {
-        std::filesystem::remove(path_);
+        remove();
     }
-    ~TemporaryFile() { std::filesystem::remove(path_); }
+    ~TemporaryFile() { remove(); }
     TemporaryFile(const TemporaryFile&) = delete;
     TemporaryFile& operator=(const TemporaryFile&) = delete;
     const std::string& path() const { return path_; }
@@ -34,6 +34,11 @@ class TemporaryFile {
     void replace(const std::string& bytes) const { std::ofstream(path_, std::ios::binary) << bytes; }
 
   private:
+    void remove() const {
+        std::filesystem::remove(path_);
+        std::filesystem::remove(path_ + ".previous");
+    }
+
     std::string path_;
 };
 
@@ -152,6 +157,21 @@ TEST(IntegrateCheckpoint, DamagedFilesAreRefused) {
     expect_error("is not a saved state of Montelux", run);
     file.replace(whole);
     EXPECT_NO_THROW(run());
+}
+TEST(IntegrateCheckpoint, ADamagedFileIsToldAndTheOneBeforeServes) {
+    const TemporaryFile file("previous");
+    const IntegrationOptions begin{.checkpoint = file.path()};
+    const IntegrationOptions resume{.checkpoint = file.path(), .resume = true};
+    const Domain square = Domain::unit_cube(2);
+    const IntegrationResult unbroken = integrate(product, square, basic, {.evaluations = 90'000});
+    integrate(product, square, basic, {.evaluations = 16'384}, begin);
+    EXPECT_EQ(integrate(product, square, basic, {.evaluations = 32'768}, resume).checkpoint_refused_because,
+              "");
+    file.replace(file.bytes().substr(0, 200));
+    const IntegrationResult rest = integrate(product, square, basic, {.evaluations = 90'000}, resume);
+    EXPECT_EQ(rest.value, unbroken.value);
+    EXPECT_EQ(rest.standard_error, unbroken.standard_error);
+    EXPECT_EQ(rest.checkpoint_refused_because.find(file.path() + ": is cut short"), 0U);
 }
 TEST(IntegrateCheckpoint, UnwritableFileIsToldBeforeTheWork) {
     std::atomic<int> calls{0};

@@ -33,6 +33,7 @@ class GenerationFile : public testing::Test {
         return bytes;
     }
     static void overwrite(const fs::path& path, const Bytes& bytes) {
+        fs::remove(path); // some file systems hasten to the disk what is written over an old file
         std::ofstream(path, std::ios::binary)
             .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     }
@@ -130,7 +131,7 @@ TEST_F(GenerationFile, EachDamageHasItsSentence) {
     expect([](Bytes& b) { b.resize(71); }, "is cut short: it has 71 bytes");
     expect([](Bytes& b) { b.pop_back(); }, "is cut short: it holds 999 bytes of 1000 bytes");
     expect([](Bytes& b) { b.push_back(0); }, "is damaged: 1 byte follow");
-    expect([](Bytes& b) { b[0] ^= 1; }, "is not a file that Montelux saved");
+    expect([](Bytes& b) { b[0] ^= 1; }, "is not a saved state of Montelux");
     expect([](Bytes& b) { b[8] = 2; }, "was saved in version 2 of the format; expected 1");
     expect([](Bytes& b) { b[16] ^= 1; }, "is damaged: its checksum does not fit");
     expect([](Bytes& b) { b[54] = 1; }, "says that it holds 281474976711656 bytes; expected at most 1048576");
