@@ -77,6 +77,7 @@ int main(int argc, char** argv) {
         add_sample(app, exit_code);
 #ifdef MONTELUX_WITH_RENDER
         add_render(app, exit_code);
+        add_merge(app, exit_code);
         add_compare(app, exit_code);
         add_denoise(app, exit_code);
         add_info(app, exit_code);

@@ -17,6 +17,7 @@
 
 #include "montelux/formats/pbrt/load_pbrt.h"
 #include "montelux/image/image_write.h"
+#include "montelux/mc/io/file.h"
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/render/checkpoint.h"
@@ -42,12 +43,20 @@ std::vector<std::string> outputs_of(const RenderOptions& options, const SceneDes
     return {name.filename().replace_extension(".exr").string()};
 }
 
-void check_output(const std::string& output, const std::vector<std::filesystem::path>& files_read) {
-    check_writable(output);
+void check_not_read(const std::string& output, const std::vector<std::filesystem::path>& files_read) {
     std::error_code ignored;
     for (const std::filesystem::path& file : files_read)
         if (std::filesystem::equivalent(output, file, ignored))
-            throw UsageError(output, "the scene is read from this file; the picture needs another name");
+            throw UsageError(output, "the scene is read from this file; what is written needs another name");
+}
+void check_output(const std::string& output, const std::vector<std::filesystem::path>& files_read) {
+    check_writable(output);
+    check_not_read(output, files_read);
+}
+// Before the work rather than after it.
+void check_checkpoint(const std::string& checkpoint, const std::vector<std::filesystem::path>& files_read) {
+    check_not_read(checkpoint, files_read);
+    const AtomicFile never_committed(checkpoint);
 }
 
 // Asking for more than there is would end in the killing of some program, seconds or hours later.
@@ -75,11 +84,15 @@ void print_warnings(const Warnings& warnings) {
 void add_header(Image& image, const RenderOptions& options, const SceneDescription& description,
                 const RenderReport& report, const FilmError& error, const Renderer& renderer) {
     auto& a = image.attributes();
-    char hash[17];
-    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(description.content_hash));
+    auto hexadecimal = [](std::uint64_t hash) {
+        char text[17];
+        std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+        return std::string(text);
+    };
     a["software"] = std::string("Montelux " MONTELUX_VERSION);
     a["scene"] = std::filesystem::path(options.scene).filename().string();
-    a["sceneHash"] = std::string(hash);
+    a["sceneHash"] = hexadecimal(description.content_hash);
+    a["renderHash"] = hexadecimal(render_fingerprint(description, renderer.sampler()));
     a["samplesPerPixel"] = static_cast<int>(description.sampler.samples_per_pixel);
     a["stoppedBy"] = std::string(name_of(report.stop));
     const RenderTarget& target = renderer.target();
@@ -232,7 +245,7 @@ int load_and_render(const RenderOptions& options) {
     if (options.debug_sample) return replay(options, description, target);
     const std::vector<std::string> outputs = outputs_of(options, description);
     for (const std::string& output : outputs) check_output(output, files_read);
-    if (!options.checkpoint.empty()) check_output(options.checkpoint, files_read);
+    if (!options.checkpoint.empty()) check_checkpoint(options.checkpoint, files_read);
     check_memory(description.film);
     std::optional<Denoiser> denoiser; // one that is missing is told before the render
     if (options.denoise) denoiser.emplace(Denoiser::load(options.threads));
@@ -244,9 +257,18 @@ int load_and_render(const RenderOptions& options) {
     control.progress = [&](const RenderProgress& p) { printer.update(p); };
     control.cancel = &cancel_on_signals();
     control.checkpoint_seconds = options.checkpoint_every;
+    // A full disk must not cost the render: it goes on, and says so in the end too.
+    std::string checkpoint_failure;
     if (!options.checkpoint.empty())
         control.checkpoint = [&](const RenderState& s) {
-            save_checkpoint(options.checkpoint, description, renderer.sampler(), target, s);
+            checkpoint_failure.clear();
+            try {
+                save_checkpoint(options.checkpoint, description, renderer.sampler(), target, s);
+            } catch (const Error& e) {
+                checkpoint_failure = e.what();
+                std::fprintf(stderr, "\nmontelux: warning: %s; the render goes on without this checkpoint\n",
+                             e.what());
+            }
         };
     renderer.render(state, control);
     printer.finish();
@@ -256,21 +278,22 @@ int load_and_render(const RenderOptions& options) {
     Image image = state.film.develop();
     add_header(image, options, description, report, error, renderer);
     finish_on_signals();
-    const DenoiseOutcome denoised =
-        denoise_render(denoiser, image, report.cancelled(), options.quiet);
+    const DenoiseOutcome denoised = denoise_render(denoiser, image, report.cancelled(), options.quiet);
     for (const std::string& output : outputs) write_picture(output, image);
     if (!options.quiet) {
         print_bad_samples(report.bad, description.sampler.seed);
         print_clamped(report, error);
         for (const std::string& output : outputs)
-            std::printf("%s: %d x %d pixels, %.7g samples a pixel, relative error %s, %s%s%s\n", output.c_str(),
-                        image.width(), image.height(), error.mean_samples,
+            std::printf("%s: %d x %d pixels, %.7g samples a pixel, relative error %s, %s%s%s\n",
+                        output.c_str(), image.width(), image.height(), error.mean_samples,
                         percent_text(error.relative).c_str(), duration_text(report.seconds).c_str(),
                         ending_text(report, target).c_str(), denoised.note.c_str());
         print_outliers(state.film);
         if (options.stats) print_statistics(report, load_seconds, renderer.build_seconds());
     }
     if (!denoised.failure.empty()) throw Error(denoised.failure);
+    if (!checkpoint_failure.empty())
+        throw Error("the last checkpoint was not written, the picture was", checkpoint_failure);
     if (report.cancelled()) return exit_interrupted;
     return target.error > 0 && report.stop != StopReason::error ? exit_stopped : exit_done;
 }

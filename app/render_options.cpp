@@ -70,7 +70,7 @@ double parse_share(const std::string& option, const std::string& s) {
 }
 
 // Seconds: 90, 90s, 1.5m, 1h30m.
-double parse_duration(const std::string& option, const std::string& s) {
+double parse_duration(const std::string& option, const std::string& s, bool zero = false) {
     const char *at = s.data(), *end = s.data() + s.size();
     double seconds = 0, last_unit = 1e9;
     bool good = at != end;
@@ -85,7 +85,7 @@ double parse_duration(const std::string& option, const std::string& s) {
         seconds += v * unit;
         at = stop == end ? end : stop + 1;
     }
-    if (!good || !(seconds > 0)) refuse(option, s, "a time is expected, for example 90, 90s, 10m or 1h30m");
+    if (!good || !(seconds > 0 || zero)) refuse(option, s, "a time is expected, for example 90, 90s, 10m or 1h30m");
     return seconds;
 }
 
@@ -242,7 +242,7 @@ void declare(CLI::App& c, RenderOptions& o) {
     c.add_option("--checkpoint", o.checkpoint, "Keep the running state in this file")->type_name("FILE");
     c.add_option_function<std::string>(
          "--checkpoint-every",
-         [&o](const std::string& s) { o.checkpoint_every = parse_duration("--checkpoint-every", s); },
+         [&o](const std::string& s) { o.checkpoint_every = parse_duration("--checkpoint-every", s, true); },
          "How often it is written. Default: 60s")
         ->type_name("TIME")
         ->take_last();

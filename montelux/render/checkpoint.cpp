@@ -123,6 +123,12 @@ void save_checkpoint(const std::filesystem::path& path, const SceneDescription& 
     write_generation(path, kind, out.bytes());
 }
 
+std::uint64_t render_fingerprint(const SceneDescription& description, const SamplerSettings& sampler) {
+    std::uint64_t hash = hash_of(version, SampleOrder(sampler, {}).unit());
+    for (const Fingerprint& f : fingerprints(description, {})) hash = hash_of(hash, f.hash);
+    return hash;
+}
+
 RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDescription& description,
                                const RenderTarget& target) {
     RestoredRender restored{RenderState(description.film), 0, {}};

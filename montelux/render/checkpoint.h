@@ -30,4 +30,7 @@ struct RestoredRender {
 RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDescription& description,
                                const RenderTarget& target);
 
+// Of all that the values of samples depend on, and of the units they form: equal for slices of one render.
+std::uint64_t render_fingerprint(const SceneDescription& description, const SamplerSettings& sampler);
+
 } // namespace montelux

@@ -57,7 +57,7 @@ survives() {
         before=$killed
         launch broken "$kill" "$@"
         # Whatever the moment, the newest checkpoint is a whole one.
-        grep -q 'warning\|error' broken/told && fail "$name, killed $killed times, last $kill: $(cat broken/told)"
+        grep -q 'montelux: \(warning\|error\)' broken/told && fail "$name, killed $killed times, last $kill: $(cat broken/told)"
         case $code in
         137) killed=$((killed + 1)) ;;
         0)
@@ -86,5 +86,12 @@ checkpoints='--checkpoint state --checkpoint-every 0 --resume --quiet --json'
 for method in basic vegas adaptive; do
     survives $method printed 90 integrate 'sin(x)*y+exp(-40*(z-0.5)^2)' --over x,y,z=0:1 --method $method \
         --evaluations 2e6 $checkpoints
+done
+scene ball "$sky Material \"diffuse\" Shape \"sphere\"" 32 24
+for sampler in independent sobol; do
+    for adaptive in on off; do
+        survives "$sampler pictures, adaptive $adaptive" x.pfm 90 render ../ball.pbrt --sampler $sampler --spp 200 \
+            --adaptive $adaptive --seed 1 --quiet -o x.pfm --checkpoint state --checkpoint-every 0.001 --resume
+    done
 done
 finish

@@ -71,7 +71,7 @@ TEST(Target, QuantileOfThePixels) {
 TEST(TargetSlowTest, AdaptiveIsUnbiased) {
     RunningMoments adaptive, equal;
     for (std::uint64_t seed = 0; seed < 64; ++seed) {
-        SceneBuilder b = mixed_scene(1, 24, 24);
+        SceneBuilder b = mixed_scene(1, 40, 40);
         b.description.sampler.kind = SamplerKind::independent;
         b.description.sampler.seed = 1000 + seed;
         b.description.sampler.samples_per_pixel = 64;

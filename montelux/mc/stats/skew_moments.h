@@ -17,6 +17,12 @@ namespace montelux {
 template <int Channels>
 class SkewMoments {
   public:
+    SkewMoments() = default;
+    // Of `count` values with these means and these sums of the second and third powers of the deviations.
+    SkewMoments(std::uint64_t count, const std::array<double, Channels>& mean,
+                const std::array<double, Channels>& squares, const std::array<double, Channels>& cubes)
+        : count_(count), mean_(mean), squares_(squares), cubes_(cubes) {}
+
     void add(const std::array<double, Channels>& x) {
         double n = static_cast<double>(++count_), inv_n = 1 / n;
         for (int c = 0; c < Channels; ++c) {

@@ -1,0 +1,85 @@
+// montelux merge: slices of one render, joined.
+#include "app/commands.h"
+#include "app/interrupt.h"
+#include "app/progress_line.h"
+#include "app/usage_error.h"
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "montelux/film/merge_slices.h"
+#include "montelux/image/image_read.h"
+#include "montelux/image/image_write.h"
+
+namespace montelux::app {
+
+namespace {
+
+struct MergeSettings {
+    std::vector<std::string> inputs, outputs;
+    bool quiet = false;
+};
+
+void run(const MergeSettings& settings) {
+    end_on_signals();
+    for (const std::string& output : settings.outputs) {
+        check_writable(output);
+        std::error_code ignored;
+        for (const std::string& input : settings.inputs)
+            if (std::filesystem::equivalent(input, output, ignored))
+                throw UsageError(output, "it is one of the slices; the joined picture needs another name");
+    }
+    std::vector<Image> slices;
+    for (const std::string& input : settings.inputs) slices.push_back(read_image(input));
+    const MergedSlices merged = merge_slices(slices, settings.inputs);
+    finish_on_signals();
+    for (const std::string& output : settings.outputs) write_image(output, merged.image);
+    if (settings.quiet) return;
+    if (!merged.missing.empty()) {
+        std::string list;
+        constexpr std::size_t most = 10;
+        for (std::size_t i = 0; i < std::min(most, merged.missing.size()); ++i)
+            list += (i > 0 ? ", " : "") + std::to_string(merged.missing[i]);
+        if (merged.missing.size() > most)
+            list += " and " + std::to_string(merged.missing.size() - most) + " more";
+        std::fprintf(stderr,
+                     "montelux: warning: without slice %s: the picture is right, with fewer samples\n",
+                     list.c_str());
+    }
+    for (const std::string& output : settings.outputs)
+        std::printf("%s: %d x %d pixels of %zu slices, %.7g samples a pixel, relative error %s\n",
+                    output.c_str(), merged.image.width(), merged.image.height(), slices.size(),
+                    merged.mean_samples, percent_text(merged.relative_error).c_str());
+}
+
+} // namespace
+
+void add_merge(CLI::App& app, int& exit_code) {
+    auto s = std::make_shared<MergeSettings>();
+    CLI::App* command = app.add_subcommand("merge", "Join the slices of a render into one picture");
+    command->add_option("SLICE", s->inputs, "EXR files that montelux render --slice K/N wrote")->required();
+    command->add_option("-o,--output", s->outputs, "Picture to write; may be given several times")
+        ->type_name("FILE")
+        ->required()
+        ->allow_extra_args(false);
+    command->add_flag("--quiet", s->quiet, "Print nothing but errors");
+    command->footer(
+        "Example:\n"
+        "  for k in 1 2 3 4; do montelux render scene.pbrt --spp 256 --slice $k/4 -o part$k.exr; done\n"
+        "  montelux merge part*.exr -o whole.exr");
+    command->callback([s, &exit_code] {
+        try {
+            run(*s);
+            exit_code = exit_done;
+        } catch (const UsageError& e) {
+            std::fprintf(stderr, "montelux: error: %s\n", e.what());
+            exit_code = exit_usage;
+        }
+    });
+}
+
+} // namespace montelux::app

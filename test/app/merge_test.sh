@@ -1,0 +1,28 @@
+#!/bin/sh
+# Slices join to the whole, and what does not fit is refused with a sentence.
+. "$(dirname "$0")/common.sh"
+scene ball "$sky Material \"diffuse\" Shape \"sphere\"" 16 12
+for sampler in independent sobol; do
+    expect 0 "" render ball.pbrt --spp 48 --sampler $sampler -o whole.exr
+    for k in 1 2 3; do
+        expect 0 "samples a pixel" render ball.pbrt --spp 48 --sampler $sampler --slice $k/3 -o part$k.exr
+    done
+    expect 0 "of 3 slices, 48 samples a pixel" merge part2.exr part1.exr part3.exr -o joined.exr -o joined.png
+    "$montelux" compare joined.exr whole.exr --json >comparison
+    awk -F '[:,]' '/"rmse"/ { found = 1; if ($2 + 0 >= 1e-6) exit 1 } END { exit !found }' comparison ||
+        fail "$sampler: the joined slices differ from the whole: $(cat comparison)"
+done
+expect 0 "without slice 2: the picture is right" merge part1.exr part3.exr -o two.exr
+expect 1 "it is slice 1, as part1.exr is" merge part1.exr part1.exr -o x.exr
+expect 0 "" render ball.pbrt --spp 48 --sampler sobol --seed 5 --slice 2/3 -o other.exr
+expect 1 "other.exr: it is of another render than part1.exr" merge part1.exr other.exr -o x.exr
+expect 0 "" render ball.pbrt --spp 48 --sampler sobol --slice 1/4 -o quarter.exr
+expect 1 "quarter.exr: it is one of 4 slices, but part2.exr is one of 3" merge part2.exr quarter.exr -o x.exr
+expect 1 "an EXR file that montelux render --slice wrote is expected" merge joined.png -o x.exr
+expect 1 "missing.exr" merge part1.exr missing.exr -o x.exr
+expect 2 "it is one of the slices" merge part1.exr part2.exr -o part1.exr
+expect 2 "K/N is expected" render ball.pbrt --slice 4/3 -o x.exr
+expect 2 "slices share a number of samples" render ball.pbrt --slice 1/3 --target-error 0.1 -o x.exr
+expect 1 "fewer units of samples than slices" render ball.pbrt --spp 2 --slice 3/3 -o x.exr
+[ -e x.exr ] && fail "a refused command wrote a picture"
+finish

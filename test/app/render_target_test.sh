@@ -1,0 +1,42 @@
+#!/bin/sh
+# Renders to an error, to a time, with checkpoints: exit codes, sentences, mistakes.
+. "$(dirname "$0")/common.sh"
+scene ball "$sky Material \"diffuse\" Shape \"sphere\"" 24 18
+expect 0 "target reached" render ball.pbrt --target-error 2% -o x.exr
+expect 0 "stoppedBy" info x.exr
+expect 0 "target reached" render ball.pbrt --target-error 0.02 --adaptive off --sampler sobol -o x.exr
+expect 0 "target reached" render ball.pbrt --target-error 0.05 --target-quantile 95% -o x.exr
+expect 3 "samples are used up before the target was reached" render ball.pbrt --target-error 1e-5 --spp-max 16 -o x.exr
+expect 3 "time is up before the target was reached" render ball.pbrt --target-error 1e-7 --time 0.2 -o x.exr
+expect 0 "time is up" render ball.pbrt --time 0.2s -o x.exr
+expect 0 "16 samples a pixel" render ball.pbrt --time 1h --spp 16 -o x.exr
+expect 0 "samples were clamped, which took" render ball.pbrt --clamp 0.5 -o x.exr
+for value in 0 -1 1 2 nan x '' 120% 1e-2x; do
+    expect 2 "--target-error: '$value' was given" render ball.pbrt --target-error "$value" -o y.exr
+done
+for value in 0 -1 10x m 1m1h '' nan; do
+    expect 2 "--time: '$value' was given" render ball.pbrt --time "$value" -o y.exr
+done
+expect 2 "--target-quantile: expected --target-error" render ball.pbrt --target-quantile 0.9 -o y.exr
+expect 2 "--resume: expected --checkpoint FILE" render ball.pbrt --resume -o y.exr
+expect 2 "--adaptive: 'maybe' was given; on or off" render ball.pbrt --adaptive maybe -o y.exr
+expect 2 "--clamp: '0' was given" render ball.pbrt --clamp 0 -o y.exr
+[ -e y.exr ] && fail "a refused command wrote a picture"
+
+# A finished render goes on to more samples, and is the same as one that was never stopped.
+expect 0 "is not there yet: rendering from the start" render ball.pbrt --spp 20 --resume --checkpoint state -o a.pfm
+expect 0 "52 samples a pixel" render ball.pbrt --spp 52 --resume --checkpoint state -o a.pfm
+expect 0 "" render ball.pbrt --spp 52 -o b.pfm
+cmp -s a.pfm b.pfm || fail "a render that was continued differs"
+expect 1 "of another render: the sampler or seed differs" render ball.pbrt --seed 9 --resume --checkpoint state -o x.pfm
+expect 1 "the film differs" render ball.pbrt --clamp 3 --resume --checkpoint state -o x.pfm
+printf x >>state
+expect 0 "going on from the checkpoint before the last" render ball.pbrt --spp 52 --resume --checkpoint state -o c.pfm
+cmp -s c.pfm b.pfm || fail "a render that was continued from the generation before differs"
+printf x >>state.previous
+printf x >>state
+expect 1 "state" render ball.pbrt --spp 52 --resume --checkpoint state -o x.pfm
+expect 2 "the scene is read from this file" render ball.pbrt --checkpoint ball.pbrt -o x.pfm
+expect 1 "nowhere" render ball.pbrt --checkpoint nowhere/state -o x.pfm
+[ -e x.pfm ] && fail "a refused command wrote a picture"
+finish
