@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace montelux {
@@ -42,6 +44,22 @@ class PointBatch {
     int dimensions_;
 };
 
+// std::allocator, but for numbers that nobody asked to be zero: they are written before they are read.
+template <typename T>
+struct UninitialisedAllocator : std::allocator<T> {
+    template <typename U>
+    struct rebind {
+        using other = UninitialisedAllocator<U>;
+    };
+    template <typename U, typename... Args>
+    void construct(U* at, Args&&... args) {
+        if constexpr (sizeof...(Args) == 0)
+            ::new (static_cast<void*>(at)) U;
+        else
+            ::new (static_cast<void*>(at)) U(std::forward<Args>(args)...);
+    }
+};
+
 // Owns the coordinates of a batch of points.
 class PointBuffer {
   public:
@@ -67,7 +85,7 @@ class PointBuffer {
     operator PointBatch() const { return view(); }
 
   private:
-    std::vector<double> data_;
+    std::vector<double, UninitialisedAllocator<double>> data_;
     std::size_t count_ = 0;
     int dimensions_ = 0;
 };
@@ -124,7 +142,7 @@ class ValueBuffer {
     operator ValueBatch() { return view(); }
 
   private:
-    std::vector<double> data_;
+    std::vector<double, UninitialisedAllocator<double>> data_;
     std::size_t count_ = 0;
     int components_ = 0;
 };

@@ -21,63 +21,152 @@ inline double unit_double(std::uint64_t digits) {
     return std::bit_cast<double>(digits | 0x3ff0000000000000u) - (1 - 0x1p-53);
 }
 
-constexpr std::size_t lanes = 64; // points that one pass of the loops below takes
+constexpr std::size_t lanes = 64; // points that one pass of the Sobol' loop takes
 
-// Of two 32-bit numbers that stand in 64-bit lanes, whose upper halves do not matter; all at once where the
-// processor can.
-inline void multiply(const std::uint64_t* x, std::uint64_t factor, std::uint64_t* product) {
+// Four numbers of 32 bits, each in the lower half of 64 bits whose upper half does not matter: products of
+// such numbers need the room.
 #ifdef __AVX2__
-    const __m256i f = _mm256_set1_epi64x(static_cast<long long>(factor));
-    for (std::size_t i = 0; i < lanes; i += 4) {
-        const __m256i v = _mm256_load_si256(reinterpret_cast<const __m256i*>(x + i));
-        _mm256_store_si256(reinterpret_cast<__m256i*>(product + i), _mm256_mul_epu32(v, f));
+struct Lanes {
+    __m256i v;
+
+    static Lanes all(std::uint64_t x) { return {_mm256_set1_epi64x(static_cast<long long>(x))}; }
+    static Lanes from(std::uint64_t x) { return {_mm256_add_epi64(all(x).v, _mm256_set_epi64x(3, 2, 1, 0))}; }
+    Lanes times(Lanes y) const { return {_mm256_mul_epu32(v, y.v)}; }
+    template <int n>
+    Lanes right() const {
+        return {_mm256_srli_epi64(v, n)};
     }
+    template <int n>
+    Lanes left() const {
+        return {_mm256_slli_epi64(v, n)};
+    }
+    friend Lanes operator^(Lanes a, Lanes b) { return {_mm256_xor_si256(a.v, b.v)}; }
+    friend Lanes operator&(Lanes a, Lanes b) { return {_mm256_and_si256(a.v, b.v)}; }
+    friend Lanes operator|(Lanes a, Lanes b) { return {_mm256_or_si256(a.v, b.v)}; }
+    // unit_double of each.
+    void store_unit(double* out) const {
+        const __m256d x = _mm256_castsi256_pd(_mm256_or_si256(v, all(0x3ff0000000000000u).v));
+        _mm256_storeu_pd(out, _mm256_sub_pd(x, _mm256_set1_pd(1 - 0x1p-53)));
+    }
+};
 #else
-    for (std::size_t i = 0; i < lanes; ++i) product[i] = (x[i] & 0xffffffffu) * factor;
+struct Lanes {
+    std::uint64_t v[4];
+
+    static Lanes all(std::uint64_t x) { return {{x, x, x, x}}; }
+    static Lanes from(std::uint64_t x) { return {{x, x + 1, x + 2, x + 3}}; }
+    template <typename F>
+    static Lanes each(const F& f) {
+        return {{f(0), f(1), f(2), f(3)}};
+    }
+    Lanes times(Lanes y) const {
+        return each([&](int i) { return (v[i] & 0xffffffffu) * (y.v[i] & 0xffffffffu); });
+    }
+    template <int n>
+    Lanes right() const {
+        return each([&](int i) { return v[i] >> n; });
+    }
+    template <int n>
+    Lanes left() const {
+        return each([&](int i) { return v[i] << n; });
+    }
+    friend Lanes operator^(Lanes a, Lanes b) {
+        return each([&](int i) { return a.v[i] ^ b.v[i]; });
+    }
+    friend Lanes operator&(Lanes a, Lanes b) {
+        return each([&](int i) { return a.v[i] & b.v[i]; });
+    }
+    friend Lanes operator|(Lanes a, Lanes b) {
+        return each([&](int i) { return a.v[i] | b.v[i]; });
+    }
+    void store_unit(double* out) const {
+        for (int i = 0; i < 4; ++i) out[i] = unit_double(v[i]);
+    }
+};
 #endif
-}
+
+// The keys of the rounds of Philox4x32-7 (Salmon et al. 2011, "Parallel Random Numbers: As Easy as 1, 2, 3").
+struct RoundKeys {
+    static constexpr int rounds = 7;
+    Lanes low[rounds], high[rounds];
+
+    explicit RoundKeys(std::uint64_t key) {
+        std::uint32_t key0 = static_cast<std::uint32_t>(key), key1 = static_cast<std::uint32_t>(key >> 32);
+        for (int round = 0; round < rounds; ++round) {
+            low[round] = Lanes::all(key0);
+            high[round] = Lanes::all(key1);
+            key0 += 0x9e3779b9u;
+            key1 += 0xbb67ae85u;
+        }
+    }
+};
+
+// Philox4x32-7 of consecutive points, whose state stays in registers: coordinates 4 * group and on. Several
+// vectors go side by side, since each round waits for the one before.
+struct RandomBlock {
+    static constexpr std::size_t vectors = 2, points = 4 * vectors;
+    Lanes word[4][vectors];
+
+    RandomBlock(std::uint64_t index, int group, std::uint32_t stream, const RoundKeys& keys) {
+        auto& [c0, c1, c2, c3] = word;
+        for (std::size_t k = 0; k < vectors; ++k) {
+            c0[k] = Lanes::from(index + 4 * k);
+            c1[k] = c0[k].right<32>();
+            c2[k] = Lanes::all(static_cast<std::uint64_t>(group));
+            c3[k] = Lanes::all(stream);
+        }
+        const Lanes m0 = Lanes::all(0xd2511f53u), m1 = Lanes::all(0xcd9e8d57u);
+#pragma GCC unroll 7
+        for (int round = 0; round < RoundKeys::rounds; ++round) {
+#pragma GCC unroll 2
+            for (std::size_t k = 0; k < vectors; ++k) {
+                const Lanes p0 = c0[k].times(m0), p1 = c2[k].times(m1);
+                c0[k] = p1.right<32>() ^ c1[k] ^ keys.low[round];
+                c2[k] = p0.right<32>() ^ c3[k] ^ keys.high[round];
+                c1[k] = p1;
+                c3[k] = p0;
+            }
+        }
+    }
+    // The low digits of a coordinate come from the next word, which its high digits do not determine.
+    void store(int j, double* out) const {
+        for (std::size_t k = 0; k < vectors; ++k) {
+            const Lanes low = word[(j + 1) & 3][k].times(Lanes::all(0x9e3779b9u));
+            const Lanes digits = (word[j][k].left<20>() & Lanes::all(0x000ffffffff00000u)) |
+                                 (low.right<12>() & Lanes::all(0xfffffu));
+            digits.store_unit(out + 4 * k);
+        }
+    }
+};
 
 } // namespace
 
 void fill_random(PointBuffer& u, std::uint64_t seed, std::uint32_t stream, std::uint64_t first) {
-    const std::uint64_t key = hash_key(seed, stream);
+    constexpr std::size_t points = RandomBlock::points;
+    const RoundKeys keys(hash_key(seed, stream));
     const int dimensions = u.dimensions();
-    for (std::size_t begin = 0; begin < u.count(); begin += lanes) {
-        const std::size_t n = std::min(lanes, u.count() - begin);
-        for (int group = 0; group * 4 < dimensions; ++group) {
-            // philox4x32 with the points innermost; each word in the lower half of 64 bits, since products
-            // need that.
-            alignas(32) std::uint64_t c0[lanes], c1[lanes], c2[lanes], c3[lanes], p0[lanes], p1[lanes];
-            for (std::size_t i = 0; i < lanes; ++i) {
-                const std::uint64_t index = first + begin + i;
-                c0[i] = index;
-                c1[i] = index >> 32;
-                c2[i] = static_cast<std::uint64_t>(group);
-                c3[i] = stream;
+    const std::size_t whole = u.count() / points * points;
+    for (int group = 0; group * 4 < dimensions; ++group) {
+        const int coordinates = std::min(4, dimensions - group * 4);
+        double* out[4];
+        for (int j = 0; j < coordinates; ++j) out[j] = u.coordinate(group * 4 + j).data();
+        if (coordinates == 4)
+            for (std::size_t i = 0; i < whole; i += points) {
+                const RandomBlock block(first + i, group, stream, keys);
+#pragma GCC unroll 4
+                for (int j = 0; j < 4; ++j) block.store(j, out[j] + i);
             }
-            std::uint32_t key0 = static_cast<std::uint32_t>(key),
-                          key1 = static_cast<std::uint32_t>(key >> 32);
-            for (int round = 0; round < 7; ++round) {
-                multiply(c0, 0xd2511f53u, p0);
-                multiply(c2, 0xcd9e8d57u, p1);
-                for (std::size_t i = 0; i < lanes; ++i) {
-                    c0[i] = (p1[i] >> 32) ^ c1[i] ^ key0;
-                    c1[i] = p1[i];
-                    c2[i] = (p0[i] >> 32) ^ c3[i] ^ key1;
-                    c3[i] = p0[i];
-                }
-                key0 += 0x9e3779b9u;
-                key1 += 0xbb67ae85u;
+        else
+            for (std::size_t i = 0; i < whole; i += points) {
+                const RandomBlock block(first + i, group, stream, keys);
+                for (int j = 0; j < coordinates; ++j) block.store(j, out[j] + i);
             }
-            // The low digits of a coordinate come from the next word, which its high digits do not determine.
-            const std::uint64_t* word[4] = {c0, c1, c2, c3};
-            for (int j = 0; j < 4 && group * 4 + j < dimensions; ++j) {
-                const std::uint64_t* high = word[j];
-                multiply(word[(j + 1) & 3], 0x9e3779b9u, p0);
-                double* out = u.coordinate(group * 4 + j).data() + begin;
-                for (std::size_t i = 0; i < n; ++i)
-                    out[i] = unit_double((high[i] & 0xffffffffu) << 20 | (p0[i] & 0xffffffffu) >> 12);
-            }
+        if (whole == u.count()) continue;
+        const RandomBlock last(first + whole, group, stream, keys);
+        for (int j = 0; j < coordinates; ++j) {
+            double some[points];
+            last.store(j, some);
+            std::copy_n(some, u.count() - whole, out[j] + whole);
         }
     }
 }
