@@ -1,4 +1,4 @@
-// The loop over passes, tiles, pixels and samples.
+// The loop over rounds, tiles, pixels and samples.
 #pragma once
 
 #include <cstdint>
