@@ -85,7 +85,8 @@ double parse_duration(const std::string& option, const std::string& s, bool zero
         seconds += v * unit;
         at = stop == end ? end : stop + 1;
     }
-    if (!good || !(seconds > 0 || zero)) refuse(option, s, "a time is expected, for example 90, 90s, 10m or 1h30m");
+    if (!good || !(seconds > 0 || zero))
+        refuse(option, s, "a time is expected, for example 90, 90s, 10m or 1h30m");
     return seconds;
 }
 
