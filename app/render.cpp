@@ -53,19 +53,31 @@ void check_output(const std::string& output, const std::vector<std::filesystem::
     check_writable(output);
     check_not_read(output, files_read);
 }
-// Before the work rather than after it.
-void check_checkpoint(const std::string& checkpoint, const std::vector<std::filesystem::path>& files_read) {
+// Before the work rather than after it. Nothing is replaced that is not to be gone on from.
+void check_checkpoint(const RenderOptions& options, const std::vector<std::string>& outputs,
+                      const std::vector<std::filesystem::path>& files_read) {
+    const std::string& checkpoint = options.checkpoint;
     check_not_read(checkpoint, files_read);
+    for (const std::string& output : outputs)
+        for (const std::filesystem::path& file :
+             {std::filesystem::path(checkpoint), previous_generation(checkpoint)})
+            if (std::filesystem::absolute(output).lexically_normal() ==
+                std::filesystem::absolute(file).lexically_normal())
+                throw UsageError(output, "the checkpoint has this name; the picture needs another");
+    if (!options.resume && generation_exists(checkpoint))
+        throw UsageError(checkpoint,
+                         "the file is there already; add --resume to go on from it, or remove it");
     const AtomicFile never_committed(checkpoint);
 }
 
 // Asking for more than there is would end in the killing of some program, seconds or hours later.
-void check_memory(const FilmSettings& film) {
+void check_memory(const FilmSettings& film, bool with_checkpoints) {
     auto pages = static_cast<double>(sysconf(_SC_PHYS_PAGES));
     double there = pages * static_cast<double>(sysconf(_SC_PAGESIZE));
-    constexpr double layers = 14, copies = 2; // the picture, and its encoding
+    constexpr double layers = 22, copies = 2; // the picture, and its encoding
     double pixels = static_cast<double>(film.crop.width()) * film.crop.height();
-    double needed = pixels * (sizeof(Pixel) + layers * copies * sizeof(float));
+    double needed = pixels * ((with_checkpoints ? 2 : 1) * (sizeof(Pixel) + sizeof(std::uint32_t)) +
+                              layers * copies * sizeof(float));
     if (pages <= 0 || needed <= there) return;
     constexpr double gib = 1 << 30;
     char text[160];
@@ -82,7 +94,8 @@ void print_warnings(const Warnings& warnings) {
 }
 
 void add_header(Image& image, const RenderOptions& options, const SceneDescription& description,
-                const RenderReport& report, const FilmError& error, const Renderer& renderer) {
+                const RenderReport& report, const FilmError& error, double clamped,
+                const Renderer& renderer) {
     auto& a = image.attributes();
     auto hexadecimal = [](std::uint64_t hash) {
         char text[17];
@@ -101,9 +114,7 @@ void add_header(Image& image, const RenderOptions& options, const SceneDescripti
     a["adaptive"] = target.adaptive ? 1 : 0;
     a["slice"] = std::to_string(target.slice.index + 1) + "/" + std::to_string(target.slice.count);
     a["pointsPerUnit"] = static_cast<int>(SampleOrder(renderer.sampler(), target.slice).unit());
-    if (report.clamped_samples > 0)
-        a["clampedLuminance"] =
-            static_cast<float>(report.clamped_luminance / static_cast<double>(report.samples));
+    if (clamped > 0) a["clampedLuminance"] = static_cast<float>(clamped);
     a["samplesTaken"] = static_cast<float>(error.mean_samples);
     a["interrupted"] = report.cancelled() ? 1 : 0;
     a["sampler"] = name_of(description.sampler.kind);
@@ -140,15 +151,15 @@ void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed) {
         static_cast<unsigned long long>(bad.first->sample));
 }
 
-void print_clamped(const RenderReport& report, const FilmError& error) {
+void print_clamped(const RenderReport& report, const Film& film, const FilmError& error) {
     if (report.clamped_samples == 0) return;
-    const double mean = report.clamped_luminance / static_cast<double>(report.samples);
+    const double lost = clamped_luminance(film);
     std::fprintf(
         stderr,
         "montelux: warning: %llu samples were clamped, which took %s of the light away; the errors do not "
         "know of that\n",
         static_cast<unsigned long long>(report.clamped_samples),
-        percent_text(mean / (mean + error.mean_luminance)).c_str());
+        percent_text(lost / (lost + error.mean_luminance)).c_str());
 }
 
 // Says so where the error sits in few pixels.
@@ -242,11 +253,17 @@ int load_and_render(const RenderOptions& options) {
     if (!options.quiet) print_warnings(warnings);
     apply(options, description);
     const RenderTarget target = target_of(options);
-    if (options.debug_sample) return replay(options, description, target);
+    if (options.debug_sample) {
+        // The replicates of a render that was gone on with are those of its beginning.
+        if (options.resume && generation_exists(options.checkpoint))
+            description.sampler.replicate_points =
+                load_checkpoint(options.checkpoint, description, target).replicate_points;
+        return replay(options, description, target);
+    }
     const std::vector<std::string> outputs = outputs_of(options, description);
     for (const std::string& output : outputs) check_output(output, files_read);
-    if (!options.checkpoint.empty()) check_checkpoint(options.checkpoint, files_read);
-    check_memory(description.film);
+    if (!options.checkpoint.empty()) check_checkpoint(options, outputs, files_read);
+    check_memory(description.film, !options.checkpoint.empty());
     std::optional<Denoiser> denoiser; // one that is missing is told before the render
     if (options.denoise) denoiser.emplace(Denoiser::load(options.threads));
 
@@ -264,7 +281,7 @@ int load_and_render(const RenderOptions& options) {
             checkpoint_failure.clear();
             try {
                 save_checkpoint(options.checkpoint, description, renderer.sampler(), target, s);
-            } catch (const Error& e) {
+            } catch (const std::exception& e) {
                 checkpoint_failure = e.what();
                 std::fprintf(stderr, "\nmontelux: warning: %s; the render goes on without this checkpoint\n",
                              e.what());
@@ -276,13 +293,13 @@ int load_and_render(const RenderOptions& options) {
 
     const FilmError error = state.film.error();
     Image image = state.film.develop();
-    add_header(image, options, description, report, error, renderer);
+    add_header(image, options, description, report, error, clamped_luminance(state.film), renderer);
     finish_on_signals();
     const DenoiseOutcome denoised = denoise_render(denoiser, image, report.cancelled(), options.quiet);
     for (const std::string& output : outputs) write_picture(output, image);
     if (!options.quiet) {
         print_bad_samples(report.bad, description.sampler.seed);
-        print_clamped(report, error);
+        print_clamped(report, state.film, error);
         for (const std::string& output : outputs)
             std::printf("%s: %d x %d pixels, %.7g samples a pixel, relative error %s, %s%s%s\n",
                         output.c_str(), image.width(), image.height(), error.mean_samples,

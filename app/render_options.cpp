@@ -80,7 +80,8 @@ double parse_duration(const std::string& option, const std::string& s, bool zero
         good = error == std::errc() && v >= 0 && std::isfinite(v);
         if (!good) break;
         if (stop != end) unit = *stop == 'h' ? 3600 : *stop == 'm' ? 60 : *stop == 's' ? 1 : 0;
-        good = unit > 0 && unit < last_unit;
+        // A bare number is seconds, and stands alone.
+        good = unit > 0 && unit < last_unit && !(stop == end && last_unit < 1e9);
         last_unit = unit;
         seconds += v * unit;
         at = stop == end ? end : stop + 1;
@@ -310,7 +311,11 @@ void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.crop) d.film.crop = crop_of(*o.crop, d.film.width, d.film.height);
     const bool open_ended = (o.target_error || o.time) && !o.spp && !o.spp_max;
     if (open_ended) d.sampler.samples_per_pixel = most_samples;
-    if (o.spp_max) d.sampler.samples_per_pixel = static_cast<std::uint32_t>(*o.spp_max);
+    if (o.spp_max)
+        d.sampler.samples_per_pixel =
+            o.target_error || o.time
+                ? static_cast<std::uint32_t>(*o.spp_max)
+                : std::min(d.sampler.samples_per_pixel, static_cast<std::uint32_t>(*o.spp_max));
     if (o.spp)
         d.sampler.samples_per_pixel =
             static_cast<std::uint32_t>(std::min(*o.spp, o.spp_max.value_or(*o.spp)));

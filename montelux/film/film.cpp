@@ -30,11 +30,14 @@ Film::Film(const FilmSettings& settings) : settings_(settings) {
     pixels_.resize(static_cast<std::size_t>(c.width()) * static_cast<std::size_t>(c.height()));
 }
 
+std::vector<std::string> film_layers() {
+    return {"R",          "G",          "B",       "stderr.R", "stderr.G", "stderr.B", "skewness.R",
+            "skewness.G", "skewness.B", "samples", "units",    "outlier",  "albedo.R", "albedo.G",
+            "albedo.B",   "N.X",        "N.Y",     "N.Z",      "depth.Z"};
+}
+
 Image Film::develop() const {
-    Image image(bounds().width(), bounds().height(),
-                {"R", "G", "B", "stderr.R", "stderr.G", "stderr.B", "skewness.R", "skewness.G", "skewness.B",
-                 "samples", "units", "outlier", "albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z",
-                 "depth.Z"});
+    Image image(bounds().width(), bounds().height(), film_layers());
     auto out = image.f32().begin();
     auto put = [&](double v) { *out++ = static_cast<float>(v); };
     for (const Pixel& p : pixels_) {

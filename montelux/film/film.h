@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "montelux/film/film_error.h"
@@ -44,6 +45,8 @@ class Pixel {
         depth_ += s.depth;
         ++samples_;
     }
+    // Luminance that the film's limit took away from a sample.
+    void add_clamped(float luminance) { clamped_ += static_cast<double>(luminance); }
     void count_bad() {
         ++unit_samples_;
         ++samples_;
@@ -60,10 +63,23 @@ class Pixel {
         unit_samples_ = 0;
     }
 
+    // The same, but an open unit of fewer than half of `points` is left out where there are others: it would
+    // weigh as much as a whole one, and be as noisy as single samples. That depends on numbers alone, so
+    // nothing is biased.
+    void end_last_unit(std::uint32_t points) {
+        if (2 * unit_samples_ < points && units_.count() >= 2) {
+            unit_sum_ = {};
+            unit_samples_ = 0;
+        }
+        end_unit();
+    }
+
     // All units must have ended.
     const SkewMoments<3>& units() const { return units_; }
     std::uint32_t samples() const { return samples_; }
     std::uint32_t bad() const { return bad_; }
+    // Mean luminance that clamping took away.
+    double clamped() const { return samples_ > 0 ? clamped_ / samples_ : 0; }
     // Share of the units' squared deviations from their mean that the brightest unit alone makes up, by
     // luminance weights; 0 without any.
     double largest_share() const;
@@ -74,11 +90,15 @@ class Pixel {
   private:
     SkewMoments<3> units_;
     Vec3d unit_sum_;
+    double clamped_ = 0;
     Vec3d largest_; // the unit of greatest luminance
     Vec3f albedo_, normal_;
     float depth_ = 0;
     std::uint32_t unit_samples_ = 0, samples_ = 0, bad_ = 0;
 };
+
+// The layers that Film::develop() makes, in order.
+std::vector<std::string> film_layers();
 
 class Film {
   public:
@@ -92,9 +112,9 @@ class Film {
     std::span<Pixel> pixels() { return pixels_; }
     std::span<const Pixel> pixels() const { return pixels_; }
 
-    // Ends the open unit of every pixel.
-    void end_units() {
-        for (Pixel& p : pixels_) p.end_unit();
+    // Ends the open unit of every pixel, of units that have so many points when they are whole.
+    void end_units(std::uint32_t points = 1) {
+        for (Pixel& p : pixels_) p.end_last_unit(points);
     }
     FilmError error() const { return error_of(*this); }
     // Layers R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples; units (of which the

@@ -53,6 +53,12 @@ FilmError error_of(const Film& film) {
     return e;
 }
 
+double clamped_luminance(const Film& film) {
+    CompensatedSum sum;
+    for (const Pixel& p : film.pixels()) sum.add(p.clamped());
+    return sum.value() / static_cast<double>(film.pixels().size());
+}
+
 double error_quantile(const Film& film, double quantile) {
     std::vector<double> errors;
     errors.reserve(film.pixels().size());

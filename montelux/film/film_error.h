@@ -29,6 +29,9 @@ double luminance_error(const Pixel& pixel);
 // lies.
 double error_quantile(const Film& film, double quantile);
 
+// Mean over pixels of the luminance that clamping took away.
+double clamped_luminance(const Film& film);
+
 // Fireflies: where the error of a picture sits.
 struct OutlierReport {
     // Pixels with the greatest errors that carry half of the squared error, and their share of all.

@@ -1,11 +1,13 @@
 #include "montelux/film/merge_slices.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "montelux/film/film.h"
 #include "montelux/film/film_error.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/stats/skew_moments.h"
@@ -31,7 +33,8 @@ SliceNumber slice_of(const Image& image, const std::string& name) {
     const auto [p, e] = std::from_chars(text.data(), end, s.index);
     if (e == std::errc() && p != end && *p == '/') {
         const auto [q, f] = std::from_chars(p + 1, end, s.count);
-        if (f == std::errc() && q == end && s.index >= 1 && s.index <= s.count) return s;
+        if (f == std::errc() && q == end && s.index >= 1 && s.index <= s.count && s.count <= 1'000'000)
+            return s;
     }
     throw Error(name, "its attribute slice is '" + text + "'; K/N is expected");
 }
@@ -65,7 +68,8 @@ struct Layers {
 
 // Moments of the units of a pixel, from what its layers say of their mean.
 SkewMoments<3> moments_of(const Image& image, const Layers& at, int x, int y) {
-    const double n = std::round(static_cast<double>(image.value(x, y, at.units)));
+    const double n = std::clamp(std::round(static_cast<double>(image.value(x, y, at.units))), 0.0, 1e15);
+    if (!(n >= 1)) return {};
     std::array<double, 3> mean{}, squares{}, cubes{};
     for (std::size_t c = 0; c < 3; ++c) {
         mean[c] = static_cast<double>(image.value(x, y, at.mean[c]));
@@ -114,9 +118,14 @@ MergedSlices merge_slices(std::span<const Image> slices, std::span<const std::st
     for (int k = 1; k <= count; ++k)
         if (!present.contains(k)) result.missing.push_back(k);
 
-    result.image = slices[present.begin()->second];
+    const Image& first = slices[present.begin()->second];
+    result.image = Image(first.width(), first.height(), film_layers());
     Image& out = result.image;
-    const Layers to(out, names[present.begin()->second]);
+    out.attributes() = first.attributes();
+    // Of one slice alone.
+    for (const char* key : {"stoppedBy", "clampedLuminance", "denoiser", "denoiserGuides"})
+        out.attributes().erase(key);
+    const Layers to(out, "the joined picture");
     double squares = 0, luminance = 0, all_samples = 0;
     for (int y = 0; y < out.height(); ++y)
         for (int x = 0; x < out.width(); ++x) {
@@ -168,7 +177,7 @@ MergedSlices merge_slices(std::span<const Image> slices, std::span<const std::st
         result.missing.empty() ? std::string("1/1") : std::string("some of ") + std::to_string(count);
     a["samplesTaken"] = static_cast<float>(result.mean_samples);
     a["relativeError"] = static_cast<float>(result.relative_error);
-    double bad = 0, seconds = 0;
+    double bad = 0, seconds = 0, interrupted = 0;
     auto number = [](const Image& image, const char* key) {
         const auto at = image.attributes().find(key);
         if (at == image.attributes().end()) return 0.0;
@@ -179,7 +188,9 @@ MergedSlices merge_slices(std::span<const Image> slices, std::span<const std::st
     for (const Image& slice : slices) {
         bad += number(slice, "badSamples");
         seconds += number(slice, "renderSeconds");
+        interrupted = std::max(interrupted, number(slice, "interrupted"));
     }
+    a["interrupted"] = static_cast<int>(interrupted);
     a["badSamples"] = static_cast<int>(std::min(bad, 1e9));
     a["renderSeconds"] = static_cast<float>(seconds);
     return result;

@@ -114,6 +114,10 @@ std::vector<std::uint32_t> allocate(const Film& film, const SampleOrder& order, 
         if (std::isfinite(scale))
             limit = std::min(limit, std::max(total(scale), std::min(least_growth * taken.value(), most)));
     }
+    if (target.error > 0 && target.quantile > 0) {
+        const double ratio = error_quantile(film, target.quantile) / target.error;
+        limit = std::min(limit, std::max(ratio * ratio, least_growth) * taken.value());
+    }
     const double scale = scale_within(limit);
     std::vector<std::uint32_t> goals(n);
     bool more = false;

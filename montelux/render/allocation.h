@@ -19,9 +19,9 @@ namespace montelux {
 // how many
 //   it gets, which would end pixels early that happen to look dark and smooth (Kirk, Arvo 1991, "Unbiased
 //   Sampling Techniques for Image Synthesis"); through its neighbours they have one in the round after next,
-//   too small to be found (docs/adaptive.md).
-// - No pixel gets less than a third of the mean of all.
-// A round at most doubles the samples; with a target it goes as far as the target seems to need.
+//   too small to be found (docs/render-to-an-error.md).
+// - No weight is below a third of the mean weight, so that no pixel gets less than a quarter of the mean
+// number. A round at most doubles the samples; with a target it goes as far as the target seems to need.
 std::vector<std::uint32_t> allocate(const Film& film, const SampleOrder& order, const RenderTarget& target);
 
 } // namespace montelux

@@ -45,8 +45,7 @@ struct RenderReport {
     double ray_seconds = 0; // of those, spent in Embree (extrapolated from timed rays)
     RayStatistics rays;
     BadSampleReport bad;
-    std::uint64_t clamped_samples = 0; // by the film's limit,
-    double clamped_luminance = 0;      // and what that took away in all
+    std::uint64_t clamped_samples = 0; // by the film's limit
     StopReason stop = StopReason::samples;
 
     bool cancelled() const { return stop == StopReason::cancelled; }

@@ -43,7 +43,7 @@ std::vector<PixelBounds> tiles_of(const PixelBounds& crop) {
 struct TileTally {
     RayStatistics rays;
     BadSampleReport bad;
-    double cpu_seconds = 0, clamped_luminance = 0;
+    double cpu_seconds = 0;
     std::uint64_t samples = 0, clamped_samples = 0;
 };
 
@@ -59,6 +59,9 @@ class RenderLoop {
     // The loop over rounds.
     void run() {
         for (;;) {
+            if (!every_pixel_seen_)
+                every_pixel_seen_ =
+                    std::ranges::all_of(state_.film.pixels(), [](const Pixel& p) { return p.samples() > 0; });
             if (const auto reason = stop_between_rounds()) return end(*reason);
             if (round_is_done()) {
                 std::vector<std::uint32_t> goals =
@@ -83,7 +86,11 @@ class RenderLoop {
         return control_.checkpoint && seconds_since(last_checkpoint_) >= control_.checkpoint_seconds;
     }
     bool out_of_time() const {
-        return renderer_.target().seconds > 0 && seconds() >= renderer_.target().seconds;
+        // A picture with a sample of each pixel is the least there is to show.
+        return renderer_.target().seconds > 0 && every_pixel_seen_ && seconds() >= renderer_.target().seconds;
+    }
+    void pause_if_due() {
+        if (checkpoint_is_due() || out_of_time()) pause_ = true;
     }
     // Pixels of a restored film may lack samples of the present round, as those of a broken-off loop do.
     bool round_is_done() const {
@@ -105,12 +112,18 @@ class RenderLoop {
         if (state_.goals.empty() || !round_is_done() || !no_unit_is_open()) return std::nullopt;
         const FilmError error = state_.film.error();
         report_progress(error);
-        const RenderTarget& target = renderer_.target();
-        if (!(target.error > 0) || fewest_units() < least_units) return std::nullopt;
-        const double reached =
-            target.quantile > 0 ? error_quantile(state_.film, target.quantile) : error.relative;
-        if (reached <= target.error) return StopReason::error;
+        if (target_is_reached(error)) return StopReason::error;
         return std::nullopt;
+    }
+    bool target_is_reached(const FilmError& error) const {
+        const RenderTarget& target = renderer_.target();
+        if (!(target.error > 0)) return false;
+        // Few samples may all be dark by chance; a quantile is satisfied by pixels that saw nothing yet.
+        const std::uint64_t least = target.quantile > 0 ? 4 * least_samples : least_samples;
+        if (fewest_units() * order_.unit() < least) return false;
+        if (!(error.mean_luminance > 0)) return error.mean_samples >= samples_of_black;
+        return (target.quantile > 0 ? error_quantile(state_.film, target.quantile) : error.relative) <=
+               target.error;
     }
     std::uint64_t fewest_units() const {
         std::uint64_t fewest = state_.film.pixels().front().units().count();
@@ -141,15 +154,20 @@ class RenderLoop {
         report.cpu_seconds += tally.cpu_seconds;
         report.samples += tally.samples;
         report.clamped_samples += tally.clamped_samples;
-        report.clamped_luminance += tally.clamped_luminance;
-        if (checkpoint_is_due() || out_of_time()) pause_ = true;
+        // Not before something was done: short intervals must not keep the loop from going on.
+        if (tally.samples > 0) pause_if_due();
         if (seconds_since(last_progress_) > 0.2) report_progress(std::nullopt);
     }
 
-    // All samples up to the goal, or none: a pixel is never left in the middle of a round.
+    // Samples up to the goal. A pixel that gets very many is left between two of them when the loop shall
+    // stop; what it has is whole at any number of samples.
     void render_pixel(RayTracer& tracer, int x, int y, std::uint32_t goal, TileTally& tally) {
         Pixel& pixel = state_.film.pixel(x, y);
         for (std::uint64_t i = pixel.samples(); i < goal; ++i) {
+            if (tally.samples % samples_between_looks == samples_between_looks - 1) {
+                pause_if_due();
+                if (pause_ || cancelled()) return;
+            }
             const std::uint64_t index = order_.index(i);
             const SampleContext::Result r = context_.take(tracer, x, y, index);
             if (r.bad) {
@@ -158,9 +176,9 @@ class RenderLoop {
             } else {
                 pixel.add_sample(r.film);
             }
-            if (r.clamped > 0) {
+            if (r.clamped != 0) {
                 ++tally.clamped_samples;
-                tally.clamped_luminance += static_cast<double>(r.clamped);
+                pixel.add_clamped(r.clamped);
             }
             if (order_.closed(i + 1)) pixel.end_unit();
             ++tally.samples;
@@ -201,12 +219,16 @@ class RenderLoop {
                                         static_cast<double>(state_.report.rays.rays()) /
                                         static_cast<double>(state_.report.rays.timed);
         if (control_.checkpoint) save_checkpoint();
-        // The samples of replicates that were cut short count all the same: each is unbiased.
-        state_.film.end_units();
+        // Replicates that were cut short count where they are half of one: each is unbiased.
+        state_.film.end_units(order_.unit());
+        // Units that were open may have been all that was missing.
+        if (reason != StopReason::cancelled && target_is_reached(state_.film.error()))
+            state_.report.stop = StopReason::error;
     }
 
-    // Before the spread of fewer units is believed.
-    static constexpr std::uint64_t least_units = 4;
+    static constexpr std::uint64_t samples_between_looks = 1024;
+    // Of each pixel, before its error is believed; and before a picture is taken for black.
+    static constexpr std::uint64_t least_samples = 16, samples_of_black = 4096;
 
     const Renderer& renderer_;
     const SampleContext& context_;
@@ -216,6 +238,7 @@ class RenderLoop {
     std::vector<PixelBounds> tiles_;
     double seconds_before_; // of earlier sessions
     Clock::time_point begin_ = Clock::now(), last_checkpoint_ = begin_, last_progress_ = begin_;
+    bool every_pixel_seen_ = false;
     std::atomic<bool> pause_{false};
     std::mutex mutex_; // of the report and the progress
     RenderProgress progress_;

@@ -20,9 +20,9 @@ SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& ta
         settings.replicate_points != 0)
         return settings;
     if (target.error > 0 || target.seconds > 0 || target.adaptive)
-        settings.replicate_points = points_for_targets;
+        settings.replicate_points = std::clamp(settings.samples_per_pixel / 8, 1u, points_for_targets);
     else
-        settings.replicates = std::min(8u, settings.samples_per_pixel);
+        settings.replicates = std::min(std::max(8u, target.slice.count), settings.samples_per_pixel);
     return settings;
 }
 

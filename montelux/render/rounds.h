@@ -12,8 +12,8 @@ namespace montelux {
 
 // With `replicates` 0 or 1 and a quasi-random sampler: the number that suits. Eight give an error estimate
 // with seven degrees of freedom and leave most samples to the point sets; with fewer than eight samples each
-// stands alone. A target needs many short replicates, since nobody knows how many samples it takes: eight
-// points each.
+// stands alone. A target or a time needs many short replicates, since nobody knows how many samples it
+// takes: of at most eight points each. More than eight slices have one replicate each.
 SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& target);
 
 // The goals of the next round, one a pixel, after one whose goals (`state.goals`, empty at first) all pixels

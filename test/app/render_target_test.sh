@@ -14,7 +14,7 @@ expect 0 "samples were clamped, which took" render ball.pbrt --clamp 0.5 -o x.ex
 for value in 0 -1 1 2 nan x '' 120% 1e-2x; do
     expect 2 "--target-error: '$value' was given" render ball.pbrt --target-error "$value" -o y.exr
 done
-for value in 0 -1 10x m 1m1h '' nan; do
+for value in 0 -1 10x m 1m1h 1h30 '' nan; do
     expect 2 "--time: '$value' was given" render ball.pbrt --time "$value" -o y.exr
 done
 expect 2 "--target-quantile: expected --target-error" render ball.pbrt --target-quantile 0.9 -o y.exr
@@ -36,6 +36,9 @@ cmp -s c.pfm b.pfm || fail "a render that was continued from the generation befo
 printf x >>state.previous
 printf x >>state
 expect 1 "state" render ball.pbrt --spp 52 --resume --checkpoint state -o x.pfm
+expect 2 "the file is there already; add --resume" render ball.pbrt --checkpoint a.pfm -o x.pfm
+expect 2 "the checkpoint has this name" render ball.pbrt --checkpoint z.pfm -o z.pfm
+expect 0 "4 samples a pixel" render ball.pbrt --checkpoint often --checkpoint-every 0 --threads 1 -o often.pfm
 expect 2 "the scene is read from this file" render ball.pbrt --checkpoint ball.pbrt -o x.pfm
 expect 1 "nowhere" render ball.pbrt --checkpoint nowhere/state -o x.pfm
 [ -e x.pfm ] && fail "a refused command wrote a picture"

@@ -83,7 +83,7 @@ faults() {
                 fi
                 # Probes and what is only read may fail to open or close; nothing else goes unnoticed.
                 case $kind in ENOSPC | EIO | EDQUOT | full-disk)
-                    [ $code -eq 1 ] || head -n 1 report | grep -q 'fault \(open\|close\)' ||
+                    [ $code -eq 1 ] || grep -q 'montelux: warning: ' out || head -n 1 report | grep -q 'fault \(open\|close\)' ||
                         fail "$where: went unnoticed"
                     ;;
                 esac
@@ -130,4 +130,16 @@ check_case() {
     grep -v seconds resumed | cmp -s - unbroken || fail "$where: goes on to other digits"
 }
 faults checkpoint "" $integral --evaluations 50000 --resume
+
+picture="render ../tiny.pbrt --seed 1 --quiet --checkpoint state"
+rm -rf saved && mkdir saved && (cd saved && "$montelux" $picture --spp 3 -o x.pfm && "$montelux" $picture --spp 5 -o x.pfm --resume)
+"$montelux" render tiny.pbrt --seed 1 --quiet --spp 9 -o unbroken.pfm
+begin_case() { cp saved/* work; }
+check_case() {
+    (cd work && "$montelux" $picture --spp 9 -o y.pfm --resume) >out 2>warnings ||
+        fail "$where: cannot be gone on from: $(cat warnings)"
+    grep -q warning warnings && fail "$where: $(cat warnings)"
+    cmp -s work/y.pfm unbroken.pfm || fail "$where: goes on to another picture"
+}
+faults "render checkpoint" x.pfm $picture --spp 7 -o x.pfm --resume
 finish

@@ -84,6 +84,27 @@ TEST(Pixel, FirstSurfaceIsTheMeanOverSamples) {
     EXPECT_EQ(Pixel().depth(), 0);
 }
 
+// A whole unit of four samples and the beginning of one would else weigh the same.
+TEST(Pixel, ShortLastUnitsAreLeftOutWhereThereAreOthers) {
+    for (int open : {1, 2, 3}) {
+        Pixel p;
+        for (int unit = 0; unit < 2; ++unit) {
+            for (int i = 0; i < 4; ++i) p.add_sample(gray_sample(1));
+            p.end_unit();
+        }
+        for (int i = 0; i < open; ++i) p.add_sample(gray_sample(7));
+        p.end_last_unit(4);
+        EXPECT_EQ(p.units().count(), open >= 2 ? 3u : 2u);
+        EXPECT_DOUBLE_EQ(p.units().mean(), open >= 2 ? 3 : 1);
+        p.end_unit(); // nothing is left
+        EXPECT_EQ(p.units().count(), open >= 2 ? 3u : 2u);
+    }
+    Pixel alone;
+    alone.add_sample(gray_sample(5));
+    alone.end_last_unit(4);
+    EXPECT_EQ(alone.units().count(), 1u);
+}
+
 TEST(Film, ErrorOfThePicture) {
     Film film(settings(2, 1, {0, 0, 2, 1}));
     // Luminances 2 +- 0.5 and 4 +- 1.

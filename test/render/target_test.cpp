@@ -65,6 +65,37 @@ TEST(Target, QuantileOfThePixels) {
     EXPECT_LT(within, 0.97 * 24 * 24);
 }
 
+// Nothing seen yet is not an error of zero.
+TEST(Target, BlackPicturesAreNotDoneAtOnce) {
+    SceneBuilder b;
+    b.description.film.width = b.description.film.height = 4;
+    b.description.film.crop = {0, 0, 4, 4};
+    for (bool adaptive : {false, true}) {
+        b.description.sampler.samples_per_pixel = 256;
+        const RenderState few = run(b.description, {.error = 0.05, .adaptive = adaptive});
+        EXPECT_EQ(few.report.stop, StopReason::samples);
+        b.description.sampler.samples_per_pixel = 1u << 20;
+        const RenderState many = run(b.description, {.error = 0.05, .adaptive = adaptive});
+        EXPECT_EQ(many.report.stop, StopReason::error);
+    }
+}
+
+// Intervals too short for anything to be done between two checkpoints; times too short for a first look.
+TEST(Target, ShortIntervalsAndTimesDoNotStopTheWork) {
+    SceneBuilder b = mixed_scene(1, 40, 40);
+    b.description.sampler.samples_per_pixel = 2;
+    RenderState state(b.description.film);
+    RenderControl control;
+    int checkpoints = 0;
+    control.checkpoint = [&](const RenderState&) { ++checkpoints; };
+    control.checkpoint_seconds = 0;
+    Renderer(b.description).render(state, control);
+    EXPECT_EQ(state.report.samples, 2u * 1600);
+    EXPECT_GT(checkpoints, 1);
+    const RenderState hasty = run(b.description, {.seconds = 1e-6});
+    for (const Pixel& p : hasty.film.pixels()) EXPECT_GT(p.samples(), 0u);
+}
+
 // Adaptive allocation looks at the samples and must not lean on them: the mean over many seeds is that of
 // renders with equal numbers. Pixels that take few samples because their first ones were dark would show here
 // at once.
