@@ -12,43 +12,6 @@ constexpr int radius = 3;               // of the pixels around one
 constexpr double least_share = 1.0 / 3; // of the mean number of samples
 constexpr double least_growth = 1.1, most_growth = 2;
 
-// Sums over windows of a picture, from a table of all sums from the corner.
-class WindowSums {
-  public:
-    WindowSums(const std::vector<double>& values, int width, int height)
-        : width_(width), height_(height),
-          sums_(static_cast<std::size_t>(width + 1) * static_cast<std::size_t>(height + 1)) {
-        for (int y = 0; y < height; ++y) {
-            double row = 0;
-            for (int x = 0; x < width; ++x) {
-                row += values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                              static_cast<std::size_t>(x)];
-                at(x + 1, y + 1) = at(x + 1, y) + row;
-            }
-        }
-    }
-    struct Window {
-        double sum = 0;
-        int count = 0;
-    };
-    Window around(int x, int y) const {
-        const int x0 = std::max(0, x - radius), x1 = std::min(width_, x + radius + 1);
-        const int y0 = std::max(0, y - radius), y1 = std::min(height_, y + radius + 1);
-        return {at(x1, y1) - at(x0, y1) - at(x1, y0) + at(x0, y0), (x1 - x0) * (y1 - y0)};
-    }
-
-  private:
-    double& at(int x, int y) { return sums_[index(x, y)]; }
-    double at(int x, int y) const { return sums_[index(x, y)]; }
-    std::size_t index(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_ + 1) +
-               static_cast<std::size_t>(x);
-    }
-
-    int width_, height_;
-    std::vector<double> sums_;
-};
-
 // Standard deviation of one sample of each pixel, as the pixels around it know it.
 std::vector<double> deviations(const Film& film) {
     const int width = film.bounds().width(), height = film.bounds().height();
@@ -58,16 +21,25 @@ std::vector<double> deviations(const Film& film) {
         const double error = luminance_error(p);
         variance.push_back(std::isfinite(error) ? error * error * static_cast<double>(p.samples()) : 0);
     }
-    const WindowSums sums(variance, width, height);
+    auto at = [&](int x, int y) {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    };
+    // Added up anew for each: differences of running sums would let the pixel itself in again by their
+    // rounding.
+    auto around = [&](int x0, int y0) {
+        double sum = 0;
+        int count = 0;
+        for (int y = std::max(0, y0 - radius); y < std::min(height, y0 + radius + 1); ++y)
+            for (int x = std::max(0, x0 - radius); x < std::min(width, x0 + radius + 1); ++x)
+                if (x != x0 || y != y0) {
+                    sum += variance[at(x, y)];
+                    ++count;
+                }
+        return count > 0 ? sum / count : variance[at(x0, y0)]; // a picture of one pixel
+    };
     std::vector<double> result(variance.size());
     for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const std::size_t i =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-            const auto [sum, count] = sums.around(x, y);
-            result[i] = count > 1 ? std::sqrt(std::max(0.0, sum - variance[i]) / (count - 1))
-                                  : std::sqrt(variance[i]); // a picture of one pixel
-        }
+        for (int x = 0; x < width; ++x) result[at(x, y)] = std::sqrt(around(x, y));
     CompensatedSum total;
     for (double s : result) total.add(s);
     const double least = least_share * total.value() / static_cast<double>(result.size());
