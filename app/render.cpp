@@ -107,7 +107,7 @@ void add_header(Image& image, const RenderOptions& options, const SceneDescripti
     a["sceneHash"] = hexadecimal(description.content_hash);
     a["renderHash"] = hexadecimal(render_fingerprint(description, renderer.sampler()));
     a["samplesPerPixel"] = static_cast<int>(description.sampler.samples_per_pixel);
-    a["stoppedBy"] = std::string(name_of(report.stop));
+    a["stoppedBy"] = std::string(to_string(report.stop));
     const RenderTarget& target = renderer.target();
     if (target.error > 0) a["targetError"] = static_cast<float>(target.error);
     if (target.quantile > 0) a["targetQuantile"] = static_cast<float>(target.quantile);
@@ -179,11 +179,11 @@ void print_outliers(const Film& film) {
 // What ended the render, where that is not the number of samples.
 std::string ending_text(const RenderReport& report, const RenderTarget& target) {
     switch (report.stop) {
-    case StopReason::cancelled:
+    case RenderStop::cancelled:
         return ", stopped before the end";
-    case StopReason::error:
+    case RenderStop::error:
         return ", target reached";
-    case StopReason::time:
+    case RenderStop::time:
         return target.error > 0 ? ", time is up before the target was reached" : ", time is up";
     default:
         return target.error > 0 ? ", samples are used up before the target was reached" : "";
@@ -312,7 +312,7 @@ int load_and_render(const RenderOptions& options) {
     if (!checkpoint_failure.empty())
         throw Error("the last checkpoint was not written, the picture was", checkpoint_failure);
     if (report.cancelled()) return exit_interrupted;
-    return target.error > 0 && report.stop != StopReason::error ? exit_stopped : exit_done;
+    return target.error > 0 && report.stop != RenderStop::error ? exit_stopped : exit_done;
 }
 
 int run(const RenderOptions& options) {

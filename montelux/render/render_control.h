@@ -30,13 +30,13 @@ struct RenderTarget {
     bool operator==(const RenderTarget&) const = default;
 };
 
-enum class StopReason : std::uint8_t {
+enum class RenderStop : std::uint8_t {
     samples,   // all samples were taken
     error,     // the error was reached
     time,      // the time was used up
     cancelled, // somebody asked for it
 };
-std::string_view name_of(StopReason reason);
+std::string_view to_string(RenderStop reason);
 
 struct RenderReport {
     std::uint64_t samples = 0;
@@ -46,9 +46,9 @@ struct RenderReport {
     RayStatistics rays;
     BadSampleReport bad;
     std::uint64_t clamped_samples = 0; // by the film's limit
-    StopReason stop = StopReason::samples;
+    RenderStop stop = RenderStop::samples;
 
-    bool cancelled() const { return stop == StopReason::cancelled; }
+    bool cancelled() const { return stop == RenderStop::cancelled; }
 };
 
 // A render between two samples of any of its pixels: what a checkpoint holds. Whoever continues it ends with

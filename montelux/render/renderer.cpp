@@ -66,7 +66,7 @@ class RenderLoop {
             if (round_is_done()) {
                 std::vector<std::uint32_t> goals =
                     next_goals(state_, renderer_.sampler(), renderer_.target());
-                if (goals.empty()) return end(StopReason::samples);
+                if (goals.empty()) return end(RenderStop::samples);
                 state_.goals = std::move(goals);
             }
             pause_ = false;
@@ -74,7 +74,7 @@ class RenderLoop {
                 static_cast<std::int64_t>(tiles_.size()),
                 [&](std::int64_t t) { render_tile(tiles_[static_cast<std::size_t>(t)]); }, control_.cancel);
             state_.report.seconds = seconds();
-            if (cancelled()) return end(all_taken() ? StopReason::samples : StopReason::cancelled);
+            if (cancelled()) return end(all_taken() ? RenderStop::samples : RenderStop::cancelled);
             if (checkpoint_is_due()) save_checkpoint();
         }
     }
@@ -107,12 +107,12 @@ class RenderLoop {
         return std::ranges::all_of(state_.goals, [&](std::uint32_t goal) { return order_.closed(goal); });
     }
 
-    std::optional<StopReason> stop_between_rounds() {
-        if (out_of_time()) return StopReason::time;
+    std::optional<RenderStop> stop_between_rounds() {
+        if (out_of_time()) return RenderStop::time;
         if (state_.goals.empty() || !round_is_done() || !no_unit_is_open()) return std::nullopt;
         const FilmError error = state_.film.error();
         report_progress(error);
-        if (target_is_reached(error)) return StopReason::error;
+        if (target_is_reached(error)) return RenderStop::error;
         return std::nullopt;
     }
     bool target_is_reached(const FilmError& error) const {
@@ -211,7 +211,7 @@ class RenderLoop {
         control_.checkpoint(state_);
         last_checkpoint_ = Clock::now();
     }
-    void end(StopReason reason) {
+    void end(RenderStop reason) {
         state_.report.seconds = seconds();
         state_.report.stop = reason;
         if (state_.report.rays.timed > 0)
@@ -222,8 +222,8 @@ class RenderLoop {
         // Replicates that were cut short count where they are half of one: each is unbiased.
         state_.film.end_units(order_.unit());
         // Units that were open may have been all that was missing.
-        if (reason != StopReason::cancelled && target_is_reached(state_.film.error()))
-            state_.report.stop = StopReason::error;
+        if (reason != RenderStop::cancelled && target_is_reached(state_.film.error()))
+            state_.report.stop = RenderStop::error;
     }
 
     static constexpr std::uint64_t samples_between_looks = 1024;
@@ -246,13 +246,13 @@ class RenderLoop {
 
 } // namespace
 
-std::string_view name_of(StopReason reason) {
+std::string_view to_string(RenderStop reason) {
     switch (reason) {
-    case StopReason::samples:
+    case RenderStop::samples:
         return "samples";
-    case StopReason::error:
+    case RenderStop::error:
         return "error";
-    case StopReason::time:
+    case RenderStop::time:
         return "time";
     default:
         return "cancelled";

@@ -22,7 +22,7 @@ TEST(Target, ErrorIsReachedAndNotOvershot) {
             b.description.sampler.kind = kind;
             b.description.sampler.samples_per_pixel = 1u << 16;
             const RenderState state = run(b.description, {.error = 0.03, .adaptive = adaptive});
-            EXPECT_EQ(state.report.stop, StopReason::error);
+            EXPECT_EQ(state.report.stop, RenderStop::error);
             const FilmError e = state.film.error();
             EXPECT_LE(e.relative, 0.03);
             EXPECT_GT(e.relative, 0.03 * (adaptive ? 0.85 : 0.7)) << int(kind);
@@ -37,7 +37,7 @@ TEST(Target, SamplesThatRunOutAreSaid) {
     b.description.sampler.samples_per_pixel = 32;
     for (bool adaptive : {false, true}) {
         const RenderState state = run(b.description, {.error = 1e-4, .adaptive = adaptive});
-        EXPECT_EQ(state.report.stop, StopReason::samples);
+        EXPECT_EQ(state.report.stop, RenderStop::samples);
         EXPECT_LE(state.report.samples, 32u * 256);
         EXPECT_GE(state.report.samples, 28u * 256);
     }
@@ -47,7 +47,7 @@ TEST(Target, TimeEndsTheRenderWithAValidFilm) {
     SceneBuilder b = mixed_scene(1, 16, 16);
     b.description.sampler.samples_per_pixel = 1u << 24;
     const RenderState state = run(b.description, {.seconds = 0.3});
-    EXPECT_EQ(state.report.stop, StopReason::time);
+    EXPECT_EQ(state.report.stop, RenderStop::time);
     EXPECT_GE(state.report.seconds, 0.3);
     EXPECT_TRUE(std::isfinite(state.film.error().relative));
 }
@@ -57,7 +57,7 @@ TEST(Target, QuantileOfThePixels) {
     b.description.sampler.kind = SamplerKind::independent;
     b.description.sampler.samples_per_pixel = 1u << 16;
     const RenderState state = run(b.description, {.error = 0.04, .quantile = 0.9});
-    EXPECT_EQ(state.report.stop, StopReason::error);
+    EXPECT_EQ(state.report.stop, RenderStop::error);
     int within = 0;
     const FilmError e = state.film.error();
     for (const Pixel& p : state.film.pixels()) within += luminance_error(p) <= 0.04 * e.mean_luminance;
@@ -73,10 +73,10 @@ TEST(Target, BlackPicturesAreNotDoneAtOnce) {
     for (bool adaptive : {false, true}) {
         b.description.sampler.samples_per_pixel = 256;
         const RenderState few = run(b.description, {.error = 0.05, .adaptive = adaptive});
-        EXPECT_EQ(few.report.stop, StopReason::samples);
+        EXPECT_EQ(few.report.stop, RenderStop::samples);
         b.description.sampler.samples_per_pixel = 1u << 20;
         const RenderState many = run(b.description, {.error = 0.05, .adaptive = adaptive});
-        EXPECT_EQ(many.report.stop, StopReason::error);
+        EXPECT_EQ(many.report.stop, RenderStop::error);
     }
 }
 
