@@ -49,7 +49,7 @@ void check_not_read(const std::string& output, const std::vector<std::filesystem
         if (std::filesystem::equivalent(output, file, ignored))
             throw UsageError(output, "the scene is read from this file; what is written needs another name");
 }
-void check_output(const std::string& output, const std::vector<std::filesystem::path>& files_read) {
+void check_picture_path(const std::string& output, const std::vector<std::filesystem::path>& files_read) {
     check_writable(output);
     check_not_read(output, files_read);
 }
@@ -261,7 +261,7 @@ int load_and_render(const RenderOptions& options) {
         return replay(options, description, target);
     }
     const std::vector<std::string> outputs = outputs_of(options, description);
-    for (const std::string& output : outputs) check_output(output, files_read);
+    for (const std::string& output : outputs) check_picture_path(output, files_read);
     if (!options.checkpoint.empty()) check_checkpoint(options, outputs, files_read);
     check_memory(description.film, !options.checkpoint.empty());
     std::optional<Denoiser> denoiser; // one that is missing is told before the render

@@ -190,13 +190,13 @@ void add_vertex(Text& t, std::size_t number, const PathVertex& v, const Scene& s
     if (v.surface) {
         const Shape& shape = *v.surface->shape;
         t.add("shape %u, ", static_cast<unsigned>(v.hit.shape));
-        if (shape.mesh != none)
+        if (shape.mesh != no_index)
             t.add("triangle %u of mesh %u", static_cast<unsigned>(v.hit.primitive),
                   static_cast<unsigned>(shape.mesh));
         else
             t.add("%s",
                   std::holds_alternative<Sphere>(scene.quadrics[shape.quadric]) ? "a sphere" : "a disk");
-        if (v.hit.instance != none) t.add(", instance %u", static_cast<unsigned>(v.hit.instance));
+        if (v.hit.instance != no_index) t.add(", instance %u", static_cast<unsigned>(v.hit.instance));
         t.add(", material %u", static_cast<unsigned>(shape.material)).end();
         t.label(1, "position").vector(v.surface->p).add(", distance ").number(v.hit.t).end();
         t.label(1, "geometric normal").vector(v.surface->ng).end();

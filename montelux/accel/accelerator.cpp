@@ -17,7 +17,7 @@ namespace {
 struct GeometryData {
     const Scene* scene = nullptr;
     const SceneTables* tables = nullptr;
-    Index shape = none;
+    Index shape = no_index;
     std::optional<WorldSphere> sphere; // of a quadric that is one
     bool cut_out = false;
 };
@@ -139,7 +139,7 @@ struct Accelerator::Impl {
         const Shape& shape = scene->shapes[shape_index];
         const bool cut_out = data[shape_index].cut_out;
         RTCGeometry geometry;
-        if (shape.mesh != none) {
+        if (shape.mesh != no_index) {
             const TriangleMesh& mesh = scene->meshes[shape.mesh];
             geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
             // Embree reads 16 bytes a vertex: the buffer is its own copy, so that the last one is padded.
@@ -209,7 +209,7 @@ Accelerator::Accelerator(const Scene& scene, const SceneTables& tables) : impl_(
         a.data[i].tables = &tables;
         a.data[i].shape = static_cast<Index>(i);
         a.data[i].cut_out = !shape.alpha.is_constant() || shape.alpha.value < 1;
-        if (shape.quadric != none) a.data[i].sphere = whole_sphere(scene.quadrics[shape.quadric]);
+        if (shape.quadric != no_index) a.data[i].sphere = whole_sphere(scene.quadrics[shape.quadric]);
     }
 
     for (const ObjectDefinition& object : scene.objects) {
@@ -257,7 +257,7 @@ bool Accelerator::intersect(const Ray& ray, Hit& hit) const {
     hit.primitive = r.hit.primID;
     const Scene& scene = *impl_->scene;
     if (r.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
-        hit.instance = none;
+        hit.instance = no_index;
         hit.shape = scene.world_shapes[r.hit.geomID];
     } else {
         hit.instance = r.hit.instID[0] - static_cast<Index>(scene.world_shapes.size());

@@ -12,7 +12,7 @@ namespace montelux {
 namespace {
 
 // Half-edge 3 f + k runs from corner k of triangle f to the next corner; its twin runs back in the
-// neighbouring triangle, and is `none` on a boundary.
+// neighbouring triangle, and is `no_index` on a boundary.
 Index next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
 Index previous(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
 
@@ -36,11 +36,11 @@ void find_ring(const Mesh& mesh, Index vertex, Ring& ring) {
     ring.vertices.clear();
     ring.boundary = false;
     Index start = mesh.outgoing[vertex];
-    if (start == none) return;
+    if (start == no_index) return;
     Index h = start;
     do {
         ring.vertices.push_back(mesh.head(h));
-        if (mesh.twins[h] == none) {
+        if (mesh.twins[h] == no_index) {
             ring.boundary = true;
             break;
         }
@@ -48,7 +48,7 @@ void find_ring(const Mesh& mesh, Index vertex, Ring& ring) {
     } while (h != start);
     if (!ring.boundary) return;
     ring.vertices.assign(1, mesh.head(h));
-    for (; h != none; h = mesh.twins[previous(h)]) ring.vertices.push_back(mesh.corners[previous(h)]);
+    for (; h != no_index; h = mesh.twins[previous(h)]) ring.vertices.push_back(mesh.corners[previous(h)]);
 }
 
 double beta(std::size_t valence) {
@@ -70,8 +70,8 @@ Mesh make_mesh(std::span<const Vec3f> positions, std::span<const Index> indices)
     Mesh mesh;
     for (Vec3f p : positions) mesh.positions.push_back(Vec3d(p));
     mesh.corners.assign(indices.begin(), indices.end());
-    mesh.outgoing.assign(positions.size(), none);
-    mesh.twins.assign(indices.size(), none);
+    mesh.outgoing.assign(positions.size(), no_index);
+    mesh.twins.assign(indices.size(), no_index);
     std::vector<std::pair<std::uint64_t, Index>> edges; // (from, to) of each half-edge
     edges.reserve(indices.size());
     for (Index h = 0; h < indices.size(); ++h) {
@@ -114,17 +114,17 @@ Mesh refine(const Mesh& old) {
     auto middle = [](Index h, Index corner) { return 3 * (4 * (h / 3) + 3) + corner % 3; };
     for (Index v = 0; v < old.positions.size(); ++v) {
         Index h = old.outgoing[v];
-        mesh.outgoing.push_back(h == none ? none : child(h, h % 3));
+        mesh.outgoing.push_back(h == no_index ? no_index : child(h, h % 3));
     }
     for (Index h = 0; h < half_edges; ++h) {
         Index twin = old.twins[h];
-        if (twin != none && twin < h) {
+        if (twin != no_index && twin < h) {
             odd[h] = odd[twin];
             continue;
         }
         odd[h] = static_cast<Index>(mesh.positions.size());
         Vec3d ends = old.positions[old.corners[h]] + old.positions[old.head(h)];
-        if (twin == none)
+        if (twin == no_index)
             mesh.positions.push_back(0.5 * ends);
         else
             mesh.positions.push_back(3.0 / 8 * ends + 1.0 / 8 *
@@ -133,7 +133,7 @@ Mesh refine(const Mesh& old) {
         mesh.outgoing.push_back(middle(h, h));
     }
     mesh.corners.resize(4 * std::size_t{half_edges});
-    mesh.twins.assign(4 * std::size_t{half_edges}, none);
+    mesh.twins.assign(4 * std::size_t{half_edges}, no_index);
     for (Index h = 0; h < half_edges; ++h) {
         Index j = h % 3;
         mesh.corners[child(h, j)] = old.corners[h];
@@ -143,9 +143,9 @@ Mesh refine(const Mesh& old) {
 
         mesh.twins[child(h, j + 1)] = middle(h, j + 2);
         mesh.twins[middle(h, j + 2)] = child(h, j + 1);
-        if (Index twin = old.twins[h]; twin != none) // first half of h, second half of its twin
+        if (Index twin = old.twins[h]; twin != no_index) // first half of h, second half of its twin
             mesh.twins[child(h, j)] = child(next(twin), twin % 3);
-        if (Index twin = old.twins[previous(h)]; twin != none) // second half of the edge before h
+        if (Index twin = old.twins[previous(h)]; twin != no_index) // second half of the edge before h
             mesh.twins[child(h, j + 2)] = child(twin, twin % 3);
     }
     return mesh;

@@ -275,7 +275,7 @@ class BodyParser {
     }
     Index corner(Type type) {
         double v = cursor_.number(type);
-        if (!(v >= 0 && v < static_cast<double>(none)))
+        if (!(v >= 0 && v < static_cast<double>(no_index)))
             throw Error(cursor_.where(), "a face has a negative vertex index or one beyond 2^32");
         return static_cast<Index>(v);
     }

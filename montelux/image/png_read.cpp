@@ -28,13 +28,13 @@ struct PngReader {
     PngReader& operator=(const PngReader&) = delete;
 };
 
-void on_error(png_structp png, png_const_charp message) {
+void on_read_error(png_structp png, png_const_charp message) {
     auto* reader = static_cast<PngReader*>(png_get_error_ptr(png));
     std::strncpy(reader->message, message, sizeof reader->message - 1);
     longjmp(png_jmpbuf(png), 1);
 }
 
-void on_warning(png_structp, png_const_charp) {}
+void on_read_warning(png_structp, png_const_charp) {}
 
 void on_read(png_structp png, png_bytep out, std::size_t size) {
     auto* reader = static_cast<PngReader*>(png_get_io_ptr(png));
@@ -80,7 +80,7 @@ Image decode_png(const EncodedImage& file) {
         return Error(file.name, std::string("the PNG file is damaged: ") +
                                     (reader.message[0] ? reader.message : "no reason given"));
     };
-    reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning);
+    reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_read_error, on_read_warning);
     if (reader.png) reader.info = png_create_info_struct(reader.png);
     if (!reader.info) throw std::bad_alloc();
     if (!read_header(reader)) throw damaged();

@@ -26,13 +26,13 @@ struct PngWriter {
     PngWriter& operator=(const PngWriter&) = delete;
 };
 
-void on_error(png_structp png, png_const_charp message) {
+void on_write_error(png_structp png, png_const_charp message) {
     auto* writer = static_cast<PngWriter*>(png_get_error_ptr(png));
     std::strncpy(writer->message, message, sizeof writer->message - 1);
     longjmp(png_jmpbuf(png), 1);
 }
 
-void on_warning(png_structp, png_const_charp) {}
+void on_write_warning(png_structp, png_const_charp) {}
 
 bool try_write(PngWriter& writer, png_bytep data, std::size_t size) {
     try {
@@ -93,7 +93,7 @@ void encode_png(AtomicFile& file, const std::string& name, const Image& image, c
                                           PNG_COLOR_TYPE_RGB_ALPHA};
 
     PngWriter writer(file);
-    writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning);
+    writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_write_error, on_write_warning);
     if (writer.png) writer.info = png_create_info_struct(writer.png);
     if (!writer.info) throw std::bad_alloc();
     if (!write_all(writer, static_cast<png_uint_32>(picture.width()),

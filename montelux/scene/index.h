@@ -6,6 +6,6 @@
 namespace montelux {
 
 using Index = std::uint32_t;
-inline constexpr Index none = 0xffffffffu;
+inline constexpr Index no_index = 0xffffffffu;
 
 } // namespace montelux

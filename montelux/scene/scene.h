@@ -19,7 +19,7 @@ struct ObjectDefinition {
     std::vector<Index> shapes;
 };
 struct Instance {
-    Index object = none;
+    Index object = no_index;
     Transform world_from_object;
 };
 

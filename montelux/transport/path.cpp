@@ -131,7 +131,7 @@ struct Path {
     }
 
     void add_emission(const SurfacePoint& s, Vec3f w) {
-        if (s.shape->first_light == none) return;
+        if (s.shape->first_light == no_index) return;
         const LightTables& lights = ps.tables.lights();
         const Index index = s.shape->first_light + s.primitive;
         const auto& light = std::get<AreaLight>(ps.scene.lights[index]);

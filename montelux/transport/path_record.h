@@ -13,7 +13,7 @@ namespace montelux {
 
 // Light that the path met by following its ray: on the surface that it hit, or from beyond the scene.
 struct FoundLight {
-    Index light = none;
+    Index light = no_index;
     SampledSpectrum radiance{}; // along the ray
     // Light sampling at the vertex before could have found it too. Where it could not (the camera's ray, a
     // delta lobe), the weight is 1 and there are no densities.
@@ -37,7 +37,7 @@ struct DirectLight {
         no_transport,
     };
     Outcome outcome = Outcome::dark;
-    Index light = none;
+    Index light = no_index;
     float choice = 0;           // probability of choosing this light
     bool delta = false;         // nothing can hit it
     Vec3f wi{};                 // world space, towards the light

@@ -24,7 +24,7 @@ struct World {
 };
 
 inline Index add_material(Scene& scene) {
-    scene.materials.push_back(DiffuseMaterial{{Spectrum(0.5f), none}});
+    scene.materials.push_back(DiffuseMaterial{{Spectrum(0.5f), no_index}});
     return static_cast<Index>(scene.materials.size() - 1);
 }
 inline Index add_shape(Scene& scene, TriangleMesh mesh, bool in_world = true) {
@@ -123,7 +123,7 @@ inline TriangleMesh geodesic_sphere(int levels, Vec3f center, float radius) {
 // the hit is from an edge that rounding may put on either side.
 struct ReferenceHit {
     double t = 1e300;
-    Index shape = none, primitive = 0, instance = none;
+    Index shape = no_index, primitive = 0, instance = no_index;
     double margin = 1;
 };
 
@@ -134,7 +134,7 @@ class BruteForce {
     std::optional<ReferenceHit> closest(const Ray& ray) const {
         best_ = {};
         closest_miss_ = 1;
-        for (Index s : scene_.world_shapes) try_shape(s, none, Vec3d(ray.o), Vec3d(ray.d), ray.t_max);
+        for (Index s : scene_.world_shapes) try_shape(s, no_index, Vec3d(ray.o), Vec3d(ray.d), ray.t_max);
         for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
             const Instance& instance = scene_.instances[i];
             Transform inverse = instance.world_from_object.inverse();
@@ -142,7 +142,7 @@ class BruteForce {
                 try_shape(s, static_cast<Index>(i), inverse.point(Vec3d(ray.o)), inverse.vector(Vec3d(ray.d)),
                           ray.t_max);
         }
-        if (best_.shape == none) return std::nullopt;
+        if (best_.shape == no_index) return std::nullopt;
         return best_;
     }
     // Of the last ray: the margin by which it just hit or just missed anything.
@@ -158,7 +158,7 @@ class BruteForce {
 
     void try_shape(Index index, Index instance, Vec3d o, Vec3d d, double t_max) const {
         const Shape& shape = scene_.shapes[index];
-        if (shape.mesh != none) {
+        if (shape.mesh != no_index) {
             const TriangleMesh& m = scene_.meshes[shape.mesh];
             for (std::size_t i = 0; i < m.triangle_count(); ++i) {
                 Vec3d p0(m.positions[m.indices[3 * i]]), e1 = Vec3d(m.positions[m.indices[3 * i + 1]]) - p0,

@@ -199,7 +199,7 @@ TEST(Robust, ShadowRaysReachTheirLights) {
                 add_shape(scene, std::move(floor));
                 Transform above = at * Transform::translate({0.3, 0.1, 1});
                 Transform tilted = above * Transform::rotate(160, {1, 0.4, 0});
-                Index light = none;
+                Index light = no_index;
                 if (kind == 0)
                     light = add_shape(
                         scene,

@@ -14,7 +14,7 @@ namespace {
 PlyMesh parse(const std::string& text) {
     return parse_ply({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "mesh.ply");
 }
-std::string error_of(const std::string& text) {
+std::string ply_error(const std::string& text) {
     try {
         parse(text);
     } catch (const Error& e) {
@@ -95,8 +95,8 @@ TEST(Ply, BinaryOfBothByteOrders) {
 
 TEST(Ply, EveryTruncationIsAnErrorAndNoCrash) {
     for (const std::string& whole : {binary(false), binary(true)})
-        for (std::size_t n = 0; n < whole.size(); ++n) EXPECT_NE(error_of(whole.substr(0, n)), "") << n;
-    for (std::size_t n = 0; n + 2 < ascii.size(); ++n) EXPECT_NE(error_of(ascii.substr(0, n)), "") << n;
+        for (std::size_t n = 0; n < whole.size(); ++n) EXPECT_NE(ply_error(whole.substr(0, n)), "") << n;
+    for (std::size_t n = 0; n + 2 < ascii.size(); ++n) EXPECT_NE(ply_error(ascii.substr(0, n)), "") << n;
 }
 
 TEST(Ply, MutationsThrowOnlyErrors) {
@@ -119,31 +119,31 @@ std::string replaced(std::string s, const std::string& from, const std::string& 
 }
 
 TEST(Ply, SentencesOfErrors) {
-    EXPECT_EQ(error_of(""), "mesh.ply:1: the header has no end; expected 'end_header'");
-    EXPECT_EQ(error_of("OFF\n"), "mesh.ply:1: expected 'ply' on the first line: this is no PLY file");
-    EXPECT_EQ(error_of(replaced(ascii, "ascii", "text")),
+    EXPECT_EQ(ply_error(""), "mesh.ply:1: the header has no end; expected 'end_header'");
+    EXPECT_EQ(ply_error("OFF\n"), "mesh.ply:1: expected 'ply' on the first line: this is no PLY file");
+    EXPECT_EQ(ply_error(replaced(ascii, "ascii", "text")),
               "mesh.ply:2: format 'text'; expected ascii, binary_little_endian or binary_big_endian");
-    EXPECT_EQ(error_of(replaced(ascii, "vertex 4", "vertex 4000000000")),
+    EXPECT_EQ(ply_error(replaced(ascii, "vertex 4", "vertex 4000000000")),
               "mesh.ply:4: the header tells of 4000000000 rows of 'vertex', more than the file can hold");
     EXPECT_EQ(
-        error_of(replaced(ascii, "face 2", "face 18446744073709551615")),
+        ply_error(replaced(ascii, "face 2", "face 18446744073709551615")),
         "mesh.ply:8: the header tells of 18446744073709551615 rows of 'face', more than the file can hold");
-    EXPECT_EQ(error_of(replaced(ascii, "vertex 4", "vertex -4")),
+    EXPECT_EQ(ply_error(replaced(ascii, "vertex 4", "vertex -4")),
               "mesh.ply:4: element 'vertex' has the count '-4'; expected a number of 0 or more");
-    EXPECT_EQ(error_of(replaced(ascii, "float y", "quad y")), "mesh.ply:6: unknown property type 'quad'");
-    EXPECT_EQ(error_of(replaced(ascii, "float y", "float w")),
+    EXPECT_EQ(ply_error(replaced(ascii, "float y", "quad y")), "mesh.ply:6: unknown property type 'quad'");
+    EXPECT_EQ(ply_error(replaced(ascii, "float y", "float w")),
               "mesh.ply:4: element 'vertex' needs the properties x, y and z");
-    EXPECT_EQ(error_of(replaced(ascii, "vertex_indices", "corners")),
+    EXPECT_EQ(ply_error(replaced(ascii, "vertex_indices", "corners")),
               "mesh.ply:8: element 'face' needs a list 'vertex_indices'");
-    EXPECT_EQ(error_of(replaced(ascii, "3 0 2 3", "3 0 2 4")),
+    EXPECT_EQ(ply_error(replaced(ascii, "3 0 2 3", "3 0 2 4")),
               "mesh.ply: triangle 1 refers to vertex 4; the file has 4 vertices");
-    EXPECT_EQ(error_of(replaced(ascii, "3 0 2 3", "3 0 2 -1")),
+    EXPECT_EQ(ply_error(replaced(ascii, "3 0 2 3", "3 0 2 -1")),
               "mesh.ply:16: a face has a negative vertex index or one beyond 2^32");
-    EXPECT_EQ(error_of(replaced(ascii, "1 1 0", "1 nan 0")), "mesh.ply:13: expected a number");
-    EXPECT_EQ(error_of(replaced(ascii, "1 1 0", "1 1e200 0")),
+    EXPECT_EQ(ply_error(replaced(ascii, "1 1 0", "1 nan 0")), "mesh.ply:13: expected a number");
+    EXPECT_EQ(ply_error(replaced(ascii, "1 1 0", "1 1e200 0")),
               "mesh.ply:13: vertex 2 has a value that is not finite");
-    EXPECT_EQ(error_of(replaced(ascii, "3 0 2 3", "3 0 2")), "mesh.ply:17: the data end early");
-    EXPECT_EQ(error_of(replaced(ascii, "element vertex 4", "element point 4")),
+    EXPECT_EQ(ply_error(replaced(ascii, "3 0 2 3", "3 0 2")), "mesh.ply:17: the data end early");
+    EXPECT_EQ(ply_error(replaced(ascii, "element vertex 4", "element point 4")),
               "mesh.ply: the file has no element 'vertex'");
 }
 
@@ -152,7 +152,7 @@ TEST(Ply, NotFiniteInBinary) {
         "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
         "property float z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n";
     for (float v : {0.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f}) put(s, v, false);
-    EXPECT_NE(error_of(s).find("vertex 0 has a value that is not finite"), std::string::npos);
+    EXPECT_NE(ply_error(s).find("vertex 0 has a value that is not finite"), std::string::npos);
 }
 
 TEST(Ply, DamagedFiles) {

@@ -19,16 +19,16 @@ TEST(VariancePool, IsTheMeanOfTheKnownOnesAroundAPixel) {
     EXPECT_EQ(pool_variances(std::vector<double>{3}, 1, 1), std::vector<double>{3});
 }
 
-constexpr int width = 250, height = 200;
+constexpr int columns = 250, rows = 200;
 
 // Each pixel is the mean of 16 exponential samples around a truth that varies over the picture, so its own
 // skewness is 2 / 4 = 0.5; `bias` is added to it in units of its true error.
 Image skewed_picture(std::uint64_t seed, double bias = 0) {
     constexpr int samples = 16;
-    Image image(width, height, {"Y", "stderr.Y"});
+    Image image(columns, rows, {"Y", "stderr.Y"});
     std::uint64_t draw = seed * 1000000000;
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x) {
             double truth = 1 + 0.9 * std::sin(0.05 * x) * std::cos(0.07 * y);
             RunningMoments moments;
             for (int i = 0; i < samples; ++i) moments.add(-truth * std::log(1 - noise(draw++)));
@@ -39,9 +39,9 @@ Image skewed_picture(std::uint64_t seed, double bias = 0) {
 }
 
 Image truth_of_skewed_picture() {
-    Image image(width, height, {"Y"});
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
+    Image image(columns, rows, {"Y"});
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x)
             image.set(x, y, 0, static_cast<float>(1 + 0.9 * std::sin(0.05 * x) * std::cos(0.07 * y)));
     return image;
 }
@@ -73,8 +73,8 @@ TEST(PooledScores, SeeABiasThatSkewnessHidesFromPlainOnes) {
     EXPECT_LT(std::abs(r.z.mean), 0.05);
     EXPECT_NEAR(r.pooled.mean, 0.25 - 0.25 / 9, 0.03);
     // Errors said to be half of what they are.
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) a.set(x, y, 1, a.value(x, y, 1) / 2);
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x) a.set(x, y, 1, a.value(x, y, 1) / 2);
     EXPECT_NEAR(compare_pictures(measured_picture("a", a), measured_picture("truth", truth))
                     .pooled.standard_deviation,
                 2, 0.06);

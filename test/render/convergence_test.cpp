@@ -107,7 +107,7 @@ SceneBuilder cornell_box() {
     for (Material& m : b.scene.materials)
         if (!std::holds_alternative<DiffuseMaterial>(m)) m = DiffuseMaterial{gray(0.7f)};
     b.scene.lights.resize(2);
-    b.scene.shapes.back().first_light = none;
+    b.scene.shapes.back().first_light = no_index;
     b.scene.world_shapes.pop_back();
     b.description.integrator.max_depth = 2;
     return b;

@@ -6,10 +6,6 @@
 namespace montelux::testing {
 namespace {
 
-constexpr SamplerKind samplers[] = {SamplerKind::independent, SamplerKind::stratified,
-                                    SamplerKind::halton,      SamplerKind::hammersley,
-                                    SamplerKind::sobol,       SamplerKind::sobol_blue_noise};
-
 int differing_pixels(const Film& a, const Film& b, const PixelBounds& within) {
     int n = 0;
     for (int y = within.y0; y < within.y1; ++y)

@@ -9,10 +9,6 @@ namespace montelux::testing {
 namespace {
 
 constexpr Strategy strategies[] = {Strategy::uniform, Strategy::bsdf, Strategy::light, Strategy::mis};
-constexpr SamplerKind samplers[] = {SamplerKind::independent, SamplerKind::stratified,
-                                    SamplerKind::halton,      SamplerKind::hammersley,
-                                    SamplerKind::sobol,       SamplerKind::sobol_blue_noise};
-
 void expect_picture(const SceneDescription& d, double truth, const std::string& what,
                     double tolerance = 2e-4) {
     PictureMean m = picture_mean(render(d));

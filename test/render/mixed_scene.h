@@ -18,7 +18,7 @@ inline SceneBuilder mixed_scene(double scale = 1, int width = 16, int height = 1
     b.description.film.crop = {0, 0, width, height};
     Transform unit = Transform::scale({scale, scale, scale});
     auto wall = [&](const Transform& t, Vec3f rgb) {
-        SpectrumParameter color{Spectrum(RgbAlbedoSpectrum(RgbColorSpace::srgb(), rgb)), none};
+        SpectrumParameter color{Spectrum(RgbAlbedoSpectrum(RgbColorSpace::srgb(), rgb)), no_index};
         b.add_mesh(square(unit * t), b.add(DiffuseMaterial{color}));
     };
     wall(Transform::translate({0, 0, -1}), {0.7f, 0.7f, 0.7f});

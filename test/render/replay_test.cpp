@@ -98,7 +98,7 @@ TEST(Replay, TheRecordAddsUp) {
                             sum += v.direct->contribution;
                             occluded += v.direct->outcome == DirectLight::Outcome::occluded;
                         }
-                        EXPECT_EQ(v.surface.has_value(), v.hit.shape != none);
+                        EXPECT_EQ(v.surface.has_value(), v.hit.shape != no_index);
                         if (v.roulette) {
                             survived += v.roulette->u < v.roulette->survival;
                         }

@@ -10,11 +10,15 @@
 
 namespace montelux::testing {
 
+inline constexpr SamplerKind samplers[] = {SamplerKind::independent, SamplerKind::stratified,
+                                           SamplerKind::halton,      SamplerKind::hammersley,
+                                           SamplerKind::sobol,       SamplerKind::sobol_blue_noise};
+
 // The spectrum of an RGB light that gives film RGB (1, 1, 1), and the scale that goes with it.
 inline Spectrum white_light() { return Spectrum(RgbIlluminantSpectrum(RgbColorSpace::srgb(), {1, 1, 1})); }
 inline float white_scale() { return static_cast<float>(1 / to_photometric(white_light())); }
 
-inline SpectrumParameter gray(float value) { return {Spectrum(value), none}; }
+inline SpectrumParameter gray(float value) { return {Spectrum(value), no_index}; }
 
 // A square of side 2 around the origin of the plane z = 0 of `t`, normal +z.
 inline TriangleMesh square(const Transform& t) {

@@ -14,7 +14,7 @@
 namespace montelux {
 namespace {
 
-const SampledWavelengths lambda = SampledWavelengths::sample_visible(0.37f);
+const SampledWavelengths wavelengths = SampledWavelengths::sample_visible(0.37f);
 
 Index add_light(Scene& scene, Shape shape, bool two_sided, float radiance = 2) {
     shape.first_light = static_cast<Index>(scene.lights.size());
@@ -45,7 +45,7 @@ Index add_light(Scene& scene, Vec3f a, Vec3f b, Vec3f c, bool two_sided = false)
 std::vector<SurfacePoint> points_along(const Scene& scene, const AreaLight& light, const Ray& ray) {
     std::vector<SurfacePoint> points;
     const Shape& shape = scene.shapes[light.shape];
-    if (shape.quadric != none) {
+    if (shape.quadric != no_index) {
         double t_min = 0;
         while (auto t = intersect(scene.quadrics[shape.quadric], ray, t_min)) {
             points.push_back(
@@ -118,7 +118,7 @@ TEST(AreaLights, DirectionsFollowTheirDensity) {
         SceneTables tables(c.scene);
         const auto& light = std::get<AreaLight>(c.scene.lights[0]);
         auto sample = [&](Vec2f u) -> std::optional<Vec3f> {
-            auto s = sample_light(c.scene, tables.lights(), 0, origin, u, lambda);
+            auto s = sample_light(c.scene, tables.lights(), 0, origin, u, wavelengths);
             if (!s) return std::nullopt;
             return s->wi;
         };
@@ -149,7 +149,7 @@ TEST(AreaLights, SamplesAgreeWithHits) {
         int found = 0, samples = 0;
         for (int i = 0; i < 5000; ++i) {
             Vec2f u = uniforms.next_2f();
-            auto s = sample_light(c.scene, tables.lights(), 0, origin, u, lambda);
+            auto s = sample_light(c.scene, tables.lights(), 0, origin, u, wavelengths);
             if (!s) continue;
             ++samples;
             ASSERT_NEAR(length(s->wi), 1, 1e-5) << c.name;
@@ -164,7 +164,7 @@ TEST(AreaLights, SamplesAgreeWithHits) {
             if (nearest == nullptr) continue; // rounding at a rim
             ++found;
             ASSERT_LT(length(nearest->p - end), 2e-3f) << c.name;
-            SampledSpectrum le = emitted_radiance(light, nearest->ng, -s->wi, lambda);
+            SampledSpectrum le = emitted_radiance(light, nearest->ng, -s->wi, wavelengths);
             ASSERT_EQ(le[0], s->radiance[0]) << c.name;
             float pdf = area_light_pdf(c.scene, tables.lights(), 0, origin, nearest->p, nearest->ng);
             if (std::abs(dot(nearest->ng, s->wi)) > 0.05f) {
@@ -186,11 +186,11 @@ TEST(AreaLights, OneSidedLightsAreDarkBehind) {
     for (int i = 0; i < 100; ++i)
         for (Index light : {0u, 1u, 2u}) {
             Vec2f u = uniforms.next_2f();
-            EXPECT_FALSE(sample_light(scene, tables.lights(), light, origin, u, lambda)) << light;
+            EXPECT_FALSE(sample_light(scene, tables.lights(), light, origin, u, wavelengths)) << light;
         }
     const auto& light = std::get<AreaLight>(scene.lights[0]);
-    EXPECT_EQ(emitted_radiance(light, {0, 0, 1}, {0, 0, -1}, lambda)[0], 0);
-    EXPECT_EQ(emitted_radiance(light, {0, 0, 1}, {0, 0, 1}, lambda)[0], 2);
+    EXPECT_EQ(emitted_radiance(light, {0, 0, 1}, {0, 0, -1}, wavelengths)[0], 0);
+    EXPECT_EQ(emitted_radiance(light, {0, 0, 1}, {0, 0, 1}, wavelengths)[0], 2);
 }
 
 TEST(InfiniteLights, DirectionsFollowTheirDensity) {
@@ -211,7 +211,7 @@ TEST(InfiniteLights, DirectionsFollowTheirDensity) {
         }
         SceneTables tables(scene);
         auto sample = [&](Vec2f u) -> std::optional<Vec3f> {
-            auto s = sample_light(scene, tables.lights(), 0, origin, u, lambda);
+            auto s = sample_light(scene, tables.lights(), 0, origin, u, wavelengths);
             if (!s) return std::nullopt;
             return s->wi;
         };
@@ -226,13 +226,13 @@ TEST(InfiniteLights, DirectionsFollowTheirDensity) {
         int differing = 0;
         for (int i = 0; i < 5000; ++i) {
             Vec2f u = uniforms.next_2f();
-            auto s = sample_light(scene, tables.lights(), 0, origin, u, lambda);
+            auto s = sample_light(scene, tables.lights(), 0, origin, u, wavelengths);
             ASSERT_TRUE(s);
             ASSERT_FALSE(s->delta);
             ASSERT_TRUE(std::isinf(s->shadow.t_max));
             // Rounding may send the direction of a point on a texel's edge back into its neighbour.
             bool same = std::abs(infinite_light_pdf(scene, tables.lights(), 0, s->wi) / s->pdf - 1) < 1e-3f &&
-                        std::abs(infinite_radiance(scene, tables.lights(), 0, s->wi, lambda)[1] -
+                        std::abs(infinite_radiance(scene, tables.lights(), 0, s->wi, wavelengths)[1] -
                                  s->radiance[1]) < 1e-3f * s->radiance[1];
             differing += !same;
         }
@@ -254,11 +254,11 @@ TEST(InfiniteLights, MapsIntegrateToTheirMean) {
     scene.lights.push_back(ImageInfiniteLight{
         .environment = 0, .scale = 2, .world_from_light = Transform::rotate(30, {1, 1, 0})});
     SceneTables tables(scene);
-    SampledSpectrum white = RgbIlluminantSpectrum(RgbColorSpace::srgb(), {1, 1, 1}).sample(lambda);
+    SampledSpectrum white = RgbIlluminantSpectrum(RgbColorSpace::srgb(), {1, 1, 1}).sample(wavelengths);
     TestUniforms uniforms(3);
     RunningMoments m;
     for (int i = 0; i < 20000; ++i) {
-        auto s = sample_light(scene, tables.lights(), 0, origin, uniforms.next_2f(), lambda);
+        auto s = sample_light(scene, tables.lights(), 0, origin, uniforms.next_2f(), wavelengths);
         if (s) m.add(double(s->radiance[0] / white[0] / s->pdf));
     }
     // Grey texels: density and radiance rise together, and the estimate has hardly any noise.
@@ -273,7 +273,7 @@ TEST(PointLights, InverseSquareAndFalloff) {
     scene.lights.push_back(DistantLight{Spectrum(1.0f), 5, normalize(Vec3f{1, 2, 2})});
     SceneTables tables(scene);
     auto at = [&](Index light, Point3f p) {
-        return sample_light(scene, tables.lights(), light, {p, {0, 0, 1}, 0}, {0.3f, 0.8f}, lambda);
+        return sample_light(scene, tables.lights(), light, {p, {0, 0, 1}, 0}, {0.3f, 0.8f}, wavelengths);
     };
     auto point = at(0, {0, 0, 0});
     ASSERT_TRUE(point && point->delta);

@@ -13,8 +13,8 @@
 namespace montelux::pbrt {
 namespace {
 
-constexpr std::array<std::string_view, 6> plugins = {"point",    "spot",        "distant",
-                                                     "infinite", "goniometric", "projection"};
+constexpr std::array<std::string_view, 6> light_plugins = {"point",    "spot",        "distant",
+                                                           "infinite", "goniometric", "projection"};
 
 float photometric_scale(const Spectrum& s, ParameterReader& r) {
     double y = to_photometric(s);
@@ -141,7 +141,7 @@ Light LightReader::read(const Plugin& plugin, const Transform& world_from_light,
     } else if (plugin.name == "goniometric" || plugin.name == "projection") {
         r.error("light " + in_quotes(plugin.name) + " is not supported yet");
     } else {
-        r.error("unknown light " + in_quotes(plugin.name) + did_you_mean(plugin.name, plugins));
+        r.error("unknown light " + in_quotes(plugin.name) + did_you_mean(plugin.name, light_plugins));
     }
     r.finish();
     return light;

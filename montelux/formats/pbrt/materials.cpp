@@ -8,8 +8,8 @@
 namespace montelux::pbrt {
 namespace {
 
-constexpr std::array<std::string_view, 6> supported = {"diffuse",        "conductor",     "dielectric",
-                                                       "thindielectric", "coateddiffuse", "coatedconductor"};
+constexpr std::array<std::string_view, 6> supported_materials = {
+    "diffuse", "conductor", "dielectric", "thindielectric", "coateddiffuse", "coatedconductor"};
 constexpr std::array<std::string_view, 12> known = {"diffuse",
                                                     "conductor",
                                                     "dielectric",
@@ -132,7 +132,9 @@ class MaterialMaker {
 } // namespace
 
 bool is_supported_material(const MaterialDeclaration& d, Diagnostics& diagnostics) {
-    if (std::find(supported.begin(), supported.end(), d.type) != supported.end()) return true;
+    if (std::find(supported_materials.begin(), supported_materials.end(), d.type) !=
+        supported_materials.end())
+        return true;
     if (d.type.empty() || d.type == "none") return false;
     if (std::find(known.begin(), known.end(), d.type) == known.end())
         diagnostics.error(d.at, "unknown material " + in_quotes(d.type) + did_you_mean(d.type, known));

@@ -75,7 +75,7 @@ void SceneBuilder::attribute_end(Location at) {
 
 void SceneBuilder::object_begin(const std::string& name, Location at) {
     require_world("ObjectBegin", at);
-    if (open_object_ != none) diagnostics_.error(at, "ObjectBegin inside another object's definition");
+    if (open_object_ != no_index) diagnostics_.error(at, "ObjectBegin inside another object's definition");
     Index index = static_cast<Index>(result_.scene.objects.size());
     if (!objects_.emplace(name, index).second)
         diagnostics_.error(at, "object " + in_quotes(name) + " is defined twice");
@@ -87,12 +87,12 @@ void SceneBuilder::object_begin(const std::string& name, Location at) {
 void SceneBuilder::object_end(Location at) {
     require_world("ObjectEnd", at);
     pop(Block::Kind::object, "ObjectEnd", at);
-    open_object_ = none;
+    open_object_ = no_index;
 }
 
 void SceneBuilder::object_instance(const std::string& name, Location at) {
     require_world("ObjectInstance", at);
-    if (open_object_ != none) diagnostics_.error(at, "ObjectInstance inside an object's definition");
+    if (open_object_ != no_index) diagnostics_.error(at, "ObjectInstance inside an object's definition");
     instances_.push_back({name, still_transform(at), at});
 }
 

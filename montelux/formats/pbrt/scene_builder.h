@@ -134,7 +134,7 @@ class SceneBuilder {
     std::vector<AlphaUse> alpha_uses_;
 
     std::map<std::string, Index> objects_;
-    Index open_object_ = none;
+    Index open_object_ = no_index;
     std::vector<InstanceUse> instances_;
 };
 

@@ -83,19 +83,19 @@ void SceneBuilder::shape(const std::string& name, std::vector<Parameter> paramet
         scene.quadrics.push_back(std::get<Quadric>(geometry.shape));
     }
     scene.shapes.push_back(shape);
-    (open_object_ == none ? scene.world_shapes : scene.objects[open_object_].shapes).push_back(index);
+    (open_object_ == no_index ? scene.world_shapes : scene.objects[open_object_].shapes).push_back(index);
 }
 
 void SceneBuilder::add_lights(Shape& shape, Index index, const Geometry& geometry, Location at) {
     if (!state_.emission) return;
-    if (open_object_ != none) {
+    if (open_object_ != no_index) {
         diagnostics_.warn_once("area light in object", at,
                                "area lights inside object definitions do not shine, as in pbrt");
         return;
     }
     std::vector<Light>& lights = result_.scene.lights;
     std::size_t count = geometry.primitive_count();
-    if (lights.size() + count >= none) diagnostics_.error(at, "more than 2^32 lights");
+    if (lights.size() + count >= no_index) diagnostics_.error(at, "more than 2^32 lights");
     if (count > 0) shape.first_light = static_cast<Index>(lights.size());
     for (std::size_t i = 0; i < count; ++i)
         lights.push_back(state_.emission->light(index, static_cast<Index>(i), geometry.area(i)));
@@ -128,7 +128,7 @@ Index SceneBuilder::material_index(const MaterialReference& reference, Location 
         declaration = found->second;
     }
     Index& index = material_indices_[declaration];
-    if (index == none) {
+    if (index == no_index) {
         result_.scene.materials.push_back(
             make_material(materials_[declaration], textures_, spectra_, diagnostics_));
         index = static_cast<Index>(result_.scene.materials.size() - 1);
@@ -137,12 +137,12 @@ Index SceneBuilder::material_index(const MaterialReference& reference, Location 
 }
 
 void SceneBuilder::finish_materials() {
-    material_indices_.assign(materials_.size(), none);
+    material_indices_.assign(materials_.size(), no_index);
     for (const MaterialUse& use : material_uses_)
         result_.scene.shapes[use.shape].material = material_index(use.material, use.at);
     // Unused ones are read as well, so that what is wrong with them is told.
     for (std::size_t i = 1; i < materials_.size(); ++i) {
-        if (material_indices_[i] != none) continue;
+        if (material_indices_[i] != no_index) continue;
         if (is_supported_material(materials_[i], diagnostics_))
             material_index({false, i}, materials_[i].at);
         else

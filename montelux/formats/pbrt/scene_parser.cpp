@@ -10,7 +10,7 @@ namespace montelux::pbrt {
 namespace {
 
 // Files inside one another, and files altogether: beyond it a scene is taken for a trap.
-constexpr std::size_t max_depth = 64;
+constexpr std::size_t most_open_files = 64;
 constexpr std::size_t max_files = 100000;
 
 } // namespace
@@ -102,9 +102,9 @@ void SceneParser::nested_file(const Token& directive) {
     std::filesystem::path canonical = std::filesystem::weakly_canonical(path);
     if (std::find(open_files_.begin(), open_files_.end(), canonical) != open_files_.end())
         diagnostics_.error(directive.at, "'" + path.string() + "' includes itself");
-    if (open_files_.size() >= max_depth)
+    if (open_files_.size() >= most_open_files)
         diagnostics_.error(directive.at,
-                           "files are nested more than " + std::to_string(max_depth) + " levels deep");
+                           "files are nested more than " + std::to_string(most_open_files) + " levels deep");
     if (++files_entered_ > max_files)
         diagnostics_.error(directive.at, "more than " + std::to_string(max_files) + " files");
     std::vector<std::uint8_t> bytes = files_.read(path, directive.at);

@@ -79,8 +79,9 @@ void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& fil
     // Far below the 4000 K where the CIE's daylight series begins its chromaticities leave the plane of
     // colours.
     if (film.white_balance != 0 && !(film.white_balance >= 2000))
-        r.error("whitebalance", "parameter 'whitebalance' is below 2000; expected 0 (none) or a temperature "
-                                "of 2000 K or more");
+        r.error("whitebalance",
+                "parameter 'whitebalance' is below 2000; expected 0 (no_index) or a temperature "
+                "of 2000 K or more");
     film.max_component_value = r.number("maxcomponentvalue", std::numeric_limits<float>::infinity());
     if (!(film.max_component_value > 0))
         r.error("maxcomponentvalue", "parameter 'maxcomponentvalue' must be positive");

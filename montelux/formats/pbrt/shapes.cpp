@@ -13,8 +13,8 @@
 namespace montelux::pbrt {
 namespace {
 
-constexpr std::array<std::string_view, 8> plugins = {"sphere",     "disk",     "trianglemesh", "plymesh",
-                                                     "loopsubdiv", "cylinder", "bilinearmesh", "curve"};
+constexpr std::array<std::string_view, 8> shape_plugins = {
+    "sphere", "disk", "trianglemesh", "plymesh", "loopsubdiv", "cylinder", "bilinearmesh", "curve"};
 
 float radians(float degrees) { return std::clamp(degrees, 0.0f, 360.0f) * (pi_f / 180); }
 
@@ -192,10 +192,10 @@ Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transfo
         mesh = read_ply_mesh(r, files);
     else if (plugin == "loopsubdiv")
         mesh = read_loop_subdivision(r);
-    else if (std::find(plugins.begin(), plugins.end(), plugin) != plugins.end())
+    else if (std::find(shape_plugins.begin(), shape_plugins.end(), plugin) != shape_plugins.end())
         r.error("shape " + in_quotes(plugin) + " is not supported yet");
     else
-        r.error("unknown shape " + in_quotes(plugin) + did_you_mean(plugin, plugins));
+        r.error("unknown shape " + in_quotes(plugin) + did_you_mean(plugin, shape_plugins));
     move_to_world(mesh, world_from_object, reverse_orientation, r);
     return {std::move(mesh)};
 }

@@ -12,14 +12,14 @@
 namespace montelux::pbrt {
 namespace {
 
-constexpr std::array<std::string_view, 5> supported = {"constant", "imagemap", "scale", "mix",
-                                                       "checkerboard"};
-constexpr std::array<std::string_view, 13> plugins = {
+constexpr std::array<std::string_view, 5> supported_textures = {"constant", "imagemap", "scale", "mix",
+                                                                "checkerboard"};
+constexpr std::array<std::string_view, 13> texture_plugins = {
     "constant", "imagemap", "scale", "mix",   "checkerboard", "bilerp",      "dots",
     "fbm",      "marble",   "ptex",  "windy", "wrinkled",     "directionmix"};
 
 // Deeper trees of textures are refused: looking one up is recursive.
-constexpr std::size_t max_depth = 64;
+constexpr std::size_t most_nested = 64;
 
 std::string label(const TextureDeclaration& d) { return "texture " + in_quotes(d.plugin); }
 
@@ -58,9 +58,10 @@ void TextureLibrary::declare(std::string_view type, const std::string& name, Tex
     if (type != "float" && type != "spectrum")
         diagnostics_.error(declaration.at, "texture " + in_quotes(name) + " has type " + in_quotes(type) +
                                                "; expected 'float' or 'spectrum'");
-    if (std::find(plugins.begin(), plugins.end(), declaration.plugin) == plugins.end())
+    if (std::find(texture_plugins.begin(), texture_plugins.end(), declaration.plugin) ==
+        texture_plugins.end())
         diagnostics_.error(declaration.at, "unknown texture " + in_quotes(declaration.plugin) +
-                                               did_you_mean(declaration.plugin, plugins));
+                                               did_you_mean(declaration.plugin, texture_plugins));
     Table& table = type == "float" ? float_ : spectrum_;
     Location at = declaration.at;
     std::size_t order = float_.size() + spectrum_.size() + 1;
@@ -114,7 +115,7 @@ std::optional<SpectrumParameter> TextureLibrary::find_spectrum(ParameterReader& 
 }
 
 Index TextureLibrary::resolve_float(Entry& entry) {
-    if (entry.nodes[0] != none) return entry.nodes[0];
+    if (entry.nodes[0] != no_index) return entry.nodes[0];
     FloatTexture node = make_node<FloatParameter>(entry, RgbMeaning::unbounded);
     scene_.float_textures.push_back(std::move(node));
     return entry.nodes[0] = static_cast<Index>(scene_.float_textures.size() - 1);
@@ -122,7 +123,7 @@ Index TextureLibrary::resolve_float(Entry& entry) {
 
 Index TextureLibrary::resolve_spectrum(Entry& entry, RgbMeaning meaning) {
     Index& index = entry.nodes[static_cast<std::size_t>(meaning)];
-    if (index != none) return index;
+    if (index != no_index) return index;
     SpectrumTexture node = make_node<SpectrumParameter>(entry, meaning);
     scene_.spectrum_textures.push_back(std::move(node));
     return index = static_cast<Index>(scene_.spectrum_textures.size() - 1);
@@ -140,10 +141,10 @@ Parameter TextureLibrary::input(ParameterReader& r, std::string_view name, RgbMe
 template <typename Parameter>
 TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meaning) {
     const TextureDeclaration& d = entry.declaration;
-    if (std::find(supported.begin(), supported.end(), d.plugin) == supported.end())
+    if (std::find(supported_textures.begin(), supported_textures.end(), d.plugin) == supported_textures.end())
         diagnostics_.error(d.at, label(d) + " is not supported yet");
-    if (resolving_ >= max_depth)
-        diagnostics_.error(d.at, "textures refer to one another more than " + std::to_string(max_depth) +
+    if (resolving_ >= most_nested)
+        diagnostics_.error(d.at, "textures refer to one another more than " + std::to_string(most_nested) +
                                      " levels deep");
     std::size_t outer = std::exchange(resolving_order_, entry.order);
     ++resolving_;
@@ -258,7 +259,7 @@ Index TextureLibrary::image(const std::string& file, const std::optional<std::st
 void TextureLibrary::warn_of_unused() {
     for (const Table* table : {&float_, &spectrum_})
         for (const auto& [name, entry] : *table)
-            if (std::all_of(entry.nodes.begin(), entry.nodes.end(), [](Index i) { return i == none; }))
+            if (std::all_of(entry.nodes.begin(), entry.nodes.end(), [](Index i) { return i == no_index; }))
                 diagnostics_.warn(entry.declaration.at,
                                   "texture " + in_quotes(name) + " is not used and was not read");
 }

@@ -50,7 +50,7 @@ class TextureLibrary {
     struct Entry {
         TextureDeclaration declaration;
         std::size_t order = 0;
-        std::array<Index, 3> nodes{none, none, none}; // float textures use the first alone
+        std::array<Index, 3> nodes{no_index, no_index, no_index}; // float textures use the first alone
     };
     using Table = std::map<std::string, Entry, std::less<>>;
 

@@ -7,17 +7,11 @@
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
-namespace {
-
-constexpr const char* where = "inversion of a density";
-
-} // namespace
-
 void require_interval(double a, double b) {
     if (a < b) return;
     std::ostringstream what;
     what << "the interval [" << a << ", " << b << "] is empty; expected a < b";
-    throw Error(where, what.str());
+    throw Error(inversion_errors, what.str());
 }
 
 void require_growth(double a, double at_a, double b, double at_b) {
@@ -25,7 +19,7 @@ void require_growth(double a, double at_a, double b, double at_b) {
     std::ostringstream what;
     what << "the antiderivative is " << at_a << " at " << a << " and " << at_b << " at " << b
          << "; expected finite values that grow (at an infinite end, the limit)";
-    throw Error(where, what.str());
+    throw Error(inversion_errors, what.str());
 }
 
 double point_inside(double a, double b, double t) {
@@ -40,7 +34,7 @@ void require_rising(double x, double density, double value, double at_a, double 
     std::ostringstream what;
     what << "the antiderivative is " << value << " at x = " << x << ", and " << at_a << " and " << at_b
          << " at the ends; expected one that does not fall";
-    throw Error(where, what.str());
+    throw Error(inversion_errors, what.str());
 }
 
 void require_antiderivative(double x, double density, double value, double target, double integral) {
@@ -49,14 +43,14 @@ void require_antiderivative(double x, double density, double value, double targe
     std::ostringstream what;
     what << "the antiderivative is " << value << " at x = " << x << ", which its inverse gave for " << target
          << "; expected a continuous antiderivative that does not fall, and its own inverse";
-    throw Error(where, what.str());
+    throw Error(inversion_errors, what.str());
 }
 
 void throw_wrong_slope(double x, double slope, double density) {
     std::ostringstream what;
     what << "the antiderivative rises by " << slope << " per unit at x = " << x << ", where the density is "
          << density << "; expected one whose derivative is the density";
-    throw Error(where, what.str());
+    throw Error(inversion_errors, what.str());
 }
 
 } // namespace montelux

@@ -3,6 +3,9 @@
 
 namespace montelux {
 
+// Where the errors of an inversion are from.
+inline constexpr const char* inversion_errors = "inversion of a density";
+
 // Each require_* throws Error with a sentence.
 void require_interval(double a, double b);
 void require_growth(double a, double at_a, double b, double at_b);

@@ -7,11 +7,7 @@
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
-namespace {
-
-constexpr const char* where = "inversion of a density";
-
-} // namespace
+namespace {} // namespace
 
 std::vector<std::pair<double, double>> InversionPiece::first_panels() const {
     constexpr int equal = 16, grades = 12;
@@ -34,7 +30,7 @@ std::vector<InversionPiece> inversion_pieces(double a, double b, std::span<const
         if (!(x >= a && x <= b && std::isfinite(x))) {
             std::ostringstream what;
             what << "the break point " << x << " is not in [" << a << ", " << b << "]";
-            throw Error(where, what.str());
+            throw Error(inversion_errors, what.str());
         }
         edges.push_back(x);
     }
@@ -54,7 +50,8 @@ std::vector<InversionPiece> inversion_pieces(double a, double b, std::span<const
     }
     for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
         double half = 0.5 * edges[i + 1] - 0.5 * edges[i];
-        if (!std::isfinite(half)) throw Error(where, "the interval is wider than the largest number");
+        if (!std::isfinite(half))
+            throw Error(inversion_errors, "the interval is wider than the largest number");
         pieces.push_back({edges[i], half, false});
         pieces.push_back({edges[i + 1], -half, false});
     }
@@ -70,13 +67,13 @@ void throw_bad_density(double x, double y) {
     std::ostringstream what;
     what << "the function is " << y << " at x = " << x << "; expected a finite number that is not negative";
     if (y > 0) what << " (where it is infinite but integrable, give a break point)";
-    throw Error(where, what.str());
+    throw Error(inversion_errors, what.str());
 }
 void throw_no_density(double a, double b) {
     std::ostringstream what;
     what << "the function is zero wherever it was asked on [" << a << ", " << b
          << "], so it has no density; a narrow peak needs a break point in it";
-    throw Error(where, what.str());
+    throw Error(inversion_errors, what.str());
 }
 void throw_not_integrable(double x) {
     std::ostringstream what;
@@ -84,7 +81,7 @@ void throw_not_integrable(double x) {
          << ": it is not integrable there, or needs a break point, or is so steep that numbers near x are "
             "too far "
             "apart (move that point to 0)";
-    throw Error(where, what.str());
+    throw Error(inversion_errors, what.str());
 }
 
 } // namespace montelux

@@ -48,8 +48,7 @@ class ControlVariateEstimator final : public Estimator {
         const std::uint64_t done = joint_.count(), limit = request.max_evaluations;
         // A regression takes more points than unknowns.
         const std::uint64_t least = done == 0 ? static_cast<std::uint64_t>(2 * controls() + 8) : 2;
-        std::uint64_t size =
-            done == 0 ? std::min<std::uint64_t>(4096, limit / 16) : next_step_size(done, 0, limit);
+        std::uint64_t size = next_step_size_after_pilot(done, limit);
         size = std::max(size, least);
         if (size > limit) return StepOutcome::exhausted;
         auto sum = sum_batches(

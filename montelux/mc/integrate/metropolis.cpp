@@ -18,7 +18,7 @@ namespace {
 
 constexpr int windows = 20;                          // of the burn-in, between which the walk adapts
 constexpr std::uint64_t most_pilot_points = 1 << 22; // in search of a start
-constexpr std::uint64_t first_step = 1 << 14, large_step = 1 << 20;
+constexpr std::uint64_t first_step = 1 << 14;
 constexpr double converged = 1.01;
 constexpr double concentrated = 0.1;
 enum Stream : std::uint32_t { pilot_stream = 1, start_stream = 2, normal_stream = 4 };

@@ -190,7 +190,7 @@ class OptimalEstimator final : public RoundsEstimator {
 
   private:
     std::uint64_t step_size(std::uint64_t done, std::uint64_t limit) const override {
-        return done == 0 ? std::min<std::uint64_t>(4096, limit / 16) : next_step_size(done, 0, limit);
+        return next_step_size_after_pilot(done, limit);
     }
     // A variance takes two samples of each technique.
     std::uint64_t least_rounds() const override { return 2; }

@@ -71,9 +71,12 @@ void load(StateReader& state, NonFiniteCount& count) {
 }
 
 std::uint64_t next_step_size(std::uint64_t done, std::uint64_t first, std::uint64_t limit) {
-    constexpr std::uint64_t large = 1 << 20;
-    std::uint64_t size = done == 0 ? first : done <= large ? done : std::max(large, done / 10);
+    std::uint64_t size = done == 0 ? first : done <= large_step ? done : std::max(large_step, done / 10);
     return std::min(size, limit);
+}
+
+std::uint64_t next_step_size_after_pilot(std::uint64_t done, std::uint64_t limit) {
+    return next_step_size(done, std::min<std::uint64_t>(4096, limit / 16), limit);
 }
 
 } // namespace montelux

@@ -66,8 +66,13 @@ void load(StateReader& state, CovarianceMoments& moments);
 void save(StateWriter& state, const NonFiniteCount& count);
 void load(StateReader& state, NonFiniteCount& count);
 
+// Evaluations after which a step may end, however many there are: progress and checkpoints are not far.
+inline constexpr std::uint64_t large_step = 1 << 20;
+
 // The size of the next step of an estimator that has made `done` evaluations: a doubling at first, a tenth
 // later on, so that there are steps enough to stop at, and within `limit`.
 std::uint64_t next_step_size(std::uint64_t done, std::uint64_t first, std::uint64_t limit);
+// The same for an estimator whose first step is a pilot: a sixteenth of the limit at most.
+std::uint64_t next_step_size_after_pilot(std::uint64_t done, std::uint64_t limit);
 
 } // namespace montelux

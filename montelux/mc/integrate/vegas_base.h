@@ -11,6 +11,9 @@
 
 namespace montelux {
 
+// Points of a batch that one task takes.
+inline constexpr std::uint64_t vegas_task_points = 1 << 14;
+
 // The state that both forms have.
 struct VegasState {
     AdaptiveMap map;

@@ -11,10 +11,8 @@
 namespace montelux {
 namespace {
 
-constexpr std::uint64_t task_points = 1 << 14;
-constexpr std::uint64_t large_step = 1 << 20; // evaluations
-constexpr std::uint64_t first_points = 256;   // of a replicate
-constexpr std::uint64_t growth = 16;          // of iterations
+constexpr std::uint64_t first_points = 256; // of a replicate
+constexpr std::uint64_t growth = 16;        // of iterations
 constexpr std::uint64_t longest = std::uint64_t{1} << 31;
 
 struct ReplicatePass {
@@ -129,14 +127,14 @@ class SobolVegas final : public VegasEstimator {
 
     std::optional<ReplicatePass> sample(const VegasState& next, std::uint32_t stream, std::uint64_t first,
                                         std::uint64_t points, bool training, const CancelFlag* cancel) const {
-        const std::uint64_t runs = (points + task_points - 1) / task_points;
+        const std::uint64_t runs = (points + vegas_task_points - 1) / vegas_task_points;
         return parallel_reduce_ordered(
             static_cast<std::int64_t>(runs * replicates()),
             [&](std::int64_t t) {
                 const auto replicate = static_cast<std::uint64_t>(t) / runs;
-                const std::uint64_t begin = static_cast<std::uint64_t>(t) % runs * task_points;
+                const std::uint64_t begin = static_cast<std::uint64_t>(t) % runs * vegas_task_points;
                 return run(next, stream, static_cast<int>(replicate), first + begin,
-                           std::min(task_points, points - begin), points * replicates(), training);
+                           std::min(vegas_task_points, points - begin), points * replicates(), training);
             },
             [](ReplicatePass a, const ReplicatePass& b) {
                 a.merge(b);

@@ -12,8 +12,6 @@ namespace {
 
 constexpr std::uint64_t most_boxes = 1 << 18;
 constexpr std::uint64_t points_per_box = 8; // at least two of them are each box's own
-constexpr std::uint64_t task_points = 1 << 14;
-constexpr std::uint64_t large_step = 1 << 20;
 
 // Moments of the values in one box.
 class BoxMoments {
@@ -161,7 +159,7 @@ class StratifiedVegas final : public VegasEstimator {
         std::vector<Task> tasks;
         std::uint64_t point = 0;
         for (std::size_t h = 0; h < counts.size(); ++h) {
-            if (tasks.empty() || point - tasks.back().first_point >= task_points)
+            if (tasks.empty() || point - tasks.back().first_point >= vegas_task_points)
                 tasks.push_back({h, h, point});
             tasks.back().end = h + 1;
             point += counts[h];

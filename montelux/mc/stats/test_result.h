@@ -12,15 +12,15 @@ struct TestResult {
     double p_value = 0;            // probability of a result this bad from correct code
     std::string description;
 
-    // Rejects correct code with probability `significance` at most. NaN does not pass.
-    bool passes(double significance) const { return p_value > significance; }
+    // Rejects correct code with probability `level` at most. NaN does not pass.
+    bool passes(double level) const { return p_value > level; }
 };
 
 // The threshold for each of `tests` independent tests when all together may raise a false alarm with
-// probability `significance`. Sidak 1967, "Rectangular Confidence Regions for the Means of Multivariate
+// probability `level`. Sidak 1967, "Rectangular Confidence Regions for the Means of Multivariate
 // Normal Distributions".
-inline double sidak_threshold(double significance, int tests) {
-    return -std::expm1(std::log1p(-significance) / tests);
+inline double sidak_threshold(double level, int tests) {
+    return -std::expm1(std::log1p(-level) / tests);
 }
 
 } // namespace montelux

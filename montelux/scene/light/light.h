@@ -14,7 +14,7 @@ struct AreaLight {
     Spectrum spectrum;
     float scale = 1;
     bool two_sided = false;
-    Index shape = none;
+    Index shape = no_index;
     Index primitive = 0;
 };
 // Radiant intensity scale * spectrum from one point.
@@ -44,7 +44,7 @@ struct UniformInfiniteLight {
 };
 // Radiance from a square equal-area octahedral map (Clarberg 2008) of RGB illuminants.
 struct ImageInfiniteLight {
-    Index environment = none; // into Scene::environments
+    Index environment = no_index; // into Scene::environments
     const RgbColorSpace* color_space = &RgbColorSpace::srgb();
     float scale = 1;
     Transform world_from_light;

@@ -148,7 +148,7 @@ std::optional<LightSample> sample_light(const Scene& scene, const LightTables& t
     const Light& any = scene.lights[index];
     if (const auto* light = std::get_if<AreaLight>(&any)) {
         const Shape& shape = scene.shapes[light->shape];
-        if (shape.mesh != none) {
+        if (shape.mesh != no_index) {
             const LightTriangle& t = tables.triangle(index);
             if (!(t.area > 0)) return std::nullopt;
             Vec3f b = sample_uniform_triangle(u);
@@ -207,7 +207,7 @@ float area_light_pdf(const Scene& scene, const LightTables& tables, Index index,
     const auto& light = std::get<AreaLight>(scene.lights[index]);
     const Shape& shape = scene.shapes[light.shape];
     float area_density;
-    if (shape.mesh != none) {
+    if (shape.mesh != no_index) {
         area_density = 1 / tables.triangle(index).area;
     } else if (const auto& disk = tables.disk(index)) {
         area_density = 1 / disk->area;

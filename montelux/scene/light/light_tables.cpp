@@ -96,7 +96,7 @@ Bounds3 bounds_of(const Scene& scene) {
     auto add_shape = [&](Index index, const Transform* t) {
         const Shape& shape = scene.shapes[index];
         auto add = [&](Vec3d p) { bounds.add(t != nullptr ? t->point(p) : p); };
-        if (shape.mesh != none) {
+        if (shape.mesh != no_index) {
             for (Point3f p : scene.meshes[shape.mesh].positions) add(Vec3d(p));
         } else {
             Bounds3 b = world_bounds(scene.quadrics[shape.quadric]);
@@ -113,7 +113,7 @@ Bounds3 bounds_of(const Scene& scene) {
 }
 
 LightTables::LightTables(const Scene& scene)
-    : triangle_of_light_(scene.lights.size(), none), spheres_(scene.lights.size()),
+    : triangle_of_light_(scene.lights.size(), no_index), spheres_(scene.lights.size()),
       disks_(scene.lights.size()), bounds_(bounds_of(scene)) {
     for (const Image& map : scene.environments) environments_.push_back(environment_density(map));
     map_spectra_.resize(scene.environments.size());
@@ -128,7 +128,7 @@ LightTables::LightTables(const Scene& scene)
                 if constexpr (std::is_same_v<L, AreaLight>) {
                     const Shape& shape = scene.shapes[light.shape];
                     double area;
-                    if (shape.mesh != none) {
+                    if (shape.mesh != no_index) {
                         triangle_of_light_[i] = static_cast<Index>(triangles_.size());
                         triangles_.push_back(light_triangle(scene, light));
                         area = double(triangles_.back().area);

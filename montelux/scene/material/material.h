@@ -45,7 +45,7 @@ struct CoatedDiffuseMaterial {
     SpectrumParameter reflectance;
     CoatingParameters coating;
     Index albedo_table =
-        none; // into Scene::coating_tables, filled by Scene::prepare where the closed form holds
+        no_index; // into Scene::coating_tables, filled by Scene::prepare where the closed form holds
 };
 struct CoatedConductorMaterial {
     ConductorMaterial conductor;

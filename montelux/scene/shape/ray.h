@@ -19,9 +19,9 @@ struct Ray {
 struct Hit {
     float t = 0;
     float b1 = 0, b2 = 0; // barycentric weights of a triangle's second and third vertex
-    Index shape = none;
+    Index shape = no_index;
     Index primitive = 0;
-    Index instance = none; // into Scene::instances; none for shapes that stand in the world
+    Index instance = no_index; // into Scene::instances; none for shapes that stand in the world
 };
 
 // The origin of a ray that leaves a surface: p moved off it along the unit normal, to the side of w, by

@@ -38,11 +38,11 @@ using Quadric = std::variant<Sphere, Disk>;
 
 // One shape of the scene. Exactly one of mesh and quadric is set.
 struct Shape {
-    Index mesh = none;    // into Scene::meshes
-    Index quadric = none; // into Scene::quadrics
-    Index material = none;
-    Index first_light = none; // the area light of primitive 0; primitive i has first_light + i
-    FloatParameter alpha{1};  // cut-out: a point is there with this probability
+    Index mesh = no_index;    // into Scene::meshes
+    Index quadric = no_index; // into Scene::quadrics
+    Index material = no_index;
+    Index first_light = no_index; // the area light of primitive 0; primitive i has first_light + i
+    FloatParameter alpha{1};      // cut-out: a point is there with this probability
     // The geometric normal of the primitive is turned around. Set when the file asks for it xor its transform
     // swaps handedness; where a mesh has vertex normals these decide the side instead (file's wish alone
     // applied).

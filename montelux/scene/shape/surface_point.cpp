@@ -95,14 +95,16 @@ float stretch(const Transform& t) {
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, bool coordinates) {
     const Shape& shape = scene.shapes[hit.shape];
     SurfacePoint s;
-    if (hit.instance == none) {
-        s = shape.mesh != none ? triangle_point(scene.meshes[shape.mesh], shape, hit, coordinates)
-                               : quadric_point(scene.quadrics[shape.quadric], shape, ray, hit, coordinates);
+    if (hit.instance == no_index) {
+        s = shape.mesh != no_index
+                ? triangle_point(scene.meshes[shape.mesh], shape, hit, coordinates)
+                : quadric_point(scene.quadrics[shape.quadric], shape, ray, hit, coordinates);
     } else {
         const Transform& t = scene.instances[hit.instance].world_from_object;
         Ray local{Vec3f(t.inverse_point(Vec3d(ray.o))), Vec3f(t.inverse_vector(Vec3d(ray.d))), ray.t_max};
-        s = shape.mesh != none ? triangle_point(scene.meshes[shape.mesh], shape, hit, coordinates)
-                               : quadric_point(scene.quadrics[shape.quadric], shape, local, hit, coordinates);
+        s = shape.mesh != no_index
+                ? triangle_point(scene.meshes[shape.mesh], shape, hit, coordinates)
+                : quadric_point(scene.quadrics[shape.quadric], shape, local, hit, coordinates);
         transform_by(t, s, stretch(t));
     }
     s.shape = &shape;

@@ -13,15 +13,15 @@ namespace montelux {
 // A parameter of a material: a constant, or the texture with that index if there is one.
 struct FloatParameter {
     float value = 0;
-    Index texture = none;
+    Index texture = no_index;
 
-    bool is_constant() const { return texture == none; }
+    bool is_constant() const { return texture == no_index; }
 };
 struct SpectrumParameter {
     Spectrum value;
-    Index texture = none;
+    Index texture = no_index;
 
-    bool is_constant() const { return texture == none; }
+    bool is_constant() const { return texture == no_index; }
 };
 
 // What an RGB colour stands for when it becomes a spectrum.
@@ -33,7 +33,7 @@ enum class TextureWrap : std::uint8_t { repeat, black, clamp, octahedral_sphere 
 // Texels are filtered first, then scaled (and 1 - x taken when `invert`), then read as a spectrum;
 // a float texture uses the mean of the colour channels.
 struct ImageTexture {
-    Index image = none; // into Scene::images
+    Index image = no_index; // into Scene::images
     TextureMapping mapping;
     TextureFilter filter = TextureFilter::bilinear;
     TextureWrap wrap = TextureWrap::repeat;

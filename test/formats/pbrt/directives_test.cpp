@@ -200,7 +200,7 @@ TEST(PbrtShapes, MeshesGoToTheWorld) {
     EXPECT_EQ(mesh.uvs[3], Vec2f(1, 1));
     EXPECT_EQ(mesh.indices, (std::vector<Index>{0, 1, 2, 2, 1, 3}));
     EXPECT_FALSE(d.scene.shapes[0].flip_normal); // both reversed and mirrored
-    EXPECT_EQ(d.scene.shapes[0].quadric, none);
+    EXPECT_EQ(d.scene.shapes[0].quadric, no_index);
 }
 
 TEST(PbrtShapes, WhatDoesNotFitAMeshIsLeftOut) {
@@ -239,7 +239,7 @@ TEST(PbrtObjects, DefinitionsAndInstances) {
     expect_near(d.scene.instances[0].world_from_object.point(Vec3f(1, 1, 1)), {1, 1, 1});
     expect_near(d.scene.instances[1].world_from_object.point(Vec3f(1, 1, 1)), {3, 2, 2});
     EXPECT_TRUE(d.scene.lights.empty());
-    EXPECT_EQ(d.scene.shapes[0].first_light, none);
+    EXPECT_EQ(d.scene.shapes[0].first_light, no_index);
     EXPECT_EQ(told.messages().size(), 2u); // area light in an object, no light at all
 }
 

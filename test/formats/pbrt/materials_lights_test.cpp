@@ -233,7 +233,7 @@ TEST(PbrtLights, AreaLightsOfEachTriangle) {
     ASSERT_EQ(d.scene.lights.size(), 4u);
     EXPECT_EQ(d.scene.shapes[0].first_light, 1u);
     EXPECT_EQ(d.scene.shapes[1].first_light, 3u);
-    EXPECT_EQ(d.scene.shapes[2].first_light, none);
+    EXPECT_EQ(d.scene.shapes[2].first_light, no_index);
     double areas[] = {2, 8, 4 * pi * 9};
     for (std::size_t i = 0; i < 3; ++i) {
         const auto& l = std::get<AreaLight>(d.scene.lights[1 + i]);

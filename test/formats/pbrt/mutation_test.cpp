@@ -44,9 +44,9 @@ void expect_sound(const std::string& text) {
     ASSERT_GT(d.sampler.samples_per_pixel, 0u);
     for (const Shape& s : d.scene.shapes) {
         ASSERT_LT(s.material, d.scene.materials.size());
-        ASSERT_NE(s.mesh == none, s.quadric == none);
-        ASSERT_TRUE(s.mesh == none || s.mesh < d.scene.meshes.size());
-        ASSERT_TRUE(s.first_light == none || s.first_light < d.scene.lights.size());
+        ASSERT_NE(s.mesh == no_index, s.quadric == no_index);
+        ASSERT_TRUE(s.mesh == no_index || s.mesh < d.scene.meshes.size());
+        ASSERT_TRUE(s.first_light == no_index || s.first_light < d.scene.lights.size());
     }
     for (const TriangleMesh& m : d.scene.meshes)
         for (Index i : m.indices) ASSERT_LT(i, m.positions.size());

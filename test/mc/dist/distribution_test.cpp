@@ -1,3 +1,4 @@
+#include "test/significance.h"
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -11,8 +12,6 @@
 
 namespace montelux {
 namespace {
-
-constexpr double significance = 1e-6;
 
 static_assert(TwoTailedDistribution1D<Distribution>);
 static_assert(Distribution1D<PiecewiseConstant1D>);

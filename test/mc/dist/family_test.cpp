@@ -11,7 +11,7 @@
 namespace montelux {
 namespace {
 
-constexpr double significance = 1e-7;
+constexpr double family_significance = 1e-7;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 // Every family goes through every test here.
@@ -99,7 +99,7 @@ TEST_P(FamilyTest, SamplesFollowThePdf) {
     };
     auto r = interval_chi_squared_test([&](double xi) { return axis(d().sample(xi)); }, pdf, axis(from),
                                        axis(to), {.samples = 50000, .cells_x = 60});
-    EXPECT_TRUE(r.passes(significance)) << r.description;
+    EXPECT_TRUE(r.passes(family_significance)) << r.description;
 }
 
 TEST_P(FamilyTest, EnginesOfTheStandardLibraryDriveIt) {
@@ -108,7 +108,7 @@ TEST_P(FamilyTest, EnginesOfTheStandardLibraryDriveIt) {
     values.reserve(4000);
     for (int i = 0; i < 4000; ++i) values.push_back(d()(engine));
     auto r = kolmogorov_smirnov_test(values, [&](double x) { return d().cdf(x); });
-    EXPECT_TRUE(r.passes(significance)) << r.description;
+    EXPECT_TRUE(r.passes(family_significance)) << r.description;
 }
 
 TEST_P(FamilyTest, EndsAreWhatTheySay) {

@@ -1,4 +1,5 @@
 #include "test/mc/dist/message_of.h"
+#include "test/significance.h"
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
@@ -12,7 +13,6 @@
 namespace montelux {
 namespace {
 
-constexpr double significance = 1e-6;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 TEST(NumericalInversion, ReproducesTheClosedForms) {

@@ -1,3 +1,4 @@
+#include "test/significance.h"
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -8,8 +9,6 @@
 
 namespace montelux {
 namespace {
-
-constexpr double significance = 1e-6;
 
 TEST(PiecewiseConstant1D, SamplesPdfAndInverseAgree) {
     std::vector<double> values{0, 1, 0, 3, 0.25, 0, 0};

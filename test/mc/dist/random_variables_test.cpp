@@ -1,4 +1,5 @@
 // The textbook's random variables, as the textbook states them: exponential, cosine, linear, quadratic.
+#include "test/significance.h"
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -13,7 +14,6 @@
 namespace montelux {
 namespace {
 
-constexpr double significance = 1e-6;
 constexpr std::array some_xi{0.0, 1e-12, 0.1, 0.25, 0.5, 0.75, 0.9, 0.999};
 
 // Ten thousand values with lambda = 5 beside as many of std::exponential_distribution: histograms of 40 bins

@@ -1,3 +1,4 @@
+#include "test/significance.h"
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -10,8 +11,6 @@
 
 namespace montelux {
 namespace {
-
-constexpr double significance = 1e-6;
 
 template <typename Joint>
 void expect_follows(const Joint& joint, Vec2d lower, Vec2d upper) {

@@ -1,3 +1,4 @@
+#include "test/significance.h"
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -11,7 +12,6 @@
 namespace montelux {
 namespace {
 
-constexpr double significance = 1e-6;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Samples against the pdf; quantiles against cdf in both tails. `absolute`: the error of P where ends cut

@@ -1,14 +1,12 @@
 // A2, A9: basic Monte Carlo, in one and more dimensions.
 #include "test/mc/integrate/estimator_checks.h"
 #include <gtest/gtest.h>
-#include <numbers>
 
 #include "montelux/mc/integrate/basic_monte_carlo.h"
+#include "montelux/mc/math/constants.h"
 
 namespace montelux {
 namespace {
-
-using std::numbers::pi;
 
 const auto sine = [](double x) { return std::sin(x); };
 const Domain quarter = Domain::interval(0, pi / 2);

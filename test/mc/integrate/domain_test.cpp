@@ -92,15 +92,15 @@ TEST(DomainBox, HalfInfiniteRangesInOneToTenDimensions) {
         // Odd variables from 2 up, even ones from -1 down; exponentials that are one at the finite end.
         std::vector<Range> ranges;
         for (int d = 0; d < n; ++d) ranges.push_back(d % 2 ? Range{-infinity, -1} : Range{2, infinity});
-        auto exponential = [](Point x) {
+        auto decay = [](Point x) {
             double sum = 0;
             for (std::size_t d = 0; d < x.size(); ++d) sum += d % 2 ? -1 - x[d] : x[d] - 2;
             return std::exp(-sum);
         };
         check_moments(Domain(ranges),
-                      {{"total", exponential, 1},
-                       {"mean", [=](Point x) { return x[0] * exponential(x); }, 3},
-                       {"square", [=](Point x) { return (x[0] - 2) * (x[0] - 2) * exponential(x); }, 2}},
+                      {{"total", decay, 1},
+                       {"mean", [=](Point x) { return x[0] * decay(x); }, 3},
+                       {"square", [=](Point x) { return (x[0] - 2) * (x[0] - 2) * decay(x); }, 2}},
                       100'000);
         EXPECT_EQ(Domain(ranges).constant_volume(), 0);
     }

@@ -2,6 +2,7 @@
 // bits for any number of threads and after a resume, values that are not finite counted, budgets kept.
 #pragma once
 
+#include "test/significance.h"
 #include <cmath>
 #include <gtest/gtest.h>
 #include <set>
@@ -12,8 +13,6 @@
 #include "montelux/mc/stats/z_test.h"
 
 namespace montelux {
-
-inline constexpr double significance = 1e-6;
 
 struct KnownIntegral {
     Integrand f;

@@ -10,7 +10,8 @@ namespace {
 
 using std::numbers::e;
 
-IntegrationResult exponential(int dimensions, const Method& method, std::uint64_t evaluations = 100'000'000) {
+IntegrationResult integrate_exponential(int dimensions, const Method& method,
+                                        std::uint64_t evaluations = 100'000'000) {
     // prod e^(x_d), with integral (e - 1)^d.
     return integrate(Integrand::batch([](const PointBatch& x, ValueBatch y) {
                          for (std::size_t i = 0; i < x.count(); ++i) {
@@ -22,7 +23,7 @@ IntegrationResult exponential(int dimensions, const Method& method, std::uint64_
                      Domain::unit_cube(dimensions), method, {.evaluations = evaluations});
 }
 double relative_error(int dimensions, const Method& method) {
-    return exponential(dimensions, method).value[0] / std::pow(e - 1, dimensions) - 1;
+    return integrate_exponential(dimensions, method).value[0] / std::pow(e - 1, dimensions) - 1;
 }
 
 TEST(Grid, PointsAndWeightsAreThoseOfTheRules) {
@@ -94,7 +95,7 @@ TEST(Grid, RefinementReusesPointsAndGivesTheSameValue) {
 TEST(Grid, ErrorEstimateIsThatOfTheLastTwoGrids) {
     for (const Method& m : {Method(RiemannSum{}), Method(MidpointRule{}), Method(TrapezoidRule{})}) {
         for (int d : {1, 2, 4}) {
-            const IntegrationResult r = exponential(d, m, 100000);
+            const IntegrationResult r = integrate_exponential(d, m, 100000);
             const double truth = std::pow(e - 1, d), off = std::abs(r.value[0] - truth);
             EXPECT_GT(r.standard_error[0], 0.8 * off) << m.name() << d;
             EXPECT_LT(r.standard_error[0], 4 * off) << m.name() << d;

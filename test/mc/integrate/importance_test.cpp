@@ -2,17 +2,15 @@
 #include "test/mc/integrate/estimator_checks.h"
 #include <array>
 #include <gtest/gtest.h>
-#include <numbers>
 
 #include "montelux/mc/dist/families.h"
 #include "montelux/mc/dist/marginal_conditional.h"
 #include "montelux/mc/integrate/importance.h"
 #include "montelux/mc/integrate/unit_points.h"
+#include "montelux/mc/math/constants.h"
 
 namespace montelux {
 namespace {
-
-using std::numbers::pi;
 
 const auto sine = [](double x) { return std::sin(x); };
 const Domain quarter = Domain::interval(0, pi / 2);

@@ -15,7 +15,7 @@ using Point = std::span<const double>;
 using Values = std::span<double>;
 
 constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
-const auto first = [](Point x, Values v) { v[0] = x[0]; };
+const auto first_coordinate = [](Point x, Values v) { v[0] = x[0]; };
 double normal(Point x) {
     double square = 0;
     for (double v : x) square += v * v;
@@ -32,7 +32,7 @@ TestResult histogram_test(const Density& density, const Propose& propose, double
     std::vector<double> observed(cells, 0.0);
     std::mutex mutex;
     double total = 0;
-    metropolis(density, propose, {{start}}, 1, first,
+    metropolis(density, propose, {{start}}, 1, first_coordinate,
                [&](int, std::uint64_t, Point x) {
                    const std::lock_guard lock(mutex);
                    ++observed[std::min(cells - 1, static_cast<std::size_t>(cdf(x[0]) * cells))];
@@ -80,8 +80,8 @@ TEST(MetropolisChain, AutocorrelationTimeOfAnAutoregressiveChainIsExact) {
             y[0] = rho * x[0] + std::sqrt(1 - rho * rho) * z;
             return 0.5 * (y[0] * y[0] - x[0] * x[0]);
         };
-        const auto r =
-            metropolis(normal, propose, {{0.0}}, 1, first, {.chains = 4, .samples = 150000, .seed = 5});
+        const auto r = metropolis(normal, propose, {{0.0}}, 1, first_coordinate,
+                                  {.chains = 4, .samples = 150000, .seed = 5});
         EXPECT_EQ(r.acceptance_rate, 1);
         const double exact = (1 + rho) / (1 - rho);
         EXPECT_NEAR(r.observables[0].autocorrelation_time / exact, 1, 0.15) << rho;
@@ -131,7 +131,7 @@ TEST(MetropolisChain, WalkAdaptsToScalesThatDifferALot) {
     EXPECT_NEAR(r.acceptance_rate, 0.29, 0.1);
     // Two dimensions of one scale, but a walk that may not adapt.
     const auto fixed = metropolis(density, GaussianWalk{.step = 0.01, .adapt = false}, {{0.01, 10.0}}, 1,
-                                  first, {.samples = 1000});
+                                  first_coordinate, {.samples = 1000});
     EXPECT_GT(fixed.acceptance_rate, 0.5);
 }
 
@@ -141,7 +141,8 @@ TEST(MetropolisChain, ChainsThatDisagreeAreDoubted) {
         return std::log(std::exp(-0.5 * (x[0] - 20) * (x[0] - 20)) +
                         std::exp(-0.5 * (x[0] + 20) * (x[0] + 20)));
     };
-    const auto apart = metropolis(two, GaussianWalk{}, {{-20.0}, {20.0}, {-20.0}, {20.0}}, 1, first);
+    const auto apart =
+        metropolis(two, GaussianWalk{}, {{-20.0}, {20.0}, {-20.0}, {20.0}}, 1, first_coordinate);
     EXPECT_GT(apart.observables[0].r_hat, 2);
     EXPECT_FALSE(apart.doubts.empty());
     // Chains that disagree do not claim to know.
@@ -151,7 +152,7 @@ TEST(MetropolisChain, ChainsThatDisagreeAreDoubted) {
 TEST(MetropolisChain, BitsDoNotDependOnThreads) {
     auto run = [&](int threads) {
         return with_threads(threads, [&] {
-            return metropolis(normal, GaussianWalk{}, {{1.0, 1.0, 1.0}}, 1, first,
+            return metropolis(normal, GaussianWalk{}, {{1.0, 1.0, 1.0}}, 1, first_coordinate,
                               {.chains = 6, .samples = 5000, .seed = 3});
         });
     };
@@ -165,19 +166,20 @@ TEST(MetropolisChain, DensityItselfServesAndWhatIsNotFiniteIsCounted) {
     const auto density = log_of([](Point x) {
         return x[0] < -3 ? std::numeric_limits<double>::quiet_NaN() : std::exp(-0.5 * x[0] * x[0]);
     });
-    const auto r = metropolis(density, GaussianWalk{}, {{0.0}}, 1, first);
+    const auto r = metropolis(density, GaussianWalk{}, {{0.0}}, 1, first_coordinate);
     EXPECT_GT(r.non_finite, 0u);
     EXPECT_FALSE(r.doubts.empty());
     EXPECT_NEAR(r.observables[0].mean, 0, 0.1);
 }
 
 TEST(MetropolisChain, SenselessOptionsAreRefused) {
-    EXPECT_THROW(metropolis(exponential, GaussianWalk{}, {{-1.0}}, 1, first), Error); // density zero
-    EXPECT_THROW(metropolis(normal, GaussianWalk{}, {{0.0}}, 1, first, {.chains = 0}), Error);
-    EXPECT_THROW(metropolis(normal, GaussianWalk{}, {{0.0}, {1.0}}, 1, first), Error);
-    EXPECT_THROW(metropolis(normal, GaussianWalk{}, {{}}, 1, first), Error);
-    EXPECT_THROW(metropolis(normal, GaussianWalk{.scale = {1, 1}}, {{0.0}}, 1, first), Error);
-    EXPECT_THROW(metropolis(normal, GaussianWalk{}, {{0.0}}, 1, first, {.thin = 0}), Error);
+    EXPECT_THROW(metropolis(exponential, GaussianWalk{}, {{-1.0}}, 1, first_coordinate),
+                 Error); // density zero
+    EXPECT_THROW(metropolis(normal, GaussianWalk{}, {{0.0}}, 1, first_coordinate, {.chains = 0}), Error);
+    EXPECT_THROW(metropolis(normal, GaussianWalk{}, {{0.0}, {1.0}}, 1, first_coordinate), Error);
+    EXPECT_THROW(metropolis(normal, GaussianWalk{}, {{}}, 1, first_coordinate), Error);
+    EXPECT_THROW(metropolis(normal, GaussianWalk{.scale = {1, 1}}, {{0.0}}, 1, first_coordinate), Error);
+    EXPECT_THROW(metropolis(normal, GaussianWalk{}, {{0.0}}, 1, first_coordinate, {.thin = 0}), Error);
 }
 
 TEST(ChainTrace, BatchesKeepMeanAndVarianceInConstantMemory) {

@@ -7,11 +7,10 @@
 #include "montelux/mc/integrate/importance.h"
 #include "montelux/mc/integrate/multiple_importance.h"
 #include "montelux/mc/integrate/semidefinite.h"
+#include "montelux/mc/math/constants.h"
 
 namespace montelux {
 namespace {
-
-using std::numbers::pi;
 
 const Domain unit = Domain::unit_cube(1);
 const Technique root =
@@ -25,7 +24,7 @@ KnownIntegral two_ends() {
     return {
         [](double x) { return 1 / std::sqrt(x) + (x > 0.9 ? 40 * (x - 0.9) : 0); }, unit, {2 + 20 * 0.01}};
 }
-const std::vector<WeightedTechnique> three{{root, 7}, {linear, 2}, {end, 4}};
+const std::vector<WeightedTechnique> three_techniques{{root, 7}, {linear, 2}, {end, 4}};
 
 std::vector<Method> all_weights(const std::vector<WeightedTechnique>& techniques) {
     std::vector<Method> methods{MultipleImportance{techniques, OptimalWeights{}}};
@@ -46,10 +45,10 @@ double mean_variance(const Integrand& f, const Method& m, std::uint64_t evaluati
 }
 
 TEST(MultipleImportance, UnbiasedAndCalibratedForAllWeights) {
-    for (const Method& m : all_weights(three))
+    for (const Method& m : all_weights(three_techniques))
         expect_unbiased_and_calibrated(two_ends(), m, {.evaluations = 1400}, 500);
     // Optimal weights learn step by step, and each step is unbiased.
-    expect_unbiased_and_calibrated(two_ends(), MultipleImportance{three, OptimalWeights{}},
+    expect_unbiased_and_calibrated(two_ends(), MultipleImportance{three_techniques, OptimalWeights{}},
                                    {.evaluations = 20000}, 300);
 }
 
@@ -101,14 +100,15 @@ TEST(MultipleImportance, OptimalWeightsAreNoWorseThanBalance) {
         two_ends().f, [](double x) { return std::exp(-50 * (x - 0.95) * (x - 0.95)); },
         [](double x) { return 2 * x; }, [](double x) { return std::sin(40 * x); }};
     for (const Integrand& f : integrands) {
-        const double balance = mean_variance(f, MultipleImportance{three}, 100000);
-        const double optimal = mean_variance(f, MultipleImportance{three, OptimalWeights{}}, 100000);
+        const double balance = mean_variance(f, MultipleImportance{three_techniques}, 100000);
+        const double optimal =
+            mean_variance(f, MultipleImportance{three_techniques, OptimalWeights{}}, 100000);
         // The pilot takes 4 % of the samples; variances are known to about a percent.
         EXPECT_LT(optimal, 1.07 * balance);
     }
-    // 2x is what one technique of three samples: much to gain.
-    EXPECT_LT(mean_variance(integrands[2], MultipleImportance{three, OptimalWeights{}}, 100000),
-              1e-6 * mean_variance(integrands[2], MultipleImportance{three}, 100000));
+    // 2x is what one technique of three_techniques samples: much to gain.
+    EXPECT_LT(mean_variance(integrands[2], MultipleImportance{three_techniques, OptimalWeights{}}, 100000),
+              1e-6 * mean_variance(integrands[2], MultipleImportance{three_techniques}, 100000));
     // A technique that is of no use harms the balance heuristic alone.
     const std::vector<WeightedTechnique> idle{{UniformDistribution(0, 1), 1}, {root, 9}};
     auto bump = [](double x) { return std::exp(-3 * x) * x; };
@@ -148,8 +148,8 @@ TEST(MultipleImportance, PlacesThatNoTechniqueReachesAreDoubted) {
         EXPECT_NE(r.doubts[0].find("density is zero at (0.4"), std::string::npos) << r.doubts[0];
         EXPECT_NEAR(r.value[0], 0.9, 0.05);
     }
-    EXPECT_TRUE(
-        integrate(two_ends().f, unit, MultipleImportance{three}, {.evaluations = 20000}).doubts.empty());
+    EXPECT_TRUE(integrate(two_ends().f, unit, MultipleImportance{three_techniques}, {.evaluations = 20000})
+                    .doubts.empty());
 }
 
 TEST(MultipleImportance, MistakesAreAnsweredWithASentence) {

@@ -1,15 +1,13 @@
 // A6: randomised quasi-Monte Carlo on every point set.
 #include "test/mc/integrate/estimator_checks.h"
 #include <gtest/gtest.h>
-#include <numbers>
 
 #include "montelux/mc/integrate/quasi.h"
 #include "montelux/mc/integrate/randomised_points.h"
+#include "montelux/mc/math/constants.h"
 
 namespace montelux {
 namespace {
-
-using std::numbers::pi;
 
 KnownIntegral product(int dimensions) {
     return {[](std::span<const double> x) {

@@ -1,4 +1,5 @@
 // The statistical engine itself: accepts what is right, rejects what is slightly wrong.
+#include "test/significance.h"
 #include <cmath>
 #include <gtest/gtest.h>
 #include <vector>
@@ -9,8 +10,6 @@
 
 namespace montelux {
 namespace {
-
-constexpr double significance = 1e-6;
 
 TEST(ChiSquared, PValuesOfCorrectCodeAreUniform) {
     TestUniforms u(11);

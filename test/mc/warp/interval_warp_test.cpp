@@ -18,7 +18,7 @@ struct IntervalWarp {
     double lower, upper;
 };
 
-std::vector<IntervalWarp> all_warps() {
+std::vector<IntervalWarp> all_interval_warps() {
     auto linear = [](std::string name, double a, double b) {
         return IntervalWarp{std::move(name),
                             [=](double u) { return sample_linear(u, a, b); },
@@ -68,7 +68,7 @@ TEST_P(IntervalWarpTest, InverseUndoesSampleAndItsSlopeIsTheDensity) {
     EXPECT_TRUE(std::isfinite(w.sample(one_minus_epsilon_d)));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, IntervalWarpTest, testing::ValuesIn(all_warps()),
+INSTANTIATE_TEST_SUITE_P(All, IntervalWarpTest, testing::ValuesIn(all_interval_warps()),
                          [](const auto& warp) { return warp.param.name; });
 
 TEST(ExponentialWarp, ShortPathsKeepTheirDigits) {

@@ -10,13 +10,13 @@
 namespace montelux {
 namespace {
 
-struct Stop {};
+struct Stopped {};
 
-// A problem whose evaluations are counted, and that throws Stop when told to.
+// A problem whose evaluations are counted, and that throws Stopped when told to.
 struct Watched {
     explicit Watched(Integrand f, int dimensions)
         : evaluator(f.with_function([this, f](const PointBatch& x, ValueBatch y) {
-              if (stop) throw Stop();
+              if (stop) throw Stopped();
               evaluations += x.count();
               f(x, y);
           }),
@@ -160,9 +160,9 @@ TEST(DensityTrainer, CancelledOrInterruptedStepsChangeNothing) {
     EXPECT_FALSE(trainer.round(2048, &cancel));
     EXPECT_EQ(words_of(trainer), before);
     watched.stop = true;
-    EXPECT_THROW(trainer.round(2048, nullptr), Stop);
+    EXPECT_THROW(trainer.round(2048, nullptr), Stopped);
     EXPECT_EQ(words_of(trainer), before);
-    EXPECT_THROW(trainer.find_peaks(2000), Stop);
+    EXPECT_THROW(trainer.find_peaks(2000), Stopped);
     EXPECT_EQ(words_of(trainer), before);
 }
 

@@ -1,3 +1,4 @@
+#include "test/significance.h"
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -12,8 +13,6 @@
 
 namespace montelux {
 namespace {
-
-constexpr double significance = 1e-6;
 
 std::vector<double> random_matrix(int n, std::uint64_t seed) {
     TestUniforms uniforms(seed);

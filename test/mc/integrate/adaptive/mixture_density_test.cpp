@@ -1,3 +1,5 @@
+#include "test/mc/integrate/adaptive/uniform_points.h"
+#include "test/significance.h"
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
@@ -10,8 +12,6 @@
 
 namespace montelux {
 namespace {
-
-constexpr double significance = 1e-6;
 
 // Uniform, maps and two Gaussians, one of which sticks out of the square.
 MixtureDensity mixture() {
@@ -38,14 +38,6 @@ double mean_over_square(const std::function<double(double, double)>& f, int cell
         for (int j = 0; j < cells; ++j) sum += f((i + 0.5) / cells, (j + 0.5) / cells);
     return sum / (static_cast<double>(cells) * cells);
 }
-PointBuffer uniform_points(std::size_t count, int dimensions, std::uint64_t seed) {
-    PointBuffer points(count, dimensions);
-    TestUniforms uniforms(seed);
-    for (std::size_t i = 0; i < count; ++i)
-        for (int d = 0; d < dimensions; ++d) points(i, d) = uniforms.next();
-    return points;
-}
-
 TEST(MixtureDensity, UniformAtFirst) {
     const MixtureDensity density(2);
     EXPECT_EQ(density.channels(), 1);

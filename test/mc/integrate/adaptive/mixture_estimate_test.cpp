@@ -7,24 +7,24 @@
 namespace montelux {
 namespace {
 
-constexpr int replicates = 8;
+constexpr int replicate_count = 8;
 
-// Sums over n points of replicates whose means are `value` plus deviations that rise evenly to +-spread.
+// Sums over n points of replicate_count whose means are `value` plus deviations that rise evenly to +-spread.
 MixtureSums sums_of(double value, double spread, std::uint64_t n, int components = 1) {
     MixtureSums sums;
-    sums.sums = ReplicateSums(replicates, components);
-    sums.evaluations = n * replicates;
+    sums.sums = ReplicateSums(replicate_count, components);
+    sums.evaluations = n * replicate_count;
     const double count = static_cast<double>(n);
-    for (int r = 0; r < replicates; ++r)
-        sums.sums.sum(r, 0) = count * (value + spread * (2.0 * r / (replicates - 1) - 1));
-    sums.channels = {{n * replicates, value * count * replicates, 0}};
+    for (int r = 0; r < replicate_count; ++r)
+        sums.sums.sum(r, 0) = count * (value + spread * (2.0 * r / (replicate_count - 1) - 1));
+    sums.channels = {{n * replicate_count, value * count * replicate_count, 0}};
     return sums;
 }
 // Standard error of the mean of what sums_of() makes with a spread of 1.
 double unit_error() {
     double squares = 0;
-    for (int r = 0; r < replicates; ++r) squares += std::pow(2.0 * r / (replicates - 1) - 1, 2);
-    return std::sqrt(squares / (replicates - 1) / replicates);
+    for (int r = 0; r < replicate_count; ++r) squares += std::pow(2.0 * r / (replicate_count - 1) - 1, 2);
+    return std::sqrt(squares / (replicate_count - 1) / replicate_count);
 }
 Tally tally_of(const MixtureEstimate& estimate) {
     Tally tally;
@@ -33,7 +33,7 @@ Tally tally_of(const MixtureEstimate& estimate) {
 }
 
 TEST(MixtureEstimate, MeanAndErrorOfTheReplicates) {
-    MixtureEstimate estimate(replicates, 1);
+    MixtureEstimate estimate(replicate_count, 1);
     EXPECT_TRUE(std::isinf(tally_of(estimate).standard_error[0]));
     estimate.explore(sums_of(3, 0.1, 64), 64);
     const Tally tally = tally_of(estimate);
@@ -51,7 +51,7 @@ TEST(MixtureEstimate, MeanAndErrorOfTheReplicates) {
 // Twice the points may lower the error by 2^1.5; what falls faster is held up, by a factor of three at most.
 TEST(MixtureEstimate, ErrorsThatFallTooFastAreNotBelieved) {
     for (double share : {0.9, 0.3, 0.2, 0.01}) { // of the first error
-        MixtureEstimate estimate(replicates, 1);
+        MixtureEstimate estimate(replicate_count, 1);
         estimate.grow(sums_of(3, 0.1, 64), 64);
         EXPECT_FALSE(estimate.compared());
         estimate.grow(sums_of(3, 0.1 * (2 * share - 1), 64), 128);
@@ -68,34 +68,34 @@ TEST(MixtureEstimate, ErrorsThatFallTooFastAreNotBelieved) {
 TEST(MixtureEstimate, SuspectsOneSampleOrOneReplicate) {
     MixtureSums sums = sums_of(1, 0.01, 64);
     sums.largest = 4;
-    MixtureEstimate even(replicates, 1);
+    MixtureEstimate even(replicate_count, 1);
     even.explore(sums, 64);
     EXPECT_FALSE(even.heavy_tailed(tally_of(even).standard_error[0]));
     EXPECT_FALSE(even.one_replicate_stands_out());
     sums.largest = 20;
     sums.sums.sum(3, 0) += 20;
-    MixtureEstimate uneven(replicates, 1);
+    MixtureEstimate uneven(replicate_count, 1);
     uneven.explore(sums, 64);
     EXPECT_TRUE(uneven.heavy_tailed(tally_of(uneven).standard_error[0]));
     EXPECT_TRUE(uneven.one_replicate_stands_out());
 }
 
 TEST(MixtureEstimate, LostComponentsAreNoticed) {
-    MixtureEstimate seen(replicates, 2), nothing(replicates, 2);
+    MixtureEstimate seen(replicate_count, 2), nothing(replicate_count, 2);
     MixtureSums sums = sums_of(1, 0.1, 64, 2);
     seen.explore(sums, 64);
     nothing.explore(sums_of(0, 0, 64, 2), 64);
     EXPECT_TRUE(nothing.lost_what_is_in(seen));
     EXPECT_FALSE(seen.lost_what_is_in(nothing));
     sums.sums.sum(0, 1) = 1;
-    MixtureEstimate both(replicates, 2);
+    MixtureEstimate both(replicate_count, 2);
     both.explore(sums, 64);
     EXPECT_TRUE(seen.lost_what_is_in(both));
     EXPECT_FALSE(both.lost_what_is_in(seen));
 }
 
 TEST(MixtureEstimate, SavesAndLoadsItsBits) {
-    MixtureEstimate estimate(replicates, 1), other(replicates, 1);
+    MixtureEstimate estimate(replicate_count, 1), other(replicate_count, 1);
     estimate.grow(sums_of(3, 0.1, 64), 64);
     estimate.grow(sums_of(3.1, 0.1, 64), 128);
     StateWriter state;

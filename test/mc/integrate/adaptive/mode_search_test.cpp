@@ -1,3 +1,4 @@
+#include "test/mc/integrate/adaptive/uniform_points.h"
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -9,14 +10,6 @@
 
 namespace montelux {
 namespace {
-
-PointBuffer uniform_points(std::size_t count, int dimensions, std::uint64_t seed) {
-    PointBuffer points(count, dimensions);
-    TestUniforms uniforms(seed);
-    for (std::size_t i = 0; i < count; ++i)
-        for (int d = 0; d < dimensions; ++d) points(i, d) = uniforms.next();
-    return points;
-}
 
 struct Search {
     std::vector<Gaussian> modes;

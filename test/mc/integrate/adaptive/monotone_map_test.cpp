@@ -1,3 +1,4 @@
+#include "test/significance.h"
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
@@ -10,8 +11,6 @@
 
 namespace montelux {
 namespace {
-
-constexpr double significance = 1e-6;
 
 // Neighbours joined, neighbours that jump, a bin alone, steep ends.
 std::vector<MonotoneMap> maps() {
