@@ -70,7 +70,7 @@ double parse_share(const std::string& option, const std::string& s) {
 }
 
 // Seconds: 90, 90s, 1.5m, 1h30m.
-double parse_duration(const std::string& option, const std::string& s, bool zero = false) {
+double parse_duration(const std::string& option, const std::string& s) {
     const char *at = s.data(), *end = s.data() + s.size();
     double seconds = 0, last_unit = 1e9;
     bool good = at != end;
@@ -86,12 +86,21 @@ double parse_duration(const std::string& option, const std::string& s, bool zero
         seconds += v * unit;
         at = stop == end ? end : stop + 1;
     }
-    if (!good || !(seconds > 0 || zero))
-        refuse(option, s, "a time is expected, for example 90, 90s, 10m or 1h30m");
+    if (!good) refuse(option, s, "a time is expected, for example 90, 90s, 10m or 1h30m");
+    return seconds;
+}
+double parse_time_limit(const std::string& option, const std::string& s) {
+    const double seconds = parse_duration(option, s);
+    if (!(seconds > 0)) refuse(option, s, "a time above 0 is expected, for example 90, 90s, 10m or 1h30m");
     return seconds;
 }
 
-Slice parse_slice(const std::string& s) {
+bool parse_on_off(const std::string& option, const std::string& s) {
+    if (s != "on" && s != "off") refuse(option, s, "on or off is expected");
+    return s == "on";
+}
+
+Slice parse_slice(const std::string& option, const std::string& s) {
     std::uint32_t k = 0, n = 0;
     const char* end = s.data() + s.size();
     auto [p, e] = std::from_chars(s.data(), end, k);
@@ -99,7 +108,17 @@ Slice parse_slice(const std::string& s) {
         auto [q, f] = std::from_chars(p + 1, end, n);
         if (f == std::errc() && q == end && k >= 1 && k <= n && n <= 1'000'000) return {k - 1, n};
     }
-    refuse("--slice", s, "K/N is expected with K from 1 to N, for example 3/16");
+    refuse(option, s, "K/N is expected with K from 1 to N, for example 3/16");
+}
+
+// An option that `parse(name, text)` reads, or refuses. Given twice, the last counts.
+template <typename Target, typename Parse>
+void add_parsed(CLI::App& c, const std::string& name, const char* type, Target& target, const Parse& parse,
+                const std::string& help) {
+    c.add_option_function<std::string>(
+         name, [name, &target, parse](const std::string& text) { target = parse(name, text); }, help)
+        ->type_name(type)
+        ->take_last();
 }
 
 // An option that takes a whole number of [lowest, highest]. "1e9", signs and fractions are no whole numbers.
@@ -135,7 +154,7 @@ void add_choice(CLI::App& c, const std::string& name, Target& target, const Tabl
     c.add_option_function<std::string>(name, read, help + names(table))->type_name("NAME")->take_last();
 }
 
-std::pair<int, int> parse_resolution(const std::string& s) {
+std::pair<int, int> parse_resolution(const std::string& option, const std::string& s) {
     int w = 0, h = 0;
     const char* end = s.data() + s.size();
     auto [p, e] = std::from_chars(s.data(), end, w);
@@ -145,12 +164,12 @@ std::pair<int, int> parse_resolution(const std::string& s) {
             h <= Image::max_dimension)
             return {w, h};
     }
-    refuse("--resolution", s,
+    refuse(option, s,
            "WIDTHxHEIGHT in pixels is expected, each from 1 to " + std::to_string(Image::max_dimension) +
                ", for example 640x480");
 }
 
-std::array<double, 4> parse_crop(const std::string& s) {
+std::array<double, 4> parse_crop(const std::string& option, const std::string& s) {
     std::array<double, 4> crop{};
     const char *at = s.data(), *end = s.data() + s.size();
     bool good = true;
@@ -161,13 +180,13 @@ std::array<double, 4> parse_crop(const std::string& s) {
         at = stop + 1;
     }
     if (!good || !(crop[0] < crop[1]) || !(crop[2] < crop[3]))
-        refuse("--crop", s,
+        refuse(option, s,
                "x0,x1,y0,y1 is expected: fractions of the film from 0 to 1 with x0 < x1 and y0 < y1, for "
                "example 0.25,0.75,0,0.5");
     return crop;
 }
 
-SampleAddress parse_sample(const std::string& s) {
+SampleAddress parse_sample(const std::string& option, const std::string& s) {
     SampleAddress a;
     const char* end = s.data() + s.size();
     auto comma = [end](std::from_chars_result r) {
@@ -179,7 +198,7 @@ SampleAddress parse_sample(const std::string& s) {
                 error == std::errc() && stop == end)
                 return a;
     refuse(
-        "--debug-sample", s,
+        option, s,
         "x,y,index is expected: column and row of a pixel and the number of one of its samples, all from 0 "
         "on, for example 320,240,7");
 }
@@ -210,74 +229,38 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_whole_number(c, "--spp", o.spp, 1, 1u << 30, "Samples a pixel, in place of the scene's");
     add_whole_number(c, "--spp-max", o.spp_max, 1, 1u << 30,
                      "Samples a pixel at most, where an error or a time is asked for");
-    c.add_option_function<std::string>(
-         "--target-error", [&o](const std::string& s) { o.target_error = parse_share("--target-error", s); },
-         "Stop when the picture's relative error is this, for example 0.01 or 1%")
-        ->type_name("ERROR")
-        ->take_last();
-    c.add_option_function<std::string>(
-         "--target-quantile",
-         [&o](const std::string& s) { o.target_quantile = parse_share("--target-quantile", s); },
-         "With --target-error: stop when this share of the pixels is within it")
-        ->type_name("SHARE")
-        ->take_last();
-    c.add_option_function<std::string>(
-         "--time", [&o](const std::string& s) { o.time = parse_duration("--time", s); },
-         "Stop after this time, for example 90, 90s, 10m or 1h30m")
-        ->type_name("TIME")
-        ->take_last();
-    c.add_option_function<std::string>(
-         "--adaptive",
-         [&o](const std::string& s) {
-             if (s != "on" && s != "off") refuse("--adaptive", s, "on or off is expected");
-             o.adaptive = s == "on";
-         },
-         "More samples where the error is: on, off. Default: on where an error is asked for")
-        ->type_name("on|off")
-        ->take_last();
-    c.add_option_function<std::string>(
-         "--clamp", [&o](const std::string& s) { o.clamp = parse_positive("--clamp", s); },
-         "Largest RGB value of a sample; what it takes away is said at the end. Default: none but the "
-         "scene's")
-        ->type_name("VALUE")
-        ->take_last();
+    add_parsed(c, "--target-error", "ERROR", o.target_error, parse_share,
+               "Stop when the picture's relative error is this, for example 0.01 or 1%");
+    add_parsed(c, "--target-quantile", "SHARE", o.target_quantile, parse_share,
+               "With --target-error: stop when this share of the pixels is within it");
+    add_parsed(c, "--time", "TIME", o.time, parse_time_limit,
+               "Stop after this time, for example 90, 90s, 10m or 1h30m");
+    add_parsed(c, "--adaptive", "on|off", o.adaptive, parse_on_off,
+               "More samples where the error is: on, off. Default: on where an error is asked for");
+    add_parsed(c, "--clamp", "VALUE", o.clamp, parse_positive,
+               "Largest RGB value of a sample; what it takes away is said at the end. Default: none but the "
+               "scene's");
     c.add_option("--checkpoint", o.checkpoint, "Keep the running state in this file")->type_name("FILE");
-    c.add_option_function<std::string>(
-         "--checkpoint-every",
-         [&o](const std::string& s) { o.checkpoint_every = parse_duration("--checkpoint-every", s, true); },
-         "How often it is written. Default: 60s")
-        ->type_name("TIME")
-        ->take_last();
+    add_parsed(c, "--checkpoint-every", "TIME", o.checkpoint_every, parse_duration,
+               "How often it is written. Default: 60s");
     c.add_flag("--resume", o.resume, "Go on from the checkpoint, where there is one");
-    c.add_option_function<std::string>(
-         "--slice", [&o](const std::string& s) { o.slice = parse_slice(s); },
-         "Take a part of the samples, K/N with K from 1 to N; montelux merge joins the parts")
-        ->type_name("K/N")
-        ->take_last();
+    add_parsed(c, "--slice", "K/N", o.slice, parse_slice,
+               "Take a part of the samples, K/N with K from 1 to N; montelux merge joins the parts");
     add_whole_number(c, "--seed", o.seed, 0, UINT64_MAX,
                      "Seed of all random numbers, in place of the scene's");
     add_whole_number(
         c, "--threads", o.threads, 0, 4096,
         "Threads, also more than processors; 0: one a processor. The picture does not depend on it");
-    c.add_option_function<std::string>(
-         "--resolution", [&o](const std::string& s) { o.resolution = parse_resolution(s); },
-         "Size of the film in pixels; the scene's crop keeps its place")
-        ->type_name("WxH")
-        ->take_last();
-    c.add_option_function<std::string>(
-         "--crop", [&o](const std::string& s) { o.crop = parse_crop(s); },
-         "Render a part of the film alone, as fractions from the top left")
-        ->type_name("x0,x1,y0,y1")
-        ->take_last();
+    add_parsed(c, "--resolution", "WxH", o.resolution, parse_resolution,
+               "Size of the film in pixels; the scene's crop keeps its place");
+    add_parsed(c, "--crop", "x0,x1,y0,y1", o.crop, parse_crop,
+               "Render a part of the film alone, as fractions from the top left");
     add_choice(c, "--sampler", o.sampler, samplers, "Where samples are taken: ");
     add_choice(c, "--strategy", o.strategy, strategies, "How light is found: ");
     add_choice(c, "--heuristic", o.heuristic, heuristics, "Weights of the strategy mis: ");
     add_whole_number(c, "--max-depth", o.max_depth, 0, 1'000'000, "Scattering events of a path at most");
-    c.add_option_function<std::string>(
-         "--debug-sample", [&o](const std::string& s) { o.debug_sample = parse_sample(s); },
-         "Render no picture: trace this one sample of the render and print its path, vertex by vertex")
-        ->type_name("x,y,index")
-        ->take_last();
+    add_parsed(c, "--debug-sample", "x,y,index", o.debug_sample, parse_sample,
+               "Render no picture: trace this one sample of the render and print its path, vertex by vertex");
     c.add_flag("--denoise", o.denoise,
                "Also denoise the picture by Open Image Denoise ('montelux denoise --help'): .exr keeps the "
                "picture and gets the layers denoised.R, G, B; other formats show those");

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 #include "montelux/film/film.h"
@@ -70,6 +70,10 @@ double error_quantile(const Film& film, double quantile) {
     return relative_to(mean_luminance(film), errors[at]);
 }
 
+bool is_heavy_tailed(const Pixel& pixel) {
+    return pixel.units().count() >= enough_units && pixel.largest_share() > heavy_share;
+}
+
 OutlierReport outliers_of(const Film& film) {
     OutlierReport report;
     std::vector<double> squares;
@@ -79,7 +83,7 @@ OutlierReport outliers_of(const Film& film) {
         if (!std::isfinite(error)) continue;
         squares.push_back(error * error);
         total += error * error;
-        if (p.units().count() < enough_units || p.largest_share() <= heavy_share) continue;
+        if (!is_heavy_tailed(p)) continue;
         ++report.heavy_tailed;
         heavy += error * error;
     }

@@ -16,8 +16,8 @@ namespace montelux {
 namespace {
 
 constexpr std::string_view kind = "render";
-// Of the layout below, and of what makes samples: raised when either changes.
-constexpr std::uint32_t version = 1;
+// Of the layout below.
+constexpr std::uint32_t layout_version = 1;
 static_assert(std::is_trivially_copyable_v<Pixel> && std::endian::native == std::endian::little);
 
 class ByteWriter {
@@ -92,6 +92,14 @@ struct Fingerprint {
     const char* what;
     std::uint64_t hash;
 };
+std::uint64_t hash_of_text(std::string_view text) {
+    std::uint64_t h = text.size();
+    for (const char c : text) h = hash_key(h, static_cast<std::uint8_t>(c));
+    return h;
+}
+// Another version of the program may take other samples.
+std::uint64_t version() { return hash_of(layout_version, hash_of_text(MONTELUX_VERSION)); }
+
 std::array<Fingerprint, 6> fingerprints(const SceneDescription& d, const RenderTarget& target) {
     const FilmSettings& f = d.film;
     return {{{"scene (its files changed)", d.content_hash},
@@ -112,7 +120,7 @@ void save_checkpoint(const std::filesystem::path& path, const SceneDescription& 
     ByteWriter out;
     const std::span<const Pixel> pixels = state.film.pixels();
     out.bytes().reserve(pixels.size_bytes() + state.goals.size() * sizeof(std::uint32_t) + 1024);
-    out.put(version);
+    out.put(version());
     for (const Fingerprint& f : fingerprints(description, target)) out.put(f.hash);
     out.put(points_per_replicate(sampler));
     out.put(state.report);
@@ -124,7 +132,7 @@ void save_checkpoint(const std::filesystem::path& path, const SceneDescription& 
 }
 
 std::uint64_t render_fingerprint(const SceneDescription& description, const SamplerSettings& sampler) {
-    std::uint64_t hash = hash_of(version, SampleOrder(sampler, {}).unit());
+    std::uint64_t hash = hash_of(version(), SampleOrder(sampler, {}).unit());
     for (const Fingerprint& f : fingerprints(description, {})) hash = hash_of(hash, f.hash);
     return hash;
 }
@@ -134,12 +142,13 @@ RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDes
     RestoredRender restored{RenderState(description.film), 0, {}};
     RenderState& state = restored.state;
     const std::span<Pixel> pixels = state.film.pixels();
-    // A file of the right film is no longer than this.
-    const std::size_t most = pixels.size_bytes() + pixels.size() * sizeof(std::uint32_t) + 1024;
+    // Of the right film it is no longer than this; many times as much, so that one of a larger film is
+    // refused for what it is. What cannot be one is not read into memory.
+    const std::size_t most = 64 * (pixels.size_bytes() + pixels.size() * sizeof(std::uint32_t)) + 1024;
     const Generation generation = read_generation(path, kind, most);
     restored.newest_refused_because = generation.newest_refused_because;
     ByteReader in(generation.payload);
-    if (in.get<std::uint32_t>() != version)
+    if (in.get<std::uint64_t>() != version())
         throw Error(path.string(), "the checkpoint is of another version of the program");
     for (const Fingerprint& f : fingerprints(description, target))
         if (in.get<std::uint64_t>() != f.hash)

@@ -131,7 +131,7 @@ TEST_F(Checkpoint, OtherRendersAreRefusedWithTheReason) {
                 d.film.width = d.film.height = 4;
                 d.film.crop = {0, 0, 4, 4};
             }),
-            {}, "");
+            {}, "film");
     // Damage is found by the file (generation_file_test); the one before is taken.
     save_checkpoint(path_, b.description, renderer.sampler(), {}, RenderState(b.description.film));
     std::filesystem::resize_file(path_, 1000);

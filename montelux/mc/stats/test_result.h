@@ -19,8 +19,6 @@ struct TestResult {
 // The threshold for each of `tests` independent tests when all together may raise a false alarm with
 // probability `level`. Sidak 1967, "Rectangular Confidence Regions for the Means of Multivariate
 // Normal Distributions".
-inline double sidak_threshold(double level, int tests) {
-    return -std::expm1(std::log1p(-level) / tests);
-}
+inline double sidak_threshold(double level, int tests) { return -std::expm1(std::log1p(-level) / tests); }
 
 } // namespace montelux
