@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::uint64_t longest_round = 16;
 constexpr std::uint32_t points_for_targets = 8;
+constexpr std::uint32_t many_samples = 256; // so many are split into 16 replicates
 // Of adaptive renders, for the first errors: samples, and units.
 constexpr std::uint64_t pilot_samples = 16, pilot_units = 4;
 
@@ -22,7 +23,9 @@ SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& ta
     if (target.error > 0 || target.seconds > 0 || target.adaptive)
         settings.replicate_points = std::clamp(settings.samples_per_pixel / 8, 1u, points_for_targets);
     else
-        settings.replicates = std::min(std::max(8u, target.slice.count), settings.samples_per_pixel);
+        settings.replicates =
+            std::min(std::max(settings.samples_per_pixel < many_samples ? 8u : 16u, target.slice.count),
+                     settings.samples_per_pixel);
     return settings;
 }
 

@@ -11,9 +11,10 @@
 namespace montelux {
 
 // With `replicates` 0 or 1 and a quasi-random sampler: the number that suits. Eight give an error estimate
-// with seven degrees of freedom and leave most samples to the point sets; with fewer than eight samples each
-// stands alone. A target or a time needs many short replicates, since nobody knows how many samples it
-// takes: of at most eight points each. More than eight slices have one replicate each.
+// with seven degrees of freedom and leave most samples to the point sets: the truth then lies within two
+// errors in 91 % of the pixels. From 256 samples on there are sixteen (94 %), and never fewer than slices.
+// With fewer than eight samples each stands alone. A target or a time needs many short replicates, of at most
+// eight points each, since nobody knows how many samples it takes.
 SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& target);
 
 // The goals of the next round, one a pixel, after one whose goals (`state.goals`, empty at first) all pixels
