@@ -118,7 +118,6 @@ void add_header(Image& image, const RenderOptions& options, const SceneDescripti
     a["samplesTaken"] = static_cast<float>(error.mean_samples);
     a["interrupted"] = report.cancelled() ? 1 : 0;
     a["sampler"] = name_of(description.sampler.kind);
-    a["replicates"] = static_cast<int>(renderer.sampler().replicates);
     a["strategy"] = name_of(description.integrator.strategy);
     a["heuristic"] = name_of(description.integrator.heuristic);
     a["maxDepth"] = description.integrator.max_depth;
