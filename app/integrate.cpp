@@ -15,6 +15,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#ifdef MONTELUX_WITH_RENDER
+#include "app/cluster_integrate.h"
+#endif
 
 namespace montelux::app {
 namespace {
@@ -62,6 +65,11 @@ int run(const IntegrateOptions& o) {
     end_on_signals();
     std::signal(SIGPIPE, SIG_IGN);
     IntegrationTask task = make_task(o);
+#ifdef MONTELUX_WITH_RENDER
+    // Points are written in the order of one thread.
+    SharedIntegration shared(task, !o.points.empty());
+    if (shared.helped()) return exit_done;
+#endif
     check_files(o);
 
     PointRecorder recorder(task.points_limit);
@@ -72,8 +80,12 @@ int run(const IntegrateOptions& o) {
     ProgressLine line(o.quiet);
     task.options.progress = [&](const IntegrationResult& r) { show_progress(line, task, r); };
     task.options.cancel = &cancel_on_signals();
+#ifdef MONTELUX_WITH_RENDER
+    const IntegrationResult result = shared.integrate(task, evaluate);
+#else
     const IntegrationResult result = integrate(Integrand::batch(evaluate, task.formulas.count()), task.domain,
                                                task.method, task.budget, task.options);
+#endif
     line.finish();
 
     finish_on_signals();

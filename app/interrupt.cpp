@@ -3,6 +3,8 @@
 #include "app/commands.h"
 #include <atomic>
 #include <csignal>
+#include <cstdint>
+#include <ctime>
 #include <string_view>
 #include <unistd.h>
 
@@ -10,19 +12,30 @@ namespace montelux::app {
 
 namespace {
 
-enum class Phase { nothing_to_save, cancellable, writing };
+enum class Phase { nothing_to_save, cancellable, following, writing };
+
+constexpr std::int64_t same_wish_milliseconds = 1000;
 
 CancelFlag cancel_flag;
 std::atomic<Phase> phase{Phase::nothing_to_save};
-static_assert(std::atomic<Phase>::is_always_lock_free);
+std::atomic<std::int64_t> first_signal{0}; // in milliseconds, where it set the flag
+static_assert(std::atomic<Phase>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free);
+
+std::int64_t milliseconds() {
+    timespec t{};
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return std::int64_t{1000} * t.tv_sec + t.tv_nsec / 1'000'000;
+}
 
 // Async-signal-safe calls alone.
 extern "C" void on_signal(int) {
     const Phase now = phase.load();
     if (now == Phase::writing) return;
-    if (now == Phase::cancellable && !cancel_flag.requested()) {
+    if (now == Phase::cancellable || now == Phase::following) {
+        const std::int64_t first = first_signal.load(), at = milliseconds();
+        if (first == 0) first_signal.store(at);
         cancel_flag.request();
-        return;
+        if (first == 0 || now == Phase::following || at - first < same_wish_milliseconds) return;
     }
     constexpr std::string_view message = "\nmontelux: interrupted, nothing was written\n";
     if (::write(STDERR_FILENO, message.data(), message.size()) < 0) ::_exit(exit_interrupted);
@@ -46,6 +59,13 @@ const CancelFlag& cancel_on_signals() {
     phase.store(Phase::cancellable);
     return cancel_flag;
 }
+
+const CancelFlag& follow_on_signals() {
+    phase.store(Phase::following);
+    return cancel_flag;
+}
+
+void request_cancel() { cancel_flag.request(); }
 
 void finish_on_signals() { phase.store(Phase::writing); }
 

@@ -11,6 +11,11 @@
 #include <string_view>
 #include <unistd.h>
 #include <vector>
+#ifdef MONTELUX_WITH_RENDER
+#include "app/cluster_job.h"
+
+#include "montelux/cluster/communicator.h"
+#endif
 
 #include "montelux/formats/nearest_name.h"
 #include "montelux/mc/math/error.h"
@@ -25,6 +30,18 @@ void occupy_standard_streams() {
     do fd = ::open("/dev/null", O_RDONLY);
     while (fd >= 0 && fd <= STDERR_FILENO);
     if (fd >= 0) ::close(fd);
+}
+
+#ifdef MONTELUX_WITH_RENDER
+bool can_be_shared(std::string_view command) { return command == "render" || command == "integrate"; }
+#endif
+
+std::string version() {
+    std::string text = "montelux " MONTELUX_VERSION;
+#ifdef MONTELUX_WITH_RENDER
+    if (const std::string mpi = montelux::mpi_version(); !mpi.empty()) text += ", with MPI (" + mpi + ")";
+#endif
+    return text;
 }
 
 // A mistake of the command line in the program's own style.
@@ -54,12 +71,17 @@ int report_usage(const CLI::App& app, const CLI::ParseError& e, int argc, char**
 
 int main(int argc, char** argv) {
     occupy_standard_streams();
+#ifdef MONTELUX_WITH_RENDER
+    silence_other_ranks();
+    // What cannot be shared is done once.
+    if (is_silent_rank() && (argc < 2 || !can_be_shared(argv[1]))) return exit_done;
+#endif
     // Writing beyond a limit on the size of files is to fail with a sentence, not to end the program.
     std::signal(SIGXFSZ, SIG_IGN);
     int exit_code = exit_done;
     try {
         CLI::App app("Montelux: Monte Carlo integration and light transport", "montelux");
-        app.set_version_flag("--version", "montelux " MONTELUX_VERSION);
+        app.set_version_flag("--version", version());
         app.require_subcommand(1);
         app.footer(
             "Examples:\n"

@@ -1,4 +1,6 @@
 // montelux render: from a scene file to a picture with error bars.
+#include "app/cluster_job.h"
+#include "app/cluster_render.h"
 #include "app/commands.h"
 #include "app/denoised_output.h"
 #include "app/interrupt.h"
@@ -240,14 +242,14 @@ RenderState initial_state(const RenderOptions& options, SceneDescription& descri
     return std::move(restored.state);
 }
 
-int load_and_render(const RenderOptions& options) {
+int load_and_render(const RenderOptions& options, SharedRender& shared) {
     using Clock = std::chrono::steady_clock;
     for (const std::string& output : options.outputs) check_writable(output);
 
     auto load_begin = Clock::now();
     Warnings warnings;
     std::vector<std::filesystem::path> files_read;
-    SceneDescription description = load_pbrt(options.scene, warnings, &files_read);
+    SceneDescription description = load_pbrt(options.scene, warnings, &files_read, shared.files());
     double load_seconds = seconds_since(load_begin);
     if (!options.quiet) print_warnings(warnings);
     apply(options, description);
@@ -267,11 +269,13 @@ int load_and_render(const RenderOptions& options) {
     if (options.denoise) denoiser.emplace(Denoiser::load(options.threads));
 
     RenderState state = initial_state(options, description, target);
+    RoundExecutor* const executor = shared.begin(description, target, options);
     Renderer renderer(description, target);
     ProgressPrinter printer(options.quiet);
     RenderControl control;
     control.progress = [&](const RenderProgress& p) { printer.update(p); };
     control.cancel = &cancel_on_signals();
+    control.executor = executor;
     control.checkpoint_seconds = options.checkpoint_every;
     // A full disk must not cost the render: it goes on, and says so in the end too.
     std::string checkpoint_failure;
@@ -288,6 +292,7 @@ int load_and_render(const RenderOptions& options) {
         };
     renderer.render(state, control);
     printer.finish();
+    shared.end();
     const RenderReport& report = state.report;
 
     const FilmError error = state.film.error();
@@ -305,8 +310,12 @@ int load_and_render(const RenderOptions& options) {
                         percent_text(error.relative).c_str(), duration_text(report.seconds).c_str(),
                         ending_text(report, target).c_str(), denoised.note.c_str());
         print_outliers(state.film);
-        if (options.stats) print_statistics(report, load_seconds, renderer.build_seconds());
+        if (options.stats) {
+            print_statistics(report, load_seconds, renderer.build_seconds());
+            shared.print_statistics();
+        }
     }
+    shared.end_job_if_failed(exit_interrupted);
     if (!denoised.failure.empty()) throw Error(denoised.failure);
     if (!checkpoint_failure.empty())
         throw Error("the last checkpoint was not written, the picture was", checkpoint_failure);
@@ -318,7 +327,17 @@ int run(const RenderOptions& options) {
     end_on_signals();
     // A closed pipe behind the messages must not end the render.
     std::signal(SIGPIPE, SIG_IGN);
-    return with_threads(options.threads, [&] { return load_and_render(options); });
+    const std::unique_ptr<Communicator> job = join_job();
+    const int fair_threads = job ? job->fair_threads() : 0;
+    const int threads = options.threads > 0 ? options.threads : fair_threads;
+    return with_threads(threads, [&] {
+        if (job && job->rank() != 0) {
+            help_rendering(*job, options, threads);
+            return exit_done;
+        }
+        SharedRender shared(job.get(), threads);
+        return load_and_render(options, shared);
+    });
 }
 
 } // namespace

@@ -251,6 +251,10 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_whole_number(
         c, "--threads", o.threads, 0, 4096,
         "Threads, also more than processors; 0: one a processor. The picture does not depend on it");
+    add_parsed(
+        c, "--rank-timeout", "TIME", o.rank_timeout, parse_time_limit,
+        "Under mpirun: a rank that says nothing for so long is given up, and the render ends with what "
+        "the others did. Default: 60s");
     add_parsed(c, "--resolution", "WxH", o.resolution, parse_resolution,
                "Size of the film in pixels; the scene's crop keeps its place");
     add_parsed(c, "--crop", "x0,x1,y0,y1", o.crop, parse_crop,
@@ -271,6 +275,7 @@ void declare(CLI::App& c, RenderOptions& o) {
              "  montelux render scene.pbrt --resolution 320x240 --crop 0.5,1,0,0.5 -o corner.exr\n"
              "  montelux render scene.pbrt --spp 64 --debug-sample 320,240,7\n"
              "\n"
+             "'mpirun -n 8 montelux render ...' shares the render among machines; the picture is the same.\n"
              "An EXR file holds every layer: mean, standard error, samples, albedo, normal, depth.\n"
              "SIGINT (Ctrl-C) or SIGTERM ends the render early and saves what there is; a second one does "
              "not save.");

@@ -62,6 +62,8 @@ struct RenderState {
     explicit RenderState(const FilmSettings& settings) : film(settings) {}
 };
 
+class RoundExecutor;
+
 struct RenderProgress {
     std::uint64_t samples_done = 0, samples_total = 0; // the total is a guess where a target is given
     double seconds = 0;
@@ -79,6 +81,8 @@ struct RenderControl {
     std::function<void(const RenderState&)> checkpoint;
     double checkpoint_seconds = 60;
     const CancelFlag* cancel = nullptr;
+    // Who takes the samples; the threads of this process where there is none. The result is the same.
+    RoundExecutor* executor = nullptr;
 };
 
 } // namespace montelux

@@ -4,13 +4,14 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <mutex>
 #include <vector>
 
 #include "montelux/mc/math/error.h"
+#include "montelux/render/round_executor.h"
 #include "montelux/render/rounds.h"
 #include "montelux/render/sample_context.h"
+#include "montelux/render/tile_renderer.h"
 
 namespace montelux {
 
@@ -22,39 +23,17 @@ double seconds_since(Clock::time_point begin) {
     return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-// CPU time of the calling thread: what other programs take away does not count.
-double thread_cpu_seconds() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 constexpr int tile_size = 16;
-
-std::vector<PixelBounds> tiles_of(const PixelBounds& crop) {
-    std::vector<PixelBounds> tiles;
-    for (int y = crop.y0; y < crop.y1; y += tile_size)
-        for (int x = crop.x0; x < crop.x1; x += tile_size)
-            tiles.push_back({x, y, std::min(x + tile_size, crop.x1), std::min(y + tile_size, crop.y1)});
-    return tiles;
-}
-
-// What the samples of a tile add beside the film.
-struct TileTally {
-    RayStatistics rays;
-    BadSampleReport bad;
-    double cpu_seconds = 0;
-    std::uint64_t samples = 0, clamped_samples = 0;
-};
 
 // One run of Renderer::render.
 class RenderLoop {
   public:
     RenderLoop(const Renderer& renderer, const SampleContext& context, RenderState& state,
                const RenderControl& control)
-        : renderer_(renderer), context_(context), state_(state), control_(control),
-          order_(renderer.sampler(), renderer.target().slice), tiles_(tiles_of(state.film.bounds())),
-          seconds_before_(state.report.seconds) {}
+        : renderer_(renderer), state_(state), control_(control),
+          order_(renderer.sampler(), renderer.target().slice),
+          tile_renderer_(context, renderer.accelerator(), order_),
+          tiles_(tiles_of(state.film.bounds(), tile_size)), seconds_before_(state.report.seconds) {}
 
     // The loop over rounds.
     void run() {
@@ -68,13 +47,13 @@ class RenderLoop {
                     next_goals(state_, renderer_.sampler(), renderer_.target());
                 if (goals.empty()) return end(RenderStop::samples);
                 state_.goals = std::move(goals);
+                if (looks_are_needless())
+                    std::ranges::fill(state_.goals, static_cast<std::uint32_t>(order_.share()));
             }
-            pause_ = false;
-            parallel_for(
-                static_cast<std::int64_t>(tiles_.size()),
-                [&](std::int64_t t) { render_tile(tiles_[static_cast<std::size_t>(t)]); }, control_.cancel);
+            take_samples();
             state_.report.seconds = seconds();
-            if (cancelled()) return end(all_taken() ? RenderStop::samples : RenderStop::cancelled);
+            if (cancelled() || (control_.executor != nullptr && control_.executor->failed()))
+                return end(all_taken() ? RenderStop::samples : RenderStop::cancelled);
             if (checkpoint_is_due()) save_checkpoint();
         }
     }
@@ -91,6 +70,12 @@ class RenderLoop {
     }
     void pause_if_due() {
         if (checkpoint_is_due() || out_of_time()) pause_ = true;
+    }
+    // With an executor, ends of rounds are expensive. Where nothing is decided by the error, one round takes
+    // all samples that are left, after the first one.
+    bool looks_are_needless() const {
+        return control_.executor != nullptr && every_pixel_seen_ && !renderer_.target().adaptive &&
+               !(renderer_.target().error > 0);
     }
     // Pixels of a restored film may lack samples of the present round, as those of a broken-off loop do.
     bool round_is_done() const {
@@ -131,58 +116,49 @@ class RenderLoop {
         return fewest;
     }
 
+    void take_samples() {
+        if (control_.executor != nullptr) {
+            const RoundWatch watch{[this](bool something_done) {
+                                       return cancelled() ||
+                                              (something_done && (checkpoint_is_due() || out_of_time()));
+                                   },
+                                   [this](std::uint64_t samples, const std::optional<FilmError>& error) {
+                                       samples_beyond_ = samples;
+                                       report_progress(error);
+                                   },
+                                   control_.cancel};
+            control_.executor->run(tile_renderer_, state_, watch);
+            samples_beyond_ = 0;
+            return;
+        }
+        pause_ = false;
+        parallel_for(
+            static_cast<std::int64_t>(tiles_.size()),
+            [&](std::int64_t t) { render_tile(tiles_[static_cast<std::size_t>(t)]); }, control_.cancel);
+    }
+
     void render_tile(const PixelBounds& tile) {
         if (pause_) return;
-        const double begin = thread_cpu_seconds();
-        RayTracer tracer(renderer_.accelerator());
-        TileTally tally;
         const PixelBounds& film = state_.film.bounds();
-        for (int y = tile.y0; y < tile.y1; ++y)
-            for (int x = tile.x0; x < tile.x1; ++x) {
-                if (pause_ || cancelled()) break;
-                const auto at =
-                    static_cast<std::size_t>(y - film.y0) * static_cast<std::size_t>(film.width()) +
-                    static_cast<std::size_t>(x - film.x0);
-                render_pixel(tracer, x, y, state_.goals[at], tally);
-            }
-        tally.rays = tracer.statistics;
-        tally.cpu_seconds = thread_cpu_seconds() - begin;
+        const auto stride = static_cast<std::size_t>(film.width());
+        const std::size_t first = static_cast<std::size_t>(tile.y0 - film.y0) * stride +
+                                  static_cast<std::size_t>(tile.x0 - film.x0);
+        TileTally tally;
+        auto stopped = [this] { return pause_ || cancelled(); };
+        tile_renderer_.render({.bounds = tile,
+                               .pixels = &state_.film.pixels()[first],
+                               .stride = stride,
+                               .goals = &state_.goals[first],
+                               .goal_stride = stride},
+                              tally, stopped, [&] {
+                                  pause_if_due();
+                                  return stopped();
+                              });
         std::lock_guard lock(mutex_);
-        RenderReport& report = state_.report;
-        report.rays.merge(tally.rays);
-        report.bad.merge(tally.bad);
-        report.cpu_seconds += tally.cpu_seconds;
-        report.samples += tally.samples;
-        report.clamped_samples += tally.clamped_samples;
+        tally.add_to(state_.report);
         // Not before something was done: short intervals must not keep the loop from going on.
         if (tally.samples > 0) pause_if_due();
         if (seconds_since(last_progress_) > 0.2) report_progress(std::nullopt);
-    }
-
-    // Samples up to the goal. A pixel that gets very many is left between two of them when the loop shall
-    // stop; what it has is whole at any number of samples.
-    void render_pixel(RayTracer& tracer, int x, int y, std::uint32_t goal, TileTally& tally) {
-        Pixel& pixel = state_.film.pixel(x, y);
-        for (std::uint64_t i = pixel.samples(); i < goal; ++i) {
-            if (tally.samples % samples_between_looks == samples_between_looks - 1) {
-                pause_if_due();
-                if (pause_ || cancelled()) return;
-            }
-            const std::uint64_t index = order_.index(i);
-            const SampleContext::Result r = context_.take(tracer, x, y, index);
-            if (r.bad) {
-                pixel.count_bad();
-                tally.bad.add({*r.bad, x, y, index});
-            } else {
-                pixel.add_sample(r.film);
-            }
-            if (r.clamped != 0) {
-                ++tally.clamped_samples;
-                pixel.add_clamped(r.clamped);
-            }
-            if (order_.closed(i + 1)) pixel.end_unit();
-            ++tally.samples;
-        }
     }
 
     void report_progress(const std::optional<FilmError>& error) {
@@ -190,7 +166,7 @@ class RenderLoop {
         last_progress_ = Clock::now();
         if (error) progress_.error = error;
         progress_.seconds = seconds();
-        progress_.samples_done = state_.report.samples;
+        progress_.samples_done = state_.report.samples + samples_beyond_;
         progress_.samples_total = expected_samples();
         control_.progress(progress_);
     }
@@ -204,7 +180,7 @@ class RenderLoop {
             expected = pixels * progress_.error->mean_samples *
                        std::pow(progress_.error->relative / target.error, 2);
         if (!(expected < all)) expected = all;
-        return std::max(state_.report.samples, static_cast<std::uint64_t>(expected));
+        return std::max(progress_.samples_done, static_cast<std::uint64_t>(expected));
     }
 
     void save_checkpoint() {
@@ -226,15 +202,14 @@ class RenderLoop {
             state_.report.stop = RenderStop::error;
     }
 
-    static constexpr std::uint64_t samples_between_looks = 1024;
     // Of each pixel, before its error is believed; and before a picture is taken for black.
     static constexpr std::uint64_t least_samples = 16, samples_of_black = 4096;
 
     const Renderer& renderer_;
-    const SampleContext& context_;
     RenderState& state_;
     const RenderControl& control_;
     SampleOrder order_;
+    TileRenderer tile_renderer_;
     std::vector<PixelBounds> tiles_;
     double seconds_before_; // of earlier sessions
     Clock::time_point begin_ = Clock::now(), last_checkpoint_ = begin_, last_progress_ = begin_;
@@ -242,6 +217,7 @@ class RenderLoop {
     std::atomic<bool> pause_{false};
     std::mutex mutex_; // of the report and the progress
     RenderProgress progress_;
+    std::uint64_t samples_beyond_ = 0; // those in the report, which an executor told of
 };
 
 } // namespace
@@ -273,6 +249,11 @@ Renderer::Renderer(const SceneDescription& description, const RenderTarget& targ
     tables_ = std::make_unique<SceneTables>(description.scene);
     accelerator_ = std::make_unique<Accelerator>(description.scene, *tables_);
     build_seconds_ = seconds_since(begin);
+}
+
+void Renderer::serve(const std::function<void(const TileRenderer&)>& work) const {
+    const SampleContext context(description_, sampler_, *tables_, camera_);
+    work(TileRenderer(context, *accelerator_, SampleOrder(sampler_, target_.slice)));
 }
 
 void Renderer::render(RenderState& state, const RenderControl& control) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "montelux/accel/accelerator.h"
@@ -15,6 +16,7 @@
 namespace montelux {
 
 struct SampleRecord;
+class TileRenderer;
 
 // Holds what is built once for a scene. The description must outlive it.
 class Renderer {
@@ -37,6 +39,9 @@ class Renderer {
     // A render from the start. The film must be new.
     RenderReport render(Film& film, const ProgressCallback& progress = {},
                         const CancelFlag* cancel = nullptr) const;
+
+    // Takes samples for a render that another process leads: calls `work` with what renders its tiles.
+    void serve(const std::function<void(const TileRenderer&)>& work) const;
 
     // Traces one sample of the render again and writes it down (sample_record.h). The record refers to the
     // renderer's scene and tables. Throws Error, as check_sample does, where the render takes no such sample.

@@ -3,7 +3,6 @@
 #include <string>
 
 #include "montelux/formats/gunzip.h"
-#include "montelux/mc/io/file.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux::pbrt {
@@ -22,15 +21,14 @@ std::filesystem::path Files::find(std::string_view name, Location at) const {
     std::filesystem::path first = main_folder_ / path;
     std::filesystem::path second =
         std::filesystem::path(diagnostics_.file_name(at.file)).parent_path() / path;
-    std::error_code ignored;
-    if (std::filesystem::exists(first, ignored)) return first;
-    if (std::filesystem::exists(second, ignored)) return second;
+    if (source_.exists(first)) return first;
+    if (source_.exists(second)) return second;
     diagnostics_.error(at, "there is no file '" + first.string() + "'");
 }
 
-std::vector<std::uint8_t> Files::read_alone(const std::filesystem::path& path, ContentHash& hash) {
-    std::vector<std::uint8_t> bytes = read_file_bytes(path, max_file_bytes);
-    hash.add(bytes.data(), bytes.size());
+std::vector<std::uint8_t> Files::read_alone(const std::filesystem::path& path) {
+    std::vector<std::uint8_t> bytes = source_.read(path, max_file_bytes);
+    hash_.add(bytes.data(), bytes.size());
     if (path.extension() == ".gz") return gunzip(bytes, path.string(), max_file_bytes);
     return bytes;
 }
@@ -38,7 +36,7 @@ std::vector<std::uint8_t> Files::read_alone(const std::filesystem::path& path, C
 std::vector<std::uint8_t> Files::read(const std::filesystem::path& path, Location at) {
     count_as_read(path);
     try {
-        return read_alone(path, hash_);
+        return read_alone(path);
     } catch (const Error& e) {
         diagnostics_.error(at, e.what());
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "montelux/formats/content_hash.h"
+#include "montelux/formats/file_source.h"
 #include "montelux/formats/pbrt/diagnostics.h"
 
 namespace montelux::pbrt {
@@ -15,15 +16,16 @@ namespace montelux::pbrt {
 // file that mentions them.
 class Files {
   public:
-    Files(std::filesystem::path main_folder, Diagnostics& diagnostics)
-        : main_folder_(std::move(main_folder)), diagnostics_(diagnostics) {}
+    // Both must outlive it.
+    Files(std::filesystem::path main_folder, FileSource& source, Diagnostics& diagnostics)
+        : main_folder_(std::move(main_folder)), source_(source), diagnostics_(diagnostics) {}
 
     // An error at `at` when there is no such file.
     std::filesystem::path find(std::string_view name, Location at) const;
     // The whole file; one whose name ends in ".gz" is decompressed. Its bytes go into the fingerprint.
     std::vector<std::uint8_t> read(const std::filesystem::path& path, Location at);
     // As `read`, told about without a place in a scene file.
-    static std::vector<std::uint8_t> read_alone(const std::filesystem::path& path, ContentHash& hash);
+    std::vector<std::uint8_t> read_alone(const std::filesystem::path& path);
 
     // Every file that was read, in order.
     const std::vector<std::filesystem::path>& files_read() const { return files_read_; }
@@ -34,6 +36,7 @@ class Files {
 
   private:
     std::filesystem::path main_folder_;
+    FileSource& source_;
     Diagnostics& diagnostics_;
     ContentHash hash_;
     std::vector<std::filesystem::path> files_read_;

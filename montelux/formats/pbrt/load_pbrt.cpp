@@ -7,11 +7,12 @@
 namespace montelux {
 
 SceneDescription load_pbrt(const std::filesystem::path& path, Warnings& warnings,
-                           std::vector<std::filesystem::path>* files_read) {
+                           std::vector<std::filesystem::path>* files_read, FileSource* source) {
+    DiskFiles disk;
     pbrt::Diagnostics diagnostics(warnings);
     std::uint32_t file = diagnostics.add_file(path.string());
-    pbrt::Files files(path.parent_path(), diagnostics);
-    std::vector<std::uint8_t> bytes = pbrt::Files::read_alone(path, files.hash());
+    pbrt::Files files(path.parent_path(), source != nullptr ? *source : disk, diagnostics);
+    std::vector<std::uint8_t> bytes = files.read_alone(path);
     files.count_as_read(path);
     pbrt::SceneBuilder builder(files, diagnostics);
     pbrt::SceneParser parser(files, builder, diagnostics);
@@ -26,7 +27,8 @@ SceneDescription parse_pbrt(std::string_view text, const std::string& name,
                             const std::filesystem::path& folder, Warnings& warnings) {
     pbrt::Diagnostics diagnostics(warnings);
     std::uint32_t file = diagnostics.add_file(name);
-    pbrt::Files files(folder, diagnostics);
+    DiskFiles disk;
+    pbrt::Files files(folder, disk, diagnostics);
     files.hash().add(text.data(), text.size());
     pbrt::SceneBuilder builder(files, diagnostics);
     pbrt::SceneParser parser(files, builder, diagnostics);

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "montelux/formats/file_source.h"
 #include "montelux/formats/warnings.h"
 #include "montelux/scene/render_settings.h"
 
@@ -16,8 +17,10 @@ namespace montelux {
 // Throws Error "file:line:column: sentence" on anything that pbrt would not understand or that Montelux
 // cannot render; tells of what it ignores in `warnings`. `files_read`, where given, gets every file that the
 // scene was read from: what a picture must not be written over.
+// `source` stands in for the disk.
 SceneDescription load_pbrt(const std::filesystem::path& path, Warnings& warnings,
-                           std::vector<std::filesystem::path>* files_read = nullptr);
+                           std::vector<std::filesystem::path>* files_read = nullptr,
+                           FileSource* source = nullptr);
 
 // The same for a text; `name` stands in messages and `folder` is where paths start.
 SceneDescription parse_pbrt(std::string_view text, const std::string& name,

@@ -1,0 +1,29 @@
+// An integration whose evaluations the ranks of an MPI job share; in one process where there is no job.
+#pragma once
+
+#include "app/integrate_options.h"
+#include <memory>
+
+#include "montelux/cluster/communicator.h"
+#include "montelux/cluster/shared_integrand.h"
+
+namespace montelux::app {
+
+class SharedIntegration {
+  public:
+    // Joins the job. On a rank other than 0 it helps until the integration is over. `alone`: nothing is to be
+    // shared, and rank 0 does everything.
+    SharedIntegration(const IntegrationTask& task, bool alone);
+
+    // Has this rank only helped? Then there is nothing else for it to do.
+    bool helped() const { return helped_; }
+    // montelux::integrate(), with the task's options but for the number of threads.
+    IntegrationResult integrate(const IntegrationTask& task, const BatchFunction& f);
+
+  private:
+    bool helped_ = false;
+    std::unique_ptr<Communicator> job_;
+    std::unique_ptr<SharedIntegrand> shared_;
+};
+
+} // namespace montelux::app

@@ -1,0 +1,27 @@
+// The program as one rank of an MPI job: who speaks, who leads, and how the others get the scene.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace montelux {
+class Communicator;
+}
+
+namespace montelux::app {
+
+// Seconds. A leader that writes a checkpoint to a slow disk says nothing meanwhile.
+inline constexpr double patience_with_leader = 600;
+
+// Is this one of several processes that mpirun or srun started, and not the one that speaks, rank 0?
+bool is_silent_rank();
+// Sends what a silent rank prints nowhere: every rank says the same. Call it before anything is printed.
+void silence_other_ranks();
+// Says something all the same, on the standard error that the process was started with.
+void speak_up(const std::string& message);
+
+// The job, where there is one: empty for a program that was started alone. Throws Error.
+std::unique_ptr<Communicator> join_job();
+
+} // namespace montelux::app

@@ -1,0 +1,320 @@
+#include "montelux/cluster/coordinator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "montelux/mc/io/byte_stream.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+namespace {
+
+// A task is as long as that, but longer where so many threads would keep the leader busy with their reports.
+constexpr double task_seconds = 0.1, seconds_a_thread = 1e-4;
+// Tasks a thread that a rank has in hand: one in work, and one to go on with.
+constexpr int tasks_a_thread = 2;
+constexpr std::uint32_t first_step = 4; // samples a pixel, where the cost of a tile is not known
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+double seconds_between(std::chrono::steady_clock::time_point a, std::chrono::steady_clock::time_point b) {
+    return std::chrono::duration<double>(b - a).count();
+}
+
+// Calls f(first, count, offset) for each row of a tile: where it begins in the film, how long it is, and how
+// many pixels of the tile lie before it.
+template <typename F>
+void for_rows(const PixelBounds& film, const PixelBounds& tile, const F& f) {
+    const auto width = static_cast<std::size_t>(film.width()), count = static_cast<std::size_t>(tile.width());
+    std::size_t offset = 0;
+    for (int y = tile.y0; y < tile.y1; ++y, offset += count)
+        f(static_cast<std::size_t>(y - film.y0) * width + static_cast<std::size_t>(tile.x0 - film.x0), count,
+          offset);
+}
+
+} // namespace
+
+Coordinator::Coordinator(Mailbox& mailbox, const PixelBounds& crop, const CoordinatorSettings& settings,
+                         std::function<void()> on_wish)
+    : mailbox_(mailbox), settings_(settings), on_wish_(std::move(on_wish)),
+      bounds_(tiles_of(crop, settings.tile_size)), tiles_(bounds_.size()), ranks_(index(mailbox.size())),
+      schedule_(mailbox.size(), static_cast<int>(bounds_.size())) {}
+
+Coordinator::~Coordinator() { end(); }
+
+void Coordinator::end() {
+    if (std::exchange(ended_, true)) return;
+    worker_.reset();
+    for (int r = 1; r < mailbox_.size(); ++r) send(r, protocol::end, {});
+}
+
+void Coordinator::send(int rank, protocol::Tag tag, std::vector<std::uint8_t> bytes) {
+    ++traffic_.messages;
+    if (rank != mailbox_.rank()) traffic_.bytes_out += bytes.size();
+    mailbox_.send(rank, tag, std::move(bytes));
+}
+
+double Coordinator::work_of(int tile, std::uint64_t samples) const {
+    double cost = tiles_[index(tile)].seconds_per_sample;
+    if (!(cost > 0)) cost = known_costs_ > 0 ? known_seconds_ / known_costs_ : 1e-6;
+    return static_cast<double>(samples) * cost;
+}
+
+int Coordinator::threads() const {
+    int threads = 0;
+    for (const Rank& r : ranks_) threads += r.threads;
+    return threads;
+}
+
+std::uint32_t Coordinator::step_of(int tile) const {
+    const double cost = tiles_[index(tile)].seconds_per_sample;
+    if (!(cost > 0)) return first_step;
+    const double seconds = std::max(task_seconds, seconds_a_thread * threads());
+    const double samples = seconds / (cost * static_cast<double>(pixel_count(bounds_[index(tile)])));
+    return static_cast<std::uint32_t>(std::clamp(samples, 1.0, 1e9));
+}
+
+void Coordinator::begin_round() {
+    const std::span<const Pixel> pixels = state_->film.pixels();
+    const std::vector<std::uint32_t>& goals = state_->goals;
+    uniform_goal_ = goals.front();
+    if (!std::ranges::all_of(goals, [&](std::uint32_t g) { return g == goals.front(); }))
+        uniform_goal_.reset();
+    std::vector<double> work(tiles_.size());
+    for (std::size_t t = 0; t < tiles_.size(); ++t) {
+        std::uint64_t remaining = 0;
+        for_rows(state_->film.bounds(), bounds_[t], [&](std::size_t first, std::size_t count, std::size_t) {
+            for (std::size_t i = first; i < first + count; ++i)
+                if (pixels[i].samples() < goals[i]) remaining += goals[i] - pixels[i].samples();
+        });
+        work[t] = work_of(static_cast<int>(t), remaining);
+        tiles_[t].goals_known = false;
+    }
+    schedule_.begin_round(work);
+    samples_ = 0;
+    something_done_ = false;
+}
+
+void Coordinator::run(const TileRenderer& renderer, RenderState& state, const RoundWatch& watch) {
+    state_ = &state;
+    watch_ = &watch;
+    resumed_ = Clock::now();
+    if (!worker_) worker_ = std::make_unique<TileWorker>(renderer, bounds_, settings_.threads, mailbox_);
+    begin_round();
+    // Polling more seldom while nothing happens leaves the processor to those that render.
+    constexpr std::chrono::microseconds shortest{50}, longest{1000};
+    std::chrono::microseconds pause = shortest;
+    while (!schedule_.finished() && !failed() && !watch.stop(something_done_)) {
+        deal();
+        const bool heard = listen();
+        check_silence();
+        if (seconds_between(last_told_, Clock::now()) > 0.2) tell();
+        pause = heard ? shortest : std::min(2 * pause, longest);
+        if (!heard) worker_->wait(pause);
+    }
+    gather();
+}
+
+void Coordinator::deal() {
+    for (int r = 0; r < mailbox_.size(); ++r) {
+        std::vector<std::uint8_t> message;
+        while (schedule_.in_work(r) < tasks_a_thread * ranks_[index(r)].threads) {
+            const auto pick = schedule_.next(r);
+            if (!pick) break;
+            Tile& t = tiles_[index(*pick)];
+            if (t.holder != r && t.holder != TileSchedule::nobody) ++traffic_.moved_tiles;
+            if (t.home || t.holder == r) {
+                assign(r, *pick, message);
+                continue;
+            }
+            t.wanted_by = r;
+            ByteWriter out;
+            out.put(static_cast<std::uint32_t>(*pick));
+            send(t.holder, protocol::release, out.take());
+        }
+        if (!message.empty()) send(r, protocol::assign, std::move(message));
+    }
+}
+
+void Coordinator::assign(int rank, int tile, std::vector<std::uint8_t>& message) {
+    using protocol::Assignment;
+    Tile& t = tiles_[index(tile)];
+    const PixelBounds& bounds = bounds_[index(tile)];
+    const PixelBounds& film = state_->film.bounds();
+    const std::span<const Pixel> pixels = state_->film.pixels();
+    Assignment a{.tile = static_cast<std::uint32_t>(tile), .step = step_of(tile)};
+    // The holder keeps its copy when the film gets one.
+    const bool holds = t.holder == rank;
+    if (!t.goals_known || !holds)
+        a.goals = uniform_goal_ ? Assignment::Goals::uniform : Assignment::Goals::each;
+    if (!holds) {
+        bool fresh = true;
+        for_rows(film, bounds, [&](std::size_t first, std::size_t count, std::size_t) {
+            for (std::size_t i = first; i < first + count; ++i) fresh = fresh && pixels[i].samples() == 0;
+        });
+        a.pixels = fresh ? Assignment::Pixels::fresh : Assignment::Pixels::follow;
+    }
+    ByteWriter out;
+    out.put(a);
+    if (a.pixels == Assignment::Pixels::follow)
+        for_rows(film, bounds, [&](std::size_t first, std::size_t count, std::size_t) {
+            out.put_all(pixels.subspan(first, count));
+        });
+    if (a.goals == Assignment::Goals::uniform) {
+        out.put(*uniform_goal_);
+    } else if (a.goals == Assignment::Goals::each) {
+        for_rows(film, bounds, [&](std::size_t first, std::size_t count, std::size_t) {
+            out.put_all(std::span<const std::uint32_t>(state_->goals).subspan(first, count));
+        });
+    }
+    t.goals_known = true;
+    t.home = false;
+    t.holder = rank;
+    const std::vector<std::uint8_t> bytes = out.take();
+    message.insert(message.end(), bytes.begin(), bytes.end());
+}
+
+bool Coordinator::listen() {
+    bool heard = false;
+    while (auto message = mailbox_.receive()) {
+        heard = true;
+        if (message->tag == protocol::assign || message->tag == protocol::release ||
+            message->tag == protocol::gather)
+            worker_->handle(*message);
+        else
+            handle(*message);
+    }
+    worker_->report();
+    return heard;
+}
+
+void Coordinator::handle(const Message& message) {
+    Rank& rank = ranks_[index(message.source)];
+    rank.last_heard = Clock::now();
+    if (message.source != mailbox_.rank()) traffic_.bytes_in += message.bytes.size();
+    ByteReader in(message.bytes);
+    switch (message.tag) {
+    case protocol::hello:
+        rank.threads = in.get<std::int32_t>();
+        return;
+    case protocol::done:
+        while (!in.at_end()) take_report(in.get<protocol::TaskReport>());
+        return;
+    case protocol::tiles:
+        return take_tiles(message);
+    case protocol::gathered:
+        rank.gathering = false;
+        return;
+    case protocol::wish:
+        if (on_wish_) on_wish_();
+        return;
+    case protocol::beat:
+        return;
+    default:
+        throw Error("rank " + std::to_string(message.source),
+                    "sent a message that rank 0 does not know: " + std::to_string(message.tag));
+    }
+}
+
+void Coordinator::take_report(const protocol::TaskReport& report) {
+    const auto tile = static_cast<int>(report.tile);
+    Tile& t = tiles_.at(report.tile);
+    samples_ += report.samples;
+    something_done_ = something_done_ || report.samples > 0;
+    if (report.samples > 0) {
+        if (t.seconds_per_sample > 0)
+            known_seconds_ -= t.seconds_per_sample;
+        else
+            ++known_costs_;
+        t.seconds_per_sample = std::max(report.cpu_seconds / static_cast<double>(report.samples), 1e-9);
+        known_seconds_ += t.seconds_per_sample;
+    }
+    t.luminance = report.luminance;
+    t.squared_error = report.squared_error;
+    t.summed = true;
+    schedule_.returned(tile, work_of(tile, report.remaining));
+}
+
+void Coordinator::take_tiles(const Message& message) {
+    const std::span<Pixel> pixels = state_->film.pixels();
+    for (ByteReader in(message.bytes); !in.at_end();) {
+        const auto header = in.get<protocol::TilePixelsHeader>();
+        Tile& t = tiles_.at(header.tile);
+        const PixelBounds& bounds = bounds_[header.tile];
+        if (header.pixels != pixel_count(bounds))
+            throw Error("rank " + std::to_string(message.source), "sent a tile of another size");
+        const auto tally = in.get<TileTally>();
+        tally.add_to(state_->report);
+        // What is in the report is not told of twice.
+        samples_ -= std::min(samples_, tally.samples);
+        something_done_ = something_done_ || tally.samples > 0;
+        for_rows(state_->film.bounds(), bounds, [&](std::size_t first, std::size_t count, std::size_t) {
+            in.get_all(pixels.subspan(first, count));
+        });
+        t.home = true;
+        if (t.wanted_by == TileSchedule::nobody) continue;
+        std::vector<std::uint8_t> assignment;
+        const int rank = std::exchange(t.wanted_by, TileSchedule::nobody);
+        assign(rank, static_cast<int>(header.tile), assignment);
+        send(rank, protocol::assign, std::move(assignment));
+    }
+}
+
+void Coordinator::gather() {
+    for (int r = 0; r < mailbox_.size(); ++r)
+        if (ranks_[index(r)].threads > 0 && !ranks_[index(r)].lost) {
+            ranks_[index(r)].gathering = true;
+            send(r, protocol::gather, {});
+        }
+    for (Tile& t : tiles_) t.wanted_by = TileSchedule::nobody;
+    const Clock::time_point begin = Clock::now();
+    while (std::ranges::any_of(ranks_, [](const Rank& r) { return r.gathering; })) {
+        if (!listen()) worker_->wait(std::chrono::microseconds(100));
+        check_silence();
+        const bool in_a_hurry = watch_->cancel != nullptr && watch_->cancel->requested();
+        if (in_a_hurry && seconds_between(begin, Clock::now()) > settings_.patience_when_cancelled)
+            for (int r = 0; r < mailbox_.size(); ++r)
+                if (r != mailbox_.rank() && std::exchange(ranks_[index(r)].gathering, false))
+                    left_out_.push_back(r);
+    }
+}
+
+void Coordinator::check_silence() {
+    const Clock::time_point now = Clock::now();
+    for (int r = 0; r < mailbox_.size(); ++r) {
+        Rank& rank = ranks_[index(r)];
+        if (r == mailbox_.rank() || rank.threads == 0 || rank.lost) continue;
+        const double silent = seconds_between(std::max(rank.last_heard, resumed_), now);
+        if (silent <= settings_.patience_seconds) continue;
+        rank.lost = true;
+        rank.gathering = false;
+        char text[160];
+        std::snprintf(text, sizeof text,
+                      "has said nothing for %.0f s and is given up; what the others did is saved", silent);
+        if (!failure_) failure_ = "rank " + std::to_string(r) + " " + text;
+    }
+}
+
+void Coordinator::tell() {
+    last_told_ = Clock::now();
+    double luminance = 0, squared_error = 0;
+    bool known = true;
+    for (const Tile& t : tiles_) {
+        known = known && t.summed;
+        luminance += t.luminance;
+        squared_error += t.squared_error;
+    }
+    std::optional<FilmError> error;
+    if (known && std::isfinite(squared_error)) {
+        const auto pixels = static_cast<double>(state_->film.pixels().size());
+        error = FilmError{.relative = std::sqrt(squared_error / pixels) / (luminance / pixels),
+                          .mean_luminance = luminance / pixels,
+                          .mean_samples = static_cast<double>(state_->report.samples + samples_) / pixels};
+    }
+    watch_->tell(samples_, error);
+}
+
+} // namespace montelux

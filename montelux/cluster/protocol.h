@@ -1,0 +1,53 @@
+// What the leader of a render and its workers say to one another.
+#pragma once
+
+#include <cstdint>
+
+namespace montelux::protocol {
+
+// Tags of messages. A tile is named by its number in tiles_of() the film's crop.
+enum Tag : int {
+    // To a worker.
+    assign = 1, // Assignments, one after another
+    release,    // a tile's number: its pixels are to be sent back and forgotten
+    gather,     // all pixels that changed are to be sent back; what was assigned and not done is forgotten
+    end,        // the render is over
+    // To the leader.
+    hello,    // a worker's number of threads: it is ready
+    done,     // TaskReports, one after another
+    tiles,    // TilePixels, one after another
+    gathered, // after the last of the tiles that `gather` asked for
+    beat,     // nothing but that the worker is alive
+    wish,     // somebody asked this rank to end: cancel the render
+};
+
+// A tile is rendered on by at most `step` samples a pixel. What the worker does not have yet follows.
+struct Assignment {
+    enum class Goals : std::uint8_t {
+        known,
+        uniform,
+        each
+    }; // uniform: one number follows; each: one a pixel
+    enum class Pixels : std::uint8_t { known, fresh, follow }; // fresh: without a sample
+    std::uint32_t tile = 0, step = 0;
+    Goals goals = Goals::known;
+    Pixels pixels = Pixels::known;
+};
+
+// What became of an assignment.
+struct TaskReport {
+    std::uint32_t tile = 0;
+    std::uint64_t samples = 0;   // that were taken
+    std::uint64_t remaining = 0; // up to the goals of the round
+    double cpu_seconds = 0;
+    // Sums over the tile's pixels: luminance, and its squared error; for the progress alone.
+    double luminance = 0, squared_error = 0;
+};
+
+// Followed by as many pixels as the tile has.
+struct TilePixelsHeader {
+    std::uint32_t tile = 0, pixels = 0;
+    // The TileTally since the tile was last sent follows too, before the pixels.
+};
+
+} // namespace montelux::protocol

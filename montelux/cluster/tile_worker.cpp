@@ -1,0 +1,233 @@
+#include "montelux/cluster/tile_worker.h"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "montelux/film/film_error.h"
+#include "montelux/mc/io/byte_stream.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+// Of pixels in one message: memory at both ends stays small.
+constexpr std::size_t message_bytes = std::size_t{8} << 20;
+constexpr std::chrono::seconds beat_interval{1};
+
+} // namespace
+
+TileWorker::TileWorker(const TileRenderer& renderer, std::vector<PixelBounds> tiles, int threads,
+                       Mailbox& mailbox)
+    : renderer_(renderer), bounds_(std::move(tiles)), mailbox_(mailbox), tiles_(bounds_.size()),
+      last_sent_(Clock::now()) {
+    for (int t = 0; t < threads; ++t) threads_.emplace_back([this] { run_thread(); });
+    ByteWriter out;
+    out.put(static_cast<std::int32_t>(threads));
+    mailbox_.send(leading_rank, protocol::hello, out.take());
+}
+
+TileWorker::~TileWorker() {
+    stop_.request();
+    {
+        std::lock_guard lock(mutex_);
+        closing_ = true;
+        tasks_.clear();
+    }
+    tasks_there_.notify_all();
+    for (std::thread& t : threads_) t.join();
+}
+
+TileWorker::Tile& TileWorker::known(std::uint32_t tile) {
+    if (tile >= tiles_.size() || !tiles_[tile])
+        throw Error("rank " + std::to_string(mailbox_.rank()),
+                    "was asked for tile " + std::to_string(tile) + ", which it does not hold");
+    return *tiles_[tile];
+}
+
+void TileWorker::run_thread() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        tasks_there_.wait(lock, [this] { return closing_ || !tasks_.empty(); });
+        if (closing_) return;
+        const Task task = tasks_.front();
+        tasks_.pop_front();
+        ++busy_;
+        lock.unlock();
+        const protocol::TaskReport report = perform(task);
+        lock.lock();
+        reports_.push_back(report);
+        --busy_;
+        reports_there_.notify_one();
+    }
+}
+
+protocol::TaskReport TileWorker::perform(const Task& task) {
+    Tile& tile = *tiles_[task.tile];
+    const PixelBounds& bounds = bounds_[task.tile];
+    const auto stride = static_cast<std::size_t>(bounds.width());
+    TileTally tally;
+    auto stop = [this] { return stop_.requested(); };
+    renderer_.render({.bounds = bounds,
+                      .pixels = tile.pixels.data(),
+                      .stride = stride,
+                      .goals = tile.goals.data(),
+                      .goal_stride = stride,
+                      .most = task.step},
+                     tally, stop, stop);
+    tile.tally.merge(tally);
+    tile.changed = tile.changed || tally.samples > 0;
+    protocol::TaskReport report{
+        .tile = task.tile, .samples = tally.samples, .cpu_seconds = tally.cpu_seconds};
+    for (std::size_t i = 0; i < tile.pixels.size(); ++i) {
+        const Pixel& p = tile.pixels[i];
+        if (p.samples() < tile.goals[i]) report.remaining += tile.goals[i] - p.samples();
+        for (int c = 0; c < 3; ++c) report.luminance += luminance_weight[c] * p.units().mean(c);
+        report.squared_error += std::pow(luminance_error(p), 2);
+    }
+    return report;
+}
+
+void TileWorker::handle(const Message& message) {
+    ByteReader in(message.bytes);
+    switch (message.tag) {
+    case protocol::assign:
+        return assign(message);
+    case protocol::release: {
+        const auto tile = in.get<std::uint32_t>();
+        known(tile);
+        send_tiles({&tile, 1});
+        tiles_[tile].reset();
+        return;
+    }
+    case protocol::gather: {
+        stop_.request();
+        gathering_ = true;
+        std::lock_guard lock(mutex_);
+        tasks_.clear();
+        return;
+    }
+    case protocol::end:
+        ended_ = true;
+        stop_.request();
+        return;
+    default:
+        throw Error("rank " + std::to_string(mailbox_.rank()),
+                    "got a message that it does not know: " + std::to_string(message.tag));
+    }
+}
+
+void TileWorker::assign(const Message& message) {
+    using protocol::Assignment;
+    std::vector<Task> tasks;
+    for (ByteReader in(message.bytes); !in.at_end();) {
+        const auto a = in.get<Assignment>();
+        if (a.tile >= tiles_.size()) known(a.tile);
+        const std::size_t count = pixel_count(bounds_[a.tile]);
+        if (a.pixels != Assignment::Pixels::known) {
+            tiles_[a.tile] = std::make_unique<Tile>();
+            tiles_[a.tile]->pixels.resize(count);
+            if (a.pixels == Assignment::Pixels::follow) in.get_all(std::span<Pixel>(tiles_[a.tile]->pixels));
+        }
+        Tile& tile = known(a.tile);
+        if (a.goals == Assignment::Goals::uniform) {
+            tile.goals.assign(count, in.get<std::uint32_t>());
+        } else if (a.goals == Assignment::Goals::each) {
+            tile.goals.resize(count);
+            in.get_all(std::span<std::uint32_t>(tile.goals));
+        }
+        if (tile.goals.size() != count) known(~std::uint32_t{0});
+        tasks.push_back({a.tile, a.step});
+    }
+    {
+        std::lock_guard lock(mutex_);
+        tasks_.insert(tasks_.end(), tasks.begin(), tasks.end());
+    }
+    tasks_there_.notify_all();
+}
+
+void TileWorker::send_tiles(std::span<const std::uint32_t> which) {
+    ByteWriter out;
+    for (std::uint32_t t : which) {
+        Tile& tile = *tiles_[t];
+        out.put(protocol::TilePixelsHeader{t, static_cast<std::uint32_t>(tile.pixels.size())});
+        out.put(tile.tally);
+        out.put_all(std::span<const Pixel>(tile.pixels));
+        tile.tally = {};
+        tile.changed = false;
+        if (out.size() < message_bytes) continue;
+        mailbox_.send(leading_rank, protocol::tiles, out.take());
+    }
+    if (out.size() > 0) mailbox_.send(leading_rank, protocol::tiles, out.take());
+}
+
+void TileWorker::finish_gathering() {
+    std::vector<std::uint32_t> changed;
+    for (std::size_t t = 0; t < tiles_.size(); ++t)
+        if (tiles_[t] && tiles_[t]->changed) changed.push_back(static_cast<std::uint32_t>(t));
+    send_tiles(changed);
+    mailbox_.send(leading_rank, protocol::gathered, {});
+    gathering_ = false;
+    stop_.reset();
+}
+
+void TileWorker::report() {
+    std::vector<protocol::TaskReport> reports;
+    bool idle = false;
+    {
+        std::lock_guard lock(mutex_);
+        reports.swap(reports_);
+        idle = busy_ == 0;
+    }
+    const Clock::time_point now = Clock::now();
+    if (!reports.empty()) {
+        ByteWriter out;
+        out.put_all(std::span<const protocol::TaskReport>(reports));
+        mailbox_.send(leading_rank, protocol::done, out.take());
+        last_sent_ = now;
+    }
+    if (gathering_ && idle) {
+        finish_gathering();
+        last_sent_ = now;
+    }
+    if (now - last_sent_ >= beat_interval) {
+        mailbox_.send(leading_rank, protocol::beat, {});
+        last_sent_ = now;
+    }
+}
+
+void TileWorker::wait(std::chrono::microseconds longest) {
+    std::unique_lock lock(mutex_);
+    reports_there_.wait_for(lock, longest, [this] { return !reports_.empty(); });
+}
+
+void serve_tiles(const TileRenderer& renderer, const PixelBounds& crop, int tile_size, int threads,
+                 Mailbox& mailbox, const CancelFlag* cancel, double patience_seconds) {
+    TileWorker worker(renderer, tiles_of(crop, tile_size), threads, mailbox);
+    bool wish_told = false;
+    Clock::time_point last_heard = Clock::now();
+    // Polling more seldom while nothing happens leaves the processor to those that render.
+    constexpr std::chrono::microseconds shortest{50}, longest{1000};
+    std::chrono::microseconds pause = shortest;
+    while (!worker.ended()) {
+        bool heard = false;
+        while (auto message = mailbox.receive()) {
+            worker.handle(*message);
+            heard = true;
+        }
+        if (heard) last_heard = Clock::now();
+        worker.report();
+        if (!wish_told && cancel != nullptr && cancel->requested()) {
+            mailbox.send(leading_rank, protocol::wish, {});
+            wish_told = true;
+        }
+        if (std::chrono::duration<double>(Clock::now() - last_heard).count() > patience_seconds)
+            throw Error("rank " + std::to_string(mailbox.rank()),
+                        "rank 0, which leads the render, has been silent for too long");
+        pause = heard ? shortest : std::min(2 * pause, longest);
+        worker.wait(pause);
+    }
+}
+
+} // namespace montelux

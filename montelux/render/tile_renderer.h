@@ -1,0 +1,113 @@
+// The samples of the pixels of one tile, taken up to their goals.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <ctime>
+#include <vector>
+
+#include "montelux/accel/accelerator.h"
+#include "montelux/film/film.h"
+#include "montelux/render/bad_sample_report.h"
+#include "montelux/render/render_control.h"
+#include "montelux/render/sample_context.h"
+#include "montelux/render/sample_order.h"
+
+namespace montelux {
+
+// Rectangles of at most `size` x `size` pixels that cover `crop`, row by row.
+std::vector<PixelBounds> tiles_of(const PixelBounds& crop, int size);
+inline std::size_t pixel_count(const PixelBounds& b) {
+    return static_cast<std::size_t>(b.width()) * static_cast<std::size_t>(b.height());
+}
+
+// What the samples of a tile add beside the film. Trivially copyable.
+struct TileTally {
+    RayStatistics rays;
+    BadSampleReport bad;
+    double cpu_seconds = 0;
+    std::uint64_t samples = 0, clamped_samples = 0;
+
+    void merge(const TileTally& other);
+    void add_to(RenderReport& report) const;
+};
+
+// Pixels in rows that are `stride` elements apart, and their goals in rows that are `goal_stride` apart.
+struct TileView {
+    PixelBounds bounds;
+    Pixel* pixels = nullptr;
+    std::size_t stride = 0;
+    const std::uint32_t* goals = nullptr;
+    std::size_t goal_stride = 0;
+    // A pixel gets no more than so many samples beyond those that it has.
+    std::uint32_t most = ~std::uint32_t{0};
+};
+
+class TileRenderer {
+  public:
+    // The context and the accelerator must outlive it.
+    TileRenderer(const SampleContext& context, const Accelerator& accelerator, SampleOrder order)
+        : context_(context), accelerator_(accelerator), order_(order) {}
+
+    const SampleOrder& order() const { return order_; }
+
+    // Adds what it did to `tally`. Ends early once stop() says so, which is asked before each pixel, and
+    // look(), which is asked after so many samples: pixels are left between two samples, and what they have
+    // is whole at any number of them.
+    template <typename Stop, typename Look>
+    void render(const TileView& tile, TileTally& tally, const Stop& stop, const Look& look) const {
+        const double begin = thread_cpu_seconds();
+        RayTracer tracer(accelerator_);
+        for (int y = tile.bounds.y0; y < tile.bounds.y1; ++y)
+            for (int x = tile.bounds.x0; x < tile.bounds.x1; ++x) {
+                if (stop()) break;
+                const auto row = static_cast<std::size_t>(y - tile.bounds.y0);
+                const auto column = static_cast<std::size_t>(x - tile.bounds.x0);
+                Pixel& pixel = tile.pixels[row * tile.stride + column];
+                const std::uint64_t goal = std::min<std::uint64_t>(
+                    tile.goals[row * tile.goal_stride + column], std::uint64_t{pixel.samples()} + tile.most);
+                render_pixel(tracer, pixel, x, y, goal, tally, look);
+            }
+        tally.rays.merge(tracer.statistics);
+        tally.cpu_seconds += thread_cpu_seconds() - begin;
+    }
+
+  private:
+    static constexpr std::uint64_t samples_between_looks = 1024;
+
+    // CPU time of the calling thread: what other programs take away does not count.
+    static double thread_cpu_seconds() {
+        timespec t{};
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+        return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+    }
+
+    template <typename Look>
+    void render_pixel(RayTracer& tracer, Pixel& pixel, int x, int y, std::uint64_t goal, TileTally& tally,
+                      const Look& look) const {
+        for (std::uint64_t i = pixel.samples(); i < goal; ++i) {
+            if (tally.samples % samples_between_looks == samples_between_looks - 1 && look()) return;
+            const std::uint64_t index = order_.index(i);
+            const SampleContext::Result r = context_.take(tracer, x, y, index);
+            if (r.bad) {
+                pixel.count_bad();
+                tally.bad.add({*r.bad, x, y, index});
+            } else {
+                pixel.add_sample(r.film);
+            }
+            if (r.clamped != 0) {
+                ++tally.clamped_samples;
+                pixel.add_clamped(r.clamped);
+            }
+            if (order_.closed(i + 1)) pixel.end_unit();
+            ++tally.samples;
+        }
+    }
+
+    const SampleContext& context_;
+    const Accelerator& accelerator_;
+    SampleOrder order_;
+};
+
+} // namespace montelux

@@ -1,0 +1,190 @@
+// However many ranks share a render, and however it is broken off, it ends with the bits of one process.
+#include "test/cluster/local_job.h"
+#include "test/render/mixed_scene.h"
+#include <gtest/gtest.h>
+#include <thread>
+
+#include "montelux/cluster/coordinator.h"
+#include "montelux/cluster/tile_worker.h"
+#include "montelux/mc/io/byte_stream.h"
+#include "montelux/mc/math/error.h"
+#include "montelux/render/renderer.h"
+
+namespace montelux::testing {
+namespace {
+
+int differing(const Film& a, const Film& b) {
+    int count = 0;
+    for (std::size_t i = 0; i < a.pixels().size(); ++i) count += !same_pixel(a.pixels()[i], b.pixels()[i]);
+    return count;
+}
+
+SceneBuilder scene(SamplerKind kind, std::uint32_t spp) {
+    SceneBuilder b = mixed_scene(1, 22, 18);
+    b.description.sampler.kind = kind;
+    b.description.sampler.samples_per_pixel = spp;
+    return b;
+}
+
+// The ranks beside the first one.
+class Helpers {
+  public:
+    Helpers(LocalJob& job, const Renderer& renderer, const PixelBounds& crop, int ranks, int tile_size,
+            const CancelFlag* cancel = nullptr) {
+        for (int r = 1; r < ranks; ++r)
+            threads_.emplace_back([&job, &renderer, crop, tile_size, r, cancel] {
+                renderer.serve([&](const TileRenderer& tiles) {
+                    serve_tiles(tiles, crop, tile_size, 1 + r % 2, job.mailbox(r), cancel, 60);
+                });
+            });
+    }
+    ~Helpers() {
+        for (std::thread& t : threads_) t.join();
+    }
+
+  private:
+    std::vector<std::thread> threads_;
+};
+
+// Returns how many tiles changed hands.
+std::uint64_t render_on(int ranks, const SceneDescription& description, const RenderTarget& target,
+                        RenderState& state, RenderControl control = {}) {
+    LocalJob job(ranks);
+    const Renderer renderer(description, target);
+    const CoordinatorSettings settings{.tile_size = 4, .threads = 1};
+    const Helpers helpers(job, renderer, description.film.crop, ranks, settings.tile_size);
+    Coordinator coordinator(job.mailbox(0), description.film.crop, settings);
+    control.executor = &coordinator;
+    renderer.render(state, control);
+    EXPECT_FALSE(coordinator.failed());
+    return coordinator.traffic().moved_tiles;
+}
+
+TEST(SharedRender, AnyNumberOfRanksGivesTheSameBits) {
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol})
+        for (const RenderTarget& target :
+             {RenderTarget{}, RenderTarget{.adaptive = true}, RenderTarget{.error = 0.1, .adaptive = true},
+              RenderTarget{.error = 0.15}, RenderTarget{.slice = {1, 3}}}) {
+            const SceneBuilder b = scene(kind, 96);
+            RenderState whole(b.description.film);
+            Renderer(b.description, target).render(whole);
+            for (int ranks = 1; ranks <= 4; ++ranks) {
+                RenderState state(b.description.film);
+                render_on(ranks, b.description, target, state);
+                EXPECT_EQ(differing(whole.film, state.film), 0) << ranks << " ranks";
+                EXPECT_EQ(state.report.samples, whole.report.samples);
+                EXPECT_EQ(state.report.rays.rays(), whole.report.rays.rays());
+                EXPECT_EQ(state.report.stop, whole.report.stop);
+            }
+        }
+}
+
+// Stopped at each checkpoint and gone on with by another number of ranks, none of which knows the pixels.
+TEST(SharedRender, BrokenRendersEndWithTheSameBits) {
+    for (bool adaptive : {false, true}) {
+        const SceneBuilder b = scene(SamplerKind::independent, 200);
+        const RenderTarget target{.adaptive = adaptive};
+        RenderState whole(b.description.film);
+        Renderer(b.description, target).render(whole);
+        RenderState state(b.description.film);
+        int stops = 0;
+        for (bool ended = false; !ended; ++stops) {
+            ASSERT_LT(stops, 1000);
+            RenderState saved = state;
+            CancelFlag cancel;
+            RenderControl control;
+            control.cancel = &cancel;
+            control.checkpoint_seconds = 0.02;
+            // The last one is that of the end, before the film is closed.
+            control.checkpoint = [&](const RenderState& s) {
+                saved = s;
+                cancel.request();
+            };
+            render_on(1 + stops % 3, b.description, target, state, control);
+            ended = !state.report.cancelled();
+            if (!ended) state = saved;
+        }
+        EXPECT_GE(stops, 3);
+        EXPECT_EQ(differing(whole.film, state.film), 0);
+        EXPECT_EQ(state.report.samples, whole.report.samples);
+    }
+}
+
+// A rank without tiles gets those of another, in the middle of a round.
+TEST(SharedRender, TilesMoveToWhomHasNone) {
+    const SceneBuilder b = scene(SamplerKind::independent, 1500);
+    RenderState whole(b.description.film), state(b.description.film);
+    Renderer(b.description).render(whole);
+    EXPECT_GT(render_on(3, b.description, {}, state), 0u);
+    EXPECT_EQ(differing(whole.film, state.film), 0);
+}
+
+TEST(SharedRender, AnotherRankCanBeAskedToEnd) {
+    const SceneBuilder b = scene(SamplerKind::independent, 1u << 24);
+    LocalJob job(3);
+    const Renderer renderer(b.description);
+    CancelFlag cancel, elsewhere;
+    const Helpers helpers(job, renderer, b.description.film.crop, 3, 4, &elsewhere);
+    Coordinator coordinator(job.mailbox(0), b.description.film.crop, {.tile_size = 4},
+                            [&] { cancel.request(); });
+    RenderControl control;
+    control.cancel = &cancel;
+    control.executor = &coordinator;
+    control.progress = [&](const RenderProgress& p) {
+        if (p.samples_done > 10'000) elsewhere.request();
+    };
+    RenderState state(b.description.film);
+    renderer.render(state, control);
+    EXPECT_TRUE(state.report.cancelled());
+    std::uint64_t samples = 0;
+    for (const Pixel& p : state.film.pixels()) samples += p.samples();
+    EXPECT_EQ(samples, state.report.samples);
+    EXPECT_GT(samples, 10'000u);
+}
+
+// A rank says hello and is never heard of again: the render ends, what the others did is there, and going on
+// from it gives the bits of a render that nothing happened to.
+TEST(SharedRender, SilentRanksAreGivenUp) {
+    const SceneBuilder b = scene(SamplerKind::independent, 400);
+    RenderState whole(b.description.film), state(b.description.film), saved(b.description.film);
+    Renderer(b.description).render(whole);
+    {
+        LocalJob job(2);
+        ByteWriter hello;
+        hello.put(std::int32_t{2});
+        job.mailbox(1).send(0, protocol::hello, hello.take());
+        const Renderer renderer(b.description);
+        Coordinator coordinator(job.mailbox(0), b.description.film.crop,
+                                {.tile_size = 4, .threads = 1, .patience_seconds = 0.3});
+        RenderControl control;
+        control.executor = &coordinator;
+        control.checkpoint = [&](const RenderState& s) { saved = s; };
+        renderer.render(state, control);
+        EXPECT_TRUE(coordinator.failed());
+        EXPECT_NE(coordinator.failure()->find("rank 1 has said nothing"), std::string::npos);
+        EXPECT_TRUE(state.report.cancelled());
+        EXPECT_GT(saved.report.samples, 0u);
+        EXPECT_LT(saved.report.samples, whole.report.samples);
+    }
+    render_on(2, b.description, {}, saved);
+    EXPECT_EQ(differing(whole.film, saved.film), 0);
+    EXPECT_EQ(saved.report.samples, whole.report.samples);
+}
+
+TEST(SharedRender, MessagesThatMakeNoSenseAreRefused) {
+    const SceneBuilder b = scene(SamplerKind::independent, 4);
+    LocalJob job(2);
+    const Renderer renderer(b.description);
+    renderer.serve([&](const TileRenderer& tiles) {
+        TileWorker worker(tiles, tiles_of(b.description.film.crop, 4), 1, job.mailbox(1));
+        ByteWriter out;
+        out.put(std::uint32_t{3});
+        const std::vector<std::uint8_t> bytes = out.take();
+        EXPECT_THROW(worker.handle({0, protocol::release, bytes}), Error); // it holds no tile
+        EXPECT_THROW(worker.handle({0, 99, bytes}), Error);
+        EXPECT_THROW(worker.handle({0, protocol::assign, bytes}), Error); // cut short
+    });
+}
+
+} // namespace
+} // namespace montelux::testing
