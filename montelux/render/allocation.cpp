@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "montelux/mc/math/compensated.h"
+#include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux {
 namespace {
@@ -15,12 +17,16 @@ constexpr double least_growth = 1.1, most_growth = 2;
 // Standard deviation of one sample of each pixel, as the pixels around it know it.
 std::vector<double> deviations(const Film& film) {
     const int width = film.bounds().width(), height = film.bounds().height();
-    std::vector<double> variance;
-    variance.reserve(film.pixels().size());
-    for (const Pixel& p : film.pixels()) {
-        const double error = luminance_error(p);
-        variance.push_back(std::isfinite(error) ? error * error * static_cast<double>(p.samples()) : 0);
-    }
+    std::vector<double> variance(film.pixels().size());
+    parallel_for(
+        static_cast<std::int64_t>(variance.size()),
+        [&](std::int64_t i) {
+            const Pixel& p = film.pixels()[static_cast<std::size_t>(i)];
+            const double error = luminance_error(p);
+            variance[static_cast<std::size_t>(i)] =
+                std::isfinite(error) ? error * error * static_cast<double>(p.samples()) : 0;
+        },
+        nullptr, 1024);
     auto at = [&](int x, int y) {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
     };
@@ -38,8 +44,10 @@ std::vector<double> deviations(const Film& film) {
         return count > 0 ? sum / count : variance[at(x0, y0)]; // a picture of one pixel
     };
     std::vector<double> result(variance.size());
-    for (int y = 0; y < height; ++y)
+    parallel_for(height, [&](std::int64_t row) {
+        const int y = static_cast<int>(row);
         for (int x = 0; x < width; ++x) result[at(x, y)] = std::sqrt(around(x, y));
+    });
     CompensatedSum total;
     for (double s : result) total.add(s);
     const double least = least_share * total.value() / static_cast<double>(result.size());
@@ -64,10 +72,18 @@ std::vector<std::uint32_t> allocate(const Film& film, const SampleOrder& order, 
         const double wanted = std::min(std::ceil(scale * weight[i] / unit) * unit, 4e9);
         return std::max(static_cast<double>(film.pixels()[i].samples()), wanted);
     };
+    // Sums of whole numbers are exact in any order.
     auto total = [&](double scale) {
-        double sum = 0;
-        for (std::size_t i = 0; i < n; ++i) sum += goal_of(i, scale);
-        return sum;
+        constexpr std::size_t run = 4096;
+        return parallel_reduce_ordered(
+            static_cast<std::int64_t>((n + run - 1) / run),
+            [&](std::int64_t r) {
+                const std::size_t first = static_cast<std::size_t>(r) * run, last = std::min(n, first + run);
+                double sum = 0;
+                for (std::size_t i = first; i < last; ++i) sum += goal_of(i, scale);
+                return sum;
+            },
+            std::plus<>());
     };
     // The greatest scale whose total is within a limit.
     auto scale_within = [&](double limit) {
