@@ -36,4 +36,17 @@ expect 0 "not a number, is sample" render bad.pbrt
 option=$(grep -o -- '--debug-sample [0-9,]*$' out)
 [ -n "$option" ] || fail "the message does not end with the option that replays: $(cat out)"
 expect 0 "left out: it is not a number, first at vertex 1, in the value of the BSDF" render bad.pbrt $option
+
+# The same metal where one sample in 1e5 meets it: the picture ends, whole, and says how many were left out.
+metal='Material "conductor" "spectrum eta" [300 1e30 900 1e30] "spectrum k" [300 1 900 1] "float roughness" 0.3'
+scene rare "$sky Material \"diffuse\" Shape \"disk\" \"float radius\" 9 \"float height\" -1
+    $metal Translate 0.6 0 0 Shape \"sphere\" \"float radius\" 0.006" 64 48 200
+expect 0 "samples were left out" render rare.pbrt
+left_out=$(sed -n 's/.*warning: \([0-9]*\) samples were left out.*/\1/p' out)
+[ "${left_out:-0}" -ge 1 ] && [ "$left_out" -le 60 ] || fail "$left_out of 614400 samples were left out"
+option=$(grep -o -- '--debug-sample [0-9,]*$' out)
+expect 0 "left out: it is not a number, first at vertex 1" render rare.pbrt $option
+expect 0 '"badSamples" = '"$left_out" info rare.exr
+"$montelux" info rare.exr | awk '$1 ~ /^(R|G|B|stderr|samples)/ && $5 != 0 { bad = 1 } END { exit bad }' ||
+    fail "the picture holds values that are not a number"
 finish
