@@ -2,12 +2,12 @@
 
 #include <array>
 #include <bit>
-#include <cstring>
 #include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "montelux/mc/io/byte_stream.h"
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/random/hash.h"
@@ -19,46 +19,6 @@ constexpr std::string_view kind = "render";
 // Of the layout below.
 constexpr std::uint32_t layout_version = 1;
 static_assert(std::is_trivially_copyable_v<Pixel> && std::endian::native == std::endian::little);
-
-class ByteWriter {
-  public:
-    template <typename T>
-    void put(const T& value) requires std::is_trivially_copyable_v<T> {
-        put_all(std::span<const T>(&value, 1));
-    }
-    template <typename T>
-    void put_all(std::span<const T> values) {
-        const auto* begin = reinterpret_cast<const std::uint8_t*>(values.data());
-        bytes_.insert(bytes_.end(), begin, begin + values.size_bytes());
-    }
-    std::vector<std::uint8_t>& bytes() { return bytes_; }
-
-  private:
-    std::vector<std::uint8_t> bytes_;
-};
-
-class ByteReader {
-  public:
-    explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
-
-    template <typename T>
-    T get() {
-        T value;
-        get_all(std::span<T>(&value, 1));
-        return value;
-    }
-    template <typename T>
-    void get_all(std::span<T> values) {
-        if (bytes_.size() < values.size_bytes()) throw Error("checkpoint", "it ends too early");
-        if (!values.empty())
-            std::memcpy(static_cast<void*>(values.data()), bytes_.data(), values.size_bytes());
-        bytes_ = bytes_.subspan(values.size_bytes());
-    }
-    bool at_end() const { return bytes_.empty(); }
-
-  private:
-    std::span<const std::uint8_t> bytes_;
-};
 
 template <typename... T>
 std::uint64_t hash_of(const T&... values) {
@@ -119,7 +79,7 @@ void save_checkpoint(const std::filesystem::path& path, const SceneDescription& 
                      const SamplerSettings& sampler, const RenderTarget& target, const RenderState& state) {
     ByteWriter out;
     const std::span<const Pixel> pixels = state.film.pixels();
-    out.bytes().reserve(pixels.size_bytes() + state.goals.size() * sizeof(std::uint32_t) + 1024);
+    out.reserve(pixels.size_bytes() + state.goals.size() * sizeof(std::uint32_t) + 1024);
     out.put(version());
     for (const Fingerprint& f : fingerprints(description, target)) out.put(f.hash);
     out.put(points_per_replicate(sampler));
@@ -128,7 +88,7 @@ void save_checkpoint(const std::filesystem::path& path, const SceneDescription& 
     out.put(static_cast<std::uint64_t>(state.goals.size()));
     out.put_all(std::span<const std::uint32_t>(state.goals));
     out.put_all(pixels);
-    write_generation(path, kind, out.bytes());
+    write_generation(path, kind, out.take());
 }
 
 std::uint64_t render_fingerprint(const SceneDescription& description, const SamplerSettings& sampler) {
@@ -147,7 +107,7 @@ RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDes
     const std::size_t most = 64 * (pixels.size_bytes() + pixels.size() * sizeof(std::uint32_t)) + 1024;
     const Generation generation = read_generation(path, kind, most);
     restored.newest_refused_because = generation.newest_refused_because;
-    ByteReader in(generation.payload);
+    ByteReader in(generation.payload, "checkpoint");
     if (in.get<std::uint64_t>() != version())
         throw Error(path.string(), "the checkpoint is of another version of the program");
     for (const Fingerprint& f : fingerprints(description, target))
