@@ -117,6 +117,8 @@ TEST(SharedRender, TilesMoveToWhomHasNone) {
     Renderer(b.description).render(whole);
     EXPECT_GT(render_on(3, b.description, {}, state), 0u);
     EXPECT_EQ(differing(whole.film, state.film), 0);
+    // Pixels that were begun anew would have the same bits.
+    EXPECT_EQ(state.report.samples, whole.report.samples);
 }
 
 TEST(SharedRender, AnotherRankCanBeAskedToEnd) {
