@@ -1,9 +1,11 @@
 // Pictures with errors beside converged references: how often errors cover the truth, and whether renders
 // that are asked for an error end with it.
-#include <CLI/CLI.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "montelux/image/image_read.h"
 #include "montelux/image/metrics.h"
 #include "montelux/mc/math/compensated.h"
+#include "montelux/mc/math/error.h"
 #include "montelux/render/renderer.h"
 
 using namespace montelux;
@@ -32,17 +35,27 @@ struct Reference {
     Image mean, error;
 };
 
-// Of scores z of pixels and channels, errors of both pictures taken together.
+// Of scores z of pixels and channels, errors of both pictures taken together; and what to expect of them
+// where errors are estimated, from few units: Student's law with the degrees of freedom of Welch 1947, "The
+// Generalization of 'Student's' Problem when Several Different Population Variances are Involved".
 struct Coverage {
-    std::uint64_t count = 0, within_one = 0, within_two = 0;
-    void add(double z) {
+    double count = 0, one = 0, two = 0, expected_one = 0, expected_two = 0;
+    void add(double z, double degrees_of_freedom) {
+        const boost::math::students_t law(degrees_of_freedom);
         ++count;
-        within_one += std::abs(z) <= 1;
-        within_two += std::abs(z) <= 2;
+        one += std::abs(z) <= 1;
+        two += std::abs(z) <= 2;
+        expected_one += 1 - 2 * cdf(law, -1.0);
+        expected_two += 1 - 2 * cdf(law, -2.0);
     }
-    double one() const { return 100 * static_cast<double>(within_one) / static_cast<double>(count); }
-    double two() const { return 100 * static_cast<double>(within_two) / static_cast<double>(count); }
+    double percent(double sum) const { return 100 * sum / count; }
 };
+double welch(double variance_a, double freedom_a, double variance_b, double freedom_b) {
+    const double sum = variance_a + variance_b;
+    return sum * sum / (variance_a * variance_a / freedom_a + variance_b * variance_b / freedom_b);
+}
+// The references' errors come from eight pictures.
+constexpr double reference_freedom = 7;
 
 struct Figures {
     FilmError claimed;
@@ -71,16 +84,20 @@ Figures render(SceneDescription d, const Reference& reference, const std::string
     for (int y = 0; y < picture.height(); ++y)
         for (int x = 0; x < picture.width(); ++x, ++i) {
             const bool heavy = is_heavy_tailed(film.pixels()[i]);
+            const auto units = static_cast<double>(film.pixels()[i].units().count());
             double luminance = 0, difference = 0, error = 0;
             for (int c = 0; c < 3; ++c) {
                 const double w = luminance_weight[c], distance = a.value(x, y, c) - b.value(x, y, c);
                 luminance += w * b.value(x, y, c);
                 difference += w * distance;
                 error += w * b.standard_error(x, y, c);
-                const double s = std::hypot(a.standard_error(x, y, c), b.standard_error(x, y, c));
-                if (!(s > 0)) continue;
-                f.all.add(distance / s);
-                if (!heavy) f.light.add(distance / s);
+                const double va = std::pow(a.standard_error(x, y, c), 2),
+                             vb = std::pow(b.standard_error(x, y, c), 2);
+                if (!(va + vb > 0)) continue;
+                const double z = distance / std::sqrt(va + vb),
+                             freedom = welch(va, units - 1, vb, reference_freedom);
+                f.all.add(z, freedom);
+                if (!heavy) f.light.add(z, freedom);
             }
             mean.add(luminance);
             square.add(difference * difference - error * error);
@@ -99,11 +116,13 @@ void print_coverage(const Options& o, const std::string& name, const SceneDescri
     for (const std::string& sampler : o.samplers)
         for (bool adaptive : {false, true}) {
             const Figures f = render(d, r, sampler, adaptive, {}, o.spp, o.seed);
-            std::printf("| %s | %s | %s | %.1f | %.1f %% | %.1f %% | %.2f %% | %.1f %% | %.1f %% | %.2f %% | "
-                        "%.2f %% |\n",
+            std::printf("| %s | %s | %s | %.1f | %.1f (%.1f) | %.1f (%.1f) | %.2f | %.1f (%.1f) | %.1f "
+                        "(%.1f) | %.2f | %.2f |\n",
                         name.c_str(), sampler.c_str(), adaptive ? "on" : "off", f.claimed.mean_samples,
-                        f.all.one(), f.all.two(), 100 * f.heavy_share, f.light.one(), f.light.two(),
-                        100 * f.claimed.relative, 100 * f.true_error);
+                        f.all.percent(f.all.one), f.all.percent(f.all.expected_one), f.all.percent(f.all.two),
+                        f.all.percent(f.all.expected_two), 100 * f.heavy_share, f.light.percent(f.light.one),
+                        f.light.percent(f.light.expected_one), f.light.percent(f.light.two),
+                        f.light.percent(f.light.expected_two), 100 * f.claimed.relative, 100 * f.true_error);
             std::fflush(stdout);
         }
 }
@@ -123,19 +142,62 @@ void print_targets(const Options& o, const std::string& name, const SceneDescrip
             }
 }
 
+constexpr const char* usage =
+    "Usage: picture_calibration SCENES [option value]...\n"
+    "Errors of pictures beside the references in SCENES/<scene>/ref.\n"
+    "  --scene A,B    some of the scenes\n"
+    "  --sampler A,B  independent, sobol\n"
+    "  --spp N        samples a pixel, for the shares of pixels within their errors [256]\n"
+    "  --target X,Y   errors to be asked for, instead of these shares\n"
+    "  --time S       seconds for each of these at most\n"
+    "  --seed N       [1]\n";
+
+std::vector<std::string> items_of(const std::string& list) {
+    std::vector<std::string> items;
+    std::istringstream in(list);
+    for (std::string item; std::getline(in, item, ',');) items.push_back(item);
+    return items;
+}
+template <typename T>
+T number_of(const std::string& option, const std::string& text) {
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size())
+        throw Error(option, "'" + text + "' is not a number");
+    return value;
+}
+
+Options parse(const std::vector<std::string>& arguments) {
+    if (arguments.size() % 2 != 1) throw Error("arguments", std::string("they do not fit\n") + usage);
+    Options o;
+    o.scenes = arguments[0];
+    for (std::size_t i = 1; i < arguments.size(); i += 2) {
+        const std::string &option = arguments[i], &value = arguments[i + 1];
+        if (option == "--scene")
+            o.names = items_of(value);
+        else if (option == "--sampler")
+            o.samplers = items_of(value);
+        else if (option == "--spp")
+            o.spp = number_of<std::uint32_t>(option, value);
+        else if (option == "--target")
+            for (const std::string& x : items_of(value)) o.targets.push_back(number_of<double>(option, x));
+        else if (option == "--time")
+            o.seconds = number_of<double>(option, value);
+        else if (option == "--seed")
+            o.seed = number_of<std::uint64_t>(option, value);
+        else
+            throw Error(option, std::string("no such option\n") + usage);
+    }
+    for (const std::string& sampler : o.samplers)
+        if (sampler != "independent" && sampler != "sobol")
+            throw Error("--sampler", "'" + sampler + "' is neither independent nor sobol");
+    return o;
+}
+
 } // namespace
 
 int main(int argc, char** argv) try {
-    Options o;
-    CLI::App app("Errors of pictures beside references");
-    app.add_option("scenes", o.scenes, "Folder of the scenes")->required();
-    app.add_option("--scene", o.names, "Some of them");
-    app.add_option("--sampler", o.samplers, "independent, sobol");
-    app.add_option("--spp", o.spp, "Samples a pixel, for the shares of pixels");
-    app.add_option("--target", o.targets, "Errors to ask for, instead of the shares of pixels");
-    app.add_option("--time", o.seconds, "Seconds for each of these at most");
-    app.add_option("--seed", o.seed, "Seed");
-    CLI11_PARSE(app, argc, argv);
+    const Options o = parse({argv + 1, argv + argc});
     if (o.targets.empty())
         std::printf(
             "| scene | sampler | adaptive | spp | within 1 | within 2 | heavy tails | others within 1 | "

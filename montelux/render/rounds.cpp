@@ -20,8 +20,11 @@ SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& ta
     if (settings.kind == SamplerKind::independent || settings.replicates >= 2 ||
         settings.replicate_points != 0)
         return settings;
-    if (target.error > 0 || target.seconds > 0 || target.adaptive)
+    if (target.error > 0 || target.seconds > 0)
         settings.replicate_points = std::clamp(settings.samples_per_pixel / 8, 1u, points_for_targets);
+    else if (target.adaptive) // pixels that get a third of the samples still have twenty units
+        settings.replicate_points =
+            std::clamp(std::bit_floor(settings.samples_per_pixel / 64), 1u, points_for_targets);
     else
         settings.replicates =
             std::min(std::max(settings.samples_per_pixel < many_samples ? 8u : 16u, target.slice.count),
