@@ -135,11 +135,11 @@ told_once "bad formula" 2 "montelux: error: "
 # A signal to mpirun, as from Ctrl-C, and to a single rank: the picture and the checkpoint are written.
 for target in mpirun 0 1; do
     rm -f state* many.exr
-    background 3 $whole --spp 100000 --threads 1 -o many.exr --checkpoint state
-    sleep 1.5
+    background 3 $whole --spp 100000 --threads 1 -o many.exr --checkpoint state --checkpoint-every 0.3
+    wait_for_file state
     begin=$(now)
     if [ $target = mpirun ]; then kill -INT "$(pgrep -P $job mpirun)"; else kill -INT "$(rank $target)"; fi
-    ended "a signal to $target" 5
+    ended "a signal to $target" 8
     [ $code -ne 0 ] || fail "a signal to $target: exit code 0"
     [ $target = mpirun ] || [ $code -eq 130 ] || fail "a signal to rank $target: exit code $code: $(cat out)"
     expect 0 '"interrupted" = 1' info many.exr
@@ -148,8 +148,8 @@ done
 
 # A rank that hangs is given up.
 rm -f state* many.exr
-background 3 $whole --spp 100000 --threads 1 -o many.exr --checkpoint state --rank-timeout 2
-sleep 1.5
+background 3 $whole --spp 100000 --threads 1 -o many.exr --checkpoint state --checkpoint-every 0.3 --rank-timeout 2
+wait_for_file state
 begin=$(now)
 kill -STOP "$(rank 1)"
 ended "a rank hangs" 10
