@@ -25,6 +25,7 @@ struct Options {
     std::vector<std::string> names{"cornell-box",     "veach-mis",     "material-testball",
                                    "killeroo-simple", "killeroo-gold", "coffee"};
     std::vector<std::string> samplers{"independent", "sobol"};
+    std::vector<bool> adaptive{false, true};
     std::uint32_t spp = 256;
     std::vector<double> targets;
     double seconds = 0; // at most, for a target
@@ -114,7 +115,7 @@ Figures render(SceneDescription d, const Reference& reference, const std::string
 void print_coverage(const Options& o, const std::string& name, const SceneDescription& d,
                     const Reference& r) {
     for (const std::string& sampler : o.samplers)
-        for (bool adaptive : {false, true}) {
+        for (bool adaptive : o.adaptive) {
             const Figures f = render(d, r, sampler, adaptive, {}, o.spp, o.seed);
             std::printf("| %s | %s | %s | %.1f | %.1f (%.1f) | %.1f (%.1f) | %.2f | %.1f (%.1f) | %.1f "
                         "(%.1f) | %.2f | %.2f |\n",
@@ -130,7 +131,7 @@ void print_coverage(const Options& o, const std::string& name, const SceneDescri
 void print_targets(const Options& o, const std::string& name, const SceneDescription& d, const Reference& r) {
     for (double target : o.targets)
         for (const std::string& sampler : o.samplers)
-            for (bool adaptive : {false, true}) {
+            for (bool adaptive : o.adaptive) {
                 const Figures f = render(d, r, sampler, adaptive, {.error = target, .seconds = o.seconds},
                                          1u << 30, o.seed);
                 std::printf("| %s | %g %% | %s | %s | %.1f | %.2f %% | %.2f %% | %.2f | %.2f %% | %s |\n",
@@ -147,6 +148,7 @@ constexpr const char* usage =
     "Errors of pictures beside the references in SCENES/<scene>/ref.\n"
     "  --scene A,B    some of the scenes\n"
     "  --sampler A,B  independent, sobol\n"
+    "  --adaptive A,B on, off\n"
     "  --spp N        samples a pixel, for the shares of pixels within their errors [256]\n"
     "  --target X,Y   errors to be asked for, instead of these shares\n"
     "  --time S       seconds for each of these at most\n"
@@ -177,7 +179,13 @@ Options parse(const std::vector<std::string>& arguments) {
             o.names = items_of(value);
         else if (option == "--sampler")
             o.samplers = items_of(value);
-        else if (option == "--spp")
+        else if (option == "--adaptive") {
+            o.adaptive.clear();
+            for (const std::string& x : items_of(value)) {
+                if (x != "on" && x != "off") throw Error(option, "'" + x + "' is neither on nor off");
+                o.adaptive.push_back(x == "on");
+            }
+        } else if (option == "--spp")
             o.spp = number_of<std::uint32_t>(option, value);
         else if (option == "--target")
             for (const std::string& x : items_of(value)) o.targets.push_back(number_of<double>(option, x));
