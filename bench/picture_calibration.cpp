@@ -14,7 +14,9 @@
 #include "montelux/image/metrics.h"
 #include "montelux/mc/math/compensated.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/stats/moments.h"
 #include "montelux/render/renderer.h"
+#include "montelux/render/tile_renderer.h"
 
 using namespace montelux;
 
@@ -30,6 +32,8 @@ struct Options {
     std::vector<double> targets;
     double seconds = 0; // at most, for a target
     std::uint64_t seed = 1;
+    int renders = 0; // of each target, beside one another instead of the reference
+    int width = 160; // of those, in pixels
 };
 
 struct Reference {
@@ -143,6 +147,48 @@ void print_targets(const Options& o, const std::string& name, const SceneDescrip
             }
 }
 
+// The true error of a render that is asked for one, from the spread of many of them: it needs no reference,
+// so that no target is too small.
+void print_spread(const Options& o, const std::string& name, SceneDescription d) {
+    d.film.height = std::max(1, d.film.height * o.width / d.film.width);
+    d.film.width = o.width;
+    d.film.crop = {0, 0, d.film.width, d.film.height};
+    for (double target : o.targets)
+        for (const std::string& sampler : o.samplers)
+            for (bool adaptive : o.adaptive) {
+                std::vector<RunningMoments> pixels(pixel_count(d.film.crop));
+                RunningMoments claimed, samples, reached;
+                for (int k = 0; k < o.renders; ++k) {
+                    d.sampler = {sampler == "independent" ? SamplerKind::independent : SamplerKind::sobol,
+                                 o.seed + static_cast<std::uint64_t>(k), 1u << 24};
+                    Film film(d.film);
+                    const RenderReport report =
+                        Renderer(d, {.error = target, .seconds = o.seconds, .adaptive = adaptive})
+                            .render(film);
+                    claimed.add(film.error().relative);
+                    samples.add(film.error().mean_samples);
+                    reached.add(report.stop == RenderStop::error);
+                    for (std::size_t i = 0; i < pixels.size(); ++i) {
+                        const auto& u = film.pixels()[i].units();
+                        pixels[i].add(luminance_weight.x * u.mean(0) + luminance_weight.y * u.mean(1) +
+                                      luminance_weight.z * u.mean(2));
+                    }
+                }
+                CompensatedSum variance, mean;
+                for (const RunningMoments& p : pixels) {
+                    variance.add(p.variance());
+                    mean.add(p.mean());
+                }
+                const auto n = static_cast<double>(pixels.size());
+                const double error = std::sqrt(variance.value() / n) / (mean.value() / n);
+                std::printf("| %s | %g %% | %s | %s | %.1f | %.2f %% | %.2f %% | %.2f | %.0f of %d |\n",
+                            name.c_str(), 100 * target, sampler.c_str(), adaptive ? "on" : "off",
+                            samples.mean(), 100 * claimed.mean(), 100 * error, error / target,
+                            reached.mean() * o.renders, o.renders);
+                std::fflush(stdout);
+            }
+}
+
 constexpr const char* usage =
     "Usage: picture_calibration SCENES [option value]...\n"
     "Errors of pictures beside the references in SCENES/<scene>/ref.\n"
@@ -152,6 +198,8 @@ constexpr const char* usage =
     "  --spp N        samples a pixel, for the shares of pixels within their errors [256]\n"
     "  --target X,Y   errors to be asked for, instead of these shares\n"
     "  --time S       seconds for each of these at most\n"
+    "  --renders N    measure the true errors of targets by the spread of N renders, not by the reference\n"
+    "  --width N      of these, in pixels [160]\n"
     "  --seed N       [1]\n";
 
 std::vector<std::string> items_of(const std::string& list) {
@@ -191,6 +239,10 @@ Options parse(const std::vector<std::string>& arguments) {
             for (const std::string& x : items_of(value)) o.targets.push_back(number_of<double>(option, x));
         else if (option == "--time")
             o.seconds = number_of<double>(option, value);
+        else if (option == "--renders")
+            o.renders = number_of<int>(option, value);
+        else if (option == "--width")
+            o.width = number_of<int>(option, value);
         else if (option == "--seed")
             o.seed = number_of<std::uint64_t>(option, value);
         else
@@ -210,6 +262,9 @@ int main(int argc, char** argv) try {
         std::printf(
             "| scene | sampler | adaptive | spp | within 1 | within 2 | heavy tails | others within 1 | "
             "within 2 | error claimed | true |\n|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|\n");
+    else if (o.renders > 0)
+        std::printf("| scene | asked | sampler | adaptive | spp | claimed | true | true / asked | reached |\n"
+                    "|---|--:|---|---|--:|--:|--:|--:|--:|\n");
     else
         std::printf("| scene | asked | sampler | adaptive | spp | claimed | true | true / asked | "
                     "reference's | stopped by |\n|---|--:|---|---|--:|--:|--:|--:|--:|---|\n");
@@ -217,6 +272,10 @@ int main(int argc, char** argv) try {
         Warnings warnings;
         const std::filesystem::path folder = o.scenes / name;
         const SceneDescription d = load_pbrt(folder / "scene.pbrt", warnings);
+        if (o.renders > 0) {
+            print_spread(o, name, d);
+            continue;
+        }
         const Reference r{read_image(folder / "ref" / "mean.exr"), read_image(folder / "ref" / "stderr.exr")};
         if (o.targets.empty())
             print_coverage(o, name, d, r);
