@@ -18,8 +18,6 @@ endif()
 if(MONTELUX_SANITIZE)
     target_compile_options(montelux_flags INTERFACE
         -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
-    # The address sanitizer sees both as well, where they are used.
-    target_compile_options(montelux_flags INTERFACE -fno-sanitize=null,object-size)
     target_link_options(montelux_flags INTERFACE -fsanitize=address,undefined)
     # GCC 12 sees uninitialised members in std::regex once the sanitizers have instrumented it.
     target_compile_options(montelux_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)

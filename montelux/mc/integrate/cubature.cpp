@@ -21,6 +21,10 @@ constexpr std::uint64_t points_per_step = 1'000'000;
 // While all values were zero, so many evaluations in so many regions are made before that is believed.
 constexpr std::uint64_t search_evaluations = 4096;
 constexpr std::size_t search_regions = 16;
+// Errors are as many times larger while there is one region alone.
+constexpr double lone_caution = 9;
+// One variable's seven points are believed only where they see far more smoothness than was asked for.
+constexpr double caution_with_few_points = 16;
 
 class CubatureEstimator final : public Estimator {
   public:
@@ -35,7 +39,8 @@ class CubatureEstimator final : public Estimator {
         // The first rule is the one that regions start with, the second what they go on with where the
         // integrand is smooth; the coarse one is for where it is not.
         if (n_ == 1) {
-            fine_.emplace(gauss_kronrod_rule());
+            coarse_.emplace(coarse_rule_of_one_dimension());
+            fine_.emplace(fine_rule_of_one_dimension());
         } else {
             coarse_.emplace(genz_malik_7(n_));
             fine_.emplace(n_ == 2   ? two_dimensional_rule()
@@ -48,7 +53,7 @@ class CubatureEstimator final : public Estimator {
         CubatureRegions fresh(n_, m_);
         std::vector<const SymmetricRule*> rules;
         std::vector<std::size_t> parents;
-        // In four dimensions and more the cube is first tried by the cheaper rule, which may do.
+        // In one dimension, and in four and more, the cube is first tried by the cheaper rule, which may do.
         const bool retry = regions_.count() == 1 && started_coarse() && !regions_.marks(0).rough && !refined_;
         if (regions_.empty() || retry) {
             fresh.add_cube();
@@ -61,24 +66,27 @@ class CubatureEstimator final : public Estimator {
             if (parents.empty()) return StepOutcome::finished;
             for (std::size_t p : parents) rules.insert(rules.end(), 2, rule_for_halves(p));
         }
-        fit(rules, parents, request.max_evaluations);
+        ValueBuffer nested;
+        if (parents.empty()) nested = nested_;
+        fit(rules, parents, request.max_evaluations + nested.count());
         if (rules.empty()) return StepOutcome::exhausted;
         for (std::size_t p : parents) fresh.add_halves(regions_, p);
         NonFiniteCount non_finite;
         std::vector<char> nonzero(nonzero_);
         std::vector<SymmetricRule::FaceValue> faces(parents.empty() ? 0 : rules.size() * components());
-        const CubatureWork work{rules, regions_, parents, fresh, faces};
+        const CubatureWork work{rules, regions_, parents,
+                                fresh, faces,    n_ == 1 && parents.empty() ? &nested : nullptr};
         if (!evaluate_regions(problem_.evaluator, work, totals_.value, non_finite, nonzero, request.cancel))
             return StepOutcome::cancelled;
 
         for (const SymmetricRule* rule : rules) evaluations_ += rule->points();
+        if (work.nested != nullptr) evaluations_ -= nested_.count();
+        nested_ = std::move(nested);
         non_finite_.merge(non_finite);
         nonzero_ = std::move(nonzero);
         if (parents.empty()) {
             refined_ = !regions_.empty();
-            // What two rules differ by is known better than what null rules say of one box.
-            for (std::size_t c = 0; refined_ && c < components(); ++c)
-                fresh.error(0)[c] += std::abs(regions_.value(0)[c] - fresh.value(0)[c]) / 32;
+            correct_cube(fresh);
             regions_ = std::move(fresh);
         } else {
             look_at_shared_faces(work);
@@ -110,6 +118,10 @@ class CubatureEstimator final : public Estimator {
         regions_.save(state);
         state.put(evaluations_);
         state.put(refined_);
+        for (int c = 0; n_ == 1 && c < m_; ++c) {
+            const auto values = nested_.component(c);
+            state.put(std::vector<double>(values.begin(), values.end()));
+        }
         montelux::save(state, non_finite_);
         state.put_all(std::vector<std::uint64_t>(nonzero_.begin(), nonzero_.end()));
         state.put(disagreement_);
@@ -119,6 +131,13 @@ class CubatureEstimator final : public Estimator {
         regions_.load(state);
         evaluations_ = state.get_word();
         refined_ = state.get<bool>();
+        for (int c = 0; n_ == 1 && c < m_; ++c) {
+            const std::vector<double> values = state.get_doubles();
+            if (c == 0) nested_.resize(values.size(), m_);
+            if (values.size() != nested_.count() || values.size() > fine_->points())
+                throw Error("the saved values do not fit the components");
+            std::ranges::copy(values, nested_.component(c).begin());
+        }
         montelux::load(state, non_finite_);
         const auto nonzero = state.get_all<std::uint64_t>();
         nonzero_.assign(nonzero.begin(), nonzero.end());
@@ -140,7 +159,7 @@ class CubatureEstimator final : public Estimator {
     };
 
     std::size_t components() const { return static_cast<std::size_t>(m_); }
-    bool started_coarse() const { return n_ >= 4; }
+    bool started_coarse() const { return n_ == 1 || n_ >= 4; }
 
     // All values of a component were zero so far: its part may not have been found.
     bool searching() const {
@@ -149,7 +168,7 @@ class CubatureEstimator final : public Estimator {
     }
 
     const SymmetricRule* rule_for_halves(std::size_t parent) const {
-        return coarse_ && regions_.marks(parent).rough ? &*coarse_ : &*fine_;
+        return n_ > 1 && regions_.marks(parent).rough ? &*coarse_ : &*fine_;
     }
 
     // The regions to halve next, those of the largest errors first: at most a sixteenth of all, and of these
@@ -212,6 +231,24 @@ class CubatureEstimator final : public Estimator {
         }
         rules.resize(kept);
         if (!parents.empty()) parents.resize(kept / 2);
+    }
+
+    // The errors of the cube alone, beyond what null rules say of it.
+    void correct_cube(CubatureRegions& fresh) const {
+        for (std::size_t c = 0; c < components(); ++c) {
+            double& error = fresh.error(0)[c];
+            if (!refined_) {
+                if (n_ == 1) error *= caution_with_few_points;
+                continue;
+            }
+            // What two rules differ by is known better than what null rules say of one box.
+            const double difference = std::abs(regions_.value(0)[c] - fresh.value(0)[c]);
+            const double coarse = regions_.error(0)[c] / caution_with_few_points;
+            if (n_ > 1)
+                error += difference / 32;
+            else if (coarse > 0)
+                error *= std::clamp(2 * difference / coarse, 0.125, lone_caution) / lone_caution;
+        }
     }
 
     // A jump close beyond the face that two halves share is seen by neither, but they disagree about the
@@ -296,8 +333,8 @@ class CubatureEstimator final : public Estimator {
             totals_.value[c] = value.value();
             totals_.inflation[c] =
                 expected_[c] > 0 ? std::max(1.0, std::sqrt(disagreement_[c] / expected_[c])) : 1;
-            totals_.error[c] =
-                error.value() * totals_.inflation[c] * (1 + 8 / static_cast<double>(regions_.count()));
+            totals_.error[c] = error.value() * totals_.inflation[c] *
+                               (1 + (lone_caution - 1) / static_cast<double>(regions_.count()));
         }
     }
 
@@ -331,6 +368,7 @@ class CubatureEstimator final : public Estimator {
     std::size_t max_regions_;
     Totals totals_;
     std::uint64_t evaluations_ = 0;
+    ValueBuffer nested_;   // in one dimension: those of the cube, as long as it is the only region
     bool refined_ = false; // the cube was evaluated again by the fine rule
     NonFiniteCount non_finite_;
     std::vector<char> nonzero_; // a component: was it ever seen to be other than zero?

@@ -10,17 +10,19 @@
 
 namespace montelux {
 
-// Globally adaptive cubature on the unit cube (Genz & Malik 1980; Berntsen, Espelid & Genz 1991): Gauss-
-// Kronrod in one dimension, degree 13 in two, 11 in three, the Genz-Malik rules of degree 7 and 9 in 2 to 15.
-// Best for integrands that are smooth, or piecewise so in few dimensions; a region costs 2^n points and more,
-// and jumps or kinks across many variables need more regions than any budget allows.
+// Globally adaptive cubature on the unit cube (Genz & Malik 1980; Berntsen, Espelid & Genz 1991): a rule of
+// degree 11 and Kronrod's extension of it in one dimension, degree 13 in two, 11 in three, the Genz-Malik
+// rules of degree 7 and 9 in 2 to 15. Best for integrands that are smooth, or piecewise so in few dimensions;
+// a region costs 2^n points and more, and jumps or kinks across many variables need more regions than any
+// budget allows.
 //
 // Errors are not standard deviations: each is the sum over the regions of what the null rules of a region
 // suspect, meant to be above the true error rather than near it. Above these stand
 // - what points close to the faces of a region see that the rule did not expect, and what the halves of a
 //   region disagree on at the face between them (a jump at the face),
 // - a quarter of what the halves of a region disagree with it by,
-// - a factor 1 + 8 / regions, since few regions have not yet tested one another, and
+// - a factor 1 + 8 / regions, since few regions have not yet tested one another (for one variable's 13 points
+//   twice what its 7 were wrong by over what they expected, if that is less), and
 // - the factor by which errors of the regions halved of late were too small, where they were.
 // The same target, at any number of threads, gives the same bits; the seed has no effect.
 struct Cubature {

@@ -26,11 +26,11 @@ void assess(CubatureRegions& fresh, std::size_t r, const SymmetricRule& rule,
     double worst = -1, ratio = 0;
     for (std::size_t c = 0; c < values.size(); ++c) {
         const double mean = rule.apply(values[c], nulls);
-        const SymmetricRule::Assessment found = rule.assess(nulls);
         double size = 0;
         for (double v : values[c]) size += std::abs(v);
         size /= static_cast<double>(values[c].size());
         const double rounding = 8 * std::numeric_limits<double>::epsilon() * size;
+        const SymmetricRule::Assessment found = rule.assess(nulls, rounding);
         const double error = found.error + rule.edge_surprise(values[c]);
         marks.exhausted = marks.exhausted && error <= rounding;
         fresh.value(r)[c] = volume * mean;
@@ -66,19 +66,25 @@ void evaluate_some(const Evaluator& evaluator, const CubatureWork& work, std::sp
     const int n = evaluator.dimensions();
     const std::vector<const SymmetricRule*>& rules = work.rules;
     CubatureRegions& fresh = work.fresh;
+    const std::size_t known = work.nested != nullptr ? work.nested->count() : 0;
     std::size_t count = 0;
     for (std::size_t r = begin; r < end; ++r) count += rules[r]->points();
-    PointBuffer u(count, n);
+    PointBuffer u(count - known, n);
     for (int d = 0; d < n; ++d) {
         double* to = u.coordinate(d).data();
         for (std::size_t r = begin; r < end; ++r) {
             const double c = fresh.centre(r)[static_cast<std::size_t>(d)];
             const double h = fresh.half_width(r)[static_cast<std::size_t>(d)];
-            for (double x : rules[r]->offsets().view().coordinate(d)) *to++ = c + h * x;
+            for (double x : rules[r]->offsets().view().coordinate(d).subspan(known)) *to++ = c + h * x;
         }
     }
     ValueBuffer values(count, evaluator.components());
-    evaluator(u, values, non_finite);
+    evaluator(u, values.view().slice(known, count - known), non_finite);
+    if (work.nested != nullptr) {
+        for (int c = 0; c < evaluator.components(); ++c)
+            std::ranges::copy(std::as_const(*work.nested).component(c), values.component(c).begin());
+        *work.nested = values;
+    }
     std::size_t first = 0;
     std::vector<std::span<const double>> of_region(components);
     for (std::size_t r = begin; r < end; ++r) {

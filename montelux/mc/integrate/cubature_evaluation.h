@@ -20,6 +20,9 @@ struct CubatureWork {
     CubatureRegions& fresh;
     // The face that halves share, as each sees it; a number for each region and component.
     std::vector<SymmetricRule::FaceValue>& faces;
+    // Of the only region, if it is one: its values at the first points of its rule, known already, and
+    // afterwards those at all of them; component after component.
+    ValueBuffer* nested = nullptr;
 };
 
 // Evaluates all regions of `work.fresh` on all threads, and sets their values, errors and marks. `totals` are

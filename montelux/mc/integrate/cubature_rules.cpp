@@ -1,6 +1,5 @@
 #include "montelux/mc/integrate/cubature_rules.h"
 
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 
 namespace montelux {
@@ -32,11 +31,20 @@ GenzMalikSquares genz_malik_squares() {
 
 } // namespace
 
-SymmetricRule gauss_kronrod_rule() {
-    std::vector<Generator> generators{{}};
-    for (double x : boost::math::quadrature::gauss_kronrod<double, 15>::abscissa())
-        if (x > 0) generators.push_back({x});
-    return {1, 23, std::move(generators)};
+SymmetricRule coarse_rule_of_one_dimension() {
+    return {1, 11, {{}, {0.466372926024552848}, {0.825842930408165586}, {probe}}};
+}
+
+SymmetricRule fine_rule_of_one_dimension() {
+    return {1,
+            19,
+            {{},
+             {0.466372926024552848},
+             {0.825842930408165586},
+             {probe},
+             {0.242876211049077481},
+             {0.662510520380892081},
+             {0.941666396127996058}}};
 }
 
 SymmetricRule two_dimensional_rule() {

@@ -5,8 +5,10 @@
 
 namespace montelux {
 
-// The 15 points of Kronrod's extension of the 7-point Gauss rule, degree 23; one dimension.
-SymmetricRule gauss_kronrod_rule();
+// One dimension: 7 points of degree 11 with the outermost at 0.995, so that jumps near the ends are seen, and
+// Kronrod's extension of these: 13 points of degree 19 that begin with the 7.
+SymmetricRule coarse_rule_of_one_dimension();
+SymmetricRule fine_rule_of_one_dimension();
 
 // Degree 13 with 65 points in two dimensions: the generators of Eriksen (1984, thesis, Bergen) as in DCUHRE
 // (Berntsen, Espelid & Genz 1991, ACM algorithm 698).

@@ -222,7 +222,7 @@ double SymmetricRule::apply(std::span<const double> values, std::span<double> nu
     return mean;
 }
 
-SymmetricRule::Assessment SymmetricRule::assess(std::span<const double> nulls) const {
+SymmetricRule::Assessment SymmetricRule::assess(std::span<const double> nulls, double rounding) const {
     // Root square sums of the null rules of each degree; the three highest degrees decide.
     std::array<double, 3> size{};
     std::size_t groups = 0;
@@ -238,7 +238,7 @@ SymmetricRule::Assessment SymmetricRule::assess(std::span<const double> nulls) c
     Assessment result{0, 0};
     for (double& s : size) s = std::sqrt(s);
     for (std::size_t g = 0; g + 1 < groups; ++g)
-        if (size[g] > 0)
+        if (size[g] > rounding)
             result.ratio = std::max(result.ratio, size[g + 1] > 0 ? size[g] / size[g + 1]
                                                                   : std::numeric_limits<double>::infinity());
     result.error = *std::ranges::max_element(size);

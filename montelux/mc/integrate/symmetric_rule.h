@@ -51,8 +51,9 @@ class SymmetricRule {
     };
     // From what the null rules gave. While they fall by a factor r from degree to degree, the error is taken
     // as 4 r times that of the highest degree (the rule's own degree is higher by 2 than that, and falls on
-    // by another factor of r); where they do not, as the largest of them (Berntsen & Espelid 1991).
-    Assessment assess(std::span<const double> nulls) const;
+    // by another factor of r); where they do not, as the largest of them (Berntsen & Espelid 1991). What is
+    // not above `rounding` says nothing of how they fall.
+    Assessment assess(std::span<const double> nulls, double rounding = 0) const;
 
     // How far the integrand is from a cubic along each axis: a tenth of the coefficient of x^4 of the quartic
     // through the centre and two orbits on the axis, and what the probes differ from that quartic, so that a
