@@ -163,7 +163,7 @@ def integrate(
     function = f if batch else pointwise(f, region.dimensions == 1)
     if components is None:
         components = 0 if out else _components(function, region)
-    watch = IntegrationProgress(relative_error, absolute_error) if progress is True else progress
+    watch = IntegrationProgress() if progress is True else progress
     report = None
     vector = components > 0
     if watch:

@@ -35,11 +35,7 @@ def public_attributes(kind: type) -> list[str]:
 
 def settings_of(kind: type) -> list[str]:
     """The attributes of a class of settings that can be set, in the order of their declaration."""
-    return [name for name, value in vars(kind).items() if isinstance(value, property) or _is_settable(value)]
-
-
-def _is_settable(value: object) -> bool:
-    return not callable(value) and hasattr(type(value), "__set__") and getattr(value, "fset", True) is not None
+    return [name for name, value in vars(kind).items() if isinstance(value, property) and value.fset is not None]
 
 
 def strict(*kinds: type) -> None:

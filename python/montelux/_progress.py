@@ -7,6 +7,7 @@ import time
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ._render import Progress
     from ._result import Result
 
 
@@ -40,12 +41,26 @@ class ProgressLine:
 class IntegrationProgress:
     """Shows value, evaluations and time of an integration."""
 
-    def __init__(self, relative_error: float, absolute_error: float) -> None:
+    def __init__(self) -> None:
         self._line = ProgressLine()
-        self._targeted = relative_error > 0 or absolute_error > 0
 
     def __call__(self, r: Result) -> None:
         self._line.show(f"integrating: {str(r).splitlines()[0]}  {r.evaluations:.3g} evaluations, {r.seconds:.1f} s")
+
+    def finish(self) -> None:
+        self._line.finish()
+
+
+class RenderProgress:
+    """Shows share, time and error of a render."""
+
+    def __init__(self) -> None:
+        self._line = ProgressLine()
+
+    def __call__(self, p: Progress) -> None:
+        error = "" if p.relative_error is None else f", error {100 * p.relative_error:.3g} %"
+        left = p.seconds * (1 / p.share - 1) if p.share > 0 else 0.0
+        self._line.show(f"rendering: {100 * p.share:3.0f} %  {p.seconds:.1f} s elapsed, about {left:.0f} s left{error}")
 
     def finish(self) -> None:
         self._line.finish()

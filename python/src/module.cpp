@@ -42,5 +42,14 @@ NB_MODULE(_core, m) {
     bind_metropolis(m);
     bind_points(m);
     bind_warps(m);
+    bind_spectra(m);
+    bind_images(m);
+    bind_materials(m);
+    bind_lights(m);
+    bind_shapes(m);
+    bind_views(m);
+    bind_scene(m);
+    bind_render(m);
+    bind_compare(m);
     bind_testing(m);
 }

@@ -153,6 +153,19 @@ nb::object new_array(std::span<const double> values, std::size_t rows, std::size
     return a.array;
 }
 
+nb::object float_view(const float* data, std::size_t height, std::size_t width, std::size_t channels,
+                      std::size_t count, const nb::object& owner) {
+    const auto pixel = static_cast<npy_intp>(channels * sizeof(float));
+    npy_intp shape[3] = {static_cast<npy_intp>(height), static_cast<npy_intp>(width),
+                         static_cast<npy_intp>(count)};
+    npy_intp strides[3] = {pixel * static_cast<npy_intp>(width), pixel, sizeof(float)};
+    nb::object array = stolen(PyArray_New(&PyArray_Type, count == 1 ? 2 : 3, shape, NPY_FLOAT, strides,
+                                          const_cast<float*>(data), 0, 0, nullptr));
+    nb::object base = owner;
+    if (PyArray_SetBaseObject(as_array(array), base.release().ptr()) < 0) throw nb::python_error();
+    return array;
+}
+
 Numbers numbers_of(const nb::handle& given, std::string_view what) {
     Numbers numbers;
     numbers.array = double_array(given, NPY_ARRAY_CARRAY_RO, what);

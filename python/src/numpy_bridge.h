@@ -41,6 +41,11 @@ struct NewArray {
 };
 NewArray new_array(std::span<const std::size_t> shape);
 
+// A read-only array of float32 on the memory of a picture of interleaved channels, which `owner` keeps alive:
+// shape (height, width, count), or (height, width) for one.
+nb::object float_view(const float* data, std::size_t height, std::size_t width, std::size_t channels,
+                      std::size_t count, const nb::object& owner);
+
 // A C-contiguous array of doubles of what is given (converted where it has to be), as one run of numbers.
 // Throws Error beginning with `what` for what are no real numbers.
 struct Numbers {
