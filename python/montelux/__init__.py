@@ -57,13 +57,13 @@ from ._core import (
     UniformInfiniteLight,
     Vegas,
     VegasSobol,
-    __version__,
     l2_star_discrepancy,
     mis_weights,
     points,
     read_channels,
     star_discrepancy,
 )
+from ._core import version as __version__
 from ._chains import Chains, metropolis
 from ._compare import ChannelComparison, Comparison, ZScores, compare
 from ._integrate import METHODS, integrate, train_map

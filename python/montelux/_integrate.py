@@ -18,7 +18,7 @@ Ranges = Union[Domain, Sequence[float], Sequence[Sequence[float]]]
 Progress = Union[bool, Callable[[Result], object]]
 
 #: The methods that can be named, with the classes of their settings.
-METHODS: dict[str, type] = {
+METHODS: dict[str, Any] = {
     kind.name: kind
     for kind in (
         _core.Auto,
@@ -39,7 +39,12 @@ METHODS: dict[str, type] = {
         _core.ControlVariate,
     )
 }
-_CONSTRUCTED = {"importance": ("technique",), "multiple_importance": ("techniques",), "control_variate": ("controls", "integrals")}
+# Settings without defaults.
+_REQUIRED = {
+    "importance": ("technique",),
+    "multiple_importance": ("techniques",),
+    "control_variate": ("controls", "integrals"),
+}
 
 
 def as_domain(domain: Ranges) -> Domain:
@@ -66,13 +71,13 @@ def as_method(method: Any, settings: dict[str, Any]) -> _core.Method:
             raise Error("method: " + unknown("method", method, METHODS))
         method = METHODS[method]
     if isinstance(method, type) and method in METHODS.values():
-        names = [*_CONSTRUCTED.get(method.name, ()), *settings_of(method)]
+        names = [*_REQUIRED.get(method.name, ()), *settings_of(method)]
         if method is _core.MultipleImportance:
             names += ["weights", "parameter"]
         for name in settings:
             if name not in names:
                 raise Error(f"method '{method.name}': " + unknown("setting", name, names or ["(none)"]))
-        missing = [name for name in _CONSTRUCTED.get(method.name, ()) if name not in settings]
+        missing = [name for name in _REQUIRED.get(method.name, ()) if name not in settings]
         if missing:
             raise Error(f"method '{method.name}': expected the setting '{missing[0]}'")
         method = method(**settings)

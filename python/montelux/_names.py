@@ -50,7 +50,7 @@ def _make_strict(kind: type) -> None:
     def set_attribute(self: object, name: str, value: object) -> None:
         if not hasattr(type(self), name):
             raise UnknownAttribute(unknown(f"attribute of {type(self).__name__}", name, public_attributes(type(self))))
-        plain_set(self, name, value)
+        plain_set(self, name, value)  # type: ignore[call-arg, arg-type]
 
     def get_attribute(self: object, name: str) -> object:
         if name.startswith("__"):

@@ -96,7 +96,7 @@ class Scene(_core.SceneBase):
                 f"{job.refused_checkpoint}; went on from the checkpoint before it", RuntimeWarning, stacklevel=2
             )
         entries = {
-            "software": f"Montelux {_core.__version__}",
+            "software": f"Montelux {_core.version}",
             "scene": self.name,
             "samplesPerPixel": job.samples_per_pixel,
             "sampler": self.sampler.kind,
@@ -184,5 +184,5 @@ VALUES = (
     _core.Integrator,
 )
 for _kind in VALUES:
-    _kind.__repr__ = _represent  # type: ignore[method-assign, assignment]
+    _kind.__repr__ = _represent  # type: ignore[method-assign]
 strict(*VALUES, _core.Shape, Scene)

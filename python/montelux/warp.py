@@ -7,24 +7,24 @@ without parameters are objects (`warp.cosine_hemisphere.sample(u)`), the others 
 
 from __future__ import annotations
 
-from ._core import warp as _warp
+from . import _core
 
-Warp = _warp.Warp
+Warp = _core.Warp
 
-bilinear = _warp.bilinear
-cosine = _warp.cosine
-cosine_hemisphere = _warp.cosine_hemisphere
-equal_area_sphere = _warp.equal_area_sphere
-exponential = _warp.exponential
-linear = _warp.linear
-quadratic = _warp.quadratic
-spherical_rectangle = _warp.spherical_rectangle
-spherical_triangle = _warp.spherical_triangle
-tent = _warp.tent
-uniform_cone = _warp.uniform_cone
-uniform_disk_concentric = _warp.uniform_disk_concentric
-uniform_disk_polar = _warp.uniform_disk_polar
-uniform_hemisphere = _warp.uniform_hemisphere
-uniform_sphere = _warp.uniform_sphere
-uniform_triangle = _warp.uniform_triangle
-uniform_triangle_low_distortion = _warp.uniform_triangle_low_distortion
+bilinear = _core.warp_bilinear
+cosine = _core.warp_cosine
+cosine_hemisphere = _core.warp_cosine_hemisphere
+equal_area_sphere = _core.warp_equal_area_sphere
+exponential = _core.warp_exponential
+linear = _core.warp_linear
+quadratic = _core.warp_quadratic
+spherical_rectangle = _core.warp_spherical_rectangle
+spherical_triangle = _core.warp_spherical_triangle
+tent = _core.warp_tent
+uniform_cone = _core.warp_uniform_cone
+uniform_disk_concentric = _core.warp_uniform_disk_concentric
+uniform_disk_polar = _core.warp_uniform_disk_polar
+uniform_hemisphere = _core.warp_uniform_hemisphere
+uniform_sphere = _core.warp_uniform_sphere
+uniform_triangle = _core.warp_uniform_triangle
+uniform_triangle_low_distortion = _core.warp_uniform_triangle_low_distortion

@@ -28,7 +28,8 @@ nb::object elementwise(const nb::object& given, const char* what, const F& f) {
         nb::gil_scoped_release unlocked;
         f(n.values, std::span<double>(out.data, n.values.size()));
     }
-    return n.shape.empty() ? nb::float_(*out.data) : out.array;
+    if (n.shape.empty()) return nb::float_(*out.data);
+    return out.array;
 }
 
 using Of = double (Distribution::*)(double) const;
@@ -49,7 +50,7 @@ nb::object sample(const Distribution& d, const nb::object& u) {
     });
 }
 
-nb::object draw(const Distribution& d, std::size_t count, std::uint64_t seed) {
+DoubleArray draw(const Distribution& d, std::size_t count, std::uint64_t seed) {
     const std::size_t shape[] = {count};
     NewArray out = new_array(shape);
     {

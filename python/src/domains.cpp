@@ -41,7 +41,7 @@ Domain mapped(int uniforms, int dimensions, nb::object map, const std::string& d
         description);
 }
 
-nb::object map_points(const Domain& domain, const nb::object& u) {
+nb::tuple map_points(const Domain& domain, const nb::object& u) {
     const Numbers given = numbers_of(u, "Domain.map");
     const auto k = static_cast<std::size_t>(domain.uniforms());
     if (!(given.shape.size() == 2 && given.shape[1] == k) && !(given.shape.size() == 1 && k == 1))

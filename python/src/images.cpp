@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 #include <utility>
 
 #include "montelux/image/difference_picture.h"
@@ -70,11 +71,7 @@ void bind_images(nb::module_& m) {
     nb::class_<Image>(m, "Picture", "A picture with named channels, as files hold it.")
         .def_prop_ro("width", &Image::width)
         .def_prop_ro("height", &Image::height)
-        .def_prop_ro("channels", [](const Image& i) {
-            nb::list names;
-            for (const std::string& n : i.channel_names()) names.append(n);
-            return names;
-        });
+        .def_prop_ro("channels", [](const Image& i) { return i.channel_names(); });
     m.def(
         "read_channels",
         [](const std::filesystem::path& path) {

@@ -16,7 +16,7 @@ namespace montelux::python {
 namespace {
 
 // Columns: evaluations, value, standard error, seconds.
-nb::object history_of(const IntegrationResult& r) {
+DoubleArray history_of(const IntegrationResult& r) {
     std::vector<double> rows;
     for (const IterationRecord& h : r.history)
         rows.insert(rows.end(), {static_cast<double>(h.evaluations), h.value, h.standard_error, h.seconds});
@@ -45,9 +45,9 @@ void bind_integrate(nb::module_& m) {
         .def_prop_ro("value", [](const IntegrationResult& r) { return new_array(r.value); })
         .def_prop_ro("standard_error", [](const IntegrationResult& r) { return new_array(r.standard_error); })
         .def_prop_ro("covariance",
-                     [](const IntegrationResult& r) -> nb::object {
+                     [](const IntegrationResult& r) -> std::optional<DoubleArray> {
                          const std::size_t n = r.value.size();
-                         if (r.covariance.size() != n * n) return nb::none();
+                         if (r.covariance.size() != n * n) return std::nullopt;
                          return new_array(r.covariance, n, n);
                      })
         .def_ro("statistical", &IntegrationResult::statistical)

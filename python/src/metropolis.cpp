@@ -24,9 +24,9 @@ nb::object at_point(const PythonFunction& f, std::span<const double> x) {
     return nb::steal(result);
 }
 
-nb::object run(nb::object log_density, const std::vector<std::vector<double>>& starts,
-               const std::optional<nb::object>& observables, int count, const GaussianWalk& walk,
-               MetropolisOptions options) {
+nb::dict run(nb::object log_density, const std::vector<std::vector<double>>& starts,
+             const std::optional<nb::object>& observables, int count, const GaussianWalk& walk,
+             MetropolisOptions options) {
     if (starts.empty() || starts[0].empty())
         throw Error("metropolis", "expected a start of at least one coordinate");
     const PythonFunction density(std::move(log_density), "metropolis, log_density");

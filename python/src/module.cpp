@@ -29,7 +29,7 @@ void bind_error(nb::module_& m) {
 NB_MODULE(_core, m) {
     using namespace montelux::python; // NOLINT(google-build-using-namespace): the bindings of this module
     m.doc() = "The compiled part of montelux; use the names of that package.";
-    m.attr("__version__") = MONTELUX_VERSION;
+    m.attr("version") = MONTELUX_VERSION;
     // Functions that distributions and methods hold live until the interpreter has ended.
     nb::set_leak_warnings(false);
     import_numpy();

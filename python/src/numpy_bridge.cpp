@@ -87,6 +87,8 @@ void copy_column(const char* from, npy_intp step, std::span<double> to) {
 
 } // namespace
 
+bool is_array(PyObject* o) { return PyArray_Check(o); }
+
 void import_numpy() {
     if (PyArray_ImportNumPyAPI() < 0) throw nb::python_error();
 }
@@ -134,19 +136,19 @@ int values_a_point(const nb::object& returned, std::size_t n, std::string_view w
 
 NewArray new_array(std::span<const std::size_t> shape) {
     std::vector<npy_intp> dimensions(shape.begin(), shape.end());
-    nb::object array =
-        stolen(PyArray_SimpleNew(static_cast<int>(dimensions.size()), dimensions.data(), NPY_DOUBLE));
+    auto array = nb::borrow<DoubleArray>(
+        stolen(PyArray_SimpleNew(static_cast<int>(dimensions.size()), dimensions.data(), NPY_DOUBLE)));
     return {array, static_cast<double*>(PyArray_DATA(as_array(array)))};
 }
 
-nb::object new_array(std::span<const double> values) {
+DoubleArray new_array(std::span<const double> values) {
     const std::size_t shape[] = {values.size()};
     NewArray a = new_array(shape);
     if (!values.empty()) std::memcpy(a.data, values.data(), values.size_bytes());
     return a.array;
 }
 
-nb::object new_array(std::span<const double> values, std::size_t rows, std::size_t columns) {
+DoubleArray new_array(std::span<const double> values, std::size_t rows, std::size_t columns) {
     const std::size_t shape[] = {rows, columns};
     NewArray a = new_array(shape);
     if (!values.empty()) std::memcpy(a.data, values.data(), values.size_bytes());

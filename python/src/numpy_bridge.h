@@ -12,6 +12,13 @@ namespace montelux::python {
 
 namespace nb = nanobind;
 
+bool is_array(PyObject* o);
+
+// An array of doubles, by its type in the stubs.
+class DoubleArray : public nb::object {
+    NB_OBJECT_DEFAULT(DoubleArray, nb::object, "numpy.typing.NDArray[numpy.float64]", is_array)
+};
+
 // Loads NumPy's table of functions; before anything else here.
 void import_numpy();
 
@@ -32,11 +39,11 @@ void copy_values(const nb::object& returned, const ValueBatch& values, bool as_v
 int values_a_point(const nb::object& returned, std::size_t n, std::string_view what);
 
 // New arrays that own what they hold.
-nb::object new_array(std::span<const double> values);
-nb::object new_array(std::span<const double> values, std::size_t rows, std::size_t columns);
+DoubleArray new_array(std::span<const double> values);
+DoubleArray new_array(std::span<const double> values, std::size_t rows, std::size_t columns);
 // A new array of doubles without contents, and where they stand (row by row).
 struct NewArray {
-    nb::object array;
+    DoubleArray array;
     double* data;
 };
 NewArray new_array(std::span<const std::size_t> shape);

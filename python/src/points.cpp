@@ -11,8 +11,8 @@
 namespace montelux::python {
 namespace {
 
-nb::object points(const std::string& kind, std::uint32_t count, int dimensions, const std::string& randomised,
-                  std::uint64_t seed) {
+DoubleArray points(const std::string& kind, std::uint32_t count, int dimensions,
+                   const std::string& randomised, std::uint64_t seed) {
     PointSet::Settings settings;
     settings.kind = point_sets.value(kind);
     settings.count = count;

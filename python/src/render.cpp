@@ -92,7 +92,7 @@ Image with_header(const RenderLook& look, const nb::dict& entries) {
     return image;
 }
 
-nb::object screen(const RenderLook& look, double exposure) {
+nb::tuple screen(const RenderLook& look, double exposure) {
     auto tones =
         std::make_shared<Image>(apply_tone_curve(*look.image, {.exposure = static_cast<float>(exposure)}, 8));
     nb::object bytes = nb::bytes(reinterpret_cast<const char*>(tones->u8().data()), tones->u8().size());

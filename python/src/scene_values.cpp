@@ -138,13 +138,13 @@ Transform transform_of(nb::handle v, const std::string& what) {
     return *t;
 }
 
-nb::object matrix_array(const Transform& t) {
+DoubleArray matrix_array(const Transform& t) {
     std::vector<double> rows;
     for (const auto& row : t.matrix().m) rows.insert(rows.end(), row.begin(), row.end());
     return new_array(rows, 4, 4);
 }
 
-nb::object vector_array(Vec3f v) {
+DoubleArray vector_array(Vec3f v) {
     const double c[] = {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
     return new_array(c);
 }
@@ -209,7 +209,7 @@ void bind_spectra(nb::module_& m) {
                 NewArray out = new_array(n.shape);
                 for (std::size_t i = 0; i < n.values.size(); ++i)
                     out.data[i] = static_cast<double>(s(static_cast<float>(n.values[i])));
-                return n.shape.empty() ? nb::object(nb::float_(*out.data)) : out.array;
+                return n.shape.empty() ? nb::object(nb::float_(*out.data)) : nb::object(out.array);
             },
             "wavelengths"_a, "Values at wavelengths in nm.")
         .def_prop_ro(

@@ -41,8 +41,8 @@ template <typename V>
 FloatParameter float_parameter_of(nb::handle v, Slot<V>& slot, const std::string& what);
 // A matrix of shape (4, 4), points as columns.
 Transform transform_of(nb::handle v, const std::string& what);
-nb::object matrix_array(const Transform& t);
-nb::object vector_array(Vec3f v);
+DoubleArray matrix_array(const Transform& t);
+DoubleArray vector_array(Vec3f v);
 nb::object spectrum_or_texture(const SpectrumParameter& p, const std::shared_ptr<SceneHolder>& scene);
 nb::object number_or_texture(const FloatParameter& p, const std::shared_ptr<SceneHolder>& scene);
 

@@ -30,8 +30,6 @@ void bind_techniques(nb::module_& m) {
     nb::class_<Technique>(m, "Technique",
                           "Points that follow a density, for Importance and MultipleImportance.\n\n"
                           "A Distribution, or a list of them (one a coordinate), is a technique by itself.")
-        .def(nb::init<Distribution>(), "distribution"_a)
-        .def(nb::init<std::vector<Distribution>>(), "factors"_a)
         .def(nb::init_implicit<Distribution>())
         .def(nb::init_implicit<std::vector<Distribution>>())
         .def_static("functions", &functions, "uniforms"_a, "dimensions"_a, "sample"_a, "density"_a,

@@ -34,8 +34,7 @@ nb::tuple call_integrand(nb::object f, std::size_t points, int dimensions, int c
 } // namespace
 
 void bind_testing(nb::module_& m) {
-    nb::module_ t = m.def_submodule("testing", "What tests and benchmarks of the package measure.");
-    t.def(
+    m.def(
         "call_integrand", &call_integrand, "f"_a, "points"_a, "dimensions"_a, "calls"_a, "into"_a = false,
         "Calls f as the integrator does, with points of a buffer of its own: (seconds a call, address of the "
         "points, address of the values).");

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/string.h>
 #include <string>
 #include <utility>
 
@@ -80,8 +81,8 @@ Warp of_space(std::string name, Sample sample, Pdf pdf, Inverse inverse) {
 
 // Rows of `columns` numbers, (n,) for one; applies f row by row.
 template <typename F>
-nb::object by_rows(const Warp& w, const nb::object& given, const char* what, std::size_t columns,
-                   std::size_t results, const F& f) {
+DoubleArray by_rows(const Warp& w, const nb::object& given, const char* what, std::size_t columns,
+                    std::size_t results, const F& f) {
     const std::string where = "warp " + w.name + ", " + what;
     const Numbers n = numbers_of(given, where);
     const bool flat = columns == 1;
@@ -100,22 +101,22 @@ nb::object by_rows(const Warp& w, const nb::object& given, const char* what, std
 }
 
 void bind_plane(nb::module_& m) {
-    m.attr("uniform_disk_polar") = of_plane(
+    m.attr("warp_uniform_disk_polar") = of_plane(
         "uniform_disk_polar", sample_uniform_disk_polar<double>,
         [](Vec2d p) { return length_squared(p) <= 1 ? uniform_disk_pdf<double>() : 0; },
         invert_uniform_disk_polar<double>);
-    m.attr("uniform_disk_concentric") = of_plane(
+    m.attr("warp_uniform_disk_concentric") = of_plane(
         "uniform_disk_concentric", sample_uniform_disk_concentric<double>,
         [](Vec2d p) { return length_squared(p) <= 1 + 1e-15 ? uniform_disk_pdf<double>() : 0; },
         invert_uniform_disk_concentric<double>);
     auto in_triangle = [](Vec3d b) { return b.x >= 0 && b.y >= 0 && b.z >= 0 ? 2.0 : 0.0; };
-    m.attr("uniform_triangle") = of_space("uniform_triangle", sample_uniform_triangle<double>, in_triangle,
-                                          invert_uniform_triangle<double>);
-    m.attr("uniform_triangle_low_distortion") =
+    m.attr("warp_uniform_triangle") = of_space("uniform_triangle", sample_uniform_triangle<double>,
+                                               in_triangle, invert_uniform_triangle<double>);
+    m.attr("warp_uniform_triangle_low_distortion") =
         of_space("uniform_triangle_low_distortion", sample_uniform_triangle_low_distortion<double>,
                  in_triangle, invert_uniform_triangle_low_distortion<double>);
     m.def(
-        "bilinear",
+        "warp_bilinear",
         [](std::array<double, 4> f) {
             for (double v : f)
                 if (!(v >= 0 && std::isfinite(v)))
@@ -131,21 +132,21 @@ void bind_plane(nb::module_& m) {
 }
 
 void bind_sphere(nb::module_& m) {
-    m.attr("uniform_sphere") = of_space(
+    m.attr("warp_uniform_sphere") = of_space(
         "uniform_sphere", sample_uniform_sphere<double>, [](Vec3d) { return uniform_sphere_pdf<double>(); },
         invert_uniform_sphere<double>);
-    m.attr("equal_area_sphere") = of_space(
+    m.attr("warp_equal_area_sphere") = of_space(
         "equal_area_sphere", equal_area_square_to_sphere<double>,
         [](Vec3d) { return uniform_sphere_pdf<double>(); }, equal_area_sphere_to_square<double>);
-    m.attr("uniform_hemisphere") = of_space(
+    m.attr("warp_uniform_hemisphere") = of_space(
         "uniform_hemisphere", sample_uniform_hemisphere<double>,
         [](Vec3d w) { return w.z >= 0 ? uniform_hemisphere_pdf<double>() : 0; },
         invert_uniform_hemisphere<double>);
-    m.attr("cosine_hemisphere") = of_space(
+    m.attr("warp_cosine_hemisphere") = of_space(
         "cosine_hemisphere", sample_cosine_hemisphere<double>,
         [](Vec3d w) { return cosine_hemisphere_pdf(w.z); }, invert_cosine_hemisphere<double>);
     m.def(
-        "uniform_cone",
+        "warp_uniform_cone",
         [](double c) {
             if (!(c >= -1 && c < 1)) throw Error("warp uniform_cone", "expected a cosine in [-1, 1)");
             return of_space(
@@ -155,7 +156,7 @@ void bind_sphere(nb::module_& m) {
         },
         "cos_theta_max"_a, "Directions within an angle of +z, uniform in solid angle.");
     m.def(
-        "spherical_triangle",
+        "warp_spherical_triangle",
         [](Three a, Three b, Three c) {
             const auto t =
                 SphericalTriangle::from_directions(three(a.data()), three(b.data()), three(c.data()));
@@ -169,7 +170,7 @@ void bind_sphere(nb::module_& m) {
         "1995). "
         "The density is for directions within it.");
     m.def(
-        "spherical_rectangle",
+        "warp_spherical_rectangle",
         [](Three from, Three corner, Three x, Three y) {
             const auto r = SphericalRectangle::from_corner(three(from.data()), three(corner.data()),
                                                            three(x.data()), three(y.data()));
@@ -185,11 +186,12 @@ void bind_sphere(nb::module_& m) {
 }
 
 void bind_line(nb::module_& m) {
-    m.attr("cosine") = of_numbers("cosine", sample_cosine<double>, cosine_pdf<double>, invert_cosine<double>);
-    m.attr("quadratic") =
+    m.attr("warp_cosine") =
+        of_numbers("cosine", sample_cosine<double>, cosine_pdf<double>, invert_cosine<double>);
+    m.attr("warp_quadratic") =
         of_numbers("quadratic", sample_quadratic<double>, quadratic_pdf<double>, invert_quadratic<double>);
     m.def(
-        "linear",
+        "warp_linear",
         [](double a, double b) {
             if (!(a >= 0 && b >= 0 && a + b > 0 && std::isfinite(a + b)))
                 throw Error("warp linear", "expected two values that are not negative, and not both zero");
@@ -200,7 +202,7 @@ void bind_line(nb::module_& m) {
         },
         "a"_a, "b"_a, "Density on [0, 1] proportional to (1 - x) a + x b.");
     m.def(
-        "tent",
+        "warp_tent",
         [](double r) {
             if (!(r > 0 && std::isfinite(r))) throw Error("warp tent", "expected a radius above zero");
             return of_numbers(
@@ -209,7 +211,7 @@ void bind_line(nb::module_& m) {
         },
         "radius"_a, "Density (radius - |x|) / radius^2 on [-radius, radius].");
     m.def(
-        "exponential",
+        "warp_exponential",
         [](double rate, double length) {
             if (!(rate > 0 && length > 0))
                 throw Error("warp exponential", "expected a rate and a length above zero");
@@ -230,10 +232,7 @@ void bind_line(nb::module_& m) {
 } // namespace
 
 void bind_warps(nb::module_& m) {
-    nb::module_ w =
-        m.def_submodule("warp", "Uniform numbers to points of a density, and back. Each warp has sample(u), "
-                                "pdf(x) and inverse(x) on arrays of shape (n, coordinates); (n,) for one.");
-    nb::class_<Warp>(w, "Warp", "A map of uniform numbers to points of a density, and back.")
+    nb::class_<Warp>(m, "Warp", "A map of uniform numbers to points of a density, and back.")
         .def_ro("name", &Warp::name, "Its name.")
         .def_ro("uniforms", &Warp::uniforms, "Uniform numbers that a point takes.")
         .def_ro("coordinates", &Warp::coordinates, "Coordinates of a point.")
@@ -257,9 +256,9 @@ void bind_warps(nb::module_& m) {
             },
             "x"_a, "The uniform numbers that sample() maps to x, shape (n, uniforms).")
         .def("__repr__", [](const Warp& s) { return "<montelux.warp." + s.name + ">"; });
-    bind_plane(w);
-    bind_sphere(w);
-    bind_line(w);
+    bind_plane(m);
+    bind_sphere(m);
+    bind_line(m);
 }
 
 } // namespace montelux::python

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import montelux
-from montelux._core.testing import call_integrand
+from montelux._core import call_integrand
 
 NAMED = [name for name in montelux.METHODS if name not in ("importance", "multiple_importance", "control_variate")]
 

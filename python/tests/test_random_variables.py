@@ -220,6 +220,7 @@ def test_shapes_of_warps_are_checked():
     with pytest.raises(montelux.Error, match="spans no solid angle"):
         montelux.warp.spherical_triangle([1, 0, 0], [1, 0, 0], [0, 0, 1])
     assert montelux.warp.uniform_sphere.sample(np.zeros((2, 3, 2))).shape == (2, 3, 3)
+    assert repr(montelux.warp.tent(1)) == "<montelux.warp.tent>" and montelux.warp.tent(1).uniforms == 1
 
 
 # Weights and chains.
