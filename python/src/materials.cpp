@@ -50,16 +50,16 @@ void parameter(nb::class_<Ref<T>>& c, const char* name, At at, double least, dou
         },
         doc);
 }
-constexpr double any = std::numeric_limits<double>::max();
+constexpr double no_bound = std::numeric_limits<double>::max();
 
 // `roughness` sets both directions at once.
 template <typename T, typename At>
 void roughness(nb::class_<Ref<T>>& c, const std::string& prefix, At at) {
     parameter(
-        c, (prefix + "roughness_u").c_str(), [at](T& t) -> FloatParameter& { return at(t).u; }, 0, any,
+        c, (prefix + "roughness_u").c_str(), [at](T& t) -> FloatParameter& { return at(t).u; }, 0, no_bound,
         "GGX roughness along u; 0 is a mirror.");
     parameter(
-        c, (prefix + "roughness_v").c_str(), [at](T& t) -> FloatParameter& { return at(t).v; }, 0, any,
+        c, (prefix + "roughness_v").c_str(), [at](T& t) -> FloatParameter& { return at(t).v; }, 0, no_bound,
         "GGX roughness along v.");
     attribute<T>(
         c, (prefix + "roughness").c_str(), "typing.Any",
@@ -120,7 +120,7 @@ void coating(nb::class_<Ref<T>>& c, const std::string& prefix) {
     roughness(c, prefix, [](T& t) -> RoughnessParameter& { return t.coating.roughness; });
     index_of_refraction(c, (prefix + "eta").c_str(), [](T& t) -> Spectrum& { return t.coating.eta; });
     parameter(
-        c, "thickness", [](T& t) -> FloatParameter& { return t.coating.thickness; }, 0, any,
+        c, "thickness", [](T& t) -> FloatParameter& { return t.coating.thickness; }, 0, no_bound,
         "Thickness of the layer between interface and base.");
     spectrum(
         c, "albedo", [](T& t) -> SpectrumParameter& { return t.coating.albedo; }, RgbMeaning::albedo,

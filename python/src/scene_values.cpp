@@ -52,7 +52,7 @@ Spectrum rgb(Vec3f c, RgbMeaning meaning, const std::string& what) {
     }
 }
 
-Spectrum tabulated(const nb::object& wavelengths, const nb::object& values) {
+Spectrum tabulated_spectrum(const nb::object& wavelengths, const nb::object& values) {
     const Numbers l = numbers_of(wavelengths, "Spectrum.tabulated"),
                   v = numbers_of(values, "Spectrum.tabulated");
     const std::vector<float> lambda(l.values.begin(), l.values.end()),
@@ -194,7 +194,7 @@ void bind_spectra(nb::module_& m) {
             },
             "kelvin"_a, "Of a black body, relative to its peak.")
         .def_static(
-            "tabulated", &tabulated, "wavelengths"_a, "values"_a,
+            "tabulated", &tabulated_spectrum, "wavelengths"_a, "values"_a,
             "Straight lines between values at wavelengths in nm, ascending; constant beyond the ends.")
         .def_static(
             "names",
