@@ -84,7 +84,11 @@ class Render(Picture):
     def __iter__(self) -> Iterator[Picture]:
         next_look = time.monotonic() + self._every
         while not self._wait_until(next_look):
-            look = self._job.look(0.1)
+            try:
+                look = self._job.look(0.1)
+            except KeyboardInterrupt:
+                self._job.cancel()
+                break
             if look is None:
                 continue  # the render ends, or a sample takes long
             yield Picture(look, self._header(look))
