@@ -6,12 +6,12 @@ set -eu
 # docs/dependencies.md says what each is for.
 packages="make cmake ninja-build g++ libtbb-dev libboost-math-dev libembree-dev libopenexr-dev libpng-dev
     libjpeg62-turbo-dev zlib1g-dev libstb-dev nlohmann-json3-dev libcli11-dev libmuparser-dev libgtest-dev libbenchmark-dev
-    libopenmpi-dev openmpi-bin"
+    libopenmpi-dev openmpi-bin python3-dev python3-venv"
 dry_run=no
 for argument in "$@"; do
     case $argument in
     build) ;;
-    bench) packages="$packages libgsl-dev libcubature-dev python3-venv" ;;
+    bench) packages="$packages libgsl-dev libcubature-dev" ;;
     lint) packages="$packages clang-format clang-tidy" ;;
     --dry-run) dry_run=yes ;;
     *) echo "install-dependencies.sh: unknown argument '$argument' (expected build, bench, lint or --dry-run)" >&2

@@ -1,6 +1,7 @@
 // When a render stops, what it tells meanwhile, and what of it survives.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -80,6 +81,9 @@ struct RenderControl {
     // at the end, before the film is closed.
     std::function<void(const RenderState&)> checkpoint;
     double checkpoint_seconds = 60;
+    // Set by whoever wants to see the state: `checkpoint`, which resets it, is then called as soon as no
+    // sample is being taken.
+    const std::atomic<bool>* look = nullptr;
     const CancelFlag* cancel = nullptr;
     // Who takes the samples; the threads of this process where there is none. The result is the same.
     RoundExecutor* executor = nullptr;

@@ -62,7 +62,9 @@ class RenderLoop {
     double seconds() const { return seconds_before_ + seconds_since(begin_); }
     bool cancelled() const { return control_.cancel != nullptr && control_.cancel->requested(); }
     bool checkpoint_is_due() const {
-        return control_.checkpoint && seconds_since(last_checkpoint_) >= control_.checkpoint_seconds;
+        if (!control_.checkpoint) return false;
+        return seconds_since(last_checkpoint_) >= control_.checkpoint_seconds ||
+               (control_.look != nullptr && control_.look->load(std::memory_order_relaxed));
     }
     bool out_of_time() const {
         // A picture with a sample of each pixel is the least there is to show.

@@ -8,7 +8,7 @@ namespace montelux::house {
 namespace {
 
 const std::filesystem::path root = MONTELUX_SOURCE_DIR;
-const std::vector<std::string> folders = {"montelux", "app", "test", "bench", "examples"};
+const std::vector<std::string> folders = {"montelux", "app", "python", "test", "bench", "examples"};
 
 RoomTable real_rooms() {
     std::ifstream in(root / "CMakeLists.txt");

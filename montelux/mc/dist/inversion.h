@@ -103,6 +103,7 @@ class NumericalInversion : public SampledByInversion<NumericalInversion<F>> {
         constexpr std::array<double, 4> weight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
                                                0.1012285362903763};
         double middle = 0.5 * (from + to), half = 0.5 * (to - from), sum = 0;
+        if (half == 0) return 0; // where g may be infinite
         for (std::size_t i = 0; i < 4; ++i) {
             double low = g(middle - half * node[i]);
             double high = g(middle + half * node[i]);

@@ -1,0 +1,229 @@
+"""The front door: integrate a function over a domain until an error, a budget or a time is reached."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from typing import Any, Union
+
+import numpy as np
+
+from . import _core
+from ._core import Domain, Error
+from ._names import settings_of, unknown
+from ._progress import IntegrationProgress
+from ._result import Array, Result, from_core
+
+Ranges = Union[Domain, Sequence[float], Sequence[Sequence[float]]]
+Progress = Union[bool, Callable[[Result], object]]
+
+#: The methods that can be named, with the classes of their settings.
+METHODS: dict[str, Any] = {
+    kind.name: kind
+    for kind in (
+        _core.Auto,
+        _core.Adaptive,
+        _core.Vegas,
+        _core.VegasSobol,
+        _core.Quasi,
+        _core.BasicMonteCarlo,
+        _core.Stratified,
+        _core.Recursive,
+        _core.Metropolis,
+        _core.Cubature,
+        _core.RiemannSum,
+        _core.MidpointRule,
+        _core.TrapezoidRule,
+        _core.Importance,
+        _core.MultipleImportance,
+        _core.ControlVariate,
+    )
+}
+# Settings without defaults.
+_REQUIRED = {
+    "importance": ("technique",),
+    "multiple_importance": ("techniques",),
+    "control_variate": ("controls", "integrals"),
+}
+
+
+def as_domain(domain: Ranges) -> Domain:
+    """A Domain of what stands for one: ranges (lower, upper), one a variable, or a single range."""
+    if isinstance(domain, Domain):
+        return domain
+    try:
+        ranges = np.asarray(domain, dtype=float)
+    except (TypeError, ValueError):
+        raise Error(f"domain: {domain!r} was given; expected ranges (lower, upper), one a variable") from None
+    if ranges.shape == (2,):
+        ranges = ranges.reshape(1, 2)
+    if ranges.ndim != 2 or ranges.shape[1] != 2 or len(ranges) == 0:
+        raise Error(
+            f"domain: an array of shape {ranges.shape} was given; expected ranges (lower, upper), one a variable"
+        )
+    return Domain.box([(float(a), float(b)) for a, b in ranges])
+
+
+def as_method(method: Any, settings: dict[str, Any]) -> _core.Method:
+    """The method that a name, a class or an object of settings stands for."""
+    if isinstance(method, str):
+        if method not in METHODS:
+            raise Error("method: " + unknown("method", method, METHODS))
+        method = METHODS[method]
+    if isinstance(method, type) and method in METHODS.values():
+        names = [*_REQUIRED.get(method.name, ()), *settings_of(method)]
+        if method is _core.MultipleImportance:
+            names += ["weights", "parameter"]
+        for name in settings:
+            if name not in names:
+                raise Error(f"method '{method.name}': " + unknown("setting", name, names or ["(none)"]))
+        missing = [name for name in _REQUIRED.get(method.name, ()) if name not in settings]
+        if missing:
+            raise Error(f"method '{method.name}': expected the setting '{missing[0]}'")
+        method = method(**settings)
+    elif settings:
+        name = next(iter(settings))
+        raise Error(f"integrate: there is no argument '{name}'; settings of a method object are given to the object")
+    if not hasattr(type(method), "_method"):
+        raise Error(f"method: an object of type '{type(method).__name__}' was given; expected a name or a method")
+    made: _core.Method = method._method()
+    return made
+
+
+def pointwise(f: Callable[[Any], Any], one_variable: bool) -> Callable[[Array], Array]:
+    """The batch form of a function of one point."""
+    if one_variable:
+        return lambda x: np.array([f(v) for v in x.tolist()])
+    return lambda x: np.array([f(row) for row in x.copy()])
+
+
+def integrate(
+    f: Callable[..., Any],
+    domain: Ranges,
+    method: Any = "auto",
+    *,
+    relative_error: float = 0.0,
+    absolute_error: float = 0.0,
+    evaluations: int | float | None = None,
+    seconds: float | None = None,
+    seed: int = 0,
+    threads: int = 1,
+    batch: bool = True,
+    out: bool = False,
+    components: int | None = None,
+    covariance: bool = True,
+    non_finite: str = "skip",
+    progress: Progress = False,
+    checkpoint: str | os.PathLike[str] | None = None,
+    checkpoint_every: float = 60.0,
+    resume: bool = False,
+    **settings: Any,
+) -> Result:
+    """The integral of f over a domain, with its error.
+
+    f(x) is called with many points at once and returns a value for each: x has shape (n, d), or (n,) for one
+    variable, and f returns shape (n,), or (n, m) for m components that are integrated together. x is a view of
+    the library's own memory (strided, read-only, coordinate by coordinate) that ends with the call: keep
+    `x.copy()`, not x. With `out=True` f(x, y) writes into y, shape (n,) or (n, m), so that values are not
+    copied either. With `batch=False` f takes one point: a float for one variable, else an array of shape (d,).
+    What f raises ends the integration and passes through.
+
+    domain: a range (lower, upper), or a sequence of them, one a variable; ends may be infinite; or a Domain.
+
+    method: a name ('auto', 'vegas', ...) with its settings as further keyword arguments, or an object such as
+    `Vegas(alpha=0.5)`. `montelux.METHODS` lists the names; docs/integration.md says which is for what.
+
+    It stops when every component's standard error is below the larger of `absolute_error` and `relative_error`
+    times its value; after so many `evaluations`; or `seconds`. Without any of these after 1e6 evaluations.
+
+    The result depends on f, domain, method, budget and seed, and not on `threads`. Python runs one thread at a
+    time, so that more than one helps only functions that release the interpreter's lock for long; 0: one a
+    processor.
+
+    components: the m of f's shape (n, m); 0 for shape (n,). Without it f is called once more, with five to
+    eight points, to see.
+
+    covariance: False leaves out covariances, for thousands of components. non_finite: 'skip' leaves out NaN and
+    infinite values, counted and told as a doubt; 'throw' ends with an Error that names the point.
+
+    progress: True shows a line on standard error; a function is called with the Result so far, between steps.
+
+    checkpoint: a file that keeps the running state, written every `checkpoint_every` seconds and at the end;
+    with `resume` the run goes on from it, to the digits of one that was not broken.
+    """
+    region = as_domain(domain)
+    chosen = as_method(method, settings)
+    if non_finite not in ("skip", "throw"):
+        raise Error("non_finite: " + unknown("choice", non_finite, ["skip", "throw"]))
+    if not callable(f):
+        raise Error(f"integrand: an object of type '{type(f).__name__}' was given; expected a function")
+    if evaluations is not None and not (evaluations >= 1 and float(evaluations).is_integer()):
+        raise Error(f"evaluations: {evaluations} was given; expected a whole number above zero")
+    if seconds is not None and not seconds > 0:
+        raise Error(f"seconds: {seconds} was given; expected a time above zero")
+    if not (isinstance(seed, (int, np.integer)) and 0 <= seed < 2**64):
+        raise Error(f"seed: {seed} was given; expected a whole number in [0, 2**64)")
+    if out and not batch:
+        raise Error("out: values are written into by batch functions only; expected batch=True or out=False")
+    function = f if batch else pointwise(f, region.dimensions == 1)
+    if components is None:
+        components = 0 if out else _components(function, region)
+    watch = IntegrationProgress() if progress is True else progress
+    report = None
+    vector = components > 0
+    if watch:
+        report = lambda r: watch(from_core(r, vector))  # noqa: E731
+    try:
+        result = _core.integrate(
+            function,
+            components,
+            out,
+            region,
+            chosen,
+            relative_error,
+            absolute_error,
+            0 if evaluations is None else int(evaluations),
+            0.0 if seconds is None else seconds,
+            int(seed),
+            threads,
+            non_finite == "throw",
+            covariance,
+            report,
+            "" if checkpoint is None else os.fspath(checkpoint),
+            checkpoint_every,
+            resume,
+        )
+    finally:
+        if isinstance(watch, IntegrationProgress):
+            watch.finish()
+    return from_core(result, vector)
+
+
+def _components(function: Callable[[Array], Any], region: Domain) -> int:
+    """Calls the integrand with a few points of the domain, to see what it returns."""
+    k, d = region.uniforms, region.dimensions
+    n = next(n for n in (5, 7, 8) if n not in (k, d))
+    # Inside the cube and off its symmetries: additive sequences of square roots.
+    u = np.modf(0.5 + np.outer(np.arange(1, n + 1), np.sqrt(np.arange(k) + 2.5)))[0]
+    x, _ = region.map(u)
+    x.flags.writeable = False
+    return _core.values_a_point(function(x), n)
+
+
+def train_map(
+    f: Callable[[Array], Any],
+    domain: Ranges,
+    evaluations: int = 100_000,
+    settings: _core.Vegas | None = None,
+    *,
+    seed: int = 0,
+    components: int | None = None,
+) -> _core.AdaptiveMap:
+    """A map that follows f, for integrals that differ from this one a little.
+
+    Start these with `Vegas(training_iterations=0, map=...)`. None of the evaluations goes into an integral.
+    """
+    region = as_domain(domain)
+    if components is None:
+        components = _components(f, region)
+    return _core.train_map(f, region, int(evaluations), settings or _core.Vegas(), seed, components)

@@ -1,0 +1,61 @@
+"""Sentences for names that do not exist, with the nearest one that does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from ._core import Error, nearest_name
+
+
+class UnknownAttribute(Error, AttributeError):
+    """An attribute that does not exist; the message offers the nearest one that does."""
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """`" (did you mean 'x'?)"`, or nothing where no known name is near."""
+    nearest = nearest_name(name, list(known))
+    return f" (did you mean '{nearest}'?)" if nearest else ""
+
+
+def unknown(what: str, name: str, known: Iterable[str]) -> str:
+    """The sentence for a name that is not among the known ones."""
+    names = sorted(known)
+    return f"there is no {what} '{name}'{did_you_mean(name, names)}; expected one of {', '.join(names)}"
+
+
+def public_attributes(kind: type) -> list[str]:
+    """The attributes of a class that users may read or set, methods left out."""
+    return sorted(
+        name
+        for base in kind.__mro__
+        for name, value in vars(base).items()
+        if not name.startswith("_") and not callable(value) and not isinstance(value, (staticmethod, classmethod))
+    )
+
+
+def settings_of(kind: type) -> list[str]:
+    """The attributes of a class of settings that can be set, in the order of their declaration."""
+    return [name for name, value in vars(kind).items() if isinstance(value, property) and value.fset is not None]
+
+
+def strict(*kinds: type) -> None:
+    """Makes classes of the extension refuse attributes that they do not have, with the nearest name."""
+    for kind in kinds:
+        _make_strict(kind)
+
+
+def _make_strict(kind: type) -> None:
+    plain_set = kind.__setattr__
+
+    def set_attribute(self: object, name: str, value: object) -> None:
+        if not hasattr(type(self), name):
+            raise UnknownAttribute(unknown(f"attribute of {type(self).__name__}", name, public_attributes(type(self))))
+        plain_set(self, name, value)  # type: ignore[call-arg, arg-type]
+
+    def get_attribute(self: object, name: str) -> object:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        raise UnknownAttribute(unknown(f"attribute of {type(self).__name__}", name, public_attributes(type(self))))
+
+    kind.__setattr__ = set_attribute  # type: ignore[method-assign, assignment]
+    kind.__getattr__ = get_attribute  # type: ignore[attr-defined]

@@ -1,0 +1,120 @@
+"""Pictures as arrays, with their errors."""
+
+from __future__ import annotations
+
+import os
+import struct
+import zlib
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._names import UnknownAttribute, unknown
+
+Pixels = npt.NDArray[np.float32]
+
+
+def png_bytes(pixels: npt.NDArray[np.uint8]) -> bytes:
+    """A PNG file of 8-bit pixels, shape (h, w, 3) or (h, w, 1) (PNG specification, second edition, W3C 2003)."""
+    height, width, channels = pixels.shape
+    rows = np.zeros((height, 1 + width * channels), np.uint8)  # each row begins with its filter, 0: none
+    rows[:, 1:] = pixels.reshape(height, -1)
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", width, height, 8, {1: 0, 3: 2}[channels], 0, 0, 0)
+    return (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", header)
+        + chunk(b"sRGB", b"\0")
+        + chunk(b"IDAT", zlib.compress(rows.tobytes(), 6))
+        + chunk(b"IEND", b"")
+    )
+
+
+class Picture:
+    """A render as it was at some moment. Arrays are float32, linear sRGB, row 0 at the top; they share the
+    memory of the picture and cannot be written to."""
+
+    def __init__(self, look: _core.RenderLook, entries: dict[str, Any]) -> None:
+        self._held: _core.RenderLook | None = look
+        self._entries = entries
+        self._made: Mapping[str, Pixels] | None = None
+
+    def _look(self) -> _core.RenderLook:
+        assert self._held is not None
+        return self._held
+
+    @property
+    def mean(self) -> Pixels:
+        """The picture, shape (height, width, 3)."""
+        return self.layers["mean"]
+
+    @property
+    def standard_error(self) -> Pixels:
+        """One standard deviation of each number of `mean`; infinite where it is not known yet."""
+        return self.layers["standard_error"]
+
+    @property
+    def layers(self) -> Mapping[str, Pixels]:
+        """All layers by name: 'mean', 'standard_error', 'skewness' (of the mean), 'albedo' and 'normal' of the
+        first surface, of shape (h, w, 3); 'samples', 'units' (independent parts that the error is made of),
+        'outlier' and 'depth', of shape (h, w)."""
+        if self._made is None:
+            self._made = MappingProxyType(self._look().layers)
+        return self._made
+
+    @property
+    def relative_error(self) -> float:
+        """Root mean square of the standard errors of luminance, over the mean luminance of the picture."""
+        return self._look().relative_error
+
+    @property
+    def samples_per_pixel(self) -> float:
+        """Samples that pixels have, on average."""
+        return self._look().mean_samples
+
+    @property
+    def seconds(self) -> float:
+        """Wall time of the rendering."""
+        return self._look().seconds
+
+    @property
+    def bad_samples(self) -> int:
+        """Samples that were NaN, infinite or negative: left out as zeros."""
+        return self._look().bad_samples
+
+    def to_srgb(self, exposure: float | None = None) -> npt.NDArray[np.uint8]:
+        """8-bit sRGB for a screen, shape (height, width, 3): light times 2**exposure, and 1 is white.
+        None: the exposure that suits the picture."""
+        look = self._look()
+        data, height, width, channels = look.screen(look.automatic_exposure() if exposure is None else exposure)
+        return np.frombuffer(data, np.uint8).reshape(height, width, channels)
+
+    def save(self, path: str | os.PathLike[str], exposure: float = 0.0) -> None:
+        """Writes .exr (all layers), .png, .hdr or .pfm, whole or not at all; exposure (stops) is for .png."""
+        self._look().save(os.fspath(path), exposure, self._entries)
+
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        return np.array(self.mean, dtype=dtype)
+
+    def _repr_png_(self) -> bytes:
+        return png_bytes(self.to_srgb(0.0))
+
+    def __repr__(self) -> str:
+        height, width = self.mean.shape[:2]
+        return (
+            f"<{type(self).__name__}: {width} x {height} pixels, {self.samples_per_pixel:.7g} samples a pixel, "
+            f"relative error {100 * self.relative_error:.3g} %, {self.seconds:.3g} s>"
+        )
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        known = [n for n in dir(type(self)) if not n.startswith("_")]
+        raise UnknownAttribute(unknown(f"attribute of {type(self).__name__}", name, known))

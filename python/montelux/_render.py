@@ -1,0 +1,142 @@
+"""Renders that go on by themselves, give pictures meanwhile, and stop with what they have."""
+
+from __future__ import annotations
+
+import time
+import warnings
+import weakref
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from . import _core
+from ._picture import Picture
+from ._progress import RenderProgress
+
+
+class Progress:
+    """How far a render is: `samples` of (probably) `samples_total` over all pixels, `seconds`, and the relative
+    error of the picture, None while it is not known."""
+
+    def __init__(self, samples: int, samples_total: int, seconds: float, relative_error: float | None) -> None:
+        self.samples = samples
+        self.samples_total = samples_total
+        self.seconds = seconds
+        self.relative_error = relative_error
+
+    @property
+    def share(self) -> float:
+        """Of the work, from 0 to 1."""
+        return self.samples / self.samples_total if self.samples_total else 0.0
+
+    def __repr__(self) -> str:
+        error = "" if self.relative_error is None else f", relative error {100 * self.relative_error:.3g} %"
+        return f"<Progress: {100 * self.share:.0f} %, {self.seconds:.1f} s{error}>"
+
+
+class Render(Picture):
+    """A render of a scene, which goes on by itself from the moment that `Scene.render` returns it.
+
+    Whatever is asked of it (`mean`, `save`, ...) waits for the end. Iterating gives a `Picture` of what there
+    is, every second or `every` so many seconds, and at last the finished one. Ctrl-C while it is waited for
+    ends the render with what there is: `stopped_by` is then 'cancelled'. The interpreter's lock is free.
+    """
+
+    def __init__(
+        self,
+        job: _core.RenderJob,
+        entries: dict[str, Any],
+        progress: bool | Callable[[Progress], object],
+        every: float,
+    ) -> None:
+        self._job = job
+        self._held = None
+        self._entries = entries
+        self._made = None
+        self._every = every
+        self._watch = RenderProgress() if progress is True else (progress or None)
+        self._end = weakref.finalize(self, _end, job)  # at the exit of the interpreter, too
+
+    @property
+    def finished(self) -> bool:
+        """Whether it has ended; never waits."""
+        return self._held is not None or self._job.wait(0.0)
+
+    @property
+    def progress(self) -> Progress:
+        """How far it is; never waits."""
+        return Progress(*self._job.progress())
+
+    @property
+    def stopped_by(self) -> str:
+        """'samples' (all were taken), 'error' (the target was reached), 'time' or 'cancelled'."""
+        return self._look().stop
+
+    def stop(self) -> Render:
+        """Ends it now, with what there is."""
+        self._job.cancel()
+        return self.wait()
+
+    def wait(self) -> Render:
+        """Waits for the end."""
+        self._look()
+        return self
+
+    def __iter__(self) -> Iterator[Picture]:
+        next_look = time.monotonic() + self._every
+        while not self._wait_until(next_look):
+            look = self._job.look(0.1)
+            if look is None:
+                continue  # the render ends, or a sample takes long
+            yield Picture(look, self._header(look))
+            next_look = time.monotonic() + self._every
+        yield self.wait()
+
+    def _wait_until(self, moment: float) -> bool:
+        """Waits for the end, but until a moment at most; whether it has come."""
+        try:
+            # Signals are looked at between the waits.
+            while not self._job.wait(min(0.05, max(0.0, moment - time.monotonic()))):
+                if self._watch is not None:
+                    self._watch(self.progress)
+                if time.monotonic() >= moment:
+                    return False
+        except KeyboardInterrupt:
+            self._job.cancel()
+            while not self._job.wait(1.0):
+                pass
+        return True
+
+    def _look(self) -> _core.RenderLook:
+        if self._held is None:
+            self._wait_until(float("inf"))
+            if isinstance(self._watch, RenderProgress):
+                self._watch.finish()
+            self._held = self._job.result()
+            self._entries = self._header(self._held)
+            for text in (self._held.bad_text, self._job.checkpoint_failure):
+                if text:
+                    warnings.warn(text, RuntimeWarning, stacklevel=3)
+        return self._held
+
+    def _header(self, look: _core.RenderLook) -> dict[str, Any]:
+        return {
+            **self._entries,
+            "seed": str(self._job.seed),
+            "samplesTaken": float(look.mean_samples),
+            "relativeError": float(look.relative_error),
+            "renderSeconds": float(look.seconds),
+            "badSamples": min(look.bad_samples, 2**30),
+            "stoppedBy": look.stop,
+        }
+
+    def __repr__(self) -> str:
+        if not self.finished:
+            return f"<Render, going on: {self.progress!r}>"
+        return super().__repr__()[:-1] + f", stopped by {self.stopped_by}>"
+
+
+def _end(job: _core.RenderJob) -> None:
+    job.cancel()
+    while not job.wait(1.0):
+        pass
+

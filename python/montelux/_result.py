@@ -1,0 +1,141 @@
+"""What an integration returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+
+Array = npt.NDArray[np.float64]
+
+
+class History(NamedTuple):
+    """The state after each step of an integration, thinned in long runs; arrays of one length.
+
+    `value` and `standard_error` are of the first component, `seconds` is wall time.
+    """
+
+    evaluations: npt.NDArray[np.uint64]
+    value: Array
+    standard_error: Array
+    seconds: Array
+
+
+@dataclass(frozen=True, repr=False)
+class Result:
+    """A value with its error, and how it came about. `float(result)` is the value of a scalar integrand.
+
+    Where the integrand returned shape (n,), `value`, `standard_error` and `covariance` are numbers; where it
+    returned (n, m) they are arrays of shape (m,), (m,) and (m, m).
+    """
+
+    value: float | Array
+    #: One standard deviation of each value; for deterministic rules their estimate (see `statistical`).
+    standard_error: float | Array
+    #: Of the values; None where the method or the options leave it out.
+    covariance: float | Array | None
+    #: Whether the errors are standard deviations of a random estimate.
+    statistical: bool
+    #: Of the integrand, pilots included.
+    evaluations: int
+    #: Values that were NaN or infinite: left out as zeros, and doubted.
+    non_finite: int
+    #: The point of the first of them, shape (dimensions,); None without any.
+    first_non_finite_point: Array | None
+    #: The method that was asked for, or that Auto picked.
+    method: str
+    #: Why Auto picked it; else empty.
+    reason: str
+    #: 'error_target', 'evaluations', 'time', 'cancelled' or 'finished'.
+    stop: str
+    #: Reasons to doubt the value or its error, as sentences. Empty is the normal case.
+    doubts: tuple[str, ...]
+    #: Do independent parts of the run agree? No degrees of freedom where there is nothing to compare.
+    chi_squared: float
+    degrees_of_freedom: int
+    p_value: float
+    #: Wall time.
+    seconds: float
+    history: History
+    #: Not empty where the newest checkpoint could not be gone on from, and the one before it was: why.
+    checkpoint_refused_because: str = ""
+    _text: str = field(default="", compare=False)
+
+    @property
+    def converged(self) -> bool:
+        """The targets were met, and nothing speaks against the result."""
+        return self.stop == "error_target" and not self.doubts
+
+    @property
+    def relative_error(self) -> float | Array:
+        """The standard error over the size of the value."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.asarray(self.standard_error) / np.abs(self.value)
+        return float(ratio) if ratio.ndim == 0 else ratio
+
+    def __float__(self) -> float:
+        if np.ndim(self.value) > 0 and np.size(self.value) != 1:
+            raise TypeError(f"the integral has {np.size(self.value)} components and is no single number; see .value")
+        return float(np.asarray(self.value).reshape(()))
+
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        return np.array(self.value, dtype=dtype)
+
+    def __str__(self) -> str:
+        return self._text
+
+    def __repr__(self) -> str:
+        return self._text
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers, strings, lists and None, ready for JSON (infinite and NaN become None)."""
+
+        def plain(v: Any) -> Any:
+            if isinstance(v, History):
+                return {name: plain(column) for name, column in v._asdict().items()}
+            if isinstance(v, (np.ndarray, tuple, list)):
+                return [plain(item) for item in (v.tolist() if isinstance(v, np.ndarray) else v)]
+            if isinstance(v, float):
+                return v if np.isfinite(v) else None
+            return v
+
+        fields = {name: plain(v) for name, v in vars(self).items() if name != "_text"}
+        fields["converged"] = self.converged
+        return fields
+
+
+def from_core(r: _core.IntegrationResult, vector: bool) -> Result:
+    """The Python form of what the library returned; `vector`: the integrand returns shape (n, m)."""
+
+    def shaped(a: Array) -> float | Array:
+        if vector:
+            return a
+        return float(a.flat[0]) if a.size else float("nan")
+
+    covariance = r.covariance
+    steps = r.history
+    history = History(steps[:, 0].astype(np.uint64), steps[:, 1].copy(), steps[:, 2].copy(), steps[:, 3].copy())
+    return Result(
+        value=shaped(r.value),
+        standard_error=shaped(r.standard_error),
+        covariance=None if covariance is None else shaped(covariance),
+        statistical=r.statistical,
+        evaluations=r.evaluations,
+        non_finite=r.non_finite,
+        first_non_finite_point=r.first_non_finite_point if r.non_finite else None,
+        method=r.method,
+        reason=r.reason,
+        stop=r.stop,
+        doubts=tuple(r.doubts),
+        chi_squared=r.chi_squared,
+        degrees_of_freedom=r.degrees_of_freedom,
+        p_value=r.p_value,
+        seconds=r.seconds,
+        history=history,
+        checkpoint_refused_because=r.checkpoint_refused_because,
+        _text=str(r),
+    )

@@ -1,0 +1,188 @@
+"""Scenes: from files, from text, or built from nothing."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+from . import _core
+from ._core import Error
+from ._names import settings_of, strict, unknown
+from ._render import Progress, Render
+
+_MOST_SAMPLES = 1 << 24  # of a pixel, where an error or a time decides
+
+
+class Scene(_core.SceneBase):
+    """What is rendered: shapes, materials, lights, a camera, and film, sampler and integrator.
+
+    `montelux.load` and `montelux.parse` make scenes of pbrt-v4 files. `Scene()` is empty; set `camera`, and add
+    shapes and lights. Values that are read from a scene (`scene.materials[0]`, `scene.camera`) are places in
+    it: setting their attributes changes the scene. Renders that go on do not change with it.
+    """
+
+    def render(
+        self,
+        *,
+        samples: int | None = None,
+        target_error: float | None = None,
+        target_quantile: float | None = None,
+        seconds: float | None = None,
+        max_samples: int | None = None,
+        adaptive: bool | None = None,
+        seed: int | None = None,
+        threads: int = 0,
+        progress: bool | Callable[[Progress], object] = False,
+        every: float = 1.0,
+        checkpoint: str | os.PathLike[str] | None = None,
+        checkpoint_every: float = 60.0,
+        resume: bool = False,
+    ) -> Render:
+        """Starts to render, and returns the Render, which goes on by itself.
+
+        It stops after `samples` of each pixel (without it, those of `scene.sampler`); when the relative error
+        of the picture is below `target_error` (0.02: two per cent), or with `target_quantile` the error of that
+        share of the pixels; after so many `seconds`; at `max_samples` of a pixel, on average. With a target or a
+        time and no `samples` the scene's own number does not count. `adaptive`: more samples where the error is;
+        on where an error is asked for.
+
+        The picture depends on scene, seed and what is asked for, and not on `threads` (0: one a processor).
+
+        progress: True shows a line on standard error while the render is waited for; a function is called with
+        a Progress. every: seconds between the pictures that iterating gives. checkpoint: a file that keeps the
+        running state, written every `checkpoint_every` seconds and at the end; with `resume` the render goes on
+        from it, to the same bits.
+        """
+        for name, value in (("samples", samples), ("max_samples", max_samples)):
+            if value is not None and not (isinstance(value, int) and 1 <= value <= 1 << 30):
+                raise Error(f"render: {name}={value!r} was given; expected a whole number from 1 to {1 << 30}")
+        for name, number in (("target_error", target_error), ("seconds", seconds), ("every", every)):
+            if number is not None and not 0 < number < float("inf"):
+                raise Error(f"render: {name}={number!r} was given; expected a number above zero")
+        if target_quantile is not None:
+            if target_error is None:
+                raise Error("render: target_quantile was given; expected target_error, within which that share shall be")
+            if not 0 < target_quantile < 1:
+                raise Error(f"render: target_quantile={target_quantile!r} was given; expected a number between 0 and 1")
+        if seed is not None and not (isinstance(seed, int) and 0 <= seed < 2**64):
+            raise Error(f"render: seed={seed!r} was given; expected a whole number in [0, 2**64)")
+        if threads < 0 or threads > 4096:
+            raise Error(f"render: threads={threads!r} was given; expected a whole number from 0 to 4096")
+        aimed = target_error is not None or seconds is not None
+        most = samples
+        if samples is None and max_samples is not None:
+            most = max_samples if aimed else min(max_samples, self.sampler.samples_per_pixel)
+        elif samples is None and aimed:
+            most = _MOST_SAMPLES
+        elif samples is not None and max_samples is not None:
+            most = min(samples, max_samples)
+        job = _core.start_render(
+            self,
+            samples=most,
+            seed=seed,
+            target_error=target_error or 0.0,
+            target_quantile=target_quantile or 0.0,
+            seconds=seconds or 0.0,
+            adaptive=target_error is not None if adaptive is None else adaptive,
+            threads=threads,
+            checkpoint="" if checkpoint is None else os.fspath(checkpoint),
+            checkpoint_every=checkpoint_every,
+            resume=resume,
+        )
+        if job.refused_checkpoint:
+            warnings.warn(
+                f"{job.refused_checkpoint}; went on from the checkpoint before it", RuntimeWarning, stacklevel=2
+            )
+        entries = {
+            "software": f"Montelux {_core.version}",
+            "scene": self.name,
+            "samplesPerPixel": job.samples_per_pixel,
+            "sampler": self.sampler.kind,
+            "strategy": self.integrator.strategy,
+            "heuristic": self.integrator.heuristic,
+            "maxDepth": self.integrator.max_depth,
+        }
+        return Render(job, entries, progress, every)
+
+    def __repr__(self) -> str:
+        width, height = self.film.resolution
+        return (
+            f"<Scene {self.name}: {len(self.shapes)} shapes, {len(self.materials)} materials, {len(self.lights)} "
+            f"lights, {'no camera' if self.camera is None else type(self.camera).__name__}, {width} x {height} pixels>"
+        )
+
+
+def load(path: str | os.PathLike[str]) -> Scene:
+    """Reads a pbrt-v4 scene file and all files that it refers to. What it asks for and does not get is told by
+    warnings, and in `scene.warnings`."""
+    scene = Scene()
+    scene._load(os.fspath(path))
+    _tell(scene)
+    return scene
+
+
+def parse(text: str, name: str = "scene", folder: str | os.PathLike[str] = ".") -> Scene:
+    """The same from text in pbrt-v4's format; files that it refers to are looked for in `folder`."""
+    scene = Scene()
+    scene._parse(text, name, os.fspath(folder))
+    _tell(scene)
+    return scene
+
+
+def _tell(scene: Scene) -> None:
+    for sentence in scene.warnings:
+        warnings.warn(sentence, UserWarning, stacklevel=3)
+
+
+def assign(value: Any, attributes: dict[str, Any]) -> None:
+    """Sets attributes of a value, as its constructor does with keyword arguments."""
+    kind = type(value)
+    names = settings_of(kind)
+    for name in attributes:
+        if name not in names and not (name == "look_at" and hasattr(kind, name)):
+            raise Error(f"{kind.__name__}: " + unknown("attribute", name, names))
+    # Those that set others at once (spectrum, roughness, resolution) come before these.
+    late = ("scale", "crop")
+    for name in sorted(attributes, key=lambda n: (n in late, n.endswith(("_u", "_v")))):
+        if name == "look_at":
+            value.look_at(*attributes[name])
+        else:
+            setattr(value, name, attributes[name])
+
+
+def _represent(value: Any) -> str:
+    kind = type(value)
+    values = ", ".join(f"{name}={getattr(value, name)!r}" for name in settings_of(kind))
+    return f"{kind.__name__}({values})"
+
+
+VALUES = (
+    _core.Diffuse,
+    _core.Conductor,
+    _core.Dielectric,
+    _core.ThinDielectric,
+    _core.CoatedDiffuse,
+    _core.CoatedConductor,
+    _core.AreaLight,
+    _core.PointLight,
+    _core.SpotLight,
+    _core.DistantLight,
+    _core.UniformInfiniteLight,
+    _core.EnvironmentLight,
+    _core.PerspectiveCamera,
+    _core.OrthographicCamera,
+    _core.SphericalCamera,
+    _core.Film,
+    _core.BoxFilter,
+    _core.TriangleFilter,
+    _core.GaussianFilter,
+    _core.MitchellFilter,
+    _core.LanczosFilter,
+    _core.Sampler,
+    _core.Integrator,
+)
+for _kind in VALUES:
+    _kind.__repr__ = _represent  # type: ignore[method-assign]
+strict(*VALUES, _core.Shape, Scene)

@@ -1,0 +1,32 @@
+// The parts of the extension module montelux._core: each file binds one topic.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace montelux::python {
+
+namespace nb = nanobind;
+using namespace nb::literals; // NOLINT(google-build-using-namespace): "name"_a in every binding
+
+// montelux.Error, which every montelux::Error becomes.
+void bind_error(nb::module_& m);
+void bind_domains(nb::module_& m);
+void bind_distributions(nb::module_& m);
+void bind_techniques(nb::module_& m);
+void bind_methods(nb::module_& m);
+void bind_integrate(nb::module_& m);
+void bind_metropolis(nb::module_& m);
+void bind_points(nb::module_& m);
+void bind_warps(nb::module_& m);
+void bind_spectra(nb::module_& m);
+void bind_images(nb::module_& m);
+void bind_materials(nb::module_& m);
+void bind_lights(nb::module_& m);
+void bind_shapes(nb::module_& m);
+void bind_views(nb::module_& m); // camera, film, sampler, integrator
+void bind_scene(nb::module_& m);
+void bind_render(nb::module_& m);
+void bind_compare(nb::module_& m);
+void bind_testing(nb::module_& m);
+
+} // namespace montelux::python

@@ -1,0 +1,26 @@
+// Pictures as NumPy arrays and back.
+#pragma once
+
+#include "python/src/scene_slots.h"
+#include <memory>
+#include <nanobind/nanobind.h>
+#include <string>
+#include <vector>
+
+#include "montelux/image/image.h"
+
+namespace montelux::python {
+
+// A picture of a file (str or path), or of an array of shape (h, w) or (h, w, 3): floats are linear, uint8 is
+// in sRGB. Throws Error beginning with `what`.
+Image picture_of(const nb::object& given, const std::string& what);
+// Its channels R, G, B (or three times Y), linear, and no others.
+Image rgb_image(const Image& picture, const std::string& what);
+// Takes the pixels into the fingerprint of a scene.
+void note_pixels(SceneHolder& scene, const Image& image);
+
+// An array on channels [first, first + count) of a 32-bit picture, which it keeps alive: shape (h, w, count),
+// or (h, w) for one. Nothing is copied; read-only.
+nb::object channels_of(const std::shared_ptr<const Image>& image, int first, int count);
+
+} // namespace montelux::python

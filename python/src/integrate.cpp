@@ -1,0 +1,102 @@
+#include "montelux/mc/integrate/integrate.h"
+
+#include "python/src/bindings.h"
+#include "python/src/numpy_bridge.h"
+#include "python/src/python_function.h"
+#include <chrono>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
+#include <nanobind/stl/vector.h>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace montelux::python {
+namespace {
+
+// Columns: evaluations, value, standard error, seconds.
+DoubleArray history_of(const IntegrationResult& r) {
+    std::vector<double> rows;
+    for (const IterationRecord& h : r.history)
+        rows.insert(rows.end(), {static_cast<double>(h.evaluations), h.value, h.standard_error, h.seconds});
+    return new_array(rows, r.history.size(), 4);
+}
+
+IntegrationResult run(nb::object f, int components, bool into, const Domain& domain, const Method& method,
+                      const Budget& budget, IntegrationOptions options, const nb::object& progress) {
+    const Integrand integrand = integrand_of(PythonFunction(std::move(f), "integrand"), components, into);
+    if (!progress.is_none()) {
+        // Called between steps from this thread, while the result is this scope's.
+        options.progress = [&progress](const IntegrationResult& r) {
+            nb::gil_scoped_acquire lock;
+            progress(nb::cast(r, nb::rv_policy::copy));
+        };
+    }
+    nb::gil_scoped_release unlocked;
+    return integrate(integrand, domain, method, budget, options);
+}
+
+} // namespace
+
+void bind_integrate(nb::module_& m) {
+    nb::class_<IntegrationResult>(m, "IntegrationResult",
+                                  "What the integrator returns; montelux.Result is made of it.")
+        .def_prop_ro("value", [](const IntegrationResult& r) { return new_array(r.value); })
+        .def_prop_ro("standard_error", [](const IntegrationResult& r) { return new_array(r.standard_error); })
+        .def_prop_ro("covariance",
+                     [](const IntegrationResult& r) -> std::optional<DoubleArray> {
+                         const std::size_t n = r.value.size();
+                         if (r.covariance.size() != n * n) return std::nullopt;
+                         return new_array(r.covariance, n, n);
+                     })
+        .def_ro("statistical", &IntegrationResult::statistical)
+        .def_ro("evaluations", &IntegrationResult::evaluations)
+        .def_ro("non_finite", &IntegrationResult::non_finite)
+        .def_prop_ro("first_non_finite_point",
+                     [](const IntegrationResult& r) { return new_array(r.first_non_finite_point); })
+        .def_prop_ro("history", &history_of)
+        .def_ro("chi_squared", &IntegrationResult::chi_squared)
+        .def_ro("degrees_of_freedom", &IntegrationResult::degrees_of_freedom)
+        .def_ro("p_value", &IntegrationResult::p_value)
+        .def_ro("method", &IntegrationResult::method)
+        .def_ro("reason", &IntegrationResult::reason)
+        .def_prop_ro("stop", [](const IntegrationResult& r) { return to_string(r.stop); })
+        .def_ro("doubts", &IntegrationResult::doubts)
+        .def_ro("checkpoint_refused_because", &IntegrationResult::checkpoint_refused_because)
+        .def_ro("seconds", &IntegrationResult::seconds)
+        .def(
+            "concise", [](const IntegrationResult& r, int c) { return to_string(r.estimate(c)); },
+            "component"_a)
+        .def("__str__", [](const IntegrationResult& r) { return to_string(r); });
+
+    m.def(
+        "integrate",
+        [](nb::object f, int components, bool into, const Domain& domain, const Method& method,
+           double relative_error, double absolute_error, std::uint64_t evaluations, double seconds,
+           std::uint64_t seed, int threads, bool throw_non_finite, bool covariance,
+           const nb::object& progress, const std::string& checkpoint, double checkpoint_every, bool resume) {
+            IntegrationOptions options;
+            options.seed = seed;
+            options.threads = threads;
+            options.non_finite = throw_non_finite ? NonFinitePolicy::throw_error : NonFinitePolicy::skip;
+            options.full_covariance = covariance;
+            options.checkpoint = checkpoint;
+            options.checkpoint_every = std::chrono::duration<double>(checkpoint_every);
+            options.resume = resume;
+            const Budget budget{relative_error, absolute_error, evaluations,
+                                std::chrono::duration<double>(seconds)};
+            return run(std::move(f), components, into, domain, method, budget, std::move(options), progress);
+        },
+        "f"_a, "components"_a, "into"_a, "domain"_a, "method"_a, "relative_error"_a, "absolute_error"_a,
+        "evaluations"_a, "seconds"_a, "seed"_a, "threads"_a, "throw_non_finite"_a, "covariance"_a,
+        "progress"_a.none(), "checkpoint"_a, "checkpoint_every"_a, "resume"_a,
+        "montelux.integrate, with everything decided. components 0: one value a point, as shape (n,).");
+    m.def(
+        "values_a_point",
+        [](const nb::object& returned, std::size_t n) { return values_a_point(returned, n, "integrand"); },
+        "returned"_a.none(), "n"_a,
+        "Components of what an integrand returned for n points: 0 for shape (n,), m for (n, m).");
+}
+
+} // namespace montelux::python

@@ -1,0 +1,125 @@
+#include "python/src/bindings.h"
+#include "python/src/scene_values.h"
+#include <numbers>
+#include <string>
+
+#include "montelux/scene/light/light.h"
+
+namespace montelux::python {
+namespace {
+
+template <typename T>
+void emission(nb::class_<Ref<T>>& c, const char* quantity) {
+    const std::string doc =
+        std::string(quantity) +
+        ": a number, R, G, B (linear sRGB), a name or a Spectrum; setting it gives the light "
+        "the luminance 1 for (1, 1, 1), and for any other spectrum that is no RGB.";
+    attribute<T>(
+        c, "spectrum", "typing.Any", [](const T& t, const auto&) { return nb::cast(t.spectrum); },
+        [](T& t, nb::handle v, auto&, const std::string& what) {
+            t.spectrum = spectrum_of(v, RgbMeaning::illuminant, what);
+            t.scale = photometric_scale(t.spectrum, what);
+        },
+        doc.c_str());
+    number(c, "scale", &T::scale, not_negative, "a number that is not negative",
+           "Multiplies the spectrum; `light.scale *= 2` makes it twice as bright.");
+}
+
+template <typename T>
+void vector(nb::class_<Ref<T>>& c, const char* name, Vec3f T::*member, bool unit, const char* doc) {
+    attribute<T>(
+        c, name, "typing.Any", [member](const T& t, const auto&) { return vector_array(t.*member); },
+        [member, unit](T& t, nb::handle v, auto&, const std::string& what) {
+            const std::vector<double> x = numbers_of(v, 3, what);
+            const Vec3d d{x[0], x[1], x[2]};
+            if (unit && !(length(d) > 0)) throw Error(what, "expected a direction that is not zero");
+            t.*member = Vec3f(unit ? d / length(d) : d);
+        },
+        doc);
+}
+
+void angle(nb::class_<Ref<SpotLight>>& c, const char* name, float SpotLight::*member, const char* doc) {
+    constexpr double degree = std::numbers::pi / 180;
+    attribute<SpotLight>(
+        c, name, "float",
+        [member](const SpotLight& t, const auto&) {
+            return nb::float_(std::acos(static_cast<double>(t.*member)) / degree);
+        },
+        [member](SpotLight& t, nb::handle v, auto&, const std::string& what) {
+            const double a = number_of(v, what);
+            if (!(a >= 0 && a <= 180)) throw Error(what, "expected an angle from 0 to 180 degrees");
+            t.*member = static_cast<float>(std::cos(a * degree));
+        },
+        doc);
+}
+
+template <typename T>
+T white() {
+    T light;
+    light.spectrum = spectrum_of(nb::float_(1), RgbMeaning::illuminant, "");
+    light.scale = photometric_scale(light.spectrum, "");
+    return light;
+}
+
+} // namespace
+
+template <>
+AreaLight default_value() {
+    return white<AreaLight>();
+}
+template <>
+PointLight default_value() {
+    return white<PointLight>();
+}
+template <>
+SpotLight default_value() {
+    auto light = white<SpotLight>();
+    light.cos_falloff_start = static_cast<float>(std::cos(25 * std::numbers::pi / 180));
+    light.cos_total_width = static_cast<float>(std::cos(30 * std::numbers::pi / 180));
+    return light;
+}
+template <>
+DistantLight default_value() {
+    return white<DistantLight>();
+}
+template <>
+UniformInfiniteLight default_value() {
+    return white<UniformInfiniteLight>();
+}
+
+void bind_lights(nb::module_& m) {
+    auto area =
+        value_class<AreaLight>(m, "AreaLight", "The light of a shape; all primitives of a mesh together.");
+    emission(area, "Radiance from the front");
+    flag(area, "two_sided", &AreaLight::two_sided, "Whether the back shines as well.");
+    auto point = value_class<PointLight>(m, "PointLight", "Radiant intensity from one point.");
+    emission(point, "Intensity");
+    vector(point, "position", &PointLight::position, false, "Where it stands, shape (3,).");
+    auto spot = value_class<SpotLight>(m, "SpotLight", "A cone of light.");
+    emission(spot, "Intensity on the axis");
+    vector(spot, "position", &SpotLight::position, false, "Where it stands, shape (3,).");
+    vector(spot, "axis", &SpotLight::axis, true, "Where it points, shape (3,).");
+    angle(spot, "falloff_angle", &SpotLight::cos_falloff_start, "Full intensity within this angle, degrees.");
+    angle(spot, "cone_angle", &SpotLight::cos_total_width, "Dark beyond this angle, degrees.");
+    auto distant = value_class<DistantLight>(m, "DistantLight", "The sun: parallel light.");
+    emission(distant, "Irradiance on a plane across the beam");
+    vector(distant, "to_light", &DistantLight::to_light, true,
+           "Direction from the scene to the light, shape (3,).");
+    auto sky =
+        value_class<UniformInfiniteLight>(m, "UniformInfiniteLight", "The same radiance from everywhere.");
+    emission(sky, "Radiance");
+    auto map = value_class<ImageInfiniteLight>(
+        m, "EnvironmentLight",
+        "Radiance from a square equal-area map; scenes make them by add_environment().");
+    number(map, "scale", &ImageInfiniteLight::scale, not_negative, "a number that is not negative",
+           "Multiplies the map.");
+    attribute<ImageInfiniteLight>(
+        map, "world_from_light", "typing.Any",
+        [](const ImageInfiniteLight& t, const auto&) { return matrix_array(t.world_from_light); },
+        [](ImageInfiniteLight& t, nb::handle v, auto&, const std::string& what) {
+            t.world_from_light = transform_of(v, what);
+        },
+        "How the map is turned, shape (4, 4); its z axis is the centre of the picture.");
+}
+
+} // namespace montelux::python

@@ -1,0 +1,149 @@
+#include "python/src/bindings.h"
+#include "python/src/images.h"
+#include "python/src/render_job.h"
+#include "python/src/scene_object.h"
+#include <algorithm>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <string>
+#include <utility>
+
+#include "montelux/image/image_write.h"
+#include "montelux/image/tone_curve.h"
+
+namespace montelux::python {
+namespace {
+
+// Pixels that would be needed by a film beyond all memory are refused before they are asked for.
+void check_scene(const SceneHolder& scene) {
+    if (!scene.has_camera)
+        throw Error("render",
+                    "the scene has no camera; set scene.camera, for example to PerspectiveCamera(fov=40)");
+}
+
+std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::uint32_t> samples,
+                                 std::optional<std::uint64_t> seed, double target_error, double quantile,
+                                 double seconds, bool adaptive, int threads,
+                                 const std::filesystem::path& checkpoint, double checkpoint_every,
+                                 bool resume) {
+    check_scene(*scene.holder);
+    std::shared_ptr<const SceneDescription> description = scene.holder->description;
+    const SamplerSettings& sampler = description->sampler;
+    if ((samples && *samples != sampler.samples_per_pixel) || (seed && *seed != sampler.seed)) {
+        auto own = std::make_shared<SceneDescription>(*description);
+        if (samples) own->sampler.samples_per_pixel = *samples;
+        if (seed) own->sampler.seed = *seed;
+        description = std::move(own);
+    }
+    RenderJobSettings settings;
+    settings.target.error = target_error;
+    settings.target.quantile = quantile;
+    settings.target.seconds = seconds;
+    settings.target.adaptive = adaptive;
+    settings.threads = threads;
+    settings.checkpoint = checkpoint;
+    settings.checkpoint_every = checkpoint_every;
+    settings.resume = resume;
+    nb::gil_scoped_release unlocked;
+    return std::make_unique<RenderJob>(std::move(description), std::move(settings));
+}
+
+// Layers by the names that users know, as arrays on the picture's own memory.
+nb::dict layers_of(const RenderLook& look) {
+    static constexpr std::pair<const char*, const char*> colors[] = {{"mean", "R"},
+                                                                     {"standard_error", "stderr.R"},
+                                                                     {"skewness", "skewness.R"},
+                                                                     {"albedo", "albedo.R"},
+                                                                     {"normal", "N.X"}};
+    static constexpr std::pair<const char*, const char*> numbers[] = {
+        {"samples", "samples"}, {"units", "units"}, {"outlier", "outlier"}, {"depth", "depth.Z"}};
+    nb::dict d;
+    for (const auto& [name, first] : colors)
+        if (const std::optional<int> c = look.image->find_channel(first))
+            d[name] = channels_of(look.image, *c, 3);
+    for (const auto& [name, channel] : numbers)
+        if (const std::optional<int> c = look.image->find_channel(channel))
+            d[name] = channels_of(look.image, *c, 1);
+    return d;
+}
+
+std::string bad_text(const BadSampleReport& bad) {
+    if (bad.count() == 0) return {};
+    return std::to_string(bad.count()) + " samples were left out (" + std::to_string(bad.nan) +
+           " not a number, " + std::to_string(bad.infinite) + " infinite, " + std::to_string(bad.negative) +
+           " negative); the first is sample " + std::to_string(bad.first->sample) + " of pixel " +
+           std::to_string(bad.first->x) + "," + std::to_string(bad.first->y);
+}
+
+// A copy of the picture with the entries of the header that tell how it came about.
+Image with_header(const RenderLook& look, const nb::dict& entries) {
+    Image image = *look.image;
+    for (const auto& [key, value] : entries) {
+        Attribute& a = image.attributes()[nb::cast<std::string>(key)];
+        if (nb::isinstance<nb::str>(value))
+            a = nb::cast<std::string>(value);
+        else if (nb::isinstance<nb::int_>(value))
+            a = nb::cast<int>(value);
+        else
+            a = nb::cast<float>(value);
+    }
+    return image;
+}
+
+nb::tuple screen(const RenderLook& look, double exposure) {
+    auto tones =
+        std::make_shared<Image>(apply_tone_curve(*look.image, {.exposure = static_cast<float>(exposure)}, 8));
+    nb::object bytes = nb::bytes(reinterpret_cast<const char*>(tones->u8().data()), tones->u8().size());
+    return nb::make_tuple(bytes, tones->height(), tones->width(), tones->channels());
+}
+
+} // namespace
+
+void bind_render(nb::module_& m) {
+    nb::class_<RenderLook>(m, "RenderLook", "A render at some moment.")
+        .def_prop_ro("layers", &layers_of)
+        .def_prop_ro("relative_error", [](const RenderLook& l) { return l.error.relative; })
+        .def_prop_ro("mean_samples", [](const RenderLook& l) { return l.error.mean_samples; })
+        .def_prop_ro("samples", [](const RenderLook& l) { return l.report.samples; })
+        .def_prop_ro("seconds", [](const RenderLook& l) { return l.report.seconds; })
+        .def_prop_ro("cpu_seconds", [](const RenderLook& l) { return l.report.cpu_seconds; })
+        .def_prop_ro("bad_samples", [](const RenderLook& l) { return l.report.bad.count(); })
+        .def_prop_ro("bad_text", [](const RenderLook& l) { return bad_text(l.report.bad); })
+        .def_prop_ro("clamped_samples", [](const RenderLook& l) { return l.report.clamped_samples; })
+        .def_prop_ro("stop", [](const RenderLook& l) { return std::string(to_string(l.report.stop)); })
+        .def("screen", &screen, "exposure"_a, "8-bit sRGB: (bytes, height, width, channels).")
+        .def("automatic_exposure", [](const RenderLook& l) { return automatic_exposure(*l.image); })
+        .def(
+            "save",
+            [](const RenderLook& l, const std::filesystem::path& path, double exposure,
+               const nb::dict& entries) {
+                const Image image = with_header(l, entries);
+                nb::gil_scoped_release unlocked;
+                write_image(path, image, {.exposure = static_cast<float>(exposure)});
+            },
+            "path"_a, "exposure"_a, "entries"_a);
+    nb::class_<RenderJob>(m, "RenderJob", "A render that goes on by itself.")
+        .def("cancel", &RenderJob::cancel)
+        .def("wait", &RenderJob::wait, "seconds"_a, nb::call_guard<nb::gil_scoped_release>())
+        .def("look", &RenderJob::look, "seconds"_a, nb::call_guard<nb::gil_scoped_release>())
+        .def("result", &RenderJob::result)
+        .def("progress",
+             [](const RenderJob& j) {
+                 const RenderProgress p = j.progress();
+                 return nb::make_tuple(p.samples_done, p.samples_total, p.seconds,
+                                       p.error ? nb::object(nb::float_(p.error->relative)) : nb::none());
+             })
+        .def_prop_ro("seed", [](const RenderJob& j) { return j.description().sampler.seed; })
+        .def_prop_ro("samples_per_pixel",
+                     [](const RenderJob& j) { return j.description().sampler.samples_per_pixel; })
+        .def_prop_ro("refused_checkpoint", &RenderJob::refused_checkpoint)
+        .def_prop_ro("checkpoint_failure", &RenderJob::checkpoint_failure);
+    m.def("start_render", &start, "scene"_a, "samples"_a.none(), "seed"_a.none(), "target_error"_a,
+          "target_quantile"_a, "seconds"_a, "adaptive"_a, "threads"_a, "checkpoint"_a, "checkpoint_every"_a,
+          "resume"_a, "montelux.Scene.render, with everything decided.");
+    m.def("check_writable", &check_writable, "path"_a);
+}
+
+} // namespace montelux::python

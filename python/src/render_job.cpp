@@ -1,0 +1,125 @@
+#include "python/src/render_job.h"
+
+#include <utility>
+
+#include "montelux/mc/io/generation_file.h"
+#include "montelux/render/checkpoint.h"
+
+namespace montelux::python {
+
+RenderJob::RenderJob(std::shared_ptr<const SceneDescription> description, RenderJobSettings settings)
+    : description_(std::move(description)), settings_(std::move(settings)) {
+    const std::filesystem::path& path = settings_.checkpoint;
+    if (settings_.resume && path.empty())
+        throw Error("render", "resume was asked for without a checkpoint file to resume from");
+    if (!path.empty() && !settings_.resume && generation_exists(path))
+        throw Error(path.string(), "the file is there already; resume=True goes on from it, or remove it");
+    if (settings_.resume && generation_exists(path)) {
+        RestoredRender restored = load_checkpoint(path, *description_, settings_.target);
+        refused_checkpoint_ = restored.newest_refused_because;
+        // The replicates of a render that is gone on with are those of its beginning.
+        auto with_replicates = std::make_shared<SceneDescription>(*description_);
+        with_replicates->sampler.replicate_points = restored.replicate_points;
+        description_ = std::move(with_replicates);
+        state_.emplace(std::move(restored.state));
+    } else {
+        state_.emplace(description_->film);
+    }
+    with_threads(settings_.threads,
+                 [&] { renderer_ = std::make_unique<Renderer>(*description_, settings_.target); });
+    unit_ = SampleOrder(renderer_->sampler(), settings_.target.slice).unit();
+    thread_ = std::thread([this] { run(); });
+}
+
+RenderJob::~RenderJob() {
+    cancel();
+    if (thread_.joinable()) thread_.join();
+}
+
+void RenderJob::run() {
+    RenderControl control;
+    control.cancel = &cancel_;
+    control.look = &look_wanted_;
+    control.checkpoint_seconds = settings_.checkpoint.empty() ? 1e9 : settings_.checkpoint_every;
+    control.checkpoint = [this](const RenderState& state) { checkpoint(state); };
+    control.progress = [this](const RenderProgress& p) {
+        std::lock_guard lock(mutex_);
+        progress_ = p;
+    };
+    std::exception_ptr failure;
+    std::optional<RenderLook> result;
+    try {
+        with_threads(settings_.threads, [&] { renderer_->render(*state_, control); });
+        const RenderReport report = state_->report;
+        result = developed(std::move(state_->film), report);
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    std::lock_guard lock(mutex_);
+    failure_ = failure;
+    result_ = std::move(result);
+    ended_ = true;
+    changed_.notify_all();
+}
+
+// While no sample is being taken, and at the end.
+void RenderJob::checkpoint(const RenderState& state) {
+    if (look_wanted_.exchange(false)) {
+        std::lock_guard lock(mutex_);
+        seen_.emplace(state.film);
+        seen_report_ = state.report;
+        changed_.notify_all();
+    }
+    if (settings_.checkpoint.empty()) return;
+    // A full disk must not cost the render.
+    std::string failure;
+    try {
+        save_checkpoint(settings_.checkpoint, *description_, renderer_->sampler(), settings_.target, state);
+    } catch (const std::exception& e) {
+        failure = e.what();
+    }
+    std::lock_guard lock(mutex_);
+    checkpoint_failure_ = failure;
+}
+
+std::string RenderJob::checkpoint_failure() const {
+    std::lock_guard lock(mutex_);
+    return checkpoint_failure_;
+}
+
+bool RenderJob::wait(double seconds) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return ended_; });
+}
+
+RenderProgress RenderJob::progress() const {
+    std::lock_guard lock(mutex_);
+    return progress_;
+}
+
+std::optional<RenderLook> RenderJob::look(double seconds) {
+    std::unique_lock lock(mutex_);
+    if (ended_) return std::nullopt;
+    look_wanted_ = true;
+    changed_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return ended_ || seen_; });
+    if (!seen_) return std::nullopt;
+    Film film = std::move(*seen_);
+    seen_.reset();
+    const RenderReport report = seen_report_;
+    lock.unlock();
+    film.end_units(unit_);
+    return developed(std::move(film), report);
+}
+
+RenderLook RenderJob::developed(Film film, const RenderReport& report) const {
+    return {std::make_shared<const Image>(film.develop()), film.error(), report};
+}
+
+RenderLook RenderJob::result() const {
+    std::lock_guard lock(mutex_);
+    if (failure_) std::rethrow_exception(failure_);
+    if (!result_) throw Error("render", "the render has not ended yet");
+    return *result_;
+}
+
+} // namespace montelux::python

@@ -1,0 +1,84 @@
+// A render that goes on by itself, in a thread that never asks for Python's lock.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "montelux/image/image.h"
+#include "montelux/render/renderer.h"
+
+namespace montelux::python {
+
+struct RenderJobSettings {
+    RenderTarget target;
+    int threads = 0; // 0: one a processor
+    std::filesystem::path checkpoint;
+    double checkpoint_every = 60;
+    bool resume = false;
+};
+
+// What is known of a render at some moment.
+struct RenderLook {
+    std::shared_ptr<const Image> image; // the layers of Film::develop()
+    FilmError error;
+    RenderReport report;
+};
+
+class RenderJob {
+  public:
+    // Builds what the scene needs and starts; throws Error where the settings make no sense. The description
+    // must not change any more.
+    RenderJob(std::shared_ptr<const SceneDescription> description, RenderJobSettings settings);
+    ~RenderJob();
+    RenderJob(const RenderJob&) = delete;
+    RenderJob& operator=(const RenderJob&) = delete;
+
+    void cancel() { cancel_.request(); }
+    // Waits until the render has ended, but so many seconds at most; whether it has.
+    bool wait(double seconds);
+    RenderProgress progress() const;
+    // The render as it is now, waiting for a moment without open samples but so many seconds at most; none
+    // where that did not do, or the render ended meanwhile.
+    std::optional<RenderLook> look(double seconds);
+    // After the end; rethrows what ended it.
+    RenderLook result() const;
+    const SceneDescription& description() const { return *description_; }
+    // Why the newest checkpoint was not gone on from but the one before; empty where it was.
+    const std::string& refused_checkpoint() const { return refused_checkpoint_; }
+    // Why the last checkpoint was not written; empty where it was.
+    std::string checkpoint_failure() const;
+
+  private:
+    void run();
+    void checkpoint(const RenderState& state);
+    RenderLook developed(Film film, const RenderReport& report) const;
+
+    std::shared_ptr<const SceneDescription> description_;
+    RenderJobSettings settings_;
+    std::unique_ptr<Renderer> renderer_;
+    std::optional<RenderState> state_;
+    std::string refused_checkpoint_;
+    std::uint32_t unit_ = 1;
+    CancelFlag cancel_;
+    std::atomic<bool> look_wanted_{false};
+
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    bool ended_ = false;
+    std::exception_ptr failure_;
+    std::string checkpoint_failure_;
+    RenderProgress progress_;
+    std::optional<Film> seen_; // what a look is made of
+    RenderReport seen_report_;
+    std::optional<RenderLook> result_;
+    std::thread thread_;
+};
+
+} // namespace montelux::python

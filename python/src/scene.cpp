@@ -1,0 +1,353 @@
+#include "python/src/bindings.h"
+#include "python/src/images.h"
+#include "python/src/scene_object.h"
+#include "python/src/scene_values.h"
+#include "python/src/shapes.h"
+#include <algorithm>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+#include <set>
+
+#include "montelux/formats/pbrt/load_pbrt.h"
+#include "montelux/image/image_read.h"
+
+namespace montelux::python {
+namespace {
+
+// A list of places in a scene, as Python sees it. Lights of one shape are one entry.
+struct MaterialList {
+    SceneRef scene;
+};
+struct LightList {
+    SceneRef scene;
+};
+struct ShapeList {
+    SceneRef scene;
+};
+
+std::size_t checked(std::int64_t i, std::size_t count, const char* what) {
+    const std::int64_t at = i < 0 ? i + static_cast<std::int64_t>(count) : i;
+    if (at < 0 || at >= static_cast<std::int64_t>(count))
+        throw nb::index_error(
+            (std::string(what) + " " + std::to_string(i) + " of " + std::to_string(count)).c_str());
+    return static_cast<std::size_t>(at);
+}
+
+struct Run {
+    Index first, count;
+};
+std::vector<Run> light_runs(const Scene& scene) {
+    std::vector<Run> runs;
+    for (Index i = 0; i < scene.lights.size(); ++i) {
+        const auto* area = std::get_if<AreaLight>(&scene.lights[i]);
+        const auto* before = i > 0 ? std::get_if<AreaLight>(&scene.lights[i - 1]) : nullptr;
+        if (area && before && area->shape == before->shape && area->primitive == before->primitive + 1)
+            ++runs.back().count;
+        else
+            runs.push_back({i, 1});
+    }
+    return runs;
+}
+
+Light plain_light(const nb::object& o) {
+    const Slot<Light>* given = light_slot(o);
+    if (!given)
+        throw Error("lights", "an object of type '" + std::string(nb::type_name(o.type()).c_str()) +
+                                  "' was given; expected a light, such as PointLight()");
+    if (std::holds_alternative<AreaLight>(given->read()))
+        throw Error("lights", "an AreaLight belongs to a shape; set the light of that shape");
+    if (std::holds_alternative<ImageInfiniteLight>(given->read()))
+        throw Error("lights",
+                    "an EnvironmentLight refers to a map of its scene; make one by add_environment()");
+    return given->read();
+}
+
+void bind_lists(nb::module_& m) {
+    nb::class_<MaterialList>(m, "Materials", "The materials of a scene.")
+        .def("__len__", [](const MaterialList& l) { return l.scene->read().scene.materials.size(); })
+        .def("__getitem__",
+             [](const MaterialList& l, std::int64_t i) {
+                 const std::size_t at = checked(i, l.scene->read().scene.materials.size(), "material");
+                 return as_python(Slot<Material>(l.scene, static_cast<Index>(at)));
+             })
+        .def("__setitem__",
+             [](const MaterialList& l, std::int64_t i, const nb::object& o) {
+                 const std::size_t at = checked(i, l.scene->read().scene.materials.size(), "material");
+                 const Index from = material_index(l.scene, o, "materials");
+                 std::vector<Material>& all = l.scene->edit().scene.materials;
+                 const Material value = all[from];
+                 if (const Slot<Material>* slot = material_slot(o); slot->scene() != l.scene) all.pop_back();
+                 all[at] = value;
+                 l.scene->note("material at " + std::to_string(at));
+             })
+        .def(
+            "append",
+            [](const MaterialList& l, const nb::object& o) {
+                return as_python(Slot<Material>(l.scene, material_index(l.scene, o, "materials")));
+            },
+            "material"_a, "Adds a material, and returns the place it has in the scene.");
+    nb::class_<LightList>(m, "Lights", "The lights of a scene; those of one shape are one AreaLight.")
+        .def("__len__", [](const LightList& l) { return light_runs(l.scene->read().scene).size(); })
+        .def("__getitem__",
+             [](const LightList& l, std::int64_t i) {
+                 const std::vector<Run> runs = light_runs(l.scene->read().scene);
+                 const Run run = runs[checked(i, runs.size(), "light")];
+                 return as_python(Slot<Light>(l.scene, run.first, run.count));
+             })
+        .def("__setitem__",
+             [](const LightList& l, std::int64_t i, const nb::object& o) {
+                 const std::vector<Run> runs = light_runs(l.scene->read().scene);
+                 const Run run = runs[checked(i, runs.size(), "light")];
+                 if (std::holds_alternative<AreaLight>(l.scene->read().scene.lights[run.first]))
+                     throw Error("lights", "this light belongs to a shape; set the light of that shape");
+                 const Light light = plain_light(o);
+                 l.scene->edit().scene.lights[run.first] = light;
+                 l.scene->note("light at " + std::to_string(run.first) + " " +
+                               nb::cast<std::string>(nb::repr(o)));
+             })
+        .def("__delitem__",
+             [](const LightList& l, std::int64_t i) {
+                 const std::vector<Run> runs = light_runs(l.scene->read().scene);
+                 const Run run = runs[checked(i, runs.size(), "light")];
+                 erase_lights(l.scene->edit(), run.first, run.count);
+                 l.scene->note("no light " + std::to_string(run.first));
+             })
+        .def(
+            "append",
+            [](const LightList& l, const nb::object& o) {
+                const Light light = plain_light(o);
+                std::vector<Light>& all = l.scene->edit().scene.lights;
+                all.push_back(light);
+                l.scene->note("light " + nb::cast<std::string>(nb::repr(o)));
+                return as_python(Slot<Light>(l.scene, static_cast<Index>(all.size() - 1)));
+            },
+            "light"_a, "Adds a light, and returns the place it has in the scene.");
+    nb::class_<ShapeList>(m, "Shapes", "The shapes of a scene.")
+        .def("__len__", [](const ShapeList& l) { return l.scene->read().scene.shapes.size(); })
+        .def("__getitem__", [](const ShapeList& l, std::int64_t i) {
+            const std::size_t at = checked(i, l.scene->read().scene.shapes.size(), "shape");
+            return Ref<Shape>(Slot<Shape>(l.scene, static_cast<Index>(at)));
+        });
+}
+
+void take(SceneObject& s, SceneDescription description, const Warnings& warnings, std::string name) {
+    s.holder->description = std::make_shared<SceneDescription>(std::move(description));
+    s.holder->has_camera = true;
+    s.holder->name = std::move(name);
+    s.holder->warnings = warnings.messages();
+}
+
+nb::object image_texture(const SceneObject& s, const nb::object& image, const std::string& filter,
+                         const std::string& wrap, double scale, bool invert, const std::vector<double>& uv,
+                         bool as_float) {
+    ImageTexture t;
+    const std::vector<std::pair<std::string, TextureFilter>> filters{{"point", TextureFilter::point},
+                                                                     {"bilinear", TextureFilter::bilinear},
+                                                                     {"trilinear", TextureFilter::trilinear},
+                                                                     {"ewa", TextureFilter::ewa}};
+    const std::vector<std::pair<std::string, TextureWrap>> wraps{
+        {"repeat", TextureWrap::repeat}, {"black", TextureWrap::black}, {"clamp", TextureWrap::clamp}};
+    auto pick = [](const auto& table, const std::string& name, const char* what) {
+        for (const auto& [text, value] : table)
+            if (text == name) return value;
+        throw Error("image_texture", "there is no " + std::string(what) + " '" + name + "'");
+    };
+    t.filter = pick(filters, filter, "filter");
+    t.wrap = pick(wraps, wrap, "wrap");
+    if (!(scale >= 0 && std::isfinite(scale)))
+        throw Error("image_texture, scale", "expected a number that is not negative");
+    if (uv.size() != 4) throw Error("image_texture, uv", "expected four numbers: su, sv, du, dv");
+    t.scale = static_cast<float>(scale);
+    t.invert = invert;
+    t.mapping.su = static_cast<float>(uv[0]);
+    t.mapping.sv = static_cast<float>(uv[1]);
+    t.mapping.du = static_cast<float>(uv[2]);
+    t.mapping.dv = static_cast<float>(uv[3]);
+    Image picture = picture_of(image, "image_texture");
+    if (picture.color_channels().empty())
+        throw Error("image_texture", "the picture has neither channels R, G and B nor Y");
+    Scene& scene = s.holder->edit().scene;
+    t.image = static_cast<Index>(scene.images.size());
+    note_pixels(*s.holder, picture);
+    s.holder->edit().scene.images.push_back(std::move(picture));
+    Scene& now = s.holder->edit().scene;
+    if (as_float) {
+        now.float_textures.emplace_back(t);
+        return nb::cast(FloatTextureHandle{s.holder, static_cast<Index>(now.float_textures.size() - 1)});
+    }
+    now.spectrum_textures.emplace_back(t);
+    return nb::cast(SpectrumTextureHandle{s.holder, static_cast<Index>(now.spectrum_textures.size() - 1)});
+}
+
+SpectrumTextureHandle checkerboard(const SceneObject& s, const nb::object& a, const nb::object& b, double su,
+                                   double sv) {
+    CheckerboardTexture<SpectrumParameter> t;
+    t.values = {SpectrumParameter{spectrum_of(a, RgbMeaning::albedo, "checkerboard_texture")},
+                SpectrumParameter{spectrum_of(b, RgbMeaning::albedo, "checkerboard_texture")}};
+    t.mapping.su = static_cast<float>(su);
+    t.mapping.sv = static_cast<float>(sv);
+    s.holder->note("checkerboard " + nb::cast<std::string>(nb::repr(nb::make_tuple(a, b, su, sv))));
+    std::vector<SpectrumTexture>& all = s.holder->edit().scene.spectrum_textures;
+    all.emplace_back(std::move(t));
+    return {s.holder, static_cast<Index>(all.size() - 1)};
+}
+
+nb::object add_environment(const SceneObject& s, const nb::object& image, double scale,
+                           const nb::object& world_from_light) {
+    Image map = rgb_image(picture_of(image, "add_environment"), "add_environment");
+    if (map.width() != map.height())
+        throw Error("add_environment",
+                    "the map has " + std::to_string(map.width()) + " x " + std::to_string(map.height()) +
+                        " pixels; an environment map must be square (equal-area octahedral)");
+    for (const float v : map.f32())
+        if (!(v >= 0 && std::isfinite(v)))
+            throw Error("add_environment", "the map has a pixel that is negative or not finite");
+    if (!not_negative(scale)) throw Error("add_environment, scale", "expected a number that is not negative");
+    ImageInfiniteLight light;
+    light.environment = static_cast<Index>(s.holder->read().scene.environments.size());
+    light.scale = static_cast<float>(scale) *
+                  photometric_scale(Spectrum(RgbColorSpace::srgb().illuminant()), "add_environment");
+    light.world_from_light = transform_of(world_from_light, "add_environment, world_from_light");
+    note_pixels(*s.holder, map);
+    s.holder->note("environment " + std::to_string(scale));
+    Scene& scene = s.holder->edit().scene;
+    scene.environments.push_back(std::move(map));
+    scene.lights.emplace_back(light);
+    return as_python(Slot<Light>(s.holder, static_cast<Index>(scene.lights.size() - 1)));
+}
+
+} // namespace
+
+void bind_scene(nb::module_& m) {
+    nb::class_<SpectrumTextureHandle>(m, "SpectrumTexture", "A texture of colours, of one scene.")
+        .def("__repr__", [](const SpectrumTextureHandle& t) {
+            return "<SpectrumTexture " + std::to_string(t.index) + ">";
+        });
+    nb::class_<FloatTextureHandle>(m, "FloatTexture", "A texture of numbers, of one scene.")
+        .def("__repr__",
+             [](const FloatTextureHandle& t) { return "<FloatTexture " + std::to_string(t.index) + ">"; });
+    bind_lists(m);
+    nb::class_<SceneObject> c(m, "SceneBase", "What montelux.Scene is made of.");
+    c.def(nb::init<>())
+        .def(
+            "_load",
+            [](SceneObject& s, const std::filesystem::path& path) {
+                Warnings warnings;
+                SceneDescription d;
+                {
+                    nb::gil_scoped_release unlocked;
+                    d = load_pbrt(path, warnings);
+                }
+                take(s, std::move(d), warnings, path.filename().string());
+            },
+            "path"_a)
+        .def(
+            "_parse",
+            [](SceneObject& s, const std::string& text, const std::string& name,
+               const std::filesystem::path& folder) {
+                Warnings warnings;
+                SceneDescription d;
+                {
+                    nb::gil_scoped_release unlocked;
+                    d = parse_pbrt(text, name, folder, warnings);
+                }
+                take(s, std::move(d), warnings, name);
+            },
+            "text"_a, "name"_a, "folder"_a)
+        .def_prop_rw(
+            "name", [](const SceneObject& s) { return s.holder->name; },
+            [](SceneObject& s, const std::string& name) { s.holder->name = name; },
+            "Its name, in files and messages.")
+        .def_prop_ro(
+            "warnings", [](const SceneObject& s) { return s.holder->warnings; },
+            "What the file asked for and does not get, as sentences.")
+        .def_prop_rw(
+            "camera",
+            [](const SceneObject& s) {
+                return s.holder->has_camera ? as_python(Slot<CameraSettings>(s.holder)) : nb::none();
+            },
+            [](SceneObject& s, const nb::object& o) {
+                const Slot<CameraSettings>* given = camera_slot(o);
+                if (!given)
+                    throw Error("Scene.camera",
+                                std::string(nb::repr(o).c_str()) +
+                                    " was given; expected a camera, such as PerspectiveCamera()");
+                const CameraSettings settings = given->read();
+                s.holder->edit().scene.camera = settings;
+                s.holder->has_camera = true;
+                s.holder->note("camera");
+                s.holder->note(&settings.world_from_camera.matrix().m, sizeof(Matrix4));
+            },
+            nb::for_setter(nb::arg("camera").none()), "The camera; None where there is none yet.")
+        .def_prop_rw(
+            "film", [](const SceneObject& s) { return Ref<FilmSettings>(Slot<FilmSettings>(s.holder)); },
+            [](SceneObject& s, const Ref<FilmSettings>& film) {
+                const FilmSettings settings = film.value();
+                s.holder->edit().film = settings;
+            },
+            "Resolution, crop, pixel filter and sensor.")
+        .def_prop_ro(
+            "sampler",
+            [](const SceneObject& s) { return Ref<SamplerSettings>(Slot<SamplerSettings>(s.holder)); },
+            "Which points the samples are drawn from.")
+        .def_prop_ro(
+            "integrator",
+            [](const SceneObject& s) { return Ref<IntegratorSettings>(Slot<IntegratorSettings>(s.holder)); },
+            "How light is followed.")
+        .def_prop_ro(
+            "materials", [](const SceneObject& s) { return MaterialList{s.holder}; }, "The materials.")
+        .def_prop_ro(
+            "lights", [](const SceneObject& s) { return LightList{s.holder}; },
+            "The lights; those of one shape are one AreaLight.")
+        .def_prop_ro(
+            "shapes", [](const SceneObject& s) { return ShapeList{s.holder}; }, "The shapes.")
+        .def(
+            "add_mesh",
+            [](const SceneObject& s, const nb::object& positions, const nb::object& triangles,
+               const nb::object& material, const nb::object& normals, const nb::object& uvs,
+               const nb::object& transform, const nb::object& light) {
+                return add_mesh(s.holder, positions, triangles, material, normals, uvs, transform, light);
+            },
+            "positions"_a, "triangles"_a, "material"_a, nb::kw_only(), "normals"_a = nb::none(),
+            "uvs"_a = nb::none(), "transform"_a = nb::none(), "light"_a = nb::none(),
+            "Triangles: positions of shape (n, 3), triangles of shape (m, 3) indices into them; normals (n, "
+            "3) and "
+            "uvs (n, 2) are one a position. transform: a matrix of shape (4, 4). light: an AreaLight or a "
+            "spectrum. "
+            "Returns the Shape.")
+        .def(
+            "add_sphere",
+            [](const SceneObject& s, double radius, const nb::object& material, const nb::object& centre,
+               const nb::object& transform, const nb::object& light) {
+                return add_sphere(s.holder, radius, centre, material, transform, light);
+            },
+            "radius"_a, "material"_a, nb::kw_only(), "centre"_a = nb::make_tuple(0, 0, 0),
+            "transform"_a = nb::none(), "light"_a = nb::none(), "A sphere; see add_mesh.")
+        .def(
+            "add_disk",
+            [](const SceneObject& s, double radius, const nb::object& material, double inner_radius,
+               double height, const nb::object& transform, const nb::object& light) {
+                return add_disk(s.holder, radius, inner_radius, height, material, transform, light);
+            },
+            "radius"_a, "material"_a, nb::kw_only(), "inner_radius"_a = 0., "height"_a = 0.,
+            "transform"_a = nb::none(), "light"_a = nb::none(),
+            "The points of the plane z = height between two radii; its front is +z. See add_mesh.")
+        .def("add_environment", &add_environment, "image"_a, nb::kw_only(), "scale"_a = 1.,
+             "world_from_light"_a = nb::none(),
+             "Light from everywhere, by a square equal-area map: a file, or an array of shape (n, n, 3), "
+             "linear "
+             "sRGB. Returns the EnvironmentLight.")
+        .def("image_texture", &image_texture, "image"_a, nb::kw_only(), "filter"_a = "bilinear",
+             "wrap"_a = "repeat", "scale"_a = 1., "invert"_a = false,
+             "uv"_a = std::vector<double>{1, 1, 0, 0}, "as_float"_a = false,
+             "A texture of a picture: a file, or an array of shape (h, w, 3) or (h, w), linear numbers or "
+             "uint8 in "
+             "sRGB. uv: su, sv, du, dv of (s, t) = (su u + du, sv v + dv). as_float: of numbers, for "
+             "roughnesses and "
+             "cut-outs.")
+        .def("checkerboard_texture", &checkerboard, "a"_a, "b"_a, "su"_a = 1., "sv"_a = 1.,
+             "Unit cells of two colours in (su u, sv v).");
+}
+
+} // namespace montelux::python

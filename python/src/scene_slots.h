@@ -1,0 +1,233 @@
+// Values of a scene as Python holds them: a place in a scene that changes with it, or a value by itself.
+#pragma once
+
+#include <memory>
+#include <nanobind/nanobind.h>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "montelux/formats/content_hash.h"
+#include "montelux/mc/math/error.h"
+#include "montelux/scene/render_settings.h"
+
+namespace montelux::python {
+
+namespace nb = nanobind;
+
+// A scene that Python changes. Renders share the description; it is copied before the next change while one
+// of them still does.
+struct SceneHolder {
+    std::shared_ptr<SceneDescription> description = std::make_shared<SceneDescription>();
+    bool has_camera = false;
+    std::string name = "scene";
+    std::vector<std::string> warnings;
+
+    const SceneDescription& read() const { return *description; }
+    SceneDescription& edit() {
+        if (description.use_count() > 1) description = std::make_shared<SceneDescription>(*description);
+        return *description;
+    }
+    // Takes a change into the fingerprint by which checkpoints know their scene.
+    void note(const void* bytes, std::size_t size) {
+        ContentHash hash;
+        const std::uint64_t before = description->content_hash;
+        hash.add(&before, sizeof before);
+        hash.add(bytes, size);
+        edit().content_hash = hash.value();
+    }
+    void note(const std::string& text) { note(text.data(), text.size()); }
+};
+
+// Where values of a kind stand in a scene.
+inline Material& element(SceneDescription& d, Index i, std::type_identity<Material>) {
+    return d.scene.materials.at(i);
+}
+inline Light& element(SceneDescription& d, Index i, std::type_identity<Light>) {
+    return d.scene.lights.at(i);
+}
+inline Shape& element(SceneDescription& d, Index i, std::type_identity<Shape>) {
+    return d.scene.shapes.at(i);
+}
+inline CameraSettings& element(SceneDescription& d, Index, std::type_identity<CameraSettings>) {
+    return d.scene.camera;
+}
+inline FilmSettings& element(SceneDescription& d, Index, std::type_identity<FilmSettings>) { return d.film; }
+inline PixelFilter& element(SceneDescription& d, Index, std::type_identity<PixelFilter>) {
+    return d.film.filter;
+}
+inline SamplerSettings& element(SceneDescription& d, Index, std::type_identity<SamplerSettings>) {
+    return d.sampler;
+}
+inline IntegratorSettings& element(SceneDescription& d, Index, std::type_identity<IntegratorSettings>) {
+    return d.integrator;
+}
+
+// `count` equal values side by side (the area lights of a mesh), or one by itself.
+template <typename V>
+class Slot {
+  public:
+    explicit Slot(V own) : own_(std::make_shared<V>(std::move(own))) {}
+    explicit Slot(std::shared_ptr<SceneHolder> scene, Index first = 0, Index count = 1)
+        : scene_(std::move(scene)), first_(first), count_(count) {}
+
+    const V& read() const {
+        return own_ ? *own_ : element(*scene_->description, first_, std::type_identity<V>());
+    }
+    template <typename Change>
+    void edit(const Change& change) {
+        if (own_) return change(*own_);
+        SceneDescription& d = scene_->edit();
+        for (Index i = first_; i < first_ + count_; ++i) change(element(d, i, std::type_identity<V>()));
+    }
+    const std::shared_ptr<SceneHolder>& scene() const { return scene_; }
+    Index first() const { return first_; }
+    Index count() const { return count_; }
+    bool same_place(const Slot& other) const {
+        return scene_ ? scene_ == other.scene_ && first_ == other.first_ : own_ == other.own_;
+    }
+    // The scene whose textures a value by itself refers to.
+    std::shared_ptr<SceneHolder> textures_of;
+
+  private:
+    std::shared_ptr<SceneHolder> scene_;
+    Index first_ = 0, count_ = 1;
+    std::shared_ptr<V> own_;
+};
+
+// The kind of value that an alternative T belongs to.
+template <typename T>
+struct KindOf {
+    using type = T;
+};
+template <typename T>
+T* alternative(T& value, std::type_identity<T>) {
+    return &value;
+}
+template <typename T, typename... Ts>
+T* alternative(std::variant<Ts...>& value, std::type_identity<T>) {
+    return std::get_if<T>(&value);
+}
+template <typename T>
+T* alternative(CameraSettings& value, std::type_identity<T>) {
+    return std::get_if<T>(&value.model);
+}
+template <typename T>
+using Kind = typename KindOf<T>::type;
+
+// What Python begins with: as in a scene file that says nothing more.
+template <typename T>
+T default_value() {
+    return T{};
+}
+template <>
+DiffuseMaterial default_value();
+template <>
+ConductorMaterial default_value();
+template <>
+DielectricMaterial default_value();
+template <>
+ThinDielectricMaterial default_value();
+template <>
+CoatedDiffuseMaterial default_value();
+template <>
+CoatedConductorMaterial default_value();
+template <>
+AreaLight default_value();
+template <>
+PointLight default_value();
+template <>
+SpotLight default_value();
+template <>
+DistantLight default_value();
+template <>
+UniformInfiniteLight default_value();
+
+// A place that holds the alternative T.
+template <typename T>
+struct Ref : Slot<Kind<T>> {
+    using V = Kind<T>;
+    Ref() : Slot<V>(initial()) {}
+    explicit Ref(Slot<V> slot) : Slot<V>(std::move(slot)) {}
+
+    const T& value() const { return held(const_cast<V&>(this->read())); }
+    template <typename Change>
+    void change(const Change& f) {
+        this->edit([&](V& v) { f(held(v)); });
+    }
+
+  private:
+    static V initial() {
+        if constexpr (std::is_same_v<V, CameraSettings>)
+            return CameraSettings{default_value<T>(), {}};
+        else
+            return V(default_value<T>());
+    }
+    static T& held(V& v) {
+        T* found = nullptr;
+        if constexpr (std::is_same_v<V, T>)
+            found = &v;
+        else
+            found = alternative(v, std::type_identity<T>());
+        if (!found) throw Error("scene", "this value has been replaced by one of another kind");
+        return *found;
+    }
+};
+
+#define MONTELUX_KIND(T, V)                                                                                  \
+    template <>                                                                                              \
+    struct KindOf<T> {                                                                                       \
+        using type = V;                                                                                      \
+    }
+MONTELUX_KIND(DiffuseMaterial, Material);
+MONTELUX_KIND(ConductorMaterial, Material);
+MONTELUX_KIND(DielectricMaterial, Material);
+MONTELUX_KIND(ThinDielectricMaterial, Material);
+MONTELUX_KIND(CoatedDiffuseMaterial, Material);
+MONTELUX_KIND(CoatedConductorMaterial, Material);
+MONTELUX_KIND(AreaLight, Light);
+MONTELUX_KIND(PointLight, Light);
+MONTELUX_KIND(SpotLight, Light);
+MONTELUX_KIND(DistantLight, Light);
+MONTELUX_KIND(UniformInfiniteLight, Light);
+MONTELUX_KIND(ImageInfiniteLight, Light);
+MONTELUX_KIND(PerspectiveCamera, CameraSettings);
+MONTELUX_KIND(OrthographicCamera, CameraSettings);
+MONTELUX_KIND(SphericalCamera, CameraSettings);
+MONTELUX_KIND(BoxFilter, PixelFilter);
+MONTELUX_KIND(TriangleFilter, PixelFilter);
+MONTELUX_KIND(GaussianFilter, PixelFilter);
+MONTELUX_KIND(MitchellFilter, PixelFilter);
+MONTELUX_KIND(LanczosFilter, PixelFilter);
+#undef MONTELUX_KIND
+
+template <typename V>
+nb::object as_python(Slot<V> slot) {
+    const auto cast = [&]<typename T>(const T&) { return nb::cast(Ref<T>(slot)); };
+    if constexpr (std::is_same_v<V, CameraSettings>)
+        return std::visit(cast, slot.read().model);
+    else
+        return std::visit(cast, slot.read());
+}
+
+// The slot of a Python object of any alternative of V; null where it is none.
+template <typename V, typename Variant>
+struct SlotOf;
+template <typename V, typename... Ts>
+struct SlotOf<V, std::variant<Ts...>> {
+    static Slot<V>* of(nb::handle o) {
+        Slot<V>* found = nullptr;
+        ((found =
+              !found && nb::isinstance<Ref<Ts>>(o) ? static_cast<Slot<V>*>(nb::cast<Ref<Ts>*>(o)) : found),
+         ...);
+        return found;
+    }
+};
+inline Slot<Material>* material_slot(nb::handle o) { return SlotOf<Material, Material>::of(o); }
+inline Slot<Light>* light_slot(nb::handle o) { return SlotOf<Light, Light>::of(o); }
+inline Slot<CameraSettings>* camera_slot(nb::handle o) { return SlotOf<CameraSettings, CameraModel>::of(o); }
+inline Slot<PixelFilter>* filter_slot(nb::handle o) { return SlotOf<PixelFilter, PixelFilter>::of(o); }
+
+} // namespace montelux::python

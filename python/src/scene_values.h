@@ -1,0 +1,155 @@
+// Attributes of scenes: numbers, vectors, spectra and textures from Python and back, with sentences.
+#pragma once
+
+#include "python/src/numpy_bridge.h"
+#include "python/src/scene_slots.h"
+#include <array>
+#include <cmath>
+#include <limits>
+#include <nanobind/nanobind.h>
+#include <string>
+#include <string_view>
+
+#include "montelux/scene/texture/texture.h"
+#include "montelux/spectrum/spectrum.h"
+
+namespace montelux::python {
+
+// A texture of a scene.
+struct SpectrumTextureHandle {
+    std::shared_ptr<SceneHolder> scene;
+    Index index;
+};
+struct FloatTextureHandle {
+    std::shared_ptr<SceneHolder> scene;
+    Index index;
+};
+
+// All throw Error that begins with `what`.
+double number_of(nb::handle v, const std::string& what);
+// Exactly n finite numbers.
+std::vector<double> numbers_of(nb::handle v, std::size_t n, const std::string& what);
+bool boolean_of(nb::handle v, const std::string& what);
+std::int64_t whole_number_of(nb::handle v, std::int64_t least, std::int64_t most, const std::string& what);
+// A Spectrum; a number; three numbers R, G, B; or the name of a measured one.
+Spectrum spectrum_of(nb::handle v, RgbMeaning meaning, const std::string& what);
+// The same or a texture, which must be of the scene that the slot belongs to.
+template <typename V>
+SpectrumParameter spectrum_parameter_of(nb::handle v, RgbMeaning meaning, Slot<V>& slot,
+                                        const std::string& what);
+template <typename V>
+FloatParameter float_parameter_of(nb::handle v, Slot<V>& slot, const std::string& what);
+// A matrix of shape (4, 4), points as columns.
+Transform transform_of(nb::handle v, const std::string& what);
+DoubleArray matrix_array(const Transform& t);
+DoubleArray vector_array(Vec3f v);
+nb::object spectrum_or_texture(const SpectrumParameter& p, const std::shared_ptr<SceneHolder>& scene);
+nb::object number_or_texture(const FloatParameter& p, const std::shared_ptr<SceneHolder>& scene);
+
+// 1 over the luminance of a light's spectrum: what its scale is multiplied by, so that an RGB colour of
+// (1, 1, 1), or any other spectrum, stands for 1 in the film's units. 0 for black.
+float photometric_scale(const Spectrum& s, const std::string& what);
+
+// Ties a value by itself to the scene of a texture, or checks that a place is of that scene.
+template <typename V>
+void require_scene(Slot<V>& slot, const std::shared_ptr<SceneHolder>& textures, const std::string& what) {
+    const std::shared_ptr<SceneHolder>& at = slot.scene() ? slot.scene() : slot.textures_of;
+    if (at && at != textures) throw Error(what, "the texture belongs to another scene");
+    if (!slot.scene()) slot.textures_of = textures;
+}
+
+template <typename V>
+SpectrumParameter spectrum_parameter_of(nb::handle v, RgbMeaning meaning, Slot<V>& slot,
+                                        const std::string& what) {
+    if (nb::isinstance<SpectrumTextureHandle>(v)) {
+        const auto& texture = nb::cast<const SpectrumTextureHandle&>(v);
+        require_scene(slot, texture.scene, what);
+        return {{}, texture.index};
+    }
+    return {spectrum_of(v, meaning, what)};
+}
+template <typename V>
+FloatParameter float_parameter_of(nb::handle v, Slot<V>& slot, const std::string& what) {
+    if (nb::isinstance<FloatTextureHandle>(v)) {
+        const auto& texture = nb::cast<const FloatTextureHandle&>(v);
+        require_scene(slot, texture.scene, what);
+        return {0, texture.index};
+    }
+    return {static_cast<float>(number_of(v, what))};
+}
+
+// An attribute of T that is read by get(value, ref) and changed by set(value, given, ref, what); `type` is
+// for the stubs.
+template <typename T, typename Get, typename Set>
+void attribute(nb::class_<Ref<T>>& c, const char* name, const char* type, Get get, Set set, const char* doc) {
+    const std::string getter = "def " + std::string(name) + "(self, /) -> " + type;
+    const std::string setter = "def " + std::string(name) + "(self, value: " + type + ", /) -> None";
+    const std::string what = nb::cast<std::string>(c.attr("__name__")) + "." + name;
+    c.def_prop_rw(
+        name, [get](const Ref<T>& r) -> nb::object { return get(r.value(), r); },
+        [set, what](Ref<T>& r, nb::object given) {
+            T changed = r.value();
+            set(changed, given, r, what);
+            r.change([&](T& value) {
+                T next = value;
+                set(next, given, r, what);
+                value = std::move(next);
+            });
+            if (r.scene())
+                r.scene()->note(what + "[" + std::to_string(r.first()) +
+                                "] = " + nb::cast<std::string>(nb::repr(given)));
+        },
+        nb::for_getter(nb::sig(getter.c_str())), nb::for_setter(nb::sig(setter.c_str())),
+        nb::for_setter(nb::arg("value").none()), doc);
+}
+
+// A number; `valid` says what is allowed, `expected` tells it.
+template <typename T, typename M, typename Valid>
+void number(nb::class_<Ref<T>>& c, const char* name, M T::*member, Valid valid, const char* expected,
+            const char* doc) {
+    attribute<T>(
+        c, name, "float",
+        [member](const T& t, const auto&) { return nb::float_(static_cast<double>(t.*member)); },
+        [member, valid, expected](T& t, nb::handle v, auto&, const std::string& what) {
+            const double x = number_of(v, what);
+            if (!valid(x))
+                throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected " + expected);
+            t.*member = static_cast<M>(x);
+        },
+        doc);
+}
+inline bool positive(double x) { return x > 0 && std::isfinite(x); }
+inline bool not_negative(double x) { return x >= 0 && std::isfinite(x); }
+inline bool finite(double x) { return std::isfinite(x); }
+
+template <typename T>
+void flag(nb::class_<Ref<T>>& c, const char* name, bool T::*member, const char* doc) {
+    attribute<T>(
+        c, name, "bool", [member](const T& t, const auto&) { return nb::bool_(t.*member); },
+        [member](T& t, nb::handle v, auto&, const std::string& what) { t.*member = boolean_of(v, what); },
+        doc);
+}
+
+// What every class of values has: a constructor and comparison of places.
+template <typename T>
+nb::class_<Ref<T>> value_class(nb::handle m, const char* name, const char* doc) {
+    nb::class_<Ref<T>> c(m, name, doc);
+    // Attributes as keyword arguments.
+    c.def("__init__", [](Ref<T>* self, const nb::kwargs& attributes) {
+        nb::object made = nb::cast(Ref<T>());
+        if (attributes.size() > 0) nb::module_::import_("montelux._scene").attr("assign")(made, attributes);
+        new (self) Ref<T>(nb::cast<const Ref<T>&>(made));
+    });
+    c.def(
+        "__eq__",
+        [](const Ref<T>& a, nb::handle b) {
+            return nb::isinstance<Ref<T>>(b) && a.same_place(nb::cast<const Ref<T>&>(b));
+        },
+        nb::arg("other").none());
+    c.def("__hash__", [](const Ref<T>& a) {
+        return static_cast<std::int64_t>(reinterpret_cast<std::uintptr_t>(a.scene().get()) / 16 + a.first());
+    });
+    return c;
+}
+
+} // namespace montelux::python

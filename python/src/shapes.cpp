@@ -1,0 +1,232 @@
+#include "python/src/shapes.h"
+
+#include "python/src/bindings.h"
+#include "python/src/scene_values.h"
+#include <nanobind/stl/string.h>
+
+namespace montelux::python {
+namespace {
+
+using ShapeRef = Ref<Shape>;
+
+std::size_t primitives(const Scene& scene, const Shape& s) {
+    return s.mesh != no_index ? scene.meshes[s.mesh].triangle_count() : 1;
+}
+
+std::string kind_of(const ShapeRef& r) {
+    const Shape& s = r.value();
+    if (s.mesh != no_index) return "mesh";
+    return std::holds_alternative<Sphere>(r.scene()->read().scene.quadrics[s.quadric]) ? "sphere" : "disk";
+}
+
+nb::object light_of(const ShapeRef& r) {
+    const Shape& s = r.value();
+    if (s.first_light == no_index) return nb::none();
+    return as_python(
+        Slot<Light>(r.scene(), s.first_light, static_cast<Index>(primitives(r.scene()->read().scene, s))));
+}
+
+// None takes the light away; an AreaLight or a spectrum gives one to each primitive.
+void set_light(const SceneRef& holder, Index shape, const nb::object& emission) {
+    AreaLight light = default_value<AreaLight>();
+    if (nb::isinstance<Ref<AreaLight>>(emission)) {
+        light = nb::cast<const Ref<AreaLight>&>(emission).value();
+    } else if (!emission.is_none()) {
+        light.spectrum = spectrum_of(emission, RgbMeaning::illuminant, "Shape.light");
+        light.scale = photometric_scale(light.spectrum, "Shape.light");
+    }
+    SceneDescription& d = holder->edit();
+    Shape& s = d.scene.shapes[shape];
+    const std::size_t count = primitives(d.scene, s);
+    if (s.first_light != no_index) erase_lights(d, s.first_light, static_cast<Index>(count));
+    if (emission.is_none()) return;
+    s.first_light = static_cast<Index>(d.scene.lights.size());
+    light.shape = shape;
+    for (std::size_t i = 0; i < count; ++i) {
+        light.primitive = static_cast<Index>(i);
+        d.scene.lights.emplace_back(light);
+    }
+    holder->note("light of shape " + std::to_string(shape) + " " + std::to_string(light.scale) + " " +
+                 nb::cast<std::string>(nb::repr(nb::cast(light.spectrum))));
+}
+
+nb::object added(const SceneRef& holder, Shape s, const nb::object& material, const nb::object& emission) {
+    s.material = material_index(holder, material, "material of a shape");
+    SceneDescription& d = holder->edit();
+    const auto index = static_cast<Index>(d.scene.shapes.size());
+    d.scene.shapes.push_back(s);
+    d.scene.world_shapes.push_back(index);
+    holder->note("shape of material " + std::to_string(s.material));
+    if (!emission.is_none()) set_light(holder, index, emission);
+    return nb::cast(ShapeRef(Slot<Shape>(holder, index)));
+}
+
+// Rows of n numbers.
+Numbers rows(const nb::object& given, std::size_t n, const std::string& what) {
+    Numbers numbers = numbers_of(given, what);
+    if (numbers.shape.size() != 2 || numbers.shape[1] != n)
+        throw Error(what, "expected an array of shape (n, " + std::to_string(n) + ")");
+    return numbers;
+}
+
+nb::object positions_of(const ShapeRef& r) {
+    const Shape& s = r.value();
+    if (s.mesh == no_index) return nb::none();
+    std::vector<double> rows;
+    for (const Point3f& p : r.scene()->read().scene.meshes[s.mesh].positions)
+        rows.insert(rows.end(),
+                    {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+    return new_array(rows, rows.size() / 3, 3);
+}
+
+} // namespace
+
+void erase_lights(SceneDescription& d, Index first, Index count) {
+    const auto begin = d.scene.lights.begin() + first;
+    d.scene.lights.erase(begin, begin + count);
+    for (Shape& s : d.scene.shapes) {
+        if (s.first_light == no_index || s.first_light < first) continue;
+        s.first_light = s.first_light < first + count ? no_index : s.first_light - count;
+    }
+}
+
+Index material_index(const SceneRef& scene, const nb::object& material, const std::string& what) {
+    const Slot<Material>* slot = material_slot(material);
+    if (!slot)
+        throw Error(what, "an object of type '" + std::string(nb::type_name(material.type()).c_str()) +
+                              "' was given; expected a material, such as Diffuse()");
+    if (slot->scene() == scene) return slot->first();
+    if (slot->textures_of && slot->textures_of != scene)
+        throw Error(what, "its textures belong to another scene");
+    const Material value = slot->read();
+    SceneDescription& d = scene->edit();
+    d.scene.materials.push_back(value);
+    scene->note("material " + std::to_string(value.index()));
+    return static_cast<Index>(d.scene.materials.size() - 1);
+}
+
+nb::object add_mesh(const SceneRef& scene, const nb::object& positions, const nb::object& triangles,
+                    const nb::object& material, const nb::object& normals, const nb::object& uvs,
+                    const nb::object& transform, const nb::object& emission) {
+    const Numbers p = rows(positions, 3, "add_mesh, positions"),
+                  t = rows(triangles, 3, "add_mesh, triangles");
+    const Transform world = transform_of(transform, "add_mesh, transform");
+    TriangleMesh mesh;
+    const std::size_t n = p.shape[0];
+    for (std::size_t i = 0; i < n; ++i)
+        mesh.positions.push_back(
+            Vec3f(world.point(Vec3d{p.values[3 * i], p.values[3 * i + 1], p.values[3 * i + 2]})));
+    for (const double v : t.values) {
+        if (!(v >= 0 && v < static_cast<double>(n) && v == std::floor(v)))
+            throw Error("add_mesh, triangles", "the index " + std::to_string(v) +
+                                                   " was given; expected whole numbers "
+                                                   "from 0 to " +
+                                                   std::to_string(n) + " - 1, the positions");
+        mesh.indices.push_back(static_cast<Index>(v));
+    }
+    if (mesh.indices.empty()) throw Error("add_mesh, triangles", "expected at least one triangle");
+    if (!normals.is_none()) {
+        const Numbers given = rows(normals, 3, "add_mesh, normals");
+        if (given.shape[0] != n) throw Error("add_mesh, normals", "expected one a position");
+        for (std::size_t i = 0; i < n; ++i)
+            mesh.normals.push_back(Vec3f(
+                world.normal(Vec3d{given.values[3 * i], given.values[3 * i + 1], given.values[3 * i + 2]})));
+    }
+    if (!uvs.is_none()) {
+        const Numbers given = rows(uvs, 2, "add_mesh, uvs");
+        if (given.shape[0] != n) throw Error("add_mesh, uvs", "expected one a position");
+        for (std::size_t i = 0; i < n; ++i)
+            mesh.uvs.push_back(
+                {static_cast<float>(given.values[2 * i]), static_cast<float>(given.values[2 * i + 1])});
+    }
+    for (const Point3f& q : mesh.positions)
+        if (!(std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z)))
+            throw Error("add_mesh, positions", "a position is not finite");
+    scene->note(mesh.positions.data(), mesh.positions.size() * sizeof(Point3f));
+    scene->note(mesh.indices.data(), mesh.indices.size() * sizeof(Index));
+    Shape s;
+    s.mesh = static_cast<Index>(scene->read().scene.meshes.size());
+    s.flip_normal = world.swaps_handedness();
+    scene->edit().scene.meshes.push_back(std::move(mesh));
+    return added(scene, s, material, emission);
+}
+
+nb::object add_quadric(const SceneRef& scene, Quadric quadric, const Transform& world,
+                       const nb::object& material, const nb::object& emission) {
+    Shape s;
+    s.flip_normal = world.swaps_handedness();
+    s.quadric = static_cast<Index>(scene->read().scene.quadrics.size());
+    scene->note(&world.matrix().m, sizeof world.matrix().m);
+    scene->edit().scene.quadrics.push_back(std::move(quadric));
+    return added(scene, s, material, emission);
+}
+
+nb::object add_sphere(const SceneRef& scene, double radius, const nb::object& centre,
+                      const nb::object& material, const nb::object& transform, const nb::object& emission) {
+    if (!positive(radius)) throw Error("add_sphere, radius", "expected a number above zero");
+    const std::vector<double> c = numbers_of(centre, 3, "add_sphere, centre");
+    const Transform world =
+        transform_of(transform, "add_sphere, transform") * Transform::translate({c[0], c[1], c[2]});
+    Sphere sphere;
+    sphere.radius = static_cast<float>(radius);
+    sphere.z_min = -sphere.radius;
+    sphere.z_max = sphere.radius;
+    sphere.world_from_object = world;
+    scene->note("sphere " + std::to_string(radius));
+    return add_quadric(scene, sphere, world, material, emission);
+}
+
+nb::object add_disk(const SceneRef& scene, double radius, double inner_radius, double height,
+                    const nb::object& material, const nb::object& transform, const nb::object& emission) {
+    if (!positive(radius)) throw Error("add_disk, radius", "expected a number above zero");
+    if (!(inner_radius >= 0 && inner_radius <= radius))
+        throw Error("add_disk, inner_radius", "expected a number between 0 and the radius");
+    Disk disk;
+    disk.height = static_cast<float>(height);
+    disk.radius = static_cast<float>(radius);
+    disk.inner_radius = static_cast<float>(inner_radius);
+    disk.world_from_object = transform_of(transform, "add_disk, transform");
+    scene->note("disk " + std::to_string(radius) + " " + std::to_string(inner_radius) + " " +
+                std::to_string(height));
+    return add_quadric(scene, disk, disk.world_from_object, material, emission);
+}
+
+void bind_shapes(nb::module_& m) {
+    nb::class_<ShapeRef> c(m, "Shape", "A shape of a scene: its material, its light, its side.");
+    c.def_prop_ro("kind", &kind_of, "'mesh', 'sphere' or 'disk'.")
+        .def_prop_rw(
+            "material",
+            [](const ShapeRef& r) -> nb::object {
+                if (r.value().material == no_index) return nb::none();
+                return as_python(Slot<Material>(r.scene(), r.value().material));
+            },
+            [](ShapeRef& r, const nb::object& given) {
+                const Index i = material_index(r.scene(), given, "Shape.material");
+                r.change([&](Shape& s) { s.material = i; });
+                r.scene()->note("material " + std::to_string(i) + " of shape " + std::to_string(r.first()));
+            },
+            "The material; one that is not of the scene is added to it.")
+        .def_prop_rw(
+            "light", &light_of, [](ShapeRef& r, const nb::object& e) { set_light(r.scene(), r.first(), e); },
+            nb::for_setter(nb::arg("emission").none()),
+            "The AreaLight of all its primitives, or None; set an AreaLight, a spectrum or None.")
+        .def_prop_ro("positions", &positions_of, "Vertices of a mesh, shape (n, 3); else None.")
+        .def(
+            "__eq__",
+            [](const ShapeRef& a, nb::handle b) {
+                return nb::isinstance<ShapeRef>(b) && a.same_place(nb::cast<const ShapeRef&>(b));
+            },
+            nb::arg("other").none())
+        .def("__hash__", [](const ShapeRef& a) { return static_cast<std::int64_t>(a.first()); })
+        .def("__repr__", [](const ShapeRef& r) { return "<Shape: " + kind_of(r) + ">"; });
+    flag(c, "flip_normal", &Shape::flip_normal, "Whether the side that shines is turned around.");
+    attribute<Shape>(
+        c, "alpha", "typing.Any",
+        [](const Shape& s, const ShapeRef& r) { return number_or_texture(s.alpha, r.scene()); },
+        [](Shape& s, nb::handle v, ShapeRef& r, const std::string& what) {
+            s.alpha = float_parameter_of(v, r, what);
+        },
+        "Cut-out: a point is there with this probability; a number or a texture.");
+}
+
+} // namespace montelux::python

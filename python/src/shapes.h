@@ -1,0 +1,25 @@
+// Shapes of a scene: meshes and quadrics from Python, their materials and lights.
+#pragma once
+
+#include "python/src/scene_slots.h"
+#include <nanobind/nanobind.h>
+
+namespace montelux::python {
+
+using SceneRef = std::shared_ptr<SceneHolder>;
+
+// Each adds a shape to the world and returns it; materials that are values by themselves are added, too.
+nb::object add_mesh(const SceneRef& scene, const nb::object& positions, const nb::object& triangles,
+                    const nb::object& material, const nb::object& normals, const nb::object& uvs,
+                    const nb::object& transform, const nb::object& emission);
+nb::object add_sphere(const SceneRef& scene, double radius, const nb::object& centre,
+                      const nb::object& material, const nb::object& transform, const nb::object& emission);
+nb::object add_disk(const SceneRef& scene, double radius, double inner_radius, double height,
+                    const nb::object& material, const nb::object& transform, const nb::object& emission);
+
+// The place of a material in a scene, which is added to it where it is a value by itself.
+Index material_index(const SceneRef& scene, const nb::object& material, const std::string& what);
+// Lights come and go: indices of other lights are kept right.
+void erase_lights(SceneDescription& d, Index first, Index count);
+
+} // namespace montelux::python

@@ -1,0 +1,279 @@
+#include "python/src/bindings.h"
+#include "python/src/names.h"
+#include "python/src/scene_values.h"
+#include <algorithm>
+#include <nanobind/stl/string.h>
+#include <string>
+
+#include "montelux/image/image.h"
+
+namespace montelux::python {
+namespace {
+
+constexpr Names<SamplerKind, 6> sampler_kinds{"sampler",
+                                              {{{"independent", SamplerKind::independent},
+                                                {"stratified", SamplerKind::stratified},
+                                                {"halton", SamplerKind::halton},
+                                                {"hammersley", SamplerKind::hammersley},
+                                                {"sobol", SamplerKind::sobol},
+                                                {"sobol-blue-noise", SamplerKind::sobol_blue_noise}}}};
+constexpr Names<Strategy, 4> strategies{"strategy",
+                                        {{{"uniform", Strategy::uniform},
+                                          {"bsdf", Strategy::bsdf},
+                                          {"light", Strategy::light},
+                                          {"mis", Strategy::mis}}}};
+constexpr Names<Heuristic, 2> heuristics{"heuristic",
+                                         {{{"balance", Heuristic::balance}, {"power", Heuristic::power}}}};
+constexpr Names<SphericalCamera::Mapping, 2> mappings{
+    "mapping",
+    {{{"equal_area", SphericalCamera::Mapping::equal_area},
+      {"equirectangular", SphericalCamera::Mapping::equirectangular}}}};
+
+template <typename T, typename M, typename Table>
+void choice(nb::class_<Ref<T>>& c, const char* name, M T::*member, const Table& table, const char* doc) {
+    attribute<T>(
+        c, name, "str",
+        [member, &table](const T& t, const auto&) {
+            const std::string_view text = table.name(t.*member);
+            return nb::str(text.data(), text.size());
+        },
+        [member, &table](T& t, nb::handle v, auto&, const std::string& what) {
+            if (!nb::isinstance<nb::str>(v))
+                throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected a name");
+            t.*member = table.value(nb::cast<std::string>(v));
+        },
+        doc);
+}
+
+nb::object floats(std::initializer_list<float> values) {
+    nb::list l;
+    for (const float v : values) l.append(static_cast<double>(v));
+    return nb::tuple(l);
+}
+
+// What cameras have in common.
+template <typename T>
+void placed(nb::class_<Ref<T>>& c) {
+    c.def_prop_rw(
+         "world_from_camera", [](const Ref<T>& r) { return matrix_array(r.read().world_from_camera); },
+         [](Ref<T>& r, const nb::object& m) {
+             const Transform t = transform_of(m, "camera.world_from_camera");
+             r.edit([&](CameraSettings& s) { s.world_from_camera = t; });
+             if (r.scene()) r.scene()->note(&t.matrix().m, sizeof t.matrix().m);
+         },
+         "Where the camera is, shape (4, 4): camera space has x to the right, y up and z forward.")
+        .def(
+            "look_at",
+            [](Ref<T>& r, const nb::object& eye, const nb::object& target, const nb::object& up) {
+                auto vector = [](const nb::object& v, const char* what) {
+                    const std::vector<double> x = numbers_of(v, 3, what);
+                    return Vec3d{x[0], x[1], x[2]};
+                };
+                const auto t =
+                    Transform::look_at(vector(eye, "look_at, eye"), vector(target, "look_at, target"),
+                                       vector(up, "look_at, up"));
+                if (!t)
+                    throw Error("look_at",
+                                "eye, target and up span no frame: the target is the eye, or lies along up");
+                r.edit([&](CameraSettings& s) { s.world_from_camera = t->inverse(); });
+                if (r.scene()) r.scene()->note(&t->matrix().m, sizeof t->matrix().m);
+            },
+            "eye"_a, "target"_a, "up"_a = nb::make_tuple(0, 0, 1),
+            "Stands at eye, looks at target, up is near up.");
+}
+template <typename T>
+void projective(nb::class_<Ref<T>>& c) {
+    placed(c);
+    number(c, "lens_radius", &T::lens_radius, not_negative, "a number that is not negative",
+           "0 is a pinhole.");
+    number(c, "focal_distance", &T::focal_distance, positive, "a number above zero",
+           "Where points are sharp.");
+    attribute<T>(
+        c, "frame_aspect_ratio", "float | None",
+        [](const T& t, const auto&) -> nb::object {
+            return t.frame_aspect_ratio ? nb::object(nb::float_(static_cast<double>(*t.frame_aspect_ratio)))
+                                        : nb::none();
+        },
+        [](T& t, nb::handle v, auto&, const std::string& what) {
+            t.frame_aspect_ratio.reset();
+            if (v.is_none()) return;
+            const double x = number_of(v, what);
+            if (!positive(x)) throw Error(what, "expected a number above zero, or None");
+            t.frame_aspect_ratio = static_cast<float>(x);
+        },
+        "Width over height, where it is not the film's; else None.");
+    attribute<T>(
+        c, "screen_window", "tuple[float, float, float, float] | None",
+        [](const T& t, const auto&) -> nb::object {
+            if (!t.screen_window) return nb::none();
+            const ScreenWindow& w = *t.screen_window;
+            return floats({w.x_min, w.x_max, w.y_min, w.y_max});
+        },
+        [](T& t, nb::handle v, auto&, const std::string& what) {
+            t.screen_window.reset();
+            if (v.is_none()) return;
+            const std::vector<double> w = numbers_of(v, 4, what);
+            if (w[0] == w[1] || w[2] == w[3]) throw Error(what, "the window has no area");
+            t.screen_window = ScreenWindow{static_cast<float>(w[0]), static_cast<float>(w[1]),
+                                           static_cast<float>(w[2]), static_cast<float>(w[3])};
+        },
+        "x_min, x_max, y_min, y_max of the part of the plane z = 1 that the film covers; or None.");
+}
+
+template <typename T>
+void radius(nb::class_<Ref<T>>& c) {
+    attribute<T>(
+        c, "radius", "tuple[float, float]",
+        [](const T& t, const auto&) {
+            return floats({t.radius.x, t.radius.y});
+        },
+        [](T& t, nb::handle v, auto&, const std::string& what) {
+            const std::vector<double> r = numbers_of(v, 2, what);
+            if (!(r[0] > 0 && r[1] > 0)) throw Error(what, "expected two numbers above zero");
+            t.radius = {static_cast<float>(r[0]), static_cast<float>(r[1])};
+        },
+        "Half width and half height in pixels.");
+}
+
+void set_resolution(FilmSettings& f, std::int64_t w, std::int64_t h) {
+    // The crop keeps its place on the film.
+    auto scaled = [](int v, int from, std::int64_t to) {
+        return static_cast<int>(std::int64_t{v} * to / from);
+    };
+    PixelBounds b{scaled(f.crop.x0, f.width, w), scaled(f.crop.y0, f.height, h),
+                  scaled(f.crop.x1, f.width, w), scaled(f.crop.y1, f.height, h)};
+    b.x1 = std::max(b.x1, b.x0 + 1);
+    b.y1 = std::max(b.y1, b.y0 + 1);
+    f.crop = b;
+    f.width = static_cast<int>(w);
+    f.height = static_cast<int>(h);
+}
+
+void bind_film(nb::module_& m) {
+    auto c = value_class<FilmSettings>(m, "Film", "Resolution, crop, pixel filter and sensor.");
+    attribute<FilmSettings>(
+        c, "resolution", "tuple[int, int]",
+        [](const FilmSettings& f, const auto&) { return nb::make_tuple(f.width, f.height); },
+        [](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
+            const std::vector<double> r = numbers_of(v, 2, what);
+            for (const double n : r)
+                if (!(n >= 1 && n <= Image::max_dimension && n == std::floor(n)))
+                    throw Error(what, std::string(nb::repr(v).c_str()) +
+                                          " was given; expected two whole numbers from 1 to " +
+                                          std::to_string(Image::max_dimension));
+            set_resolution(f, static_cast<std::int64_t>(r[0]), static_cast<std::int64_t>(r[1]));
+        },
+        "Width and height in pixels; a crop keeps its place.");
+    auto side = [&](const char* name, int FilmSettings::*member, bool width, const char* doc) {
+        attribute<FilmSettings>(
+            c, name, "int", [member](const FilmSettings& f, const auto&) { return nb::int_(f.*member); },
+            [width](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
+                const std::int64_t n = whole_number_of(v, 1, Image::max_dimension, what);
+                set_resolution(f, width ? n : f.width, width ? f.height : n);
+            },
+            doc);
+    };
+    side("width", &FilmSettings::width, true, "Pixels of a row of the whole film.");
+    side("height", &FilmSettings::height, false, "Rows of the whole film.");
+    attribute<FilmSettings>(
+        c, "crop", "tuple[int, int, int, int]",
+        [](const FilmSettings& f, const auto&) {
+            return nb::make_tuple(f.crop.x0, f.crop.y0, f.crop.x1, f.crop.y1);
+        },
+        [](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
+            const std::vector<double> b = numbers_of(v, 4, what);
+            if (!(b[0] >= 0 && b[0] < b[2] && b[2] <= f.width && b[1] >= 0 && b[1] < b[3] &&
+                  b[3] <= f.height))
+                throw Error(what,
+                            "expected pixels x0, y0, x1, y1 with 0 <= x0 < x1 <= " + std::to_string(f.width) +
+                                " and 0 <= y0 < y1 <= " + std::to_string(f.height));
+            f.crop = {static_cast<int>(b[0]), static_cast<int>(b[1]), static_cast<int>(b[2]),
+                      static_cast<int>(b[3])};
+        },
+        "The pixels that are rendered: x0, y0, x1, y1 from the top left, the last two exclusive.");
+    number(c, "iso", &FilmSettings::iso, positive, "a number above zero",
+           "Sensitivity; 100 leaves values as they are.");
+    number(c, "exposure_time", &FilmSettings::exposure_time, positive, "a number above zero", "Seconds.");
+    number(c, "white_balance", &FilmSettings::white_balance, not_negative, "a number that is not negative",
+           "Kelvin of the light that is to look white; 0: none.");
+    number(
+        c, "max_component_value", &FilmSettings::max_component_value, [](double x) { return x > 0; },
+        "a number above zero", "Largest RGB value of a sample; infinite: none.");
+    c.def_prop_rw(
+        "filter",
+        [](const Ref<FilmSettings>& r) {
+            return r.scene() ? as_python(Slot<PixelFilter>(r.scene()))
+                             : as_python(Slot<PixelFilter>(r.read().filter));
+        },
+        [](Ref<FilmSettings>& r, const nb::object& o) {
+            const Slot<PixelFilter>* given = filter_slot(o);
+            if (!given) throw Error("Film.filter", "expected a pixel filter, such as GaussianFilter()");
+            const PixelFilter filter = given->read();
+            r.edit([&](FilmSettings& f) { f.filter = filter; });
+            if (r.scene()) r.scene()->note("filter " + nb::cast<std::string>(nb::str(o)));
+        },
+        "The pixel filter.");
+    auto box = value_class<BoxFilter>(m, "BoxFilter", "Every point of the pixel's box counts the same.");
+    radius(box);
+    auto triangle = value_class<TriangleFilter>(m, "TriangleFilter", "Falls linearly.");
+    radius(triangle);
+    auto gaussian = value_class<GaussianFilter>(m, "GaussianFilter", "A Gaussian that is zero at its edge.");
+    radius(gaussian);
+    number(gaussian, "sigma", &GaussianFilter::sigma, positive, "a number above zero",
+           "Standard deviation, pixels.");
+    auto mitchell = value_class<MitchellFilter>(m, "MitchellFilter", "Mitchell and Netravali's cubic.");
+    radius(mitchell);
+    number(mitchell, "b", &MitchellFilter::b, finite, "a number", "Blur.");
+    number(mitchell, "c", &MitchellFilter::c, finite, "a number", "Ringing.");
+    auto lanczos = value_class<LanczosFilter>(m, "LanczosFilter", "A windowed sinc.");
+    radius(lanczos);
+    number(lanczos, "tau", &LanczosFilter::tau, positive, "a number above zero", "Cycles of the window.");
+}
+
+} // namespace
+
+void bind_views(nb::module_& m) {
+    auto perspective = value_class<PerspectiveCamera>(m, "PerspectiveCamera", "A pinhole or thin lens.");
+    projective(perspective);
+    number(
+        perspective, "fov", &PerspectiveCamera::fov, [](double x) { return x > 0 && x < 180; },
+        "an angle between 0 and 180 degrees", "Field of view in degrees, over the shorter axis.");
+    auto orthographic = value_class<OrthographicCamera>(m, "OrthographicCamera", "Parallel rays.");
+    projective(orthographic);
+    auto spherical = value_class<SphericalCamera>(m, "SphericalCamera", "Every direction.");
+    placed(spherical);
+    choice(spherical, "mapping", &SphericalCamera::mapping, mappings, "'equal_area' or 'equirectangular'.");
+    bind_film(m);
+    auto sampler = value_class<SamplerSettings>(m, "Sampler", "Which points the samples are drawn from.");
+    choice(sampler, "kind", &SamplerSettings::kind, sampler_kinds,
+           "'independent', 'stratified', 'halton', 'hammersley', 'sobol' or 'sobol-blue-noise'.");
+    attribute<SamplerSettings>(
+        sampler, "seed", "int", [](const SamplerSettings& s, const auto&) { return nb::cast(s.seed); },
+        [](SamplerSettings& s, nb::handle v, auto&, const std::string& what) {
+            if (!nb::try_cast(v, s.seed))
+                throw Error(what, std::string(nb::repr(v).c_str()) +
+                                      " was given; expected a whole number in [0, 2**64)");
+        },
+        "Other seeds give other noise.");
+    attribute<SamplerSettings>(
+        sampler, "samples_per_pixel", "int",
+        [](const SamplerSettings& s, const auto&) { return nb::cast(s.samples_per_pixel); },
+        [](SamplerSettings& s, nb::handle v, auto&, const std::string& what) {
+            s.samples_per_pixel = static_cast<std::uint32_t>(whole_number_of(v, 1, 1 << 30, what));
+        },
+        "Samples of each pixel, where nothing else is asked for.");
+    auto integrator = value_class<IntegratorSettings>(m, "Integrator", "How light is followed.");
+    attribute<IntegratorSettings>(
+        integrator, "max_depth", "int",
+        [](const IntegratorSettings& s, const auto&) { return nb::cast(s.max_depth); },
+        [](IntegratorSettings& s, nb::handle v, auto&, const std::string& what) {
+            s.max_depth = static_cast<int>(whole_number_of(v, 0, 1'000'000, what));
+        },
+        "Scattering events of a path at most.");
+    choice(integrator, "strategy", &IntegratorSettings::strategy, strategies,
+           "How the light at a vertex is found: 'uniform', 'bsdf', 'light' or 'mis'.");
+    choice(integrator, "heuristic", &IntegratorSettings::heuristic, heuristics,
+           "Weights of the strategy mis: 'balance' or 'power'.");
+}
+
+} // namespace montelux::python
