@@ -55,7 +55,14 @@ class Number:
     @property
     def measured_text(self) -> str:
         """'1.234(56)'; of a bounded number the digits that are known."""
+        if self.bound:
+            return digits_of(self.measured, self.error) if self.exact != 0 else short(self.measured)
         return concise(self.measured, self.error)
+
+    @property
+    def distance_text(self) -> str:
+        """How far measured and exact are apart."""
+        return f"bound {short(self.error)}" if self.bound else f"{abs(self.distance):.1f} errors"
 
     @property
     def exact_text(self) -> str:
@@ -103,6 +110,15 @@ def digits_of(value: float, error: float) -> str:
     if "e" in text:
         mantissa, exponent = text.split("e")
         text = f"{mantissa} × 10{superscript(int(exponent))}"
+    return text.replace("-", "\N{MINUS SIGN}")
+
+
+def short(value: float) -> str:
+    """Two digits: '1.5 × 10⁻¹⁵'."""
+    text = f"{value:.2g}"
+    if "e" in text:
+        mantissa, exponent = text.split("e")
+        text = f"{mantissa} × 10{superscript(int(exponent))}".removeprefix("1 × ")
     return text.replace("-", "\N{MINUS SIGN}")
 
 

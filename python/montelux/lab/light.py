@@ -18,6 +18,13 @@ def scene(name: str) -> Any:
         return montelux.load(path)
 
 
+def rendered(which: Any, samples: int, seed: int, strategy: str = "mis", heuristic: str = "power") -> Any:
+    """A render of a scene, by its name or as it is, which has ended; on one thread."""
+    s = scene(which) if isinstance(which, str) else which
+    s.integrator.strategy, s.integrator.heuristic = strategy, heuristic
+    return s.render(samples=samples, seed=seed, threads=1).wait()
+
+
 def displayed(linear: Any, exposure: float = 1.0) -> Any:
     """sRGB values in [0, 1] of linear ones; what is brighter than white is rolled off, hue kept."""
     v = np.maximum(np.asarray(linear, dtype=float) * exposure, 0)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import montelux
 
-from ._figure import Figure, Outcome
+from ._figure import Figure, Outcome, Picture
 from ._number import LIMIT, Number
 from .images import formula_svg, write_drawings, write_pictures
 
@@ -66,7 +66,7 @@ def _section(figure: Figure, outcome: Outcome, folder: Path, png: bool) -> str:
     pictures = write_pictures(figure, outcome, folder)
     if pictures:
         cells = "".join(
-            f'<figure><a href="{name}"><img src="{name}" alt="{html.escape(p.caption)}" '
+            f'<figure{_wide(p)}><a href="{name}"><img src="{name}" alt="{html.escape(p.caption)}" '
             f'width="{p.pixels.shape[1]}" height="{p.pixels.shape[0]}"></a>'
             f"<figcaption>{html.escape(p.caption)}</figcaption></figure>"
             for name, p in pictures
@@ -82,12 +82,17 @@ def _section(figure: Figure, outcome: Outcome, folder: Path, png: bool) -> str:
     return "\n".join((*parts, "</section>"))
 
 
+def _wide(picture: Picture) -> str:
+    height, width = picture.pixels.shape[:2]
+    return ' class="wide"' if width > 2 * height else ""
+
+
 def _table(numbers: Sequence[Number]) -> str:
     rows = []
     for n in numbers:
-        distance = "within the bound" if n.bound else f"{abs(n.distance):.1f} errors"
+        distance = n.distance_text
         if not n.agrees:
-            distance = f"<strong>{distance if not n.bound else 'beyond the bound'}: wrong</strong>"
+            distance = f"<strong>{distance}: wrong</strong>"
         cells = (html.escape(n.name), html.escape(n.measured_text), html.escape(n.exact_text), distance)
         labels = ("", "measured", "exact", "apart")
         rows.append(

@@ -29,6 +29,10 @@ from . import (
     b8_geometry,
     b9_warped_grids,
     c4_ggx,
+    c5_plates,
+    c8_filters,
+    c8_lens,
+    c9_visible,
 )
 
 _MODULES = (
@@ -52,6 +56,10 @@ _MODULES = (
     b8_geometry,
     b9_warped_grids,
     c4_ggx,
+    c5_plates,
+    c8_filters,
+    c8_lens,
+    c9_visible,
 )
 
 

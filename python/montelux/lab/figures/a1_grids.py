@@ -88,7 +88,7 @@ def curse() -> Outcome:
         slopes = np.diff(np.log(e)) / np.diff(np.log(evaluations))
         errors[n] = (evaluations, e)
         remainder = abs(slopes[1] - slopes[0]) + 1e-7
-        numbers.append(Number(f"slope in {n} variables", slopes[1], remainder, -2 / n, bound=True, formula=f"−2/{n}"))
+        numbers.append(Number(f"slope, n = {n}", slopes[1], remainder, -2 / n, bound=True, formula=f"−2/{n}" if n > 2 else ""))
     return Outcome(numbers, {"errors": errors})
 
 
@@ -98,10 +98,10 @@ def draw_curse(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]
         colour = theme.map(i / 7)
         a.loglog(evaluations, error, MARKERS[i] + "-", color=colour)
         a.annotate(f"n = {n}", (evaluations[-1], error[-1]), (8, -4 if n < 8 else 6), textcoords="offset points", color=theme.ink)
-    x = np.array([10.0, 1e7])
+    x = np.array([10.0, 2e5])
     a.loglog(x, 0.6 * x**-0.5, color=theme.ink, linestyle=(0, (2, 2)), label="Monte Carlo, any n: $N^{-1/2}$", zorder=0)
     a.set(xlabel="evaluations N", ylabel="error", xlim=(2, 5e7))
-    a.legend(loc="lower left")
+    a.legend(loc="lower right")
     grid(a, theme)
 
 

@@ -55,7 +55,7 @@ def draw_general(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, An
         b.bar(v, np.sin(v), w, color=scale.to_rgba(16 * w), alpha=0.55, edgecolor=theme.ink, linewidth=0.8)
     b.plot(x, np.sin(x), color=theme.ink)
     b.set(title="16 points of the falling one", xlabel="x", ylabel="sin x", ylim=(0, 1.05), xlim=(-0.1, np.pi / 2 + 0.3), xticks=[0, np.pi / 2], xticklabels=["0", "π/2"])
-    figure.colorbar(scale, ax=b, label="1 / p", ticks=[0.5, 1, 2, 4, 8], format="%g")
+    figure.colorbar(scale, ax=b, label="1 / p", ticks=[0.5, 1, 2, 4, 8], format="%g").minorticks_off()
 
 
 FIGURES = (

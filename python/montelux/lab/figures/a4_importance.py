@@ -54,7 +54,7 @@ def draw_importance(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str,
         a.plot(x, np.zeros(16) - 0.05, "|", color=theme.ink, markersize=12)
         a.set(title=title, xlabel="x", xticks=[0, np.pi / 2], xticklabels=["0", "π/2"], ylim=(-0.1, 1.35))
     panels[0].set_ylabel("sin x")
-    figure.colorbar(scale, ax=panels, label="1 / p", ticks=[0.5, 1, 2, 4, 8], format="%g")
+    figure.colorbar(scale, ax=panels, label="1 / p", ticks=[0.5, 1, 2, 4, 8], format="%g").minorticks_off()
 
 
 def race() -> Outcome:

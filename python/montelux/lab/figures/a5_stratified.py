@@ -60,8 +60,8 @@ def jittered() -> Outcome:
         fitted, true = (t @ np.log(v) / (t @ t) for v in (spread[method], np.sqrt(expected)))
         text = f"{order:g} in the limit, here".replace("-", "−")
         numbers.append(Number(f"slope, {method}", fitted, np.sqrt(1 / (2 * SEEDS) / (t @ t)), true, formula=text))
-    gain = (spread["basic"][-1] / spread["stratified"][-1]) ** 2
-    numbers.append(Number("2048 samples: variance, times less", gain, gain * np.sqrt(4 / SEEDS), variance(1, 2048) / variance(32, 2)))
+    gain = spread["basic"][-1] / spread["stratified"][-1]
+    numbers.append(Number("2048 samples: error, times less", gain, gain * np.sqrt(1 / SEEDS), np.sqrt(variance(1, 2048) / variance(32, 2))))
     return Outcome(numbers, {"points": points, "counts": counts, "spread": spread, "random": montelux.points("independent", 256, 2, seed=3)})
 
 

@@ -17,21 +17,21 @@ if TYPE_CHECKING:
 
     from ..style import Theme
 
-WIDE = montelux.Distribution.normal(2, 1)
-NARROW = montelux.Distribution.normal(6, 0.2)
+WIDE = montelux.Distribution.normal(2, 1.5)
+NARROW = montelux.Distribution.normal(5, 0.4)
 #: Each with what the figure calls it, and its parameter.
 HEURISTICS = {"balance": None, "power": 2.0, "cutoff": 0.1, "maximum": None}
 
 
 def lobes(x):  # type: ignore[no-untyped-def]
-    """A wide lobe and a narrow one, times a slope that neither density knows; the integral is 2 + 0.5 * 6 = 5."""
+    """A wide lobe and a narrow one, times a slope that neither density knows; the integral is 2 + 0.5 * 5 = 4.5."""
     return x * (WIDE.pdf(x) + 0.5 * NARROW.pdf(x))
 
 
 def multiple() -> Outcome:
     """The weights along the line, and the estimates that they make: unbiased, one and all."""
     line, numbers = (-np.inf, np.inf), []
-    x = np.linspace(-1, 8, 901)
+    x = np.linspace(-2, 8, 1001)
     q = np.stack([WIDE.pdf(x), NARROW.pdf(x)], axis=1)
     weights = {}
     for name, parameter in HEURISTICS.items():
@@ -41,11 +41,11 @@ def multiple() -> Outcome:
         r = montelux.integrate(
             lobes, line, "multiple_importance", techniques=[WIDE, NARROW], weights=name, parameter=parameter, evaluations=200_000, seed=2
         )
-        numbers.append(of(f"{name}: estimate", r, 5))
+        numbers.append(of(f"{name}: estimate", r, 4.5))
     unequal = montelux.MultipleImportance([(WIDE, 3), (NARROW, 1)])
-    numbers.append(of("balance, three samples to one", montelux.integrate(lobes, line, unequal, evaluations=200_000, seed=2), 5))
+    numbers.append(of("balance, three samples to one", montelux.integrate(lobes, line, unequal, evaluations=200_000, seed=2), 4.5))
     optimal = montelux.MultipleImportance([WIDE, NARROW], weights="optimal")
-    numbers.append(of("optimal weights", montelux.integrate(lobes, line, optimal, evaluations=200_000, seed=2), 5))
+    numbers.append(of("optimal weights", montelux.integrate(lobes, line, optimal, evaluations=200_000, seed=2), 4.5))
     alone = montelux.integrate(lobes, line, "importance", technique=WIDE, evaluations=200_000, seed=2)
     return Outcome(numbers, {"x": x, "q": q, "weights": weights, "alone": alone})
 
@@ -58,7 +58,7 @@ def draw_multiple(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, A
     a.plot(x, lobes(x), color=theme.ink, label="f")
     for i, name in enumerate(("$p_1$, wide", "$p_2$, narrow")):
         a.plot(x, s["q"][:, i], color=theme.cycle[i], linestyle=STROKES[1 + i], label=name)
-    a.set(xlim=(-1, 8), ylim=(0, 2.2 * 3))
+    a.set(xlim=(-2, 8), ylim=(0, 3.2))
     a.legend(loc="upper left")
     for name in HEURISTICS:
         a = top[name]
@@ -66,7 +66,7 @@ def draw_multiple(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, A
         a.fill_between(x, w[:, 0], color=theme.blue, alpha=0.45, linewidth=0)
         a.fill_between(x, w[:, 0], 1, color=theme.orange, alpha=0.45, linewidth=0)
         a.plot(x, w[:, 0], color=theme.ink, linewidth=1.2)
-        a.set(title=name, xlim=(-1, 8), ylim=(0, 1), yticks=[0, 1])
+        a.set(title=name, xlim=(-2, 8), ylim=(0, 1), yticks=[0, 1])
     for name in ("cutoff", "maximum"):
         top[name].set_xlabel("x")
 

@@ -48,7 +48,7 @@ def chain() -> Outcome:
     counts = np.histogram(states, np.concatenate(([-np.inf], edges[1:-1], [np.inf])))[0]
     expected = len(states) / 40
     chi_squared = float(((counts - expected) ** 2 / expected).sum())
-    numbers.append(Number(f"χ² of 40 bins, one state in {apart}", chi_squared, np.sqrt(2 * 39), 39, formula="39 ± 9 expected"))
+    numbers.append(Number(f"χ² of 40 bins, one state in {apart}", chi_squared, np.sqrt(2 * 39), 39))
     return Outcome(numbers, {"chains": chains, "law": law})
 
 
@@ -58,7 +58,7 @@ def draw_chain(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]
     a.plot(chains.states[0, :400, 0], color=theme.blue, linewidth=1.2, drawstyle="steps-post")
     a.set(xlabel="step", ylabel="x", ylim=(-2.8, 2.8), xlim=(0, 400), title="one chain")
     x = np.linspace(-2.8, 2.8, 300)
-    b.hist(chains.states.ravel(), 70, (-2.8, 2.8), density=True, orientation="horizontal", color=theme.blue, alpha=0.45)
+    b.hist(chains.states.ravel(), bins=70, range=(-2.8, 2.8), density=True, orientation="horizontal", color=theme.blue, alpha=0.45)
     b.plot(s["law"].pdf(x), x, color=theme.ink)
     b.set(xlabel="density", title="160 000 states")
 

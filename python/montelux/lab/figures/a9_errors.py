@@ -46,7 +46,7 @@ def draw_calibration(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str
     a.axhline(1, color=theme.ink, linewidth=1.2)
     a.set(xlabel="run", ylabel="estimate ± one error", title="60 runs of 1024 samples")
     x = np.linspace(-4, 4, 200)
-    b.hist(s["z"], 41, (-4.1, 4.1), density=True, color=theme.blue, alpha=0.45)
+    b.hist(s["z"], bins=41, range=(-4.1, 4.1), density=True, color=theme.blue, alpha=0.45)
     b.plot(x, montelux.Distribution.normal().pdf(x), color=theme.ink)
     b.set(xlabel="(estimate − 1) / error", yticks=[], title="4000 runs")
 

@@ -33,7 +33,7 @@ def cosine() -> Outcome:
 
 def draw_cosine(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]) -> None:
     panels = figure.subplot_mosaic([["top"], ["plane"]], height_ratios=[1, 2.2], sharex=True)
-    panels["top"].hist(s["x"], 40, (0, np.pi / 2), density=True, color=theme.blue, alpha=0.5)
+    panels["top"].hist(s["x"], bins=40, range=(0, np.pi / 2), density=True, color=theme.blue, alpha=0.5)
     t = np.linspace(0, np.pi / 2, 200)
     panels["top"].plot(t, s["law"].pdf(t), color=theme.ink)
     panels["top"].set(ylabel="density", ylim=(0, 1.15))

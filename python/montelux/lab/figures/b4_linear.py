@@ -41,7 +41,7 @@ def draw_linear(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any
     for i, (points, law, ends) in enumerate(((s["x"], s["unit"], (0, 1)), (s["v"], s["range"], (2, 4)))):
         top, plane = panels[0, i], panels[1, i]
         t = np.linspace(*ends, 100)
-        top.hist(points, 30, ends, density=True, color=theme.cycle[i], alpha=0.5)
+        top.hist(points, bins=30, range=ends, density=True, color=theme.cycle[i], alpha=0.5)
         top.plot(t, law.pdf(t), color=theme.ink)
         top.set_title((r"$X = \sqrt{\xi}$", r"$X = 2\,\sqrt{3 \xi + 1}$")[i])
         top.set_ylim(0, None)

@@ -34,7 +34,7 @@ def quadratic() -> Outcome:
 def draw_quadratic(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]) -> None:
     a, b = figure.subplots(1, 2)
     t = np.linspace(-1, 1, 200)
-    a.hist(s["x"], 50, (-1, 1), density=True, color=theme.blue, alpha=0.5)
+    a.hist(s["x"], bins=50, range=(-1, 1), density=True, color=theme.blue, alpha=0.5)
     a.plot(t, s["law"].pdf(t), color=theme.ink)
     a.set(xlabel="x", ylabel="density")
     xi = np.linspace(0, 1, 401)

@@ -58,12 +58,12 @@ def draw_several(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, An
     a.plot(x[:2000], y[:2000], "o", markersize=2.4, color=theme.blue, markeredgewidth=0)
     a.set(xlabel="x", ylabel="y", xlim=(0, 1), ylim=(0, 1), xticks=[0, 1], yticks=[0, 1], title="p = x + y")
     t = np.linspace(0, 1, 100)
-    side.hist(y, 25, (0, 1), density=True, orientation="horizontal", color=theme.blue, alpha=0.5)
+    side.hist(y, bins=25, range=(0, 1), density=True, orientation="horizontal", color=theme.blue, alpha=0.5)
     side.plot(s["marginal"].pdf(t), t, color=theme.ink)
     side.set(ylim=(0, 1), yticks=[], title="p(y)", xticks=[0, 1])
     for level, colour, stroke in ((0.75, theme.orange, "-"), (0.25, theme.green, (0, (5, 2)))):
         near = np.abs(y - level) < 0.03
-        slices.hist(x[near], 20, (0, 1), density=True, histtype="step", color=colour, linewidth=1.5)
+        slices.hist(x[near], bins=20, range=(0, 1), density=True, histtype="step", color=colour, linewidth=1.5)
         slices.plot(t, (t + level) / (0.5 + level), color=colour, linestyle=stroke, label=f"p(x | y = {level})")
     slices.set(xlabel="x", ylim=(0, 2.6), xlim=(0, 1), title="conditional")
     slices.legend(loc="upper left")

@@ -51,7 +51,7 @@ def draw_ggx(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]) 
     a, b = figure.subplots(1, 2)
     quarter = {"xticks": [0, np.pi / 4, np.pi / 2], "xticklabels": ["0", "π/4", "π/2"]}
     t = np.linspace(0, np.pi / 2, 300)
-    a.hist(s["angles"], 60, (0, np.pi / 2), density=True, color=theme.blue, alpha=0.4)
+    a.hist(s["angles"], bins=60, range=(0, np.pi / 2), density=True, color=theme.blue, alpha=0.4)
     a.plot(t, s["law"].pdf(t), color=theme.orange, linestyle=(0, (5, 2)), label="p")
     a.plot(t, s["law"].cdf(t), color=theme.ink, label="P")
     a.set(xlabel="θ", xlim=(0, np.pi / 2), ylim=(0, 1.35), **quarter)

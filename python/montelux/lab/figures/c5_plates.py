@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .._figure import Figure, Outcome, Picture
-from ..light import displayed, same_mean, scene
+from ..light import displayed, rendered, same_mean
 
 STRATEGIES = {
     "bsdf": ("directions of the material", None),
@@ -14,14 +14,14 @@ STRATEGIES = {
 
 
 def plates() -> Outcome:
-    """The plates by each strategy at 4 samples a pixel, and by both strategies at 256."""
-    many = scene("plates").render(spp=256, seed=9, strategy="mis", threads=1)
+    """The plates by each strategy at 4 samples a pixel, and by both strategies at 64."""
+    many = rendered("plates", 64, seed=9)
     pictures, numbers = [], []
     for name, (caption, heuristic) in STRATEGIES.items():
-        r = scene("plates").render(spp=4, seed=1, strategy="mis" if heuristic else name, heuristic=heuristic, threads=1)
+        r = rendered("plates", 4, 1, "mis" if heuristic else name, heuristic or "power")
         pictures.append(Picture(f"{caption}, 4 samples a pixel", displayed(r.mean)))
-        numbers.append(same_mean(f"{caption}: picture's mean against 256 samples", r, many))
-    pictures.append(Picture("both, power heuristic, 256 samples a pixel", displayed(many.mean)))
+        numbers.append(same_mean(f"{caption}: picture's mean against 64 samples", r, many))
+    pictures.append(Picture("both, power heuristic, 64 samples a pixel", displayed(many.mean)))
     return Outcome(numbers, {}, pictures)
 
 

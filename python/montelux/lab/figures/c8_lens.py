@@ -6,7 +6,7 @@ import numpy as np
 
 from .._figure import Figure, Outcome, Picture
 from .._number import Number
-from ..light import displayed, scene
+from ..light import displayed, rendered, scene
 
 # As in scenes/lamps.pbrt: metres, and pixels at the focal distance.
 RADIUS, FOCUS, DEPTHS = 0.25, 4.0, (2, 3, 4, 6, 12)
@@ -26,7 +26,7 @@ def spread(depth: float, place: float) -> float:
 def lens() -> Outcome:
     """Five lamps through a lens and through a pinhole; the sizes of their images by the law of the thin lens."""
     s = scene("lamps")
-    r = s.render(spp=1024, seed=4, threads=1)
+    r = rendered(s, 512, 4)
     numbers, height, width = [], r.mean.shape[0], r.mean.shape[1]
     y, x = np.mgrid[0:height, 0:width] + 0.5
     light, error = (np.asarray(v, dtype=float).sum(axis=2) for v in (r.mean, r.standard_error))
@@ -38,9 +38,12 @@ def lens() -> Outcome:
         moment = (light * squared)[near].sum() / total
         # Of a quotient of sums over independent pixels.
         deviation = np.sqrt((error[near] ** 2 * (squared[near] - moment) ** 2).sum()) / total
-        numbers.append(Number(f"lamp at {depth} m: mean squared radius, pixels", moment, deviation, spread(depth, place)))
+        sharp = depth == FOCUS  # its edge is a pixel wide, of which the middles of pixels know little
+        numbers.append(
+            Number(f"lamp at {depth} m: mean squared radius, pixels²", moment, 0.15 if sharp else deviation, spread(depth, place), bound=sharp)
+        )
     s.camera.lens_radius = 0
-    pinhole = s.render(spp=256, seed=4, threads=1)
+    pinhole = rendered(s, 256, 4)
     pictures = [
         Picture("lens of 25 cm radius, focused at 4 m", displayed(r.mean, 40)),
         Picture("pinhole", displayed(pinhole.mean)),
@@ -53,7 +56,7 @@ FIGURES = (
         "C8",
         "lens",
         "The thin lens",
-        "Five lamps stand 2, 3, 4, 6 and 12 metres away, and the lens is focused at 4: each of the others becomes a disc of the lens's own shape. Through a pinhole all are points; light is faint there, and the upper picture is shown forty times brighter for its light is spread.",
+        "Five lamps stand 2, 3, 4, 6 and 12 metres away, and the lens is focused at 4: each of the others becomes a disc of the lens's own shape. Through a pinhole all are points; the light of a disc is spread, so that the first picture is shown forty times brighter.",
         (r"R = A\,\frac{|d - f|}{d} \quad \mathrm{on\ the\ plane\ in\ focus}, \qquad \mathrm{E}\,r^2 = \frac{R^2}{2}",),
         lens,
         alt="Five discs of light of different sizes, and five points",

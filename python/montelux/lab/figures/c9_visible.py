@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from .._figure import Figure, Outcome, Picture
-from ..light import displayed, same_mean, scene
+from ..light import displayed, rendered, same_mean
 
 FIVE = {"uniform": "uniform directions", "bsdf": "directions of the material", "light": "points on the lamp", "mis": "both, weighted"}
 
 
 def five() -> Outcome:
     """A room at five samples a pixel, by directions that know nothing and by samples that know the lamp and the material."""
-    many = scene("room").render(spp=512, seed=9, strategy="mis", threads=1)
+    many = rendered("room", 64, seed=9)
     pictures, numbers = [], []
     for name, caption in FIVE.items():
-        r = scene("room").render(spp=5, seed=2, strategy=name, threads=1)
+        r = rendered("room", 5, 2, name)
         pictures.append(Picture(f"{caption}, 5 samples a pixel", displayed(r.mean)))
-        numbers.append(same_mean(f"{caption}: picture's mean against 512 samples", r, many))
+        numbers.append(same_mean(f"{caption}: picture's mean against 64 samples", r, many))
     return Outcome(numbers, {}, pictures)
 
 
@@ -23,7 +23,7 @@ def spheres() -> Outcome:
     """Gold spheres at 64 samples a pixel: uniform directions, and directions of the GGX law."""
     pictures, renders = [], []
     for name, caption in (("uniform", "uniform directions"), ("bsdf", "directions of the GGX law")):
-        renders.append(scene("spheres").render(spp=64, seed=3, strategy=name, threads=1))
+        renders.append(rendered("spheres", 64, 3, name))
         pictures.append(Picture(f"{caption}, 64 samples a pixel", displayed(renders[-1].mean)))
     return Outcome([same_mean("means of the pictures, apart", *renders)], {}, pictures)
 
