@@ -62,6 +62,8 @@ class Figure:
     alt: str = ""
     #: Further functions whose source belongs to the figure.
     helpers: Sequence[Callable[..., Any]] = ()
+    #: Its computation takes more than a second or two.
+    slow: bool = False
 
     @property
     def key(self) -> str:

@@ -19,10 +19,10 @@ def scene(name: str) -> Any:
 
 
 def rendered(which: Any, samples: int, seed: int, strategy: str = "mis", heuristic: str = "power") -> Any:
-    """A render of a scene, by its name or as it is, which has ended; on one thread."""
+    """A render of a scene, by its name or as it is, which has ended."""
     s = scene(which) if isinstance(which, str) else which
     s.integrator.strategy, s.integrator.heuristic = strategy, heuristic
-    return s.render(samples=samples, seed=seed, threads=1).wait()
+    return s.render(samples=samples, seed=seed).wait()
 
 
 def displayed(linear: Any, exposure: float = 1.0) -> Any:

@@ -6,18 +6,29 @@ compiler) fails with a probability of 6e-7: below 2e-4 for all of them together.
 
 from __future__ import annotations
 
+import functools
 import math
+import os
 
 import pytest
 
-from montelux.lab import Figure, Number, all_figures
+from montelux.lab import Figure, Number, Outcome, all_figures
 
 FIGURES = all_figures()
+SLOW = os.environ.get("MONTELUX_SLOW") == "1"
+_slow = pytest.mark.skipif(not SLOW, reason="slow: MONTELUX_SLOW=1 runs it")
 
 
-@pytest.mark.parametrize("figure", FIGURES, ids=lambda f: f.key)
+@functools.cache
+def computed(figure: Figure) -> Outcome:
+    return figure.compute()
+
+
+@pytest.mark.parametrize(
+    "figure", [pytest.param(f, marks=_slow if f.slow else (), id=f.key) for f in FIGURES]
+)
 def test_numbers_agree_with_the_exact_ones(figure: Figure) -> None:
-    outcome = figure.compute()
+    outcome = computed(figure)
     assert outcome.numbers, "a figure without a number proves nothing"
     for n in outcome.numbers:
         assert math.isfinite(n.measured) and math.isfinite(n.error), n.name
@@ -31,7 +42,7 @@ def test_there_are_statistical_numbers_and_their_errors_are_right() -> None:
     distances = []
     for figure in FIGURES:
         if figure.row in ("A2", "A4", "A7", "B2", "B3", "B4", "B5", "B7", "B8"):
-            numbers = [n for n in figure.compute().numbers if not n.bound and math.isinf(n.degrees_of_freedom)]
+            numbers = [n for n in computed(figure).numbers if not n.bound and math.isinf(n.degrees_of_freedom)]
             distances += [n.distance for n in numbers]
     assert len(distances) > 40
     mean_square = sum(d * d for d in distances) / len(distances)

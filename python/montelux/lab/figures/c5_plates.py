@@ -34,6 +34,7 @@ FIGURES = (
         "Both together, each believed where it is good, are good everywhere; all are right on average.",
         (r"w_i = \frac{p_i}{p_1 + p_2}\ \ \mathrm{(balance)}, \qquad w_i = \frac{p_i^2}{p_1^2 + p_2^2}\ \ \mathrm{(power)}",),
         plates,
+        slow=True,
         alt="Five pictures of four plates that reflect four lamps",
     ),
 )

@@ -110,6 +110,7 @@ FIGURES = (
         draw_filters,
         6.0,
         "Profiles of five filters, measured and by their formulas",
-        (formula, lamps, picture),
+        slow=True,
+        helpers=(formula, lamps, picture),
     ),
 )

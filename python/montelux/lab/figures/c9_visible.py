@@ -36,6 +36,7 @@ FIGURES = (
         "The same room with the same number of samples: what differs is where they look. Uniform directions hardly ever find the lamp; points on the lamp light the walls smoothly and leave the glossy ball noisy; together they do both.",
         (r"L_o = \frac{1}{N} \sum_{i=1}^{N} \frac{f_r\,L_i \cos\theta_i}{p(\omega_i)}",),
         five,
+        slow=True,
         alt="Four pictures of a room with a lamp and two balls, ever less noisy",
     ),
     Figure(
@@ -45,6 +46,7 @@ FIGURES = (
         "Roughness grows from left to right. Uniform directions miss the narrow reflections of the smooth spheres, which stay black with bright specks; directions drawn from the law of the microfacets find them.",
         (r"p(\omega_i) = \frac{p(h)}{4\,(\omega_o \cdot h)}",),
         spheres,
+        slow=True,
         alt="Five spheres of growing roughness, by uniform directions and by directions of the material",
     ),
 )
