@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo build test test-all bench bench-integrate lint format install dependencies clean
+.PHONY: help demo lab build test test-all bench bench-integrate lint format install dependencies clean
 
 JOBS ?= $(shell cmake/jobs.sh)
 BUILD := build/release
@@ -13,6 +13,14 @@ help: ## this list
 
 demo: build ## build, then render a scene of our own (about a minute on two cores)
 	$(BUILD)/montelux render scenes/demo/studio.pbrt --spp $(DEMO_SPP) -o build/demo.exr -o build/demo.png
+
+LAB_PYTHON := $(BUILD)/python-environment/bin/python
+lab: dependencies ## every figure of Monte Carlo integration, drawn at build/lab/index.html (some minutes)
+	cmake --preset release -D MONTELUX_PYTHON=AUTO
+	@test -x $(LAB_PYTHON) || { echo "make lab needs the Python module, which CMake had to leave out: see its line above." >&2; exit 1; }
+	cmake --build $(BUILD) --parallel $(JOBS) --target montelux_python
+	$(LAB_PYTHON) -m pip install --quiet --disable-pip-version-check --only-binary :all: 'matplotlib>=3.8'
+	PYTHONPATH=$(BUILD)/python $(LAB_PYTHON) -m montelux.lab --out build/lab
 
 build: dependencies ## the program, at build/release/montelux
 	cmake --preset release

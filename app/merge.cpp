@@ -33,9 +33,9 @@ void run(const MergeSettings& settings) {
             if (std::filesystem::equivalent(input, output, ignored))
                 throw UsageError(output, "it is one of the slices; the joined picture needs another name");
     }
-    std::vector<Image> slices;
-    for (const std::string& input : settings.inputs) slices.push_back(read_image(input));
-    const MergedSlices merged = merge_slices(slices, settings.inputs);
+    SliceMerger merger;
+    for (const std::string& input : settings.inputs) merger.add(read_image(input), input);
+    const MergedSlices merged = merger.finish();
     finish_on_signals();
     for (const std::string& output : settings.outputs) write_image(output, merged.image);
     if (settings.quiet) return;
@@ -52,7 +52,7 @@ void run(const MergeSettings& settings) {
     }
     for (const std::string& output : settings.outputs)
         std::printf("%s: %d x %d pixels of %zu slices, %.7g samples a pixel, relative error %s\n",
-                    output.c_str(), merged.image.width(), merged.image.height(), slices.size(),
+                    output.c_str(), merged.image.width(), merged.image.height(), settings.inputs.size(),
                     merged.mean_samples, percent_text(merged.relative_error).c_str());
 }
 

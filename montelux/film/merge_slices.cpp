@@ -4,8 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <map>
-#include <utility>
 
 #include "montelux/film/film.h"
 #include "montelux/film/film_error.h"
@@ -91,108 +89,110 @@ double weighted_squares(const SkewMoments<3>& m) {
     return sum;
 }
 
+double number_attribute(const Image& image, const char* key) {
+    const auto at = image.attributes().find(key);
+    if (at == image.attributes().end()) return 0;
+    if (const int* v = std::get_if<int>(&at->second)) return *v;
+    if (const float* v = std::get_if<float>(&at->second)) return static_cast<double>(*v);
+    return 0;
+}
+
 } // namespace
 
-MergedSlices merge_slices(std::span<const Image> slices, std::span<const std::string> names) {
-    if (slices.empty()) throw Error("merge", "at least one picture is expected");
-    const std::string hash = text_attribute(slices[0], "renderHash", names[0]);
-    const int count = slice_of(slices[0], names[0]).count;
-    std::map<int, std::size_t> present;
-    std::vector<Layers> layers;
-    for (std::size_t i = 0; i < slices.size(); ++i) {
-        const SliceNumber s = slice_of(slices[i], names[i]);
-        if (text_attribute(slices[i], "renderHash", names[i]) != hash)
-            throw Error(names[i], "it is of another render than " + names[0] +
-                                      ": scene, film, sampler, seed or integrator differ");
-        if (s.count != count)
-            throw Error(names[i], "it is one of " + std::to_string(s.count) + " slices, but " + names[0] +
-                                      " is one of " + std::to_string(count));
-        if (slices[i].width() != slices[0].width() || slices[i].height() != slices[0].height())
-            throw Error(names[i], "it has another size than " + names[0]);
-        if (const auto [at, fresh] = present.emplace(s.index, i); !fresh)
-            throw Error(names[i],
-                        "it is slice " + std::to_string(s.index) + ", as " + names[at->second] + " is");
-        layers.emplace_back(slices[i], names[i]);
+void SliceMerger::add(const Image& slice, const std::string& name) {
+    const std::string hash = text_attribute(slice, "renderHash", name);
+    const SliceNumber number = slice_of(slice, name);
+    const Layers at(slice, name);
+    if (names_.empty()) {
+        first_name_ = name;
+        hash_ = hash;
+        count_ = number.count;
+        width_ = slice.width();
+        height_ = slice.height();
+        pixels_.resize(slice.pixel_count());
     }
-    MergedSlices result;
-    for (int k = 1; k <= count; ++k)
-        if (!present.contains(k)) result.missing.push_back(k);
+    if (hash != hash_)
+        throw Error(name, "it is of another render than " + first_name_ +
+                              ": scene, film, sampler, seed or integrator differ");
+    if (number.count != count_)
+        throw Error(name, "it is one of " + std::to_string(number.count) + " slices, but " + first_name_ +
+                              " is one of " + std::to_string(count_));
+    if (slice.width() != width_ || slice.height() != height_)
+        throw Error(name, "it has another size than " + first_name_);
+    if (const auto [other, fresh] = names_.emplace(number.index, name); !fresh)
+        throw Error(name, "it is slice " + std::to_string(number.index) + ", as " + other->second + " is");
+    if (names_.begin()->first == number.index) attributes_ = slice.attributes();
+    bad_samples_ += number_attribute(slice, "badSamples");
+    seconds_ += number_attribute(slice, "renderSeconds");
+    interrupted_ = std::max(interrupted_, number_attribute(slice, "interrupted"));
 
-    const Image& first = slices[present.begin()->second];
-    result.image = Image(first.width(), first.height(), film_layers());
+    std::size_t i = 0;
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x, ++i) {
+            PixelSums& sums = pixels_[i];
+            const SkewMoments<3> part = moments_of(slice, at, x, y);
+            sums.units.merge(part);
+            auto value = [&](int channel) { return static_cast<double>(slice.value(x, y, channel)); };
+            const double n = value(at.samples);
+            sums.samples += n;
+            sums.largest = std::max(sums.largest, value(at.outlier) * weighted_squares(part));
+            sums.depth += n * value(at.depth);
+            for (std::size_t c = 0; c < 3; ++c) {
+                sums.albedo[c] += n * value(at.albedo[c]);
+                sums.normal[c] += n * value(at.normal[c]);
+            }
+        }
+}
+
+MergedSlices SliceMerger::finish() const {
+    if (names_.empty()) throw Error("merge", "at least one picture is expected");
+    MergedSlices result;
+    for (int k = 1; k <= count_; ++k)
+        if (!names_.contains(k)) result.missing.push_back(k);
+    result.image = Image(width_, height_, film_layers());
     Image& out = result.image;
-    out.attributes() = first.attributes();
-    // Of one slice alone.
-    for (const char* key : {"stoppedBy", "clampedLuminance", "denoiser", "denoiserGuides"})
-        out.attributes().erase(key);
     const Layers to(out, "the joined picture");
     double squares = 0, luminance = 0, all_samples = 0;
-    for (int y = 0; y < out.height(); ++y)
-        for (int x = 0; x < out.width(); ++x) {
-            SkewMoments<3> total;
-            double samples = 0, largest = 0, depth = 0;
-            std::array<double, 3> albedo{}, normal{};
-            // In the order of the slices, whatever that of the files.
-            for (const auto& [number, i] : present) {
-                const Image& from = slices[i];
-                const Layers& at = layers[i];
-                const SkewMoments<3> part = moments_of(from, at, x, y);
-                total.merge(part);
-                auto value = [&](int channel) { return static_cast<double>(from.value(x, y, channel)); };
-                const double n = value(at.samples);
-                samples += n;
-                largest = std::max(largest, value(at.outlier) * weighted_squares(part));
-                depth += n * value(at.depth);
-                for (std::size_t c = 0; c < 3; ++c) {
-                    albedo[c] += n * value(at.albedo[c]);
-                    normal[c] += n * value(at.normal[c]);
-                }
-            }
+    std::size_t i = 0;
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x, ++i) {
+            const PixelSums& sums = pixels_[i];
+            const SkewMoments<3>& units = sums.units;
             auto put = [&](int channel, double v) { out.set(x, y, channel, static_cast<float>(v)); };
-            const double inverse = samples > 0 ? 1 / samples : 0, spread = weighted_squares(total);
+            const double inverse = sums.samples > 0 ? 1 / sums.samples : 0, spread = weighted_squares(units);
             double error = 0;
             for (int c = 0; c < 3; ++c) {
                 const auto k = static_cast<std::size_t>(c);
-                put(to.mean[k], total.mean(c));
-                put(to.error[k], total.standard_error(c));
-                put(to.skewness[k], total.skewness_of_mean(c));
-                put(to.albedo[k], albedo[k] * inverse);
-                put(to.normal[k], normal[k] * inverse);
-                error += luminance_weight[c] * total.standard_error(c);
-                luminance += luminance_weight[c] * total.mean(c);
+                put(to.mean[k], units.mean(c));
+                put(to.error[k], units.standard_error(c));
+                put(to.skewness[k], units.skewness_of_mean(c));
+                put(to.albedo[k], sums.albedo[k] * inverse);
+                put(to.normal[k], sums.normal[k] * inverse);
+                error += luminance_weight[c] * units.standard_error(c);
+                luminance += luminance_weight[c] * units.mean(c);
             }
-            put(to.samples, samples);
-            put(to.units, static_cast<double>(total.count()));
-            put(to.outlier, spread > 0 ? std::min(1.0, largest / spread) : 0);
-            put(to.depth, depth * inverse);
+            put(to.samples, sums.samples);
+            put(to.units, static_cast<double>(units.count()));
+            put(to.outlier, spread > 0 ? std::min(1.0, sums.largest / spread) : 0);
+            put(to.depth, sums.depth * inverse);
             squares += error * error;
-            all_samples += samples;
+            all_samples += sums.samples;
         }
     const double pixels = static_cast<double>(out.pixel_count());
     result.mean_samples = all_samples / pixels;
     result.relative_error = luminance > 0 ? std::sqrt(squares * pixels) / luminance : 0;
 
     Attributes& a = out.attributes();
+    a = attributes_;
+    // Of one slice alone.
+    for (const char* key : {"stoppedBy", "clampedLuminance", "denoiser", "denoiserGuides"}) a.erase(key);
     a["slice"] =
-        result.missing.empty() ? std::string("1/1") : std::string("some of ") + std::to_string(count);
+        result.missing.empty() ? std::string("1/1") : std::string("some of ") + std::to_string(count_);
     a["samplesTaken"] = static_cast<float>(result.mean_samples);
     a["relativeError"] = static_cast<float>(result.relative_error);
-    double bad = 0, seconds = 0, interrupted = 0;
-    auto number = [](const Image& image, const char* key) {
-        const auto at = image.attributes().find(key);
-        if (at == image.attributes().end()) return 0.0;
-        if (const int* v = std::get_if<int>(&at->second)) return static_cast<double>(*v);
-        if (const float* v = std::get_if<float>(&at->second)) return static_cast<double>(*v);
-        return 0.0;
-    };
-    for (const Image& slice : slices) {
-        bad += number(slice, "badSamples");
-        seconds += number(slice, "renderSeconds");
-        interrupted = std::max(interrupted, number(slice, "interrupted"));
-    }
-    a["interrupted"] = static_cast<int>(interrupted);
-    a["badSamples"] = static_cast<int>(std::min(bad, 1e9));
-    a["renderSeconds"] = static_cast<float>(seconds);
+    a["interrupted"] = static_cast<int>(interrupted_);
+    a["badSamples"] = static_cast<int>(std::min(bad_samples_, 1e9));
+    a["renderSeconds"] = static_cast<float>(seconds_);
     return result;
 }
 

@@ -1,11 +1,14 @@
 // Pictures of slices of one render, joined into the picture of the whole.
 #pragma once
 
-#include <span>
+#include <array>
+#include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "montelux/image/image.h"
+#include "montelux/mc/stats/skew_moments.h"
 
 namespace montelux {
 
@@ -16,12 +19,33 @@ struct MergedSlices {
     double mean_samples = 0;
 };
 
-// Joins what Film::develop() wrote for slices k/n of one render, in any order. Means, standard errors,
-// skewness and counts are those of all units together, as far as 32-bit layers tell (relative differences of
-// about 1e-7); the layer `outlier` is that of the slice in which the brightest unit stood out most, against
-// all. The standard error is infinite where there are fewer than two units. Pictures say what they are of in
-// the attributes `renderHash` and `slice`. Throws Error, naming the picture, where one is no slice, is of
-// another render, or is of a slice that another one is of. `names` are for messages.
-MergedSlices merge_slices(std::span<const Image> slices, std::span<const std::string> names);
+// Joins what Film::develop() wrote for slices k/n of one render, one picture after the other in any order, so
+// that no two need be in memory. Means, standard errors, skewness and counts are those of all units together,
+// as far as 32-bit layers tell (relative differences of about 1e-7); the layer `outlier` is that of the slice
+// in which the brightest unit stood out most, against all. The standard error is infinite where there are
+// fewer than two units. Pictures say what they are of in the attributes `renderHash` and `slice`.
+class SliceMerger {
+  public:
+    // Throws Error, naming the picture, where it is no slice, is of another render than those before, or of a
+    // slice that one of these is of. `name` is for messages.
+    void add(const Image& slice, const std::string& name);
+    // The joined picture of all that were added; throws Error where there were none.
+    MergedSlices finish() const;
+
+  private:
+    struct PixelSums {
+        SkewMoments<3> units;
+        double samples = 0, largest = 0; // weighted squares that the brightest unit makes up
+        double depth = 0;                // these and the next are weighted by samples
+        std::array<double, 3> albedo{}, normal{};
+    };
+
+    std::string first_name_, hash_;
+    int width_ = 0, height_ = 0, count_ = 0;
+    std::map<int, std::string> names_; // of the slices that were added
+    std::vector<PixelSums> pixels_;
+    Attributes attributes_; // of the picture of the lowest slice
+    double bad_samples_ = 0, seconds_ = 0, interrupted_ = 0;
+};
 
 } // namespace montelux

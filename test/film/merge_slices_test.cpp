@@ -39,13 +39,19 @@ Image picture(int k, int n, int units) {
     return image;
 }
 
+MergedSlices merge(const std::vector<Image>& slices, const std::vector<std::string>& names) {
+    SliceMerger merger;
+    for (std::size_t i = 0; i < slices.size(); ++i) merger.add(slices[i], names[i]);
+    return merger.finish();
+}
+
 TEST(MergeSlices, AllLayersAreThoseOfTheWhole) {
     const Film film = slice_film(0, 1, 40);
     const Image whole = film.develop();
     // Of different lengths, in another order.
     const std::vector<Image> slices{picture(2, 3, 40), picture(0, 3, 40), picture(1, 3, 40)};
     const std::vector<std::string> names{"c", "a", "b"};
-    const MergedSlices merged = merge_slices(slices, names);
+    const MergedSlices merged = merge(slices, names);
     EXPECT_TRUE(merged.missing.empty());
     ASSERT_EQ(merged.image.channel_names(), whole.channel_names());
     for (int c = 0; c < whole.channels(); ++c) {
@@ -68,14 +74,14 @@ TEST(MergeSlices, AllLayersAreThoseOfTheWhole) {
 TEST(MergeSlices, MissingOnesAreTold) {
     const std::vector<Image> slices{picture(3, 4, 40)};
     const std::vector<std::string> names{"d"};
-    EXPECT_EQ(merge_slices(slices, names).missing, (std::vector<int>{1, 2, 3}));
+    EXPECT_EQ(merge(slices, names).missing, (std::vector<int>{1, 2, 3}));
 }
 
 TEST(MergeSlices, WhatDoesNotFitIsRefused) {
     auto refused = [](const std::vector<Image>& slices, const std::string& why) {
         const std::vector<std::string> names{"a", "b"};
         try {
-            merge_slices(slices, names);
+            merge(slices, names);
             ADD_FAILURE() << why;
         } catch (const Error& e) {
             EXPECT_NE(std::string(e.what()).find(why), std::string::npos) << e.what();
@@ -98,6 +104,7 @@ TEST(MergeSlices, WhatDoesNotFitIsRefused) {
     Image small(2, 2, a.channel_names());
     small.attributes() = b.attributes();
     refused({a, small}, "another size");
+    EXPECT_THROW(SliceMerger().finish(), Error);
 }
 
 } // namespace

@@ -36,7 +36,7 @@ void expect_same(const Film& a, const Film& b) {
 TEST_F(Checkpoint, BrokenRendersEndWithTheSameBits) {
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol, SamplerKind::stratified})
         for (bool adaptive : {false, true}) {
-            SceneBuilder b = mixed_scene(1, 24, 20);
+            SceneBuilder b = mixed_scene(1, 16, 12);
             b.description.sampler.kind = kind;
             b.description.sampler.samples_per_pixel = 100;
             const RenderTarget target{.adaptive = adaptive};
@@ -54,7 +54,7 @@ TEST_F(Checkpoint, BrokenRendersEndWithTheSameBits) {
                 }
                 const Renderer renderer(description, target);
                 CancelFlag cancel;
-                const std::uint64_t begin = state.report.samples, more = 1 + hash_key(7, stops) % 9000;
+                const std::uint64_t begin = state.report.samples, more = 1 + hash_key(7, stops) % 4000;
                 RenderControl control;
                 control.cancel = &cancel;
                 control.checkpoint_seconds = 0.002;

@@ -119,18 +119,6 @@ TEST(Allocation, DoesNotDependOnThePixelItself) {
     EXPECT_GT(b[4 * width + 5], a[4 * width + 5]);
 }
 
-// Not even by rounding: a firefly elsewhere in the row, and in the pixel itself.
-TEST(Allocation, FirefliesReachTheirNeighboursAlone) {
-    constexpr int width = 64;
-    std::vector<double> deviations(width * 8, 1.0);
-    deviations[4 * width + 10] = 1e7;
-    SamplerSettings s{SamplerKind::independent, 0, 1u << 30};
-    const auto goals = allocate(film_with(deviations, width, 16, 3), SampleOrder(s, {}), {.error = 1e-9});
-    EXPECT_LT(goals[4 * width + 10], goals[4 * width + 11]);
-    for (int x = 20; x < width; ++x)
-        EXPECT_EQ(goals[static_cast<std::size_t>(4 * width + x)], goals[7 * width + 63]);
-}
-
 TEST(Allocation, GoesAsFarAsTheTargetNeedsInWholeUnits) {
     constexpr int width = 32;
     const Film film = film_with(std::vector<double>(width * width, 1.0), width, 64, 5);
