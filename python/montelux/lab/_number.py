@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import montelux
 
@@ -22,14 +23,19 @@ class Number:
     """
 
     name: str
-    measured: float
-    error: float
-    exact: float
+    #: These three are floats, or what NumPy makes of one.
+    measured: Any
+    error: Any
+    exact: Any
     bound: bool = False
     #: Of an error that comes from the spread of that many replicates less one; infinite: known well.
     degrees_of_freedom: float = math.inf
     #: The exact number as it is written in the text, '1' or 'pi^2/8 - 1'; empty: its digits.
     formula: str = ""
+
+    def __post_init__(self) -> None:
+        for name in ("measured", "error", "exact"):
+            object.__setattr__(self, name, float(getattr(self, name)))
 
     @property
     def limit(self) -> float:
@@ -74,7 +80,7 @@ class Number:
 def of(name: str, result: montelux.Result, exact: float, formula: str = "", replicates: int = 0) -> Number:
     """The value of an integration beside the exact one; `replicates` where its error comes from their spread."""
     freedom = replicates - 1.0 if replicates else math.inf
-    return Number(name, float(result), float(result.standard_error), exact, degrees_of_freedom=freedom, formula=formula)
+    return Number(name, result.value, result.standard_error, exact, degrees_of_freedom=freedom, formula=formula)
 
 
 def mean_of(name: str, samples: montelux._result.Array, exact: float, formula: str = "") -> Number:

@@ -57,14 +57,15 @@ def formula_svg(tex: str) -> str:
     canvas = matplotlib.figure.Figure()
     out = io.StringIO()
     with matplotlib.rc_context({"svg.fonttype": "path", "svg.hashsalt": tex, "mathtext.fontset": "stix"}):
-        canvas.text(0, 0, f"${tex}$", fontsize=FONT_SIZE, color="#123456")
+        canvas.text(0, 0, f"${tex.replace('frac', 'dfrac')}$", fontsize=FONT_SIZE, color="#123456")
         canvas.savefig(out, format="svg", transparent=True, bbox_inches="tight", pad_inches=0.03, metadata=_METADATA)
     svg = out.getvalue()
     svg = svg[svg.index("<svg") :].replace("#123456", "currentColor")
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
     width, height = (float(re.search(rf'{side}="([\d.]+)pt"', svg).group(1)) for side in ("width", "height"))  # type: ignore[union-attr]
-    em = 16.0  # points of this drawing that are one em of the page
-    svg = re.sub(r'<svg [^>]*?viewBox="([^"]+)"[^>]*>', rf'<svg viewBox="\1" role="img" {_label(tex)} {_size(width / em, height / em)}>', svg, count=1)
+    em = 13.5  # points of this drawing that are one em of the page
+    head = rf'<svg viewBox="\1" role="img" {_label(tex)} {_size(width / em, height / em)}>'
+    svg = re.sub(r'<svg [^>]*?viewBox="([^"]+)"[^>]*>', head, svg, count=1)
     # Ids must be unique in the page that holds many formulas.
     prefix = f"f{abs(hash_of(tex)):x}-"
     svg = re.sub(r'\bid="', f'id="{prefix}', svg)

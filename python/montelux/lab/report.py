@@ -95,9 +95,7 @@ def _table(numbers: Sequence[Number]) -> str:
             distance = f"<strong>{distance}: wrong</strong>"
         cells = (html.escape(n.name), html.escape(n.measured_text), html.escape(n.exact_text), distance)
         labels = ("", "measured", "exact", "apart")
-        rows.append(
-            "<tr>" + "".join(f'<td data-label="{label}">{c}</td>' for label, c in zip(labels, cells)) + "</tr>"
-        )
+        rows.append("<tr>" + "".join(f'<td data-label="{label}">{c}</td>' for label, c in zip(labels, cells)) + "</tr>")
     head = "<thead><tr><th></th><th>measured</th><th>exact</th><th>apart</th></tr></thead>"
     return f"<table>{head}<tbody>{''.join(rows)}</tbody></table>"
 
@@ -135,11 +133,13 @@ def _page(made: Sequence[Made]) -> str:
 <body>
 <header>
 <h1>The lab</h1>
-<p>Monte Carlo integration in figures, from a sum of rectangles to pictures of light. Every sample, density, estimate and
-picture comes from <b>Montelux {html.escape(montelux.__version__)}</b>, and the code that makes it stands below each figure.</p>
-<p>{count} numbers are measured here and stand beside the exact ones: {verdict}. Digits in brackets are the standard error of
-the last digits shown, 1.234(56) is 1.234 ± 0.056; a right number lies more than {LIMIT:.0f} errors off (or as improbably far,
-where few replicates know the error) once in 1.7 million times. Numbers of rules without chance have a bound instead.</p>
+<p>Monte Carlo integration in figures, from a sum of rectangles to pictures of light. Every sample, density, estimate
+and picture comes from <b>Montelux {html.escape(montelux.__version__)}</b>, and the code that makes it stands below each
+figure.</p>
+<p>{count} numbers are measured here and stand beside the exact ones: {verdict}. Digits in brackets are the standard
+error of the last digits shown, 1.234(56) is 1.234 ± 0.056. A right number lies more than {LIMIT:.0f} errors off (or as
+improbably far, where few replicates know the error) once in 1.7 million times. Numbers of rules without chance have a
+bound instead.</p>
 </header>
 {_contents(made)}
 <main>

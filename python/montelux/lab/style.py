@@ -9,6 +9,7 @@ from typing import Any
 
 import matplotlib
 import matplotlib.figure
+from cycler import cycler
 from matplotlib.colors import LinearSegmentedColormap
 
 WIDTH = 8.0  # inches
@@ -50,7 +51,7 @@ THEMES = (LIGHT, DARK)
 @contextmanager
 def drawing(theme: Theme) -> Iterator[None]:
     """Within it matplotlib draws in this theme."""
-    settings = {
+    settings: Any = {
         "svg.fonttype": "path",  # the same letters on every machine
         "svg.hashsalt": "montelux",  # the same file from the same data
         "font.family": "DejaVu Sans",
@@ -67,7 +68,7 @@ def drawing(theme: Theme) -> Iterator[None]:
         "axes.linewidth": 1.2,
         "axes.spines.top": False,
         "axes.spines.right": False,
-        "axes.prop_cycle": matplotlib.cycler(color=theme.cycle),
+        "axes.prop_cycle": cycler(color=theme.cycle),
         "text.color": theme.ink,
         "axes.edgecolor": theme.ink,
         "axes.labelcolor": theme.ink,

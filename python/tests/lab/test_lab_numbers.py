@@ -24,9 +24,7 @@ def computed(figure: Figure) -> Outcome:
     return figure.compute()
 
 
-@pytest.mark.parametrize(
-    "figure", [pytest.param(f, marks=_slow if f.slow else (), id=f.key) for f in FIGURES]
-)
+@pytest.mark.parametrize("figure", [pytest.param(f, marks=_slow if f.slow else (), id=f.key) for f in FIGURES])
 def test_numbers_agree_with_the_exact_ones(figure: Figure) -> None:
     outcome = computed(figure)
     assert outcome.numbers, "a figure without a number proves nothing"
@@ -50,7 +48,10 @@ def test_there_are_statistical_numbers_and_their_errors_are_right() -> None:
     assert 0.15 < mean_square < 3.5
 
 
-@pytest.mark.parametrize("wrong", [Number("n", 1.06, 0.01, 1.0), Number("n", 1.06, 0.05, 1.0, bound=True), Number("n", math.nan, 1.0, 1.0)])  # fmt: skip
+@pytest.mark.parametrize(
+    "wrong",
+    [Number("n", 1.06, 0.01, 1.0), Number("n", 1.06, 0.05, 1.0, bound=True), Number("n", math.nan, 1.0, 1.0)],
+)
 def test_a_wrong_number_is_seen(wrong: Number) -> None:
     assert not wrong.agrees
 

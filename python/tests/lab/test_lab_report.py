@@ -51,7 +51,9 @@ def test_every_row_has_its_figures() -> None:
         sentences = len(re.findall(r"[.:;]( |$)", f.see))
         assert sentences >= 2, f"{f.key}: two sentences on what to see"
         assert f.alt, f.key
-        assert "montelux" in f.code or "shape.warp" in f.code or "measured_areas" in f.code or "rendered(" in f.code, f.key
+        assert (
+            "montelux" in f.code or "shape.warp" in f.code or "measured_areas" in f.code or "rendered(" in f.code
+        ), f.key
 
 
 def test_figures_are_chosen_by_row_and_name() -> None:

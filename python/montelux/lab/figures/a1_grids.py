@@ -46,30 +46,58 @@ def riemann() -> Outcome:
 
 
 def draw_riemann(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]) -> None:
-    panels = figure.subplot_mosaic([["riemann", "midpoint", "trapezoid"], ["errors", "errors", "errors"]], height_ratios=[1, 1.35])
+    panels = figure.subplot_mosaic(
+        [["riemann", "midpoint", "trapezoid"], ["errors", "errors", "errors"]], height_ratios=[1, 1.35]
+    )
     x = np.linspace(0, np.pi / 2, 200)
     edges = np.linspace(0, np.pi / 2, 9)
     left, right, centre = edges[:-1], edges[1:], (edges[:-1] + edges[1:]) / 2
     for i, (method, name) in enumerate(RULES.items()):
         a = panels[method]
         colour = theme.cycle[i]
-        ends = {"riemann": (np.sin(left),) * 2, "midpoint": (np.sin(centre),) * 2}.get(method, (np.sin(left), np.sin(right)))
+        ends = {"riemann": (np.sin(left),) * 2, "midpoint": (np.sin(centre),) * 2}.get(
+            method, (np.sin(left), np.sin(right))
+        )
         for k in range(8):
             a.fill([left[k], left[k], right[k], right[k]], [0, ends[0][k], ends[1][k], 0], facecolor=colour, alpha=0.35)
             a.plot([left[k], left[k], right[k], right[k]], [0, ends[0][k], ends[1][k], 0], color=colour, linewidth=1.2)
         a.plot(x, np.sin(x), color=theme.ink)
-        a.set(title=name, xticks=[0, np.pi / 2], xticklabels=["0", "π/2"], yticks=[0, 1], ylim=(0, 1.05), xlim=(0, np.pi / 2))
+        a.set(
+            title=name,
+            xticks=[0, np.pi / 2],
+            xticklabels=["0", "π/2"],
+            yticks=[0, 1],
+            ylim=(0, 1.05),
+            xlim=(0, np.pi / 2),
+        )
     panels["riemann"].set_ylabel("sin x")
     a = panels["errors"]
     for i, (method, name) in enumerate(RULES.items()):
-        a.loglog(s["cells"], s["errors"][method], MARKERS[i] + "-", color=theme.cycle[i], label=name, markerfacecolor="none" if i == 2 else None, markersize=7 + 4 * (i == 2))
+        a.loglog(
+            s["cells"],
+            s["errors"][method],
+            MARKERS[i] + "-",
+            color=theme.cycle[i],
+            label=name,
+            markerfacecolor="none" if i == 2 else None,
+            markersize=7 + 4 * (i == 2),
+        )
     a.set(xlabel="cells N", ylabel="error")
     a.legend()
     grid(a, theme)
 
 
 #: Cells along each variable, three grids of each dimension.
-CELLS = {1: (4, 64, 1024), 2: (4, 32, 256), 3: (4, 16, 64), 4: (3, 9, 27), 5: (2, 6, 14), 6: (2, 5, 10), 7: (2, 4, 7), 8: (2, 4, 6)}
+CELLS = {
+    1: (4, 64, 1024),
+    2: (4, 32, 256),
+    3: (4, 16, 64),
+    4: (3, 9, 27),
+    5: (2, 6, 14),
+    6: (2, 5, 10),
+    7: (2, 4, 7),
+    8: (2, 4, 6),
+}
 
 
 def curse() -> Outcome:
@@ -81,14 +109,18 @@ def curse() -> Outcome:
             return np.prod(np.pi / 2 * np.sin(np.pi / 2 * x.reshape(len(x), n)), axis=1)
 
         def error(k, n=n):  # type: ignore[no-untyped-def]
-            return abs(montelux.integrate(f, [(0, 1)] * n, "midpoint", cells=k, evaluations=k**n, components=0).value - 1)
+            return abs(
+                montelux.integrate(f, [(0, 1)] * n, "midpoint", cells=k, evaluations=k**n, components=0).value - 1
+            )
 
         e = np.array([error(k) for k in cells])
         evaluations = np.array(cells, dtype=float) ** n
         slopes = np.diff(np.log(e)) / np.diff(np.log(evaluations))
         errors[n] = (evaluations, e)
         remainder = abs(slopes[1] - slopes[0]) + 1e-7
-        numbers.append(Number(f"slope, n = {n}", slopes[1], remainder, -2 / n, bound=True, formula=f"−2/{n}" if n > 2 else ""))
+        numbers.append(
+            Number(f"slope, n = {n}", slopes[1], remainder, -2 / n, bound=True, formula=f"−2/{n}" if n > 2 else "")
+        )
     return Outcome(numbers, {"errors": errors})
 
 
@@ -97,7 +129,13 @@ def draw_curse(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]
     for i, (n, (evaluations, error)) in enumerate(s["errors"].items()):
         colour = theme.map(i / 7)
         a.loglog(evaluations, error, MARKERS[i] + "-", color=colour)
-        a.annotate(f"n = {n}", (evaluations[-1], error[-1]), (8, -4 if n < 8 else 6), textcoords="offset points", color=theme.ink)
+        a.annotate(
+            f"n = {n}",
+            (evaluations[-1], error[-1]),
+            (8, -4 if n < 8 else 6),
+            textcoords="offset points",
+            color=theme.ink,
+        )
     x = np.array([10.0, 2e5])
     a.loglog(x, 0.6 * x**-0.5, color=theme.ink, linestyle=(0, (2, 2)), label="Monte Carlo, any n: $N^{-1/2}$", zorder=0)
     a.set(xlabel="evaluations N", ylabel="error", xlim=(2, 5e7))
@@ -113,7 +151,10 @@ FIGURES = (
         "The left sum takes each cell's first value and always stays below a function that grows; the midpoint and the "
         "trapezoid err on either side. Twice the cells halve the first one's error and quarter those of the others.",
         (
-            r"\int_a^b f(x)\,dx \;\approx\; h \sum_{i=0}^{N-1} f(a + i h), \quad h \sum_{i=0}^{N-1} f(a + (i + \frac{1}{2}) h), \quad h = \frac{b - a}{N}",
+            (
+                r"\int_a^b f(x)\,dx \;\approx\; h \sum_{i=0}^{N-1} f(a + i h), \quad h \sum_{i=0}^{N-1} f(a + (i +"
+                r" \frac{1}{2}) h), \quad h = \frac{b - a}{N}"
+            ),
         ),
         riemann,
         draw_riemann,
@@ -124,8 +165,9 @@ FIGURES = (
         "A1",
         "curse",
         "The curse of dimensionality",
-        "The same rule on a grid needs ever more points for the same error the more variables there are: its slope is "
-        "two over their number. From four variables on random points, whose slope is one half in any number, fall as fast or faster.",
+        "The same rule on a grid needs ever more points for the same error the more variables there are: its slope is"
+        " two over their number. From four variables on random points, whose slope is one half in any number, fall as"
+        " fast or faster.",
         (r"N = k^n \;\Rightarrow\; \mathrm{error} \;\propto\; k^{-2} = N^{-2/n}",),
         curse,
         draw_curse,

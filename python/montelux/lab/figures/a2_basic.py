@@ -34,7 +34,10 @@ def basic() -> Outcome:
     counts, seeds = 4 ** np.arange(1, 8), 400
     spread = []
     for n in counts:
-        values = [montelux.integrate(np.sin, quarter, "basic", evaluations=int(n), seed=s, components=0).value for s in range(seeds)]
+        values = [
+            montelux.integrate(np.sin, quarter, "basic", evaluations=int(n), seed=s, components=0).value
+            for s in range(seeds)
+        ]
         spread.append(np.sqrt(np.mean((np.array(values) - 1) ** 2)))
     # The logarithm of a root mean square of k normal errors has a deviation of 1 / sqrt(2 k).
     t = np.log(counts) - np.mean(np.log(counts))
@@ -43,7 +46,13 @@ def basic() -> Outcome:
         of("16 samples", sixteen, 1),
         of("a million samples", many, 1),
         Number("slope of the error", fitted, np.sqrt(1 / (2 * seeds) / (t @ t)), -0.5, formula="−1/2"),
-        Number("error of one sample", spread[-1] * np.sqrt(counts[-1]), spread[-1] * np.sqrt(counts[-1] / (2 * seeds)), np.sqrt(np.pi**2 / 8 - 1), formula="√(π²/8 − 1)"),
+        Number(
+            "error of one sample",
+            spread[-1] * np.sqrt(counts[-1]),
+            spread[-1] * np.sqrt(counts[-1] / (2 * seeds)),
+            np.sqrt(np.pi**2 / 8 - 1),
+            formula="√(π²/8 − 1)",
+        ),
     ]
     return Outcome(numbers, {"points": points, "counts": counts, "spread": np.array(spread)})
 
@@ -56,7 +65,13 @@ def draw_basic(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]
         a.bar(v, np.sin(v), width, color=theme.blue, alpha=0.28, edgecolor=theme.blue, linewidth=1)
     a.plot(s["points"], np.sin(s["points"]), "o", color=theme.blue)
     a.plot(x, np.sin(x), color=theme.ink)
-    a.set(xlabel="x", ylabel="sin x", title="16 samples, equally wide", xticks=[0, np.pi / 4, np.pi / 2], xticklabels=["0", "π/4", "π/2"])
+    a.set(
+        xlabel="x",
+        ylabel="sin x",
+        title="16 samples, equally wide",
+        xticks=[0, np.pi / 4, np.pi / 2],
+        xticklabels=["0", "π/4", "π/2"],
+    )
     b.loglog(s["counts"], s["spread"], "o", color=theme.blue)
     c = np.array([s["counts"][0], s["counts"][-1]])
     b.loglog(c, np.sqrt(np.pi**2 / 8 - 1) * c**-0.5, color=theme.ink, linewidth=1.6, linestyle=(0, (5, 2)))
@@ -70,12 +85,14 @@ FIGURES = (
         "A2",
         "basic",
         "Basic Monte Carlo",
-        "Each random point stands for a strip of the same width and the height of the function there; strips overlap and leave gaps, "
-        "and yet their sum is right on average. Four times the points halve the error, whatever the function.",
+        "Each random point stands for a strip of the same width and the height of the function there; strips overlap"
+        " and leave gaps, and yet their sum is right on average. Four times the points halve the error, whatever the"
+        " function.",
         (r"\langle F^N \rangle = \frac{b - a}{N} \sum_{i=1}^{N} f(X_i), \qquad X_i \sim \mathrm{uniform\ on}\ [a, b)",),
         basic,
         draw_basic,
         4.4,
-        "Strips at random points under the sine, and the error against the number of samples on a line of slope minus one half",
+        "Strips at random points under the sine, and the error against the number of samples on a line of slope minus"
+        " one half",
     ),
 )

@@ -54,7 +54,15 @@ def draw_general(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, An
     for v, w in sorted(zip(s["points"], widths), key=lambda t: -t[1]):
         b.bar(v, np.sin(v), w, color=scale.to_rgba(16 * w), alpha=0.55, edgecolor=theme.ink, linewidth=0.8)
     b.plot(x, np.sin(x), color=theme.ink)
-    b.set(title="16 points of the falling one", xlabel="x", ylabel="sin x", ylim=(0, 1.05), xlim=(-0.1, np.pi / 2 + 0.3), xticks=[0, np.pi / 2], xticklabels=["0", "π/2"])
+    b.set(
+        title="16 points of the falling one",
+        xlabel="x",
+        ylabel="sin x",
+        ylim=(0, 1.05),
+        xlim=(-0.1, np.pi / 2 + 0.3),
+        xticks=[0, np.pi / 2],
+        xticklabels=["0", "π/2"],
+    )
     figure.colorbar(scale, ax=b, label="1 / p", ticks=[0.5, 1, 2, 4, 8], format="%g").minorticks_off()
 
 
@@ -63,8 +71,9 @@ FIGURES = (
         "A3",
         "general",
         "General Monte Carlo",
-        "Points may follow any density that is not zero where the function is not: where they are rare, each counts for more, by its weight 1/p, which is the width of its strip. "
-        "A density that leaves a part out misses that part of the integral, which the library looks for and tells.",
+        "Points may follow any density that is not zero where the function is not: where they are rare, each counts for"
+        " more, by its weight 1/p, which is the width of its strip. A density that leaves a part out misses that part"
+        " of the integral, which the library looks for and tells.",
         (r"\langle F^N \rangle = \frac{1}{N} \sum_{i=1}^{N} \frac{f(X_i)}{p(X_i)}, \qquad X_i \sim p",),
         general,
         draw_general,

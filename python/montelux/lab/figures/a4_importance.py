@@ -45,7 +45,10 @@ def draw_importance(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str,
     panels = figure.subplots(1, 2, sharey=True)
     t = np.linspace(0, np.pi / 2, 200)
     scale = ScalarMappable(LogNorm(0.5, 8), theme.map)
-    for a, p, x, title in ((panels[0], UNIFORM, s["uniform"], "uniform"), (panels[1], LINEAR, s["x"], "linear, p = 8x/π²")):
+    for a, p, x, title in (
+        (panels[0], UNIFORM, s["uniform"], "uniform"),
+        (panels[1], LINEAR, s["x"], "linear, p = 8x/π²"),
+    ):
         widths = 1 / (16 * p.pdf(x))
         a.bar(x, np.sin(x), widths, color=scale.to_rgba(16 * widths), alpha=0.6, edgecolor=theme.ink, linewidth=0.8)
         a.plot(t, np.sin(t), color=theme.ink)
@@ -60,7 +63,9 @@ def draw_importance(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str,
 def race() -> Outcome:
     """Two densities run with the same random numbers; then the variances of a sample, as integrals over xi."""
     xi = montelux.points("independent", 10_000, 1, seed=11)[:, 0]
-    weights = {name: np.sin(p.sample(xi)) / p.pdf(p.sample(xi)) for name, p in (("uniform", UNIFORM), ("linear", LINEAR))}
+    weights = {
+        name: np.sin(p.sample(xi)) / p.pdf(p.sample(xi)) for name, p in (("uniform", UNIFORM), ("linear", LINEAR))
+    }
     n = np.arange(1, len(xi) + 1)
     estimates = {name: np.cumsum(w) / n for name, w in weights.items()}
 
@@ -69,13 +74,12 @@ def race() -> Outcome:
         return np.stack([(v - 1) ** 2 for v in w], axis=1)
 
     r = montelux.integrate(squares, (0, 1), "basic", evaluations=4_000_000, seed=1)
-    a, b = r.value
-    c = r.covariance
+    (a, b), errors, c = np.asarray(r.value), np.asarray(r.standard_error), np.asarray(r.covariance)
     # Of a quotient of correlated means, to first order.
     error = a / b * np.sqrt(c[0, 0] / a**2 + c[1, 1] / b**2 - 2 * c[0, 1] / (a * b))
     numbers = [
-        Number("variance, uniform density", a, r.standard_error[0], UNIFORM_VARIANCE, formula="π²/8 − 1"),
-        Number("variance, linear density", b, r.standard_error[1], LINEAR_VARIANCE, formula="(π²/16)(γ + ln π − Ci π) − 1"),
+        Number("variance, uniform density", a, errors[0], UNIFORM_VARIANCE, formula="π²/8 − 1"),
+        Number("variance, linear density", b, errors[1], LINEAR_VARIANCE, formula="(π²/16)(γ + ln π − Ci π) − 1"),
         Number("times less", a / b, error, UNIFORM_VARIANCE / LINEAR_VARIANCE),
     ]
     for name, w in weights.items():
@@ -91,7 +95,13 @@ def draw_race(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any])
         colour = theme.cycle[i]
         band = np.sqrt(variance / n[shown])
         a.fill_between(n[shown], 1 - band, 1 + band, color=colour, alpha=0.22, linewidth=0)
-        a.plot(n[shown], s["estimates"][name][shown], color=colour, linestyle=STROKES[i], label=f"{name} density: {name_of(i)}")
+        a.plot(
+            n[shown],
+            s["estimates"][name][shown],
+            color=colour,
+            linestyle=STROKES[i],
+            label=f"{name} density: {name_of(i)}",
+        )
     a.axhline(1, color=theme.ink, linewidth=1.2)
     a.set(xscale="log", xlabel="samples N", ylabel="estimate of 1", ylim=(0.55, 1.45), xlim=(1, len(n)))
     a.legend(loc="upper right")
@@ -107,8 +117,9 @@ FIGURES = (
         "A4",
         "importance",
         "Importance sampling",
-        "Both estimators cover the area with sixteen strips, whose widths 1/(N p) are shown by colour. Where the density is high for high values, "
-        "all strips have nearly the same area, and so hardly any of them is a surprise.",
+        "Both estimators cover the area with sixteen strips, whose widths 1/(N p) are shown by colour. Where the"
+        " density is high for high values, all strips have nearly the same area, and so hardly any of them is a"
+        " surprise.",
         (r"X = P^{-1}(\xi), \quad P(x) = \int_a^x p(t)\,dt, \qquad \mathrm{ideal:}\ \ p(x) = f(x) / \int f",),
         importance,
         draw_importance,
@@ -119,11 +130,15 @@ FIGURES = (
         "A4",
         "race",
         "The race",
-        "Both estimates see the same random numbers, and the shaded bands are one standard error wide. The linear density, which resembles the sine, "
-        "has a fourteenth of the variance: the other needs fourteen times the samples for the same error.",
+        "Both estimates see the same random numbers, and the shaded bands are one standard error wide. The linear"
+        " density, which resembles the sine, has a fourteenth of the variance: the other needs fourteen times the"
+        " samples for the same error.",
         (
             r"\int_0^{\pi/2} \sin x\,dx = 1, \qquad X_0 = \frac{\pi}{2}\,\xi, \qquad X_1 = \frac{\pi}{2}\sqrt{\xi}",
-            r"\mathrm{Var}_0 = \frac{\pi^2}{8} - 1, \qquad \mathrm{Var}_1 = \frac{\pi^2}{16}\,(\gamma + \ln \pi - \mathrm{Ci}(\pi)) - 1",
+            (
+                r"\mathrm{Var}_0 = \frac{\pi^2}{8} - 1, \qquad \mathrm{Var}_1 = \frac{\pi^2}{16}\,(\gamma + \ln \pi -"
+                r" \mathrm{Ci}(\pi)) - 1"
+            ),
         ),
         race,
         draw_race,

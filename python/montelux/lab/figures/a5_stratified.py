@@ -49,8 +49,12 @@ def jittered() -> Outcome:
     spread: dict[str, list[float]] = {"basic": [], "stratified": []}
     for k in sides:
         n = 2 * int(k) ** 2
-        for method, settings in (("basic", {}), ("stratified", {"strata": int(k)})):
-            runs = [montelux.integrate(smooth, SQUARE, method, evaluations=n, seed=s, components=0, **settings).value for s in range(SEEDS)]
+        strata: Any = {"strata": int(k)}
+        for method, settings in (("basic", {}), ("stratified", strata)):
+            runs = [
+                montelux.integrate(smooth, SQUARE, method, evaluations=n, seed=s, components=0, **settings).value
+                for s in range(SEEDS)
+            ]
             spread[method].append(np.sqrt(np.mean((np.array(runs) - exact) ** 2)))
     counts = 2 * sides**2
     t = np.log(counts) - np.mean(np.log(counts))
@@ -61,8 +65,23 @@ def jittered() -> Outcome:
         text = f"{order:g} in the limit, here".replace("-", "−")
         numbers.append(Number(f"slope, {method}", fitted, np.sqrt(1 / (2 * SEEDS) / (t @ t)), true, formula=text))
     gain = spread["basic"][-1] / spread["stratified"][-1]
-    numbers.append(Number("2048 samples: error, times less", gain, gain * np.sqrt(1 / SEEDS), np.sqrt(variance(1, 2048) / variance(32, 2))))
-    return Outcome(numbers, {"points": points, "counts": counts, "spread": spread, "random": montelux.points("independent", 256, 2, seed=3)})
+    numbers.append(
+        Number(
+            "2048 samples: error, times less",
+            gain,
+            gain * np.sqrt(1 / SEEDS),
+            np.sqrt(variance(1, 2048) / variance(32, 2)),
+        )
+    )
+    return Outcome(
+        numbers,
+        {
+            "points": points,
+            "counts": counts,
+            "spread": spread,
+            "random": montelux.points("independent", 256, 2, seed=3),
+        },
+    )
 
 
 def draw_jittered(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]) -> None:
@@ -102,7 +121,9 @@ def neyman() -> Outcome:
             seen.append(x.copy())
             return peaked(x)
 
-        r = montelux.integrate(looking, (0, 1), "stratified", strata=32, allocation=allocation, evaluations=4096, seed=9, components=0)
+        r = montelux.integrate(
+            looking, (0, 1), "stratified", strata=32, allocation=allocation, evaluations=4096, seed=9, components=0
+        )
         numbers.append(Number(f"{allocation}, 4096 evaluations", r.value, r.standard_error, exact))
         series[allocation] = np.concatenate(seen)
     basic = montelux.integrate(peaked, (0, 1), "basic", evaluations=4096, seed=9)
@@ -115,7 +136,16 @@ def draw_neyman(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any
     t = np.linspace(0, 1, 400)
     for i, (a, allocation) in enumerate(zip(panels, ("proportional", "neyman"))):
         counts, edges = np.histogram(s[allocation], 32, (0, 1))
-        a.bar(edges[:-1], counts, 1 / 32, align="edge", color=theme.cycle[i], alpha=0.6, edgecolor=theme.ink, linewidth=0.6)
+        a.bar(
+            edges[:-1],
+            counts,
+            1 / 32,
+            align="edge",
+            color=theme.cycle[i],
+            alpha=0.6,
+            edgecolor=theme.ink,
+            linewidth=0.6,
+        )
         a.set(title=allocation, xlabel="x", yscale="log", ylim=(10, 4000), xlim=(0, 1))
         twin = a.twinx()
         twin.plot(t, peaked(t), color=theme.ink)
@@ -129,9 +159,15 @@ FIGURES = (
         "A5",
         "jittered",
         "Stratified sampling",
-        "One random point in each cell of a grid cannot clump, and so its error on a smooth function of two variables falls with the number of samples itself instead of its square root. "
-        "Strata of equal shares never make the variance larger.",
-        (r"\langle F \rangle = \sum_k \frac{V_k}{N_k} \sum_{j=1}^{N_k} f(X_{kj}), \qquad \mathrm{Var} = \sum_k \frac{V_k^2 \sigma_k^2}{N_k}",),
+        "One random point in each cell of a grid cannot clump, and so its error on a smooth function of two variables"
+        " falls with the number of samples itself instead of its square root. Strata of equal shares never make the"
+        " variance larger.",
+        (
+            (
+                r"\langle F \rangle = \sum_k \frac{V_k}{N_k} \sum_{j=1}^{N_k} f(X_{kj}), \qquad \mathrm{Var} = \sum_k"
+                r" \frac{V_k^2 \sigma_k^2}{N_k}"
+            ),
+        ),
         jittered,
         draw_jittered,
         3.7,
@@ -142,7 +178,8 @@ FIGURES = (
         "A5",
         "neyman",
         "Where to look: Neyman's allocation",
-        "Left, every stratum gets as many samples, though most have nothing to tell. Right, after a short pilot in each, the samples go where the function varies (the line is the function, at its own scale).",
+        "Left, every stratum gets as many samples, though most have nothing to tell. Right, after a short pilot in"
+        " each, the samples go where the function varies (the line is the function, at its own scale).",
         (r"N_k \;\propto\; V_k\,\sigma_k",),
         neyman,
         draw_neyman,

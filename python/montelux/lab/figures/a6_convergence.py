@@ -54,8 +54,16 @@ def convergence() -> Outcome:
         for name, method in METHODS.items():
             e = []
             for n in COUNTS:
-                runs = [montelux.integrate(bump, cube, method, evaluations=int(n), seed=s, components=0) for s in range(SEEDS)]
-                e.append((np.mean([r.evaluations for r in runs]), np.sqrt(np.mean([(r.value / exact - 1) ** 2 for r in runs]))))
+                runs = [
+                    montelux.integrate(bump, cube, method, evaluations=int(n), seed=s, components=0)
+                    for s in range(SEEDS)
+                ]
+                e.append(
+                    (
+                        np.mean([r.evaluations for r in runs]),
+                        np.sqrt(np.mean([(r.value / exact - 1) ** 2 for r in runs])),
+                    )
+                )
             errors[d, name] = np.array(e).T
             large = method
             if isinstance(method, Quasi):
@@ -63,11 +71,15 @@ def convergence() -> Outcome:
             elif isinstance(method, montelux.VegasSobol):
                 large = montelux.VegasSobol(montelux.Vegas(points="sobol", replicates=32))
             r = montelux.integrate(bump, cube, large, evaluations=1 << 17, seed=100)
-            numbers.append(of(f"{name}, d = {d}, 2¹⁷ evaluations", r, exact, replicates=32 if large is not method else 0))
+            numbers.append(
+                of(f"{name}, d = {d}, 2¹⁷ evaluations", r, exact, replicates=32 if large is not method else 0)
+            )
     t = np.log(COUNTS) - np.mean(np.log(COUNTS))
     for d in (1, 2):  # in five variables few random points see the bump, and 16 runs do not know their spread
         fitted = t @ np.log(errors[d, "random"][1]) / (t @ t)
-        numbers.append(Number(f"slope of random points, d = {d}", fitted, np.sqrt(1 / (2 * SEEDS) / (t @ t)), -0.5, formula="−1/2"))
+        numbers.append(
+            Number(f"slope of random points, d = {d}", fitted, np.sqrt(1 / (2 * SEEDS) / (t @ t)), -0.5, formula="−1/2")
+        )
     return Outcome(numbers, {"errors": errors})
 
 
@@ -75,8 +87,25 @@ def draw_convergence(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str
     panels = figure.subplots(1, 3, sharex=True, sharey=True)
     for a, d in zip(panels, DIMENSIONS):
         for i, name in enumerate(METHODS):
-            colour = (theme.orange, theme.purple, theme.blue, theme.blue, theme.green, theme.yellow, theme.yellow, theme.ink)[i]
-            a.loglog(*s["errors"][d, name], marker=MARKERS[i], linestyle=STROKES[i % 6], color=colour, label=name, markersize=5, linewidth=1.8)
+            colour = (
+                theme.orange,
+                theme.purple,
+                theme.blue,
+                theme.blue,
+                theme.green,
+                theme.yellow,
+                theme.yellow,
+                theme.ink,
+            )[i]
+            a.loglog(
+                *s["errors"][d, name],
+                marker=MARKERS[i],
+                linestyle=STROKES[i % 6],
+                color=colour,
+                label=name,
+                markersize=5,
+                linewidth=1.8,
+            )
         a.set(title=f"d = {d}", xlabel="evaluations N")
         a.set_xticks([1e2, 1e4])
         grid(a, theme)
@@ -89,8 +118,10 @@ FIGURES = (
         "A6",
         "convergence",
         "Error against samples",
-        "Random points keep their slope of one half in every dimension; strata and point sets are far better in one and two variables, and only a little in five. "
-        "The adaptive method (VEGAS on Sobol' points) spends its first evaluations to learn where the bump is, and is about ten times better than all others in five variables once it knows.",
+        "Random points keep their slope of one half in every dimension; strata and point sets are far better in one and"
+        " two variables, and only a little in five. The adaptive method (VEGAS on Sobol' points) spends its first"
+        " evaluations to learn where the bump is, and is about ten times better than all others in five variables once"
+        " it knows.",
         (r"f(x) = \prod_{k=1}^{d} e^{-32 (x_k - 0.4)^2}, \qquad x \in [0,1]^d",),
         convergence,
         draw_convergence,

@@ -48,11 +48,22 @@ def plain() -> Outcome:
     """256 points of each set; the library's star discrepancies beside those counted box by box."""
     sets = {name: montelux.points(name, 256, 2) for name in PLAIN}
     numbers = [
-        Number(f"star discrepancy, {PLAIN[name]}", montelux.star_discrepancy(x), 1e-12, counted_discrepancy(x), bound=True)
+        Number(
+            f"star discrepancy, {PLAIN[name]}", montelux.star_discrepancy(x), 1e-12, counted_discrepancy(x), bound=True
+        )
         for name, x in sets.items()
     ]
     corput = montelux.points("halton", 256, 1)[:, 0]
-    numbers.append(Number("van der Corput, one dimension", montelux.star_discrepancy(corput), 1e-15, 1 / 256, bound=True, formula="1/256"))
+    numbers.append(
+        Number(
+            "van der Corput, one dimension",
+            montelux.star_discrepancy(corput),
+            1e-15,
+            1 / 256,
+            bound=True,
+            formula="1/256",
+        )
+    )
     return Outcome(numbers, {"sets": sets, "names": PLAIN, "discrepancies": [n.measured for n in numbers]})
 
 
@@ -60,14 +71,22 @@ def randomised() -> Outcome:
     """The same with a random shift, permuted digits or scrambled digits: uniform each, and as even."""
     sets = {key: montelux.points(key[0], 256, 2, key[1], seed=6) for key in RANDOMISED}
     numbers = [
-        Number(f"star discrepancy, {RANDOMISED[key]}", montelux.star_discrepancy(x), 1e-12, counted_discrepancy(x), bound=True)
+        Number(
+            f"star discrepancy, {RANDOMISED[key]}",
+            montelux.star_discrepancy(x),
+            1e-12,
+            counted_discrepancy(x),
+            bound=True,
+        )
         for key, x in sets.items()
     ]
     # Unbiased: one point alone, over many seeds, is uniform on the square.
     seeds = 2000
     for key, name in RANDOMISED.items():
         first = np.array([montelux.points(key[0], 8, 2, key[1], seed=s)[5].prod() for s in range(seeds)])
-        numbers.append(Number(f"mean of xy of one point, {name}", first.mean(), first.std() / np.sqrt(seeds), 0.25, formula="1/4"))
+        numbers.append(
+            Number(f"mean of xy of one point, {name}", first.mean(), first.std() / np.sqrt(seeds), 0.25, formula="1/4")
+        )
     return Outcome(numbers, {"sets": sets, "names": RANDOMISED, "discrepancies": [n.measured for n in numbers]})
 
 
@@ -85,7 +104,9 @@ FIGURES = (
         "A6",
         "points",
         "Point sets",
-        "256 random points clump and leave holes; the others know of one another and keep apart. The star discrepancy, the largest difference between the share of points in a box at the corner and its area, is a fifth of the random one's or less.",
+        "256 random points clump and leave holes; the others know of one another and keep apart. The star discrepancy,"
+        " the largest difference between the share of points in a box at the corner and its area, is a fifth of the"
+        " random one's or less.",
         (r"D^* = \sup_{a \in [0,1]^2} \left| \frac{\#\{x_i \in [0, a)\}}{N} - a_1 a_2 \right|",),
         plain,
         draw_sets,
@@ -97,8 +118,14 @@ FIGURES = (
         "A6",
         "randomised",
         "Point sets, randomised",
-        "A shift, a permutation of the digits or a scramble makes each single point uniform and leaves the set even. So the estimates are unbiased, and several randomisations tell their error by their spread.",
-        (r"x_i \mapsto (x_i + \Delta)\ \mathrm{mod}\ 1, \qquad \mathrm{error}^2 = \frac{1}{R (R - 1)} \sum_{r=1}^{R} (F_r - \bar{F})^2",),
+        "A shift, a permutation of the digits or a scramble makes each single point uniform and leaves the set even. So"
+        " the estimates are unbiased, and several randomisations tell their error by their spread.",
+        (
+            (
+                r"x_i \mapsto (x_i + \Delta)\ \mathrm{mod}\ 1, \qquad \mathrm{error}^2 = \frac{1}{R (R - 1)}"
+                r" \sum_{r=1}^{R} (F_r - \bar{F})^2"
+            ),
+        ),
         randomised,
         draw_sets,
         6.6,

@@ -39,11 +39,20 @@ def multiple() -> Outcome:
         apart = np.abs(weights[name].sum(axis=1) - 1).max()
         numbers.append(Number(f"{name}: sum of weights, farthest from 1", apart, 1e-15, 0, bound=True))
         r = montelux.integrate(
-            lobes, line, "multiple_importance", techniques=[WIDE, NARROW], weights=name, parameter=parameter, evaluations=200_000, seed=2
+            lobes,
+            line,
+            "multiple_importance",
+            techniques=[WIDE, NARROW],
+            weights=name,
+            parameter=parameter,
+            evaluations=200_000,
+            seed=2,
         )
         numbers.append(of(f"{name}: estimate", r, 4.5))
     unequal = montelux.MultipleImportance([(WIDE, 3), (NARROW, 1)])
-    numbers.append(of("balance, three samples to one", montelux.integrate(lobes, line, unequal, evaluations=200_000, seed=2), 4.5))
+    numbers.append(
+        of("balance, three samples to one", montelux.integrate(lobes, line, unequal, evaluations=200_000, seed=2), 4.5)
+    )
     optimal = montelux.MultipleImportance([WIDE, NARROW], weights="optimal")
     numbers.append(of("optimal weights", montelux.integrate(lobes, line, optimal, evaluations=200_000, seed=2), 4.5))
     alone = montelux.integrate(lobes, line, "importance", technique=WIDE, evaluations=200_000, seed=2)
@@ -76,11 +85,17 @@ FIGURES = (
         "A7",
         "weights",
         "Multiple importance sampling",
-        "Two densities, each good at one lobe; the weights say who is believed where (below the line the wide one, above it the narrow one) and always sum to one. "
-        "Every choice is unbiased: what differs is the noise.",
+        "Two densities, each good at one lobe; the weights say who is believed where (below the line the wide one,"
+        " above it the narrow one) and always sum to one. Every choice is unbiased: what differs is the noise.",
         (
-            r"F = \sum_i \frac{1}{n_i} \sum_{j=1}^{n_i} w_i(X_{ij})\,\frac{f(X_{ij})}{p_i(X_{ij})}, \qquad \sum_i w_i(x) = 1",
-            r"\mathrm{balance:}\ \ w_i = \frac{n_i p_i}{\sum_k n_k p_k}, \qquad \mathrm{power:}\ \ w_i = \frac{(n_i p_i)^\beta}{\sum_k (n_k p_k)^\beta}",
+            (
+                r"F = \sum_i \frac{1}{n_i} \sum_{j=1}^{n_i} w_i(X_{ij})\,\frac{f(X_{ij})}{p_i(X_{ij})}, \qquad \sum_i"
+                r" w_i(x) = 1"
+            ),
+            (
+                r"\mathrm{balance:}\ \ w_i = \frac{n_i p_i}{\sum_k n_k p_k}, \qquad \mathrm{power:}\ \ w_i = \frac{(n_i"
+                r" p_i)^\beta}{\sum_k (n_k p_k)^\beta}"
+            ),
         ),
         multiple,
         draw_multiple,

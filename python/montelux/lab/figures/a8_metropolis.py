@@ -58,7 +58,15 @@ def draw_chain(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]
     a.plot(chains.states[0, :400, 0], color=theme.blue, linewidth=1.2, drawstyle="steps-post")
     a.set(xlabel="step", ylabel="x", ylim=(-2.8, 2.8), xlim=(0, 400), title="one chain")
     x = np.linspace(-2.8, 2.8, 300)
-    b.hist(chains.states.ravel(), bins=70, range=(-2.8, 2.8), density=True, orientation="horizontal", color=theme.blue, alpha=0.45)
+    b.hist(
+        chains.states.ravel(),
+        bins=70,
+        range=(-2.8, 2.8),
+        density=True,
+        orientation="horizontal",
+        color=theme.blue,
+        alpha=0.45,
+    )
     b.plot(s["law"].pdf(x), x, color=theme.ink)
     b.set(xlabel="density", title="160 000 states")
 
@@ -68,9 +76,15 @@ FIGURES = (
         "A8",
         "chain",
         "A Metropolis chain",
-        "The chain proposes a step, takes it always where the target grows and sometimes where it falls, and stays otherwise; only quotients of the target are used, so its integral need not be known. "
-        "Its states follow the target (line), though neighbouring ones are alike: that is what the autocorrelation time counts.",
-        (r"a(x \to y) = \min\left(1,\ \frac{f(y)\,T(y \to x)}{f(x)\,T(x \to y)}\right), \qquad f(x) = e^{-x^2} (2 + \sin 5x + \sin 2x)",),
+        "The chain proposes a step, takes it always where the target grows and sometimes where it falls, and stays"
+        " otherwise; only quotients of the target are used, so its integral need not be known. Its states follow the"
+        " target (line), though neighbouring ones are alike: that is what the autocorrelation time counts.",
+        (
+            (
+                r"a(x \to y) = \min\left(1,\ \frac{f(y)\,T(y \to x)}{f(x)\,T(x \to y)}\right), \qquad f(x) = e^{-x^2}"
+                r" (2 + \sin 5x + \sin 2x)"
+            ),
+        ),
         chain,
         draw_chain,
         4.6,

@@ -21,18 +21,32 @@ SHARES = {1: 0.6826894921370859, 2: 0.9544997361036416, 3: 0.9973002039367398}
 
 def calibration() -> Outcome:
     """4000 integrations with different seeds: how often does the exact value lie within their errors?"""
-    runs = [montelux.integrate(np.sin, (0, np.pi / 2), "basic", evaluations=1024, seed=s, components=0) for s in range(4000)]
+    runs = [
+        montelux.integrate(np.sin, (0, np.pi / 2), "basic", evaluations=1024, seed=s, components=0) for s in range(4000)
+    ]
     values, errors = (np.array([getattr(r, what) for r in runs]) for what in ("value", "standard_error"))
     z = (values - 1) / errors
     numbers = [
-        share_of(f"within {k} error{'s' if k > 1 else ''}", int((np.abs(z) <= k).sum()), len(z), p) for k, p in SHARES.items()
+        share_of(f"within {k} error{'s' if k > 1 else ''}", int((np.abs(z) <= k).sum()), len(z), p)
+        for k, p in SHARES.items()
     ]
     # Four times the samples.
-    more = [montelux.integrate(np.sin, (0, np.pi / 2), "basic", evaluations=4096, seed=s, components=0).value for s in range(1000)]
-    a, b = values.std(ddof=1), np.std(more, ddof=1)
+    more = [
+        montelux.integrate(np.sin, (0, np.pi / 2), "basic", evaluations=4096, seed=s, components=0).value
+        for s in range(1000)
+    ]
+    a, b = values.std(ddof=1), np.array(more).std(ddof=1)
     numbers.append(Number("error of 1024 over that of 4096 samples", a / b, a / b * np.sqrt(1 / 8000 + 1 / 2000), 2))
     sigma = np.sqrt((np.pi**2 / 8 - 1) / 1024)
-    numbers.append(Number("mean of the errors told", errors.mean(), errors.std() / np.sqrt(len(z)) + sigma / 8192, sigma, formula="σ/√N"))
+    numbers.append(
+        Number(
+            "mean of the errors told",
+            errors.mean(),
+            errors.std() / np.sqrt(len(z)) + sigma / 8192,
+            sigma,
+            formula="σ/√N",
+        )
+    )
     return Outcome(numbers, {"values": values, "errors": errors, "z": z})
 
 
@@ -56,8 +70,9 @@ FIGURES = (
         "A9",
         "calibration",
         "What an error means",
-        "Each run knows only its own samples and yet says how far it may be off: about one in three of the bars (orange, with squares) misses the exact line, as it should. "
-        "Over 4000 runs the distances in errors follow the normal law.",
+        "Each run knows only its own samples and yet says how far it may be off: about one in three of the bars"
+        " (orange, with squares) misses the exact line, as it should. Over 4000 runs the distances in errors follow the"
+        " normal law.",
         (r"s^2 = \frac{1}{N - 1} \sum_{i=1}^{N} (f(X_i) - \bar{f})^2, \qquad \mathrm{error} = \frac{s}{\sqrt{N}}",),
         calibration,
         draw_calibration,

@@ -33,7 +33,9 @@ def discrete() -> Outcome:
     numbers.append(Number("χ² of the six", chi_squared, np.sqrt(10), 5))
     # The inverse goes to the step that it meets.
     starts = pieces.sample(np.concatenate(([0], cdf[:-1])) + 1e-9).astype(int)
-    numbers.append(Number("steps that are not met at their foot", int((starts != np.arange(6)).sum()), 0, 0, bound=True))
+    numbers.append(
+        Number("steps that are not met at their foot", int((starts != np.arange(6)).sum()), 0, 0, bound=True)
+    )
     return Outcome(numbers, {"p": p, "cdf": cdf, "pieces": pieces, "counts": {"inversion": count}, "n": len(u)})
 
 
@@ -50,7 +52,17 @@ def draw_discrete(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, A
     a.set(xlabel="k", ylabel="P", xticks=k, yticks=[0, 1], ylim=(0, 1.03), xlim=(-0.6, 6))
     a.yaxis.labelpad = 14
     for i, (way, count) in enumerate(s["counts"].items()):
-        b.bar(k + (0.2 * (2 * i - 1) if len(s["counts"]) > 1 else 0), count / s["n"], 0.36 if len(s["counts"]) > 1 else 0.7, color=theme.cycle[i], alpha=0.7, label="drawn" if len(s["counts"]) == 1 else way, hatch=("", "//")[i], edgecolor=theme.ink, linewidth=0.6)
+        b.bar(
+            k + (0.2 * (2 * i - 1) if len(s["counts"]) > 1 else 0),
+            count / s["n"],
+            0.36 if len(s["counts"]) > 1 else 0.7,
+            color=theme.cycle[i],
+            alpha=0.7,
+            label="drawn" if len(s["counts"]) == 1 else way,
+            hatch=("", "//")[i],
+            edgecolor=theme.ink,
+            linewidth=0.6,
+        )
     b.plot(k, s["p"], "_", color=theme.ink, markersize=30, markeredgewidth=2, label="p")
     b.set(xlabel="k", title="100 000 samples", ylim=(0, 0.48))
     b.legend(loc="upper right")
@@ -61,8 +73,8 @@ FIGURES = (
         "B1",
         "discrete",
         "A discrete variable",
-        "A uniform number goes right until it meets the staircase of the sums, and the step it meets is the index; a high step is met often. "
-        "How often each was met in 100 000 tries stands beside its probability.",
+        "A uniform number goes right until it meets the staircase of the sums, and the step it meets is the index; a"
+        " high step is met often. How often each was met in 100 000 tries stands beside its probability.",
         (r"P_k = \sum_{i \leq k} p_i, \qquad X = \min\{k : \xi < P_k\}",),
         discrete,
         draw_discrete,

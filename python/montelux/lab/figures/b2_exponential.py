@@ -27,12 +27,16 @@ def exponential() -> Outcome:
     ours = law.sample(xi)
     standard = random.Random(2)
     theirs = np.array([standard.expovariate(RATE) for _ in range(COUNT)])
-    numbers = [Number("X(ξ) and −ln(1 − ξ)/λ, farthest apart", np.abs(ours + np.log1p(-xi) / RATE).max(), 2e-15, 0, bound=True)]
+    numbers = [
+        Number("X(ξ) and −ln(1 − ξ)/λ, farthest apart", np.abs(ours + np.log1p(-xi) / RATE).max(), 2e-15, 0, bound=True)
+    ]
     edges = law.quantile(np.linspace(0, 1, 51))
     for name, x in (("montelux", ours), ("standard library", theirs)):
         numbers.append(mean_of(f"mean, {name}", x, 1 / RATE, "1/λ"))
         # The fourth central moment of the law is 9 / rate^4.
-        numbers.append(Number(f"variance, {name}", x.var(ddof=1), np.sqrt(8 / COUNT) / RATE**2, 1 / RATE**2, formula="1/λ²"))
+        numbers.append(
+            Number(f"variance, {name}", x.var(ddof=1), np.sqrt(8 / COUNT) / RATE**2, 1 / RATE**2, formula="1/λ²")
+        )
         counts = np.histogram(x, edges)[0]
         chi_squared = float(((counts - COUNT / 50) ** 2 / (COUNT / 50)).sum())
         numbers.append(Number(f"χ² of 50 bins, {name}", chi_squared, np.sqrt(98), 49))

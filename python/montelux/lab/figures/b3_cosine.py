@@ -39,7 +39,15 @@ def draw_cosine(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any
     panels["top"].set(ylabel="density", ylim=(0, 1.15))
     a = panels["plane"]
     a.plot(s["x"][:1500], s["y"][:1500], "o", markersize=2.6, color=theme.blue, markeredgewidth=0)
-    a.set(xlabel="x", ylabel="y", xlim=(0, np.pi / 2), ylim=(0, 1), xticks=[0, np.pi / 4, np.pi / 2], xticklabels=["0", "π/4", "π/2"], yticks=[0, 1])
+    a.set(
+        xlabel="x",
+        ylabel="y",
+        xlim=(0, np.pi / 2),
+        ylim=(0, 1),
+        xticks=[0, np.pi / 4, np.pi / 2],
+        xticklabels=["0", "π/4", "π/2"],
+        yticks=[0, 1],
+    )
 
 
 FIGURES = (
@@ -47,8 +55,8 @@ FIGURES = (
         "B3",
         "cosine",
         "The cosine",
-        "The points crowd where the cosine is high, at the left, and thin out towards π/2; the second coordinate is uniform and independent. "
-        "Above, the histogram of x on the density cos x.",
+        "The points crowd where the cosine is high, at the left, and thin out towards π/2; the second coordinate is"
+        " uniform and independent. Above, the histogram of x on the density cos x.",
         (r"p(x, y) = \cos x, \qquad X = \arcsin \xi_1, \qquad Y = \xi_2",),
         cosine,
         draw_cosine,

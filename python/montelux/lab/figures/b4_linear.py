@@ -29,7 +29,9 @@ def linear() -> Outcome:
         Number("X and √ξ, farthest apart", np.abs(x - np.sqrt(xi)).max(), 1e-15, 0, bound=True),
         Number("X on [2, 4) and 2 √(3ξ + 1)", np.abs(v - 2 * np.sqrt(3 * xi + 1)).max(), 4e-15, 0, bound=True),
         Number("P on [2, 4) and (v² − 4)/12", np.abs(range24.cdf(t) - (t**2 - 4) / 12).max(), 1e-15, 0, bound=True),
-        Number("the same, restricted from [0, 8)", np.abs(restricted.cdf(t) - (t**2 - 4) / 12).max(), 1e-14, 0, bound=True),
+        Number(
+            "the same, restricted from [0, 8)", np.abs(restricted.cdf(t) - (t**2 - 4) / 12).max(), 1e-14, 0, bound=True
+        ),
         mean_of("mean on [0, 1)", x, 2 / 3, "2/3"),
         mean_of("mean on [2, 4)", v, 28 / 9, "28/9"),
     ]
@@ -56,7 +58,8 @@ FIGURES = (
         "B4",
         "linear",
         "The square root, and its restriction to [2, 4)",
-        "A square root makes the density rise in proportion to x. Restricted to [2, 4) the same recipe subtracts the part of P that lies below 2 and divides by what remains, c = 12: there it grows by a factor of two alone.",
+        "A square root makes the density rise in proportion to x. Restricted to [2, 4) the same recipe subtracts the"
+        " part of P that lies below 2 and divides by what remains, c = 12: there it grows by a factor of two alone.",
         (
             r"p(v) = 2v \ \mathrm{on}\ [0, 1):\quad X = \sqrt{\xi}",
             r"v \in [2, 4):\quad c = 12, \quad P(v) = \frac{v^2 - 4}{12}, \quad X = 2\,\sqrt{3 \xi + 1}",

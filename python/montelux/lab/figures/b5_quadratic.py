@@ -50,8 +50,14 @@ FIGURES = (
         "B5",
         "quadratic",
         "The quadratic density",
-        "Samples gather at both ends and leave the middle empty. On the right, uniform numbers that are equally far apart go up to the curve and across: where it is flat they crowd, where it is steep they spread.",
-        (r"p(x) = \frac{3}{2} x^2 \ \mathrm{on}\ [-1, 1], \qquad P(x) = \frac{x^3 + 1}{2}, \qquad X = (2 \xi - 1)^{1/3}",),
+        "Samples gather at both ends and leave the middle empty. On the right, uniform numbers that are equally far"
+        " apart go up to the curve and across: where it is flat they crowd, where it is steep they spread.",
+        (
+            (
+                r"p(x) = \frac{3}{2} x^2 \ \mathrm{on}\ [-1, 1], \qquad P(x) = \frac{x^3 + 1}{2}, \qquad X = (2 \xi -"
+                r" 1)^{1/3}"
+            ),
+        ),
         quadratic,
         draw_quadratic,
         4.4,

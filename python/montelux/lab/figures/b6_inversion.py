@@ -29,7 +29,13 @@ def inversion() -> Outcome:
     t = np.linspace(0, 6, 601)
     numbers = [
         Number("c, by p = f/c at x = 1", f(1) / law.pdf(1.0), 1e-10, c, bound=True, formula="1 − 7 e⁻⁶"),
-        Number("P, farthest from (1 − (1 + x) e⁻ˣ)/c", np.abs(law.cdf(t) - (1 - (1 + t) * np.exp(-t)) / c).max(), 1e-10, 0, bound=True),
+        Number(
+            "P, farthest from (1 − (1 + x) e⁻ˣ)/c",
+            np.abs(law.cdf(t) - (1 - (1 + t) * np.exp(-t)) / c).max(),
+            1e-10,
+            0,
+            bound=True,
+        ),
         Number("P(P⁻¹(ξ)) − ξ, farthest", np.abs(law.cdf(law.quantile(t / 6)) - t / 6).max(), 1e-10, 0, bound=True),
     ]
     mean = (2 - 50 * math.exp(-6)) / c
@@ -62,7 +68,12 @@ def draw_inversion(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, 
     b.plot(t, s["law"].cdf(t), color=theme.ink)
     for i, xi in enumerate((0.15, 0.5, 0.85)):
         x = float(s["law"].quantile(xi))
-        b.annotate("", (x, 0), (x, xi), arrowprops={"arrowstyle": "->", "color": theme.cycle[i], "linewidth": 2, "shrinkA": 0, "shrinkB": 0})
+        b.annotate(
+            "",
+            (x, 0),
+            (x, xi),
+            arrowprops={"arrowstyle": "->", "color": theme.cycle[i], "linewidth": 2, "shrinkA": 0, "shrinkB": 0},
+        )
         b.plot([0, x], [xi, xi], color=theme.cycle[i], linewidth=2)
     b.set(title="P, from ξ to X", xlabel="x", ylabel="ξ", xlim=(0, 6), ylim=(0, 1.02), yticks=[0, 1])
     for i, (name, d) in enumerate(s["tables"].items()):
@@ -77,12 +88,15 @@ FIGURES = (
         "B6",
         "inversion",
         "The inversion method",
-        "Any function that is not negative is a density after division by its area c; the running area P turns a uniform number into a sample when it is read from the vertical axis to the horizontal one. "
-        "Where no inverse is known it is found numerically; where only values in a table are known, constant or linear pieces stand for the function.",
+        "Any function that is not negative is a density after division by its area c; the running area P turns a"
+        " uniform number into a sample when it is read from the vertical axis to the horizontal one. Where no inverse"
+        " is known it is found numerically; where only values in a table are known, constant or linear pieces stand for"
+        " the function.",
         (r"c = \int_a^b f, \qquad P(x) = \frac{1}{c} \int_a^x f(t)\,dt, \qquad X = P^{-1}(\xi)",),
         inversion,
         draw_inversion,
         4.2,
-        "A function and its area, its running area with arrows from uniform numbers to samples, and pieces from a table",
+        "A function and its area, its running area with arrows from uniform numbers to samples, and pieces from a"
+        " table",
     ),
 )

@@ -26,7 +26,13 @@ def several() -> Outcome:
     x, y = points.T
     grid = np.stack(np.meshgrid(np.linspace(0.02, 0.98, 25), np.linspace(0.02, 0.98, 25)), axis=-1).reshape(-1, 2)
     # Integrated over x the joint density is the marginal one.
-    rows = [montelux.integrate(lambda t, v=v: joint.pdf(np.stack([t, np.full_like(t, v)], axis=1)), (0, 1), "midpoint", cells=64).value for v in (0.25, 0.75)]  # fmt: skip
+    rows = []
+    for v in (0.25, 0.75):
+
+        def along(t, v=v):  # type: ignore[no-untyped-def]
+            return joint.pdf(np.stack([t, np.full_like(t, v)], axis=1))
+
+        rows.append(montelux.integrate(along, (0, 1), "midpoint", cells=64).value)
     numbers = [
         Number("density, farthest from x + y", np.abs(joint.pdf(grid) - grid.sum(axis=1)).max(), 1e-14, 0, bound=True),
         Number("marginal at 0.25", rows[0], 1e-12, float(marginal.pdf(np.array([0.25]))[0]), bound=True, formula="3/4"),
@@ -36,7 +42,11 @@ def several() -> Outcome:
         mean_of("mean of xy", x * y, 1 / 3, "1/3"),
     ]
     # Independent factors: the density of the product is the product of the densities.
-    factors = [montelux.Distribution.exponential(1.0), montelux.Distribution.cosine(), montelux.Distribution.linear(0, 1)]
+    factors = [
+        montelux.Distribution.exponential(1.0),
+        montelux.Distribution.cosine(),
+        montelux.Distribution.linear(0, 1),
+    ]
     r = montelux.integrate(
         lambda v: np.exp(-v[:, 0]) * np.cos(v[:, 1]) * v[:, 2] ** 2,
         [(0, np.inf), (0, np.pi / 2), (0, 1)],
@@ -54,7 +64,9 @@ def draw_several(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, An
     a, side, slices = panels["plane"], panels["side"], panels["slices"]
     x, y = s["points"].T
     for level in (0.25, 0.75):
-        a.axhspan(level - 0.03, level + 0.03, color=theme.orange if level > 0.5 else theme.green, alpha=0.3, linewidth=0)
+        a.axhspan(
+            level - 0.03, level + 0.03, color=theme.orange if level > 0.5 else theme.green, alpha=0.3, linewidth=0
+        )
     a.plot(x[:2000], y[:2000], "o", markersize=2.4, color=theme.blue, markeredgewidth=0)
     a.set(xlabel="x", ylabel="y", xlim=(0, 1), ylim=(0, 1), xticks=[0, 1], yticks=[0, 1], title="p = x + y")
     t = np.linspace(0, 1, 100)
@@ -74,8 +86,8 @@ FIGURES = (
         "B7",
         "several",
         "Several variables",
-        "One coordinate is drawn from the marginal density, the other from the density along its line, which differs from line to line. "
-        "The points of two bands have the histograms of their own conditional densities.",
+        "One coordinate is drawn from the marginal density, the other from the density along its line, which differs"
+        " from line to line. The points of two bands have the histograms of their own conditional densities.",
         (r"p(y) = \int p(x, y)\,dx, \qquad p(x \mid y) = \frac{p(x, y)}{p(y)}",),
         several,
         draw_several,

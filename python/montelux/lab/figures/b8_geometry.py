@@ -40,10 +40,14 @@ FIGURES = (
         "B8",
         "geometry",
         "Points on shapes",
-        "512 points of a scrambled Sobol' set, carried to each shape: even in the square, they are even there. Only two of the densities are not uniform: "
-        "the cosine-weighted hemisphere, which is denser at its pole, and the bilinear square, denser at one corner (points behind a sphere are grey).",
+        "512 points of a scrambled Sobol' set, carried to each shape: even in the square, they are even there. Only two"
+        " of the densities are not uniform: the cosine-weighted hemisphere, which is denser at its pole, and the"
+        " bilinear square, denser at one corner (points behind a sphere are grey).",
         (
-            r"\mathrm{triangle:}\ \ b = (1 - \sqrt{\xi_1},\ \xi_2 \sqrt{\xi_1}), \qquad \mathrm{disc:}\ \ r = R \sqrt{\xi_1}",
+            (
+                r"\mathrm{triangle:}\ \ b = (1 - \sqrt{\xi_1},\ \xi_2 \sqrt{\xi_1}), \qquad \mathrm{disc:}\ \ r = R"
+                r" \sqrt{\xi_1}"
+            ),
             r"\mathrm{sphere:}\ \ z = 1 - 2 \xi_1, \qquad \mathrm{cosine\ hemisphere:}\ \ z = \sqrt{1 - r^2}",
         ),
         geometry,

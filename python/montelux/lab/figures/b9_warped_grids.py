@@ -26,10 +26,21 @@ def warped() -> Outcome:
         difference = np.abs(area - inverse)
         worst = np.unravel_index(np.argmax(difference / (area_error + inverse_error)), area.shape)
         numbers.append(
-            Number(f"{shape.name}: worst cell", area[worst], float((1.5 * (area_error + inverse_error))[worst]), inverse[worst], bound=True, formula="mean of 1/p")
+            Number(
+                f"{shape.name}: worst cell",
+                area[worst],
+                float((1.5 * (area_error + inverse_error))[worst]),
+                inverse[worst],
+                bound=True,
+                formula="mean of 1/p",
+            )
         )
         if shape.measure is not None:
-            numbers.append(Number(f"{shape.name}: all cells", area.mean(), 1.5 * float(area_error.mean()), shape.measure, bound=True))
+            numbers.append(
+                Number(
+                    f"{shape.name}: all cells", area.mean(), 1.5 * float(area_error.mean()), shape.measure, bound=True
+                )
+            )
         areas[shape.name] = (area, inverse)
     return Outcome(numbers, {"areas": areas})
 
@@ -54,7 +65,15 @@ def draw_areas(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]
     a = figure.subplots()
     for i, shape in enumerate(SHAPES):
         area, inverse = s["areas"][shape.name]
-        a.loglog(inverse.ravel(), area.ravel(), MARKERS[i % 8], color=theme.cycle[i % 6], label=shape.name, markerfacecolor="none", markersize=7)
+        a.loglog(
+            inverse.ravel(),
+            area.ravel(),
+            MARKERS[i % 8],
+            color=theme.cycle[i % 6],
+            label=shape.name,
+            markerfacecolor="none",
+            markersize=7,
+        )
     ends = np.array([0.3, 20])
     a.loglog(ends, ends, color=theme.ink, linewidth=1, zorder=0)
     a.set(xlabel="mean of 1/p in a cell", ylabel="area of its image × 64", xlim=(0.3, 20), ylim=(0.3, 20))
@@ -76,8 +95,14 @@ FIGURES = (
         "B9",
         "grids",
         "Density is change of area",
-        "The grid of the unit square, 8 by 8, as each warp carries it over. Where the cells of the image are small the density is high: the area of a cell, times the number of cells, is 1/p.",
-        (r"\frac{1}{p(x)} = \left| \frac{\partial x}{\partial \xi} \right| = \lim \frac{\mathrm{area\ of\ the\ image}}{\mathrm{area\ of\ the\ cell}}",),
+        "The grid of the unit square, 8 by 8, as each warp carries it over. Where the cells of the image are small the"
+        " density is high: the area of a cell, times the number of cells, is 1/p.",
+        (
+            (
+                r"\frac{1}{p(x)} = \left| \frac{\partial x}{\partial \xi} \right| = \lim"
+                r" \frac{\mathrm{area\ of\ the\ image}}{\mathrm{area\ of\ the\ cell}}"
+            ),
+        ),
         warped,
         draw_warped,
         7.6,
@@ -87,7 +112,8 @@ FIGURES = (
         "B9",
         "areas",
         "Areas of cells against 1/p",
-        "Each mark is a cell of one warp: its measured area against the mean of 1/p over it. All of them lie on the diagonal; those of uniform densities sit in one point.",
+        "Each mark is a cell of one warp: its measured area against the mean of 1/p over it. All of them lie on the"
+        " diagonal; those of uniform densities sit in one point.",
         (),
         areas,
         draw_areas,

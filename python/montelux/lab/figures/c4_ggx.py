@@ -58,7 +58,15 @@ def draw_ggx(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]) 
     a.legend(loc="upper left")
     xi = np.linspace(0, 1, 500)
     b.plot(xi, s["law"].quantile(xi), color=theme.ink)
-    b.set(xlabel="ξ", ylabel="θ", xlim=(0, 1), ylim=(0, np.pi / 2), yticks=[0, np.pi / 4, np.pi / 2], yticklabels=["0", "π/4", "π/2"], title="$P^{-1}$")
+    b.set(
+        xlabel="ξ",
+        ylabel="θ",
+        xlim=(0, 1),
+        ylim=(0, np.pi / 2),
+        yticks=[0, np.pi / 4, np.pi / 2],
+        yticklabels=["0", "π/4", "π/2"],
+        title="$P^{-1}$",
+    )
 
 
 FIGURES = (
@@ -66,7 +74,8 @@ FIGURES = (
         "C4",
         "ggx",
         "GGX: the angle of microfacet normals",
-        "At roughness 0.7 facet normals tilt most often by about 30 degrees, and seldom lie flat. The inverse on the right turns a uniform number into that angle: half of the numbers give less than atan 0.7, 35 degrees.",
+        "At roughness 0.7 facet normals tilt most often by about 30 degrees, and seldom lie flat. The inverse on the"
+        " right turns a uniform number into that angle: half of the numbers give less than atan 0.7, 35 degrees.",
         (
             r"D = \frac{a^2}{\pi\,((a^2 - 1) \cos^2\theta + 1)^2}, \qquad p(h) = D \cos\theta",
             r"\cos\theta = \sqrt{\frac{1 - \xi}{\xi\,(a^2 - 1) + 1}}",

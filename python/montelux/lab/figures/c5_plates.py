@@ -30,9 +30,15 @@ FIGURES = (
         "C5",
         "plates",
         "Four plates, four lamps",
-        "Directions of the material find the large lamp in the smooth plates and miss the small one in the rough plates; points on the lamps do the reverse. "
-        "Both together, each believed where it is good, are good everywhere; all are right on average.",
-        (r"w_i = \frac{p_i}{p_1 + p_2}\ \ \mathrm{(balance)}, \qquad w_i = \frac{p_i^2}{p_1^2 + p_2^2}\ \ \mathrm{(power)}",),
+        "Directions of the material find the large lamp in the smooth plates and miss the small one in the rough"
+        " plates; points on the lamps do the reverse. Both together, each believed where it is good, are good"
+        " everywhere; all are right on average.",
+        (
+            (
+                r"w_i = \frac{p_i}{p_1 + p_2}\ \ \mathrm{(balance)}, \qquad w_i = \frac{p_i^2}{p_1^2 +"
+                r" p_2^2}\ \ \mathrm{(power)}"
+            ),
+        ),
         plates,
         slow=True,
         alt="Five pictures of four plates that reflect four lamps",

@@ -38,7 +38,9 @@ def formula(name, x):  # type: ignore[no-untyped-def]
     if name == "Gaussian":
         return np.maximum(np.exp(-2 * x**2) - np.exp(-2 * 1.5**2), 0)
     if name == "Mitchell":  # Mitchell, Netravali 1988, b = c = 1/3
-        return np.where(x <= 1, 7 * x**3 - 12 * x**2 + 16 / 3, np.where(x <= 2, -7 / 3 * x**3 + 12 * x**2 - 20 * x + 32 / 3, 0))
+        return np.where(
+            x <= 1, 7 * x**3 - 12 * x**2 + 16 / 3, np.where(x <= 2, -7 / 3 * x**3 + 12 * x**2 - 20 * x + 32 / 3, 0)
+        )
     return np.where(x <= 4, np.sinc(x) * np.sinc(x / 3), 0)
 
 
@@ -49,12 +51,21 @@ def lamps():  # type: ignore[no-untyped-def]
 
 def picture(name, samples=256):  # type: ignore[no-untyped-def]
     """A black picture with thin vertical lamps through a filter: mean and error of its columns."""
-    text = 'Camera "orthographic" "float screenwindow" [0 400 -8 8]\nFilm "rgb" "integer xresolution" 400 "integer yresolution" 16\n'
+    text = (
+        'Camera "orthographic" "float screenwindow" [0 400 -8 8]\nFilm "rgb" "integer xresolution" 400 "integer'
+        ' yresolution" 16\n'
+    )
     text += 'Sampler "sobol"\nIntegrator "path" "integer maxdepth" 1\nWorldBegin\n'
     for x in lamps():
         a, b = x - WIDTH / 2, x + WIDTH / 2
-        text += f'AttributeBegin AreaLightSource "diffuse" "rgb L" [{1 / WIDTH} {1 / WIDTH} {1 / WIDTH}] "bool twosided" true\n'
-        text += f'Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [{a} -20 5 {b} -20 5 {b} 20 5 {a} 20 5] AttributeEnd\n'
+        text += (
+            f'AttributeBegin AreaLightSource "diffuse" "rgb L" [{1 / WIDTH} {1 / WIDTH} {1 / WIDTH}] "bool twosided"'
+            " true\n"
+        )
+        text += (
+            f'Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [{a} -20 5 {b} -20 5 {b} 20 5 {a} 20 5]'
+            " AttributeEnd\n"
+        )
     scene = montelux.parse(text)
     scene.film.filter = FILTERS[name]
     r = rendered(scene, samples, seed=3)
@@ -73,11 +84,20 @@ def filters() -> Outcome:
         mean, error = picture(name)
         value, deviation = mean[column], error[column]
         area = montelux.integrate(lambda x: formula(name, x), (-5.5, 5.5), "midpoint", cells=110_000).value
-        moment = montelux.integrate(lambda x: formula(name, x) * x**2, (-5.5, 5.5), "midpoint", cells=110_000).value / area
+        moment = (
+            montelux.integrate(lambda x: formula(name, x) * x**2, (-5.5, 5.5), "midpoint", cells=110_000).value / area
+        )
         numbers.append(Number(f"{name}: sum", value.sum() / LAMPS, np.sqrt((deviation**2).sum()) / LAMPS, 1))
         measured = (value * offset**2).sum() / LAMPS
         # A lamp's own width, and the steps of a twentieth between the offsets, add their share.
-        numbers.append(Number(f"{name}: second moment, pixels²", measured, np.sqrt((deviation**2 * offset**4).sum()) / LAMPS, moment + WIDTH**2 / 12))
+        numbers.append(
+            Number(
+                f"{name}: second moment, pixels²",
+                measured,
+                np.sqrt((deviation**2 * offset**4).sum()) / LAMPS,
+                moment + WIDTH**2 / 12,
+            )
+        )
         order = np.argsort(offset.ravel())
         series[name] = (offset.ravel()[order], value.ravel()[order], deviation.ravel()[order], area)
     return Outcome(numbers, series)
@@ -93,7 +113,15 @@ def draw_filters(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, An
         a.plot(t, formula(name, t) / area, color=theme.ink, linewidth=1.6)
         seen = np.abs(x) <= radius
         for sign, colour, mark in ((value >= 0, theme.blue, "o"), (value < 0, theme.orange, "s")):
-            a.errorbar(x[seen & sign], value[seen & sign], error[seen & sign], fmt=mark, color=colour, markersize=3.5, elinewidth=1)
+            a.errorbar(
+                x[seen & sign],
+                value[seen & sign],
+                error[seen & sign],
+                fmt=mark,
+                color=colour,
+                markersize=3.5,
+                elinewidth=1,
+            )
         a.set(title=name, xlabel="pixels", xlim=(-radius, radius))
         grid(a, theme)
 
@@ -103,8 +131,10 @@ FIGURES = (
         "C8",
         "filters",
         "Pixel filters",
-        "A pixel's value is an integral over the film, weighted by a filter about its middle: each mark is the value of a pixel that is so far from a thin bright lamp, and the line is the filter's formula. "
-        "Mitchell's and Lanczos' filters sharpen by negative lobes (squares): points are drawn as the filter's magnitude, and those in such a lobe count negative.",
+        "A pixel's value is an integral over the film, weighted by a filter about its middle: each mark is the value of"
+        " a pixel that is so far from a thin bright lamp, and the line is the filter's formula. Mitchell's and Lanczos'"
+        " filters sharpen by negative lobes (squares): points are drawn as the filter's magnitude, and those in such a"
+        " lobe count negative.",
         (r"I = \int f(x, y)\,L(x, y)\,dx\,dy, \qquad p \;\propto\; |f|, \qquad w = f / p",),
         filters,
         draw_filters,

@@ -40,7 +40,13 @@ def lens() -> Outcome:
         deviation = np.sqrt((error[near] ** 2 * (squared[near] - moment) ** 2).sum()) / total
         sharp = depth == FOCUS  # its edge is a pixel wide, of which the middles of pixels know little
         numbers.append(
-            Number(f"lamp at {depth} m: mean squared radius, pixels²", moment, 0.15 if sharp else deviation, spread(depth, place), bound=sharp)
+            Number(
+                f"lamp at {depth} m: mean squared radius, pixels²",
+                moment,
+                0.15 if sharp else deviation,
+                spread(depth, place),
+                bound=sharp,
+            )
         )
     s.camera.lens_radius = 0
     pinhole = rendered(s, 256, 4)
@@ -56,7 +62,9 @@ FIGURES = (
         "C8",
         "lens",
         "The thin lens",
-        "Five lamps stand 2, 3, 4, 6 and 12 metres away, and the lens is focused at 4: each of the others becomes a disc of the lens's own shape. Through a pinhole all are points; the light of a disc is spread, so that the first picture is shown forty times brighter.",
+        "Five lamps stand 2, 3, 4, 6 and 12 metres away, and the lens is focused at 4: each of the others becomes a"
+        " disc of the lens's own shape. Through a pinhole all are points; the light of a disc is spread, so that the"
+        " first picture is shown forty times brighter.",
         (r"R = A\,\frac{|d - f|}{d} \quad \mathrm{on\ the\ plane\ in\ focus}, \qquad \mathrm{E}\,r^2 = \frac{R^2}{2}",),
         lens,
         slow=True,

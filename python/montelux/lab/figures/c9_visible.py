@@ -5,7 +5,12 @@ from __future__ import annotations
 from .._figure import Figure, Outcome, Picture
 from ..light import displayed, rendered, same_mean
 
-FIVE = {"uniform": "uniform directions", "bsdf": "directions of the material", "light": "points on the lamp", "mis": "both, weighted"}
+FIVE = {
+    "uniform": "uniform directions",
+    "bsdf": "directions of the material",
+    "light": "points on the lamp",
+    "mis": "both, weighted",
+}
 
 
 def five() -> Outcome:
@@ -33,7 +38,9 @@ FIGURES = (
         "C9",
         "five",
         "Five samples a pixel",
-        "The same room with the same number of samples: what differs is where they look. Uniform directions hardly ever find the lamp; points on the lamp light the walls smoothly and leave the glossy ball noisy; together they do both.",
+        "The same room with the same number of samples: what differs is where they look. Uniform directions hardly ever"
+        " find the lamp; points on the lamp light the walls smoothly and leave the glossy ball noisy; together they do"
+        " both.",
         (r"L_o = \frac{1}{N} \sum_{i=1}^{N} \frac{f_r\,L_i \cos\theta_i}{p(\omega_i)}",),
         five,
         slow=True,
@@ -43,7 +50,8 @@ FIGURES = (
         "C9",
         "spheres",
         "Gold spheres at 64 samples",
-        "Roughness grows from left to right. Uniform directions miss the narrow reflections of the smooth spheres, which stay black with bright specks; directions drawn from the law of the microfacets find them.",
+        "Roughness grows from left to right. Uniform directions miss the narrow reflections of the smooth spheres,"
+        " which stay black with bright specks; directions drawn from the law of the microfacets find them.",
         (r"p(\omega_i) = \frac{p(h)}{4\,(\omega_o \cdot h)}",),
         spheres,
         slow=True,
