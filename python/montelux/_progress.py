@@ -59,8 +59,8 @@ class RenderProgress:
 
     def __call__(self, p: Progress) -> None:
         error = "" if p.relative_error is None else f", error {100 * p.relative_error:.3g} %"
-        left = p.seconds * (1 / p.share - 1) if p.share > 0 else 0.0
-        self._line.show(f"rendering: {100 * p.share:3.0f} %  {p.seconds:.1f} s elapsed, about {left:.0f} s left{error}")
+        left = f", about {p.seconds * (1 / p.share - 1):.0f} s left" if p.share > 0.01 else ""
+        self._line.show(f"rendering: {100 * p.share:3.0f} %  {p.seconds:.1f} s elapsed{left}{error}")
 
     def finish(self) -> None:
         self._line.finish()

@@ -13,7 +13,7 @@ def test_the_example_of_the_readme(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"^```python\n(.*?)^```$", (ROOT / "README.md").read_text(), re.M | re.S)
     assert len(blocks) == 1
-    quick = blocks[0].replace("320, 180", "32, 18").replace("target_error=0.1", "target_error=0.3")
+    quick = blocks[0].replace("320, 180", "32, 18").replace("target_error=0.2", "target_error=0.3")
     assert quick.count("32, 18") == quick.count("0.3") == 1
     exec(compile(quick, "README.md", "exec"), {})
     out = capsys.readouterr().out
