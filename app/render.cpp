@@ -346,14 +346,7 @@ void add_render(CLI::App& app, int& exit_code) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "Render a scene: every pixel with its standard error");
     declare(*command, *options);
-    command->callback([options, &exit_code] {
-        try {
-            exit_code = run(*options);
-        } catch (const UsageError& e) {
-            std::fprintf(stderr, "montelux: error: %s\n", e.what());
-            exit_code = exit_usage;
-        }
-    });
+    command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
 } // namespace montelux::app
