@@ -173,8 +173,13 @@ void print_outliers(const Film& film) {
     if (o.heavy_tailed > 0)
         std::printf(
             "%llu pixels owe most of their error to one bright sample and carry %s of the squared error: "
-            "their errors are rough (layer outlier)\n",
+            "their errors are rough (layers outlier and doubt)\n",
             static_cast<unsigned long long>(o.heavy_tailed), percent_text(o.heavy_error_share).c_str());
+    if (static_cast<double>(o.outshone) > few * static_cast<double>(film.pixels().size()))
+        std::printf(
+            "%llu pixels lie beside pixels of far larger variance: where that is no edge, they have missed "
+            "bright paths so far and are too sure (layer doubt)\n",
+            static_cast<unsigned long long>(o.outshone));
 }
 
 // What ended the render, where that is not the number of samples.
