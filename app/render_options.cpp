@@ -24,10 +24,12 @@ constexpr std::array<std::pair<const char*, SamplerKind>, 6> samplers{
      {"hammersley", SamplerKind::hammersley},
      {"sobol", SamplerKind::sobol},
      {"sobol-blue-noise", SamplerKind::sobol_blue_noise}}};
-constexpr std::array<std::pair<const char*, Strategy>, 4> strategies{{{"uniform", Strategy::uniform},
+constexpr std::array<std::pair<const char*, Strategy>, 6> strategies{{{"uniform", Strategy::uniform},
                                                                       {"bsdf", Strategy::bsdf},
                                                                       {"light", Strategy::light},
-                                                                      {"mis", Strategy::mis}}};
+                                                                      {"mis", Strategy::mis},
+                                                                      {"mis-bsdf", Strategy::mis_bsdf},
+                                                                      {"mis-light", Strategy::mis_light}}};
 constexpr std::array<std::pair<const char*, Heuristic>, 2> heuristics{
     {{"balance", Heuristic::balance}, {"power", Heuristic::power}}};
 
@@ -261,7 +263,7 @@ void declare(CLI::App& c, RenderOptions& o) {
                "Render a part of the film alone, as fractions from the top left");
     add_choice(c, "--sampler", o.sampler, samplers, "Where samples are taken: ");
     add_choice(c, "--strategy", o.strategy, strategies, "How light is found: ");
-    add_choice(c, "--heuristic", o.heuristic, heuristics, "Weights of the strategy mis: ");
+    add_choice(c, "--heuristic", o.heuristic, heuristics, "Weights of the strategy mis and its two terms: ");
     add_whole_number(c, "--max-depth", o.max_depth, 0, 1'000'000, "Scattering events of a path at most");
     add_parsed(c, "--debug-sample", "x,y,index", o.debug_sample, parse_sample,
                "Render no picture: trace this one sample of the render and print its path, vertex by vertex");

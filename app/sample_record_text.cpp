@@ -130,7 +130,10 @@ void add_found(Text& t, const FoundLight& found, const Scene& scene) {
         add_densities(t, found.light_pdf, found.bsdf_pdf, found.weight);
     else
         t.label(2, "weight").add("1: nothing else could have found it").end();
-    t.columns(2, "contribution", found.contribution);
+    if (found.counted)
+        t.columns(2, "contribution", found.contribution);
+    else
+        t.label(2, "contribution").add("to the term mis-bsdf, which is left out").end();
 }
 
 void add_direct(Text& t, const DirectLight& direct, const Scene& scene) {
@@ -139,6 +142,7 @@ void add_direct(Text& t, const DirectLight& direct, const Scene& scene) {
     t.add(", chosen with probability ").number(direct.choice);
     switch (direct.outcome) {
     case Outcome::counted:
+    case Outcome::other_term:
         t.end();
         break;
     case Outcome::occluded:
@@ -165,6 +169,8 @@ void add_direct(Text& t, const DirectLight& direct, const Scene& scene) {
     else
         add_densities(t, direct.light_pdf, direct.bsdf_pdf, direct.weight);
     if (direct.outcome == Outcome::counted) t.columns(2, "contribution", direct.contribution);
+    if (direct.outcome == Outcome::other_term)
+        t.label(2, "contribution").add("to the term mis-light, which is left out").end();
 }
 
 void add_scattering(Text& t, const PathVertex& v) {
@@ -297,7 +303,7 @@ std::string sample_record_text(const SampleRecord& r, const SceneDescription& d)
           static_cast<unsigned long long>(r.index), d.sampler.samples_per_pixel, r.x, r.y,
           name_of(d.sampler.kind).c_str(), static_cast<unsigned long long>(d.sampler.seed),
           name_of(d.integrator.strategy).c_str());
-    if (d.integrator.strategy == Strategy::mis)
+    if (d.integrator.strategy >= Strategy::mis)
         t.add(" with the %s heuristic", name_of(d.integrator.heuristic).c_str());
     t.end();
     t.label(1, "film").number(r.film.x).add(", ").number(r.film.y);
