@@ -13,6 +13,7 @@ from __future__ import annotations
 from ._core import (
     Adaptive,
     AdaptiveMap,
+    AliasTable,
     AreaLight,
     Auto,
     BasicMonteCarlo,
@@ -24,6 +25,7 @@ from ._core import (
     Cubature,
     Dielectric,
     Diffuse,
+    Discrete,
     DistantLight,
     Distribution,
     Domain,
@@ -66,6 +68,7 @@ from ._core import (
 from ._core import version as __version__
 from ._chains import Chains, metropolis
 from ._compare import ChannelComparison, Comparison, ZScores, compare
+from ._filters import pixel_filter
 from ._integrate import METHODS, integrate, train_map
 from ._names import UnknownAttribute, strict
 from ._picture import Picture
