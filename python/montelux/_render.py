@@ -143,4 +143,3 @@ def _end(job: _core.RenderJob) -> None:
     job.cancel()
     while not job.wait(1.0):
         pass
-

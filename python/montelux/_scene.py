@@ -63,7 +63,9 @@ class Scene(_core.SceneBase):
                 raise Error(f"render: {name}={number!r} was given; expected a number above zero")
         if target_quantile is not None:
             if target_error is None:
-                raise Error("render: target_quantile was given; expected target_error, within which that share shall be")
+                raise Error(
+                    "render: target_quantile was given; expected target_error, within which that share shall be"
+                )
             if not 0 < target_quantile < 1:
                 raise Error(f"render: target_quantile={target_quantile!r} was given; expected a number between 0 and 1")
         if seed is not None and not (isinstance(seed, int) and 0 <= seed < 2**64):

@@ -168,7 +168,9 @@ def test_filters_by_their_formulas():
         return f.value(points) / f.value([[0, 0]])
 
     gaussian = np.maximum(np.exp(-2 * x**2) - np.exp(-2 * 1.5**2), 0)
-    assert profile(montelux.pixel_filter("gaussian", 1.5, sigma=0.5)) == pytest.approx(gaussian / gaussian[20], abs=1e-6)
+    assert profile(montelux.pixel_filter("gaussian", 1.5, sigma=0.5)) == pytest.approx(
+        gaussian / gaussian[20], abs=1e-6
+    )
     sinc = np.sinc(x) * np.sinc(x / 3)
     assert profile(montelux.pixel_filter("lanczos", 4, tau=3)) == pytest.approx(sinc, abs=1e-6)
     assert profile(montelux.pixel_filter("triangle", 2)) == pytest.approx(1 - np.abs(x) / 2, abs=1e-6)
