@@ -1,9 +1,10 @@
 #include "app/sample_record_text.h"
 
-#include "app/render_options.h"
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+
+#include "montelux/scene/setting_names.h"
 
 namespace montelux::app {
 
@@ -301,10 +302,10 @@ std::string sample_record_text(const SampleRecord& r, const SceneDescription& d)
     Text t;
     t.add("sample %llu of %u of pixel %d,%d, sampler %s, seed %llu, strategy %s",
           static_cast<unsigned long long>(r.index), d.sampler.samples_per_pixel, r.x, r.y,
-          name_of(d.sampler.kind).c_str(), static_cast<unsigned long long>(d.sampler.seed),
-          name_of(d.integrator.strategy).c_str());
+          name_of(d.sampler.kind).data(), static_cast<unsigned long long>(d.sampler.seed),
+          name_of(d.integrator.strategy).data());
     if (d.integrator.strategy >= Strategy::mis)
-        t.add(" with the %s heuristic", name_of(d.integrator.heuristic).c_str());
+        t.add(" with the %s heuristic", name_of(d.integrator.heuristic).data());
     t.end();
     t.label(1, "film").number(r.film.x).add(", ").number(r.film.y);
     t.add("; filter weight ").number(r.filter.weight).end();

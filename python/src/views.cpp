@@ -6,26 +6,14 @@
 #include <string>
 
 #include "montelux/image/image.h"
+#include "montelux/scene/setting_names.h"
 
 namespace montelux::python {
 namespace {
 
-constexpr Names<SamplerKind, 6> sampler_kinds{"sampler",
-                                              {{{"independent", SamplerKind::independent},
-                                                {"stratified", SamplerKind::stratified},
-                                                {"halton", SamplerKind::halton},
-                                                {"hammersley", SamplerKind::hammersley},
-                                                {"sobol", SamplerKind::sobol},
-                                                {"sobol-blue-noise", SamplerKind::sobol_blue_noise}}}};
-constexpr Names<Strategy, 6> strategies{"strategy",
-                                        {{{"uniform", Strategy::uniform},
-                                          {"bsdf", Strategy::bsdf},
-                                          {"light", Strategy::light},
-                                          {"mis", Strategy::mis},
-                                          {"mis-bsdf", Strategy::mis_bsdf},
-                                          {"mis-light", Strategy::mis_light}}}};
-constexpr Names<Heuristic, 2> heuristics{"heuristic",
-                                         {{{"balance", Heuristic::balance}, {"power", Heuristic::power}}}};
+constexpr Names<SamplerKind, 6> sampler_kinds{"sampler", sampler_names};
+constexpr Names<Strategy, 6> strategies{"strategy", strategy_names};
+constexpr Names<Heuristic, 2> heuristics{"heuristic", heuristic_names};
 constexpr Names<SphericalCamera::Mapping, 2> mappings{
     "mapping",
     {{{"equal_area", SphericalCamera::Mapping::equal_area},

@@ -51,7 +51,7 @@ class Number:
         """From measured to exact, in errors; the sign is that of measured less exact."""
         difference = self.measured - self.exact
         if self.error > 0:
-            return difference / self.error
+            return float(difference / self.error)
         return 0.0 if difference == 0 else math.copysign(math.inf, difference)
 
     @property

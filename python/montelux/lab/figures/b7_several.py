@@ -107,7 +107,7 @@ def tabulated() -> Outcome:
         Number("density over the table's values, farthest from 1", apart, 1e-6, 0, bound=True),
         Number("there and back, farthest", back, 1e-8, 0, bound=True),
     ]
-    inside = (np.abs(middles - [0.3, 0.65]) < [0.175, 0.15]).all(axis=-1)
+    inside = np.all(np.abs(middles - np.array([0.3, 0.65])) < np.array([0.175, 0.15]), axis=-1)
     column, row = np.floor(points[:, 0] * COLUMNS).astype(int), np.floor(points[:, 1] * ROWS).astype(int)
     hill = inside[row, column]
     numbers.append(share_of("share on the hill", int(hill.sum()), len(points), table[inside].sum() / table.sum()))

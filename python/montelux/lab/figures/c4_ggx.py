@@ -94,7 +94,7 @@ def weight(m, visible):  # type: ignore[no-untyped-def]
 def visible() -> Outcome:
     """How much a rough mirror reflects, seen at 70 degrees: by all facets, and by those that are seen."""
     every = montelux.warp.ggx_normals(ALPHA)
-    seen = montelux.warp.ggx_visible_normals(ALPHA, VIEW)
+    seen = montelux.warp.ggx_visible_normals(ALPHA, [float(v) for v in VIEW])
     sphere = montelux.Domain.sphere([0, 0, 0])
     quasi = montelux.Quasi(replicates=32)
     r = montelux.integrate(lambda m: seen.pdf(m), sphere, quasi, evaluations=1 << 18, seed=1)
