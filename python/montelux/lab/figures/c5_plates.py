@@ -81,8 +81,8 @@ FIGURES = (
         "weights",
         "Who finds the light",
         "The picture is the sum of two: what directions of the material found, times its weight, in red, and what points on"
-        " the lamps found, times its weight, in green. The smooth plates at the back are red, the rough plate in front and"
-        " the walls are green around the small lamps, and they change over where both ways are as good as each other.",
+        " the lamps found, times its weight, in green. Large lamps in smooth plates are red, small lamps in rough plates and"
+        " on the walls are green; lamps that the camera sees are red, for nothing else finds those.",
         (
             (
                 r"\langle I \rangle = w_{bsdf}\,\frac{f\,L}{p_{bsdf}}"
