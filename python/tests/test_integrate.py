@@ -311,6 +311,7 @@ def test_other_threads_go_on_meanwhile():
 INTERRUPTED = """
 import os, signal, sys, threading, time
 import numpy as np, montelux
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which a parent in the background ignores
 def soon():
     time.sleep(0.3)
     os.kill(os.getpid(), signal.SIGINT)

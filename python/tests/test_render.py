@@ -135,6 +135,7 @@ import os, signal, sys, threading, time
 import montelux
 scene = montelux.parse(sys.argv[1])
 scene.film.resolution = 160, 120
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which a parent in the background ignores
 def soon():
     time.sleep(0.4)
     os.kill(os.getpid(), signal.SIGINT)
