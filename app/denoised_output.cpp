@@ -1,25 +1,9 @@
 #include "app/denoised_output.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
-
-#include "montelux/image/image_write.h"
 
 namespace montelux::app {
-
-namespace {
-
-bool holds_layers(const std::string& output) {
-    std::string extension = std::filesystem::path(output).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension == ".exr";
-}
-
-} // namespace
 
 std::string describe(const Denoiser& denoiser, const DenoiseReport& report, bool quiet) {
     if (!quiet && report.not_finite > 0)
@@ -46,13 +30,6 @@ DenoiseOutcome denoise_render(const std::optional<Denoiser>& denoiser, Image& im
     } catch (const std::exception& e) {
         return {", not denoised", e.what()};
     }
-}
-
-void write_picture(const std::string& output, const Image& image) {
-    if (!holds_layers(output) && image.find_channel("denoised.R"))
-        write_image(output, denoised_picture(image));
-    else
-        write_image(output, image);
 }
 
 } // namespace montelux::app

@@ -1,4 +1,4 @@
-// Denoised pictures of the commands render and denoise: made, told about, written.
+// Denoised pictures of the commands render and denoise: made and told about.
 #pragma once
 
 #include <optional>
@@ -18,9 +18,6 @@ struct DenoiseOutcome {
 // rendering are not to be lost by it.
 DenoiseOutcome denoise_render(const std::optional<Denoiser>& denoiser, Image& image, bool stopped,
                               bool quiet);
-
-// EXR gets every layer, other formats get the denoised picture where there is one.
-void write_picture(const std::string& output, const Image& image);
 
 // "denoised by ... (...)"; warns of pixels that were replaced unless `quiet`.
 std::string describe(const Denoiser& denoiser, const DenoiseReport& report, bool quiet);

@@ -23,6 +23,7 @@
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/render/checkpoint.h"
+#include "montelux/render/render_header.h"
 #include "montelux/render/renderer.h"
 
 namespace montelux::app {
@@ -93,46 +94,6 @@ void print_warnings(const Warnings& warnings) {
         std::fprintf(stderr, "montelux: warning: %s\n", w.c_str());
     if (warnings.left_out() > 0)
         std::fprintf(stderr, "montelux: warning: %zu more warnings were left out\n", warnings.left_out());
-}
-
-void add_header(Image& image, const RenderOptions& options, const SceneDescription& description,
-                const RenderReport& report, const FilmError& error, double clamped,
-                const Renderer& renderer) {
-    auto& a = image.attributes();
-    auto hexadecimal = [](std::uint64_t hash) {
-        char text[17];
-        std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-        return std::string(text);
-    };
-    a["software"] = std::string("Montelux " MONTELUX_VERSION);
-    a["scene"] = std::filesystem::path(options.scene).filename().string();
-    a["sceneHash"] = hexadecimal(description.content_hash);
-    a["renderHash"] = hexadecimal(render_fingerprint(description, renderer.sampler()));
-    a["samplesPerPixel"] = static_cast<int>(description.sampler.samples_per_pixel);
-    a["stoppedBy"] = std::string(to_string(report.stop));
-    const RenderTarget& target = renderer.target();
-    if (target.error > 0) a["targetError"] = static_cast<float>(target.error);
-    if (target.quantile > 0) a["targetQuantile"] = static_cast<float>(target.quantile);
-    a["adaptive"] = target.adaptive ? 1 : 0;
-    a["slice"] = std::to_string(target.slice.index + 1) + "/" + std::to_string(target.slice.count);
-    a["pointsPerUnit"] = static_cast<int>(SampleOrder(renderer.sampler(), target.slice).unit());
-    if (clamped > 0) a["clampedLuminance"] = static_cast<float>(clamped);
-    a["samplesTaken"] = static_cast<float>(error.mean_samples);
-    a["interrupted"] = report.cancelled() ? 1 : 0;
-    a["sampler"] = name_of(description.sampler.kind);
-    a["strategy"] = name_of(description.integrator.strategy);
-    a["heuristic"] = name_of(description.integrator.heuristic);
-    a["maxDepth"] = description.integrator.max_depth;
-    a["seed"] = std::to_string(description.sampler.seed);
-    a["renderSeconds"] = static_cast<float>(report.seconds);
-    a["relativeError"] = static_cast<float>(error.relative);
-    a["badSamples"] = static_cast<int>(std::min<std::uint64_t>(report.bad.count(), 1u << 30));
-    a["worldToCamera"] = renderer.camera().world_from_camera().inverse_matrix();
-    const PixelBounds& c = description.film.crop;
-    a["fullResolution"] = std::vector<float>{static_cast<float>(description.film.width),
-                                             static_cast<float>(description.film.height)};
-    a["cropPixels"] = std::vector<float>{static_cast<float>(c.x0), static_cast<float>(c.y0),
-                                         static_cast<float>(c.x1), static_cast<float>(c.y1)};
 }
 
 void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed) {
@@ -302,7 +263,8 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
 
     const FilmError error = state.film.error();
     Image image = state.film.develop();
-    add_header(image, options, description, report, error, clamped_luminance(state.film), renderer);
+    add_render_header(image, std::filesystem::path(options.scene).filename().string(), description, renderer,
+                      report, error, clamped_luminance(state.film));
     finish_on_signals();
     const DenoiseOutcome denoised = denoise_render(denoiser, image, report.cancelled(), options.quiet);
     for (const std::string& output : outputs) write_picture(output, image);

@@ -10,6 +10,7 @@
 
 #include "montelux/image/image.h"
 #include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/scene/setting_names.h"
 
 namespace montelux::app {
 
@@ -18,32 +19,11 @@ namespace {
 // Where a target or a time alone is to end the render.
 constexpr std::uint32_t most_samples = 1u << 24;
 
-constexpr std::array<std::pair<const char*, SamplerKind>, 6> samplers{
-    {{"independent", SamplerKind::independent},
-     {"stratified", SamplerKind::stratified},
-     {"halton", SamplerKind::halton},
-     {"hammersley", SamplerKind::hammersley},
-     {"sobol", SamplerKind::sobol},
-     {"sobol-blue-noise", SamplerKind::sobol_blue_noise}}};
-constexpr std::array<std::pair<const char*, Strategy>, 4> strategies{{{"uniform", Strategy::uniform},
-                                                                      {"bsdf", Strategy::bsdf},
-                                                                      {"light", Strategy::light},
-                                                                      {"mis", Strategy::mis}}};
-constexpr std::array<std::pair<const char*, Heuristic>, 2> heuristics{
-    {{"balance", Heuristic::balance}, {"power", Heuristic::power}}};
-
 template <typename Table>
 std::string names(const Table& table) {
     std::string list;
     for (const auto& [name, value] : table) list += (list.empty() ? "" : ", ") + std::string(name);
     return list;
-}
-
-template <typename Table, typename Value>
-std::string name_in(const Table& table, Value value) {
-    for (const auto& [name, known] : table)
-        if (known == value) return name;
-    return "?";
 }
 
 [[noreturn]] void refuse(const std::string& option, const std::string& given, const std::string& expected) {
@@ -215,10 +195,6 @@ PixelBounds crop_of(const std::array<double, 4>& c, int width, int height) {
 
 } // namespace
 
-std::string name_of(SamplerKind kind) { return name_in(samplers, kind); }
-std::string name_of(Strategy strategy) { return name_in(strategies, strategy); }
-std::string name_of(Heuristic heuristic) { return name_in(heuristics, heuristic); }
-
 void declare(CLI::App& c, RenderOptions& o) {
     c.add_option("SCENE", o.scene, "Scene file of pbrt-v4; .gz is unpacked")->required();
     c.add_option(
@@ -260,9 +236,10 @@ void declare(CLI::App& c, RenderOptions& o) {
                "Size of the film in pixels; the scene's crop keeps its place");
     add_parsed(c, "--crop", "x0,x1,y0,y1", o.crop, parse_crop,
                "Render a part of the film alone, as fractions from the top left");
-    add_choice(c, "--sampler", o.sampler, samplers, "Where samples are taken: ");
-    add_choice(c, "--strategy", o.strategy, strategies, "How light is found: ");
-    add_choice(c, "--heuristic", o.heuristic, heuristics, "Weights of the strategy mis: ");
+    add_choice(c, "--sampler", o.sampler, sampler_names, "Where samples are taken: ");
+    add_choice(c, "--strategy", o.strategy, strategy_names, "How light is found: ");
+    add_choice(c, "--heuristic", o.heuristic, heuristic_names,
+               "Weights of the strategy mis and its two terms: ");
     add_whole_number(c, "--max-depth", o.max_depth, 0, 1'000'000, "Scattering events of a path at most");
     add_parsed(c, "--debug-sample", "x,y,index", o.debug_sample, parse_sample,
                "Render no picture: trace this one sample of the render and print its path, vertex by vertex");

@@ -54,8 +54,4 @@ void apply(const RenderOptions& options, SceneDescription& description);
 // Throws UsageError for options that do not go together.
 RenderTarget target_of(const RenderOptions& options);
 
-std::string name_of(SamplerKind kind);
-std::string name_of(Strategy strategy);
-std::string name_of(Heuristic heuristic);
-
 } // namespace montelux::app

@@ -1,9 +1,10 @@
 #include "app/sample_record_text.h"
 
-#include "app/render_options.h"
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+
+#include "montelux/scene/setting_names.h"
 
 namespace montelux::app {
 
@@ -130,7 +131,10 @@ void add_found(Text& t, const FoundLight& found, const Scene& scene) {
         add_densities(t, found.light_pdf, found.bsdf_pdf, found.weight);
     else
         t.label(2, "weight").add("1: nothing else could have found it").end();
-    t.columns(2, "contribution", found.contribution);
+    if (found.counted)
+        t.columns(2, "contribution", found.contribution);
+    else
+        t.label(2, "contribution").add("to the term mis-bsdf, which is left out").end();
 }
 
 void add_direct(Text& t, const DirectLight& direct, const Scene& scene) {
@@ -139,6 +143,7 @@ void add_direct(Text& t, const DirectLight& direct, const Scene& scene) {
     t.add(", chosen with probability ").number(direct.choice);
     switch (direct.outcome) {
     case Outcome::counted:
+    case Outcome::other_term:
         t.end();
         break;
     case Outcome::occluded:
@@ -165,6 +170,8 @@ void add_direct(Text& t, const DirectLight& direct, const Scene& scene) {
     else
         add_densities(t, direct.light_pdf, direct.bsdf_pdf, direct.weight);
     if (direct.outcome == Outcome::counted) t.columns(2, "contribution", direct.contribution);
+    if (direct.outcome == Outcome::other_term)
+        t.label(2, "contribution").add("to the term mis-light, which is left out").end();
 }
 
 void add_scattering(Text& t, const PathVertex& v) {
@@ -295,10 +302,10 @@ std::string sample_record_text(const SampleRecord& r, const SceneDescription& d)
     Text t;
     t.add("sample %llu of %u of pixel %d,%d, sampler %s, seed %llu, strategy %s",
           static_cast<unsigned long long>(r.index), d.sampler.samples_per_pixel, r.x, r.y,
-          name_of(d.sampler.kind).c_str(), static_cast<unsigned long long>(d.sampler.seed),
-          name_of(d.integrator.strategy).c_str());
-    if (d.integrator.strategy == Strategy::mis)
-        t.add(" with the %s heuristic", name_of(d.integrator.heuristic).c_str());
+          name_of(d.sampler.kind).data(), static_cast<unsigned long long>(d.sampler.seed),
+          name_of(d.integrator.strategy).data());
+    if (d.integrator.strategy >= Strategy::mis)
+        t.add(" with the %s heuristic", name_of(d.integrator.heuristic).data());
     t.end();
     t.label(1, "film").number(r.film.x).add(", ").number(r.film.y);
     t.add("; filter weight ").number(r.filter.weight).end();

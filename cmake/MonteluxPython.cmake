@@ -32,6 +32,10 @@ if(MONTELUX_PYTHON AND MONTELUX_TESTS)
         add_test(NAME python/package COMMAND ${PROJECT_SOURCE_DIR}/python/tests/package_test.sh
             ${PROJECT_BINARY_DIR}/python-package)
         set_tests_properties(python/package PROPERTIES LABELS slow TIMEOUT 3600 SKIP_RETURN_CODE 77)
+        add_test(NAME python/lab COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${PROJECT_BINARY_DIR}/python
+            PYTHONDONTWRITEBYTECODE=1 MONTELUX_SLOW=1
+            ${Python_EXECUTABLE} -m pytest -q -p no:cacheprovider ${PROJECT_SOURCE_DIR}/python/tests/lab)
+        set_tests_properties(python/lab PROPERTIES LABELS slow TIMEOUT 1200)
     endif()
     set_tests_properties(python/tests PROPERTIES LABELS fast TIMEOUT 300 SKIP_RETURN_CODE 77)
 endif()

@@ -1,6 +1,8 @@
 #include "montelux/denoise/denoise_image.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <optional>
 #include <vector>
 
@@ -84,6 +86,16 @@ Image denoised_picture(const Image& image) {
     store(picture, {0, 1, 2}, triples(image, channels));
     picture.attributes() = image.attributes();
     return picture;
+}
+
+void write_picture(const std::filesystem::path& path, const Image& image, const WriteOptions& options) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension != ".exr" && image.find_channel("denoised.R"))
+        write_image(path, denoised_picture(image), options);
+    else
+        write_image(path, image, options);
 }
 
 } // namespace montelux

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 #include "montelux/denoise/denoiser.h"
 #include "montelux/image/image.h"
+#include "montelux/image/image_write.h"
 
 namespace montelux {
 
@@ -23,5 +25,8 @@ DenoiseReport denoise_image(const Denoiser& denoiser, Image& image);
 // The denoised layers as the R, G, B of a picture of its own, with all attributes: what formats without
 // layers can hold. Throws Error where there are none.
 Image denoised_picture(const Image& image);
+
+// write_image: to EXR every layer, to other formats the denoised picture where there is one.
+void write_picture(const std::filesystem::path& path, const Image& image, const WriteOptions& options = {});
 
 } // namespace montelux

@@ -12,12 +12,16 @@
 
 namespace montelux {
 
-// How the light at a vertex of a path is found (MISSION C5, C9).
+// How the light at a vertex of a path is found (MISSION C5, C9). From `light` on lights are sampled.
 enum class Strategy : std::uint8_t {
     uniform, // directions uniform over the sphere (hemisphere for opaque surfaces)
     bsdf,    // directions by BSDF sampling
     light,   // points on lights; what lights cannot be sampled for (mirrors, seen lights) by BSDF sampling
     mis,     // both, joined by multiple importance sampling
+    // The two terms of mis, to be looked at: by the same random numbers they add up to it. Light that the
+    // path meets, by its weight: what the camera and mirrors see as well.
+    mis_bsdf,
+    mis_light, // sampled lights, by their weight: all of lights that nothing can meet
 };
 enum class Heuristic : std::uint8_t { balance, power };
 

@@ -95,9 +95,7 @@ struct Path {
     bool sees_lights = true;   // no other strategy can have found the light that the ray hits
     float eta_scale = 1;       // squared index of refraction along the path, undone for Russian roulette
 
-    bool samples_lights() const {
-        return ps.settings.strategy == Strategy::mis || ps.settings.strategy == Strategy::light;
-    }
+    bool samples_lights() const { return ps.settings.strategy >= Strategy::light; }
 
     // How much of the light that was found by following the path counts.
     float hit_weight(float light_pdf) const {
@@ -112,14 +110,16 @@ struct Path {
         if (is_black(le)) return;
         const float pdf = sees_lights ? 0 : light_pdf();
         const float weight = sees_lights ? 1 : hit_weight(pdf);
+        const bool counted = ps.settings.strategy != Strategy::mis_light;
         if (recorder)
             recorder.found_light({.light = light,
                                   .radiance = le,
                                   .shared = !sees_lights,
                                   .bsdf_pdf = sees_lights ? 0 : bsdf_pdf,
                                   .light_pdf = pdf,
-                                  .weight = weight});
-        radiance += throughput * le * weight;
+                                  .weight = weight,
+                                  .counted = counted});
+        if (counted) radiance += throughput * le * weight;
     }
 
     void add_infinite_lights(Vec3f w) {
@@ -186,6 +186,10 @@ struct Path {
         float weight = light->delta || ps.settings.strategy == Strategy::light
                            ? 1
                            : mis_weight(ps.settings.heuristic, light_pdf, e.pdf);
+        if (ps.settings.strategy == Strategy::mis_bsdf) {
+            record(Outcome::other_term, weight);
+            return;
+        }
         const bool occluded = tracer.occluded(light->shadow);
         record(occluded ? Outcome::occluded : Outcome::counted, weight);
         if (occluded) return;

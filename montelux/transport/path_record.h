@@ -21,6 +21,7 @@ struct FoundLight {
     float bsdf_pdf = 0;  // of the ray's direction, per solid angle at the vertex before
     float light_pdf = 0; // of light sampling finding the same, per solid angle, choice of the light included
     float weight = 1;    // of multiple importance sampling
+    bool counted = true; // false: the strategy looks at the other term of multiple importance sampling alone
     SampledSpectrum contribution{}; // to the radiance of the path
 };
 
@@ -35,6 +36,8 @@ struct DirectLight {
         left_to_scattering,
         // The light is black here or the BSDF sends nothing of it along the path.
         no_transport,
+        // The strategy looks at the other term of multiple importance sampling alone.
+        other_term,
     };
     Outcome outcome = Outcome::dark;
     Index light = no_index;

@@ -24,7 +24,7 @@ void PathRecorder::left_scene(const Ray& ray, SampledSpectrum throughput) const 
 
 void PathRecorder::found_light(FoundLight light) const {
     PathVertex& v = last();
-    light.contribution = v.throughput * light.radiance * light.weight;
+    if (light.counted) light.contribution = v.throughput * light.radiance * light.weight;
     v.found.push_back(light);
 }
 

@@ -71,15 +71,16 @@ def as_method(method: Any, settings: dict[str, Any]) -> _core.Method:
             raise Error("method: " + unknown("method", method, METHODS))
         method = METHODS[method]
     if isinstance(method, type) and method in METHODS.values():
-        names = [*_REQUIRED.get(method.name, ()), *settings_of(method)]
+        kind: str = getattr(method, "name")
+        names = [*_REQUIRED.get(kind, ()), *settings_of(method)]
         if method is _core.MultipleImportance:
             names += ["weights", "parameter"]
         for name in settings:
             if name not in names:
-                raise Error(f"method '{method.name}': " + unknown("setting", name, names or ["(none)"]))
-        missing = [name for name in _REQUIRED.get(method.name, ()) if name not in settings]
+                raise Error(f"method '{kind}': " + unknown("setting", name, names or ["(none)"]))
+        missing = [name for name in _REQUIRED.get(kind, ()) if name not in settings]
         if missing:
-            raise Error(f"method '{method.name}': expected the setting '{missing[0]}'")
+            raise Error(f"method '{kind}': expected the setting '{missing[0]}'")
         method = method(**settings)
     elif settings:
         name = next(iter(settings))

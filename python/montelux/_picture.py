@@ -41,9 +41,8 @@ class Picture:
     """A render as it was at some moment. Arrays are float32, linear sRGB, row 0 at the top; they share the
     memory of the picture and cannot be written to."""
 
-    def __init__(self, look: _core.RenderLook, entries: dict[str, Any]) -> None:
+    def __init__(self, look: _core.RenderLook) -> None:
         self._held: _core.RenderLook | None = look
-        self._entries = entries
         self._made: Mapping[str, Pixels] | None = None
 
     def _look(self) -> _core.RenderLook:
@@ -64,7 +63,12 @@ class Picture:
     def layers(self) -> Mapping[str, Pixels]:
         """All layers by name: 'mean', 'standard_error', 'skewness' (of the mean), 'albedo' and 'normal' of the
         first surface, of shape (h, w, 3); 'samples', 'units' (independent parts that the error is made of),
+<<<<<<< HEAD
         'outlier', 'doubt' (not 0 where the error is rough) and 'depth', of shape (h, w)."""
+=======
+        'outlier' and 'depth', of shape (h, w). Where it was asked for also 'denoised', which `standard_error`
+        does not hold for."""
+>>>>>>> 07a61c98db1f108ad1d5269c9a92249d212aaf7c
         if self._made is None:
             self._made = MappingProxyType(self._look().layers)
         return self._made
@@ -90,15 +94,17 @@ class Picture:
         return self._look().bad_samples
 
     def to_srgb(self, exposure: float | None = None) -> npt.NDArray[np.uint8]:
-        """8-bit sRGB for a screen, shape (height, width, 3): light times 2**exposure, and 1 is white.
+        """8-bit sRGB for a screen, shape (height, width, 3): light times 2**exposure, and 1 is white; of the
+        denoised picture, where there is one.
         None: the exposure that suits the picture."""
         look = self._look()
         data, height, width, channels = look.screen(look.automatic_exposure() if exposure is None else exposure)
         return np.frombuffer(data, np.uint8).reshape(height, width, channels)
 
     def save(self, path: str | os.PathLike[str], exposure: float = 0.0) -> None:
-        """Writes .exr (all layers), .png, .hdr or .pfm, whole or not at all; exposure (stops) is for .png."""
-        self._look().save(os.fspath(path), exposure, self._entries)
+        """Writes .exr (all layers), .png, .hdr or .pfm (the denoised picture, where there is one), whole or not at
+        all; exposure (stops) is for .png. Header entries of .exr are those that `montelux render` writes."""
+        self._look().save(os.fspath(path), exposure)
 
     def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
         return np.array(self.mean, dtype=dtype)

@@ -44,13 +44,11 @@ class Render(Picture):
     def __init__(
         self,
         job: _core.RenderJob,
-        entries: dict[str, Any],
         progress: bool | Callable[[Progress], object],
         every: float,
     ) -> None:
         self._job = job
         self._held = None
-        self._entries = entries
         self._made = None
         self._every = every
         self._watch = RenderProgress() if progress is True else (progress or None)
@@ -91,7 +89,7 @@ class Render(Picture):
                 break
             if look is None:
                 continue  # the render ends, or a sample takes long
-            yield Picture(look, self._header(look))
+            yield Picture(look)
             next_look = time.monotonic() + self._every
         yield self.wait()
 
@@ -116,22 +114,10 @@ class Render(Picture):
             if isinstance(self._watch, RenderProgress):
                 self._watch.finish()
             self._held = self._job.result()
-            self._entries = self._header(self._held)
-            for text in (self._held.bad_text, self._job.checkpoint_failure):
+            for text in (self._held.bad_text, self._job.checkpoint_failure, self._job.denoise_failure):
                 if text:
                     warnings.warn(text, RuntimeWarning, stacklevel=3)
         return self._held
-
-    def _header(self, look: _core.RenderLook) -> dict[str, Any]:
-        return {
-            **self._entries,
-            "seed": str(self._job.seed),
-            "samplesTaken": float(look.mean_samples),
-            "relativeError": float(look.relative_error),
-            "renderSeconds": float(look.seconds),
-            "badSamples": min(look.bad_samples, 2**30),
-            "stoppedBy": look.stop,
-        }
 
     def __repr__(self) -> str:
         if not self.finished:
@@ -143,4 +129,3 @@ def _end(job: _core.RenderJob) -> None:
     job.cancel()
     while not job.wait(1.0):
         pass
-

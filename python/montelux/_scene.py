@@ -39,6 +39,8 @@ class Scene(_core.SceneBase):
         checkpoint: str | os.PathLike[str] | None = None,
         checkpoint_every: float = 60.0,
         resume: bool = False,
+        slice: tuple[int, int] | None = None,
+        denoise: bool = False,
     ) -> Render:
         """Starts to render, and returns the Render, which goes on by itself.
 
@@ -54,6 +56,10 @@ class Scene(_core.SceneBase):
         a Progress. every: seconds between the pictures that iterating gives. checkpoint: a file that keeps the
         running state, written every `checkpoint_every` seconds and at the end; with `resume` the render goes on
         from it, to the same bits.
+
+        slice: (k, n) takes the k-th of n parts of the samples, k from 1 to n; `montelux merge` joins the saved
+        parts. denoise: the finished picture is denoised too, by Open Image Denoise (layer 'denoised'), unless it
+        is stopped before.
         """
         for name, value in (("samples", samples), ("max_samples", max_samples)):
             if value is not None and not (isinstance(value, int) and 1 <= value <= 1 << 30):
@@ -63,13 +69,22 @@ class Scene(_core.SceneBase):
                 raise Error(f"render: {name}={number!r} was given; expected a number above zero")
         if target_quantile is not None:
             if target_error is None:
-                raise Error("render: target_quantile was given; expected target_error, within which that share shall be")
+                raise Error(
+                    "render: target_quantile was given; expected target_error, within which that share shall be"
+                )
             if not 0 < target_quantile < 1:
                 raise Error(f"render: target_quantile={target_quantile!r} was given; expected a number between 0 and 1")
         if seed is not None and not (isinstance(seed, int) and 0 <= seed < 2**64):
             raise Error(f"render: seed={seed!r} was given; expected a whole number in [0, 2**64)")
         if threads < 0 or threads > 4096:
             raise Error(f"render: threads={threads!r} was given; expected a whole number from 0 to 4096")
+        part = (1, 1) if slice is None else tuple(slice)
+        if len(part) != 2 or not (all(isinstance(i, int) for i in part) and 1 <= part[0] <= part[1] <= 1_000_000):
+            raise Error(f"render: slice={slice!r} was given; expected (k, n) with k from 1 to n")
+        if part[1] > 1 and (target_error is not None or adaptive):
+            raise Error(
+                "render: slices share a number of samples a pixel; give samples, without target_error and adaptive"
+            )
         aimed = target_error is not None or seconds is not None
         most = samples
         if samples is None and max_samples is not None:
@@ -90,21 +105,14 @@ class Scene(_core.SceneBase):
             checkpoint="" if checkpoint is None else os.fspath(checkpoint),
             checkpoint_every=checkpoint_every,
             resume=resume,
+            slice=part,
+            denoise=denoise,
         )
         if job.refused_checkpoint:
             warnings.warn(
                 f"{job.refused_checkpoint}; went on from the checkpoint before it", RuntimeWarning, stacklevel=2
             )
-        entries = {
-            "software": f"Montelux {_core.version}",
-            "scene": self.name,
-            "samplesPerPixel": job.samples_per_pixel,
-            "sampler": self.sampler.kind,
-            "strategy": self.integrator.strategy,
-            "heuristic": self.integrator.heuristic,
-            "maxDepth": self.integrator.max_depth,
-        }
-        return Render(job, entries, progress, every)
+        return Render(job, progress, every)
 
     def __repr__(self) -> str:
         width, height = self.film.resolution

@@ -18,11 +18,13 @@ void bind_integrate(nb::module_& m);
 void bind_metropolis(nb::module_& m);
 void bind_points(nb::module_& m);
 void bind_warps(nb::module_& m);
+void bind_tables(nb::module_& m); // discrete variables, tabulated densities
 void bind_spectra(nb::module_& m);
 void bind_images(nb::module_& m);
 void bind_materials(nb::module_& m);
 void bind_lights(nb::module_& m);
 void bind_shapes(nb::module_& m);
+void bind_filters(nb::module_& m);
 void bind_views(nb::module_& m); // camera, film, sampler, integrator
 void bind_scene(nb::module_& m);
 void bind_render(nb::module_& m);

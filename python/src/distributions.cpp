@@ -42,10 +42,7 @@ nb::object each(const Distribution& d, const nb::object& x) {
 
 nb::object sample(const Distribution& d, const nb::object& u) {
     return elementwise(u, "Distribution.sample", [&](std::span<const double> in, std::span<double> out) {
-        for (const double v : in)
-            if (!(v >= 0 && v <= 1))
-                throw Error("Distribution.sample", "the uniform number " + std::to_string(v) +
-                                                       " was given; expected numbers in [0, 1]");
+        require_uniform(in, "Distribution.sample");
         d.sample(in, out);
     });
 }

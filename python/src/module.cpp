@@ -42,11 +42,13 @@ NB_MODULE(_core, m) {
     bind_metropolis(m);
     bind_points(m);
     bind_warps(m);
+    bind_tables(m);
     bind_spectra(m);
     bind_images(m);
     bind_materials(m);
     bind_lights(m);
     bind_shapes(m);
+    bind_filters(m);
     bind_views(m);
     bind_scene(m);
     bind_render(m);

@@ -141,6 +141,13 @@ NewArray new_array(std::span<const std::size_t> shape) {
     return {array, static_cast<double*>(PyArray_DATA(as_array(array)))};
 }
 
+NewIndexArray new_index_array(std::span<const std::size_t> shape) {
+    std::vector<npy_intp> dimensions(shape.begin(), shape.end());
+    auto array = nb::borrow<IndexArray>(
+        stolen(PyArray_SimpleNew(static_cast<int>(dimensions.size()), dimensions.data(), NPY_INT64)));
+    return {array, static_cast<std::int64_t*>(PyArray_DATA(as_array(array)))};
+}
+
 DoubleArray new_array(std::span<const double> values) {
     const std::size_t shape[] = {values.size()};
     NewArray a = new_array(shape);
@@ -177,6 +184,13 @@ Numbers numbers_of(const nb::handle& given, std::string_view what) {
     for (int d = 0; d < PyArray_NDIM(array); ++d)
         numbers.shape.push_back(static_cast<std::size_t>(PyArray_DIM(array, d)));
     return numbers;
+}
+
+void require_uniform(std::span<const double> u, std::string_view what) {
+    for (const double v : u)
+        if (!(v >= 0 && v <= 1))
+            throw Error(what,
+                        "the uniform number " + std::to_string(v) + " was given; expected numbers in [0, 1]");
 }
 
 } // namespace montelux::python

@@ -1,6 +1,7 @@
 // NumPy arrays on memory of the library, and numbers out of what Python functions return.
 #pragma once
 
+#include <cstdint>
 #include <nanobind/nanobind.h>
 #include <span>
 #include <string_view>
@@ -17,6 +18,11 @@ bool is_array(PyObject* o);
 // An array of doubles, by its type in the stubs.
 class DoubleArray : public nb::object {
     NB_OBJECT_DEFAULT(DoubleArray, nb::object, "numpy.typing.NDArray[numpy.float64]", is_array)
+};
+
+// An array of int64.
+class IndexArray : public nb::object {
+    NB_OBJECT_DEFAULT(IndexArray, nb::object, "numpy.typing.NDArray[numpy.int64]", is_array)
 };
 
 // Loads NumPy's table of functions; before anything else here.
@@ -47,6 +53,11 @@ struct NewArray {
     double* data;
 };
 NewArray new_array(std::span<const std::size_t> shape);
+struct NewIndexArray {
+    IndexArray array;
+    std::int64_t* data;
+};
+NewIndexArray new_index_array(std::span<const std::size_t> shape);
 
 // A read-only array of float32 on the memory of a picture of interleaved channels, which `owner` keeps alive:
 // shape (height, width, count), or (height, width) for one.
@@ -61,5 +72,8 @@ struct Numbers {
     std::vector<std::size_t> shape;
 };
 Numbers numbers_of(const nb::handle& given, std::string_view what);
+
+// Throws Error beginning with `what` for a number outside [0, 1].
+void require_uniform(std::span<const double> u, std::string_view what);
 
 } // namespace montelux::python

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <string>
@@ -27,7 +28,7 @@ std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::ui
                                  std::optional<std::uint64_t> seed, double target_error, double quantile,
                                  double seconds, bool adaptive, int threads,
                                  const std::filesystem::path& checkpoint, double checkpoint_every,
-                                 bool resume) {
+                                 bool resume, std::pair<std::uint32_t, std::uint32_t> slice, bool denoise) {
     check_scene(*scene.holder);
     std::shared_ptr<const SceneDescription> description = scene.holder->description;
     const SamplerSettings& sampler = description->sampler;
@@ -46,6 +47,9 @@ std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::ui
     settings.checkpoint = checkpoint;
     settings.checkpoint_every = checkpoint_every;
     settings.resume = resume;
+    settings.target.slice = {slice.first - 1, slice.second};
+    settings.scene_name = scene.holder->name;
+    settings.denoise = denoise;
     nb::gil_scoped_release unlocked;
     return std::make_unique<RenderJob>(std::move(description), std::move(settings));
 }
@@ -55,6 +59,7 @@ nb::dict layers_of(const RenderLook& look) {
     static constexpr std::pair<const char*, const char*> colors[] = {{"mean", "R"},
                                                                      {"standard_error", "stderr.R"},
                                                                      {"skewness", "skewness.R"},
+                                                                     {"denoised", "denoised.R"},
                                                                      {"albedo", "albedo.R"},
                                                                      {"normal", "N.X"}};
     static constexpr std::pair<const char*, const char*> numbers[] = {{"samples", "samples"},
@@ -80,24 +85,14 @@ std::string bad_text(const BadSampleReport& bad) {
            std::to_string(bad.first->x) + "," + std::to_string(bad.first->y);
 }
 
-// A copy of the picture with the entries of the header that tell how it came about.
-Image with_header(const RenderLook& look, const nb::dict& entries) {
-    Image image = *look.image;
-    for (const auto& [key, value] : entries) {
-        Attribute& a = image.attributes()[nb::cast<std::string>(key)];
-        if (nb::isinstance<nb::str>(value))
-            a = nb::cast<std::string>(value);
-        else if (nb::isinstance<nb::int_>(value))
-            a = nb::cast<int>(value);
-        else
-            a = nb::cast<float>(value);
-    }
-    return image;
+// What screens and formats without layers show: the denoised picture, where there is one.
+Image shown(const RenderLook& look) {
+    return look.image->find_channel("denoised.R") ? denoised_picture(*look.image) : *look.image;
 }
 
 nb::tuple screen(const RenderLook& look, double exposure) {
     auto tones =
-        std::make_shared<Image>(apply_tone_curve(*look.image, {.exposure = static_cast<float>(exposure)}, 8));
+        std::make_shared<Image>(apply_tone_curve(shown(look), {.exposure = static_cast<float>(exposure)}, 8));
     nb::object bytes = nb::bytes(reinterpret_cast<const char*>(tones->u8().data()), tones->u8().size());
     return nb::make_tuple(bytes, tones->height(), tones->width(), tones->channels());
 }
@@ -120,13 +115,11 @@ void bind_render(nb::module_& m) {
         .def("automatic_exposure", [](const RenderLook& l) { return automatic_exposure(*l.image); })
         .def(
             "save",
-            [](const RenderLook& l, const std::filesystem::path& path, double exposure,
-               const nb::dict& entries) {
-                const Image image = with_header(l, entries);
+            [](const RenderLook& l, const std::filesystem::path& path, double exposure) {
                 nb::gil_scoped_release unlocked;
-                write_image(path, image, {.exposure = static_cast<float>(exposure)});
+                write_picture(path, *l.image, {.exposure = static_cast<float>(exposure)});
             },
-            "path"_a, "exposure"_a, "entries"_a);
+            "path"_a, "exposure"_a);
     nb::class_<RenderJob>(m, "RenderJob", "A render that goes on by itself.")
         .def("cancel", &RenderJob::cancel)
         .def("wait", &RenderJob::wait, "seconds"_a, nb::call_guard<nb::gil_scoped_release>())
@@ -138,14 +131,12 @@ void bind_render(nb::module_& m) {
                  return nb::make_tuple(p.samples_done, p.samples_total, p.seconds,
                                        p.error ? nb::object(nb::float_(p.error->relative)) : nb::none());
              })
-        .def_prop_ro("seed", [](const RenderJob& j) { return j.description().sampler.seed; })
-        .def_prop_ro("samples_per_pixel",
-                     [](const RenderJob& j) { return j.description().sampler.samples_per_pixel; })
         .def_prop_ro("refused_checkpoint", &RenderJob::refused_checkpoint)
-        .def_prop_ro("checkpoint_failure", &RenderJob::checkpoint_failure);
+        .def_prop_ro("checkpoint_failure", &RenderJob::checkpoint_failure)
+        .def_prop_ro("denoise_failure", &RenderJob::denoise_failure);
     m.def("start_render", &start, "scene"_a, "samples"_a.none(), "seed"_a.none(), "target_error"_a,
           "target_quantile"_a, "seconds"_a, "adaptive"_a, "threads"_a, "checkpoint"_a, "checkpoint_every"_a,
-          "resume"_a, "montelux.Scene.render, with everything decided.");
+          "resume"_a, "slice"_a, "denoise"_a, "montelux.Scene.render, with everything decided.");
     m.def("check_writable", &check_writable, "path"_a);
 }
 

@@ -4,12 +4,15 @@
 
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/render/checkpoint.h"
+#include "montelux/render/render_header.h"
 
 namespace montelux::python {
 
 RenderJob::RenderJob(std::shared_ptr<const SceneDescription> description, RenderJobSettings settings)
     : description_(std::move(description)), settings_(std::move(settings)) {
     const std::filesystem::path& path = settings_.checkpoint;
+    // Told before the render that it is missing, rather than after it.
+    if (settings_.denoise) denoiser_.emplace(Denoiser::load(settings_.threads));
     if (settings_.resume && path.empty())
         throw Error("render", "resume was asked for without a checkpoint file to resume from");
     if (!path.empty() && !settings_.resume && generation_exists(path))
@@ -51,7 +54,10 @@ void RenderJob::run() {
     try {
         with_threads(settings_.threads, [&] { renderer_->render(*state_, control); });
         const RenderReport report = state_->report;
-        result = developed(std::move(state_->film), report);
+        const std::shared_ptr<Image> image = developed(state_->film, report);
+        if (denoiser_ && !report.cancelled()) denoise(*image);
+        result = RenderLook{image, state_->film.error(), report};
+        state_.reset();
     } catch (...) {
         failure = std::current_exception();
     }
@@ -108,11 +114,23 @@ std::optional<RenderLook> RenderJob::look(double seconds) {
     const RenderReport report = seen_report_;
     lock.unlock();
     film.end_units(unit_);
-    return developed(std::move(film), report);
+    return RenderLook{developed(film, report), film.error(), report};
 }
 
-RenderLook RenderJob::developed(Film film, const RenderReport& report) const {
-    return {std::make_shared<const Image>(film.develop()), film.error(), report};
+std::shared_ptr<Image> RenderJob::developed(const Film& film, const RenderReport& report) const {
+    auto image = std::make_shared<Image>(film.develop());
+    add_render_header(*image, settings_.scene_name, *description_, *renderer_, report, film.error(),
+                      clamped_luminance(film));
+    return image;
+}
+
+void RenderJob::denoise(Image& image) {
+    // A denoiser that fails must not cost the render.
+    try {
+        denoise_image(*denoiser_, image);
+    } catch (const std::exception& e) {
+        denoise_failure_ = e.what();
+    }
 }
 
 RenderLook RenderJob::result() const {

@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include "montelux/denoise/denoise_image.h"
 #include "montelux/image/image.h"
 #include "montelux/render/renderer.h"
 
@@ -22,11 +23,13 @@ struct RenderJobSettings {
     std::filesystem::path checkpoint;
     double checkpoint_every = 60;
     bool resume = false;
+    std::string scene_name; // for the header of the picture
+    bool denoise = false;
 };
 
 // What is known of a render at some moment.
 struct RenderLook {
-    std::shared_ptr<const Image> image; // the layers of Film::develop()
+    std::shared_ptr<const Image> image; // the layers of Film::develop() with the header of a render
     FilmError error;
     RenderReport report;
 };
@@ -54,15 +57,19 @@ class RenderJob {
     const std::string& refused_checkpoint() const { return refused_checkpoint_; }
     // Why the last checkpoint was not written; empty where it was.
     std::string checkpoint_failure() const;
+    // Why the finished picture was not denoised though it should have been; after the end.
+    const std::string& denoise_failure() const { return denoise_failure_; }
 
   private:
     void run();
     void checkpoint(const RenderState& state);
-    RenderLook developed(Film film, const RenderReport& report) const;
+    std::shared_ptr<Image> developed(const Film& film, const RenderReport& report) const;
+    void denoise(Image& image);
 
     std::shared_ptr<const SceneDescription> description_;
     RenderJobSettings settings_;
     std::unique_ptr<Renderer> renderer_;
+    std::optional<Denoiser> denoiser_;
     std::optional<RenderState> state_;
     std::string refused_checkpoint_;
     std::uint32_t unit_ = 1;
@@ -73,7 +80,7 @@ class RenderJob {
     std::condition_variable changed_;
     bool ended_ = false;
     std::exception_ptr failure_;
-    std::string checkpoint_failure_;
+    std::string checkpoint_failure_, denoise_failure_;
     RenderProgress progress_;
     std::optional<Film> seen_; // what a look is made of
     RenderReport seen_report_;

@@ -6,24 +6,14 @@
 #include <string>
 
 #include "montelux/image/image.h"
+#include "montelux/scene/setting_names.h"
 
 namespace montelux::python {
 namespace {
 
-constexpr Names<SamplerKind, 6> sampler_kinds{"sampler",
-                                              {{{"independent", SamplerKind::independent},
-                                                {"stratified", SamplerKind::stratified},
-                                                {"halton", SamplerKind::halton},
-                                                {"hammersley", SamplerKind::hammersley},
-                                                {"sobol", SamplerKind::sobol},
-                                                {"sobol-blue-noise", SamplerKind::sobol_blue_noise}}}};
-constexpr Names<Strategy, 4> strategies{"strategy",
-                                        {{{"uniform", Strategy::uniform},
-                                          {"bsdf", Strategy::bsdf},
-                                          {"light", Strategy::light},
-                                          {"mis", Strategy::mis}}}};
-constexpr Names<Heuristic, 2> heuristics{"heuristic",
-                                         {{{"balance", Heuristic::balance}, {"power", Heuristic::power}}}};
+constexpr Names<SamplerKind, 6> sampler_kinds{"sampler", sampler_names};
+constexpr Names<Strategy, 6> strategies{"strategy", strategy_names};
+constexpr Names<Heuristic, 2> heuristics{"heuristic", heuristic_names};
 constexpr Names<SphericalCamera::Mapping, 2> mappings{
     "mapping",
     {{{"equal_area", SphericalCamera::Mapping::equal_area},
@@ -120,21 +110,6 @@ void projective(nb::class_<Ref<T>>& c) {
         "x_min, x_max, y_min, y_max of the part of the plane z = 1 that the film covers; or None.");
 }
 
-template <typename T>
-void radius(nb::class_<Ref<T>>& c) {
-    attribute<T>(
-        c, "radius", "tuple[float, float]",
-        [](const T& t, const auto&) {
-            return floats({t.radius.x, t.radius.y});
-        },
-        [](T& t, nb::handle v, auto&, const std::string& what) {
-            const std::vector<double> r = numbers_of(v, 2, what);
-            if (!(r[0] > 0 && r[1] > 0)) throw Error(what, "expected two numbers above zero");
-            t.radius = {static_cast<float>(r[0]), static_cast<float>(r[1])};
-        },
-        "Half width and half height in pixels.");
-}
-
 void set_resolution(FilmSettings& f, std::int64_t w, std::int64_t h) {
     // The crop keeps its place on the film.
     auto scaled = [](int v, int from, std::int64_t to) {
@@ -213,21 +188,6 @@ void bind_film(nb::module_& m) {
             if (r.scene()) r.scene()->note("filter " + nb::cast<std::string>(nb::str(o)));
         },
         "The pixel filter.");
-    auto box = value_class<BoxFilter>(m, "BoxFilter", "Every point of the pixel's box counts the same.");
-    radius(box);
-    auto triangle = value_class<TriangleFilter>(m, "TriangleFilter", "Falls linearly.");
-    radius(triangle);
-    auto gaussian = value_class<GaussianFilter>(m, "GaussianFilter", "A Gaussian that is zero at its edge.");
-    radius(gaussian);
-    number(gaussian, "sigma", &GaussianFilter::sigma, positive, "a number above zero",
-           "Standard deviation, pixels.");
-    auto mitchell = value_class<MitchellFilter>(m, "MitchellFilter", "Mitchell and Netravali's cubic.");
-    radius(mitchell);
-    number(mitchell, "b", &MitchellFilter::b, finite, "a number", "Blur.");
-    number(mitchell, "c", &MitchellFilter::c, finite, "a number", "Ringing.");
-    auto lanczos = value_class<LanczosFilter>(m, "LanczosFilter", "A windowed sinc.");
-    radius(lanczos);
-    number(lanczos, "tau", &LanczosFilter::tau, positive, "a number above zero", "Cycles of the window.");
 }
 
 } // namespace
@@ -271,9 +231,10 @@ void bind_views(nb::module_& m) {
         },
         "Scattering events of a path at most.");
     choice(integrator, "strategy", &IntegratorSettings::strategy, strategies,
-           "How the light at a vertex is found: 'uniform', 'bsdf', 'light' or 'mis'.");
+           "How the light at a vertex is found: 'uniform', 'bsdf', 'light' or 'mis'; 'mis-bsdf' and "
+           "'mis-light' are the two terms that 'mis' is the sum of.");
     choice(integrator, "heuristic", &IntegratorSettings::heuristic, heuristics,
-           "Weights of the strategy mis: 'balance' or 'power'.");
+           "Weights of the strategy mis and its two terms: 'balance' or 'power'.");
 }
 
 } // namespace montelux::python

@@ -1,13 +1,10 @@
-#include "python/src/bindings.h"
-#include "python/src/numpy_bridge.h"
+#include "python/src/warp.h"
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
 #include <string>
-#include <utility>
 
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/vec.h"
@@ -29,65 +26,16 @@ namespace {
 
 using Three = std::array<double, 3>;
 
-// A map of uniform numbers to points of a density and back; numbers and points of one to three coordinates.
-struct Warp {
-    std::string name;
-    std::size_t uniforms, coordinates;
-    std::function<void(const double* u, double* x)> sample;
-    std::function<double(const double* x)> pdf;
-    std::function<void(const double* x, double* u)> inverse;
-};
-
-Vec2d two(const double* x) { return {x[0], x[1]}; }
-Vec3d three(const double* x) { return {x[0], x[1], x[2]}; }
-void put(double v, double* x) { x[0] = v; }
-void put(Vec2d v, double* x) {
-    x[0] = v.x;
-    x[1] = v.y;
-}
-void put(Vec3d v, double* x) {
-    x[0] = v.x;
-    x[1] = v.y;
-    x[2] = v.z;
-}
-
-template <typename Sample, typename Pdf, typename Inverse>
-Warp of_numbers(std::string name, Sample sample, Pdf pdf, Inverse inverse) {
-    return {std::move(name),
-            1,
-            1,
-            [sample](const double* u, double* x) { put(sample(*u), x); },
-            [pdf](const double* x) { return pdf(*x); },
-            [inverse](const double* x, double* u) { put(inverse(*x), u); }};
-}
-template <typename Sample, typename Pdf, typename Inverse>
-Warp of_plane(std::string name, Sample sample, Pdf pdf, Inverse inverse) {
-    return {std::move(name),
-            2,
-            2,
-            [sample](const double* u, double* x) { put(sample(two(u)), x); },
-            [pdf](const double* x) { return pdf(two(x)); },
-            [inverse](const double* x, double* u) { put(inverse(two(x)), u); }};
-}
-template <typename Sample, typename Pdf, typename Inverse>
-Warp of_space(std::string name, Sample sample, Pdf pdf, Inverse inverse) {
-    return {std::move(name),
-            2,
-            3,
-            [sample](const double* u, double* x) { put(sample(two(u)), x); },
-            [pdf](const double* x) { return pdf(three(x)); },
-            [inverse](const double* x, double* u) { put(inverse(three(x)), u); }};
-}
-
 // Rows of `columns` numbers, (n,) for one; applies f row by row.
 template <typename F>
 DoubleArray by_rows(const Warp& w, const nb::object& given, const char* what, std::size_t columns,
-                    std::size_t results, const F& f) {
+                    std::size_t results, const F& f, bool uniform = false) {
     const std::string where = "warp " + w.name + ", " + what;
     const Numbers n = numbers_of(given, where);
     const bool flat = columns == 1;
     if (!flat && (n.shape.empty() || n.shape.back() != columns))
         throw Error(where, "expected an array of shape (n, " + std::to_string(columns) + ")");
+    if (uniform) require_uniform(n.values, where);
     std::vector<std::size_t> shape = n.shape;
     if (!flat) shape.pop_back();
     if (results > 1) shape.push_back(results);
@@ -239,9 +187,11 @@ void bind_warps(nb::module_& m) {
         .def(
             "sample",
             [](const Warp& s, const nb::object& u) {
-                return by_rows(s, u, "sample", s.uniforms, s.coordinates, s.sample);
+                return by_rows(s, u, "sample", s.uniforms, s.coordinates, s.sample, true);
             },
-            "u"_a, "Points for uniform numbers u in [0, 1), shape (n, uniforms): shape (n, coordinates).")
+            "u"_a,
+            "Points for uniform numbers u in [0, 1], shape (n, uniforms): shape (n, coordinates); (n,) where "
+            "that is one.")
         .def(
             "pdf",
             [](const Warp& s, const nb::object& x) {
@@ -259,6 +209,7 @@ void bind_warps(nb::module_& m) {
     bind_plane(m);
     bind_sphere(m);
     bind_line(m);
+    bind_ggx_warps(m);
 }
 
 } // namespace montelux::python

@@ -11,7 +11,9 @@ mkdir -p "$work"
 "$python" -m venv "$work/environment" || { echo "python3 -m venv does not work"; exit 77; }
 "$work/environment/bin/python" -m pip download --quiet --no-deps --dest "$work/download" nanobind >/dev/null 2>&1 ||
     { echo "there is no network to install nanobind from"; exit 77; }
-"$work/environment/bin/python" -m pip install --quiet --disable-pip-version-check "$source[test]"
+# A folder of its own, so that a compiler cache knows the files again.
+"$work/environment/bin/python" -m pip install --quiet --disable-pip-version-check "$source[test]" \
+    --config-settings=build-dir="$work/build"
 cd "$work"
 ln -s "$source/scenes" scenes
 awk '/^```python$/ {inside = 1; next} /^```$/ {inside = 0} inside' "$source/README.md" >example.py

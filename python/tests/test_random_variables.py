@@ -132,7 +132,9 @@ def test_every_point_set(kind, randomisation):
 
 
 def test_known_points_and_discrepancies():
-    assert montelux.points("halton", 4, 2) == pytest.approx(np.array([[0, 0], [1 / 2, 1 / 3], [1 / 4, 2 / 3], [3 / 4, 1 / 9]]))
+    assert montelux.points("halton", 4, 2) == pytest.approx(
+        np.array([[0, 0], [1 / 2, 1 / 3], [1 / 4, 2 / 3], [3 / 4, 1 / 9]])
+    )
     assert montelux.star_discrepancy((np.arange(10) + 0.5) / 10) == pytest.approx(0.05)
     assert montelux.l2_star_discrepancy(np.array([[0.5]])) == pytest.approx(math.sqrt(1 / 12))
     with pytest.raises(montelux.Error, match="in one and two"):

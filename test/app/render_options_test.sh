@@ -25,6 +25,7 @@ expect 2 "--threads: '5000'" render ok.pbrt --threads 5000
 for option in --sampler --strategy --heuristic; do
     expect 2 "$option: 'foo' was given; one of" render ok.pbrt $option foo
 done
+expect 2 "mis, mis-bsdf, mis-light is expected" render ok.pbrt --strategy mis_bsdf
 expect 1 "GiB of memory; this machine has" render ok.pbrt --resolution 65536x65536
 [ -e ok.exr ] && fail "a picture was written in spite of an error"
 

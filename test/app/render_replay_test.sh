@@ -14,6 +14,10 @@ expect 2 "the crop of the film has columns 32 to 63 and rows 0 to 23" render ok.
     --debug-sample 0,0,0
 expect 0 "sample 8 of 9 of pixel 32,24, sampler halton, seed 5, strategy light" render ok.pbrt --spp 9 \
     --sampler halton --seed 5 --strategy light --debug-sample 32,24,8
+expect 0 "strategy mis-bsdf with the power heuristic" render ok.pbrt --strategy mis-bsdf --debug-sample 32,24,3
+scene lamp 'LightSource "point" "point3 from" [0 0 3] Shape "sphere"' 64 48
+expect 0 "to the term mis-light, which is left out" render lamp.pbrt --strategy mis-bsdf --debug-sample 32,24,0
+expect 0 "to the term mis-bsdf, which is left out" render ok.pbrt --strategy mis-light --debug-sample 0,0,0
 expect 0 "vertex 1: shape 0, a sphere, material 0" render ok.pbrt --debug-sample 32,24,0
 expect 0 "coated diffuse" render ok.pbrt --debug-sample 32,24,0
 expect 0 "the path left the scene" render ok.pbrt --debug-sample 0,0,0

@@ -8,10 +8,10 @@ from typing import Any
 
 import montelux
 
-#: Measured numbers may lie so many standard errors from the exact ones; a right one does not once in 1.7e6 times.
-LIMIT = 5.0
+#: Measured numbers may lie so many standard errors from the exact ones; a right one does not once in 2.6e7 times.
+LIMIT = 5.5
 #: The probability of that, on one side.
-_TAIL = 2.866515719e-7
+_TAIL = 1.899e-8
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Number:
 
     @property
     def limit(self) -> float:
-        """The errors that may lie between measured and exact: as improbable as five of a normal law."""
+        """The errors that may lie between measured and exact: as improbable as LIMIT of a normal law."""
         if self.bound:
             return 1.0
         if math.isinf(self.degrees_of_freedom):
@@ -51,7 +51,7 @@ class Number:
         """From measured to exact, in errors; the sign is that of measured less exact."""
         difference = self.measured - self.exact
         if self.error > 0:
-            return difference / self.error
+            return float(difference / self.error)
         return 0.0 if difference == 0 else math.copysign(math.inf, difference)
 
     @property

@@ -31,7 +31,7 @@ def variance(strata: int, samples: int) -> float:
     h = 1 / strata
     squares = ((np.e**2 - 1) / 2) ** 2
     squared_means = h**2 * (np.expm1(h) / h) ** 4 * ((np.e**2 - 1) / np.expm1(2 * h)) ** 2
-    return (squares - squared_means) / (strata**2 * samples)
+    return float((squares - squared_means) / (strata**2 * samples))
 
 
 def jittered() -> Outcome:

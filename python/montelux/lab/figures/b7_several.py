@@ -9,7 +9,7 @@ import numpy as np
 import montelux
 
 from .._figure import Figure, Outcome
-from .._number import Number, mean_of
+from .._number import Number, mean_of, of, share_of
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -81,6 +81,73 @@ def draw_several(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, An
     slices.legend(loc="upper left")
 
 
+ROWS, COLUMNS = 24, 32
+
+
+def bumps(p):  # type: ignore[no-untyped-def]
+    """Two hills on a plain, on the unit square."""
+    x, y = p[:, 0], p[:, 1]
+    high = np.exp(-40 * ((x - 0.3) ** 2 + (y - 0.65) ** 2))
+    ridge = np.exp(-60 * (x - 0.7) ** 2) * y
+    return 0.03 + high + 0.6 * ridge
+
+
+def tabulated() -> Outcome:
+    """A table of the hills as a density, and their volume by points of it."""
+    x, y = (np.arange(COLUMNS) + 0.5) / COLUMNS, (np.arange(ROWS) + 0.5) / ROWS
+    middles = np.stack(np.meshgrid(x, y), axis=-1)
+    table = bumps(middles.reshape(-1, 2)).reshape(ROWS, COLUMNS)
+    density = montelux.warp.tabulated(table)
+    of_middles = density.pdf(middles)
+    apart = np.abs(of_middles / (table / table.mean()) - 1).max()
+    u = montelux.points("independent", 100_000, 2, seed=7)
+    points = density.sample(u)
+    back = np.abs(density.inverse(points) - u).max()
+    numbers = [
+        Number("density over the table's values, farthest from 1", apart, 1e-6, 0, bound=True),
+        Number("there and back, farthest", back, 1e-8, 0, bound=True),
+    ]
+    inside = np.all(np.abs(middles - np.array([0.3, 0.65])) < np.array([0.175, 0.15]), axis=-1)
+    column, row = np.floor(points[:, 0] * COLUMNS).astype(int), np.floor(points[:, 1] * ROWS).astype(int)
+    hill = inside[row, column]
+    numbers.append(share_of("share on the hill", int(hill.sum()), len(points), table[inside].sum() / table.sum()))
+    ridge = row >= ROWS // 2
+    share = table[ROWS // 2 :].sum() / table.sum()
+    numbers.append(share_of("share of the upper half", int(ridge.sum()), len(points), share))
+
+    def erf_integral(a, b, c, k):  # type: ignore[no-untyped-def]
+        """The integral of exp(-k (x - c)^2) over [a, b], by the normal law."""
+        law = montelux.Distribution.normal(c, np.sqrt(0.5 / k))
+        return (law.cdf(b) - law.cdf(a)) * np.sqrt(np.pi / k)
+
+    exact = 0.03 + erf_integral(0, 1, 0.3, 40) * erf_integral(0, 1, 0.65, 40) + 0.6 * erf_integral(0, 1, 0.7, 60) / 2
+    technique = montelux.Technique.functions(2, 2, sample=density.sample, density=density.pdf)
+    square = [(0, 1), (0, 1)]
+    plain = montelux.integrate(bumps, square, "basic", evaluations=100_000, seed=9)
+    by_table = montelux.integrate(bumps, square, "importance", technique=technique, evaluations=100_000, seed=9)
+    numbers.append(of("∫ f, uniform points", plain, exact))
+    numbers.append(of("∫ f, points of the table", by_table, exact))
+    return Outcome(numbers, {"table": table, "points": points, "marginal": table.mean(axis=1) / table.mean()})
+
+
+def draw_tabulated(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]) -> None:
+    panels = figure.subplot_mosaic([["table", "side", "points"]], width_ratios=[2, 0.8, 2])
+    a, side, b = panels["table"], panels["side"], panels["points"]
+    shown = dict(origin="lower", extent=(0, 1, 0, 1), aspect="auto", cmap=theme.map, interpolation="nearest")
+    a.imshow(s["table"], **shown)
+    a.set(title="table", xticks=[0, 1], yticks=[0, 1], xlabel="x", ylabel="y")
+    side.hist(
+        s["points"][:, 1], bins=ROWS, range=(0, 1), density=True, orientation="horizontal", color=theme.blue, alpha=0.5
+    )
+    side.step(
+        np.concatenate((s["marginal"][:1], s["marginal"])), np.arange(ROWS + 1) / ROWS, where="post", color=theme.ink
+    )
+    side.set(ylim=(0, 1), yticks=[], title="rows", xlim=(0, None))
+    x, y = s["points"][:3000].T
+    b.plot(x, y, "o", markersize=2.2, color=theme.blue, markeredgewidth=0)
+    b.set(title="3000 points", xlabel="x", xlim=(0, 1), ylim=(0, 1), xticks=[0, 1], yticks=[0, 1])
+
+
 FIGURES = (
     Figure(
         "B7",
@@ -93,5 +160,22 @@ FIGURES = (
         draw_several,
         4.2,
         "Points of the density x plus y, the histogram of y, and histograms of x in two bands",
+    ),
+    Figure(
+        "B7",
+        "tabulated",
+        "A table of two variables",
+        "The sums of the rows pick a row, and the sums along that row a cell; within it points are uniform. Points of the"
+        " table stand where the function is high, and what the table misses within its cells their weights put right: its"
+        " integral comes out exact, with a far smaller error than that of uniform points.",
+        (
+            r"p(y) = \frac{\sum_j f_{ij}}{\sum_{ij} f_{ij}}\,n_y, \qquad p(x \mid y) ="
+            r" \frac{f_{ij}}{\sum_j f_{ij}}\,n_x",
+        ),
+        tabulated,
+        draw_tabulated,
+        4.4,
+        "A table as a picture, the histogram of the rows and three thousand points drawn from it",
+        helpers=(bumps,),
     ),
 )

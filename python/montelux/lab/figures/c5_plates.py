@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from .._figure import Figure, Outcome, Picture
-from ..light import displayed, rendered, same_mean
+from .._number import Number
+from ..light import displayed, mean_luminance, rendered, same_mean
 
 STRATEGIES = {
     "bsdf": ("directions of the material", None),
@@ -25,6 +28,36 @@ def plates() -> Outcome:
     return Outcome(numbers, {}, pictures)
 
 
+#: Red and green of Okabe and Ito (2008), which the colour-blind can tell apart.
+RED, GREEN = np.array([0.67, 0.11, 0.0]), np.array([0.0, 0.34, 0.17])  # linear
+
+
+def weights() -> Outcome:
+    """The two terms whose sum is the picture, 16 samples a pixel with one seed, as red and green."""
+    both, bsdf, light = (rendered("plates", 16, 2, name) for name in ("mis", "mis-bsdf", "mis-light"))
+    sums = np.asarray(bsdf.mean, dtype=float) + np.asarray(light.mean, dtype=float)
+    apart = np.abs(sums - np.asarray(both.mean, dtype=float)).max() / np.asarray(both.mean).max()
+    numbers = [Number("sum of the terms less the picture, farthest, over its maximum", apart, 1e-5, 0, bound=True)]
+    many = rendered("plates", 16, 3)
+    luminance = np.array([0.2126, 0.7152, 0.0722])
+    means = [mean_luminance(r) for r in (bsdf, light, many)]
+    # The terms share their samples: their errors add up at most.
+    error = np.hypot(means[0][1] + means[1][1], means[2][1]) / means[2][0]
+    numbers.append(
+        Number("sum of the terms over a picture of another seed", (means[0][0] + means[1][0]) / means[2][0], error, 1)
+    )
+    red, green = (np.asarray(r.mean, dtype=float) @ luminance for r in (bsdf, light))
+    pictures = [
+        Picture(
+            "red: found by directions of the material, green: by points on the lamps, each by its weight",
+            displayed(red[..., None] * RED + green[..., None] * GREEN, 1.6),
+        ),
+        Picture("directions of the material alone, by their weight", displayed(bsdf.mean)),
+        Picture("points on the lamps alone, by their weight", displayed(light.mean)),
+    ]
+    return Outcome(numbers, {}, pictures)
+
+
 FIGURES = (
     Figure(
         "C5",
@@ -42,5 +75,22 @@ FIGURES = (
         plates,
         slow=True,
         alt="Five pictures of four plates that reflect four lamps",
+    ),
+    Figure(
+        "C5",
+        "weights",
+        "Who finds the light",
+        "The picture is the sum of two: what directions of the material found, times its weight, in red, and what points on"
+        " the lamps found, times its weight, in green. Large lamps in smooth plates are red, small lamps in rough plates and"
+        " on the walls are green; lamps that the camera sees are red, for nothing else finds those.",
+        (
+            (
+                r"\langle I \rangle = w_{bsdf}\,\frac{f\,L}{p_{bsdf}}"
+                r" + w_{light}\,\frac{f\,L}{p_{light}}, \qquad w_i = \frac{p_i^2}{p_{bsdf}^2 + p_{light}^2}"
+            ),
+        ),
+        weights,
+        slow=True,
+        alt="The plates in red and green by the strategy that found their light, and the two terms by themselves",
     ),
 )

@@ -9,7 +9,7 @@ import numpy as np
 import montelux
 
 from .._figure import Figure, Outcome
-from .._number import Number
+from .._number import Number, mean_of
 from ..light import rendered
 from ..marks import grid
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from ..style import Theme
 
 FILTERS = {
-    "box": montelux.BoxFilter(radius=(0.5, 0.5)),
-    "triangle": montelux.TriangleFilter(radius=(1.5, 1.5)),
-    "Gaussian": montelux.GaussianFilter(radius=(1.5, 1.5), sigma=0.5),
-    "Mitchell": montelux.MitchellFilter(radius=(2, 2), b=1 / 3, c=1 / 3),
-    "Lanczos": montelux.LanczosFilter(radius=(4, 4), tau=3),
+    "box": montelux.pixel_filter("box", 0.5),
+    "triangle": montelux.pixel_filter("triangle", 1.5),
+    "Gaussian": montelux.pixel_filter("gaussian", 1.5, sigma=0.5),
+    "Mitchell": montelux.pixel_filter("mitchell", 2, b=1 / 3, c=1 / 3),
+    "Lanczos": montelux.pixel_filter("lanczos", 4, tau=3),
 }
 LAMPS, APART, WIDTH = 20, 20, 0.1  # pixels
 
@@ -103,6 +103,58 @@ def filters() -> Outcome:
     return Outcome(numbers, series)
 
 
+def profile(name, x):  # type: ignore[no-untyped-def]
+    """The library's filter along one axis, 1 in the middle."""
+    on_axis = np.stack([x, np.zeros_like(x)], axis=-1)
+    return FILTERS[name].value(on_axis) / FILTERS[name].value([[0.0, 0.0]])
+
+
+def draws() -> Outcome:
+    """Offsets drawn in proportion to each filter's magnitude, with their weights."""
+    numbers, series = [], {}
+    u = montelux.points("independent", 100_000, 2, seed=12)
+    for name in FILTERS:
+        radius = FILTERS[name].radius[0]
+        x = np.linspace(-radius, radius, 2001)[1:-1]
+        apart = np.abs(profile(name, x) - formula(name, x) / formula(name, np.zeros(1))).max()
+        numbers.append(Number(f"{name}: value less its formula, farthest", apart, 3e-6, 0, bound=True))
+
+        def moments(t, name=name):  # type: ignore[no-untyped-def]
+            f = formula(name, t)
+            return np.stack([f, f * t**2], axis=1)
+
+        area, second = np.asarray(montelux.integrate(moments, (-radius, radius), "midpoint", cells=100_000).value)
+        offsets, weights = FILTERS[name].sample(u)
+        if name not in ("box", "triangle"):  # there every weight is one
+            numbers.append(mean_of(f"{name}: mean weight", weights, 1))
+        weighted = weights * offsets[:, 0] ** 2
+        numbers.append(mean_of(f"{name}: second moment of weighted offsets, pixels²", weighted, second / area))
+        series[name] = (offsets[:, 0], weights, area / float(formula(name, np.zeros(1))[0]))
+    return Outcome(numbers, series)
+
+
+def draw_draws(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]) -> None:
+    panels = figure.subplots(2, 3)
+    for a, (name, (x, weights, area)) in zip(panels.flat, s.items()):
+        radius = FILTERS[name].radius[0]
+        t = np.linspace(-radius, radius, 600)
+        bins = np.linspace(-radius, radius, 49)
+        width = bins[1] - bins[0]
+        a.axhline(0, color=theme.faint, linewidth=1)
+        drawn, weighted = np.histogram(x, bins)[0], np.histogram(x, bins, weights=weights)[0]
+        a.stairs(drawn / len(x) / width, bins, color=theme.orange, linewidth=1.4, linestyle=(0, (2, 1)))
+        a.stairs(weighted / len(x) / width, bins, fill=True, color=theme.blue, alpha=0.45)
+        a.plot(t, profile(name, t) / area, color=theme.ink, linewidth=1.6)
+        a.set(title=name, xlabel="pixels", xlim=(-radius, radius))
+        grid(a, theme)
+    legend = panels[1, 2]
+    legend.set_axis_off()
+    legend.plot([], [], color=theme.ink, label="filter")
+    legend.plot([], [], color=theme.orange, linestyle=(0, (2, 1)), label="drawn")
+    legend.fill_between([], [], color=theme.blue, alpha=0.45, label="times weights")
+    legend.legend(loc="center left")
+
+
 def draw_filters(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]) -> None:
     panels = figure.subplots(2, 3)
     panels[1, 2].remove()
@@ -110,7 +162,7 @@ def draw_filters(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, An
         radius = 0.7 if name == "box" else float(FILTERS[name].radius[0]) + 0.3
         t = np.linspace(-radius, radius, 600)
         a.axhline(0, color=theme.faint, linewidth=1)
-        a.plot(t, formula(name, t) / area, color=theme.ink, linewidth=1.6)
+        a.plot(t, profile(name, t) * formula(name, np.zeros(1)) / area, color=theme.ink, linewidth=1.6)
         seen = np.abs(x) <= radius
         for sign, colour, mark in ((value >= 0, theme.blue, "o"), (value < 0, theme.orange, "s")):
             a.errorbar(
@@ -132,7 +184,7 @@ FIGURES = (
         "filters",
         "Pixel filters",
         "A pixel's value is an integral over the film, weighted by a filter about its middle: each mark is the value of"
-        " a pixel that is so far from a thin bright lamp, and the line is the filter's formula. Mitchell's and Lanczos'"
+        " a pixel that is so far from a thin bright lamp, and the line is the filter. Mitchell's and Lanczos'"
         " filters sharpen by negative lobes (squares): points are drawn as the filter's magnitude, and those in such a"
         " lobe count negative.",
         (r"I = \int f(x, y)\,L(x, y)\,dx\,dy, \qquad p \;\propto\; |f|, \qquad w = f / p",),
@@ -142,5 +194,19 @@ FIGURES = (
         "Profiles of five filters, measured and by their formulas",
         slow=True,
         helpers=(formula, lamps, picture),
+    ),
+    Figure(
+        "C8",
+        "draws",
+        "Points drawn from a pixel filter",
+        "Points on the film are drawn as the filter's magnitude (broken line), each for one pixel alone, so that pixels"
+        " share no noise. Times their weights (filled) they make the filter itself, negative lobes too; the offset along"
+        " x is shown, over all offsets along y.",
+        (r"p = \frac{|f|}{\int |f|}, \qquad w = \frac{f / \int f}{p}, \qquad E[w] = 1",),
+        draws,
+        draw_draws,
+        6.0,
+        "Five filters with histograms of offsets drawn from them, plain and times their weights",
+        helpers=(formula, profile),
     ),
 )

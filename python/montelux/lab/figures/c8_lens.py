@@ -20,7 +20,7 @@ def spread(depth: float, place: float) -> float:
     blur = RADIUS * abs(depth - FOCUS) / depth * PIXELS
     # A small sphere off the axis is an ellipse, 1 / cos longer towards the side.
     lamp = LAMP * FOCUS * PIXELS
-    return blur**2 / 2 + lamp**2 / 4 * (2 + (place / FOCUS) ** 2) + 2 / 12
+    return float(blur**2 / 2 + lamp**2 / 4 * (2 + (place / FOCUS) ** 2) + 2 / 12)
 
 
 def lens() -> Outcome:

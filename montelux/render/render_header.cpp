@@ -1,0 +1,62 @@
+#include "montelux/render/render_header.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+#include "montelux/render/checkpoint.h"
+#include "montelux/render/sample_order.h"
+#include "montelux/scene/setting_names.h"
+
+namespace montelux {
+
+namespace {
+
+std::string hexadecimal(std::uint64_t hash) {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+    return text;
+}
+
+std::vector<float> numbers(std::initializer_list<int> values) {
+    std::vector<float> v;
+    for (const int x : values) v.push_back(static_cast<float>(x));
+    return v;
+}
+
+} // namespace
+
+void add_render_header(Image& image, const std::string& scene_name, const SceneDescription& description,
+                       const Renderer& renderer, const RenderReport& report, const FilmError& error,
+                       double clamped_luminance) {
+    auto& a = image.attributes();
+    a["software"] = std::string("Montelux " MONTELUX_VERSION);
+    a["scene"] = scene_name;
+    a["sceneHash"] = hexadecimal(description.content_hash);
+    a["renderHash"] = hexadecimal(render_fingerprint(description, renderer.sampler()));
+    a["samplesPerPixel"] = static_cast<int>(description.sampler.samples_per_pixel);
+    a["stoppedBy"] = std::string(to_string(report.stop));
+    const RenderTarget& target = renderer.target();
+    if (target.error > 0) a["targetError"] = static_cast<float>(target.error);
+    if (target.quantile > 0) a["targetQuantile"] = static_cast<float>(target.quantile);
+    a["adaptive"] = target.adaptive ? 1 : 0;
+    a["slice"] = std::to_string(target.slice.index + 1) + "/" + std::to_string(target.slice.count);
+    a["pointsPerUnit"] = static_cast<int>(SampleOrder(renderer.sampler(), target.slice).unit());
+    if (clamped_luminance > 0) a["clampedLuminance"] = static_cast<float>(clamped_luminance);
+    a["samplesTaken"] = static_cast<float>(error.mean_samples);
+    a["interrupted"] = report.cancelled() ? 1 : 0;
+    a["sampler"] = std::string(name_of(description.sampler.kind));
+    a["strategy"] = std::string(name_of(description.integrator.strategy));
+    a["heuristic"] = std::string(name_of(description.integrator.heuristic));
+    a["maxDepth"] = description.integrator.max_depth;
+    a["seed"] = std::to_string(description.sampler.seed);
+    a["renderSeconds"] = static_cast<float>(report.seconds);
+    a["relativeError"] = static_cast<float>(error.relative);
+    a["badSamples"] = static_cast<int>(std::min<std::uint64_t>(report.bad.count(), 1u << 30));
+    a["worldToCamera"] = renderer.camera().world_from_camera().inverse_matrix();
+    const FilmSettings& film = description.film;
+    a["fullResolution"] = numbers({film.width, film.height});
+    a["cropPixels"] = numbers({film.crop.x0, film.crop.y0, film.crop.x1, film.crop.y1});
+}
+
+} // namespace montelux

@@ -1,0 +1,41 @@
+// The names of settings, as options, headers of pictures and Python have them.
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "montelux/scene/render_settings.h"
+
+namespace montelux {
+
+template <typename Setting, std::size_t n>
+using SettingNames = std::array<std::pair<std::string_view, Setting>, n>;
+
+inline constexpr SettingNames<SamplerKind, 6> sampler_names{
+    {{"independent", SamplerKind::independent},
+     {"stratified", SamplerKind::stratified},
+     {"halton", SamplerKind::halton},
+     {"hammersley", SamplerKind::hammersley},
+     {"sobol", SamplerKind::sobol},
+     {"sobol-blue-noise", SamplerKind::sobol_blue_noise}}};
+inline constexpr SettingNames<Strategy, 6> strategy_names{{{"uniform", Strategy::uniform},
+                                                           {"bsdf", Strategy::bsdf},
+                                                           {"light", Strategy::light},
+                                                           {"mis", Strategy::mis},
+                                                           {"mis-bsdf", Strategy::mis_bsdf},
+                                                           {"mis-light", Strategy::mis_light}}};
+inline constexpr SettingNames<Heuristic, 2> heuristic_names{
+    {{"balance", Heuristic::balance}, {"power", Heuristic::power}}};
+
+template <typename Setting, std::size_t n>
+constexpr std::string_view name_in(const SettingNames<Setting, n>& names, Setting value) {
+    for (const auto& [name, known] : names)
+        if (known == value) return name;
+    return "?";
+}
+constexpr std::string_view name_of(SamplerKind kind) { return name_in(sampler_names, kind); }
+constexpr std::string_view name_of(Strategy strategy) { return name_in(strategy_names, strategy); }
+constexpr std::string_view name_of(Heuristic heuristic) { return name_in(heuristic_names, heuristic); }
+
+} // namespace montelux

@@ -1,0 +1,208 @@
+"""Scenes: attributes, scenes built in Python, and mistakes answered with sentences."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import montelux
+from small_scene import TEXT
+
+# Attributes.
+
+
+def test_attributes_change_the_picture(scene):
+    before = scene.render().mean
+    scene.materials[0].reflectance = (0.9, 0.1, 0.1)
+    red = scene.render().mean
+    assert red[12, 16, 0] > 2 * red[12, 16, 1] and not np.array_equal(before, red)
+    scene.lights[0].scale *= 2
+    assert scene.render().mean[0, 0] == pytest.approx(2 * red[0, 0], rel=1e-3)
+    scene.camera.fov = 20
+    assert scene.render().layers["depth"][12, 0] > 0  # the sphere fills the picture
+    scene.film.resolution = 8, 6
+    assert scene.render().mean.shape == (6, 8, 3)
+    scene.film.crop = (2, 1, 6, 5)
+    assert scene.render().mean.shape == (4, 4, 3)
+
+
+def test_attributes_read_what_was_set(scene):
+    camera, film = scene.camera, scene.film
+    camera.fov, camera.lens_radius = 33, 0.5
+    assert (scene.camera.fov, scene.camera.lens_radius) == (33, 0.5)
+    film.filter = montelux.GaussianFilter(radius=(2, 1), sigma=0.7)
+    assert scene.film.filter.radius == (2, 1) and scene.film.filter.sigma == pytest.approx(0.7)
+    film.filter.sigma = 0.5
+    assert scene.film.filter.sigma == 0.5
+    scene.materials[0].reflectance = montelux.Spectrum(0.25)
+    assert scene.materials[0].reflectance(550) == 0.25
+    scene.materials[0] = montelux.Dielectric(eta="glass-BK7", roughness=0.1)
+    assert scene.materials[0].eta(587.6) == pytest.approx(1.5168, abs=1e-3)
+    assert scene.shapes[1].material == scene.materials[0] == scene.shapes[0].material
+    scene.shapes[0].material = montelux.Diffuse()
+    assert scene.shapes[0].material == scene.materials[1] != scene.shapes[1].material
+    assert scene.lights[1].two_sided is False and len(scene.lights) == 2
+    assert scene.shapes[0].light == scene.lights[1] and scene.shapes[1].light is None
+    assert camera.world_from_camera[:3, 3] == pytest.approx([0, -4, 0], abs=1e-6)
+    scene.integrator.max_depth = 2
+    assert scene.integrator.max_depth == 2 and scene.integrator.strategy == "mis"
+    assert "2 shapes" in repr(scene) and "fov=33" in repr(scene.camera)
+
+
+def test_area_lights_of_a_mesh_are_one(scene):
+    light = scene.shapes[0].light
+    light.spectrum = (1, 0, 0)
+    picture = scene.render().mean
+    scene.shapes[0].light = None
+    assert len(scene.lights) == 1 and scene.render().mean.sum() < picture.sum()
+    scene.shapes[0].light = montelux.AreaLight(spectrum=(1, 0, 0), two_sided=True)
+    assert len(scene.lights) == 2 and scene.lights[1].two_sided
+
+
+def test_lights_can_be_taken_away_and_added(scene):
+    del scene.lights[0]
+    assert scene.shapes[0].light == scene.lights[0]
+    assert scene.render().mean[0, 0].sum() == 0  # no sky
+    scene.lights.append(montelux.PointLight(spectrum=100, position=(0, -4, 1)))
+    scene.lights.append(montelux.SpotLight(spectrum=10, position=(0, -4, 4), axis=(0, 1, -1), cone_angle=40))
+    scene.lights.append(montelux.DistantLight(to_light=(0, -1, 2)))
+    assert scene.lights[-1].to_light == pytest.approx(np.array([0, -1, 2]) / math.sqrt(5))
+    assert scene.render().mean[12, 16].sum() > 0
+
+
+def test_a_running_render_does_not_change_with_the_scene(scene):
+    alone = scene.render(samples=64).mean
+    render = scene.render(samples=64)
+    scene.materials[0].reflectance = 0.0
+    assert np.array_equal(render.mean, alone)
+
+
+# Built in Python.
+
+
+def test_a_scene_built_in_python_equals_the_file_s():
+    built = montelux.Scene()
+    built.camera = montelux.PerspectiveCamera(fov=40, look_at=((0, -4, 0), (0, 0, 0), (0, 0, 1)))
+    built.film.resolution = 32, 24
+    built.sampler.kind = "sobol-blue-noise"
+    built.sampler.seed = 3
+    built.integrator.max_depth = 5
+    built.lights.append(montelux.UniformInfiniteLight(spectrum=(1, 1, 1)))
+    square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+    up = np.eye(4)
+    up[2, 3] = 3
+    built.add_mesh(
+        square, [[0, 1, 2], [0, 2, 3]], montelux.Diffuse(reflectance=(0.5, 0.5, 0.5)), transform=up, light=(2, 2, 2)
+    )
+    built.add_sphere(1, montelux.Diffuse(reflectance=(0.5, 0.5, 0.5)))
+    loaded = montelux.parse(TEXT)
+    assert loaded.sampler.kind == "sobol-blue-noise"
+    assert np.array_equal(built.render(samples=16).mean, loaded.render(samples=16).mean)
+
+
+def test_meshes_textures_and_environments():
+    scene = montelux.Scene()
+    scene.camera = montelux.OrthographicCamera(look_at=((0, 0, 4), (0, 0, 0), (0, 1, 0)))
+    scene.film.resolution = 16, 16
+    scene.add_environment(np.ones((4, 4, 3)))
+    picture = np.zeros((2, 2, 3))
+    picture[:, 1] = 0.8  # the right half
+    material = montelux.Diffuse(reflectance=scene.image_texture(picture, filter="point"))
+    corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], float)
+    shape = scene.add_mesh(corners, [[0, 1, 2], [0, 2, 3]], material, uvs=[[0, 0], [1, 0], [1, 1], [0, 1]])
+    albedo = scene.render(samples=16).layers["albedo"]
+    right, left = albedo[8, 12, 0], albedo[8, 3, 0]
+    assert sorted([right, left]) == pytest.approx([0, 0.8], abs=0.05)
+    assert shape.positions == pytest.approx(corners) and shape.kind == "mesh"
+    shape.material = montelux.Diffuse(reflectance=scene.checkerboard_texture(0.1, 0.9, 2, 2))
+    assert 0.1 < scene.render(samples=16).layers["albedo"].mean() < 0.9
+    scene.add_disk(0.5, montelux.Conductor(), height=1)
+    assert scene.render(samples=4).layers["depth"][8, 8] == pytest.approx(3, abs=1e-3)
+    other = montelux.Scene()
+    with pytest.raises(montelux.Error, match="another scene"):
+        other.add_sphere(1, material)
+
+
+def test_every_value_can_be_made_and_read():
+    from montelux._scene import VALUES
+
+    for kind in VALUES:
+        value = kind()
+        for name in montelux._names.settings_of(kind):
+            getattr(value, name)
+        assert repr(value).startswith(kind.__name__ + "(")
+        with pytest.raises(montelux.Error, match="there is no attribute 'wrong'"):
+            kind(wrong=1)
+
+
+# Mistakes.
+
+
+def test_a_scene_without_a_camera():
+    with pytest.raises(montelux.Error, match="the scene has no camera; set scene.camera"):
+        montelux.Scene().render()
+
+
+@pytest.mark.parametrize(
+    "path, value, sentence",
+    [
+        ("materials[0].reflectence", 1, r"no attribute of Diffuse 'reflectence' \(did you mean 'reflectance'\?\)"),
+        ("camera.fow", 1, r"did you mean 'fov'\?"),
+        ("film.resoluton", 1, r"did you mean 'resolution'\?"),
+        ("sampler.sed", 1, r"did you mean 'seed'\?"),
+        ("sammpler", 1, r"no attribute of Scene 'sammpler' \(did you mean 'sampler'\?\)"),
+        ("camera.fov", 200, "200 was given; expected an angle between 0 and 180 degrees"),
+        ("camera.fov", "wide", "'wide' was given; expected a number"),
+        ("camera.fov", None, "None was given; expected a number"),
+        ("camera", 3, "expected a camera, such as PerspectiveCamera"),
+        ("materials[0].reflectance", 1.5, "a reflectance above 1"),
+        ("materials[0].reflectance", (1, 2), "expected 3 numbers"),
+        ("materials[0].reflectance", -0.1, "not negative"),
+        ("lights[0].spectrum", "stdillum-D66", "did you mean 'stdillum-D65'|did you mean"),
+        ("sampler.kind", "sobl", r"did you mean 'sobol'\?"),
+        ("sampler.seed", -1, "expected a whole number"),
+        ("film.resolution", (0, 1), "expected two whole numbers"),
+        ("film.crop", (0, 0, 999, 1), "expected pixels"),
+        ("film.filter", 1, "expected a pixel filter"),
+        ("shapes[0].material", 1, "expected a material"),
+        ("lights[0]", "lamp", "expected a light"),
+    ],
+)
+def test_wrong_attributes_are_answered(scene, path, value, sentence):
+    with pytest.raises(montelux.Error, match=sentence):
+        exec(f"scene.{path} = value", {"scene": scene, "value": value})
+
+
+@pytest.mark.parametrize(
+    "arguments, sentence",
+    [
+        ({"samples": 0}, "expected a whole number from 1"),
+        ({"target_error": -1}, "expected a number above zero"),
+        ({"target_quantile": 0.9}, "expected target_error"),
+        ({"seed": -1}, "expected a whole number"),
+        ({"threads": -1}, "expected a whole number from 0 to 4096"),
+        ({"resume": True}, "without a checkpoint"),
+    ],
+)
+def test_wrong_arguments_are_answered(scene, arguments, sentence):
+    with pytest.raises(montelux.Error, match=sentence):
+        scene.render(**arguments)
+
+
+def test_files_that_are_wrong(tmp_path):
+    (tmp_path / "bad.pbrt").write_text('WorldBegin\nShape "spere"\n')
+    with pytest.raises(montelux.Error, match=r"bad.pbrt:2:\d+: .*did you mean 'sphere'"):
+        montelux.load(tmp_path / "bad.pbrt")
+    with pytest.raises(montelux.Error, match="missing.pbrt"):
+        montelux.load(tmp_path / "missing.pbrt")
+    (tmp_path / "dark.pbrt").write_text('WorldBegin\nShape "sphere"\n')
+    with pytest.warns(UserWarning, match="the scene has no light"):
+        assert "the scene has no light" in montelux.load(tmp_path / "dark.pbrt").warnings[0]
+
+
+def test_indices_beyond_the_end(scene):
+    with pytest.raises(IndexError, match="material 9 of"):
+        scene.materials[9]
+    assert [type(m).__name__ for m in scene.materials] == ["Diffuse"] * len(scene.materials)
