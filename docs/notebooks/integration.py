@@ -62,7 +62,7 @@ def f(x):
 
 r = montelux.integrate(f, [(0, np.pi / 2), (0, 1)], "basic", evaluations=1_000_000, seed=1)
 print(r)
-print(f"{r.evaluations / batches:.0f} points a call")
+print(f"about {round(r.evaluations / batches, -2):.0f} points a call")
 
 # %% [markdown]
 # A function that takes one point works with `batch=False`, slower:

@@ -185,7 +185,7 @@ plt.show()
 
 # %% tags=["varies"]
 for picture in scene.render(samples=32, every=0.05):
-    print(f"{picture.samples_per_pixel:5.1f} samples a pixel, relative error {100 * picture.relative_error:.1f} %")
+    print(picture)
 
 # %% [markdown]
 # ## Change something

@@ -1,10 +1,26 @@
-"""Sentences for names that do not exist, with the nearest one that does."""
+"""What arguments are, and sentences for names that do not exist, with the nearest one that does."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
 
 from ._core import Error, nearest_name
+
+#: Of a call; more are a mistake, and the system gives way far earlier.
+MOST_THREADS = 4096
+
+
+def is_number(value: Any) -> bool:
+    """Whether a value is a real number, of Python or NumPy."""
+    return isinstance(value, (int, float, np.integer, np.floating))
+
+
+def is_whole(value: Any) -> bool:
+    """Whether a value is an integer, of Python or NumPy."""
+    return isinstance(value, (int, np.integer))
 
 
 class UnknownAttribute(Error, AttributeError):

@@ -243,6 +243,22 @@ def test_results_print_and_convert():
     assert d["history"]["value"][-1] == r.value
 
 
+def test_results_format_compare_and_hash():
+    r, again = (montelux.integrate(sine_times_y, BOX, "quasi", evaluations=1000) for _ in range(2))
+    assert f"{r:.3f}" == f"{r.value:.3f}" and f"{r}" == str(r)
+    assert r == r and r != again and len({r, again}) == 2  # arrays inside are not compared
+    with pytest.raises(AttributeError, match=r"no attribute of Result 'valu' \(did you mean 'value'\?\)"):
+        r.valu
+
+
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="exceptions have no notes")
+def test_functions_of_one_point_are_told_about_batches():
+    for f in (math.sin, lambda x, y: x):
+        with pytest.raises(TypeError) as caught:
+            montelux.integrate(f, (0, 1))
+        assert "batch=False calls it with one point at a time" in caught.value.__notes__[0]
+
+
 def test_unknown_errors_are_null_in_json():
     r = montelux.integrate(sine_times_y, BOX, "quasi", randomisation="none", evaluations=1000)
     assert r.standard_error == math.inf and r.to_dict()["standard_error"] is None
@@ -298,8 +314,18 @@ def test_settings_as_arguments_and_as_objects():
         ({"method": "importance"}, "expected the setting 'technique'"),
         ({"method": 3}, "an object of type 'int' was given; expected a name or a method"),
         ({"relative_error": -1}, "the relative error asked for is -1"),
+        ({"relative_error": "1%"}, "'1%' was given; expected a number"),
+        ({"relativ_error": 0.1}, r"there is no setting 'relativ_error' \(did you mean 'relative_error'\?\)"),
+        ({"method": montelux.Vegas(), "relativ_error": 1}, r"no argument 'relativ_error' \(did you mean 'relative_error'"),
         ({"evaluations": 0.5}, "expected a whole number above zero"),
+        ({"evaluations": "many"}, "'many' was given; expected a whole number above zero"),
+        ({"evaluations": 1e30}, "expected a whole number above zero and below"),
         ({"seconds": 0}, "expected a time above zero"),
+        ({"seconds": "1s"}, "'1s' was given; expected a time above zero"),
+        ({"threads": 100_000}, "threads: 100000 was given; expected a whole number from 0 to 4096"),
+        ({"threads": 1.5}, "expected a whole number from 0 to 4096"),
+        ({"components": -1}, "expected a whole number that is not negative"),
+        ({"progress": 3}, "expected True, False or a function"),
         ({"seed": -1}, "expected a whole number in"),
         ({"non_finite": "ignore"}, "there is no choice 'ignore'"),
         ({"method": "vegas", "points": "sobol", "replicates": 1}, "replicates"),
