@@ -184,7 +184,7 @@ plt.show()
 # on your machine; looking changes no bit of the result. `render.stop()` and Ctrl-C end it with what there is.
 
 # %% tags=["varies"]
-for picture in scene.render(samples=32, every=0.05):
+for picture in scene.render(samples=32, every=0.2):
     print(picture)
 
 # %% [markdown]
