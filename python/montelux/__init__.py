@@ -75,4 +75,4 @@ from ._scene import Scene, load, parse
 
 from . import warp
 
-strict(*METHODS.values())
+strict(*METHODS.values(), Distribution, Domain, Technique, AdaptiveMap, Spectrum, warp.Warp)

@@ -202,4 +202,4 @@ VALUES = (
 )
 for _kind in VALUES:
     _kind.__repr__ = _represent  # type: ignore[method-assign]
-strict(*VALUES, _core.Shape, Scene)
+strict(*VALUES, _core.Shape, _core.Shapes, _core.Materials, _core.Lights, Scene)

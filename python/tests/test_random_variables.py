@@ -272,6 +272,23 @@ def test_wrong_arguments_of_metropolis_are_answered(arguments, sentence):
         montelux.metropolis(lambda x: -x @ x, **{"starts": [0.0], **arguments})
 
 
+@pytest.mark.parametrize(
+    "thing, name, nearest",
+    [
+        (montelux.Distribution.normal(), "quantil", "quantile"),
+        (montelux.Domain.simplex(2), "dimension", "dimensions"),
+        (montelux.warp.cosine, "sampl", "sample"),
+        (montelux.Spectrum(1), "__len__", None),
+        (montelux.Scene().lights, "apend", "append"),
+        (montelux.Scene(), "rendr", "render"),
+    ],
+)
+def test_misspelt_names_are_answered_with_the_nearest(thing, name, nearest):
+    sentence = rf"'{name}' \(did you mean '{nearest}'\?\)" if nearest else f"^{name}$"
+    with pytest.raises(AttributeError, match=sentence):
+        getattr(thing, name)
+
+
 def test_chains_print():
     chains = montelux.metropolis(lambda x: -x @ x, [0.0, 0.0], samples=500, seed=1)
     lines = repr(chains).splitlines()
