@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import struct
 import zlib
@@ -114,9 +115,11 @@ class Picture:
 
     def __repr__(self) -> str:
         height, width = self.mean.shape[:2]
+        known = math.isfinite(self.relative_error)
+        error = f"relative error {100 * self.relative_error:.3g} %" if known else "error not known yet"
         return (
             f"<{type(self).__name__}: {width} x {height} pixels, {self.samples_per_pixel:.7g} samples a pixel, "
-            f"relative error {100 * self.relative_error:.3g} %, {self.seconds:.3g} s>"
+            f"{error}, {self.seconds:.3g} s>"
         )
 
     def __getattr__(self, name: str) -> Any:
