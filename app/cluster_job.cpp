@@ -1,7 +1,9 @@
 #include "app/cluster_job.h"
 
+#include <chrono>
 #include <cstdio>
 #include <fcntl.h>
+#include <thread>
 #include <unistd.h>
 
 #include "montelux/cluster/communicator.h"
@@ -31,6 +33,11 @@ void silence_other_ranks() {
 void speak_up(const std::string& message) {
     const std::string line = "montelux: error: " + message + "\n";
     if (::write(own_stderr, line.data(), line.size()) < 0) std::fputs(line.c_str(), stderr);
+}
+
+void wait_for_the_speaker(const std::string& message) {
+    std::this_thread::sleep_for(std::chrono::seconds(5));
+    speak_up(message);
 }
 
 std::unique_ptr<Communicator> join_job() {

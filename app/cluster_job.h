@@ -20,6 +20,10 @@ bool is_silent_rank();
 void silence_other_ranks();
 // Says something all the same, on the standard error that the process was started with.
 void speak_up(const std::string& message);
+// For a silent rank that cannot begin: rank 0 cannot either, says why, and its end ends the job. Launchers
+// kill all ranks when one ends with a mistake, so this one waits; should it be the only one, it speaks up
+// after all.
+void wait_for_the_speaker(const std::string& message);
 
 // The job, where there is one: empty for a program that was started alone. Throws Error.
 std::unique_ptr<Communicator> join_job();

@@ -62,7 +62,7 @@ void add_denoise(CLI::App& app, int& exit_code) {
         ->required();
     command->add_option("--threads", settings->threads, "Threads at most; 0: one a processor")
         ->type_name("N")
-        ->check(CLI::Range(0, 4096));
+        ->check(CLI::Range(0, most_threads));
     command->add_flag("--quiet", settings->quiet, "Print nothing but errors");
     command->footer(
         "Example:\n  montelux denoise out.exr -o out.exr -o out.png\n"

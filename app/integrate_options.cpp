@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "montelux/formats/nearest_name.h"
+#include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux::app {
 namespace {
@@ -168,7 +169,7 @@ IntegrationTask make_task(const IntegrateOptions& o) {
 
     IntegrationOptions options;
     options.seed = whole_number(o.seed, "--seed", 0, UINT64_MAX);
-    options.threads = static_cast<int>(whole_number(o.threads, "--threads", 0, 4096));
+    options.threads = static_cast<int>(whole_number(o.threads, "--threads", 0, most_threads));
     options.non_finite = o.non_finite == "skip" ? NonFinitePolicy::skip : NonFinitePolicy::throw_error;
     options.checkpoint = o.checkpoint;
     const double every = constant(o.checkpoint_every, "--checkpoint-every");

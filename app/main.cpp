@@ -44,6 +44,15 @@ std::string version() {
     return text;
 }
 
+// Tells what went wrong. Of a job's ranks only the first is heard, and so it must be the first to end.
+int give_up(const std::string& message, int exit_code) {
+    std::fprintf(stderr, "montelux: error: %s\n", message.c_str());
+#ifdef MONTELUX_WITH_RENDER
+    if (is_silent_rank()) wait_for_the_speaker(message);
+#endif
+    return exit_code;
+}
+
 // A mistake of the command line in the program's own style.
 int report_usage(const CLI::App& app, const CLI::ParseError& e, int argc, char** argv) {
     std::string command = "montelux", message = e.what();
@@ -62,9 +71,7 @@ int report_usage(const CLI::App& app, const CLI::ParseError& e, int argc, char**
             message = "there is no command '" + std::string(first) + "'" +
                       montelux::did_you_mean(first, names) + "; expected one of " + known;
     }
-    std::fprintf(stderr, "montelux: error: %s\nRun '%s --help' for what it understands.\n", message.c_str(),
-                 command.c_str());
-    return exit_usage;
+    return give_up(message + "\nRun '" + command + " --help' for what it understands.", exit_usage);
 }
 
 } // namespace
@@ -114,17 +121,11 @@ int main(int argc, char** argv) {
         // A full disk behind a redirection is a failure too.
         if (std::fflush(stdout) != 0) throw montelux::Error("standard output", "cannot be written");
     } catch (const UsageError& e) {
-        std::fprintf(stderr, "montelux: error: %s\n", e.what());
-        return exit_usage;
-    } catch (const montelux::Error& e) {
-        std::fprintf(stderr, "montelux: error: %s\n", e.what());
-        return exit_failed;
+        return give_up(e.what(), exit_usage);
     } catch (const std::bad_alloc&) {
-        std::fprintf(stderr, "montelux: error: there is not enough memory\n");
-        return exit_failed;
+        return give_up("there is not enough memory", exit_failed);
     } catch (const std::exception& e) {
-        std::fprintf(stderr, "montelux: error: %s\n", e.what());
-        return exit_failed;
+        return give_up(e.what(), exit_failed);
     }
     return exit_code;
 }

@@ -72,13 +72,8 @@ void add_merge(CLI::App& app, int& exit_code) {
         "  for k in 1 2 3 4; do montelux render scene.pbrt --spp 256 --slice $k/4 -o part$k.exr; done\n"
         "  montelux merge part*.exr -o whole.exr");
     command->callback([s, &exit_code] {
-        try {
-            run(*s);
-            exit_code = exit_done;
-        } catch (const UsageError& e) {
-            std::fprintf(stderr, "montelux: error: %s\n", e.what());
-            exit_code = exit_usage;
-        }
+        run(*s);
+        exit_code = exit_done;
     });
 }
 

@@ -134,8 +134,13 @@ void print_outliers(const Film& film) {
     if (o.heavy_tailed > 0)
         std::printf(
             "%llu pixels owe most of their error to one bright sample and carry %s of the squared error: "
-            "their errors are rough (layer outlier)\n",
+            "their errors are rough (layers outlier and doubt)\n",
             static_cast<unsigned long long>(o.heavy_tailed), percent_text(o.heavy_error_share).c_str());
+    if (static_cast<double>(o.outshone) > few * static_cast<double>(film.pixels().size()))
+        std::printf(
+            "%llu pixels lie beside pixels of far larger variance: where that is no edge, they have missed "
+            "bright paths so far and are too sure (layer doubt)\n",
+            static_cast<unsigned long long>(o.outshone));
 }
 
 // What ended the render, where that is not the number of samples.
@@ -308,14 +313,7 @@ void add_render(CLI::App& app, int& exit_code) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "Render a scene: every pixel with its standard error");
     declare(*command, *options);
-    command->callback([options, &exit_code] {
-        try {
-            exit_code = run(*options);
-        } catch (const UsageError& e) {
-            std::fprintf(stderr, "montelux: error: %s\n", e.what());
-            exit_code = exit_usage;
-        }
-    });
+    command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 
 } // namespace montelux::app

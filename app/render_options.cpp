@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "montelux/image/image.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/scene/setting_names.h"
 
 namespace montelux::app {
@@ -225,7 +226,7 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_whole_number(c, "--seed", o.seed, 0, UINT64_MAX,
                      "Seed of all random numbers, in place of the scene's");
     add_whole_number(
-        c, "--threads", o.threads, 0, 4096,
+        c, "--threads", o.threads, 0, most_threads,
         "Threads, also more than processors; 0: one a processor. The picture does not depend on it");
     add_parsed(
         c, "--rank-timeout", "TIME", o.rank_timeout, parse_time_limit,

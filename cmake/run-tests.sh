@@ -1,10 +1,11 @@
 #!/bin/bash
-# Runs the tests with some labels in each build folder; the last line is "N passed, N failed".
+# Runs the tests with some labels in each build folder; the last line is "N passed, N failed". What failed is shown once
+# more before it, where it is found in a long log.
 # Usage: run-tests.sh label-expression jobs build-folder...
 set -u
 labels=$1 jobs=$2
 shift 2
-total=0 failed=0 skipped=0 broken=0
+total=0 failed=0 skipped=0 broken=0 again=
 for build in "$@"; do
     echo "== $build"
     report=$(mktemp)
@@ -17,7 +18,15 @@ for build in "$@"; do
     total=$((total + ${tests:-0})) failed=$((failed + ${bad:-0})) skipped=$((skipped + ${left_out:-0}))
     if [ $status -ne 0 ] && [ "${bad:-0}" -eq 0 ]; then broken=$((broken + 1)); fi
     rm -f "$report"
+    logs=$build/Testing/Temporary
+    if [ "${bad:-0}" -gt 0 ]; then
+        # Lines like "10:app/mpi"; of each the part of the log from "Command:" on.
+        again+=$(awk 'NR == FNR { sub(/^[0-9]+:/, ""); failed[$0]; next }
+            / Testing: / { name = $0; sub(/.* Testing: /, "", name) }
+            name in failed && / Testing: /, /<end of output>/' "$logs/LastTestsFailed.log" "$logs/LastTest.log")$'\n'
+    fi
 done
+[ -z "$again" ] || printf '== what failed\n%s' "$again"
 [ $skipped -eq 0 ] || echo "$skipped skipped (each says why above or in ctest --verbose)"
 [ $broken -eq 0 ] || echo "$broken test runs broke off"
 echo "$((total - failed - skipped)) passed, $((failed + broken)) failed"

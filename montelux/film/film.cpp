@@ -32,15 +32,17 @@ Film::Film(const FilmSettings& settings) : settings_(settings) {
 
 std::vector<std::string> film_layers() {
     return {"R",          "G",          "B",       "stderr.R", "stderr.G", "stderr.B", "skewness.R",
-            "skewness.G", "skewness.B", "samples", "units",    "outlier",  "albedo.R", "albedo.G",
-            "albedo.B",   "N.X",        "N.Y",     "N.Z",      "depth.Z"};
+            "skewness.G", "skewness.B", "samples", "units",    "outlier",  "doubt",    "albedo.R",
+            "albedo.G",   "albedo.B",   "N.X",     "N.Y",      "N.Z",      "depth.Z"};
 }
 
 Image Film::develop() const {
     Image image(bounds().width(), bounds().height(), film_layers());
     auto out = image.f32().begin();
     auto put = [&](double v) { *out++ = static_cast<float>(v); };
-    for (const Pixel& p : pixels_) {
+    const std::vector<Doubt> doubts = doubtful_pixels(*this);
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        const Pixel& p = pixels_[i];
         const SkewMoments<3>& units = p.units();
         for (int c = 0; c < 3; ++c) put(units.mean(c));
         for (int c = 0; c < 3; ++c) put(units.standard_error(c));
@@ -48,6 +50,7 @@ Image Film::develop() const {
         put(p.samples());
         put(static_cast<double>(units.count()));
         put(p.largest_share());
+        put(static_cast<double>(doubts[i]));
         for (int c = 0; c < 3; ++c) put(double(p.albedo()[c]));
         for (int c = 0; c < 3; ++c) put(double(p.normal()[c]));
         put(double(p.depth()));

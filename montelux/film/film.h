@@ -118,8 +118,9 @@ class Film {
     }
     FilmError error() const { return error_of(*this); }
     // Layers R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples; units (of which the
-    // standard error is made); outlier (Pixel::largest_share); albedo.R, G, B; N.X, Y, Z; depth.Z, of the
-    // cropped pixels. The standard error is infinite where fewer than two units have been taken.
+    // standard error is made); outlier (Pixel::largest_share); doubt (Doubt); albedo.R, G, B; N.X, Y, Z;
+    // depth.Z, of the cropped pixels. The standard error is infinite where fewer than two units have been
+    // taken.
     Image develop() const;
 
   private:

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "montelux/film/doubtful_pixels.h"
 #include "montelux/film/film.h"
 #include "montelux/mc/math/compensated.h"
 
@@ -13,8 +14,6 @@ namespace montelux {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr std::uint64_t enough_units = 16;
-constexpr double heavy_share = 0.5;
 
 double mean_luminance(const Film& film) {
     CompensatedSum luminance;
@@ -70,20 +69,18 @@ double error_quantile(const Film& film, double quantile) {
     return relative_to(mean_luminance(film), errors[at]);
 }
 
-bool is_heavy_tailed(const Pixel& pixel) {
-    return pixel.units().count() >= enough_units && pixel.largest_share() > heavy_share;
-}
-
 OutlierReport outliers_of(const Film& film) {
     OutlierReport report;
     std::vector<double> squares;
     double total = 0, heavy = 0;
-    for (const Pixel& p : film.pixels()) {
-        const double error = luminance_error(p);
+    const std::vector<Doubt> doubts = doubtful_pixels(film);
+    for (std::size_t i = 0; i < doubts.size(); ++i) {
+        const double error = luminance_error(film.pixels()[i]);
         if (!std::isfinite(error)) continue;
         squares.push_back(error * error);
         total += error * error;
-        if (!is_heavy_tailed(p)) continue;
+        report.outshone += doubts[i] == Doubt::neighbours;
+        if (doubts[i] != Doubt::bright_unit) continue;
         ++report.heavy_tailed;
         heavy += error * error;
     }

@@ -32,17 +32,14 @@ double error_quantile(const Film& film, double quantile);
 // Mean over pixels of the luminance that clamping took away.
 double clamped_luminance(const Film& film);
 
-// Of at least 16 units, the largest alone carries more than half of the variance: the error is known less
-// well than it claims.
-bool is_heavy_tailed(const Pixel& pixel);
-
 // Fireflies: where the error of a picture sits.
 struct OutlierReport {
     // Pixels with the greatest errors that carry half of the squared error, and their share of all.
     std::uint64_t pixels_of_half = 0;
     double share_of_half = 0;
-    std::uint64_t heavy_tailed = 0; // pixels (is_heavy_tailed)
+    std::uint64_t heavy_tailed = 0; // pixels (Doubt::bright_unit)
     double heavy_error_share = 0;   // of the squared error, that those pixels carry
+    std::uint64_t outshone = 0;     // pixels (Doubt::neighbours)
 };
 OutlierReport outliers_of(const Film& film);
 

@@ -152,6 +152,8 @@ MergedSlices SliceMerger::finish() const {
     result.image = Image(width_, height_, film_layers());
     Image& out = result.image;
     const Layers to(out, "the joined picture");
+    std::vector<PixelSpread> spreads;
+    spreads.reserve(pixels_.size());
     double squares = 0, luminance = 0, all_samples = 0;
     std::size_t i = 0;
     for (int y = 0; y < height_; ++y)
@@ -173,11 +175,18 @@ MergedSlices SliceMerger::finish() const {
             }
             put(to.samples, sums.samples);
             put(to.units, static_cast<double>(units.count()));
-            put(to.outlier, spread > 0 ? std::min(1.0, sums.largest / spread) : 0);
+            const double largest = spread > 0 ? std::min(1.0, sums.largest / spread) : 0;
+            put(to.outlier, largest);
+            spreads.push_back(pixel_spread(error, sums.samples, static_cast<double>(units.count()), largest));
             put(to.depth, sums.depth * inverse);
             squares += error * error;
             all_samples += sums.samples;
         }
+    const std::vector<Doubt> doubts = doubtful_pixels(spreads, width_);
+    const int layer = *out.find_channel("doubt");
+    i = 0;
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x, ++i) out.set(x, y, layer, static_cast<float>(doubts[i]));
     const double pixels = static_cast<double>(out.pixel_count());
     result.mean_samples = all_samples / pixels;
     result.relative_error = luminance > 0 ? std::sqrt(squares * pixels) / luminance : 0;

@@ -155,4 +155,4 @@ __all__ = [
     "ZScores",
 ]
 
-strict(*METHODS.values())
+strict(*METHODS.values(), Distribution, Domain, Technique, AdaptiveMap, Spectrum, warp.Warp)

@@ -11,10 +11,11 @@ import numpy.typing as npt
 
 from . import _core
 from ._core import Error
+from ._names import UnknownAttribute, is_number, is_whole, unknown
 from ._result import Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False, eq=False)
 class Chains:
     """States of Markov chains, and what they say of the means of observables.
 
@@ -41,6 +42,17 @@ class Chains:
     #: Every `thin`-th state after the burn-in, shape (chains, states, d).
     states: Array
 
+    def __repr__(self) -> str:
+        lines = [f"{m:.6g} +- {e:.2g}, R-hat {r:.4f}" for m, e, r in zip(self.mean, self.standard_error, self.r_hat)]
+        chains, states, _ = self.states.shape
+        lines.append(f"{chains} chains of {states} states, {100 * self.acceptance_rate:.0f} % accepted")
+        return "\n".join([*lines, *(f"doubt: {doubt}" for doubt in self.doubts)])
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        raise UnknownAttribute(unknown("attribute of Chains", name, type(self).__dataclass_fields__))
+
 
 def metropolis(
     log_density: Callable[[Array], float],
@@ -66,9 +78,25 @@ def metropolis(
     The walk y = x + step * scale * z, z standard normal, adapts step and scale during the burn-in, unless told
     not to; step 0: 2.38 / sqrt(d). `samples` is the number of states of each chain after it.
     """
-    points = np.atleast_2d(np.asarray(starts, dtype=float))
+    for name, number, least in (
+        ("chains", chains, 1),
+        ("samples", samples, 8),
+        ("burn_in", burn_in, 0),
+        ("thin", thin, 1),
+        ("seed", seed, 0),
+    ):
+        if not (is_whole(number) and least <= number < 2**63):
+            raise Error(f"metropolis: {name}={number!r} was given; expected a whole number, at least {least}")
+    if not (is_number(step) and 0 <= step < float("inf")):
+        raise Error(f"metropolis: step={step!r} was given; expected a number that is not negative")
+    try:
+        points = np.atleast_2d(np.asarray(starts, dtype=float))
+    except (TypeError, ValueError):
+        raise Error(f"metropolis: starts={starts!r} was given; expected numbers, (d,) or (chains, d)") from None
     if points.ndim != 2:
         raise Error(f"metropolis: starts of shape {points.shape} were given; expected (d,) or (chains, d)")
+    if len(points) not in (1, chains):
+        raise Error(f"metropolis: {len(points)} starts were given for {chains} chains; expected one, or one for each")
     count = points.shape[1] if observables is None else np.size(observables(points[0].copy()))
     d = _core.metropolis(
         log_density,

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
+from inspect import Parameter, signature
 from typing import Any, Union
 
 import numpy as np
 
 from . import _core
 from ._core import Domain, Error
-from ._names import settings_of, unknown
+from ._names import MOST_THREADS, did_you_mean, is_number, is_whole, settings_of, unknown
 from ._progress import IntegrationProgress
 from ._result import Array, Result, from_core
 
@@ -77,14 +78,18 @@ def as_method(method: Any, settings: dict[str, Any]) -> _core.Method:
             names += ["weights", "parameter"]
         for name in settings:
             if name not in names:
-                raise Error(f"method '{kind}': " + unknown("setting", name, names or ["(none)"]))
+                known = [*names, *_ARGUMENTS]
+                raise Error(f"method '{kind}': " + unknown("setting", name, known))
         missing = [name for name in _REQUIRED.get(kind, ()) if name not in settings]
         if missing:
             raise Error(f"method '{kind}': expected the setting '{missing[0]}'")
         method = method(**settings)
     elif settings:
         name = next(iter(settings))
-        raise Error(f"integrate: there is no argument '{name}'; settings of a method object are given to the object")
+        hint = did_you_mean(name, _ARGUMENTS)
+        raise Error(
+            f"integrate: there is no argument '{name}'{hint}; settings of a method object are given to the object"
+        )
     if not hasattr(type(method), "_method"):
         raise Error(f"method: an object of type '{type(method).__name__}' was given; expected a name or a method")
     made: _core.Method = method._method()
@@ -158,12 +163,22 @@ def integrate(
         raise Error("non_finite: " + unknown("choice", non_finite, ["skip", "throw"]))
     if not callable(f):
         raise Error(f"integrand: an object of type '{type(f).__name__}' was given; expected a function")
-    if evaluations is not None and not (evaluations >= 1 and float(evaluations).is_integer()):
-        raise Error(f"evaluations: {evaluations} was given; expected a whole number above zero")
-    if seconds is not None and not seconds > 0:
-        raise Error(f"seconds: {seconds} was given; expected a time above zero")
-    if not (isinstance(seed, (int, np.integer)) and 0 <= seed < 2**64):
-        raise Error(f"seed: {seed} was given; expected a whole number in [0, 2**64)")
+    for name, error in (("relative_error", relative_error), ("absolute_error", absolute_error)):
+        if not is_number(error):
+            raise Error(f"{name}: {error!r} was given; expected a number")
+    if evaluations is not None:
+        if not (is_number(evaluations) and 1 <= evaluations < 2**63 and float(evaluations).is_integer()):
+            raise Error(f"evaluations: {evaluations!r} was given; expected a whole number above zero and below 2**63")
+    if seconds is not None and not (is_number(seconds) and seconds > 0):
+        raise Error(f"seconds: {seconds!r} was given; expected a time above zero")
+    if not (is_whole(seed) and 0 <= seed < 2**64):
+        raise Error(f"seed: {seed!r} was given; expected a whole number in [0, 2**64)")
+    if not (is_whole(threads) and 0 <= threads <= MOST_THREADS):
+        raise Error(f"threads: {threads!r} was given; expected a whole number from 0 to {MOST_THREADS}")
+    if components is not None and not (is_whole(components) and 0 <= components < 2**31):
+        raise Error(f"components: {components!r} was given; expected a whole number that is not negative")
+    if not (isinstance(progress, bool) or callable(progress)):
+        raise Error(f"progress: {progress!r} was given; expected True, False or a function")
     if out and not batch:
         raise Error("out: values are written into by batch functions only; expected batch=True or out=False")
     function = f if batch else pointwise(f, region.dimensions == 1)
@@ -181,12 +196,12 @@ def integrate(
             out,
             region,
             chosen,
-            relative_error,
-            absolute_error,
+            float(relative_error),
+            float(absolute_error),
             0 if evaluations is None else int(evaluations),
-            0.0 if seconds is None else seconds,
+            0.0 if seconds is None else float(seconds),
             int(seed),
-            threads,
+            int(threads),
             non_finite == "throw",
             covariance,
             report,
@@ -200,6 +215,9 @@ def integrate(
     return from_core(result, vector)
 
 
+_ARGUMENTS = [name for name, p in signature(integrate).parameters.items() if p.kind is Parameter.KEYWORD_ONLY]
+
+
 def _components(function: Callable[[Array], Any], region: Domain) -> int:
     """Calls the integrand with a few points of the domain, to see what it returns."""
     k, d = region.uniforms, region.dimensions
@@ -208,7 +226,16 @@ def _components(function: Callable[[Array], Any], region: Domain) -> int:
     u = np.modf(0.5 + np.outer(np.arange(1, n + 1), np.sqrt(np.arange(k) + 2.5)))[0]
     x, _ = region.map(u)
     x.flags.writeable = False
-    return _core.values_a_point(function(x), n)
+    try:
+        values = function(x)
+    except TypeError as error:  # math.sin, or a function of two arguments
+        if hasattr(error, "add_note"):  # Python 3.11
+            error.add_note(
+                f"montelux called the integrand with the array of {n} points x, of shape {x.shape}; "
+                "batch=False calls it with one point at a time"
+            )
+        raise
+    return _core.values_a_point(values, n)
 
 
 def train_map(

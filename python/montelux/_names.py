@@ -1,10 +1,26 @@
-"""Sentences for names that do not exist, with the nearest one that does."""
+"""What arguments are, and sentences for names that do not exist, with the nearest one that does."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
 
 from ._core import Error, nearest_name
+
+#: Of a call; more are a mistake, and the system gives way far earlier.
+MOST_THREADS = 4096
+
+
+def is_number(value: Any) -> bool:
+    """Whether a value is a real number, of Python or NumPy."""
+    return isinstance(value, (int, float, np.integer, np.floating))
+
+
+def is_whole(value: Any) -> bool:
+    """Whether a value is an integer, of Python or NumPy."""
+    return isinstance(value, (int, np.integer))
 
 
 class UnknownAttribute(Error, AttributeError):
@@ -33,6 +49,11 @@ def public_attributes(kind: type) -> list[str]:
     )
 
 
+def public_names(kind: type) -> list[str]:
+    """The attributes and the methods of a class."""
+    return sorted({name for base in kind.__mro__ for name in vars(base) if not name.startswith("_")})
+
+
 def settings_of(kind: type) -> list[str]:
     """The attributes of a class of settings that can be set, in the order of their declaration."""
     return [name for name, value in vars(kind).items() if isinstance(value, property) and value.fset is not None]
@@ -55,7 +76,7 @@ def _make_strict(kind: type) -> None:
     def get_attribute(self: object, name: str) -> object:
         if name.startswith("__"):
             raise AttributeError(name)
-        raise UnknownAttribute(unknown(f"attribute of {type(self).__name__}", name, public_attributes(type(self))))
+        raise UnknownAttribute(unknown(f"attribute of {type(self).__name__}", name, public_names(type(self))))
 
     kind.__setattr__ = set_attribute  # type: ignore[method-assign, assignment]
     kind.__getattr__ = get_attribute  # type: ignore[attr-defined]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import struct
 import zlib
@@ -63,8 +64,12 @@ class Picture:
     def layers(self) -> Mapping[str, Pixels]:
         """All layers by name: 'mean', 'standard_error', 'skewness' (of the mean), 'albedo' and 'normal' of the
         first surface, of shape (h, w, 3); 'samples', 'units' (independent parts that the error is made of),
+<<<<<<< HEAD
+        'outlier', 'doubt' (not 0 where the error is rough) and 'depth', of shape (h, w)."""
+=======
         'outlier' and 'depth', of shape (h, w). Where it was asked for also 'denoised', which `standard_error`
         does not hold for."""
+>>>>>>> 07a61c98db1f108ad1d5269c9a92249d212aaf7c
         if self._made is None:
             self._made = MappingProxyType(self._look().layers)
         return self._made
@@ -110,9 +115,11 @@ class Picture:
 
     def __repr__(self) -> str:
         height, width = self.mean.shape[:2]
+        known = math.isfinite(self.relative_error)
+        error = f"relative error {100 * self.relative_error:.3g} %" if known else "error not known yet"
         return (
             f"<{type(self).__name__}: {width} x {height} pixels, {self.samples_per_pixel:.7g} samples a pixel, "
-            f"relative error {100 * self.relative_error:.3g} %, {self.seconds:.3g} s>"
+            f"{error}, {self.seconds:.3g} s>"
         )
 
     def __getattr__(self, name: str) -> Any:

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._names import UnknownAttribute, unknown
 
 Array = npt.NDArray[np.float64]
 
@@ -25,7 +26,7 @@ class History(NamedTuple):
     seconds: Array
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Result:
     """A value with its error, and how it came about. `float(result)` is the value of a scalar integrand.
 
@@ -84,6 +85,17 @@ class Result:
 
     def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
         return np.array(self.value, dtype=dtype)
+
+    def __format__(self, form: str) -> str:
+        """With a form such as `.3f` the value alone, as that of a float; else all that `str` says."""
+        return format(float(self), form) if form else self._text
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        known = [n for n in dir(type(self)) if not n.startswith("_")]
+        known += [n for n in type(self).__dataclass_fields__ if not n.startswith("_")]
+        raise UnknownAttribute(unknown("attribute of Result", name, set(known)))
 
     def __str__(self) -> str:
         return self._text

@@ -9,7 +9,7 @@ from typing import Any
 
 from . import _core
 from ._core import Error
-from ._names import settings_of, strict, unknown
+from ._names import MOST_THREADS, is_number, is_whole, settings_of, strict, unknown
 from ._render import Progress, Render
 
 _MOST_SAMPLES = 1 << 24  # of a pixel, where an error or a time decides
@@ -62,24 +62,31 @@ class Scene(_core.SceneBase):
         is stopped before.
         """
         for name, value in (("samples", samples), ("max_samples", max_samples)):
-            if value is not None and not (isinstance(value, int) and 1 <= value <= 1 << 30):
+            if value is not None and not (is_whole(value) and 1 <= value <= 1 << 30):
                 raise Error(f"render: {name}={value!r} was given; expected a whole number from 1 to {1 << 30}")
-        for name, number in (("target_error", target_error), ("seconds", seconds), ("every", every)):
-            if number is not None and not 0 < number < float("inf"):
+        for name, number in (
+            ("target_error", target_error),
+            ("seconds", seconds),
+            ("every", every),
+            ("checkpoint_every", checkpoint_every),
+        ):
+            if number is not None and not (is_number(number) and 0 < number < float("inf")):
                 raise Error(f"render: {name}={number!r} was given; expected a number above zero")
         if target_quantile is not None:
             if target_error is None:
                 raise Error(
                     "render: target_quantile was given; expected target_error, within which that share shall be"
                 )
-            if not 0 < target_quantile < 1:
+            if not (is_number(target_quantile) and 0 < target_quantile < 1):
                 raise Error(f"render: target_quantile={target_quantile!r} was given; expected a number between 0 and 1")
-        if seed is not None and not (isinstance(seed, int) and 0 <= seed < 2**64):
+        if seed is not None and not (is_whole(seed) and 0 <= seed < 2**64):
             raise Error(f"render: seed={seed!r} was given; expected a whole number in [0, 2**64)")
-        if threads < 0 or threads > 4096:
-            raise Error(f"render: threads={threads!r} was given; expected a whole number from 0 to 4096")
+        if not (is_whole(threads) and 0 <= threads <= MOST_THREADS):
+            raise Error(f"render: threads={threads!r} was given; expected a whole number from 0 to {MOST_THREADS}")
+        if not (isinstance(progress, bool) or callable(progress)):
+            raise Error(f"render: progress={progress!r} was given; expected True, False or a function")
         part = (1, 1) if slice is None else tuple(slice)
-        if len(part) != 2 or not (all(isinstance(i, int) for i in part) and 1 <= part[0] <= part[1] <= 1_000_000):
+        if len(part) != 2 or not (all(is_whole(i) for i in part) and 1 <= part[0] <= part[1] <= 1_000_000):
             raise Error(f"render: slice={slice!r} was given; expected (k, n) with k from 1 to n")
         if part[1] > 1 and (target_error is not None or adaptive):
             raise Error(
@@ -95,15 +102,15 @@ class Scene(_core.SceneBase):
             most = min(samples, max_samples)
         job = _core.start_render(
             self,
-            samples=most,
-            seed=seed,
-            target_error=target_error or 0.0,
-            target_quantile=target_quantile or 0.0,
-            seconds=seconds or 0.0,
-            adaptive=target_error is not None if adaptive is None else adaptive,
-            threads=threads,
+            samples=None if most is None else int(most),
+            seed=None if seed is None else int(seed),
+            target_error=float(target_error or 0),
+            target_quantile=float(target_quantile or 0),
+            seconds=float(seconds or 0),
+            adaptive=target_error is not None if adaptive is None else bool(adaptive),
+            threads=int(threads),
             checkpoint="" if checkpoint is None else os.fspath(checkpoint),
-            checkpoint_every=checkpoint_every,
+            checkpoint_every=float(checkpoint_every),
             resume=resume,
             slice=part,
             denoise=denoise,
@@ -145,7 +152,8 @@ def _tell(scene: Scene) -> None:
 
 
 def assign(value: Any, attributes: dict[str, Any]) -> None:
-    """Sets attributes of a value, as its constructor does with keyword arguments."""
+    """Sets attributes of a value, as its constructor does with keyword arguments. `scale` is of what a light would
+    send out without it, as in scene files: twice is twice as bright, although the attribute holds another number."""
     kind = type(value)
     names = settings_of(kind)
     for name in attributes:
@@ -155,7 +163,14 @@ def assign(value: Any, attributes: dict[str, Any]) -> None:
     late = ("scale", "crop")
     for name in sorted(attributes, key=lambda n: (n in late, n.endswith(("_u", "_v")))):
         if name == "look_at":
-            value.look_at(*attributes[name])
+            given = attributes[name]
+            if not (isinstance(given, (tuple, list)) and len(given) in (2, 3)):
+                raise Error(
+                    f"{kind.__name__}: look_at={given!r} was given; expected (eye, target) or (eye, target, up)"
+                )
+            value.look_at(*given)
+        elif name == "scale" and is_number(attributes[name]) and attributes[name] >= 0:
+            value.scale *= attributes[name]
         else:
             setattr(value, name, attributes[name])
 
@@ -193,4 +208,4 @@ VALUES = (
 )
 for _kind in VALUES:
     _kind.__repr__ = _represent  # type: ignore[method-assign]
-strict(*VALUES, _core.Shape, Scene)
+strict(*VALUES, _core.Shape, _core.Shapes, _core.Materials, _core.Lights, Scene)

@@ -62,8 +62,11 @@ nb::dict layers_of(const RenderLook& look) {
                                                                      {"denoised", "denoised.R"},
                                                                      {"albedo", "albedo.R"},
                                                                      {"normal", "N.X"}};
-    static constexpr std::pair<const char*, const char*> numbers[] = {
-        {"samples", "samples"}, {"units", "units"}, {"outlier", "outlier"}, {"depth", "depth.Z"}};
+    static constexpr std::pair<const char*, const char*> numbers[] = {{"samples", "samples"},
+                                                                      {"units", "units"},
+                                                                      {"outlier", "outlier"},
+                                                                      {"doubt", "doubt"},
+                                                                      {"depth", "depth.Z"}};
     nb::dict d;
     for (const auto& [name, first] : colors)
         if (const std::optional<int> c = look.image->find_channel(first))

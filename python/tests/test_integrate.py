@@ -236,6 +236,22 @@ def test_results_print_and_convert():
     assert d["history"]["value"][-1] == r.value
 
 
+def test_results_format_compare_and_hash():
+    r, again = (montelux.integrate(sine_times_y, BOX, "quasi", evaluations=1000) for _ in range(2))
+    assert f"{r:.3f}" == f"{r.value:.3f}" and f"{r}" == str(r)
+    assert r == r and r != again and len({r, again}) == 2  # arrays inside are not compared
+    with pytest.raises(AttributeError, match=r"no attribute of Result 'valu' \(did you mean 'value'\?\)"):
+        r.valu
+
+
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="exceptions have no notes")
+def test_functions_of_one_point_are_told_about_batches():
+    for f in (math.sin, lambda x, y: x):
+        with pytest.raises(TypeError) as caught:
+            montelux.integrate(f, (0, 1))
+        assert "batch=False calls it with one point at a time" in caught.value.__notes__[0]
+
+
 def test_unknown_errors_are_null_in_json():
     r = montelux.integrate(sine_times_y, BOX, "quasi", randomisation="none", evaluations=1000)
     assert r.standard_error == math.inf and r.to_dict()["standard_error"] is None

@@ -255,3 +255,45 @@ def test_mistakes_with_chains():
         montelux.metropolis(lambda x: 1 / 0, [0.0], samples=100)
     with pytest.raises(montelux.Error, match="where chain 0 starts"):
         montelux.metropolis(lambda x: -math.inf, [0.0], samples=100)
+
+
+@pytest.mark.parametrize(
+    "arguments, sentence",
+    [
+        ({"samples": 1e3}, "samples=1000.0 was given; expected a whole number, at least 8"),
+        ({"samples": 0}, "samples=0 was given"),
+        ({"chains": 0}, "expected a whole number, at least 1"),
+        ({"seed": -1}, "expected a whole number, at least 0"),
+        ({"step": -1}, "expected a number that is not negative"),
+        ({"starts": "abc"}, "'abc' was given; expected numbers"),
+        ({"starts": [[0.0], [1.0]]}, "2 starts were given for 4 chains; expected one, or one for each"),
+    ],
+)
+def test_wrong_arguments_of_metropolis_are_answered(arguments, sentence):
+    with pytest.raises(montelux.Error, match=sentence):
+        montelux.metropolis(lambda x: -x @ x, **{"starts": [0.0], **arguments})
+
+
+@pytest.mark.parametrize(
+    "thing, name, nearest",
+    [
+        (montelux.Distribution.normal(), "quantil", "quantile"),
+        (montelux.Domain.simplex(2), "dimension", "dimensions"),
+        (montelux.warp.cosine, "sampl", "sample"),
+        (montelux.Spectrum(1), "__len__", None),
+        (montelux.Scene().lights, "apend", "append"),
+        (montelux.Scene(), "rendr", "render"),
+    ],
+)
+def test_misspelt_names_are_answered_with_the_nearest(thing, name, nearest):
+    sentence = rf"'{name}' \(did you mean '{nearest}'\?\)" if nearest else f"^{name}$"
+    with pytest.raises(AttributeError, match=sentence):
+        getattr(thing, name)
+
+
+def test_chains_print():
+    chains = montelux.metropolis(lambda x: -x @ x, [0.0, 0.0], samples=500, seed=1)
+    lines = repr(chains).splitlines()
+    assert "R-hat" in lines[1] and "4 chains of 500 states" in lines[2] and len(repr(chains)) < 2000
+    with pytest.raises(AttributeError, match=r"no attribute of Chains 'means' \(did you mean 'mean'\?\)"):
+        chains.means

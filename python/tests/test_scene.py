@@ -51,6 +51,26 @@ def test_attributes_read_what_was_set(scene):
     assert "2 shapes" in repr(scene) and "fov=33" in repr(scene.camera)
 
 
+@pytest.mark.parametrize("kind", [montelux.UniformInfiniteLight, montelux.PointLight, montelux.AreaLight])
+def test_the_scale_of_a_new_light_multiplies(kind):
+    plain, double = kind(spectrum=(0.5, 0.6, 0.7)), kind(spectrum=(0.5, 0.6, 0.7), scale=2)
+    assert double.scale == pytest.approx(2 * plain.scale)
+    assert kind(scale=2).scale == pytest.approx(2 * kind().scale)
+    double.scale /= 2
+    assert double.scale == pytest.approx(plain.scale)
+
+
+def test_numbers_of_numpy_are_numbers(scene):
+    render = scene.render(samples=np.int64(4), seed=np.uint8(3), threads=np.int32(1))
+    assert np.array_equal(render.mean, scene.render(samples=4).mean)
+
+
+def test_an_unknown_error_is_told(scene):
+    assert "error not known yet" in repr(scene.render(samples=1).wait())
+    with pytest.raises(montelux.Error, match=r"look_at=5 was given; expected \(eye, target\)"):
+        montelux.PerspectiveCamera(look_at=5)
+
+
 def test_area_lights_of_a_mesh_are_one(scene):
     light = scene.shapes[0].light
     light.spectrum = (1, 0, 0)
@@ -180,6 +200,10 @@ def test_wrong_attributes_are_answered(scene, path, value, sentence):
     [
         ({"samples": 0}, "expected a whole number from 1"),
         ({"target_error": -1}, "expected a number above zero"),
+        ({"target_error": "1%"}, "'1%' was given; expected a number above zero"),
+        ({"checkpoint_every": -1}, "expected a number above zero"),
+        ({"progress": 3}, "expected True, False or a function"),
+        ({"threads": 1.5}, "expected a whole number from 0 to 4096"),
         ({"target_quantile": 0.9}, "expected target_error"),
         ({"seed": -1}, "expected a whole number"),
         ({"threads": -1}, "expected a whole number from 0 to 4096"),

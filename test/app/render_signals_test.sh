@@ -61,7 +61,7 @@ done
 wait_for $pid
 [ $in_time -ge 1 ] || fail "signals while writing: none came in time"
 [ $code -eq 0 ] || fail "signals while writing: exit code $code instead of 0"
-expect 0 "1200 x 900 pixels, 19 channels" info large.exr
+expect 0 "1200 x 900 pixels, 20 channels" info large.exr
 find . -name '.montelux-*' | grep -q . && fail "a signal while writing left a temporary file behind"
 rm -f large.exr
 

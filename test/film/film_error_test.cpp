@@ -49,11 +49,13 @@ TEST(FilmError, OutliersAreFound) {
     EXPECT_EQ(even.pixels_of_half, 5u);
     EXPECT_NEAR(even.share_of_half, 0.5, 1e-12);
     EXPECT_EQ(even.heavy_tailed, 0u);
+    EXPECT_EQ(even.outshone, 0u);
     add(film.pixel(3, 0), {1000});
     const OutlierReport one = outliers_of(film);
     EXPECT_EQ(one.pixels_of_half, 1u);
     EXPECT_EQ(one.heavy_tailed, 1u);
     EXPECT_GT(one.heavy_error_share, 0.99);
+    EXPECT_EQ(one.outshone, 2u);
 }
 
 } // namespace

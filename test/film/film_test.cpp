@@ -173,7 +173,7 @@ TEST(Film, DevelopsTheCropWithItsLayers) {
         if (!c) ADD_FAILURE() << "no channel " << channel;
         return c ? image.value(x, y, *c) : 0;
     };
-    EXPECT_EQ(image.channels(), 19);
+    EXPECT_EQ(image.channels(), 20);
     for (int y = 0; y < 2; ++y)
         for (int x = 0; x < 3; ++x) {
             EXPECT_EQ(value("R", x, y), static_cast<float>(x + 3));
@@ -186,6 +186,7 @@ TEST(Film, DevelopsTheCropWithItsLayers) {
             EXPECT_EQ(value("samples", x, y), 2);
             EXPECT_EQ(value("units", x, y), 2);
             EXPECT_FLOAT_EQ(value("outlier", x, y), 0.5f);
+            EXPECT_EQ(value("doubt", x, y), 0);
             EXPECT_FLOAT_EQ(value("albedo.R", x, y), 0.1f * static_cast<float>(x + 3));
             EXPECT_FLOAT_EQ(value("albedo.B", x, y), 0.3f);
             EXPECT_FLOAT_EQ(value("N.Y", x, y), 0.5f);

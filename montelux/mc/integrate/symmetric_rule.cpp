@@ -32,6 +32,15 @@ void for_each_partition(int total, int dimensions, const std::function<void(cons
     recurse(recurse, total, total);
 }
 
+// What values are divided by before they are squared and summed: 1, but for values whose squares are out of
+// the range of numbers. Integrands have such, densities above all: seen in passing, a peak is 1e-180 of
+// itself.
+double unit_of_squares(std::span<const double> values) {
+    double largest = 0;
+    for (double v : values) largest = std::max(largest, std::abs(v));
+    return largest > 0 && (largest < 1e-140 || largest > 1e140) && std::isfinite(largest) ? largest : 1;
+}
+
 // Legendre polynomials of mean square 1 over [-1, 1], up to degree n.
 std::vector<long double> legendre(int n, long double x) {
     std::vector<long double> p{1, x};
@@ -223,6 +232,7 @@ double SymmetricRule::apply(std::span<const double> values, std::span<double> nu
 }
 
 SymmetricRule::Assessment SymmetricRule::assess(std::span<const double> nulls, double rounding) const {
+    const double unit = unit_of_squares(nulls);
     // Root square sums of the null rules of each degree; the three highest degrees decide.
     std::array<double, 3> size{};
     std::size_t groups = 0;
@@ -233,10 +243,10 @@ SymmetricRule::Assessment SymmetricRule::assess(std::span<const double> nulls, d
             degree = null_degrees_[k];
             ++groups;
         }
-        size[groups - 1] += nulls[k] * nulls[k];
+        size[groups - 1] += (nulls[k] / unit) * (nulls[k] / unit);
     }
     Assessment result{0, 0};
-    for (double& s : size) s = std::sqrt(s);
+    for (double& s : size) s = unit * std::sqrt(s);
     for (std::size_t g = 0; g + 1 < groups; ++g)
         if (size[g] > rounding)
             result.ratio = std::max(result.ratio, size[g + 1] > 0 ? size[g] / size[g + 1]
@@ -274,17 +284,18 @@ void SymmetricRule::add_roughness(std::span<const double> values, double scale,
 
 double SymmetricRule::edge_surprise(std::span<const double> values) const {
     if (probe_at_ == 0) return 0;
+    const double unit = unit_of_squares(values);
     double squares = 0;
     for (std::size_t d = 0; d < static_cast<std::size_t>(dimensions_); ++d) {
         const AxisTerms terms = axis_terms(values, d);
         // As much as the next terms of a smooth function may add: of the order of the quartic's own.
         const double expected = 0.8 * std::abs(terms.quartic);
         for (const double surprise : {terms.even + terms.odd, terms.even - terms.odd}) {
-            const double beyond = std::max(0.0, std::abs(surprise) - expected);
+            const double beyond = std::max(0.0, std::abs(surprise) - expected) / unit;
             squares += beyond * beyond;
         }
     }
-    return std::sqrt(squares) * (1 - outer_at_) / 2;
+    return unit * std::sqrt(squares) * (1 - outer_at_) / 2;
 }
 
 SymmetricRule::FaceValue SymmetricRule::face_value(std::span<const double> values, int axis,

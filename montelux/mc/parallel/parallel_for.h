@@ -12,6 +12,7 @@
 #include <oneapi/tbb/task_arena.h>
 #include <oneapi/tbb/task_group.h>
 #include <optional>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -19,12 +20,17 @@
 
 namespace montelux {
 
+// More would only be in each other's way, and use the machine up.
+inline constexpr int most_threads = 4096;
+
 // While it lives, loops of the whole process use at most `threads` threads; 0 means one per processor.
 // Limits nest: the smallest one holds. A number above the processors' changes nothing.
 class ThreadLimit {
   public:
     explicit ThreadLimit(int threads) {
-        if (threads < 0) throw Error("ThreadLimit", "the number of threads must not be negative");
+        if (threads < 0 || threads > most_threads)
+            throw Error("threads", "expected a number from 0 to " + std::to_string(most_threads) + ", got " +
+                                       std::to_string(threads));
         if (threads > 0)
             control_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     }

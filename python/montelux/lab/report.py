@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import re
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -52,7 +53,9 @@ def _section(figure: Figure, outcome: Outcome, folder: Path, png: bool) -> str:
     parts = [f'<section id="{figure.key}">', f"<h3><span>{figure.row}</span> {html.escape(figure.title)}</h3>"]
     parts.append(f'<p class="see">{html.escape(figure.see)}</p>')
     if figure.formulas:
-        lines = "".join(f"<div>{formula_svg(tex)}</div>" for tex in figure.formulas)
+        # Parts that stand apart go below each other where the page is narrow.
+        parts_of_lines = (re.split(r"(?<=,)\s*\\q?quad\s*", tex) for tex in figure.formulas)
+        lines = "".join(f"<div>{''.join(map(formula_svg, line))}</div>" for line in parts_of_lines)
         parts.append(f'<div class="formulas">{lines}</div>')
     names = write_drawings(figure, outcome, folder, png)
     alt = html.escape(figure.alt or figure.title)

@@ -173,6 +173,21 @@ TEST(Auto, ZeroIntegrandIsDoubted) {
     }
 }
 
+TEST(Auto, StopsAtAZeroThatNoRelativeErrorCanBeMetFor) {
+    const auto odd = [](std::span<const double> x) { return x[0] * std::exp(-x[1]); };
+    const Domain domain({{-1, 1}, {0, 1}});
+    const IntegrationResult r =
+        integrate(odd, domain, Auto{}, {.relative_error = 1e-3, .evaluations = 1'000'000}, {.threads = 1});
+    EXPECT_FALSE(r.converged());
+    EXPECT_LT(r.evaluations, 10'000u);
+    EXPECT_LT(std::abs(r.value[0]), 1e-14);
+    EXPECT_NE(r.reason.find("cannot be told from zero"), std::string::npos) << r.reason;
+    // With an absolute error there is a way.
+    EXPECT_TRUE(
+        integrate(odd, domain, Auto{}, {.relative_error = 1e-3, .absolute_error = 1e-6}, {.threads = 1})
+            .converged());
+}
+
 TEST(Auto, ValuesThatAreNotFiniteAreCounted) {
     expect_non_finite_counted(Domain::unit_cube(2), Auto{}, 20'000);
     expect_non_finite_counted(Domain::unit_cube(5), Auto{}, 20'000);

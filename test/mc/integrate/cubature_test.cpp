@@ -278,5 +278,34 @@ TEST(Cubature, NonFiniteValuesAreCounted) {
     EXPECT_EQ(r.first_non_finite_point, std::vector<double>{0.5});
 }
 
+// Its values at the first 65 points are so small that their squares are zero: no reason to believe in them.
+TEST(Cubature, FindsAPeakThatItSawTheFaintestTailOf) {
+    constexpr double width = 0.01;
+    const auto peak = [](std::span<const double> x) {
+        double squares = 0;
+        for (double v : x) squares += (v - 0.3) * (v - 0.3);
+        return std::exp(-squares / (2 * width * width));
+    };
+    const IntegrationResult r = integrate(peak, Domain(std::vector<Range>(4, {0, 1})), Cubature{},
+                                          {.relative_error = 1e-3, .evaluations = 200'000}, {.threads = 1});
+    EXPECT_TRUE(r.converged());
+    EXPECT_NEAR(r.value[0] / std::pow(2 * std::numbers::pi * width * width, 2), 1, 3e-3);
+}
+
+TEST(Cubature, TheUnitOfTheIntegrandDoesNotMatter) {
+    std::vector<std::uint64_t> evaluations;
+    for (double size : {1.0, 1e-200, 1e200}) {
+        const auto f = [size](std::span<const double> x) {
+            return size * std::exp(-9 * x[0] * x[1] - std::abs(x[0] - 0.3));
+        };
+        const IntegrationResult r =
+            integrate(f, Domain(std::vector<Range>(2, {0, 1})), Cubature{},
+                      {.relative_error = 1e-5, .evaluations = 200'000}, {.threads = 1});
+        EXPECT_TRUE(r.converged()) << size;
+        evaluations.push_back(r.evaluations);
+    }
+    EXPECT_EQ(evaluations, std::vector<std::uint64_t>(3, evaluations[0]));
+}
+
 } // namespace
 } // namespace montelux

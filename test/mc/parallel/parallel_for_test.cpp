@@ -105,6 +105,7 @@ TEST(ThreadLimit, LimitsAndRestores) {
     }
     EXPECT_EQ(thread_count(), before);
     EXPECT_THROW(ThreadLimit(-1), Error);
+    EXPECT_THROW(ThreadLimit(most_threads + 1), Error);
 }
 
 } // namespace
