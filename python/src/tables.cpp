@@ -120,7 +120,7 @@ void bind_discrete(nb::module_& m) {
         });
 }
 
-Warp tabulated(const nb::object& values, std::array<double, 2> lower, std::array<double, 2> upper) {
+Warp tabulated_warp(const nb::object& values, std::array<double, 2> lower, std::array<double, 2> upper) {
     const Numbers n = numbers_of(values, "warp tabulated");
     constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
     if (n.shape.size() != 2 || n.values.empty() || n.values.size() > most)
@@ -142,7 +142,7 @@ Warp tabulated(const nb::object& values, std::array<double, 2> lower, std::array
 
 void bind_tables(nb::module_& m) {
     bind_discrete(m);
-    m.def("warp_tabulated", &tabulated, "values"_a, "lower"_a = std::array<double, 2>{0, 0},
+    m.def("warp_tabulated", &tabulated_warp, "values"_a, "lower"_a = std::array<double, 2>{0, 0},
           "upper"_a = std::array<double, 2>{1, 1},
           "Density on a rectangle that is constant on each of its cells, in proportion to `values` of shape "
           "(rows, columns).\n\n"
