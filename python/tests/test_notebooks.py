@@ -56,11 +56,15 @@ def texts(outputs: list[dict[str, Any]]) -> list[str]:
 NUMBER = re.compile(r"-?\d+(?:\.(\d*))?(?:\((\d+)\))?(?:e([+-]?\d+))?(?![\w.])")
 
 
-def differences(expected: str, found: str) -> list[str]:
+#: Light paths fork where a number is rounded differently: pictures of two builds differ by some of their samples.
+RELATIVE = {"rendering": 0.05}
+
+
+def differences(expected: str, found: str, relative: float = 0.0) -> list[str]:
     """How two texts differ. Seeds are fixed and one build gives the same digits always; other compilers and other
-    processors round differently, so that numbers may differ by one in their last digit, and those with an error in
-    brackets by that error. Seconds are left out."""
-    expected, found = (re.sub(r"[\d.e+-]+ s\b", "# s", text) for text in (expected, found))
+    processors round differently, so that numbers may differ by one in their last digit, or by this share, and those
+    with an error in brackets by that error. Seconds and the widths of columns are left out."""
+    expected, found = (re.sub(r"[\d.e+-]+ s\b", "# s", re.sub(" +", " ", text)) for text in (expected, found))
     if NUMBER.sub("#", expected) != NUMBER.sub("#", found):
         return [f"{expected!r} was expected, {found!r} found"]
     wrong = []
@@ -69,7 +73,7 @@ def differences(expected: str, found: str) -> list[str]:
         unit = 10.0 ** (int(exponent or 0) - len(digits or ""))
         allowed = unit * (int(error) if error else 1)
         values = [float(re.sub(r"\(\d+\)", "", m.group())) for m in (e, f)]
-        if not math.isclose(*values, rel_tol=0, abs_tol=1.001 * allowed):
+        if not math.isclose(*values, rel_tol=relative, abs_tol=1.001 * allowed):
             wrong.append(f"{e.group()} was expected, {f.group()} found")
     return wrong
 
@@ -87,7 +91,7 @@ def test_the_notebook_is_that_of_its_source(name: str) -> None:
 @pytest.mark.parametrize("name", tool.NAMES)
 def test_cells_say_what_is_stored(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    runner = tool.Runner(name)
+    runner, relative = tool.Runner(name), RELATIVE.get(name, 0.0)
     compared = 0
     for cell, expected in zip((c for c in cells_of(name) if c.is_code), outputs_of(name), strict=True):
         if cell.draws and not HAS_MATPLOTLIB:
@@ -97,7 +101,7 @@ def test_cells_say_what_is_stored(name: str, tmp_path: Path, monkeypatch: pytest
             assert found and expected
             continue
         assert [o["output_type"] for o in found] == [o["output_type"] for o in expected], cell.text
-        wrong = [d for e, f in zip(texts(expected), texts(found), strict=True) for d in differences(e, f)]
+        wrong = [d for e, f in zip(texts(expected), texts(found), strict=True) for d in differences(e, f, relative)]
         assert not wrong, f"{cell.text}\n" + "\n".join(wrong)
         assert [("image/png" in o.get("data", {})) for o in found] == [
             ("image/png" in o.get("data", {})) for o in expected
@@ -128,6 +132,11 @@ def test_links_lead_somewhere(name: str) -> None:
 )
 def test_texts_are_compared(expected: str, found: str, count: int) -> None:
     assert len(differences(expected, found)) == count
+
+
+def test_a_share_may_be_allowed() -> None:
+    assert not differences("RMSE   0.0796 of 904", "RMSE  0.0799 of 912", 0.05)
+    assert len(differences("RMSE 0.0796", "RMSE 0.0899", 0.05)) == 1
 
 
 def test_wrong_cells_are_seen() -> None:
