@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "montelux/film/doubtful_pixels.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {

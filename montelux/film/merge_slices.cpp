@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "montelux/film/doubtful_pixels.h"
 #include "montelux/film/film.h"
 #include "montelux/film/film_error.h"
 #include "montelux/mc/math/error.h"
