@@ -2,6 +2,17 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
+// Every file sees every conversion: one that is missing is found when the module is loaded, not when it is
+// compiled.
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
 
 namespace montelux::python {
 

@@ -4,11 +4,6 @@
 #include "python/src/render_job.h"
 #include <array>
 #include <cmath>
-#include <nanobind/stl/array.h>
-#include <nanobind/stl/filesystem.h>
-#include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/vector.h>
 #include <string>
 
 #include "montelux/image/image_read.h"

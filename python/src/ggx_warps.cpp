@@ -1,8 +1,6 @@
 #include "python/src/warp.h"
 #include <array>
 #include <cmath>
-#include <nanobind/stl/array.h>
-#include <nanobind/stl/variant.h>
 #include <string>
 #include <variant>
 

@@ -3,9 +3,6 @@
 #include "python/src/bindings.h"
 #include "python/src/numpy_bridge.h"
 #include <filesystem>
-#include <nanobind/stl/filesystem.h>
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/vector.h>
 #include <utility>
 
 #include "montelux/image/difference_picture.h"

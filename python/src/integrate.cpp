@@ -4,10 +4,6 @@
 #include "python/src/numpy_bridge.h"
 #include "python/src/python_function.h"
 #include <chrono>
-#include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/string_view.h>
-#include <nanobind/stl/vector.h>
 #include <optional>
 #include <string>
 #include <utility>

@@ -2,11 +2,6 @@
 #include "python/src/names.h"
 #include "python/src/numpy_bridge.h"
 #include "python/src/python_function.h"
-#include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/string_view.h>
-#include <nanobind/stl/variant.h>
-#include <nanobind/stl/vector.h>
 #include <string>
 #include <utility>
 #include <vector>

@@ -2,9 +2,6 @@
 #include "python/src/numpy_bridge.h"
 #include "python/src/python_function.h"
 #include <algorithm>
-#include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/vector.h>
 #include <utility>
 #include <vector>
 

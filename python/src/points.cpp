@@ -1,8 +1,6 @@
 #include "python/src/bindings.h"
 #include "python/src/names.h"
 #include "python/src/numpy_bridge.h"
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/vector.h>
 #include <vector>
 
 #include "montelux/mc/random/discrepancy.h"

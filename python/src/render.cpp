@@ -3,11 +3,6 @@
 #include "python/src/render_job.h"
 #include "python/src/scene_object.h"
 #include <algorithm>
-#include <nanobind/stl/filesystem.h>
-#include <nanobind/stl/optional.h>
-#include <nanobind/stl/pair.h>
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/unique_ptr.h>
 #include <string>
 #include <utility>
 

@@ -4,9 +4,6 @@
 #include "python/src/scene_values.h"
 #include "python/src/shapes.h"
 #include <algorithm>
-#include <nanobind/stl/filesystem.h>
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/vector.h>
 #include <set>
 
 #include "montelux/formats/pbrt/load_pbrt.h"

@@ -1,10 +1,6 @@
 #include "python/src/scene_values.h"
 
 #include "python/src/bindings.h"
-#include <nanobind/stl/array.h>
-#include <nanobind/stl/pair.h>
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/vector.h>
 
 #include "montelux/formats/nearest_name.h"
 #include "montelux/spectrum/named_spectra.h"

@@ -2,7 +2,6 @@
 
 #include "python/src/bindings.h"
 #include "python/src/scene_values.h"
-#include <nanobind/stl/string.h>
 
 namespace montelux::python {
 namespace {

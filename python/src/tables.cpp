@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <nanobind/stl/array.h>
 #include <string>
 
 #include "montelux/mc/dist/alias_table.h"

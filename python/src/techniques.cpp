@@ -1,8 +1,6 @@
 #include "python/src/bindings.h"
 #include "python/src/numpy_bridge.h"
 #include "python/src/python_function.h"
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/vector.h>
 #include <utility>
 #include <vector>
 

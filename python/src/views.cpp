@@ -2,7 +2,6 @@
 #include "python/src/names.h"
 #include "python/src/scene_values.h"
 #include <algorithm>
-#include <nanobind/stl/string.h>
 #include <string>
 
 #include "montelux/image/image.h"

@@ -2,8 +2,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <nanobind/stl/array.h>
-#include <nanobind/stl/string.h>
 #include <string>
 
 #include "montelux/mc/math/error.h"
