@@ -140,8 +140,8 @@ def _page(made: Sequence[Made]) -> str:
 and picture comes from <b>Montelux {html.escape(montelux.__version__)}</b>, and the code that makes it stands below each
 figure.</p>
 <p>{count} numbers are measured here and stand beside the exact ones: {verdict}. Digits in brackets are the standard
-error of the last digits shown, 1.234(56) is 1.234 ± 0.056. A right number lies more than {LIMIT:.0f} errors off (or as
-improbably far, where few replicates know the error) once in 1.7 million times. Numbers of rules without chance have a
+error of the last digits shown, 1.234(56) is 1.234 ± 0.056. A right number lies more than {LIMIT:g} errors off (or as
+improbably far, where few replicates know the error) once in 26 million times. Numbers of rules without chance have a
 bound instead.</p>
 </header>
 {_contents(made)}
