@@ -76,7 +76,7 @@ class AutoEstimator final : public Estimator {
         const bool open = outcome == StepOutcome::finished && (targeted || !rule.doubts.empty()) &&
                           request.max_evaluations > spent;
         if (spent > 0 && !open) return outcome;
-        if (outcome == StepOutcome::finished && is_zero_to_rounding(rule, request)) {
+        if (outcome == StepOutcome::finished && targeted && is_indistinct_from_zero(rule, request)) {
             reason_ = "the value cannot be told from zero, and no relative error can be met";
             return outcome;
         }
@@ -125,14 +125,14 @@ class AutoEstimator final : public Estimator {
     }
 
   private:
-    // All that keeps cubature from its target is that the value is zero, or so small beside what it is summed
-    // from that sampling would never see it.
-    static bool is_zero_to_rounding(const Tally& rule, const StepRequest& request) {
-        if (request.relative_error <= 0 || !rule.ready || !rule.doubts.empty()) return false;
+    // All that keeps cubature, which has nothing left to do, from a relative error is that the value is
+    // within its error of zero: no smaller error would be small beside it. An absolute error can be met by
+    // sampling.
+    static bool is_indistinct_from_zero(const Tally& rule, const StepRequest& request) {
+        if (request.absolute_error > 0 || !rule.ready || !rule.doubts.empty()) return false;
         for (std::size_t c = 0; c < rule.value.size(); ++c) {
             const double size = std::abs(rule.value[c]), error = rule.standard_error[c];
-            const bool met = error <= std::max(request.absolute_error, request.relative_error * size);
-            if (!met && size > error) return false;
+            if (error > request.relative_error * size && size > error) return false;
         }
         return true;
     }
