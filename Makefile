@@ -33,10 +33,10 @@ test: dependencies ## fast tests, then the same tests under the address and unde
 	cmake --build build/asan --parallel $(JOBS)
 	cmake/run-tests.sh fast $(JOBS) build/test build/asan
 
-test-all: dependencies ## every test, the slow ones too (without sanitizers)
-	cmake --preset test
-	cmake --build build/test --parallel $(JOBS)
-	cmake/run-tests.sh 'fast|slow' $(JOBS) build/test
+test-all: dependencies ## every test, the slow ones too, with each file compiled alone (without sanitizers)
+	cmake --preset test-all
+	cmake --build build/test-all --parallel $(JOBS)
+	cmake/run-tests.sh 'fast|slow' $(JOBS) build/test-all
 
 bench: dependencies ## speed of the parts, then of whole pictures
 	cmake --preset bench
