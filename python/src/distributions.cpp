@@ -2,6 +2,7 @@
 #include "python/src/numpy_bridge.h"
 #include "python/src/python_function.h"
 #include <cmath>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -162,6 +163,13 @@ void bind_distributions(nb::module_& m) {
                 return Distribution(Affine<Distribution>(d, scale, shift));
             },
             "scale"_a, "shift"_a = 0., "The law of shift + scale X; a negative scale reflects.")
+        .def("__repr__",
+             [](const Distribution& d) {
+                 std::ostringstream text;
+                 text << "Distribution(lower=" << d.lower() << ", upper=" << d.upper()
+                      << ", median=" << d.quantile(0.5) << ")";
+                 return text.str();
+             })
         .def_prop_ro("lower", &Distribution::lower, "Lower end of the support.")
         .def_prop_ro("upper", &Distribution::upper, "Upper end of the support.")
         .def("pdf", &each<&Distribution::pdf>, "x"_a.none(), "Probability density, per unit of x.")

@@ -307,6 +307,8 @@ void bind_methods(nb::module_& m) {
             const Numbers n = numbers_of(q, "mis_weights");
             if (n.shape.empty()) throw Error("mis_weights", "expected an array of shape (..., techniques)");
             const MisHeuristic h = heuristic_of(heuristic, parameter);
+            for (double density : n.values)
+                if (!(density >= 0)) throw Error("mis_weights", "a density is negative or NaN");
             const std::size_t k = n.shape.back();
             NewArray w = new_array(n.shape);
             for (std::size_t i = 0; k > 0 && i + k <= n.values.size(); i += k)

@@ -41,6 +41,8 @@ nb::object view(const double* data, std::size_t count, int columns, std::size_t 
 nb::object double_array(const nb::handle& given, int requirements, std::string_view what) {
     auto fail = [what](const std::string& sentence) -> void { throw Error(what, sentence); };
     if (given.is_none()) fail("returned None; expected an array of numbers (is there a return statement?)");
+    if (PyArray_Check(given.ptr()) && !PyArray_CheckExact(given.ptr()) && nb::hasattr(given, "mask"))
+        fail("a masked array was found; say what stands for the masked values, as by y.filled(0)");
     nb::object any = stolen(PyArray_FromAny(given.ptr(), nullptr, 0, 0, 0, nullptr));
     const int type = PyArray_TYPE(as_array(any));
     if (PyTypeNum_ISCOMPLEX(type))
@@ -54,7 +56,7 @@ nb::object double_array(const nb::handle& given, int requirements, std::string_v
 }
 
 bool is_plain(PyObject* o) {
-    return PyArray_Check(o) && PyArray_TYPE(reinterpret_cast<PyArrayObject*>(o)) == NPY_DOUBLE &&
+    return PyArray_CheckExact(o) && PyArray_TYPE(reinterpret_cast<PyArrayObject*>(o)) == NPY_DOUBLE &&
            PyArray_ISBEHAVED_RO(reinterpret_cast<PyArrayObject*>(o));
 }
 

@@ -44,6 +44,8 @@ double star(const nb::object& given) {
         throw Error("star_discrepancy", "points of " + std::to_string(d) +
                                             " dimensions were given; it is known in one and two "
                                             "(l2_star_discrepancy in any number)");
+    for (double x : n.values)
+        if (!(x >= 0 && x <= 1)) throw Error("star_discrepancy", "a point lies outside the unit square");
     std::vector<Vec2d> pairs;
     for (std::size_t i = 0; d == 2 && i < n.values.size(); i += 2)
         pairs.push_back({n.values[i], n.values[i + 1]});

@@ -30,10 +30,12 @@ void bind_techniques(nb::module_& m) {
                           "A Distribution, or a list of them (one a coordinate), is a technique by itself.")
         .def(nb::init_implicit<Distribution>())
         .def(nb::init_implicit<std::vector<Distribution>>())
-        .def_static("functions", &functions, "uniforms"_a, "dimensions"_a, "sample"_a, "density"_a,
-                    "From functions: sample(u) carries uniform numbers of shape (n, uniforms) to points of "
-                    "shape (n, dimensions), and density(x) gives their densities, shape (n,). One number, or "
-                    "one coordinate, comes as shape (n,). The density must be that of the points.")
+        .def_static(
+            "functions", &functions, "uniforms"_a, "dimensions"_a, "sample"_a, "density"_a,
+            "From functions: sample(u) carries uniform numbers of shape (n, uniforms) to points of "
+            "shape (n, dimensions), and density(x) gives their densities, shape (n,). One number, or "
+            "one coordinate, comes as shape (n,). The density must be that of the points, with integral one: "
+            "this is not checked, and another integral divides the result.")
         .def_static("uniform", &Technique::uniform, "domain"_a, "Uniform over a box that is finite.")
         .def_prop_ro("uniforms", &Technique::uniforms, "Uniform numbers that a point takes.")
         .def_prop_ro("dimensions", &Technique::dimensions, "Coordinates of a point.");

@@ -85,6 +85,7 @@ def test_unknown_attributes_are_answered_with_the_nearest():
         (lambda x: x.T, r"shape \(2, 5\)"),
         (lambda x: 1j * x[:, 0], "complex numbers were found.*np.stack"),
         (lambda x: None, "returned None.*return statement"),
+        (lambda x: np.ma.masked_less(x[:, 0], 0.5), r"a masked array was found.*filled\(0\)"),
         (lambda x: ["a"] * len(x), "not all numbers"),
         (lambda x: np.array([object()] * len(x)), "not all numbers"),
     ],

@@ -139,6 +139,8 @@ def test_known_points_and_discrepancies():
     assert montelux.l2_star_discrepancy(np.array([[0.5]])) == pytest.approx(math.sqrt(1 / 12))
     with pytest.raises(montelux.Error, match="in one and two"):
         montelux.star_discrepancy(np.zeros((4, 3)))
+    with pytest.raises(montelux.Error, match="outside the unit square"):
+        montelux.star_discrepancy([[0.5, 2]])
     with pytest.raises(montelux.Error, match=r"did you mean 'sobol'\?"):
         montelux.points("sobl", 4)
 
@@ -231,6 +233,8 @@ def test_shapes_of_warps_are_checked():
 def test_weights_of_multiple_importance_sampling():
     q = np.array([[1.0, 3.0], [0.0, 2.0]])
     assert montelux.mis_weights(q) == pytest.approx(np.array([[0.25, 0.75], [0, 1]]))
+    with pytest.raises(montelux.Error, match="negative or NaN"):
+        montelux.mis_weights([[-1, 2]])
     assert montelux.mis_weights(q, "power")[0] == pytest.approx([0.1, 0.9])
     assert montelux.mis_weights(q, "power", 1)[0] == pytest.approx([0.25, 0.75])
     assert montelux.mis_weights(q, "maximum")[0] == pytest.approx([0, 1])
@@ -297,3 +301,7 @@ def test_chains_print():
     assert "R-hat" in lines[1] and "4 chains of 500 states" in lines[2] and len(repr(chains)) < 2000
     with pytest.raises(AttributeError, match=r"no attribute of Chains 'means' \(did you mean 'mean'\?\)"):
         chains.means
+
+
+def test_distributions_tell_what_they_are():
+    assert repr(montelux.Distribution.exponential(1)) == "Distribution(lower=0, upper=inf, median=0.693147)"
