@@ -83,13 +83,13 @@ void encode_pfm(AtomicFile& file, const std::string& name, const Image& image) {
 
 namespace {
 
-struct Rgbe {
+struct RgbePixel {
     std::uint8_t v[4];
 };
 
 // Ward, "Real Pixels", Graphics Gems II: the largest component's exponent serves all three. Rounds to
 // nearest.
-Rgbe to_rgbe(float r, float g, float b) {
+RgbePixel to_rgbe(float r, float g, float b) {
     float rgb[3] = {r, g, b};
     for (float& v : rgb) v = v > 0 ? std::min(v, 0x1.fep+126f) : 0.0f;
     float largest = std::max({rgb[0], rgb[1], rgb[2]});
@@ -97,7 +97,7 @@ Rgbe to_rgbe(float r, float g, float b) {
     int exponent = 0;
     // A mantissa of 255.5 or more would round to 256: take the next exponent.
     if (std::frexp(largest, &exponent) * 256 >= 255.5f) ++exponent;
-    Rgbe out{};
+    RgbePixel out{};
     for (int c = 0; c < 3; ++c)
         out.v[c] = static_cast<std::uint8_t>(std::lround(std::ldexp(rgb[c], 8 - exponent)));
     out.v[3] = static_cast<std::uint8_t>(exponent + 128);
@@ -105,7 +105,7 @@ Rgbe to_rgbe(float r, float g, float b) {
 }
 
 // One component of a line: runs of at least 4 equal bytes, and stretches of others.
-void append_runs(std::vector<std::uint8_t>& out, const std::vector<Rgbe>& line, int c) {
+void append_runs(std::vector<std::uint8_t>& out, const std::vector<RgbePixel>& line, int c) {
     std::size_t n = line.size();
     auto run_at = [&](std::size_t i) {
         std::size_t k = i + 1;
@@ -136,7 +136,7 @@ void encode_hdr(AtomicFile& file, const std::string& name, const Image& image) {
                          std::to_string(image.height()) + " +X " + std::to_string(image.width()) + "\n";
     file.write(header.data(), header.size());
     std::size_t n = static_cast<std::size_t>(image.width());
-    std::vector<Rgbe> line(n);
+    std::vector<RgbePixel> line(n);
     std::vector<std::uint8_t> bytes;
     for (int y = 0; y < image.height(); ++y) {
         for (std::size_t x = 0; x < n; ++x) {
@@ -150,7 +150,7 @@ void encode_hdr(AtomicFile& file, const std::string& name, const Image& image) {
             for (int c = 0; c < 4; ++c) append_runs(bytes, line, c);
         } else {
             // No pixel is taken for a repetition, (1, 1, 1, n): the largest mantissa is at least 128.
-            for (const Rgbe& p : line) bytes.insert(bytes.end(), p.v, p.v + 4);
+            for (const RgbePixel& p : line) bytes.insert(bytes.end(), p.v, p.v + 4);
         }
         file.write(bytes);
     }
