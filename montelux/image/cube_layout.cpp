@@ -119,7 +119,7 @@ ContactSheet contact_sheet(const CubeMapChain& chain, int cell) {
         for (int face = 0; face < cube_faces; ++face)
             paste_resized(chain.levels[level].faces[face], sheet.picture,
                           static_cast<int>(bar + face * pitch), static_cast<int>(bar + level * pitch), cell);
-    sheet.exposure = automatic_exposure(lay_out(chain.levels[0], CubeLayout::vertical_strip));
+    sheet.exposure = automatic_exposure(sheet.picture);
     return sheet;
 }
 

@@ -36,7 +36,7 @@ CubeMapChain mirrored(const CubeMapChain& chain);
 // without smoothing. Linear light; the bars are black.
 struct ContactSheet {
     Image picture;
-    // What automatic_exposure says of level 0, for a PNG.
+    // What automatic_exposure says of the picture, for a PNG.
     float exposure = 0;
 };
 ContactSheet contact_sheet(const CubeMapChain& chain, int cell = 128);
