@@ -1,0 +1,32 @@
+// The table of the split sum's second factor: scale and bias of GGX over n.v and roughness.
+#pragma once
+
+#include <functional>
+
+#include "montelux/image/image.h"
+#include "montelux/mc/parallel/parallel_for.h"
+
+namespace montelux {
+
+// What the channel B holds.
+enum class BrdfTableExtra {
+    zero,
+    sheen,         // BrdfIntegrals::charlie_sheen
+    average_albedo // BrdfIntegrals::ggx_average_albedo; the same along a row
+};
+
+struct BrdfTableSettings {
+    int size = 256;
+    BrdfTableExtra extra = BrdfTableExtra::zero;
+    const CancelFlag* cancel = nullptr;
+    std::function<void(double fraction)> progress; // called now and then by the thread that asked
+};
+
+// Channels R (scale), G (bias) and B (extra), and "error.R", "error.G", "error.B": how far the quadrature
+// with half as many nodes lies away, which the error of the value is far below. Texel (x, y) belongs to n.v =
+// (x + 1/2) / size and perceptual roughness (y + 1/2) / size with alpha = roughness^2, so the first row is
+// the smoothest. 32-bit float. Throws Error when the size is not in [1, 4096]; an empty image when it was
+// cancelled.
+Image brdf_table(const BrdfTableSettings& settings);
+
+} // namespace montelux
