@@ -1,0 +1,48 @@
+// Integrals of an environment map under a radial kernel, by sampling within cells that are cut to fit.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "montelux/bake/environment_map.h"
+#include "montelux/bake/radial_kernel.h"
+#include "montelux/bake/texel_estimate.h"
+
+namespace montelux {
+
+// The kernel is known, the map is known, and their product is not: the map's quadtree is cut into cells over
+// which the kernel varies little, each by as much as it may contribute to the error, so that a sun comes in
+// small pieces and the rest of the sky in large ones. A cell gives its exact energy times the kernel at its
+// middle, plus the mean of what the kernel differs from that at two directions drawn in proportion to the
+// map's sum of channels: unbiased, and no value of the map is ever met by chance. The difference of the two
+// gives the variance of each cell, and their sum that of the texel. A cut that misses the target is made
+// finer, and only the last round counts.
+class CellEstimator {
+  public:
+    CellEstimator(const EnvironmentMap& map, const RadialKernel& kernel) : map_(map), kernel_(kernel) {}
+
+    // `direction`: unit vector in the map's frame; a function of the arguments and nothing else.
+    TexelEstimate estimate(Vec3f direction, const TexelGoal& goal, std::uint64_t key);
+
+  private:
+    struct Cell {
+        MapCell cell;
+        float sum = 0;    // of its energy's channels
+        float kernel = 0; // at the middle
+    };
+    // Fills cells_: those whose energy times the kernel's range in them is at most `allowed`, or the best
+    // that `most` cells can do. Without `allowed`, cells that are small beside their distance and the
+    // kernel's width.
+    void cut(Vec3f direction, float allowed, std::size_t most);
+    void split(const Cell& cell);
+    Vec3f energy_of(const MapCell& cell) const;
+    // Of the cell, in proportion to the sum of channels.
+    MapCell draw_texel(const Cell& cell, double u) const;
+    TexelEstimate sample_cells(Vec3f direction, std::uint64_t key, std::uint32_t round) const;
+
+    const EnvironmentMap& map_;
+    RadialKernel kernel_;
+    std::vector<Cell> cells_, open_, next_;
+};
+
+} // namespace montelux
