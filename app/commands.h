@@ -17,6 +17,7 @@ void add_render(CLI::App& app, int& exit_code);
 void add_merge(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
 void add_denoise(CLI::App& app, int& exit_code);
+void add_bake(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 
 } // namespace montelux::app

@@ -56,7 +56,10 @@ int give_up(const std::string& message, int exit_code) {
 // A mistake of the command line in the program's own style.
 int report_usage(const CLI::App& app, const CLI::ParseError& e, int argc, char** argv) {
     std::string command = "montelux", message = e.what();
-    for (const CLI::App* sub : app.get_subcommands()) command += " " + sub->get_name();
+    for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
+        at = at->get_subcommands().front();
+        command += " " + at->get_name();
+    }
     if (app.get_subcommands().empty()) {
         std::vector<std::string_view> names;
         for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
@@ -96,6 +99,7 @@ int main(int argc, char** argv) {
             "  montelux sample --set sobol --n 1024 --dim 2 -o points.csv\n"
             "  montelux render scene.pbrt --spp 64 -o out.exr\n"
             "  montelux denoise out.exr -o out.png\n"
+            "  montelux bake environment sky.hdr -o sky.ktx2\n"
             "  montelux info out.exr\n"
             "  montelux compare out.exr reference.exr\n"
             "\n"
@@ -109,6 +113,7 @@ int main(int argc, char** argv) {
         add_merge(app, exit_code);
         add_compare(app, exit_code);
         add_denoise(app, exit_code);
+        add_bake(app, exit_code);
         add_info(app, exit_code);
 #endif
         try {

@@ -51,7 +51,7 @@ void CellEstimator::cut(Vec3f direction, float allowed, std::size_t most) {
             const bool fine = allowed > 0 ? cell.sum * (nearest - farthest) <= allowed
                                           : nearest == 0 || ball.radius < 0.5f * (chord + width);
             const std::size_t waiting = open_.size() - i + next_.size();
-            if (fine || cell.cell.level <= EnvironmentMap::lowest_level || cells_.size() + waiting + 3 > most)
+            if (fine || cell.cell.level <= map_.lowest_level() || cells_.size() + waiting + 3 > most)
                 cells_.push_back(cell);
             else
                 split(cell);
@@ -64,22 +64,6 @@ Vec3f CellEstimator::energy_of(const MapCell& cell) const {
     if (cell.level >= 0) return map_.energy(cell);
     const int down = -cell.level;
     return map_.energy({0, cell.x >> down, cell.y >> down}) * std::ldexp(1.0f, -2 * down);
-}
-
-MapCell CellEstimator::draw_texel(const Cell& cell, double u) const {
-    MapCell at = cell.cell;
-    double left = u * static_cast<double>(cell.sum);
-    while (at.level > 0) {
-        const auto sums = map_.children_sums(at);
-        const auto s0 = static_cast<double>(sums[0]), s1 = s0 + static_cast<double>(sums[1]),
-                   s2 = s1 + static_cast<double>(sums[2]);
-        int k = (left >= s0) + (left >= s1) + (left >= s2);
-        // Rounding may lead past the last block that has any energy.
-        while (!(sums[static_cast<std::size_t>(k)] > 0)) --k;
-        left -= k == 0 ? 0 : k == 1 ? s0 : k == 2 ? s1 : s2;
-        at = child(at, k);
-    }
-    return at;
 }
 
 TexelEstimate CellEstimator::sample_cells(Vec3f direction, std::uint64_t key, std::uint32_t round) const {
@@ -95,7 +79,7 @@ TexelEstimate CellEstimator::sample_cells(Vec3f direction, std::uint64_t key, st
             MapCell at = cell.cell;
             Vec3f drawn = energy;
             if (at.level > 0) {
-                at = draw_texel(cell, unit_double((std::uint64_t{bits[0]} << 32) | bits[1]));
+                at = map_.draw_texel(cell.cell, unit_double((std::uint64_t{bits[0]} << 32) | bits[1]));
                 drawn = map_.energy(at) * (cell.sum / map_.energy_sum(at));
             }
             const Vec3f w = map_.direction(at, unit_float(bits[2]), unit_float(bits[3]));

@@ -36,8 +36,6 @@ class CellEstimator {
     void cut(Vec3f direction, float allowed, std::size_t most);
     void split(const Cell& cell);
     Vec3f energy_of(const MapCell& cell) const;
-    // Of the cell, in proportion to the sum of channels.
-    MapCell draw_texel(const Cell& cell, double u) const;
     TexelEstimate sample_cells(Vec3f direction, std::uint64_t key, std::uint32_t round) const;
 
     const EnvironmentMap& map_;

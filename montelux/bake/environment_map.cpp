@@ -215,6 +215,30 @@ Vec2i EnvironmentMap::texel_at(Vec3f d) const {
             std::clamp(static_cast<int>(p.y * static_cast<float>(height_)), 0, height_ - 1)};
 }
 
+MapCell EnvironmentMap::draw_texel(const MapCell& block, double u) const {
+    MapCell at = block;
+    double left = u * static_cast<double>(energy_sum(block));
+    while (at.level > 0) {
+        const auto sums = children_sums(at);
+        const auto s0 = static_cast<double>(sums[0]), s1 = s0 + static_cast<double>(sums[1]),
+                   s2 = s1 + static_cast<double>(sums[2]);
+        int k = (left >= s0) + (left >= s1) + (left >= s2);
+        // Rounding may lead past the last block that has any energy.
+        while (!(sums[static_cast<std::size_t>(k)] > 0)) --k;
+        left -= k == 0 ? 0 : k == 1 ? s0 : k == 2 ? s1 : s2;
+        at = {at.level - 1, 2 * at.x + (k & 1), 2 * at.y + (k >> 1)};
+    }
+    return at;
+}
+
+double EnvironmentMap::density(Vec3f direction) const {
+    const auto total = static_cast<double>(levels_.back().energy_sum[0]);
+    if (!(total > 0)) return 0;
+    const Vec2i texel = texel_at(direction);
+    return static_cast<double>(energy_sum({0, texel.x, texel.y})) /
+           (total * texel_solid_angle_[static_cast<std::size_t>(texel.y)]);
+}
+
 double EnvironmentMap::solid_angle(const MapCell& block) const {
     const int size = 1 << block.level;
     const int x0 = block.x * size, y0 = block.y * size;

@@ -38,8 +38,6 @@ class EnvironmentMap {
   public:
     // Larger maps are averaged by halves until they are below.
     static constexpr std::int64_t most_texels = std::int64_t{1} << 26;
-    // Smallest parts of a texel that cells go down to.
-    static constexpr int lowest_level = -16;
 
     // Colour channels R, G, B or Y of the image as linear light; NaN, infinite and negative samples become 0.
     // Throws Error when there are none, or an equal-area map is not square.
@@ -51,6 +49,8 @@ class EnvironmentMap {
     const MapRepairs& repairs() const { return repairs_; }
     // The level of the one block that is the whole map.
     int top_level() const { return static_cast<int>(levels_.size()) - 1; }
+    // Of the smallest parts that a cell can have: their places fit into 30 bits.
+    int lowest_level() const { return top_level() - 30; }
     // Mean over the sphere.
     Vec3d mean_radiance() const;
 
@@ -75,6 +75,12 @@ class EnvironmentMap {
             level.energy_sum.data() + index(block.level - 1, 2 * block.x, 2 * block.y), 4);
     }
     double solid_angle(const MapCell& block) const;
+
+    // A texel of a block that has energy, in proportion to the sum of channels; u in [0, 1).
+    MapCell draw_texel(const MapCell& block, double u) const;
+    // Of a direction drawn by draw_texel from the whole map and then `direction`, per steradian. A map
+    // without light has none: 0.
+    double density(Vec3f direction) const;
 
     // A ball about the middle of the cell, a unit vector, that holds all of its directions.
     struct Ball {

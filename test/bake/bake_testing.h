@@ -37,8 +37,11 @@ inline Vec3d equirectangular_direction(double u, double v) {
 }
 
 // integral of radiance times weight(direction) by the midpoint rule with parts x parts points a texel.
-inline Vec3d sum_over_texels(const Image& image, int parts, const std::function<double(Vec3d)>& weight) {
+// `total_weight`, if given, becomes the integral of the weight alone.
+inline Vec3d sum_over_texels(const Image& image, int parts, const std::function<double(Vec3d)>& weight,
+                             double* total_weight = nullptr) {
     Vec3d sum;
+    if (total_weight) *total_weight = 0;
     for (int y = 0; y < image.height(); ++y)
         for (int x = 0; x < image.width(); ++x) {
             double total = 0;
@@ -50,6 +53,7 @@ inline Vec3d sum_over_texels(const Image& image, int parts, const std::function<
                 }
             const double area =
                 2 * pi * pi / (static_cast<double>(image.width()) * image.height() * parts * parts);
+            if (total_weight) *total_weight += total * area;
             sum += Vec3d{image.value(x, y, 0), image.value(x, y, 1), image.value(x, y, 2)} * (total * area);
         }
     return sum;

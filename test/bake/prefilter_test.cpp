@@ -97,6 +97,166 @@ TEST(Prefilter, CalibratedAgainstQuadratureByLobes) {
     expect_calibrated(scores_of(image, baked, 16));
 }
 
+// Where the kernel is constant over nothing, the error is that of the fixed number of samples.
+TEST(Prefilter, CalibratedWithFixedSamples) {
+    const Image image = random_map(16, 8, 1e3f);
+    const EnvironmentMap map(image, MapLayout::equirectangular);
+    BakeSettings settings;
+    settings.target_error.reset();
+    settings.samples = 400;
+    const BakedCubes baked = prefilter_environment(map, 8, {0.4, 0.6, 1.0}, settings);
+    expect_calibrated(scores_of(image, baked, 16));
+    for (const LevelReport& level : baked.levels) {
+        const double samples = static_cast<double>(level.samples) / (6.0 * level.size * level.size);
+        EXPECT_LE(samples, 400);
+        EXPECT_GT(samples, 150);
+    }
+}
+
+// An equal-area map of a sky that is bright above z = 0 of its frame, up in the cube: radiance 1 above the
+// horizon.
+TEST(Prefilter, IrradianceOfHalfASky) {
+    Image image(64, 64, {"Y"});
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x)
+            if (std::abs(2 * (x + 0.5) / 64 - 1) + std::abs(2 * (y + 0.5) / 64 - 1) < 1)
+                image.set(x, y, 0, 1);
+    const EnvironmentMap map(image, MapLayout::equal_area);
+    BakeSettings settings;
+    const BakedCubes baked = irradiance_cube(map, 4, settings);
+    for (int face = 0; face < cube_faces; ++face)
+        for (int y = 0; y < 4; ++y)
+            for (int x = 0; x < 4; ++x) {
+                const CubeTexel t{face, x, y};
+                // E / pi of the upper half of a sphere; its edge runs through texels of the map.
+                const double expected = (1 + cube_texel_direction(t, 4).y) / 2;
+                EXPECT_NEAR(texel_of(baked.value.levels[0], t).x, expected, 0.02 + 0.06 * expected);
+            }
+    EXPECT_EQ(baked.levels[0].missed, 0u);
+}
+
+TEST(Prefilter, ConstantAndBlackMapsAreExact) {
+    for (float light : {0.0f, 3.0f, 1e36f}) {
+        Image image(3, 2, {"Y"});
+        for (float& v : image.f32()) v = light;
+        const EnvironmentMap map(image, MapLayout::equirectangular);
+        BakeSettings settings;
+        for (PrefilterSampling sampling : {PrefilterSampling::cells, PrefilterSampling::lobe}) {
+            settings.sampling = sampling;
+            const BakedCubes baked = prefilter_environment(map, 4, {0, 0.3, 1}, settings);
+            for (std::size_t level = 0; level < 3; ++level)
+                for (const Image& face : baked.value.levels[level].faces)
+                    for (float v : face.f32())
+                        EXPECT_NEAR(v, light, 0.04 * static_cast<double>(light)) << level;
+            EXPECT_EQ(baked.levels[0].missed + baked.levels[1].missed + baked.levels[2].missed, 0u);
+        }
+    }
+}
+
+// One texel of a 1 x 1 map, a needle of a lobe, a sun of 1e30 beside darkness.
+TEST(Prefilter, OddMapsAndNarrowLobesEnd) {
+    BakeSettings settings;
+    const EnvironmentMap one(random_map(1, 1), MapLayout::equirectangular);
+    EXPECT_EQ(prefilter_environment(one, 2, {0.01, 1}, settings).levels[0].missed, 0u);
+    Image sun(64, 32, {"Y"});
+    sun.set(20, 10, 0, 1e30f);
+    const EnvironmentMap map(sun, MapLayout::equirectangular);
+    for (const LevelReport& level : prefilter_environment(map, 8, {0, 0.02, 0.2, 1}, settings).levels)
+        EXPECT_LE(level.largest_error, 0.01) << level.roughness;
+}
+
+TEST(Prefilter, MeansOfTexelsKeepTheEnergy) {
+    const Image image = random_map(64, 32, 100);
+    const EnvironmentMap map(image, MapLayout::equirectangular);
+    BakeSettings settings;
+    const BakedCubes baked = prefilter_environment(map, 8, {0.0}, settings);
+    Vec3d sum;
+    double variance = 0;
+    for (int face = 0; face < cube_faces; ++face)
+        for (int y = 0; y < 8; ++y)
+            for (int x = 0; x < 8; ++x) {
+                const double omega = cube_texel_solid_angle(x, y, 8) / (4 * pi);
+                sum += texel_of(baked.value.levels[0], {face, x, y}) * omega;
+                const double e = texel_of(baked.standard_error.levels[0], {face, x, y}).y * omega;
+                variance += e * e;
+            }
+    // Five standard errors: a false alarm in 2 million.
+    EXPECT_NEAR(sum.y, map.mean_radiance().y, 5 * std::sqrt(variance));
+}
+
+TEST(Prefilter, SameBitsOnAnyNumberOfThreads) {
+    const EnvironmentMap map(random_map(32, 16, 1e4f), MapLayout::equirectangular);
+    BakeSettings settings;
+    double progress = 0;
+    settings.progress = [&](double fraction) { progress = fraction; };
+    const BakedCubes first = prefilter_environment(map, 8, {0, 0.4, 1}, settings);
+    EXPECT_EQ(progress, 1);
+    for (int threads : {1, 3}) {
+        const BakedCubes again = with_threads(threads, [&] {
+            return prefilter_environment(map, 8, {0, 0.4, 1}, settings);
+        });
+        for (std::size_t level = 0; level < 3; ++level) {
+            EXPECT_EQ(again.levels[level].samples, first.levels[level].samples);
+            EXPECT_EQ(again.levels[level].mean_error, first.levels[level].mean_error);
+            for (std::size_t face = 0; face < cube_faces; ++face)
+                EXPECT_TRUE(std::ranges::equal(again.value.levels[level].faces[face].f32(),
+                                               first.value.levels[level].faces[face].f32()));
+        }
+    }
+    settings.seed = 1;
+    const BakedCubes other = prefilter_environment(map, 8, {0, 0.4, 1}, settings);
+    EXPECT_FALSE(
+        std::ranges::equal(other.value.levels[1].faces[0].f32(), first.value.levels[1].faces[0].f32()));
+    CancelFlag cancel;
+    cancel.request();
+    settings.cancel = &cancel;
+    EXPECT_TRUE(prefilter_environment(map, 8, {0, 0.4, 1}, settings).cancelled);
+}
+
+TEST(Prefilter, SourceMipsAreNearAndTellOfTheirSamples) {
+    const Image image = random_map(64, 32, 100);
+    const EnvironmentMap map(image, MapLayout::equirectangular);
+    BakeSettings settings;
+    settings.target_error.reset();
+    settings.samples = 512;
+    const BakedCubes exact = prefilter_environment(map, 4, {0.7}, settings);
+    settings.sampling = PrefilterSampling::lobe;
+    const BakedCubes plain = prefilter_environment(map, 4, {0.7}, settings);
+    settings.source_mips = true;
+    const BakedCubes filtered = prefilter_environment(map, 4, {0.7}, settings);
+    EXPECT_LT(filtered.levels[0].mean_error, 0.7 * plain.levels[0].mean_error);
+    EXPECT_LT(exact.levels[0].mean_error, 0.5 * plain.levels[0].mean_error);
+    for (int face = 0; face < cube_faces; ++face) {
+        const double truth = texel_of(exact.value.levels[0], {face, 1, 2}).y;
+        EXPECT_NEAR(texel_of(filtered.value.levels[0], {face, 1, 2}).y, truth, 0.25 * truth);
+    }
+}
+
+TEST(Prefilter, MissedTargetsAreCounted) {
+    const EnvironmentMap map(random_map(64, 32), MapLayout::equirectangular);
+    BakeSettings settings;
+    settings.target_error = 1e-4;
+    settings.samples = 64;
+    const BakedCubes baked = prefilter_environment(map, 2, {0.5}, settings);
+    EXPECT_EQ(baked.levels[0].missed, 24u);
+    EXPECT_LE(baked.levels[0].samples, 24u * 200);
+    settings.target_error = 0;
+    EXPECT_THROW(prefilter_environment(map, 2, {0.5}, settings), Error);
+    settings.target_error = 0.01;
+    EXPECT_THROW(prefilter_environment(map, 2, {0.5, 0.6, 0.7}, settings), Error);
+    EXPECT_THROW(prefilter_environment(map, 2, {1.5}, settings), Error);
+    EXPECT_THROW(prefilter_environment(map, 0, {0.5}, settings), Error);
+}
+
+TEST(Prefilter, RoughnessOfLevels) {
+    EXPECT_EQ(linear_roughness(5), (std::vector<double>{0, 0.25, 0.5, 0.75, 1}));
+    EXPECT_EQ(linear_roughness(1), (std::vector<double>{0}));
+    const std::vector<double> r = filament_roughness(5);
+    for (int level = 0; level < 5; ++level) EXPECT_NEAR(4 * r[level] * (2 - r[level]), level, 1e-12);
+    EXPECT_EQ(usual_levels(256), 5);
+    EXPECT_EQ(usual_levels(8), 1);
+}
+
 // The definition of done: 99.5 % of the texels within three of their standard errors. 0.27 % are outside by
 // chance; with 6 * 85 * 64 texels and more, 0.5 % are beyond any.
 TEST(PrefilterSlowTest, TexelsAreWithinThreeErrorsOfQuadrature) {

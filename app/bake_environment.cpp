@@ -1,0 +1,350 @@
+// montelux bake environment: a map as a prefiltered cube map, an irradiance cube map and spherical harmonics.
+#include "app/bake.h"
+#include "app/bake_files.h"
+#include "app/bake_map.h"
+#include "app/commands.h"
+#include "app/interrupt.h"
+#include "app/json_number.h"
+#include "app/progress_line.h"
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "montelux/bake/prefilter.h"
+#include "montelux/bake/spherical_harmonics.h"
+#include "montelux/image/image_write.h"
+#include "montelux/mc/io/file.h"
+
+namespace montelux::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct EnvironmentOptions {
+    BakeMapOptions map;
+    BakeFileOptions files;
+    std::vector<std::string> outputs, irradiance, harmonics;
+    std::string preview, roughness = "linear", sampling = "cells";
+    int size = 256, irradiance_size = 32;
+    std::optional<int> levels;
+    std::optional<double> target_error;
+    std::optional<std::uint64_t> samples, samples_max;
+    double dark_floor = 0.01;
+    bool source_mips = false, json = false, quiet = false;
+    std::uint64_t seed = 0;
+    int threads = 0;
+};
+
+std::vector<double> roughness_of(const EnvironmentOptions& o) {
+    const bool linear = o.roughness == "linear", filament = o.roughness == "filament";
+    if (linear || filament) {
+        const int levels = o.levels.value_or(usual_levels(o.size));
+        if (levels > level_count(o.size))
+            throw UsageError("--levels", "faces of " + std::to_string(o.size) + " texels have at most " +
+                                             std::to_string(level_count(o.size)) + " levels");
+        return linear ? linear_roughness(levels) : filament_roughness(levels);
+    }
+    std::vector<double> list;
+    for (std::size_t begin = 0; begin <= o.roughness.size();) {
+        const std::size_t end = std::min(o.roughness.find(',', begin), o.roughness.size());
+        const std::string text = o.roughness.substr(begin, end - begin);
+        char* rest = nullptr;
+        const double r = std::strtod(text.c_str(), &rest);
+        if (text.empty() || *rest != 0 || !(r >= 0 && r <= 1))
+            throw UsageError("--roughness",
+                             "expected linear, filament, or numbers from 0 to 1 with commas between "
+                             "them, found '" +
+                                 o.roughness + "'");
+        list.push_back(r);
+        begin = end + 1;
+    }
+    if (o.levels && *o.levels != static_cast<int>(list.size()))
+        throw UsageError("--levels", std::to_string(*o.levels) + " levels and " +
+                                         std::to_string(list.size()) +
+                                         " values of --roughness do not go together");
+    if (static_cast<int>(list.size()) > level_count(o.size))
+        throw UsageError("--roughness", "faces of " + std::to_string(o.size) + " texels have at most " +
+                                            std::to_string(level_count(o.size)) + " levels");
+    return list;
+}
+
+BakeSettings settings_of(const EnvironmentOptions& o) {
+    BakeSettings s;
+    s.sampling = o.sampling == "lobe" ? PrefilterSampling::lobe : PrefilterSampling::cells;
+    if (o.source_mips && s.sampling != PrefilterSampling::lobe)
+        throw UsageError("--source-mips", "needs --sampling lobe; cells do without");
+    s.source_mips = o.source_mips;
+    if (o.samples) {
+        if (o.target_error || o.samples_max)
+            throw UsageError("--samples", "does not go with --target-error and --samples-max");
+        s.target_error.reset();
+        s.samples = *o.samples;
+    } else {
+        s.target_error = o.target_error.value_or(0.01);
+        s.samples = o.samples_max.value_or(s.samples);
+    }
+    s.dark_floor = o.dark_floor;
+    s.seed = o.seed;
+    s.frame = frame_of(o.map);
+    return s;
+}
+
+// Nine lines as Filament's tools read them.
+std::string harmonics_text(const DiffuseHarmonics& h) {
+    static constexpr const char* names[] = {"L00", "L1-1", "L10", "L11", "L2-2", "L2-1", "L20", "L21", "L22"};
+    std::string text;
+    for (std::size_t i = 0; i < h.polynomial.size(); ++i) {
+        char line[160];
+        std::snprintf(line, sizeof line,
+                      "(%.9g, %.9g, %.9g); // %s, irradiance over pi, constants multiplied in\n",
+                      h.polynomial[i].x, h.polynomial[i].y, h.polynomial[i].z, names[i]);
+        text += line;
+    }
+    return text;
+}
+
+// As above without the rest: the note "sh" of a .ktx file.
+std::string harmonics_note(const DiffuseHarmonics& h) {
+    std::string text;
+    for (const Vec3d& c : h.polynomial) {
+        char line[120];
+        std::snprintf(line, sizeof line, "%.9g %.9g %.9g\n", c.x, c.y, c.z);
+        text += line;
+    }
+    return text;
+}
+
+Json json_of(const DiffuseHarmonics::Coefficients& coefficients) {
+    Json out = Json::array();
+    for (const Vec3d& c : coefficients) out.push_back({json_number(c.x), json_number(c.y), json_number(c.z)});
+    return out;
+}
+Json json_of(const DiffuseHarmonics& h) {
+    return {{"radiance", json_of(h.radiance)},
+            {"irradiance", json_of(h.irradiance)},
+            {"polynomial", json_of(h.polynomial)}};
+}
+
+void write_text(const std::string& path, const std::string& text) {
+    AtomicFile file(path);
+    file.write(text.data(), text.size());
+    file.commit();
+}
+
+void check_files(const EnvironmentOptions& o, std::size_t levels) {
+    if (o.outputs.empty() && o.irradiance.empty() && o.harmonics.empty() && o.preview.empty())
+        throw UsageError("nothing is asked for: give --output, --irradiance, --harmonics or --preview");
+    for (const std::string& path : o.outputs) check_cube_file(path, o.files, levels);
+    for (const std::string& path : o.irradiance) check_cube_file(path, o.files, 1);
+    for (const std::string& path : o.harmonics) {
+        const std::string extension = std::filesystem::path(path).extension().string();
+        if (extension != ".json" && extension != ".txt")
+            throw UsageError(path, "spherical harmonics go into .json or .txt");
+        const AtomicFile never_committed(path);
+    }
+    if (!o.preview.empty()) {
+        if (o.outputs.empty())
+            throw UsageError("--preview", "shows the chain of --output, which is not asked for");
+        check_writable(o.preview);
+    }
+}
+
+Json json_of(const std::vector<LevelReport>& levels) {
+    Json out = Json::array();
+    for (const LevelReport& l : levels) {
+        const double texels = 6.0 * l.size * l.size;
+        Json level{{"size", l.size}};
+        level["roughness"] = l.roughness < 0 ? Json(nullptr) : Json(l.roughness);
+        level["samples_per_texel"] = static_cast<double>(l.samples) / texels;
+        level["mean_error"] = json_number(l.mean_error);
+        level["largest_error"] = json_number(l.largest_error);
+        level["missed"] = l.missed;
+        out.push_back(level);
+    }
+    return out;
+}
+
+void print_levels(const char* what, const std::vector<LevelReport>& levels) {
+    std::printf("%-11s %6s %10s %14s %11s %14s %8s\n", what, "size", "roughness", "samples/texel",
+                "mean error", "largest error", "missed");
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        const LevelReport& l = levels[i];
+        char roughness[24] = "-";
+        if (l.roughness >= 0) std::snprintf(roughness, sizeof roughness, "%.4g", l.roughness);
+        std::printf("%-11zu %6d %10s %14.4g %11s %14s %8llu\n", i, l.size, roughness,
+                    static_cast<double>(l.samples) / (6.0 * l.size * l.size),
+                    percent_text(l.mean_error).c_str(), percent_text(l.largest_error).c_str(),
+                    static_cast<unsigned long long>(l.missed));
+    }
+}
+
+std::uint64_t missed(const BakedCubes& baked) {
+    std::uint64_t sum = 0;
+    for (const LevelReport& l : baked.levels) sum += l.missed;
+    return sum;
+}
+
+int run(const EnvironmentOptions& o) {
+    end_on_signals();
+    const std::vector<double> roughness = roughness_of(o);
+    BakeSettings settings = settings_of(o);
+    check_files(o, roughness.size());
+    const EnvironmentMap map = read_map(o.map, o.quiet);
+    const DiffuseHarmonics harmonics = diffuse_harmonics(map, settings.frame);
+
+    const auto begin = std::chrono::steady_clock::now();
+    auto seconds = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    };
+    ProgressLine line(o.quiet);
+    settings.progress = [&](double fraction) {
+        if (line.due(seconds()))
+            line.show("bake", percent_text(fraction) + " of the texels, " + duration_text(seconds()));
+    };
+    settings.cancel = &cancel_on_signals();
+    BakedCubes chain, irradiance;
+    if (!o.outputs.empty()) chain = prefilter_environment(map, o.size, roughness, settings);
+    if (!o.irradiance.empty() && !chain.cancelled)
+        irradiance = irradiance_cube(map, o.irradiance_size, settings);
+    line.finish();
+    if (chain.cancelled || irradiance.cancelled) {
+        std::fprintf(stderr, "montelux: interrupted, nothing was written\n");
+        return exit_interrupted;
+    }
+    const double time = seconds();
+
+    finish_on_signals();
+    std::string list;
+    for (double r : roughness) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.9g", r);
+        list += (list.empty() ? "" : " ") + std::string(text);
+    }
+    for (const std::string& path : o.outputs) {
+        std::map<std::string, std::string> notes{{"montelux.roughness", list}};
+        if (std::filesystem::path(path).extension() == ".ktx") notes["sh"] = harmonics_note(harmonics);
+        write_cube_file(path, o.files, chain, notes);
+    }
+    for (const std::string& path : o.irradiance) write_cube_file(path, o.files, irradiance, {});
+    for (const std::string& path : o.harmonics)
+        write_text(path, std::filesystem::path(path).extension() == ".json"
+                             ? json_of(harmonics).dump(2) + "\n"
+                             : harmonics_text(harmonics));
+    if (!o.preview.empty()) {
+        const ContactSheet sheet = contact_sheet(chain.value);
+        WriteOptions writing;
+        writing.exposure = sheet.exposure;
+        write_image(o.preview, sheet.picture, writing);
+    }
+    if (o.json) {
+        Json out;
+        out["map"] = {{"file", o.map.file},
+                      {"layout", name_of(map.layout())},
+                      {"width", map.width()},
+                      {"height", map.height()}};
+        const Vec3d mean = map.mean_radiance();
+        out["mean_radiance"] = {json_number(mean.x), json_number(mean.y), json_number(mean.z)};
+        out["levels"] = json_of(chain.levels);
+        out["irradiance"] = json_of(irradiance.levels);
+        out["harmonics"] = json_of(harmonics);
+        out["seconds"] = time;
+        std::printf("%s\n", out.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+    } else if (!o.quiet) {
+        if (!chain.levels.empty()) print_levels("level", chain.levels);
+        if (!irradiance.levels.empty()) print_levels("irradiance", irradiance.levels);
+        std::printf("%s map of %d x %d texels, %s\n", std::string(name_of(map.layout())).c_str(), map.width(),
+                    map.height(), duration_text(time).c_str());
+        if (o.source_mips)
+            std::printf("averages over texels were used: the errors do not know of their bias\n");
+    }
+    const std::uint64_t texels_missed = missed(chain) + missed(irradiance);
+    if (texels_missed == 0) return exit_done;
+    std::fprintf(stderr,
+                 "montelux: %llu texels have a larger error than was asked for; --samples-max limits them\n",
+                 static_cast<unsigned long long>(texels_missed));
+    return exit_stopped;
+}
+
+} // namespace
+
+void add_bake_environment(CLI::App& bake, int& exit_code) {
+    auto o = std::make_shared<EnvironmentOptions>();
+    CLI::App* command = bake.add_subcommand(
+        "environment", "Prefilter an environment map: GGX chain, irradiance, spherical harmonics");
+    declare(*command, o->map);
+    command
+        ->add_option(
+            "-o,--output", o->outputs,
+            "Chain of cube maps; may be given several times. .ktx2, .ktx and .dds hold all levels; .exr "
+            "(with standard errors), .hdr, .pfm and .png are a picture a level, named _m0, _m1, ...")
+        ->type_name("FILE")
+        ->allow_extra_args(false);
+    command->add_option("--size", o->size, "Texels along an edge of level 0")
+        ->type_name("N")
+        ->check(CLI::Range(1, 8192));
+    command->add_option("--levels", o->levels, "Levels of the chain; without it, down to 16 texels")
+        ->type_name("N")
+        ->check(CLI::Range(1, 14));
+    command
+        ->add_option("--roughness", o->roughness,
+                     "Perceptual roughness of the levels. linear: level / (levels - 1); filament: 1 - sqrt(1 "
+                     "- level / "
+                     "(levels - 1)); or a list such as 0,0.1,0.3,1")
+        ->type_name("RULE");
+    command->add_option("--irradiance", o->irradiance, "Irradiance / pi as a cube map; files as for --output")
+        ->type_name("FILE")
+        ->allow_extra_args(false);
+    command->add_option("--irradiance-size", o->irradiance_size, "Texels along its edge")
+        ->type_name("N")
+        ->check(CLI::Range(1, 8192));
+    command
+        ->add_option("--harmonics", o->harmonics,
+                     "Order-2 spherical harmonics. .json: radiance, irradiance and the polynomial for "
+                     "shaders; .txt: the "
+                     "polynomial in nine lines")
+        ->type_name("FILE")
+        ->allow_extra_args(false);
+    command->add_option("--preview", o->preview, "Contact sheet of the chain: a row a level, a column a face")
+        ->type_name("FILE");
+    declare(*command, o->files);
+    command
+        ->add_option("--target-error", o->target_error,
+                     "Standard error of each channel of each texel, beside the mean of its channels (0.01)")
+        ->type_name("E")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--samples", o->samples, "Take so many samples a texel instead")
+        ->type_name("N")
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 30));
+    command
+        ->add_option("--samples-max", o->samples_max,
+                     "At most so many samples in a round of a texel (1048576)")
+        ->type_name("N")
+        ->check(CLI::Range(std::uint64_t{2}, std::uint64_t{1} << 30));
+    command
+        ->add_option("--dark-floor", o->dark_floor,
+                     "Texels darker than this share of the map's mean are measured by the share (0.01)")
+        ->type_name("SHARE")
+        ->check(CLI::NonNegativeNumber);
+    command
+        ->add_option("--sampling", o->sampling,
+                     "cells: within cells of the map that fit the lobe; lobe: directions of the lobe alone")
+        ->check(CLI::IsMember({"cells", "lobe"}))
+        ->type_name("HOW");
+    command->add_flag("--source-mips", o->source_mips,
+                      "With --sampling lobe: look up averages over texels; less noise, but biased");
+    command->add_option("--seed", o->seed, "Another seed, other noise")->type_name("N");
+    command->add_option("--threads", o->threads, "Threads at most; 0: one a processor")
+        ->type_name("N")
+        ->check(CLI::Range(0, most_threads));
+    command->add_flag("--json", o->json, "Print a summary as JSON");
+    command->add_flag("--quiet", o->quiet, "Print nothing but errors and warnings");
+    command->footer(
+        "Example:\n  montelux bake environment sky.hdr -o sky.ktx2 --harmonics sky.json --preview sky.png");
+    command->callback([o, &exit_code] { exit_code = with_threads(o->threads, [&] { return run(*o); }); });
+}
+
+} // namespace montelux::app

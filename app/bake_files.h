@@ -1,0 +1,34 @@
+// Files that baked cube maps go to, told by their extensions.
+#pragma once
+
+#include "app/usage_error.h"
+#include <string>
+#include <vector>
+
+#include "montelux/bake/prefilter.h"
+#include "montelux/image/cube_layout.h"
+#include "montelux/image/texel_format.h"
+
+namespace CLI {
+class App;
+}
+
+namespace montelux::app {
+
+struct BakeFileOptions {
+    std::string layout = "cross", format = "rgba16f";
+    RgbmScale rgbm;
+    float exposure = 0;
+};
+
+void declare(CLI::App& command, BakeFileOptions& options);
+
+// Throws Error or UsageError for what writing would fail at later.
+void check_cube_file(const std::string& path, const BakeFileOptions& options, std::size_t levels);
+// .ktx2, .ktx, .dds: one file with all levels. .exr, .hdr, .pfm, .png: a picture a level (and a face, with
+// the layout faces); .exr with the standard errors. `notes` go into .ktx2 and .ktx. Tells of values that the
+// format cannot hold.
+void write_cube_file(const std::string& path, const BakeFileOptions& options, const BakedCubes& baked,
+                     const std::map<std::string, std::string>& notes);
+
+} // namespace montelux::app

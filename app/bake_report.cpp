@@ -1,0 +1,141 @@
+// montelux bake report: the split sum beside the integral that it stands for.
+#include "app/bake.h"
+#include "app/bake_map.h"
+#include "app/commands.h"
+#include "app/interrupt.h"
+#include "app/json_number.h"
+#include "app/progress_line.h"
+#include "app/usage_error.h"
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "montelux/bake/split_sum_report.h"
+#include "montelux/image/image_write.h"
+
+namespace montelux::app {
+namespace {
+
+struct ReportOptions {
+    BakeMapOptions map;
+    std::vector<std::string> outputs;
+    SplitSumSettings settings;
+    float exposure = 0;
+    int threads = 0;
+    bool json = false, quiet = false;
+};
+
+void print_json(const ReportOptions& o, const SplitSumReport& report) {
+    nlohmann::ordered_json out;
+    out["map"] = o.map.file;
+    for (const SplitSumRow& r : report.rows)
+        out["rows"].push_back({{"roughness", r.roughness},
+                               {"n_dot_v", r.n_dot_v},
+                               {"f0", r.f0},
+                               {"full", json_number(r.full)},
+                               {"bias", json_number(r.bias)},
+                               {"bias_error", json_number(r.bias_error)},
+                               {"rms", json_number(r.rms)}});
+    std::printf("%s\n", out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+}
+
+void print_text(const SplitSumReport& report) {
+    std::printf("%9s %6s %6s %12s %20s %10s\n", "roughness", "n.v", "F0", "full", "split - full", "rms");
+    for (const SplitSumRow& r : report.rows)
+        std::printf("%9.3g %6.3g %6.3g %12.5g %+9.2f +- %4.2f %% %8.2f %%\n", r.roughness, r.n_dot_v, r.f0,
+                    r.full, 100 * r.bias, 100 * r.bias_error, 100 * r.rms);
+}
+
+int run(const ReportOptions& o) {
+    end_on_signals();
+    for (const std::string& path : o.outputs) check_writable(path);
+    const EnvironmentMap map = read_map(o.map, o.quiet);
+    SplitSumSettings settings = o.settings;
+    settings.frame = frame_of(o.map);
+    if (o.outputs.empty()) settings.sphere_size = 0;
+    const auto begin = std::chrono::steady_clock::now();
+    auto seconds = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    };
+    ProgressLine line(o.quiet);
+    settings.progress = [&](double fraction) {
+        if (line.due(seconds()))
+            line.show("bake", percent_text(fraction) + " of the report, " + duration_text(seconds()));
+    };
+    settings.cancel = &cancel_on_signals();
+    const SplitSumReport report = split_sum_report(map, settings);
+    line.finish();
+    if (report.cancelled) {
+        std::fprintf(stderr, "montelux: interrupted, nothing was written\n");
+        return exit_interrupted;
+    }
+    finish_on_signals();
+    WriteOptions writing;
+    writing.exposure = o.exposure;
+    for (const std::string& path : o.outputs) write_image(path, report.spheres, writing);
+    if (o.json)
+        print_json(o, report);
+    else if (!o.quiet)
+        print_text(report);
+    return exit_done;
+}
+
+} // namespace
+
+void add_bake_report(CLI::App& bake, int& exit_code) {
+    auto o = std::make_shared<ReportOptions>();
+    SplitSumSettings& s = o->settings;
+    CLI::App* command =
+        bake.add_subcommand("report", "Compare the split sum with the integral that it stands for");
+    declare(*command, o->map);
+    command
+        ->add_option("-o,--output", o->outputs,
+                     "Picture of spheres, a column a roughness: full integral, split sum, size of the "
+                     "difference; .exr has "
+                     "the standard errors")
+        ->type_name("FILE")
+        ->allow_extra_args(false);
+    command->add_option("--roughness", s.roughness, "Perceptual roughness")
+        ->delimiter(',')
+        ->check(CLI::Range(0.03, 1.0))
+        ->type_name("LIST");
+    command->add_option("--n-dot-v", s.n_dot_v, "Cosines of the view in the table")
+        ->delimiter(',')
+        ->check(CLI::Range(0.01, 1.0))
+        ->type_name("LIST");
+    command->add_option("--f0", s.f0, "Reflectances along the normal in the table")
+        ->delimiter(',')
+        ->check(CLI::Range(0.0, 1.0))
+        ->type_name("LIST");
+    command
+        ->add_option("--orientations", s.orientations, "Random surfaces and views for each row of the table")
+        ->check(CLI::Range(2, 1 << 20))
+        ->type_name("N");
+    command->add_option("--sphere-size", s.sphere_size, "Pixels across a sphere")
+        ->check(CLI::Range(1, 4096))
+        ->type_name("N");
+    command->add_option("--sphere-f0", s.sphere_f0, "Reflectance of the spheres")
+        ->check(CLI::Range(0.0, 1.0))
+        ->type_name("F0");
+    command->add_option("--target-error", s.target_error, "Standard error of either side at one place (0.01)")
+        ->check(CLI::PositiveNumber)
+        ->type_name("E");
+    command->add_option("--exposure", o->exposure, "Of a .png picture, in stops")
+        ->check(CLI::Range(-100.0, 100.0))
+        ->type_name("STOPS");
+    command->add_option("--seed", s.seed, "Another seed, other noise")->type_name("N");
+    command->add_option("--threads", o->threads, "Threads at most; 0: one a processor")
+        ->type_name("N")
+        ->check(CLI::Range(0, most_threads));
+    command->add_flag("--json", o->json, "Print the table as JSON");
+    command->add_flag("--quiet", o->quiet, "Print nothing but errors and warnings");
+    command->footer(
+        "split - full is the mean difference beside the mean of the integral over random orientations, with "
+        "its standard error;\nrms is the root of the mean squared difference.\n\n"
+        "Example:\n  montelux bake report sky.hdr -o spheres.png --exposure -1");
+    command->callback([o, &exit_code] { exit_code = with_threads(o->threads, [&] { return run(*o); }); });
+}
+
+} // namespace montelux::app

@@ -1,0 +1,89 @@
+#!/bin/sh
+# Baking: files, options, messages, odd maps, and that nothing half is left.
+. "$(dirname "$0")/common.sh"
+half='\000\000\000\077' two='\000\000\000\100' infinite='\000\000\200\177'
+pfm sky.pfm 4 2 "$one" "$half" "$two" "$one" "$one" "$one" "$two" "$half" "$one" "$zero" "$half" "$one" \
+    "$one" "$half" "$two" "$one" "$one" "$one" "$two" "$half" "$one" "$zero" "$half" "$one"
+
+# The table.
+expect 0 "32 x 32 texels, error below" bake brdf -o table.exr -o table.png -o table.ktx2 --size 32
+expect 0 "error.G" info table.exr
+expect 0 "32 x 32 pixels" info table.png
+expect 0 '"largest_error_bound"' bake brdf -o filament.exr --size 8 --terms bias-sum --first-row rough --blue sheen --json
+expect 2 "has no channel B" bake brdf -o x.ktx2 --size 8 --blue sheen
+expect 0 "x.ktx2" bake brdf -o x.ktx2 --size 8 --blue sheen --format rgba16f
+expect 2 "--size" bake brdf -o x.exr --size 0
+expect 2 "--output is required" bake brdf
+expect 1 "the extension '.gif'" bake brdf -o x.gif
+expect 2 "bake" bake
+expect 0 "environment" bake --help
+expect 0 "--target-error" bake environment --help
+
+# The chain, in all kinds of files.
+expect 0 "equirectangular map of 4 x 2 texels" bake environment sky.pfm --size 8 --levels 3 -o a.ktx2 -o a.ktx -o a.dds \
+    -o a.exr -o a.png --preview sheet.png --irradiance i.exr --irradiance-size 4 --harmonics sh.json --harmonics sh.txt
+for file in a.ktx2 a.ktx a.dds a_m0.exr a_m1.exr a_m2.exr a_m0.png a_m2.png sheet.png i.exr sh.json sh.txt; do
+    [ -s $file ] || fail "$file is missing"
+done
+expect 0 "stderr.R" info a_m1.exr
+expect 0 "32 x 24 pixels" info a_m0.exr
+expect 0 "" bake environment sky.pfm --size 4 -o strip.exr --layout vertical --quiet
+expect 0 "4 x 24 pixels" info strip.exr
+expect 0 "" bake environment sky.pfm --size 4 --levels 2 -o f.exr --layout faces --quiet
+[ -s f_m1_nz.exr ] || fail "a face is missing: $(ls)"
+expect 0 '"missed": 0' bake environment sky.pfm --size 4 -o b.exr --json
+grep -q '"polynomial"' out || fail "the harmonics are missing in the summary"
+# The same bytes on any number of threads.
+expect 0 "" bake environment sky.pfm --size 8 --levels 3 -o t1.pfm --quiet --threads 1
+expect 0 "" bake environment sky.pfm --size 8 --levels 3 -o t3.pfm --quiet --threads 3
+cmp -s t1_m1.pfm t3_m1.pfm || fail "the number of threads changes the result"
+expect 0 "" bake environment sky.pfm --size 8 --levels 3 -o up.pfm --quiet --up z
+cmp -s t1_m1.pfm up_m1.pfm && fail "--up changes nothing"
+expect 0 "" bake environment sky.pfm --size 8 --levels 3 -o mirror.pfm --quiet --mirror
+cmp -s t1_m1.pfm mirror_m1.pfm && fail "--mirror changes nothing"
+expect 0 "" bake environment sky.pfm --size 8 --levels 3 -o turn.pfm --quiet --turn 40
+cmp -s t1_m1.pfm turn_m1.pfm && fail "--turn changes nothing"
+
+# Options that make no sense, and answers of "no".
+expect 2 "nothing is asked for" bake environment sky.pfm
+expect 2 "does not go with" bake environment sky.pfm -o x.exr --samples 10 --target-error 0.1
+expect 2 "needs --sampling lobe" bake environment sky.pfm -o x.exr --source-mips
+expect 0 "do not know of their bias" bake environment sky.pfm --size 4 -o x.exr --sampling lobe --source-mips --samples 64
+expect 2 "expected linear, filament, or numbers" bake environment sky.pfm -o x.exr --roughness 0,2
+expect 2 "do not go together" bake environment sky.pfm -o x.exr --roughness 0,1 --levels 3
+expect 2 "at most 3 levels" bake environment sky.pfm -o x.exr --size 4 --levels 4
+expect 0 "0.4" bake environment sky.pfm --size 4 -o x.exr --roughness 0.4,0.8
+expect 2 "does not go into this kind of file" bake environment sky.pfm -o x.dds --format rgbm8
+expect 2 "spherical harmonics go into" bake environment sky.pfm --harmonics x.exr
+expect 3 "have a larger error than was asked for" bake environment sky.pfm --size 4 --roughness 0.5 -o x.exr \
+    --target-error 1e-5 --samples-max 64
+expect 1 "missing.hdr" bake environment missing.hdr -o x.exr
+expect 1 "no-folder" bake environment sky.pfm -o no-folder/x.exr
+
+# Odd maps.
+pfm one.pfm 1 1 "$one" "$half" "$two"
+expect 0 "equal-area map of 1 x 1 texels" bake environment one.pfm --size 2 -o x.exr --roughness 0.5
+pfm tall.pfm 1 3 "$one" "$one" "$one" "$half" "$half" "$half" "$one" "$one" "$one"
+expect 0 "not twice as wide as high" bake environment tall.pfm --size 2 -o x.exr --roughness 0.5
+expect 1 "an equal-area map is square; this picture has 4 x 2 pixels" bake environment sky.pfm -o x.exr --map equal-area
+pfm bad.pfm 2 1 "$minus_one" "$not_a_number" "$infinite" "$one" "$one" "$one"
+expect 0 "3 samples became 0 (1 not a number, 1 infinite, 1 negative)" bake environment bad.pfm --size 2 -o x.exr --roughness 0.5
+pfm black.pfm 2 1 "$zero" "$zero" "$zero" "$zero" "$zero" "$zero"
+expect 0 "0 %" bake environment black.pfm --size 4 -o x.exr --irradiance y.exr --roughness 0,0.5
+
+# The report.
+expect 0 "split - full" bake report sky.pfm --roughness 0.3,1 --n-dot-v 0.5 --orientations 4 -o r.exr --sphere-size 8
+expect 0 "16 x 24 pixels" info r.exr
+expect 0 '"bias_error"' bake report sky.pfm --roughness 0.5 --orientations 2 --json
+expect 2 "--roughness" bake report sky.pfm --roughness 0
+
+# Stopped: nothing is written.
+"$montelux" bake environment sky.pfm --size 1024 -o stopped.exr --target-error 1e-4 >out 2>&1 &
+pid=$!
+sleep 1
+kill -INT $pid
+wait $pid
+[ $? -eq 130 ] || fail "an interrupted bake: exit code is not 130"
+grep -q "interrupted, nothing was written" out || fail "it is not told that nothing was written: $(cat out)"
+ls | grep -q '^\.\|stopped' && fail "an interrupted bake left a file: $(ls)"
+finish
