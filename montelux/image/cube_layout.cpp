@@ -89,24 +89,6 @@ std::filesystem::path cube_face_path(const std::filesystem::path& path, CubeFace
     return path.parent_path() / name;
 }
 
-CubeMap mirrored(const CubeMap& map) {
-    CubeMap out = map;
-    std::swap(out.faces[0], out.faces[1]);
-    for (Image& face : out.faces)
-        for (int y = 0; y < map.size; ++y)
-            for (int x = 0; x < map.size / 2; ++x)
-                for (int c = 0; c < 3; ++c)
-                    std::swap(face.f32()[face.index(x, y, c)],
-                              face.f32()[face.index(map.size - 1 - x, y, c)]);
-    return out;
-}
-
-CubeMapChain mirrored(const CubeMapChain& chain) {
-    CubeMapChain out;
-    for (const CubeMap& level : chain.levels) out.levels.push_back(mirrored(level));
-    return out;
-}
-
 ContactSheet contact_sheet(const CubeMapChain& chain, int cell) {
     check_cube_map_chain("contact sheet", chain);
     if (cell < 1) throw Error("contact sheet", "the cells have a size of " + std::to_string(cell));

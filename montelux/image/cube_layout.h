@@ -1,4 +1,4 @@
-// Cube maps as flat pictures: crosses, strips, six files, mirror images, and a contact sheet of a chain.
+// Cube maps as flat pictures: crosses, strips, six files, and a contact sheet of a chain.
 #pragma once
 
 #include <filesystem>
@@ -25,11 +25,6 @@ Image lay_out(const CubeMap& map, CubeLayout layout);
 // "sky.exr" becomes "sky_px.exr", and with a level "sky_m2_px.exr".
 std::filesystem::path cube_face_path(const std::filesystem::path& path, CubeFace face,
                                      std::optional<int> level = {});
-
-// What a mirror perpendicular to x shows: the light from (x, y, z) comes from (-x, y, z). For engines that
-// look a cube up by (-x, y, z), as three.js does.
-CubeMap mirrored(const CubeMap& map);
-CubeMapChain mirrored(const CubeMapChain& chain);
 
 // A row per level, level 0 on top, and a column per face in the order of CubeFace. Every face fills a cell of
 // `cell` x `cell` pixels between bars of 2 pixels: larger faces are averaged down, smaller ones enlarged

@@ -67,18 +67,6 @@ TEST(CubeLayout, StripsHoldTheFacesInOrder) {
             }
 }
 
-TEST(CubeLayout, AMirrorImageSeesTheOppositeX) {
-    for (int n : {1, 4, 5}) {
-        const CubeMapChain chain = mirrored(CubeMapChain{{directions(n)}});
-        for (int f = 0; f < cube_faces; ++f)
-            for (int y = 0; y < n; ++y)
-                for (int x = 0; x < n; ++x) {
-                    const Vec3d d = cube_texel_direction({f, x, y}, n);
-                    EXPECT_LT(length(pixel(chain.levels[0].faces[f], x, y) - Vec3d{-d.x, d.y, d.z}), 1e-6);
-                }
-    }
-}
-
 TEST(CubeLayout, FacesHaveNames) {
     EXPECT_EQ(cube_face_path("a/sky.exr", CubeFace::positive_x), "a/sky_px.exr");
     EXPECT_EQ(cube_face_path("sky.v2.png", CubeFace::negative_z, 3), "sky.v2_m3_nz.png");

@@ -46,6 +46,7 @@ TEST(Dds, EveryFieldIsAsTheReferenceSays) {
                                                           {76, 32},
                                                           {80, 4},
                                                           {84, half ? 113u : 116u},
+                                                          {88, half ? 64u : 128u},
                                                           {108, levels > 1 ? 0x401008u : 0x1008u},
                                                           {112, 0xfe00}};
             for (std::size_t at = 4; at < 128; at += 4)
