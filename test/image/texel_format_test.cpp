@@ -41,7 +41,7 @@ Encoded encode(const Image& image, TexelFormat format, const RgbmScale& scale = 
 // Each code is the nearest to what it means and to what lies within half a step of it; ties go to even.
 void expect_nearest(int mantissa, const std::function<std::uint32_t(float)>& code_of) {
     const std::uint32_t codes = 31u << mantissa;
-    for (std::uint32_t code = 0; code < codes; ++code) {
+    for (std::uint32_t code = 0; code<codes; code += mantissa> 6 ? 7 : 1) {
         const double v = decode_small_float(code, mantissa);
         ASSERT_EQ(code_of(static_cast<float>(v)), code);
         if (code + 1 == codes) break;
@@ -64,7 +64,7 @@ TEST(TexelFormat, HalvesAndSmallFloatsRoundToNearestEven) {
 }
 
 TEST(TexelFormat, SharedExponentsAreTheFinestThatFit) {
-    for (std::uint64_t i = 0; i < 20000; ++i) {
+    for (std::uint64_t i = 0; i < 5000; ++i) {
         std::array<float, 3> v;
         for (std::size_t c = 0; c < 3; ++c)
             v[c] = static_cast<float>(std::exp2(40 * noise(6 * i + 2 * c) - 25) * noise(6 * i + 2 * c + 1));
@@ -87,7 +87,7 @@ TEST(TexelFormat, SharedExponentsAreTheFinestThatFit) {
 
 TEST(TexelFormat, RgbmIsWhatItsDefinitionSays) {
     for (const RgbmScale& scale : {RgbmScale{6, 1}, RgbmScale{16, 1}, RgbmScale{8, 2}, RgbmScale{16, 2}})
-        for (std::uint64_t i = 0; i < 20000; ++i) {
+        for (std::uint64_t i = 0; i < 5000; ++i) {
             const double limit = std::pow(scale.range, scale.power);
             std::array<float, 3> v;
             for (std::size_t c = 0; c < 3; ++c)
