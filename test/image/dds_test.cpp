@@ -1,5 +1,6 @@
 #include "test/image/image_testing.h"
 #include "test/image/ktx2_reading.h"
+#include "test/image/word_at.h"
 #include <algorithm>
 #include <cstring>
 #include <gtest/gtest.h>
@@ -8,13 +9,6 @@
 
 namespace montelux {
 namespace {
-
-std::uint32_t word(const std::string& bytes, std::size_t at) {
-    std::uint32_t v = 0;
-    // The last half has no four bytes left.
-    std::memcpy(&v, bytes.data() + at, std::min(sizeof v, bytes.size() - at));
-    return v;
-}
 
 TEST(Dds, EveryFieldIsAsTheReferenceSays) {
     TemporaryFolder folder;
@@ -50,7 +44,7 @@ TEST(Dds, EveryFieldIsAsTheReferenceSays) {
                                                           {108, levels > 1 ? 0x401008u : 0x1008u},
                                                           {112, 0xfe00}};
             for (std::size_t at = 4; at < 128; at += 4)
-                EXPECT_EQ(word(file, at), expected.contains(at) ? expected[at] : 0) << at;
+                EXPECT_EQ(testing::word_at(file, at), expected.contains(at) ? expected[at] : 0) << at;
 
             const std::size_t texel = half ? 8 : 16;
             std::size_t at = 128;
@@ -60,7 +54,7 @@ TEST(Dds, EveryFieldIsAsTheReferenceSays) {
                         for (int x = 0; x < level_size(size, level); ++x, at += texel)
                             for (std::size_t c = 0; c < 4; ++c) {
                                 float v = 0;
-                                const std::uint32_t bits = word(file, at + c * texel / 4);
+                                const std::uint32_t bits = testing::word_at(file, at + c * texel / 4);
                                 std::memcpy(&v, &bits, sizeof v);
                                 if (half) v = static_cast<float>(decode_half(bits & 0xffffu));
                                 ASSERT_EQ(v, c == 3 ? 1

@@ -1,5 +1,6 @@
 #include "test/image/image_testing.h"
 #include "test/image/ktx2_reading.h"
+#include "test/image/word_at.h"
 #include <algorithm>
 #include <cstring>
 #include <gtest/gtest.h>
@@ -8,13 +9,6 @@
 
 namespace montelux {
 namespace {
-
-std::uint32_t word(const std::string& bytes, std::size_t at) {
-    std::uint32_t v = 0;
-    // The last half has no four bytes left.
-    std::memcpy(&v, bytes.data() + at, std::min(sizeof v, bytes.size() - at));
-    return v;
-}
 
 TEST(Ktx1, EveryFieldIsAsTheSpecificationSays) {
     TemporaryFolder folder;
@@ -32,7 +26,7 @@ TEST(Ktx1, EveryFieldIsAsTheSpecificationSays) {
                    {.format = half ? TexelFormat::rgba16f : TexelFormat::rgba32f, .notes = {{"sh", sh}}});
         const std::string file = read_bytes(folder / "a.ktx");
         EXPECT_EQ(file.substr(0, 12), "\xABKTX 11\xBB\r\n\x1A\n");
-        const std::uint32_t notes_bytes = word(file, 60);
+        const std::uint32_t notes_bytes = testing::word_at(file, 60);
         const std::uint32_t expected[] = {0x04030201,
                                           half ? 0x140bu : 0x1406u,
                                           half ? 2u : 4u,
@@ -46,12 +40,12 @@ TEST(Ktx1, EveryFieldIsAsTheSpecificationSays) {
                                           6,
                                           3};
         for (std::size_t i = 0; i < std::size(expected); ++i)
-            EXPECT_EQ(word(file, 12 + 4 * i), expected[i]) << i;
+            EXPECT_EQ(testing::word_at(file, 12 + 4 * i), expected[i]) << i;
 
         std::map<std::string, std::string> notes;
         std::size_t at = 64;
         while (at < 64 + notes_bytes) {
-            const std::string pair = file.substr(at + 4, word(file, at));
+            const std::string pair = file.substr(at + 4, testing::word_at(file, at));
             const std::size_t zero = pair.find('\0');
             notes[pair.substr(0, zero)] = pair.substr(zero + 1);
             at += 4 + (pair.size() + 3) / 4 * 4;
@@ -63,13 +57,13 @@ TEST(Ktx1, EveryFieldIsAsTheSpecificationSays) {
         const std::size_t texel = half ? 8 : 16;
         for (int level = 0; level < 3; ++level) {
             const std::size_t n = level_size(size, level), face_bytes = n * n * texel;
-            ASSERT_EQ(word(file, at), face_bytes);
+            ASSERT_EQ(testing::word_at(file, at), face_bytes);
             at += 4;
             for (int f = 0; f < cube_faces; ++f)
                 for (std::size_t i = 0; i < n * n; ++i, at += texel)
                     for (std::size_t c = 0; c < 4; ++c) {
                         float v = 0;
-                        const std::uint32_t bits = word(file, at + c * texel / 4);
+                        const std::uint32_t bits = testing::word_at(file, at + c * texel / 4);
                         std::memcpy(&v, &bits, sizeof v);
                         if (half) v = static_cast<float>(decode_half(bits & 0xffffu));
                         ASSERT_EQ(v, c == 3 ? 1 : static_cast<float>(10 * level + f) + 0.25f);

@@ -52,7 +52,7 @@ class LibKtx : public testing::Test {
     void* library_ = nullptr;
 };
 
-CubeMapChain make_chain(int size, int levels) {
+CubeMapChain chain_of_noise(int size, int levels) {
     CubeMapChain chain;
     std::uint64_t i = 0;
     for (int level = 0; level < levels; ++level) {
@@ -78,7 +78,8 @@ TEST_F(LibKtx, ReadsTheFilesAsTheyAreMeant) {
         for (const auto& [size, levels] : {std::pair{16, 5}, {7, 2}, {1, 1}}) {
             SCOPED_TRACE(name_of(format));
             const auto path = folder / "a.ktx2";
-            write_ktx2(path, make_chain(size, levels), {.format = format, .notes = {{"montelux.x", "y"}}});
+            write_ktx2(path, chain_of_noise(size, levels),
+                       {.format = format, .notes = {{"montelux.x", "y"}}});
             const Ktx2Contents file = read_ktx2(read_bytes(path));
 
             // The descriptor that libktx makes of the format, but for the primaries of tables.
@@ -128,7 +129,7 @@ TEST_F(LibKtx, ReadsVersionOne) {
     auto destroy = function<void (*)(KtxTexture*)>("ktxTexture1_Destroy");
     TemporaryFolder folder;
     for (TexelFormat format : {TexelFormat::rgba16f, TexelFormat::rgba32f}) {
-        const CubeMapChain chain = make_chain(8, 3);
+        const CubeMapChain chain = chain_of_noise(8, 3);
         write_ktx1(folder / "a.ktx", chain, {.format = format, .notes = {{"sh", "1 2 3\n"}}});
         write_ktx2(folder / "a.ktx2", chain, {.format = format});
         KtxTexture* texture = nullptr;

@@ -211,7 +211,7 @@ std::string make_deep_exr() {
 
 namespace {
 
-Image read(const std::string& bytes) {
+Image read_sample(const std::string& bytes) {
     return read_image({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, "sample.exr");
 }
 
@@ -238,7 +238,7 @@ TEST(ExrKinds, EveryCompressionAndLayoutIsRead) {
                 ExrKind kind{.compression = compression, .tiled = tiled, .parts = parts};
                 // B44 and DWA lose something; the sawtooth is hard on them.
                 float tolerance = compression >= 8 ? 6.0f : compression >= 6 ? 50.0f : 0.0f;
-                expect_samples(read(make_exr(kind)), tolerance,
+                expect_samples(read_sample(make_exr(kind)), tolerance,
                                std::to_string(compression) + (tiled ? " tiled " : " lines ") +
                                    std::to_string(parts));
             }
@@ -249,20 +249,20 @@ TEST(ExrKinds, LevelsAndLineOrders) {
         for (bool round_up : {false, true})
             for (int parts : {1, 2})
                 expect_samples(
-                    read(make_exr(
+                    read_sample(make_exr(
                         {.tiled = true, .level_mode = level_mode, .round_up = round_up, .parts = parts})),
                     0, "levels " + std::to_string(level_mode));
-    expect_samples(read(make_exr({.decreasing_lines = true})), 0, "decreasing");
-    expect_samples(read(make_exr({.compression = 4, .decreasing_lines = true})), 0, "decreasing");
+    expect_samples(read_sample(make_exr({.decreasing_lines = true})), 0, "decreasing");
+    expect_samples(read_sample(make_exr({.compression = 4, .decreasing_lines = true})), 0, "decreasing");
 }
 
 TEST(ExrKinds, WhatIsNotReadIsToldInASentence) {
-    expect_error([] { read(make_subsampled_exr()); }, {"sample.exr", "'RY'", "subsampled", "2 x 2"});
-    expect_error([] { read(make_deep_exr()); }, {"sample.exr", "deep"});
+    expect_error([] { read_sample(make_subsampled_exr()); }, {"sample.exr", "'RY'", "subsampled", "2 x 2"});
+    expect_error([] { read_sample(make_deep_exr()); }, {"sample.exr", "deep"});
     std::string good = make_exr({});
     for (double share : {0.1, 0.3, 0.5, 0.9, 0.999}) {
         std::string cut = good.substr(0, static_cast<std::size_t>(share * static_cast<double>(good.size())));
-        expect_error([&] { read(cut); }, {"sample.exr", "damaged"});
+        expect_error([&] { read_sample(cut); }, {"sample.exr", "damaged"});
     }
     // A picture whose writer was stopped: its table of chunks is still empty at the end.
     std::string unfinished = good;
@@ -270,7 +270,7 @@ TEST(ExrKinds, WhatIsNotReadIsToldInASentence) {
     table = good.find(std::string("float\0", 6), table) + 6 + 4 + 4 + 1;
     int chunks = (height + 15) / 16;
     std::memset(unfinished.data() + table + 8 * (chunks - 1), 0, 8);
-    expect_error([&] { read(unfinished); }, {"incomplete", "chunk 3"});
+    expect_error([&] { read_sample(unfinished); }, {"incomplete", "chunk 3"});
 }
 
 // A header may promise at most what the limits allow, whatever it costs to say.
@@ -283,11 +283,11 @@ TEST(ExrKinds, SizesOutOfProportionAreRefused) {
         std::memcpy(bytes.data() + window + 12, &y, 4);
         return bytes;
     };
-    expect_error([&] { read(with_corner(60000, 60000)); }, {"sample.exr"});
-    expect_error([&] { read(with_corner(2000000000, 54)); }, {"dataWindow"});
-    expect_error([&] { read(with_corner(66, 40000)); }, {"chunks"});
-    expect_error([&] { read(with_corner(60000, 54)); }, {"too short"});
-    expect_error([&] { read(with_corner(-4, 54)); }, {"dataWindow"});
+    expect_error([&] { read_sample(with_corner(60000, 60000)); }, {"sample.exr"});
+    expect_error([&] { read_sample(with_corner(2000000000, 54)); }, {"dataWindow"});
+    expect_error([&] { read_sample(with_corner(66, 40000)); }, {"chunks"});
+    expect_error([&] { read_sample(with_corner(60000, 54)); }, {"too short"});
+    expect_error([&] { read_sample(with_corner(-4, 54)); }, {"dataWindow"});
     std::string bytes = make_exr({});
     expect_error(
         [&] {
