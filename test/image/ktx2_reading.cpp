@@ -121,7 +121,7 @@ Ktx2Contents read_ktx2(const std::string& bytes) {
     rule(file.width > 0 && file.height > 0, "a side is 0");
     rule(u32(bytes, 28) == 0 && u32(bytes, 32) == 0, "it is a volume or an array");
     rule(file.faces == 1 || (file.faces == 6 && file.width == file.height), "wrong faces");
-    rule(levels >= 1, "no level");
+    rule(levels >= 1 && levels <= 32, "no level, or too many");
     rule((std::max(file.width, file.height) >> (levels - 1)) > 0, "more levels than the size allows");
     rule(u32(bytes, 44) == 0, "it is supercompressed");
 
