@@ -27,22 +27,26 @@ for file in a.ktx2 a.ktx a.dds a_m0.exr a_m1.exr a_m2.exr a_m0.png a_m2.png shee
 done
 expect 0 "stderr.R" info a_m1.exr
 expect 0 "32 x 24 pixels" info a_m0.exr
-expect 0 "" bake environment sky.pfm --size 4 -o strip.exr --layout vertical --quiet
+expect 0 "texels" bake environment sky.pfm --size 4 -o strip.exr --layout vertical
 expect 0 "4 x 24 pixels" info strip.exr
-expect 0 "" bake environment sky.pfm --size 4 --levels 2 -o f.exr --layout faces --quiet
+expect 0 "texels" bake environment sky.pfm --size 4 --levels 2 -o f.exr --layout faces
 [ -s f_m1_nz.exr ] || fail "a face is missing: $(ls)"
 expect 0 '"missed": 0' bake environment sky.pfm --size 4 -o b.exr --json
 grep -q '"polynomial"' out || fail "the harmonics are missing in the summary"
+
 # The same bytes on any number of threads.
-expect 0 "" bake environment sky.pfm --size 8 --levels 3 -o t1.pfm --quiet --threads 1
-expect 0 "" bake environment sky.pfm --size 8 --levels 3 -o t3.pfm --quiet --threads 3
+expect 0 "texels" bake environment sky.pfm --size 8 --levels 3 -o t1.pfm --threads 1
+expect 0 "texels" bake environment sky.pfm --size 8 --levels 3 -o t3.pfm --threads 3
 cmp -s t1_m1.pfm t3_m1.pfm || fail "the number of threads changes the result"
-expect 0 "" bake environment sky.pfm --size 8 --levels 3 -o up.pfm --quiet --up z
+expect 0 "texels" bake environment sky.pfm --size 8 --levels 3 -o up.pfm --up z
 cmp -s t1_m1.pfm up_m1.pfm && fail "--up changes nothing"
-expect 0 "" bake environment sky.pfm --size 8 --levels 3 -o mirror.pfm --quiet --mirror
+expect 0 "texels" bake environment sky.pfm --size 8 --levels 3 -o mirror.pfm --mirror
 cmp -s t1_m1.pfm mirror_m1.pfm && fail "--mirror changes nothing"
-expect 0 "" bake environment sky.pfm --size 8 --levels 3 -o turn.pfm --quiet --turn 40
+expect 0 "texels" bake environment sky.pfm --size 8 --levels 3 -o turn.pfm --turn 40
 cmp -s t1_m1.pfm turn_m1.pfm && fail "--turn changes nothing"
+
+"$montelux" bake environment sky.pfm --size 4 -o q.exr --quiet >out 2>&1 || fail "--quiet ends in an error"
+[ -s out ] && fail "--quiet prints: $(cat out)"
 
 # Options that make no sense, and answers of "no".
 expect 2 "nothing is asked for" bake environment sky.pfm
