@@ -240,6 +240,12 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_choice(c, "--strategy", o.strategy, strategy_names, "How light is found: ");
     add_choice(c, "--heuristic", o.heuristic, heuristic_names,
                "Weights of the strategy mis and its two terms: ");
+    add_choice(c, "--environment-sampling", o.environment_sampling, environment_sampling_names,
+               "How directions to environment maps are sampled; auto, the default, is tabulated: ");
+    add_parsed(
+        c, "--environment-compensation", "on|off", o.environment_compensation, parse_on_off,
+        "For the strategy mis and its terms: maps are not sampled where BSDFs find them as well: on, off. "
+        "Default: on");
     add_whole_number(c, "--max-depth", o.max_depth, 0, 1'000'000, "Scattering events of a path at most");
     add_parsed(c, "--debug-sample", "x,y,index", o.debug_sample, parse_sample,
                "Render no picture: trace this one sample of the render and print its path, vertex by vertex");
@@ -289,6 +295,8 @@ void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.sampler) d.sampler.kind = *o.sampler;
     if (o.strategy) d.integrator.strategy = *o.strategy;
     if (o.heuristic) d.integrator.heuristic = *o.heuristic;
+    if (o.environment_sampling) d.integrator.environment_sampling = *o.environment_sampling;
+    if (o.environment_compensation) d.integrator.environment_compensation = *o.environment_compensation;
     if (o.max_depth) d.integrator.max_depth = static_cast<int>(*o.max_depth);
     if (o.clamp) d.film.max_component_value = static_cast<float>(*o.clamp);
 }

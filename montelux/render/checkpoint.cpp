@@ -68,7 +68,9 @@ std::array<Fingerprint, 6> fingerprints(const SceneDescription& d, const RenderT
                       f.iso, f.exposure_time, f.white_balance, f.max_component_value)},
              {"sampler or seed", hash_of(static_cast<int>(d.sampler.kind), d.sampler.seed)},
              {"integrator", hash_of(d.integrator.max_depth, static_cast<int>(d.integrator.strategy),
-                                    static_cast<int>(d.integrator.heuristic))},
+                                    static_cast<int>(d.integrator.heuristic),
+                                    static_cast<int>(d.integrator.environment_sampling),
+                                    d.integrator.environment_compensation)},
              {"allocation of samples (--adaptive)", hash_of(target.adaptive)},
              {"slice", hash_of(target.slice.index, target.slice.count)}}};
 }

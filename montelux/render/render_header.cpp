@@ -48,6 +48,8 @@ void add_render_header(Image& image, const std::string& scene_name, const SceneD
     a["sampler"] = std::string(name_of(description.sampler.kind));
     a["strategy"] = std::string(name_of(description.integrator.strategy));
     a["heuristic"] = std::string(name_of(description.integrator.heuristic));
+    a["environmentSampling"] = std::string(name_of(description.integrator.environment_sampling));
+    a["environmentCompensation"] = description.integrator.environment_compensation ? 1 : 0;
     a["maxDepth"] = description.integrator.max_depth;
     a["seed"] = std::to_string(description.sampler.seed);
     a["renderSeconds"] = static_cast<float>(report.seconds);

@@ -248,7 +248,7 @@ Renderer::Renderer(const SceneDescription& description, const RenderTarget& targ
     if (SampleOrder(sampler_, target.slice).share() == 0)
         throw Error("slice", "there are fewer units of samples than slices; more samples a pixel are needed");
     auto begin = Clock::now();
-    tables_ = std::make_unique<SceneTables>(description.scene);
+    tables_ = std::make_unique<SceneTables>(description.scene, description.integrator.environments());
     accelerator_ = std::make_unique<Accelerator>(description.scene, *tables_);
     build_seconds_ = seconds_since(begin);
 }

@@ -8,6 +8,7 @@
 
 #include "montelux/mc/random/sampler_settings.h"
 #include "montelux/scene/film/film_settings.h"
+#include "montelux/scene/light/environment/environment_settings.h"
 #include "montelux/scene/scene.h"
 
 namespace montelux {
@@ -29,6 +30,13 @@ struct IntegratorSettings {
     int max_depth = 5; // scattering events of a path
     Strategy strategy = Strategy::mis;
     Heuristic heuristic = Heuristic::power;
+    EnvironmentSampling environment_sampling = EnvironmentSampling::automatic;
+    // MIS compensation, of no effect but where light and BSDF samples are joined: by mis and its terms.
+    bool environment_compensation = true;
+
+    EnvironmentSettings environments() const {
+        return {environment_sampling, environment_compensation && strategy >= Strategy::mis};
+    }
 };
 
 struct SceneDescription {

@@ -35,7 +35,7 @@ struct Scene {
     std::vector<FloatTexture> float_textures;
     std::vector<SpectrumTexture> spectrum_textures;
     std::vector<Image> images;       // of image textures
-    std::vector<Image> environments; // square equal-area maps, R, G, B linear
+    std::vector<Image> environments; // maps of infinite lights, R, G, B linear
 
     std::vector<Light> lights; // the area lights of one mesh stand side by side, one a triangle
     CameraSettings camera;

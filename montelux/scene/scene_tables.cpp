@@ -51,7 +51,8 @@ bool has_texture(const CoatedConductorMaterial& m) {
 
 } // namespace
 
-SceneTables::SceneTables(const Scene& scene) : lights_(scene) {
+SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environments)
+    : lights_(scene, environments) {
     std::vector<std::optional<MipMap>> mipmaps(scene.images.size());
     parallel_for(static_cast<std::int64_t>(scene.images.size()), [&](std::int64_t i) {
         mipmaps[static_cast<std::size_t>(i)].emplace(scene.images[static_cast<std::size_t>(i)]);

@@ -15,7 +15,7 @@ class SceneTables {
   public:
     // Pyramids of images that no texture filters are built all the same; independent parts are built in
     // parallel.
-    explicit SceneTables(const Scene& scene);
+    explicit SceneTables(const Scene& scene, const EnvironmentSettings& environments = {});
 
     const MipMap& mipmap(Index image) const { return mipmaps_[image]; }
     // Null where the closed form of CoatingTable does not hold and the random walk is used.

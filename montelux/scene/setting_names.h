@@ -27,6 +27,11 @@ inline constexpr SettingNames<Strategy, 6> strategy_names{{{"uniform", Strategy:
                                                            {"mis-light", Strategy::mis_light}}};
 inline constexpr SettingNames<Heuristic, 2> heuristic_names{
     {{"balance", Heuristic::balance}, {"power", Heuristic::power}}};
+inline constexpr SettingNames<EnvironmentSampling, 4> environment_sampling_names{
+    {{"auto", EnvironmentSampling::automatic},
+     {"tabulated", EnvironmentSampling::tabulated},
+     {"median-cut", EnvironmentSampling::median_cut},
+     {"structured", EnvironmentSampling::structured}}};
 
 template <typename Setting, std::size_t n>
 constexpr std::string_view name_in(const SettingNames<Setting, n>& names, Setting value) {
@@ -37,5 +42,8 @@ constexpr std::string_view name_in(const SettingNames<Setting, n>& names, Settin
 constexpr std::string_view name_of(SamplerKind kind) { return name_in(sampler_names, kind); }
 constexpr std::string_view name_of(Strategy strategy) { return name_in(strategy_names, strategy); }
 constexpr std::string_view name_of(Heuristic heuristic) { return name_in(heuristic_names, heuristic); }
+constexpr std::string_view name_of(EnvironmentSampling sampling) {
+    return name_in(environment_sampling_names, sampling);
+}
 
 } // namespace montelux

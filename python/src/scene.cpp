@@ -193,16 +193,20 @@ SpectrumTextureHandle checkerboard(const SceneObject& s, const nb::object& a, co
 nb::object add_environment(const SceneObject& s, const nb::object& image, double scale,
                            const nb::object& world_from_light) {
     Image map = rgb_image(picture_of(image, "add_environment"), "add_environment");
-    if (map.width() != map.height())
-        throw Error("add_environment",
-                    "the map has " + std::to_string(map.width()) + " x " + std::to_string(map.height()) +
-                        " pixels; an environment map must be square (equal-area octahedral)");
+    const auto layout = layout_of_size(map.width(), map.height());
+    if (!layout)
+        throw Error(
+            "add_environment",
+            "the map has " + std::to_string(map.width()) + " x " + std::to_string(map.height()) +
+                " pixels; expected a square map (equal-area octahedral), or one twice as wide as high "
+                "(latitude-longitude)");
     for (const float v : map.f32())
         if (!(v >= 0 && std::isfinite(v)))
             throw Error("add_environment", "the map has a pixel that is negative or not finite");
     if (!not_negative(scale)) throw Error("add_environment, scale", "expected a number that is not negative");
     ImageInfiniteLight light;
     light.environment = static_cast<Index>(s.holder->read().scene.environments.size());
+    light.layout = *layout;
     light.scale = static_cast<float>(scale) *
                   photometric_scale(Spectrum(RgbColorSpace::srgb().illuminant()), "add_environment");
     light.world_from_light = transform_of(world_from_light, "add_environment, world_from_light");
@@ -332,7 +336,9 @@ void bind_scene(nb::module_& m) {
             "The points of the plane z = height between two radii; its front is +z. See add_mesh.")
         .def("add_environment", &add_environment, "image"_a, nb::kw_only(), "scale"_a = 1.,
              "world_from_light"_a = nb::none(),
-             "Light from everywhere, by a square equal-area map: a file, or an array of shape (n, n, 3), "
+             "Light from everywhere, by a map, square (equal-area) or twice as wide as high "
+             "(latitude-longitude): a "
+             "file, or an array of shape (n, n, 3) or (n, 2 n, 3), "
              "linear "
              "sRGB. Returns the EnvironmentLight.")
         .def("image_texture", &image_texture, "image"_a, nb::kw_only(), "filter"_a = "bilinear",

@@ -13,6 +13,8 @@ namespace {
 constexpr Names<SamplerKind, 6> sampler_kinds{"sampler", sampler_names};
 constexpr Names<Strategy, 6> strategies{"strategy", strategy_names};
 constexpr Names<Heuristic, 2> heuristics{"heuristic", heuristic_names};
+constexpr Names<EnvironmentSampling, 4> environment_samplings{"environment_sampling",
+                                                              environment_sampling_names};
 constexpr Names<SphericalCamera::Mapping, 2> mappings{
     "mapping",
     {{{"equal_area", SphericalCamera::Mapping::equal_area},
@@ -234,6 +236,18 @@ void bind_views(nb::module_& m) {
            "'mis-light' are the two terms that 'mis' is the sum of.");
     choice(integrator, "heuristic", &IntegratorSettings::heuristic, heuristics,
            "Weights of the strategy mis and its two terms: 'balance' or 'power'.");
+    choice(
+        integrator, "environment_sampling", &IntegratorSettings::environment_sampling, environment_samplings,
+        "How directions to environment maps are sampled: 'auto', 'tabulated', 'median-cut' or 'structured'.");
+    attribute<IntegratorSettings>(
+        integrator, "environment_compensation", "bool",
+        [](const IntegratorSettings& s, const auto&) { return nb::cast(s.environment_compensation); },
+        [](IntegratorSettings& s, nb::handle v, auto&, const std::string& what) {
+            if (!nb::isinstance<nb::bool_>(v))
+                throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected True or False");
+            s.environment_compensation = nb::cast<bool>(v);
+        },
+        "With the strategy mis and its terms, maps are not sampled where BSDFs find them as well.");
 }
 
 } // namespace montelux::python

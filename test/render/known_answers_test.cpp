@@ -202,24 +202,47 @@ TEST(KnownAnswers, StrategiesAgreeOnScaledAndPartialLights) {
     }
 }
 
-// A map with one bright texel among dark ones: density and value must agree texel by texel.
+// A map with one bright texel among dark ones: density and value must agree texel by texel, for each strategy
+// and each way to sample the map, with and without what MIS lets it leave out.
 TEST(KnownAnswers, EnvironmentMapStrategiesAgree) {
-    std::vector<PictureMean> means;
-    for (Strategy s : {Strategy::bsdf, Strategy::light, Strategy::mis}) {
-        SceneBuilder b = floor_scene(0.6f);
-        Image map(8, 8, {"R", "G", "B"});
-        for (int i = 0; i < 64; ++i)
-            for (int c = 0; c < 3; ++c)
-                map.set(i % 8, i / 8, c, 0.1f + static_cast<float>((i * 7) % 11) + (i == 35 ? 40.0f : 0.0f));
-        b.scene.environments.push_back(map);
-        b.scene.lights.push_back(ImageInfiniteLight{
-            .environment = 0, .scale = white_scale(), .world_from_light = Transform::rotate(30, {1, 2, 3})});
-        b.description.integrator.strategy = s;
-        b.description.sampler.samples_per_pixel = 1024;
-        means.push_back(picture_mean(render(b.description)));
+    struct Case {
+        Strategy strategy;
+        EnvironmentSampling sampling;
+        bool compensation;
+    };
+    std::vector<Case> cases{{Strategy::bsdf, EnvironmentSampling::tabulated, true}};
+    for (EnvironmentSampling sampling :
+         {EnvironmentSampling::tabulated, EnvironmentSampling::median_cut, EnvironmentSampling::structured}) {
+        cases.push_back({Strategy::light, sampling, true}); // where compensation must not be
+        cases.push_back({Strategy::mis, sampling, true});
+        cases.push_back({Strategy::mis, sampling, false});
     }
-    for (const PictureMean& m : means)
-        EXPECT_NEAR(m.mean, means[0].mean, 5 * std::hypot(m.standard_error, means[0].standard_error));
+    for (EnvironmentLayout layout : {EnvironmentLayout::equal_area, EnvironmentLayout::equirectangular}) {
+        std::vector<PictureMean> means;
+        for (const Case& c : cases) {
+            SceneBuilder b = floor_scene(0.6f);
+            Image map(8, 8, {"R", "G", "B"});
+            for (int i = 0; i < 64; ++i)
+                for (int k = 0; k < 3; ++k)
+                    map.set(i % 8, i / 8, k,
+                            0.1f + static_cast<float>((i * 7) % 11) + (i == 35 ? 40.0f : 0.0f));
+            b.scene.environments.push_back(map);
+            b.scene.lights.push_back(
+                ImageInfiniteLight{.environment = 0,
+                                   .layout = layout,
+                                   .scale = white_scale(),
+                                   .world_from_light = Transform::rotate(30, {1, 2, 3})});
+            b.description.integrator.strategy = c.strategy;
+            b.description.integrator.environment_sampling = c.sampling;
+            b.description.integrator.environment_compensation = c.compensation;
+            b.description.sampler.samples_per_pixel = 512;
+            means.push_back(picture_mean(render(b.description)));
+        }
+        for (std::size_t i = 0; i < means.size(); ++i)
+            EXPECT_NEAR(means[i].mean, means[0].mean,
+                        5 * std::hypot(means[i].standard_error, means[0].standard_error))
+                << i;
+    }
 }
 
 } // namespace

@@ -31,24 +31,21 @@ Vec3f direction(ParameterReader& r, Vec3f v) {
     return v / l;
 }
 
-// What pbrt takes for the illuminance of a map on an upward-facing (+z) patch: the mean over all texels of
-// luminance times positive cosine, times 2 pi. (The texels of an equal-area map, Clarberg 2008, share 4 pi
-// steradians, so this is half the illuminance; scenes are made with pbrt, so its measure is kept.)
-double upper_illuminance(const Image& map) {
+// What pbrt takes for the illuminance of a map on an upward-facing (+z) patch: the mean over the sphere of
+// luminance times positive cosine, times 2 pi. (That is half the illuminance; scenes are made with pbrt, so
+// its measure is kept.)
+double upper_illuminance(const Image& map, EnvironmentLayout layout) {
     Vec3d weights = RgbColorSpace::srgb().luminance_weights();
-    int size = map.width();
+    const EnvironmentGrid grid(layout, map.width(), map.height());
     double sum = 0;
-    for (int y = 0; y < size; ++y)
-        for (int x = 0; x < size; ++x) {
-            // The diamond |u| + |v| < 1 of the map's [-1,1]^2 is the upper hemisphere; there z = 1 - r^2 with
-            // r = |u| + |v|.
-            double u = 2 * (x + 0.5) / size - 1, v = 2 * (y + 0.5) / size - 1;
-            double radius = std::abs(u) + std::abs(v);
-            if (radius >= 1) continue;
+    for (int y = 0; y < map.height(); ++y)
+        for (int x = 0; x < map.width(); ++x) {
+            double z = double(grid.direction({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}).z);
+            if (!(z > 0)) continue;
             Vec3d rgb(Vec3f(map.value(x, y, 0), map.value(x, y, 1), map.value(x, y, 2)));
-            sum += dot(weights, rgb) * (1 - radius * radius);
+            sum += dot(weights, rgb) * z * grid.solid_angle(y);
         }
-    return sum * 2 * pi / (static_cast<double>(size) * size);
+    return sum / 2;
 }
 
 // The linear channels R, G, B of a picture, or three times its Y; empty when it has neither.
@@ -160,14 +157,16 @@ Light LightReader::infinite(ParameterReader& r, const Transform& world_from_ligh
     if (r.ignored("L")) r.error("L", "'L' together with 'filename'; expected one or the other");
     ImageInfiniteLight light;
     light.environment = environment(*file, r.at("filename"));
+    const Image& map = scene_.environments[light.environment];
+    light.layout = *layout_of_size(map.width(), map.height());
     light.world_from_light = world_from_light;
     light.scale = r.number("scale", 1);
     if (light.scale < 0) r.error("scale", "parameter 'scale' is negative");
     light.scale *= photometric_scale(Spectrum(RgbColorSpace::srgb().illuminant()), r);
     if (illuminance > 0) {
-        double map = upper_illuminance(scene_.environments[light.environment]);
-        if (!(map > 0)) r.error("illuminance", "the map has no light in its upper half to be scaled");
-        light.scale *= static_cast<float>(static_cast<double>(illuminance) / map);
+        double given = upper_illuminance(map, light.layout);
+        if (!(given > 0)) r.error("illuminance", "the map has no light in its upper half to be scaled");
+        light.scale *= static_cast<float>(static_cast<double>(illuminance) / given);
     }
     return light;
 }
@@ -178,12 +177,17 @@ Index LightReader::environment(const std::string& file, Location at) {
     std::vector<std::uint8_t> bytes = files_.read(path, at);
     try {
         Image picture = read_image(bytes, path.string());
-        if (picture.width() != picture.height())
+        const std::string size = std::to_string(picture.width()) + " x " + std::to_string(picture.height());
+        const auto layout = layout_of_size(picture.width(), picture.height());
+        if (!layout)
             diagnostics_.error(at,
-                               path.string() + " has " + std::to_string(picture.width()) + " x " +
-                                   std::to_string(picture.height()) +
-                                   " pixels; an environment map must be square (equal-area octahedral); a "
-                                   "latitude-longitude map must be converted first");
+                               path.string() + " has " + size +
+                                   " pixels; an environment map must be square (equal-area octahedral), or "
+                                   "twice as wide as high (latitude-longitude)");
+        if (*layout == EnvironmentLayout::equirectangular)
+            diagnostics_.warn(at, path.string() + " has " + size +
+                                      " pixels and is taken for a latitude-longitude map; pbrt-v4 wants it "
+                                      "converted ('imgtool makeequiarea')");
         Image map = rgb_map(picture);
         if (map.empty()) diagnostics_.error(at, path.string() + " has neither channels R, G and B nor Y");
         bool negative = false, black = true;

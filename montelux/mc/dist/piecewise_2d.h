@@ -44,6 +44,10 @@ class PiecewiseConstant2D {
     Vec2d upper() const { return upper_; }
     // Of the tabulated function over the domain.
     double integral() const { return integral_; }
+    std::size_t bytes() const {
+        return sizeof(std::uint32_t) *
+               (marginal_.size() + conditional_.size() + marginal_guide_.size() + conditional_guide_.size());
+    }
 
     template <std::floating_point T>
     PiecewiseSample2D<T> sample(Vec2<T> u) const {

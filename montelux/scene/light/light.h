@@ -5,6 +5,7 @@
 
 #include "montelux/mc/math/transform.h"
 #include "montelux/scene/index.h"
+#include "montelux/scene/light/environment/environment_grid.h"
 #include "montelux/spectrum/spectrum.h"
 
 namespace montelux {
@@ -42,9 +43,10 @@ struct UniformInfiniteLight {
     Spectrum spectrum;
     float scale = 1;
 };
-// Radiance from a square equal-area octahedral map (Clarberg 2008) of RGB illuminants.
+// Radiance from a map of RGB illuminants, looked up in the nearest texel.
 struct ImageInfiniteLight {
     Index environment = no_index; // into Scene::environments
+    EnvironmentLayout layout = EnvironmentLayout::equal_area;
     const RgbColorSpace* color_space = &RgbColorSpace::srgb();
     float scale = 1;
     Transform world_from_light;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "montelux/mc/warp/disk.h"
-#include "montelux/mc/warp/equal_area_square.h"
 #include "montelux/mc/warp/sphere.h"
 #include "montelux/mc/warp/triangle.h"
 #include "montelux/scene/shape/surface_point.h"
@@ -110,18 +109,8 @@ std::optional<LightSample> sample_point(Point3f position, SampledSpectrum intens
     return s;
 }
 
-Point2f map_point(const ImageInfiniteLight& light, Vec3f wi) {
-    return equal_area_sphere_to_square(normalize(Vec3f(light.world_from_light.inverse_vector(Vec3d(wi)))));
-}
-
-SampledSpectrum map_radiance(const Scene& scene, const LightTables& tables, const ImageInfiniteLight& light,
-                             Point2f st, const SampledWavelengths& lambda) {
-    const Image& map = scene.environments[light.environment];
-    int x = std::clamp(static_cast<int>(st.x * static_cast<float>(map.width())), 0, map.width() - 1);
-    int y = std::clamp(static_cast<int>(st.y * static_cast<float>(map.height())), 0, map.height() - 1);
-    auto texel =
-        static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width()) + static_cast<std::size_t>(x);
-    return tables.map_radiance(scene, light, texel, lambda) * light.scale;
+Vec2f map_point(const EnvironmentGrid& grid, const ImageInfiniteLight& light, Vec3f wi) {
+    return grid.locate(normalize(Vec3f(light.world_from_light.inverse_vector(Vec3d(wi)))));
 }
 
 } // namespace
@@ -137,8 +126,11 @@ SampledSpectrum infinite_radiance(const Scene& scene, const LightTables& tables,
     const Light& any = scene.lights[index];
     if (const auto* light = std::get_if<UniformInfiniteLight>(&any))
         return light->spectrum.sample(lambda) * light->scale;
-    if (const auto* light = std::get_if<ImageInfiniteLight>(&any))
-        return map_radiance(scene, tables, *light, map_point(*light, wi), lambda);
+    if (const auto* light = std::get_if<ImageInfiniteLight>(&any)) {
+        const EnvironmentGrid& grid = tables.environment(index).grid();
+        return tables.map_radiance(scene, *light, grid.texel(map_point(grid, *light, wi)), lambda) *
+               light->scale;
+    }
     return {};
 }
 
@@ -192,14 +184,16 @@ std::optional<LightSample> sample_light(const Scene& scene, const LightTables& t
                            .shadow = shadow_ray_to_infinity(from, wi)};
     }
     const auto& light = std::get<ImageInfiniteLight>(any);
-    auto s = tables.environment(light.environment).sample(u);
+    const EnvironmentSampler& environment = tables.environment(index);
+    EnvironmentPoint s = environment.sample(u);
     if (!(s.pdf > 0)) return std::nullopt;
-    Vec3f wi = light.world_from_light.vector(equal_area_square_to_sphere(s.p));
+    Vec3f wi = light.world_from_light.vector(environment.grid().direction(s.grid));
     wi = normalize(wi);
-    return LightSample{.radiance = map_radiance(scene, tables, light, s.p, lambda),
-                       .wi = wi,
-                       .pdf = s.pdf * inv_four_pi_f,
-                       .shadow = shadow_ray_to_infinity(from, wi)};
+    return LightSample{
+        .radiance = tables.map_radiance(scene, light, environment.grid().texel(s.grid), lambda) * light.scale,
+        .wi = wi,
+        .pdf = s.pdf,
+        .shadow = shadow_ray_to_infinity(from, wi)};
 }
 
 float area_light_pdf(const Scene& scene, const LightTables& tables, Index index, const ReferencePoint& from,
@@ -225,7 +219,8 @@ float area_light_pdf(const Scene& scene, const LightTables& tables, Index index,
 float infinite_light_pdf(const Scene& scene, const LightTables& tables, Index index, Vec3f wi) {
     const auto* light = std::get_if<ImageInfiniteLight>(&scene.lights[index]);
     if (light == nullptr) return inv_four_pi_f;
-    return tables.environment(light->environment).pdf(map_point(*light, wi)) * inv_four_pi_f;
+    const EnvironmentSampler& environment = tables.environment(index);
+    return environment.pdf(map_point(environment.grid(), *light, wi));
 }
 
 } // namespace montelux

@@ -1,6 +1,7 @@
 #include "montelux/scene/light/light_tables.h"
 
 #include <cmath>
+#include <map>
 
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/parallel/parallel_for.h"
@@ -37,27 +38,6 @@ double mean(const Spectrum& s) {
     int n = 0;
     for (float lambda = lambda_min; lambda <= lambda_max; lambda += 5, ++n) sum += double(s(lambda));
     return sum / n;
-}
-
-double luminance(const Image& map, int x, int y) {
-    return (double(map.value(x, y, 0)) + double(map.value(x, y, 1)) + double(map.value(x, y, 2))) / 3;
-}
-
-double mean_luminance(const Image& map) {
-    double sum = 0;
-    for (int y = 0; y < map.height(); ++y)
-        for (int x = 0; x < map.width(); ++x) sum += luminance(map, x, y);
-    return sum / static_cast<double>(map.pixel_count());
-}
-
-std::unique_ptr<PiecewiseConstant2D> environment_density(const Image& map) {
-    std::vector<float> values(map.pixel_count());
-    for (int y = 0; y < map.height(); ++y)
-        for (int x = 0; x < map.width(); ++x)
-            values[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width()) +
-                   static_cast<std::size_t>(x)] = static_cast<float>(std::max(0.0, luminance(map, x, y)));
-    return std::make_unique<PiecewiseConstant2D>(values, static_cast<std::uint32_t>(map.width()),
-                                                 static_cast<std::uint32_t>(map.height()));
 }
 
 RgbUnboundedSpectrum texel_spectrum(const Image& map, const RgbColorSpace& space, std::size_t texel) {
@@ -112,10 +92,11 @@ Bounds3 bounds_of(const Scene& scene) {
     return bounds;
 }
 
-LightTables::LightTables(const Scene& scene)
+LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings)
     : triangle_of_light_(scene.lights.size(), no_index), spheres_(scene.lights.size()),
-      disks_(scene.lights.size()), bounds_(bounds_of(scene)) {
-    for (const Image& map : scene.environments) environments_.push_back(environment_density(map));
+      disks_(scene.lights.size()), environment_of_light_(scene.lights.size(), no_index),
+      bounds_(bounds_of(scene)) {
+    std::map<std::pair<Index, EnvironmentLayout>, Index> known_environments;
     map_spectra_.resize(scene.environments.size());
 
     double radius = std::max(bounds_.radius(), 1e-30);
@@ -141,12 +122,16 @@ LightTables::LightTables(const Scene& scene)
                     return pi * area * (light.two_sided ? 2 : 1) * double(light.scale) * mean(light.spectrum);
                 } else if constexpr (std::is_same_v<L, ImageInfiniteLight>) {
                     infinite_lights_.push_back(static_cast<Index>(i));
-                    map_spectra_[light.environment] =
-                        map_spectra(scene.environments[light.environment], *light.color_space);
+                    const Image& map = scene.environments[light.environment];
+                    auto [known, is_new] = known_environments.try_emplace(
+                        {light.environment, light.layout}, static_cast<Index>(environments_.size()));
+                    if (is_new) environments_.emplace_back(map, light.layout, settings);
+                    environment_of_light_[i] = known->second;
+                    map_spectra_[light.environment] = map_spectra(map, *light.color_space);
                     // The photometric normalisation is in `scale`; so is the mean of the white illuminant.
                     Spectrum white(RgbIlluminantSpectrum(*light.color_space, {1, 1, 1}));
                     return 4 * pi * cross_section * double(light.scale) * mean(white) *
-                           mean_luminance(scene.environments[light.environment]);
+                           environments_[known->second].mean_radiance();
                 } else {
                     double flux = double(light.scale) * mean(light.spectrum);
                     if constexpr (std::is_same_v<L, UniformInfiniteLight>) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "montelux/mc/dist/alias_table.h"
-#include "montelux/mc/dist/piecewise_2d.h"
+#include "montelux/scene/light/environment/environment_sampler.h"
 #include "montelux/scene/scene.h"
 #include "montelux/scene/shape/quadric.h"
 
@@ -23,7 +23,7 @@ struct LightTriangle {
 
 class LightTables {
   public:
-    explicit LightTables(const Scene& scene);
+    explicit LightTables(const Scene& scene, const EnvironmentSettings& settings = {});
 
     bool empty() const { return !by_power_.has_value(); }
     // Lights are chosen in proportion to the power that they send into the scene, estimated in the mean over
@@ -35,7 +35,12 @@ class LightTables {
     // Radiance of an environment map's texel before Light::scale, at index y * width + x.
     SampledSpectrum map_radiance(const Scene& scene, const ImageInfiniteLight& light, std::size_t texel,
                                  const SampledWavelengths& lambda) const;
-    const PiecewiseConstant2D& environment(Index i) const { return *environments_[i]; }
+    // Of an infinite light with a map.
+    const EnvironmentSampler& environment(Index light) const {
+        return environments_[environment_of_light_[light]];
+    }
+    // Of all maps, each layout of a map once.
+    const std::vector<EnvironmentSampler>& environments() const { return environments_; }
     const std::vector<Index>& infinite_lights() const { return infinite_lights_; }
     const std::optional<WorldSphere>& sphere(Index light) const { return spheres_[light]; }
     const std::optional<WorldDisk>& disk(Index light) const { return disks_[light]; }
@@ -47,7 +52,8 @@ class LightTables {
     std::vector<Index> triangle_of_light_;
     std::vector<std::optional<WorldSphere>> spheres_;
     std::vector<std::optional<WorldDisk>> disks_;
-    std::vector<std::unique_ptr<PiecewiseConstant2D>> environments_;
+    std::vector<EnvironmentSampler> environments_;
+    std::vector<Index> environment_of_light_;
     // Spectra of the texels of each environment, ready to be evaluated; empty for maps that are too large.
     std::vector<std::vector<RgbUnboundedSpectrum>> map_spectra_;
     std::vector<Index> infinite_lights_;

@@ -251,7 +251,10 @@ TEST(PbrtLights, EnvironmentMaps) {
     for (float& v : map.f32()) v = 1;
     map.set(0, 0, 0, -1); // counts as 0
     write_image(folder / "map.exr", map);
-    write_image(folder / "wide.exr", Image(16, 8, {"R", "G", "B"}));
+    write_image(folder / "odd.exr", Image(16, 9, {"R", "G", "B"}));
+    Image wide(64, 32, {"R", "G", "B"});
+    for (float& v : wide.f32()) v = 1;
+    write_image(folder / "wide.exr", wide);
     auto load = [&](const std::string& text, Warnings& told) {
         return parse_pbrt("WorldBegin\n" + text, "scene", folder, told);
     };
@@ -270,14 +273,21 @@ TEST(PbrtLights, EnvironmentMaps) {
     EXPECT_LT(length(l.world_from_light.vector(Vec3f(0, 0, 1)) - Vec3f(1, 0, 0)), 1e-6f);
     // pbrt takes pi / 2 for the illuminance of a map of 1.
     EXPECT_NEAR(std::get<ImageInfiniteLight>(d.scene.lights[1]).scale * white, 10 / (pi / 2), 0.02);
+    EXPECT_EQ(l.layout, EnvironmentLayout::equal_area);
+    Warnings of_wide;
+    d = load("LightSource \"infinite\" \"string filename\" \"wide.exr\" \"float illuminance\" 10", of_wide);
+    const auto& w = std::get<ImageInfiniteLight>(d.scene.lights[0]);
+    EXPECT_EQ(w.layout, EnvironmentLayout::equirectangular);
+    EXPECT_EQ(of_wide.messages().size(), 1u);
+    EXPECT_NEAR(w.scale * white, 10 / (pi / 2), 0.02);
     try {
-        load("LightSource \"infinite\" \"string filename\" \"wide.exr\"", told);
-        ADD_FAILURE() << "a map that is not square was accepted";
+        load("LightSource \"infinite\" \"string filename\" \"odd.exr\"", told);
+        ADD_FAILURE() << "a map that is neither square nor twice as wide as high was accepted";
     } catch (const Error& e) {
         EXPECT_EQ(std::string(e.what()),
-                  "scene:2:24: " + (folder / "wide.exr").string() +
-                      " has 16 x 8 pixels; an environment map must be square (equal-area "
-                      "octahedral); a latitude-longitude map must be converted first");
+                  "scene:2:24: " + (folder / "odd.exr").string() +
+                      " has 16 x 9 pixels; an environment map must be square (equal-area "
+                      "octahedral), or twice as wide as high (latitude-longitude)");
     }
     std::filesystem::remove_all(folder);
 }

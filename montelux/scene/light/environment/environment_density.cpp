@@ -1,0 +1,65 @@
+#include "montelux/scene/light/environment/environment_density.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "montelux/mc/math/compensated.h"
+#include "montelux/mc/parallel/parallel_for.h"
+
+namespace montelux {
+
+namespace {
+
+template <typename F>
+void for_each_row(const EnvironmentGrid& grid, const F& f) {
+    const auto width = static_cast<std::size_t>(grid.width());
+    parallel_for(grid.height(), [&](std::int64_t y) {
+        f(static_cast<int>(y), static_cast<std::size_t>(y) * width, static_cast<std::size_t>(y + 1) * width);
+    });
+}
+
+} // namespace
+
+std::vector<float> texel_light(const Image& map, const EnvironmentGrid& grid) {
+    std::vector<float> light(grid.texel_count());
+    const auto channels = static_cast<std::size_t>(map.channels());
+    for_each_row(grid, [&](int y, std::size_t begin, std::size_t end) {
+        const double third = grid.solid_angle(y) / 3;
+        for (std::size_t i = begin; i < end; ++i) {
+            double sum = 0;
+            for (std::size_t c = 0; c < 3; ++c)
+                sum += std::max(0.0, static_cast<double>(map.value_at(i * channels + c)));
+            // Faint light is not to be lost, nor glaring light to become infinite.
+            if (sum > 0)
+                light[i] = static_cast<float>(
+                    std::clamp(sum * third, static_cast<double>(std::numeric_limits<float>::min()),
+                               static_cast<double>(std::numeric_limits<float>::max())));
+        }
+    });
+    return light;
+}
+
+double sum_of(const std::vector<float>& light) {
+    CompensatedSum sum;
+    for (float v : light) sum.add(static_cast<double>(v));
+    return sum.value();
+}
+
+bool compensate(std::vector<float>& light, const EnvironmentGrid& grid) {
+    constexpr double least = 0.01;
+    const double total = sum_of(light), mean = total / (4 * pi);
+    const auto width = static_cast<std::size_t>(grid.width());
+    CompensatedSum left;
+    for (std::size_t i = 0; i < light.size(); ++i)
+        left.add(std::max(0.0, static_cast<double>(light[i]) -
+                                   mean * grid.solid_angle(static_cast<int>(i / width))));
+    if (!(left.value() > least * total)) return false;
+    for_each_row(grid, [&](int y, std::size_t begin, std::size_t end) {
+        const double sky = mean * grid.solid_angle(y);
+        for (std::size_t i = begin; i < end; ++i)
+            light[i] = static_cast<float>(std::max(0.0, static_cast<double>(light[i]) - sky));
+    });
+    return true;
+}
+
+} // namespace montelux

@@ -1,0 +1,51 @@
+// Sampling of directions to an environment map, by the density that the settings ask for.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "montelux/scene/light/environment/environment_settings.h"
+#include "montelux/scene/light/environment/median_cut_environment.h"
+#include "montelux/scene/light/environment/structured_environment.h"
+#include "montelux/scene/light/environment/sun.h"
+#include "montelux/scene/light/environment/tabulated_environment.h"
+
+namespace montelux {
+
+class EnvironmentSampler {
+  public:
+    // The map has the channels R, G and B. Values that are negative count as 0; others must be finite.
+    EnvironmentSampler(const Image& map, EnvironmentLayout layout, const EnvironmentSettings& settings = {});
+
+    const EnvironmentGrid& grid() const { return *grid_; }
+    EnvironmentPoint sample(Vec2f u) const {
+        return std::visit([&](const auto& d) { return d.sample(u); }, density_);
+    }
+    // Over solid angle. Without compensation it is above zero wherever the map is.
+    float pdf(Vec2f grid) const {
+        return std::visit([&](const auto& d) { return d.pdf(grid); }, density_);
+    }
+
+    using Density =
+        std::variant<TabulatedEnvironment, WithSun<MedianCutEnvironment>, WithSun<StructuredEnvironment>>;
+    const Density& density() const { return density_; }
+    // What was taken, where the settings left it open.
+    EnvironmentSampling sampling() const;
+    bool compensated() const { return compensated_; }
+    const Sun* sun() const;
+    // Mean of R, G and B over the sphere.
+    double mean_radiance() const { return mean_radiance_; }
+    // For people: "tabulated, compensated, 1024 x 1024 texels, 4.5 MiB".
+    std::string description() const;
+
+  private:
+    Density make_density(const Image& map, const EnvironmentSettings& settings);
+
+    std::unique_ptr<const EnvironmentGrid> grid_; // densities point to it
+    double mean_radiance_ = 0;
+    bool compensated_ = false;
+    Density density_;
+};
+
+} // namespace montelux
