@@ -11,7 +11,7 @@ expect 0 "montelux render scene.pbrt --spp 64 -o out.exr" --help
 expect 0 "montelux " --version
 for command in integrate sample render info compare; do expect 0 "Example" $command --help; done
 expect 0 "--max-depth N" render --help
-expect 2 "a command is expected: integrate, sample, render, merge, compare, denoise, info" # no arguments
+expect 2 "a command is expected: integrate, sample, render, merge, compare, denoise, bake, info" # no arguments
 expect 2 "there is no command 'rendr' (did you mean 'render'?)" rendr
 expect 2 "--nonsense" --nonsense
 expect 2 "--nonsense" info --nonsense a.pfm

@@ -42,7 +42,7 @@ Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\""
     fi
 }
 pfm one.pfm 1 1 "$one" "$one" "$one"
-pfm wide.pfm 2 1 "$one" "$one" "$one" "$one" "$one" "$one"
+pfm wide.pfm 3 1 "$one" "$one" "$one" "$one" "$one" "$one" "$one" "$one" "$one"
 pfm negative.pfm 1 1 "$one" "$one" "$minus_one"
 pfm nan.pfm 1 1 "$one" "$one" "$not_a_number"
 pfm black.pfm 1 1 "$zero" "$zero" "$zero"
