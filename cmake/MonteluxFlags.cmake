@@ -22,7 +22,7 @@ if(MONTELUX_SANITIZE)
     target_compile_options(montelux_flags INTERFACE -fno-sanitize=null,object-size)
     # Outside the integrals, tests wait for the compiler longer than for what it made.
     target_compile_options(montelux_flags INTERFACE
-        "$<$<NOT:$<OR:$<CONFIG:Debug>,$<BOOL:$<FILTER:$<TARGET_PROPERTY:NAME>,INCLUDE,^mc_|_room_mc_>>>>:-Og>")
+        "$<$<NOT:$<OR:$<CONFIG:Debug>,$<BOOL:$<FILTER:$<TARGET_PROPERTY:NAME>,INCLUDE,^mc_(integrate|random)|_room_mc_>>>>:-Og>")
     target_link_options(montelux_flags INTERFACE -fsanitize=address,undefined)
     # GCC 12 sees uninitialised members in std::regex once the sanitizers have instrumented it.
     target_compile_options(montelux_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
