@@ -19,7 +19,7 @@ std::vector<std::uint8_t> dds_header(std::uint32_t size, std::uint32_t levels, b
     constexpr std::uint32_t complex = 0x8, texture = 0x1000, mipmap = 0x400000, cube_map = 0x200,
                             all_faces = 0xfc00;
     ByteWriter bytes;
-    for (char c : {'D', 'D', 'S', ' '}) bytes.put(c);
+    bytes.put(std::uint32_t{0x20534444}); // "DDS "
     bytes.put(std::uint32_t{124}); // of the header
     bytes.put(caps | height | width | pitch | pixel_format | level_count);
     bytes.put(size);
