@@ -1,13 +1,12 @@
 // montelux bake brdf: the split sum's table of scale and bias.
 #include "app/bake.h"
+#include "app/bake_run.h"
 #include "app/commands.h"
-#include "app/interrupt.h"
 #include "app/json_number.h"
 #include "app/progress_line.h"
 #include "app/usage_error.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -27,8 +26,7 @@ struct BrdfOptions {
     std::vector<std::string> outputs;
     int size = 256;
     std::string blue = "zero", order = "scale-bias", first_row = "smooth", format = "rg16f";
-    int threads = 0;
-    bool json = false, quiet = false;
+    BakeRunOptions run;
 };
 
 bool is(const std::string& path, const char* extension) {
@@ -83,8 +81,17 @@ void write_table(const std::string& path, const Image& table, const BrdfOptions&
     }
 }
 
+// The most that the numbers of a file can differ from those that were computed, the largest of which is
+// `largest`.
+double rounding(const std::string& path, double largest, const BrdfOptions& o) {
+    const int exponent = largest > 0 ? std::ilogb(largest) : 0;
+    if (is(path, ".png")) return 0.5 / 255 + std::max(0.0, largest - 1);
+    if (is(path, ".hdr")) return std::ldexp(1.0, exponent - 7); // 8 bits beside a shared exponent
+    if (is(path, ".ktx2") && o.format.ends_with("16f")) return std::ldexp(1.0, exponent - 11);
+    return std::ldexp(1.0, exponent - 24);
+}
+
 int run(const BrdfOptions& o) {
-    end_on_signals();
     for (const std::string& path : o.outputs) {
         if (is(path, ".ktx2")) {
             const AtomicFile never_committed(path);
@@ -100,41 +107,36 @@ int run(const BrdfOptions& o) {
     settings.extra = o.blue == "sheen"            ? BrdfTableExtra::sheen
                      : o.blue == "average-albedo" ? BrdfTableExtra::average_albedo
                                                   : BrdfTableExtra::zero;
-    const auto begin = std::chrono::steady_clock::now();
-    auto seconds = [&] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    };
-    ProgressLine line(o.quiet);
-    settings.progress = [&](double fraction) {
-        if (line.due(seconds())) line.show("bake", percent_text(fraction) + " of the table");
-    };
-    settings.cancel = &cancel_on_signals();
+    BakeRun bake(o.run.quiet, "the table");
+    settings.progress = bake.progress();
+    settings.cancel = bake.cancel();
     Image table = brdf_table(settings);
-    line.finish();
-    if (table.empty()) {
-        std::fprintf(stderr, "montelux: interrupted, nothing was written\n");
-        return exit_interrupted;
-    }
-    const double time = seconds();
-    double error = 0;
-    for (int y = 0; y < table.height(); ++y)
-        for (int x = 0; x < table.width(); ++x)
-            for (int c = 3; c < 6; ++c) error = std::max(error, static_cast<double>(table.value(x, y, c)));
+    if (bake.interrupted(table.empty())) return exit_interrupted;
+    const double time = bake.seconds();
     if (o.order == "bias-sum") reorder(table);
     if (o.first_row == "rough") turn_over(table);
+    double error = 0, largest = 0;
+    for (int y = 0; y < table.height(); ++y)
+        for (int x = 0; x < table.width(); ++x)
+            for (int c = 0; c < 3; ++c) {
+                largest = std::max(largest, static_cast<double>(table.value(x, y, c)));
+                error = std::max(error, static_cast<double>(table.value(x, y, c + 3)));
+            }
 
-    finish_on_signals();
     for (const std::string& path : o.outputs) write_table(path, table, o);
-    if (o.json) {
+    if (o.run.json) {
         nlohmann::ordered_json out;
         out["size"] = o.size;
         out["largest_error_bound"] = json_number(error);
+        for (const std::string& path : o.outputs)
+            out["files"].push_back(
+                {{"file", path}, {"largest_error_bound", json_number(error + rounding(path, largest, o))}});
         out["seconds"] = time;
         std::printf("%s\n", out.dump(2).c_str());
-    } else if (!o.quiet) {
+    } else if (!o.run.quiet) {
         for (const std::string& path : o.outputs)
-            std::printf("%s: %d x %d texels, error below %.2g, %s\n", path.c_str(), o.size, o.size, error,
-                        duration_text(time).c_str());
+            std::printf("%s: %d x %d texels, error below %.2g, %s\n", path.c_str(), o.size, o.size,
+                        error + rounding(path, largest, o), duration_text(time).c_str());
     }
     return exit_done;
 }
@@ -174,16 +176,12 @@ void add_bake_brdf(CLI::App& bake, int& exit_code) {
     command->add_option("--format", o->format, "Of the texels in .ktx2: rg16f, rg32f, rgba16f or rgba32f")
         ->check(CLI::IsMember({"rg16f", "rg32f", "rgba16f", "rgba32f"}))
         ->type_name("FORMAT");
-    command->add_option("--threads", o->threads, "Threads at most; 0: one a processor")
-        ->type_name("N")
-        ->check(CLI::Range(0, most_threads));
-    command->add_flag("--json", o->json, "Print a summary as JSON");
-    command->add_flag("--quiet", o->quiet, "Print nothing but errors");
+    declare(*command, o->run);
     command->footer("Texel (x, y) belongs to n.v = (x + 1/2) / size and perceptual roughness (y + 1/2) / "
                     "size, alpha = roughness^2.\n"
                     "\n"
                     "Example:\n  montelux bake brdf -o brdf.exr --size 256");
-    command->callback([o, &exit_code] { exit_code = with_threads(o->threads, [&] { return run(*o); }); });
+    on_command(*command, o->run, exit_code, [o] { return run(*o); });
 }
 
 } // namespace montelux::app

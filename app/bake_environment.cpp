@@ -2,12 +2,11 @@
 #include "app/bake.h"
 #include "app/bake_files.h"
 #include "app/bake_map.h"
+#include "app/bake_run.h"
 #include "app/commands.h"
-#include "app/interrupt.h"
 #include "app/json_number.h"
 #include "app/progress_line.h"
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -34,18 +33,20 @@ struct EnvironmentOptions {
     std::optional<double> target_error;
     std::optional<std::uint64_t> samples, samples_max;
     double dark_floor = 0.01;
-    bool source_mips = false, json = false, quiet = false;
+    bool source_mips = false;
     std::uint64_t seed = 0;
-    int threads = 0;
+    BakeRunOptions run;
 };
 
 std::vector<double> roughness_of(const EnvironmentOptions& o) {
-    const bool linear = o.roughness == "linear", filament = o.roughness == "filament";
-    if (linear || filament) {
-        const int levels = o.levels.value_or(usual_levels(o.size));
+    const bool linear = o.roughness == "linear", filament = o.roughness == "filament",
+               babylon = o.roughness == "babylon";
+    if (linear || filament || babylon) {
+        const int levels = o.levels.value_or(babylon ? level_count(o.size) : usual_levels(o.size));
         if (levels > level_count(o.size))
             throw UsageError("--levels", "faces of " + std::to_string(o.size) + " texels have at most " +
                                              std::to_string(level_count(o.size)) + " levels");
+        if (babylon) return babylon_roughness(levels, o.size);
         return linear ? linear_roughness(levels) : filament_roughness(levels);
     }
     std::vector<double> list;
@@ -56,7 +57,7 @@ std::vector<double> roughness_of(const EnvironmentOptions& o) {
         const double r = std::strtod(text.c_str(), &rest);
         if (text.empty() || *rest != 0 || !(r >= 0 && r <= 1))
             throw UsageError("--roughness",
-                             "expected linear, filament, or numbers from 0 to 1 with commas between "
+                             "expected linear, filament, babylon, or numbers from 0 to 1 with commas between "
                              "them, found '" +
                                  o.roughness + "'");
         list.push_back(r);
@@ -189,35 +190,22 @@ std::uint64_t missed(const BakedCubes& baked) {
 }
 
 int run(const EnvironmentOptions& o) {
-    end_on_signals();
     const std::vector<double> roughness = roughness_of(o);
     BakeSettings settings = settings_of(o);
     check_files(o, roughness.size());
-    const EnvironmentMap map = read_map(o.map, o.quiet);
+    const EnvironmentMap map = read_map(o.map, o.run.quiet);
     const DiffuseHarmonics harmonics = diffuse_harmonics(map, settings.frame);
 
-    const auto begin = std::chrono::steady_clock::now();
-    auto seconds = [&] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    };
-    ProgressLine line(o.quiet);
-    settings.progress = [&](double fraction) {
-        if (line.due(seconds()))
-            line.show("bake", percent_text(fraction) + " of the texels, " + duration_text(seconds()));
-    };
-    settings.cancel = &cancel_on_signals();
+    BakeRun bake(o.run.quiet, "the texels");
+    settings.progress = bake.progress();
+    settings.cancel = bake.cancel();
     BakedCubes chain, irradiance;
     if (!o.outputs.empty()) chain = prefilter_environment(map, o.size, roughness, settings);
     if (!o.irradiance.empty() && !chain.cancelled)
         irradiance = irradiance_cube(map, o.irradiance_size, settings);
-    line.finish();
-    if (chain.cancelled || irradiance.cancelled) {
-        std::fprintf(stderr, "montelux: interrupted, nothing was written\n");
-        return exit_interrupted;
-    }
-    const double time = seconds();
+    if (bake.interrupted(chain.cancelled || irradiance.cancelled)) return exit_interrupted;
+    const double time = bake.seconds();
 
-    finish_on_signals();
     std::string list;
     for (double r : roughness) {
         char text[32];
@@ -240,12 +228,12 @@ int run(const EnvironmentOptions& o) {
         writing.exposure = sheet.exposure;
         write_image(o.preview, sheet.picture, writing);
     }
-    if (o.json) {
+    if (o.run.json) {
         Json out;
         out["map"] = {{"file", o.map.file},
-                      {"layout", name_of(map.layout())},
-                      {"width", map.width()},
-                      {"height", map.height()}};
+                      {"layout", name_of(map.grid().layout())},
+                      {"width", map.grid().width()},
+                      {"height", map.grid().height()}};
         const Vec3d mean = map.mean_radiance();
         out["mean_radiance"] = {json_number(mean.x), json_number(mean.y), json_number(mean.z)};
         out["levels"] = json_of(chain.levels);
@@ -253,11 +241,11 @@ int run(const EnvironmentOptions& o) {
         out["harmonics"] = json_of(harmonics);
         out["seconds"] = time;
         std::printf("%s\n", out.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
-    } else if (!o.quiet) {
+    } else if (!o.run.quiet) {
         if (!chain.levels.empty()) print_levels("level", chain.levels);
         if (!irradiance.levels.empty()) print_levels("irradiance", irradiance.levels);
-        std::printf("%s map of %d x %d texels, %s\n", std::string(name_of(map.layout())).c_str(), map.width(),
-                    map.height(), duration_text(time).c_str());
+        std::printf("%s map of %d x %d texels, %s\n", std::string(name_of(map.grid().layout())).c_str(),
+                    map.grid().width(), map.grid().height(), duration_text(time).c_str());
         if (o.source_mips)
             std::printf("averages over texels were used: the errors do not know of their bias\n");
     }
@@ -286,14 +274,17 @@ void add_bake_environment(CLI::App& bake, int& exit_code) {
     command->add_option("--size", o->size, "Texels along an edge of level 0")
         ->type_name("N")
         ->check(CLI::Range(1, 8192));
-    command->add_option("--levels", o->levels, "Levels of the chain; without it, down to 16 texels")
+    command
+        ->add_option("--levels", o->levels,
+                     "Levels of the chain; without it, down to 16 texels, or to 1 for babylon")
         ->type_name("N")
         ->check(CLI::Range(1, 14));
     command
-        ->add_option("--roughness", o->roughness,
-                     "Perceptual roughness of the levels. linear: level / (levels - 1); filament: 1 - sqrt(1 "
-                     "- level / "
-                     "(levels - 1)); or a list such as 0,0.1,0.3,1")
+        ->add_option(
+            "--roughness", o->roughness,
+            "Perceptual roughness of the levels. linear: level / (levels - 1); filament: 1 - sqrt(1 "
+            "- level / (levels - 1)); babylon: the root of 2^(level / 0.8) / size; or a list such as "
+            "0,0.1,0.3,1")
         ->type_name("RULE");
     command->add_option("--irradiance", o->irradiance, "Irradiance / pi as a cube map; files as for --output")
         ->type_name("FILE")
@@ -337,14 +328,10 @@ void add_bake_environment(CLI::App& bake, int& exit_code) {
     command->add_flag("--source-mips", o->source_mips,
                       "With --sampling lobe: look up averages over texels; less noise, but biased");
     command->add_option("--seed", o->seed, "Another seed, other noise")->type_name("N");
-    command->add_option("--threads", o->threads, "Threads at most; 0: one a processor")
-        ->type_name("N")
-        ->check(CLI::Range(0, most_threads));
-    command->add_flag("--json", o->json, "Print a summary as JSON");
-    command->add_flag("--quiet", o->quiet, "Print nothing but errors and warnings");
+    declare(*command, o->run);
     command->footer(
         "Example:\n  montelux bake environment sky.hdr -o sky.ktx2 --harmonics sky.json --preview sky.png");
-    command->callback([o, &exit_code] { exit_code = with_threads(o->threads, [&] { return run(*o); }); });
+    on_command(*command, o->run, exit_code, [o] { return run(*o); });
 }
 
 } // namespace montelux::app

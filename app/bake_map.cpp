@@ -13,16 +13,16 @@ namespace {
 // Environment maps are larger than textures: 16k x 8k floats.
 constexpr std::size_t most_pixel_bytes = std::size_t{2} << 30;
 
-MapLayout layout_of(const BakeMapOptions& options, const Image& image, bool quiet) {
-    if (options.layout == "equal-area") return MapLayout::equal_area;
-    if (options.layout == "auto" && image.width() == image.height()) return MapLayout::equal_area;
+EnvironmentLayout layout_of(const BakeMapOptions& options, const Image& image, bool quiet) {
+    if (options.layout == "equal-area") return EnvironmentLayout::equal_area;
+    if (options.layout == "auto" && image.width() == image.height()) return EnvironmentLayout::equal_area;
     if (image.width() != 2 * image.height() && !quiet)
         std::fprintf(
             stderr,
             "montelux: warning: %s: %d x %d pixels are not twice as wide as high; they are taken as the "
             "whole sphere all the same\n",
             options.file.c_str(), image.width(), image.height());
-    return MapLayout::equirectangular;
+    return EnvironmentLayout::equirectangular;
 }
 
 } // namespace
@@ -61,7 +61,7 @@ EnvironmentMap read_map(const BakeMapOptions& options, bool quiet) {
     ReadOptions reading;
     reading.max_pixel_bytes = most_pixel_bytes;
     const Image image = read_image(options.file, reading);
-    const MapLayout layout = layout_of(options, image, quiet);
+    const EnvironmentLayout layout = layout_of(options, image, quiet);
     try {
         EnvironmentMap map(image, layout);
         const MapRepairs& r = map.repairs();
@@ -75,7 +75,7 @@ EnvironmentMap read_map(const BakeMapOptions& options, bool quiet) {
                 static_cast<unsigned long long>(r.negative));
         if (r.halvings > 0 && !quiet)
             std::fprintf(stderr, "montelux: warning: %s: the map was averaged to %d x %d texels\n",
-                         options.file.c_str(), map.width(), map.height());
+                         options.file.c_str(), map.grid().width(), map.grid().height());
         return map;
     } catch (const Error& e) {
         throw Error(options.file, e.what());

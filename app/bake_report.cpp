@@ -1,13 +1,11 @@
 // montelux bake report: the split sum beside the integral that it stands for.
 #include "app/bake.h"
 #include "app/bake_map.h"
+#include "app/bake_run.h"
 #include "app/commands.h"
-#include "app/interrupt.h"
 #include "app/json_number.h"
-#include "app/progress_line.h"
 #include "app/usage_error.h"
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -23,8 +21,7 @@ struct ReportOptions {
     std::vector<std::string> outputs;
     SplitSumSettings settings;
     float exposure = 0;
-    int threads = 0;
-    bool json = false, quiet = false;
+    BakeRunOptions run;
 };
 
 void print_json(const ReportOptions& o, const SplitSumReport& report) {
@@ -49,35 +46,22 @@ void print_text(const SplitSumReport& report) {
 }
 
 int run(const ReportOptions& o) {
-    end_on_signals();
     for (const std::string& path : o.outputs) check_writable(path);
-    const EnvironmentMap map = read_map(o.map, o.quiet);
+    const EnvironmentMap map = read_map(o.map, o.run.quiet);
     SplitSumSettings settings = o.settings;
     settings.frame = frame_of(o.map);
     if (o.outputs.empty()) settings.sphere_size = 0;
-    const auto begin = std::chrono::steady_clock::now();
-    auto seconds = [&] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    };
-    ProgressLine line(o.quiet);
-    settings.progress = [&](double fraction) {
-        if (line.due(seconds()))
-            line.show("bake", percent_text(fraction) + " of the report, " + duration_text(seconds()));
-    };
-    settings.cancel = &cancel_on_signals();
+    BakeRun bake(o.run.quiet, "the report");
+    settings.progress = bake.progress();
+    settings.cancel = bake.cancel();
     const SplitSumReport report = split_sum_report(map, settings);
-    line.finish();
-    if (report.cancelled) {
-        std::fprintf(stderr, "montelux: interrupted, nothing was written\n");
-        return exit_interrupted;
-    }
-    finish_on_signals();
+    if (bake.interrupted(report.cancelled)) return exit_interrupted;
     WriteOptions writing;
     writing.exposure = o.exposure;
     for (const std::string& path : o.outputs) write_image(path, report.spheres, writing);
-    if (o.json)
+    if (o.run.json)
         print_json(o, report);
-    else if (!o.quiet)
+    else if (!o.run.quiet)
         print_text(report);
     return exit_done;
 }
@@ -126,16 +110,12 @@ void add_bake_report(CLI::App& bake, int& exit_code) {
         ->check(CLI::Range(-100.0, 100.0))
         ->type_name("STOPS");
     command->add_option("--seed", s.seed, "Another seed, other noise")->type_name("N");
-    command->add_option("--threads", o->threads, "Threads at most; 0: one a processor")
-        ->type_name("N")
-        ->check(CLI::Range(0, most_threads));
-    command->add_flag("--json", o->json, "Print the table as JSON");
-    command->add_flag("--quiet", o->quiet, "Print nothing but errors and warnings");
+    declare(*command, o->run);
     command->footer(
         "split - full is the mean difference beside the mean of the integral over random orientations, with "
         "its standard error;\nrms is the root of the mean squared difference.\n\n"
         "Example:\n  montelux bake report sky.hdr -o spheres.png --exposure -1");
-    command->callback([o, &exit_code] { exit_code = with_threads(o->threads, [&] { return run(*o); }); });
+    on_command(*command, o->run, exit_code, [o] { return run(*o); });
 }
 
 } // namespace montelux::app

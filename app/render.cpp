@@ -281,6 +281,8 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
             print_statistics(report, load_seconds, renderer.build_seconds());
             for (const EnvironmentSampler& map : renderer.tables().lights().environments())
                 std::printf("environment        %s\n", map.description().c_str());
+            for (const PortalSampler& map : renderer.tables().lights().portals())
+                std::printf("environment        %s\n", map.description().c_str());
             shared.print_statistics();
         }
     }

@@ -246,6 +246,9 @@ void declare(CLI::App& c, RenderOptions& o) {
         c, "--environment-compensation", "on|off", o.environment_compensation, parse_on_off,
         "For the strategy mis and its terms: maps are not sampled where BSDFs find them as well: on, off. "
         "Default: on");
+    add_choice(
+        c, "--environment-lookup", o.environment_lookup, environment_lookup_names,
+        "What environment maps are between the centres of their texels; nearest, the default, is pbrt's: ");
     add_whole_number(c, "--max-depth", o.max_depth, 0, 1'000'000, "Scattering events of a path at most");
     add_parsed(c, "--debug-sample", "x,y,index", o.debug_sample, parse_sample,
                "Render no picture: trace this one sample of the render and print its path, vertex by vertex");
@@ -297,6 +300,7 @@ void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.heuristic) d.integrator.heuristic = *o.heuristic;
     if (o.environment_sampling) d.integrator.environment_sampling = *o.environment_sampling;
     if (o.environment_compensation) d.integrator.environment_compensation = *o.environment_compensation;
+    if (o.environment_lookup) d.integrator.environment_lookup = *o.environment_lookup;
     if (o.max_depth) d.integrator.max_depth = static_cast<int>(*o.max_depth);
     if (o.clamp) d.film.max_component_value = static_cast<float>(*o.clamp);
 }

@@ -42,6 +42,7 @@ struct RenderOptions {
     std::optional<Heuristic> heuristic;
     std::optional<EnvironmentSampling> environment_sampling;
     std::optional<bool> environment_compensation;
+    std::optional<EnvironmentLookup> environment_lookup;
     std::optional<SampleAddress> debug_sample; // is traced alone, instead of a render
     int threads = 0;
     double rank_timeout = 60; // seconds

@@ -61,6 +61,8 @@ const char* name_of(const Light& light) {
         const char* operator()(const DistantLight&) const { return "distant light"; }
         const char* operator()(const UniformInfiniteLight&) const { return "uniform sky"; }
         const char* operator()(const ImageInfiniteLight&) const { return "environment map"; }
+        const char* operator()(const SkyLight&) const { return "sky"; }
+        const char* operator()(const SunLight&) const { return "sun"; }
     };
     return std::visit(Names{}, light);
 }

@@ -1,5 +1,6 @@
 // Noise of the ways to sample environment light: variance a sample of each, beside BSDF sampling and joined
 // with it, for maps and materials of all sorts (docs/environment-light.md).
+#include "bench/environment_estimate.h"
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -7,31 +8,18 @@
 #include <string>
 #include <vector>
 
-#include "montelux/image/image_read.h"
-#include "montelux/mc/integrate/mis.h"
-#include "montelux/mc/math/error.h"
-#include "montelux/mc/math/frame.h"
 #include "montelux/mc/parallel/parallel_for.h"
-#include "montelux/mc/random/sample_stream.h"
 #include "montelux/mc/stats/moments.h"
 #include "montelux/mc/warp/sphere.h"
-#include "montelux/scene/bsdf/bsdf.h"
-#include "montelux/scene/light/environment/environment_sampler.h"
 
 using namespace montelux;
+using namespace montelux::bench;
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
-// A map, what it shines of, and a way to sample it.
-struct Light {
-    const std::vector<float>& radiance; // of each texel
-    const EnvironmentSampler* sampler;
-};
-
-enum class Use { light, bsdf, balance, power };
 struct Way {
     const char* name;
     EnvironmentSampling sampling;
@@ -52,49 +40,12 @@ constexpr Way ways[] = {{"BSDF alone", tabulated, false, Use::bsdf},
                         {"MIS, balance: tabulated, not compensated", tabulated, false, Use::balance},
                         {"tabulated", tabulated, true, Use::balance}};
 
-constexpr int normals = 24;
-// Normals spread over the sphere, seen at 45 degrees.
-Frame frame_of(int i) {
-    const double z = 1 - (2 * i + 1.0) / normals, phi = 2 * pi * i * 0.6180339887;
-    const double r = std::sqrt(1 - z * z);
-    return Frame::from_normal(Vec3f(Vec3d(r * std::cos(phi), r * std::sin(phi), z)));
-}
-
-// One sample, of one direction or of two joined by MIS.
-double estimate(const Light& light, const Bsdf& bsdf, const Frame& frame, Use use, SampleStream& stream) {
-    const Vec3f wo = normalize(Vec3f{1, 0, 1});
-    const EnvironmentGrid& grid = light.sampler->grid();
-    auto weight = [use](float f, float g) {
-        if (use == Use::balance) return balance_heuristic(1, f, 1, g);
-        return use == Use::power ? power_heuristic(1, f, 1, g) : 1.0f;
-    };
-    double sum = 0;
-    std::visit(
-        [&](const auto& b) {
-            if (use != Use::bsdf) {
-                const Vec2f u = stream.next_2d();
-                const EnvironmentPoint s = light.sampler->sample(u);
-                const BsdfEvaluation e =
-                    b.evaluate(wo, frame.to_local(grid.direction(s.grid)), TransportMode::radiance, stream);
-                sum += double(e.f[0]) * double(light.radiance[grid.texel(s.grid)]) *
-                       double(weight(s.pdf, e.pdf) / s.pdf);
-            }
-            if (use == Use::light) return;
-            const auto s = b.sample(wo, TransportMode::radiance, stream);
-            if (!s) return;
-            const Vec2f place = grid.locate(normalize(frame.to_world(s->wi)));
-            sum += double(s->weight[0]) * double(light.radiance[grid.texel(place)]) *
-                   double(use == Use::bsdf ? 1.0f : weight(s->pdf, light.sampler->pdf(place)));
-        },
-        bsdf);
-    return sum;
-}
-
 struct Noise {
     double independent = 0, sobol = 0; // variance a sample over squared mean, both summed over the normals
     double mean = 0, error = 0;
 };
-Noise noise_of(const Light& light, const Bsdf& bsdf, Use use, std::uint32_t samples) {
+Noise noise_of(const EnvironmentPicture& map, const EnvironmentSampler& sampler, const Bsdf& bsdf, Use use,
+               std::uint32_t samples) {
     constexpr std::uint32_t points = 64;
     std::vector<Noise> all(normals);
     parallel_for(normals, [&](std::int64_t n) {
@@ -107,8 +58,8 @@ Noise noise_of(const Light& light, const Bsdf& bsdf, Use use, std::uint32_t samp
         for (std::uint32_t i = 0; i < samples; ++i) {
             SampleStream a(random, static_cast<std::uint32_t>(n), 0, i),
                 b(sobol, static_cast<std::uint32_t>(n), 0, i);
-            independent.add(estimate(light, bsdf, frame, use, a));
-            sum += estimate(light, bsdf, frame, use, b);
+            independent.add(estimate(map.radiance, sampler, bsdf, frame, use, a));
+            sum += estimate(map.radiance, sampler, bsdf, frame, use, b);
             if (i % points == points - 1) {
                 sets.add(sum / points);
                 sum = 0;
@@ -153,29 +104,16 @@ double nanoseconds(const EnvironmentSampler& sampler) {
 }
 
 int run(const std::vector<std::string>& files, std::uint32_t samples) {
-    const SampledSpectrum white(1), eta(0.2f), k(3.9f);
-    const struct {
-        const char* name;
-        Bsdf bsdf;
-    } materials[] = {{"diffuse", DiffuseBsdf{white}},
-                     {"conductor, alpha 0.3", ConductorBsdf{eta, k, {0.3f, 0.3f}}},
-                     {"conductor, alpha 0.05", ConductorBsdf{eta, k, {0.05f, 0.05f}}}};
+    const std::vector<EnvironmentMaterial> materials = environment_materials();
     for (const std::string& file : files) {
         const std::filesystem::path path(file);
-        const Image picture = read_image(path).to_linear_f32();
-        const auto layout = layout_of_size(picture.width(), picture.height());
-        if (!layout || picture.channels() < 3) throw Error(file, "expected an RGB map, square or 2 : 1");
-        const EnvironmentGrid grid(*layout, picture.width(), picture.height());
-        std::vector<float> radiance(grid.texel_count());
-        for (std::size_t i = 0; i < radiance.size(); ++i)
-            for (std::size_t c = 0; c < 3; ++c)
-                radiance[i] += picture.value_at(i * static_cast<std::size_t>(picture.channels()) + c) / 3;
+        const EnvironmentPicture map = read_environment(path);
         std::printf("\n%s\n", path.filename().c_str());
         std::vector<EnvironmentSampler> samplers;
         for (const bool compensated : {false, true})
             for (const EnvironmentSampling s : {tabulated, median_cut, structured}) {
                 const auto begin = Clock::now();
-                samplers.emplace_back(picture, *layout, EnvironmentSettings{s, compensated});
+                samplers.emplace_back(map.image, map.layout, EnvironmentSettings{s, compensated});
                 const double seconds = seconds_since(begin);
                 std::printf("  %s: built in %.0f ms, %.0f ns a direction and a density\n",
                             samplers.back().description().c_str(), 1e3 * seconds,
@@ -191,7 +129,7 @@ int run(const std::vector<std::string>& files, std::uint32_t samples) {
             std::printf("| %s |", way.name);
             double worst = 0;
             for (std::size_t m = 0; m < 3; ++m) {
-                const Noise n = noise_of({radiance, &samplers[index]}, materials[m].bsdf, way.use, samples);
+                const Noise n = noise_of(map, samplers[index], materials[m].bsdf, way.use, samples);
                 std::printf(" %.4g | %.4g |", n.independent, n.sobol);
                 // Against uncompensated MIS, which is the fifth.
                 if (errors[m] > 0)

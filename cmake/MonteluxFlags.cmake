@@ -18,8 +18,6 @@ endif()
 if(MONTELUX_SANITIZE)
     target_compile_options(montelux_flags INTERFACE
         -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
-    # The address sanitizer sees these two as well; twice, they would cost a sixth of the build.
-    target_compile_options(montelux_flags INTERFACE -fno-sanitize=null,object-size)
     # Outside the integrals, tests wait for the compiler longer than for what it made.
     target_compile_options(montelux_flags INTERFACE
         "$<$<NOT:$<OR:$<CONFIG:Debug>,$<BOOL:$<FILTER:$<TARGET_PROPERTY:NAME>,INCLUDE,^mc_(integrate|random)|_room_mc_>>>>:-Og>")

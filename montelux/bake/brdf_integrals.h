@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "montelux/bake/quadrature.h"
+#include "montelux/mc/math/quadrature.h"
 
 namespace montelux {
 

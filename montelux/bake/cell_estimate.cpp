@@ -11,7 +11,6 @@
 namespace montelux {
 namespace {
 
-constexpr int samples_per_cell = 2;
 constexpr double least_allowed = 1e-30; // in units of the map's energy times the kernel: nothing
 
 float half_square(float chord) { return 0.5f * chord * chord; }
@@ -32,12 +31,14 @@ void CellEstimator::split(const Cell& parent) {
     }
 }
 
-void CellEstimator::cut(Vec3f direction, float allowed, std::size_t most) {
+bool CellEstimator::cut(Vec3f direction, float allowed, std::size_t most) {
     cells_.clear();
     open_.clear();
     const MapCell whole{map_.top_level(), 0, 0};
     if (map_.energy_sum(whole) > 0) open_.push_back({whole, map_.energy_sum(whole), 0});
     const float width = std::min(1.0f, 2 * std::sqrt(kernel_.a));
+    std::size_t samples = 0;
+    bool limited = false;
     // Coarse to fine, so that a limit on their number leaves no part of the map out.
     while (!open_.empty()) {
         next_.clear();
@@ -48,16 +49,23 @@ void CellEstimator::cut(Vec3f direction, float allowed, std::size_t most) {
             cell.kernel = kernel_(half_square(chord));
             const float nearest = kernel_(half_square(std::max(0.0f, chord - ball.radius)));
             const float farthest = kernel_(std::min(2.0f, half_square(chord + ball.radius)));
-            const bool fine = allowed > 0 ? cell.sum * (nearest - farthest) <= allowed
-                                          : nearest == 0 || ball.radius < 0.5f * (chord + width);
+            const float bound = cell.sum * (nearest - farthest);
+            const bool fine =
+                allowed > 0 ? bound <= allowed : nearest == 0 || ball.radius < 0.5f * (chord + width);
             const std::size_t waiting = open_.size() - i + next_.size();
-            if (fine || cell.cell.level <= map_.lowest_level() || cells_.size() + waiting + 3 > most)
+            const bool full = samples + most_samples * (waiting + 3) > most;
+            if (fine || full || cell.cell.level <= map_.lowest_level()) {
+                limited |= full && !fine;
+                cell.samples = bound > 0.5f * allowed ? most_samples : fewest_samples;
+                samples += cell.samples;
                 cells_.push_back(cell);
-            else
+            } else {
                 split(cell);
+            }
         }
         std::swap(open_, next_);
     }
+    return limited;
 }
 
 Vec3f CellEstimator::energy_of(const MapCell& cell) const {
@@ -67,14 +75,15 @@ Vec3f CellEstimator::energy_of(const MapCell& cell) const {
 }
 
 TexelEstimate CellEstimator::sample_cells(Vec3f direction, std::uint64_t key, std::uint32_t round) const {
-    Vec3d value, variance;
+    StratifiedSum beyond;
+    Vec3d centres;
     const std::array<std::uint32_t, 2> key_words{static_cast<std::uint32_t>(key),
                                                  static_cast<std::uint32_t>(key >> 32)};
     for (std::size_t i = 0; i < cells_.size(); ++i) {
         const Cell& cell = cells_[i];
         const Vec3f energy = energy_of(cell.cell);
-        std::array<Vec3f, samples_per_cell> beyond;
-        for (std::uint32_t k = 0; k < samples_per_cell; ++k) {
+        std::array<Vec3d, most_samples> drawn_here;
+        for (std::uint32_t k = 0; k < cell.samples; ++k) {
             const auto bits = philox4x32<>({static_cast<std::uint32_t>(i), k, round, 0}, key_words);
             MapCell at = cell.cell;
             Vec3f drawn = energy;
@@ -83,26 +92,23 @@ TexelEstimate CellEstimator::sample_cells(Vec3f direction, std::uint64_t key, st
                 drawn = map_.energy(at) * (cell.sum / map_.energy_sum(at));
             }
             const Vec3f w = map_.direction(at, unit_float(bits[2]), unit_float(bits[3]));
-            beyond[k] = drawn * (kernel_(half_square(length(w - direction))) - cell.kernel);
+            drawn_here[k] = Vec3d(drawn * (kernel_(half_square(length(w - direction))) - cell.kernel));
         }
-        const Vec3d half_difference = Vec3d(beyond[0] - beyond[1]) * 0.5;
-        value += Vec3d(energy) * static_cast<double>(cell.kernel) + Vec3d(beyond[0] + beyond[1]) * 0.5;
-        variance += multiply(half_difference, half_difference);
+        centres += Vec3d(energy) * static_cast<double>(cell.kernel);
+        beyond.add(std::span(drawn_here).first(cell.samples));
     }
     TexelEstimate estimate;
     const auto unit = static_cast<double>(map_.unit());
-    estimate.value = value * unit;
-    estimate.standard_error =
-        Vec3d{std::sqrt(variance.x), std::sqrt(variance.y), std::sqrt(variance.z)} * unit;
-    estimate.samples = cells_.size() * samples_per_cell;
+    estimate.value = (centres + beyond.value()) * unit;
+    estimate.standard_error = beyond.standard_error() * unit;
+    for (const Cell& cell : cells_) estimate.samples += cell.samples;
     return estimate;
 }
 
 TexelEstimate CellEstimator::estimate(Vec3f direction, const TexelGoal& goal, std::uint64_t key) {
     const auto unit = static_cast<double>(map_.unit());
-    const std::size_t most =
-        static_cast<std::size_t>(std::max<std::uint64_t>(1, goal.samples / samples_per_cell));
-    cut(direction, 0, std::min<std::size_t>(most, 1024));
+    const auto most = static_cast<std::size_t>(goal.samples);
+    cut(direction, 0, std::min<std::size_t>(most, 2048));
     double guess = 0; // sum of channels
     for (const Cell& cell : cells_) guess += static_cast<double>(cell.sum) * static_cast<double>(cell.kernel);
     const double floor = 3 * goal.floor / unit;
@@ -112,11 +118,11 @@ TexelEstimate CellEstimator::estimate(Vec3f direction, const TexelGoal& goal, st
         // The finest cut that stays below the number.
         bool too_many = false;
         for (int attempt = 0; attempt < 60; ++attempt) {
-            cut(direction, static_cast<float>(std::max(allowed, least_allowed)), most);
-            if (cells_.size() + 3 >= most) {
+            const bool limited = cut(direction, static_cast<float>(std::max(allowed, least_allowed)), most);
+            if (limited) {
                 too_many = true;
                 allowed *= 1.5;
-            } else if (!too_many && 2 * cells_.size() < most && allowed > least_allowed) {
+            } else if (!too_many && 4 * cells_.size() < most && allowed > least_allowed) {
                 allowed *= 0.35;
             } else {
                 break;
@@ -126,12 +132,11 @@ TexelEstimate CellEstimator::estimate(Vec3f direction, const TexelGoal& goal, st
     }
     std::uint64_t samples = 0;
     for (std::uint32_t round = 0;; ++round) {
-        cut(direction, static_cast<float>(std::max(allowed, least_allowed)), most);
+        const bool exhausted = cut(direction, static_cast<float>(std::max(allowed, least_allowed)), most);
         TexelEstimate estimate = sample_cells(direction, key, round);
         samples += estimate.samples;
         const double missed = missed_by(estimate, goal, relative);
         estimate.met = missed <= 1;
-        const bool exhausted = cells_.size() + 3 >= most;
         if (estimate.met || exhausted || round == 30) {
             estimate.samples = samples;
             return estimate;

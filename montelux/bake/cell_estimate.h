@@ -13,10 +13,11 @@ namespace montelux {
 // The kernel is known, the map is known, and their product is not: the map's quadtree is cut into cells over
 // which the kernel varies little, each by as much as it may contribute to the error, so that a sun comes in
 // small pieces and the rest of the sky in large ones. A cell gives its exact energy times the kernel at its
-// middle, plus the mean of what the kernel differs from that at two directions drawn in proportion to the
-// map's sum of channels: unbiased, and no value of the map is ever met by chance. The difference of the two
-// gives the variance of each cell, and their sum that of the texel. A cut that misses the target is made
-// finer, and only the last round counts.
+// middle, plus the mean of what the kernel differs from that at two or four directions drawn in proportion to
+// the map's sum of channels: unbiased, and no value of the map is ever met by chance. Their differences give
+// the variance of each cell, and the sum of those that of the texel; the cells that may have most of it get
+// four, so that it is known better. A cut that misses the target is made finer, and only the last round
+// counts.
 class CellEstimator {
   public:
     CellEstimator(const EnvironmentMap& map, const RadialKernel& kernel) : map_(map), kernel_(kernel) {}
@@ -25,15 +26,18 @@ class CellEstimator {
     TexelEstimate estimate(Vec3f direction, const TexelGoal& goal, std::uint64_t key);
 
   private:
+    static constexpr std::uint32_t fewest_samples = 2, most_samples = 4; // of a cell
+
     struct Cell {
         MapCell cell;
         float sum = 0;    // of its energy's channels
         float kernel = 0; // at the middle
+        std::uint32_t samples = fewest_samples;
     };
     // Fills cells_: those whose energy times the kernel's range in them is at most `allowed`, or the best
-    // that `most` cells can do. Without `allowed`, cells that are small beside their distance and the
-    // kernel's width.
-    void cut(Vec3f direction, float allowed, std::size_t most);
+    // that `most` samples can do. Without `allowed`, cells that are small beside their distance and the
+    // kernel's width. Returns whether `most` was the limit.
+    bool cut(Vec3f direction, float allowed, std::size_t most);
     void split(const Cell& cell);
     Vec3f energy_of(const MapCell& cell) const;
     TexelEstimate sample_cells(Vec3f direction, std::uint64_t key, std::uint32_t round) const;

@@ -4,19 +4,13 @@
 
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "montelux/image/image.h"
 #include "montelux/mc/math/vec.h"
+#include "montelux/scene/light/environment/environment_grid.h"
 
 namespace montelux {
-
-enum class MapLayout {
-    equirectangular, // columns by longitude, rows by colatitude
-    equal_area       // the square octahedral map of Clarberg 2008 that pbrt-v4 takes
-};
-std::string_view name_of(MapLayout layout);
 
 // What had to be done to the texels of a map before it made sense as light.
 struct MapRepairs {
@@ -41,11 +35,9 @@ class EnvironmentMap {
 
     // Colour channels R, G, B or Y of the image as linear light; NaN, infinite and negative samples become 0.
     // Throws Error when there are none, or an equal-area map is not square.
-    EnvironmentMap(const Image& image, MapLayout layout);
+    EnvironmentMap(const Image& image, EnvironmentLayout layout);
 
-    int width() const { return width_; }
-    int height() const { return height_; }
-    MapLayout layout() const { return layout_; }
+    const EnvironmentGrid& grid() const { return grid_; }
     const MapRepairs& repairs() const { return repairs_; }
     // The level of the one block that is the whole map.
     int top_level() const { return static_cast<int>(levels_.size()) - 1; }
@@ -56,6 +48,7 @@ class EnvironmentMap {
 
     // Of the texel that a unit direction meets; at a level above 0, mean of the block that it lies in.
     Vec3f radiance(Vec3f direction, int level = 0) const;
+    Vec3f radiance(const MapCell& block) const;
 
     // Integral of radiance over a block of level 0 or more in units of `unit`, a power of two that keeps it
     // clear of overflow; and the sum of the three channels.
@@ -109,22 +102,17 @@ class EnvironmentMap {
         return ((static_cast<std::size_t>(y / 2) * pairs + x / 2) << 2) | ((y & 1) << 1) | (x & 1);
     }
     static void allocate(Level& level);
-    Vec2i texel_at(Vec3f direction) const;
-    // Of a point of the map, in texels.
-    Vec3f direction_at(double x, double y) const;
-    void fill_texels(const Image& image, std::vector<float>& texels);
+    MapCell texel_at(Vec3f direction) const;
+    std::vector<float> texels_of(const Image& image);
     void add_level();
     void add_geometry(Level& level, int l) const;
     Ball ball_of_block(int x, int y, int size) const;
     Ball ball_of_range(double x0, double x1, double y0, double y1) const;
 
-    MapLayout layout_;
-    int width_ = 0, height_ = 0;
     MapRepairs repairs_;
+    EnvironmentGrid grid_;
     float unit_ = 1;
     std::vector<Level> levels_;
-    std::vector<double> row_z_;             // equirectangular: cosines of the colatitudes between rows
-    std::vector<double> texel_solid_angle_; // one a row
 };
 
 } // namespace montelux

@@ -15,7 +15,7 @@
 namespace montelux {
 
 LobeEstimator::LobeEstimator(const EnvironmentMap& map, double alpha, bool source_mips)
-    : map_(map), alpha_(alpha), source_mips_(source_mips) {
+    : map_(map), alpha_(alpha), half_vectors_(alpha), source_mips_(source_mips) {
     // Directions have the density D / 4, and the kernel is D n.l over its integral.
     const RadialKernel kernel = RadialKernel::ggx(alpha);
     mean_cosine_ = alpha * alpha * inv_four_pi / static_cast<double>(kernel.norm);
@@ -30,17 +30,16 @@ Vec3d LobeEstimator::sum_of_points(const Vec3f (&axes)[3], std::uint64_t key, st
             owen_scramble_reversed(sobol_coordinate_reversed(i, 0), static_cast<std::uint32_t>(key))));
         const double v = unit_double(reverse_bits(
             owen_scramble_reversed(sobol_coordinate_reversed(i, 1), static_cast<std::uint32_t>(key >> 32))));
-        // Walter et al. 2007, equation 35; n.l = 2 (n.h)^2 - 1.
-        const double cosine2 = (1 - u) / (1 - u + alpha2 * u), sine2 = alpha2 * u / (1 - u + alpha2 * u);
-        const double n_dot_l = cosine2 - sine2;
+        // n is the view: the direction leaves it by twice the angle of the half vector.
+        const double tan2 = half_vectors_.squared_tangent_quantile(u), n_dot_l = (1 - tan2) / (1 + tan2);
         if (!(n_dot_l > 0)) continue;
-        const auto radius = static_cast<float>(2 * std::sqrt(cosine2 * sine2));
+        const auto radius = static_cast<float>(2 * std::sqrt(tan2) / (1 + tan2));
         const auto phi = static_cast<float>(2 * pi * v);
         const Vec3f l = axes[0] * (radius * std::cos(phi)) + axes[1] * (radius * std::sin(phi)) +
                         axes[2] * static_cast<float>(n_dot_l);
         Vec3f radiance;
         if (source_mips_) {
-            const double t = sine2 + alpha2 * cosine2; // D = alpha^2 / (pi t^2)
+            const double t = (1 - n_dot_l) / 2 + alpha2 * (1 + n_dot_l) / 2; // D = alpha^2 / (pi t^2)
             const double texels = solid_angle_scale * t * t / alpha2;
             const double level =
                 std::clamp(0.5 * std::log2(texels), 0.0, static_cast<double>(map_.top_level()));
@@ -63,7 +62,7 @@ TexelEstimate LobeEstimator::estimate(Vec3f direction, const TexelGoal& goal, st
     std::uint32_t points = goal.target_error > 0 ? std::min<std::uint32_t>(least_points, most) : most;
     // Solid angle of a sample of the first round over that of a texel, but for 1 / D: the density is D / 4.
     // The factor 4 is one level more, as Krivanek and Colbert advise.
-    const double texel = 4 * pi / (static_cast<double>(map_.width()) * map_.height());
+    const double texel = 4 * pi / (static_cast<double>(map_.grid().width()) * map_.grid().height());
     const double solid_angle_scale = 4 * 4 * pi / (static_cast<double>(points) * replicates * texel);
     std::array<Vec3d, replicates> sums{};
     std::uint32_t done = 0;

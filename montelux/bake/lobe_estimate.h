@@ -6,6 +6,7 @@
 #include "montelux/bake/environment_map.h"
 #include "montelux/bake/radial_kernel.h"
 #include "montelux/bake/texel_estimate.h"
+#include "montelux/mc/dist/family/ggx_angle.h"
 
 namespace montelux {
 
@@ -29,6 +30,7 @@ class LobeEstimator {
 
     const EnvironmentMap& map_;
     double alpha_;
+    GgxAngleDistribution half_vectors_;
     bool source_mips_;
     double mean_cosine_; // of n.l over the directions that are drawn, those below the horizon counting 0
 };

@@ -83,6 +83,7 @@ bool bake_level(const EnvironmentMap& map, const LevelTask& task, const BakeSett
         auto bake_run = [&](std::int64_t r) {
             Tally local;
             CellEstimator cells(map, kernel);
+            AreaEstimator areas(map, settings.frame);
             const std::uint64_t first = begin + static_cast<std::uint64_t>(r) * run;
             for (std::uint64_t i = first; i < std::min(end, first + run); ++i) {
                 const auto size = static_cast<std::uint64_t>(task.size);
@@ -91,7 +92,7 @@ bool bake_level(const EnvironmentMap& map, const LevelTask& task, const BakeSett
                 const std::uint64_t key = hash_key(settings.seed, task.stream, i);
                 TexelEstimate e;
                 if (task.roughness == 0) {
-                    e = estimate_texel_mean(map, settings.frame, texel, task.size, goal, key);
+                    e = areas.estimate(texel, task.size, goal, key);
                 } else {
                     const Vec3f direction(settings.frame.to_map(cube_texel_direction(texel, task.size)));
                     e = by_lobe ? lobe.estimate(direction, goal, key) : cells.estimate(direction, goal, key);
@@ -153,6 +154,13 @@ std::vector<double> linear_roughness(int levels) {
 std::vector<double> filament_roughness(int levels) {
     std::vector<double> roughness = linear_roughness(levels);
     for (double& r : roughness) r = 1 - std::sqrt(1 - r);
+    return roughness;
+}
+
+std::vector<double> babylon_roughness(int levels, int size) {
+    std::vector<double> roughness;
+    for (int i = 0; i < levels; ++i)
+        roughness.push_back(i == 0 ? 0 : std::sqrt(std::min(1.0, std::exp2(i / 0.8) / size)));
     return roughness;
 }
 

@@ -53,8 +53,11 @@ struct BakedCubes {
 // Perceptual roughness of each level, alpha = roughness^2.
 // linear:   level / (levels - 1), which most engines take.
 // filament: 1 - sqrt(1 - level / (levels - 1)), the inverse of its level = (levels - 1) r (2 - r).
+// babylon:  alpha = 2^(level / 0.8) / size, at most 1, the inverse of its level = 0.8 log2(size alpha); 0 at
+//           level 0.
 std::vector<double> linear_roughness(int levels);
 std::vector<double> filament_roughness(int levels);
+std::vector<double> babylon_roughness(int levels, int size);
 // Levels from `size` down to 16 texels, or the one where there is no more.
 int usual_levels(int size);
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "montelux/bake/quadrature.h"
+#include "montelux/mc/math/quadrature.h"
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/parallel/parallel_for.h"
 
@@ -41,13 +41,13 @@ Vec3d DiffuseHarmonics::irradiance_at(Vec3d normal) const {
 DiffuseHarmonics diffuse_harmonics(const EnvironmentMap& map, const CubeFrame& frame) {
     // Parts of texels on small maps, so that two nodes a side do for a part, and one where texels are tiny:
     // the functions' curvature leaves an error of 2e-6.
-    const int parts = std::clamp(256 / std::min(map.width(), map.height()), 1, 256);
-    const auto rule = gauss_legendre_rule(std::min(map.width(), map.height()) < 512 ? 2 : 1);
-    const auto rows = static_cast<std::int64_t>(map.height());
+    const int width = map.grid().width(), height = map.grid().height(), shorter = std::min(width, height);
+    const int parts = std::clamp(256 / shorter, 1, 256);
+    const auto rule = gauss_legendre_rule(shorter < 512 ? 2 : 1);
     auto row_sum = [&](std::int64_t row) {
         Coefficients sum{};
         const int y = static_cast<int>(row);
-        for (int x = 0; x < map.width(); ++x) {
+        for (int x = 0; x < width; ++x) {
             const Vec3d energy(map.energy({0, x, y}));
             if (energy.x == 0 && energy.y == 0 && energy.z == 0) continue;
             std::array<double, sh_terms> mean{};
@@ -67,7 +67,7 @@ DiffuseHarmonics diffuse_harmonics(const EnvironmentMap& map, const CubeFrame& f
         return sum;
     };
     const Coefficients sum =
-        parallel_reduce_ordered(rows, row_sum, [](Coefficients a, const Coefficients& b) {
+        parallel_reduce_ordered(height, row_sum, [](Coefficients a, const Coefficients& b) {
             for (std::size_t k = 0; k < a.size(); ++k) a[k] += b[k];
             return a;
         });

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "montelux/mc/math/vec.h"
 
@@ -22,6 +24,39 @@ struct TexelEstimate {
     Vec3d value, standard_error;
     std::uint64_t samples = 0; // in all rounds
     bool met = true;
+};
+
+// Sum of strata with a few samples each, and its standard error. Two samples tell their variance with one
+// degree of freedom only, and few strata may hold most of it: the error is that of Student's law with as many
+// degrees of freedom nu as Satterthwaite (1946) gives the sum, so that the mean square of deviation over
+// error is 1.
+class StratifiedSum {
+  public:
+    // At least two samples of one stratum, whose mean is what it adds.
+    void add(std::span<const Vec3d> samples) {
+        const auto n = static_cast<double>(samples.size());
+        Vec3d mean, squares;
+        for (const Vec3d& s : samples) mean += s * (1 / n);
+        for (const Vec3d& s : samples) squares += multiply(s - mean, s - mean);
+        const Vec3d variance = squares * (1 / (n * (n - 1))); // of the mean
+        value_ += mean;
+        variance_ += variance;
+        // The mean of s^4 is (n + 1) / (n - 1) sigma^4 for normal samples.
+        inverse_ += multiply(variance, variance) * (1 / (n + 1));
+    }
+    Vec3d value() const { return value_; }
+    Vec3d standard_error() const {
+        return {widened(variance_.x, inverse_.x), widened(variance_.y, inverse_.y),
+                widened(variance_.z, inverse_.z)};
+    }
+
+  private:
+    // 1 / nu = inverse / variance^2, at most 1/3; the variance of Student's law is nu / (nu - 2).
+    static double widened(double variance, double inverse) {
+        return variance > 0 ? std::sqrt(variance / (1 - 2 * inverse / (variance * variance))) : 0;
+    }
+
+    Vec3d value_, variance_, inverse_;
 };
 
 // How many times the error that the goal allows; 0 where a black texel has none.

@@ -70,7 +70,8 @@ std::array<Fingerprint, 6> fingerprints(const SceneDescription& d, const RenderT
              {"integrator", hash_of(d.integrator.max_depth, static_cast<int>(d.integrator.strategy),
                                     static_cast<int>(d.integrator.heuristic),
                                     static_cast<int>(d.integrator.environment_sampling),
-                                    d.integrator.environment_compensation)},
+                                    d.integrator.environment_compensation,
+                                    static_cast<int>(d.integrator.environment_lookup))},
              {"allocation of samples (--adaptive)", hash_of(target.adaptive)},
              {"slice", hash_of(target.slice.index, target.slice.count)}}};
 }

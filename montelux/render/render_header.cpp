@@ -50,6 +50,7 @@ void add_render_header(Image& image, const std::string& scene_name, const SceneD
     a["heuristic"] = std::string(name_of(description.integrator.heuristic));
     a["environmentSampling"] = std::string(name_of(description.integrator.environment_sampling));
     a["environmentCompensation"] = description.integrator.environment_compensation ? 1 : 0;
+    a["environmentLookup"] = std::string(name_of(description.integrator.environment_lookup));
     a["maxDepth"] = description.integrator.max_depth;
     a["seed"] = std::to_string(description.sampler.seed);
     a["renderSeconds"] = static_cast<float>(report.seconds);

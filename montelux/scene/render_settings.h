@@ -33,9 +33,11 @@ struct IntegratorSettings {
     EnvironmentSampling environment_sampling = EnvironmentSampling::automatic;
     // MIS compensation, of no effect but where light and BSDF samples are joined: by mis and its terms.
     bool environment_compensation = true;
+    EnvironmentLookup environment_lookup = EnvironmentLookup::nearest;
 
     EnvironmentSettings environments() const {
-        return {environment_sampling, environment_compensation && strategy >= Strategy::mis};
+        return {environment_sampling, environment_compensation && strategy >= Strategy::mis,
+                environment_lookup};
     }
 };
 

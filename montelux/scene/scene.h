@@ -8,6 +8,7 @@
 #include "montelux/image/image.h"
 #include "montelux/scene/camera/camera_settings.h"
 #include "montelux/scene/light/light.h"
+#include "montelux/scene/light/sky/sky_model.h"
 #include "montelux/scene/material/material.h"
 #include "montelux/scene/shape/shape.h"
 #include "montelux/scene/texture/texture.h"
@@ -36,6 +37,7 @@ struct Scene {
     std::vector<SpectrumTexture> spectrum_textures;
     std::vector<Image> images;       // of image textures
     std::vector<Image> environments; // maps of infinite lights, R, G, B linear
+    std::vector<SkyModel> skies;
 
     std::vector<Light> lights; // the area lights of one mesh stand side by side, one a triangle
     CameraSettings camera;

@@ -32,6 +32,8 @@ inline constexpr SettingNames<EnvironmentSampling, 4> environment_sampling_names
      {"tabulated", EnvironmentSampling::tabulated},
      {"median-cut", EnvironmentSampling::median_cut},
      {"structured", EnvironmentSampling::structured}}};
+inline constexpr SettingNames<EnvironmentLookup, 2> environment_lookup_names{
+    {{"nearest", EnvironmentLookup::nearest}, {"bilinear", EnvironmentLookup::bilinear}}};
 
 template <typename Setting, std::size_t n>
 constexpr std::string_view name_in(const SettingNames<Setting, n>& names, Setting value) {
@@ -44,6 +46,9 @@ constexpr std::string_view name_of(Strategy strategy) { return name_in(strategy_
 constexpr std::string_view name_of(Heuristic heuristic) { return name_in(heuristic_names, heuristic); }
 constexpr std::string_view name_of(EnvironmentSampling sampling) {
     return name_in(environment_sampling_names, sampling);
+}
+constexpr std::string_view name_of(EnvironmentLookup lookup) {
+    return name_in(environment_lookup_names, lookup);
 }
 
 } // namespace montelux

@@ -90,7 +90,7 @@ struct Path {
     PathRecorder recorder;
 
     SampledSpectrum radiance{}, throughput{1};
-    ReferencePoint previous{}; // the last vertex that scattered
+    ReferencePoint previous{}; // the last vertex that scattered; at first where the camera's ray begins
     float bsdf_pdf = 0;        // with which the current direction was sampled there
     bool sees_lights = true;   // no other strategy can have found the light that the ray hits
     float eta_scale = 1;       // squared index of refraction along the path, undone for Russian roulette
@@ -125,8 +125,8 @@ struct Path {
     void add_infinite_lights(Vec3f w) {
         const LightTables& lights = ps.tables.lights();
         for (Index light : lights.infinite_lights())
-            add_found_light(light, infinite_radiance(ps.scene, lights, light, w, lambda), [&] {
-                return lights.probability(light) * infinite_light_pdf(ps.scene, lights, light, w);
+            add_found_light(light, infinite_radiance(ps.scene, lights, light, previous.p, w, lambda), [&] {
+                return lights.probability(light) * infinite_light_pdf(ps.scene, lights, light, previous.p, w);
             });
     }
 
@@ -224,6 +224,7 @@ MONTELUX_ONE_COPY
 SampledSpectrum path_radiance(const PathScene& ps, RayTracer& tracer, Ray ray, SampledWavelengths& lambda,
                               SampleStream& stream, FirstHit* first, PathRecord* record) {
     Path path{ps, tracer, lambda, stream, PathRecorder(record)};
+    path.previous.p = ray.o;
     for (int depth = 0;;) {
         Hit hit;
         if (!tracer.intersect(ray, hit)) {

@@ -6,7 +6,9 @@ pfm sky.pfm 4 2 "$one" "$half" "$two" "$one" "$one" "$one" "$two" "$half" "$one"
     "$one" "$half" "$two" "$one" "$one" "$one" "$two" "$half" "$one" "$zero" "$half" "$one"
 
 # The table.
-expect 0 "32 x 32 texels, error below" bake brdf -o table.exr -o table.png -o table.ktx2 --size 32
+expect 0 "table.exr: 32 x 32 texels, error below" bake brdf -o table.exr -o table.png -o table.ktx2 --size 32
+expect 0 "table.png: 32 x 32 texels, error below 0.002," bake brdf -o table.png --size 32 # half of 1/255
+expect 0 "table.ktx2: 32 x 32 texels, error below 0.00026," bake brdf -o table.ktx2 --size 32 # 2^-12 of it
 expect 0 "error.G" info table.exr
 expect 0 "32 x 32 pixels" info table.png
 expect 0 '"largest_error_bound"' bake brdf -o filament.exr --size 8 --terms bias-sum --first-row rough --blue sheen --json
@@ -18,6 +20,20 @@ expect 1 "the extension '.gif'" bake brdf -o x.gif
 expect 2 "bake" bake
 expect 0 "environment" bake --help
 expect 0 "--target-error" bake environment --help
+
+# A sky.
+expect 0 "level ground gets" bake sky --elevation 20 --turbidity 3 -o clear.exr -o clear.hdr -o clear.pfm --size 64
+expect 0 "64 x 32 pixels" info clear.exr
+expect 0 '"sun_illuminance": 0.0' bake sky --elevation -3 -o dusk.pfm --size 16 --json
+expect 0 "level ground" bake sky --elevation 20 --turbidity 3 -o bare.pfm --size 64 --no-sun
+cmp -s clear.pfm bare.pfm && fail "--no-sun changes nothing"
+expect 0 "level ground" bake sky --elevation 20 --turbidity 3 -o again.pfm --size 64 --threads 1
+cmp -s clear.pfm again.pfm || fail "the number of threads changes the sky"
+expect 0 "texels" bake environment clear.exr --size 8 --levels 2 -o clear.ktx2
+expect 2 "--elevation" bake sky --elevation 91 -o x.exr
+expect 2 "--turbidity" bake sky --turbidity 0 -o x.exr
+expect 2 "an even number" bake sky --size 63 -o x.exr
+expect 2 "--output is required" bake sky
 
 # The chain, in all kinds of files.
 expect 0 "equirectangular map of 4 x 2 texels" bake environment sky.pfm --size 8 --levels 3 -o a.ktx2 -o a.ktx -o a.dds \
@@ -53,7 +69,7 @@ expect 2 "nothing is asked for" bake environment sky.pfm
 expect 2 "does not go with" bake environment sky.pfm -o x.exr --samples 10 --target-error 0.1
 expect 2 "needs --sampling lobe" bake environment sky.pfm -o x.exr --source-mips
 expect 0 "do not know of their bias" bake environment sky.pfm --size 4 -o x.exr --sampling lobe --source-mips --samples 64
-expect 2 "expected linear, filament, or numbers" bake environment sky.pfm -o x.exr --roughness 0,2
+expect 2 "expected linear, filament, babylon, or numbers" bake environment sky.pfm -o x.exr --roughness 0,2
 expect 2 "do not go together" bake environment sky.pfm -o x.exr --roughness 0,1 --levels 3
 expect 2 "at most 3 levels" bake environment sky.pfm -o x.exr --size 4 --levels 4
 expect 0 "0.4" bake environment sky.pfm --size 4 -o x.exr --roughness 0.4,0.8

@@ -1,4 +1,5 @@
 #include "test/bake/bake_testing.h"
+#include "test/near.h"
 #include <limits>
 
 #include "montelux/bake/cube_frame.h"
@@ -10,15 +11,9 @@
 namespace montelux {
 namespace {
 
-void expect_near(Vec3d a, Vec3d b, double tolerance) {
-    EXPECT_NEAR(a.x, b.x, tolerance);
-    EXPECT_NEAR(a.y, b.y, tolerance);
-    EXPECT_NEAR(a.z, b.z, tolerance);
-}
-
 TEST(CubeFrame, PutsTheMapWhereItsCommentsSay) {
     const Image image = random_map(32, 16);
-    const EnvironmentMap map(image, MapLayout::equirectangular);
+    const EnvironmentMap map(image, EnvironmentLayout::equirectangular);
     auto texel = [&](int x, int y) {
         return Vec3d{image.value(x, y, 0), image.value(x, y, 1), image.value(x, y, 2)};
     };
@@ -46,7 +41,7 @@ TEST(CubeFrame, PutsTheMapWhereItsCommentsSay) {
 TEST(EnvironmentMap, BlocksHoldTheEnergyOfTheirTexels) {
     for (auto [width, height] : {std::pair{1, 1}, {2, 1}, {7, 5}, {16, 8}, {33, 17}}) {
         const Image image = random_map(width, height, 1e30f);
-        const EnvironmentMap map(image, MapLayout::equirectangular);
+        const EnvironmentMap map(image, EnvironmentLayout::equirectangular);
         // Solid angles by the cosines of the colatitudes.
         Vec3d sum;
         for (int y = 0; y < height; ++y)
@@ -67,13 +62,13 @@ TEST(EnvironmentMap, BlocksHoldTheEnergyOfTheirTexels) {
 
 // Balls hold their cells, directions come back to their texels, for both layouts and parts of texels too.
 TEST(EnvironmentMap, BallsHoldTheirCells) {
-    for (MapLayout layout : {MapLayout::equirectangular, MapLayout::equal_area}) {
-        const Image image = layout == MapLayout::equal_area ? random_map(20, 20) : random_map(37, 19);
+    for (EnvironmentLayout layout : {EnvironmentLayout::equirectangular, EnvironmentLayout::equal_area}) {
+        const Image image = layout == EnvironmentLayout::equal_area ? random_map(20, 20) : random_map(37, 19);
         const EnvironmentMap map(image, layout);
         PhiloxStream stream(3);
         for (int i = 0; i < 20000; ++i) {
-            const int x = static_cast<int>(stream.next_1d() * static_cast<float>(map.width()));
-            const int y = static_cast<int>(stream.next_1d() * static_cast<float>(map.height()));
+            const int x = static_cast<int>(stream.next_1d() * static_cast<float>(map.grid().width()));
+            const int y = static_cast<int>(stream.next_1d() * static_cast<float>(map.grid().height()));
             const Vec2f within = stream.next_2d();
             const Vec3f d = map.direction({0, x, y}, within.x, within.y);
             for (int level = -3; level <= map.top_level(); ++level) {
@@ -96,7 +91,7 @@ TEST(EnvironmentMap, BallsHoldTheirCells) {
 // Texels are drawn as often as their energies say; p below 1e-8 for each of 32 counts to miss by six
 // deviations.
 TEST(EnvironmentMap, DrawsFollowTheEnergy) {
-    const EnvironmentMap map(random_map(8, 4), MapLayout::equirectangular);
+    const EnvironmentMap map(random_map(8, 4), EnvironmentLayout::equirectangular);
     const MapCell whole{map.top_level(), 0, 0};
     constexpr int draws = 100000;
     std::array<int, 32> counts{};
@@ -123,17 +118,17 @@ TEST(EnvironmentMap, RepairsAndRefuses) {
     image.set(0, 0, 0, -1);
     image.set(1, 0, 1, std::numeric_limits<float>::quiet_NaN());
     image.set(2, 0, 2, std::numeric_limits<float>::infinity());
-    const EnvironmentMap map(image, MapLayout::equirectangular);
+    const EnvironmentMap map(image, EnvironmentLayout::equirectangular);
     EXPECT_EQ(map.repairs().negative, 1u);
     EXPECT_EQ(map.repairs().nan, 1u);
     EXPECT_EQ(map.repairs().infinite, 1u);
     EXPECT_LT(map.mean_radiance().x, 1);
-    EXPECT_THROW(EnvironmentMap(image, MapLayout::equal_area), Error);
-    EXPECT_THROW(EnvironmentMap(Image(2, 1, {"Z"}), MapLayout::equirectangular), Error);
+    EXPECT_THROW(EnvironmentMap(image, EnvironmentLayout::equal_area), Error);
+    EXPECT_THROW(EnvironmentMap(Image(2, 1, {"Z"}), EnvironmentLayout::equirectangular), Error);
     Image grey(2, 1, {"Y"});
     grey.set(0, 0, 0, 2);
-    expect_near(EnvironmentMap(grey, MapLayout::equirectangular).mean_radiance(), {1, 1, 1}, 1e-6);
-    const EnvironmentMap black(Image(2, 1, {"R", "G", "B"}), MapLayout::equirectangular);
+    expect_near(EnvironmentMap(grey, EnvironmentLayout::equirectangular).mean_radiance(), {1, 1, 1}, 1e-6);
+    const EnvironmentMap black(Image(2, 1, {"R", "G", "B"}), EnvironmentLayout::equirectangular);
     EXPECT_EQ(black.mean_radiance(), Vec3d{});
     EXPECT_EQ(black.density({0, 0, 1}), 0);
 }
@@ -141,7 +136,7 @@ TEST(EnvironmentMap, RepairsAndRefuses) {
 TEST(DiffuseHarmonics, AgreeWithQuadrature) {
     for (auto [width, height] : {std::pair{16, 8}, {5, 3}}) {
         const Image image = random_map(width, height, 1e3f);
-        const EnvironmentMap map(image, MapLayout::equirectangular);
+        const EnvironmentMap map(image, EnvironmentLayout::equirectangular);
         const DiffuseHarmonics h = diffuse_harmonics(map, {});
         const double mean = map.mean_radiance().x;
         for (std::size_t i = 0; i < sh_terms; ++i) {
@@ -175,7 +170,7 @@ TEST(DiffuseHarmonics, GiveTheIrradianceOfOrderTwo) {
             const Vec3d d = equirectangular_direction((x + 0.5) / width, (y + 0.5) / height);
             image.set(x, y, 0, static_cast<float>(3 + d.z + d.x * d.y));
         }
-    const EnvironmentMap map(image, MapLayout::equirectangular);
+    const EnvironmentMap map(image, EnvironmentLayout::equirectangular);
     const DiffuseHarmonics h = diffuse_harmonics(map, {});
     PhiloxStream stream(1);
     for (int i = 0; i < 10; ++i) {

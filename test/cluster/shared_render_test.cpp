@@ -66,7 +66,7 @@ TEST(SharedRender, AnyNumberOfRanksGivesTheSameBits) {
         for (const RenderTarget& target :
              {RenderTarget{}, RenderTarget{.adaptive = true}, RenderTarget{.error = 0.2, .adaptive = true},
               RenderTarget{.error = 0.25}, RenderTarget{.slice = {1, 3}}}) {
-            const SceneBuilder b = scene(kind, 40);
+            const SceneBuilder b = scene(kind, 72);
             RenderState whole(b.description.film);
             Renderer(b.description, target).render(whole);
             // Every number of ranks with every sampler, in turns to save time.

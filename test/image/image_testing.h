@@ -9,6 +9,7 @@
 #include <string>
 #include <unistd.h>
 
+#include "montelux/image/cube_map.h"
 #include "montelux/image/image.h"
 #include "montelux/mc/math/error.h"
 
@@ -55,6 +56,18 @@ inline double noise(std::uint64_t i) {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     z ^= z >> 31;
     return static_cast<double>(z >> 11) * 0x1p-53;
+}
+
+// Light between 1/256 and 4, another value at each place.
+inline CubeMapChain chain_of_noise(int size, int levels) {
+    CubeMapChain chain;
+    std::uint64_t i = 0;
+    for (int level = 0; level < levels; ++level) {
+        chain.levels.push_back(make_cube_map(level_size(size, level)));
+        for (Image& face : chain.levels.back().faces)
+            for (float& v : face.f32()) v = static_cast<float>(std::exp2(10 * noise(++i) - 8));
+    }
+    return chain;
 }
 
 // Positive and negative values over many orders of magnitude.

@@ -15,17 +15,6 @@ constexpr TexelFormat all_formats[] = {TexelFormat::rgba16f, TexelFormat::rgba32
                                        TexelFormat::rgbm8};
 
 // Positive light over ten stops, other in every texel.
-CubeMapChain make_chain(int size, int levels) {
-    CubeMapChain chain;
-    std::uint64_t i = 0;
-    for (int level = 0; level < levels; ++level) {
-        chain.levels.push_back(make_cube_map(level_size(size, level)));
-        for (Image& face : chain.levels.back().faces)
-            for (float& v : face.f32()) v = static_cast<float>(std::exp2(10 * noise(++i) - 8));
-    }
-    return chain;
-}
-
 // What the format stores differs from v by at most this.
 double tolerance(TexelFormat format, double v, const Texel& texel) {
     const double most = std::max({texel.v[0], texel.v[1], texel.v[2]});
@@ -51,7 +40,7 @@ TEST(Ktx2, CubeChainsAreReadBackInEveryFormat) {
     for (TexelFormat format : all_formats)
         for (const auto& [size, levels] : {std::pair{1, 1}, {8, 4}, {8, 2}, {5, 3}, {6, 3}, {3, 2}}) {
             SCOPED_TRACE(std::string(name_of(format)) + " " + std::to_string(size));
-            const CubeMapChain chain = make_chain(size, levels);
+            const CubeMapChain chain = chain_of_noise(size, levels);
             TextureOptions options{.format = format, .notes = {{"montelux.roughness", "0 0.5 1"}}};
             EXPECT_FALSE(write_ktx2(folder / "a.ktx2", chain, options).any());
             const Ktx2Contents file = read_ktx2(read_bytes(folder / "a.ktx2"));
@@ -105,11 +94,11 @@ TEST(Ktx2, PicturesAreReadBack) {
 
 TEST(Ktx2, TheRangeOfRgbmIsNoted) {
     TemporaryFolder folder;
-    write_ktx2(folder / "a.ktx2", make_chain(2, 1), {.format = TexelFormat::rgbm8, .rgbm = {6.5, 2}});
+    write_ktx2(folder / "a.ktx2", chain_of_noise(2, 1), {.format = TexelFormat::rgbm8, .rgbm = {6.5, 2}});
     const Ktx2Contents file = read_ktx2(read_bytes(folder / "a.ktx2"));
     EXPECT_EQ(file.notes.at("montelux.rgbm.range"), "6.5");
     EXPECT_EQ(file.notes.at("montelux.rgbm.power"), "2");
-    write_ktx2(folder / "b.ktx2", make_chain(2, 1), {});
+    write_ktx2(folder / "b.ktx2", chain_of_noise(2, 1), {});
     EXPECT_EQ(read_ktx2(read_bytes(folder / "b.ktx2")).notes.size(), 2u);
 }
 
@@ -133,7 +122,7 @@ TEST(Ktx2, WhatDoesNotFitIsCounted) {
 
 TEST(Ktx2, BadInputGivesASentenceAndNoFile) {
     TemporaryFolder folder;
-    const CubeMapChain good = make_chain(4, 2);
+    const CubeMapChain good = chain_of_noise(4, 2);
     const auto path = folder / "a.ktx2";
     expect_error([&] { write_ktx2(path, CubeMapChain{}, {}); }, {"a.ktx2", "no level"});
     CubeMapChain odd = good;
@@ -160,7 +149,7 @@ TEST(Ktx2, BadInputGivesASentenceAndNoFile) {
 
 TEST(Ktx2, TheReaderOfTheTestsSeesDamage) {
     TemporaryFolder folder;
-    write_ktx2(folder / "a.ktx2", make_chain(5, 3), {.notes = {{"montelux.x", "y"}}});
+    write_ktx2(folder / "a.ktx2", chain_of_noise(5, 3), {.notes = {{"montelux.x", "y"}}});
     const std::string good = read_bytes(folder / "a.ktx2");
     const std::size_t data_at = read_ktx2(good).levels.size() * 24 + 80 + 92 + 40;
     int missed = 0;

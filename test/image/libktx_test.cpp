@@ -52,17 +52,6 @@ class LibKtx : public testing::Test {
     void* library_ = nullptr;
 };
 
-CubeMapChain chain_of_noise(int size, int levels) {
-    CubeMapChain chain;
-    std::uint64_t i = 0;
-    for (int level = 0; level < levels; ++level) {
-        chain.levels.push_back(make_cube_map(level_size(size, level)));
-        for (Image& face : chain.levels.back().faces)
-            for (float& v : face.f32()) v = static_cast<float>(4 * noise(++i));
-    }
-    return chain;
-}
-
 TEST_F(LibKtx, ReadsTheFilesAsTheyAreMeant) {
     auto load = function<int (*)(const char*, std::uint32_t, KtxTexture**)>("ktxTexture_CreateFromNamedFile");
     auto image_offset =

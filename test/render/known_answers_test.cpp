@@ -217,7 +217,13 @@ TEST(KnownAnswers, EnvironmentMapStrategiesAgree) {
         cases.push_back({Strategy::mis, sampling, true});
         cases.push_back({Strategy::mis, sampling, false});
     }
-    for (EnvironmentLayout layout : {EnvironmentLayout::equal_area, EnvironmentLayout::equirectangular}) {
+    struct Map {
+        EnvironmentLayout layout;
+        EnvironmentLookup lookup;
+    };
+    for (const Map& m : {Map{EnvironmentLayout::equal_area, EnvironmentLookup::nearest},
+                         Map{EnvironmentLayout::equirectangular, EnvironmentLookup::nearest},
+                         Map{EnvironmentLayout::equal_area, EnvironmentLookup::bilinear}}) {
         std::vector<PictureMean> means;
         for (const Case& c : cases) {
             SceneBuilder b = floor_scene(0.6f);
@@ -229,12 +235,13 @@ TEST(KnownAnswers, EnvironmentMapStrategiesAgree) {
             b.scene.environments.push_back(map);
             b.scene.lights.push_back(
                 ImageInfiniteLight{.environment = 0,
-                                   .layout = layout,
+                                   .layout = m.layout,
                                    .scale = white_scale(),
                                    .world_from_light = Transform::rotate(30, {1, 2, 3})});
             b.description.integrator.strategy = c.strategy;
             b.description.integrator.environment_sampling = c.sampling;
             b.description.integrator.environment_compensation = c.compensation;
+            b.description.integrator.environment_lookup = m.lookup;
             b.description.sampler.samples_per_pixel = 512;
             means.push_back(picture_mean(render(b.description)));
         }

@@ -1,11 +1,13 @@
 // Sampling of environment maps: every strategy follows its density, on maps that are odd as well, and gives
 // the map's light. 96 chi-squared tests at 1e-8 each and 48 sums at 5.8 standard errors (7e-9): below 2e-6
 // for the file.
+#include "test/scene/environment_testing.h"
 #include <cmath>
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
 
+#include "montelux/mc/math/error.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/stats/chi_squared.h"
 #include "montelux/mc/stats/moments.h"
@@ -13,19 +15,6 @@
 
 namespace montelux {
 namespace {
-
-constexpr EnvironmentSampling kinds[] = {EnvironmentSampling::tabulated, EnvironmentSampling::median_cut,
-                                         EnvironmentSampling::structured};
-constexpr EnvironmentLayout layouts[] = {EnvironmentLayout::equal_area, EnvironmentLayout::equirectangular};
-
-Image map_of(int width, int height, const auto& value) {
-    Image map(width, height, {"R", "G", "B"});
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            for (int c = 0; c < 3; ++c)
-                map.set(x, y, c, static_cast<float>(value(x, y)) * (c == 1 ? 2.0f : 0.5f));
-    return map;
-}
 
 struct MapCase {
     std::string name;
@@ -53,8 +42,8 @@ std::vector<MapCase> map_cases() {
 // Compensated ones too.
 void for_each_sampler(const auto& f) {
     for (const MapCase& c : map_cases())
-        for (EnvironmentLayout layout : layouts)
-            for (EnvironmentSampling kind : kinds)
+        for (EnvironmentLayout layout : environment_layouts)
+            for (EnvironmentSampling kind : environment_kinds)
                 for (bool compensated : {false, true}) {
                     EnvironmentSampler sampler(c.map, layout, {kind, compensated});
                     SCOPED_TRACE(c.name + ", " + sampler.description());
@@ -69,7 +58,7 @@ double light_of(const Image& map, std::size_t texel) {
 }
 
 TEST(EnvironmentGrid, PlacesAndDirectionsAgree) {
-    for (EnvironmentLayout layout : layouts)
+    for (EnvironmentLayout layout : environment_layouts)
         for (auto [width, height] : {std::pair(1, 1), {2, 1}, {7, 5}, {64, 32}, {4096, 2048}}) {
             const EnvironmentGrid grid(layout, width, height);
             double sum = 0;
@@ -215,7 +204,7 @@ TEST(EnvironmentSamplers, UnbiasedIrradiance) {
 
 // With compensation the light that is left out is that of a sky of the mean, and constant maps stay.
 TEST(EnvironmentSamplers, CompensationTakesTheMeanAway) {
-    for (EnvironmentLayout layout : layouts) {
+    for (EnvironmentLayout layout : environment_layouts) {
         const Image map = map_of(64, 64, [](int x, int y) { return 1 + (x * 7 + y * 3) % 11; });
         const EnvironmentSampler sampler(map, layout, {EnvironmentSampling::tabulated, true});
         ASSERT_TRUE(sampler.compensated());
@@ -232,7 +221,7 @@ TEST(EnvironmentSamplers, CompensationTakesTheMeanAway) {
         for (double ripple : {0.0, 1e-6, 1e-3}) {
             const Image flat =
                 map_of(32, 32, [&](int x, int y) { return 0.1 * (1 + ripple * ((x + y) % 2)); });
-            for (EnvironmentSampling kind : kinds) {
+            for (EnvironmentSampling kind : environment_kinds) {
                 const EnvironmentSampler even(flat, layout, {kind, true});
                 EXPECT_FALSE(even.compensated()) << ripple;
                 if (kind == EnvironmentSampling::tabulated) {
@@ -274,7 +263,7 @@ TEST(EnvironmentSamplers, SunsAreSampledByTheirTexels) {
 }
 
 TEST(EnvironmentSamplers, MedianCutRegionsShareTheLightAlike) {
-    for (EnvironmentLayout layout : layouts) {
+    for (EnvironmentLayout layout : environment_layouts) {
         const Image map = map_of(64, 64, [](int x, int y) { return y < 8 ? 0 : 1 + (x * 13 + y * 7) % 23; });
         const EnvironmentGrid grid(layout, 64, 64);
         const std::vector<float> light = texel_light(map, grid);
@@ -318,15 +307,38 @@ TEST(EnvironmentSamplers, StructuredStrataAreSharedOutByImportance) {
         EXPECT_GT(cells[s], 0);
         in_lamp += of_lamp[s];
     }
+    for (std::size_t s = 0; s < cells.size(); ++s) {
+        EXPECT_EQ(structured.stratum_of(structured.centre_of(s)), s);
+        EXPECT_EQ(structured.level_of(s) > 0, of_lamp[s]);
+    }
     const double texel = 4 * pi / (64 * 64), lamp = 200.0 * 16 * std::pow(std::min(16 * texel, 0.01), 0.25),
                  sky = (64 * 64 - 16) * std::pow(0.01, 0.25);
     EXPECT_NEAR(static_cast<double>(in_lamp), std::min(16.0, 256 * lamp / (lamp + sky)), 1.0);
 }
 
+TEST(EnvironmentSamplers, AsManyPartsAsAreAskedFor) {
+    using enum EnvironmentSampling;
+    const Image map = map_of(64, 32, [](int x, int y) { return 1 + (x * 13 + y * 7) % 23; });
+    auto made = [&](EnvironmentSampling kind, int parts) {
+        return EnvironmentSampler(map, EnvironmentLayout::equirectangular,
+                                  {.sampling = kind, .parts = parts});
+    };
+    EXPECT_EQ(made(median_cut, 0).median_cut()->regions().size(), 4096u);
+    EXPECT_EQ(made(median_cut, 32).median_cut()->regions().size(), 32u);
+    EXPECT_EQ(made(median_cut, 1).median_cut()->regions().size(), 1u);
+    EXPECT_EQ(made(median_cut, 1).structured(), nullptr);
+    EXPECT_NEAR(static_cast<double>(made(structured, 0).structured()->strata()), 1024, 50);
+    EXPECT_NEAR(static_cast<double>(made(structured, 100).structured()->strata()), 100, 10);
+    EXPECT_EQ(made(structured, 100).median_cut(), nullptr);
+    for (const int wrong : {-1, 3, 1 << 17}) EXPECT_THROW(made(median_cut, wrong), Error);
+    for (const int wrong : {-1, 1 << 17}) EXPECT_THROW(made(structured, wrong), Error);
+    for (const EnvironmentSampling kind : {tabulated, automatic}) EXPECT_THROW(made(kind, 64), Error);
+}
+
 TEST(EnvironmentSamplers, TheSameForAnyNumberOfThreads) {
     const Image map = map_cases().back().map;
-    for (EnvironmentLayout layout : layouts)
-        for (EnvironmentSampling kind : kinds) {
+    for (EnvironmentLayout layout : environment_layouts)
+        for (EnvironmentSampling kind : environment_kinds) {
             auto draws = [&] {
                 const EnvironmentSampler sampler(map, layout, {kind, true});
                 TestUniforms uniforms(2);
@@ -345,8 +357,8 @@ TEST(EnvironmentSamplers, TheSameForAnyNumberOfThreads) {
 
 TEST(EnvironmentSamplers, BlackMapsHaveDensities) {
     const Image black = map_of(8, 4, [](int, int) { return 0; });
-    for (EnvironmentLayout layout : layouts)
-        for (EnvironmentSampling kind : kinds)
+    for (EnvironmentLayout layout : environment_layouts)
+        for (EnvironmentSampling kind : environment_kinds)
             for (bool compensated : {false, true}) {
                 const EnvironmentSampler sampler(black, layout, {kind, compensated});
                 const EnvironmentPoint s = sampler.sample({0.3f, 0.6f});
@@ -363,8 +375,8 @@ TEST(EnvironmentSamplers, NoLightIsLostToRounding) {
     map.set(2, 1, 2, 1e-44f);
     map.set(3, 3, 0, 3e38f);
     map.set(3, 3, 1, 3e38f);
-    for (EnvironmentLayout layout : layouts)
-        for (EnvironmentSampling kind : kinds) {
+    for (EnvironmentLayout layout : environment_layouts)
+        for (EnvironmentSampling kind : environment_kinds) {
             const EnvironmentSampler sampler(map, layout, {kind, false});
             for (Vec2f place : {Vec2f{1.5f, 1.5f}, Vec2f{2.5f, 1.5f}, Vec2f{3.5f, 3.5f}})
                 EXPECT_GT(sampler.pdf(place), 0) << sampler.description() << " " << place.x;

@@ -215,7 +215,7 @@ TEST(InfiniteLights, DirectionsFollowTheirDensity) {
             if (!s) return std::nullopt;
             return s->wi;
         };
-        auto pdf = [&](Vec3f w) { return infinite_light_pdf(scene, tables.lights(), 0, w); };
+        auto pdf = [&](Vec3f w) { return infinite_light_pdf(scene, tables.lights(), 0, origin.p, w); };
         ChiSquaredOptions options;
         options.samples = 200000;
         options.cells_x = options.cells_y = 16;
@@ -231,9 +231,11 @@ TEST(InfiniteLights, DirectionsFollowTheirDensity) {
             ASSERT_FALSE(s->delta);
             ASSERT_TRUE(std::isinf(s->shadow.t_max));
             // Rounding may send the direction of a point on a texel's edge back into its neighbour.
-            bool same = std::abs(infinite_light_pdf(scene, tables.lights(), 0, s->wi) / s->pdf - 1) < 1e-3f &&
-                        std::abs(infinite_radiance(scene, tables.lights(), 0, s->wi, wavelengths)[1] -
-                                 s->radiance[1]) < 1e-3f * s->radiance[1];
+            bool same =
+                std::abs(infinite_light_pdf(scene, tables.lights(), 0, origin.p, s->wi) / s->pdf - 1) <
+                    1e-3f &&
+                std::abs(infinite_radiance(scene, tables.lights(), 0, origin.p, s->wi, wavelengths)[1] -
+                         s->radiance[1]) < 1e-3f * s->radiance[1];
             differing += !same;
         }
         EXPECT_LE(differing, 5) << which;

@@ -1,3 +1,4 @@
+#include "test/near.h"
 #include <gtest/gtest.h>
 
 #include "montelux/mc/stats/chi_squared.h"
@@ -8,12 +9,6 @@
 
 namespace montelux {
 namespace {
-
-void expect_near(Vec3d a, Vec3d b, double tolerance) {
-    EXPECT_NEAR(a.x, b.x, tolerance);
-    EXPECT_NEAR(a.y, b.y, tolerance);
-    EXPECT_NEAR(a.z, b.z, tolerance);
-}
 
 TEST(Sensor, WhiteLightGivesWhite) {
     for (const char* name : {"srgb", "dci-p3", "rec2020", "aces2065-1"}) {

@@ -13,8 +13,8 @@
 namespace montelux::pbrt {
 namespace {
 
-constexpr std::array<std::string_view, 6> light_plugins = {"point",    "spot",        "distant",
-                                                           "infinite", "goniometric", "projection"};
+constexpr std::array<std::string_view, 7> light_plugins = {"point", "spot",        "distant",   "infinite",
+                                                           "sky",   "goniometric", "projection"};
 
 float photometric_scale(const Spectrum& s, ParameterReader& r) {
     double y = to_photometric(s);
@@ -135,6 +135,8 @@ Light LightReader::read(const Plugin& plugin, const Transform& world_from_light,
         light = DistantLight{s.spectrum, s.scale, to_light};
     } else if (plugin.name == "infinite") {
         light = infinite(r, world_from_light, color_space);
+    } else if (plugin.name == "sky") {
+        light = sky(r, world_from_light);
     } else if (plugin.name == "goniometric" || plugin.name == "projection") {
         r.error("light " + in_quotes(plugin.name) + " is not supported yet");
     } else {
@@ -144,15 +146,34 @@ Light LightReader::read(const Plugin& plugin, const Transform& world_from_light,
     return light;
 }
 
+// Corners are in world space, whatever the transformation that turns the map.
+std::optional<Portal> LightReader::portal(ParameterReader& r) {
+    const std::span<const float> v = r.numbers("portal", ParameterType::point3, 3);
+    if (v.empty()) return std::nullopt;
+    if (v.size() != 12)
+        r.error("portal", "parameter 'portal' has " + std::to_string(v.size() / 3) +
+                              " points; expected the 4 corners "
+                              "of a rectangle");
+    std::array<Point3f, 4> corners;
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
+    try {
+        return Portal(corners);
+    } catch (const Error& e) {
+        r.error("portal", e.what());
+    }
+}
+
 Light LightReader::infinite(ParameterReader& r, const Transform& world_from_light,
                             const RgbColorSpace& color_space) {
-    if (r.ignored("portal")) r.error("portal", "a portal of an infinite light is not supported yet");
+    const std::optional<Portal> through = portal(r);
     float illuminance = r.number("illuminance", -1);
     std::optional<std::string> file = r.string("filename");
     if (!file) {
+        if (through && !r.ignored("L"))
+            r.error("portal", "'portal' without 'filename' or 'L'; expected one of them");
         Source s = source(r, "L", color_space);
         if (illuminance > 0) s.scale *= illuminance / pi_f;
-        return UniformInfiniteLight{s.spectrum, s.scale};
+        return UniformInfiniteLight{s.spectrum, s.scale, through};
     }
     if (r.ignored("L")) r.error("L", "'L' together with 'filename'; expected one or the other");
     ImageInfiniteLight light;
@@ -160,6 +181,7 @@ Light LightReader::infinite(ParameterReader& r, const Transform& world_from_ligh
     const Image& map = scene_.environments[light.environment];
     light.layout = *layout_of_size(map.width(), map.height());
     light.world_from_light = world_from_light;
+    light.portal = through;
     light.scale = r.number("scale", 1);
     if (light.scale < 0) r.error("scale", "parameter 'scale' is negative");
     light.scale *= photometric_scale(Spectrum(RgbColorSpace::srgb().illuminant()), r);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "montelux/formats/pbrt/parameter_reader.h"
@@ -38,7 +39,10 @@ class LightReader {
         float scale = 1;
     };
     Source source(ParameterReader& r, std::string_view name, const RgbColorSpace& color_space);
+    static std::optional<Portal> portal(ParameterReader& r);
     Light infinite(ParameterReader& r, const Transform& world_from_light, const RgbColorSpace& color_space);
+    // The sky; its sun, if one is to be seen, is added to the scene as a light before it.
+    Light sky(ParameterReader& r, const Transform& world_from_light);
     Index environment(const std::string& file, Location at);
 
     Scene& scene_;

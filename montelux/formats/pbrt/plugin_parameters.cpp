@@ -32,9 +32,10 @@ constexpr std::string_view shape_parameters[] = {"N",
                                                  "zmax",
                                                  "zmin"};
 
-constexpr std::string_view light_parameters[] = {"I",     "L",    "conedeltaangle", "coneangle", "filename",
-                                                 "fov",   "from", "illuminance",    "portal",    "power",
-                                                 "scale", "to",   "twosided"};
+constexpr std::string_view light_parameters[] = {
+    "I",   "L",       "azimuth",      "conedeltaangle", "coneangle", "elevation", "filename",
+    "fov", "from",    "groundalbedo", "illuminance",    "portal",    "power",     "scale",
+    "sun", "sundisc", "to",           "turbidity",      "twosided"};
 
 constexpr std::string_view material_parameters[] = {"albedo",
                                                     "alpha",

@@ -109,8 +109,67 @@ std::optional<LightSample> sample_point(Point3f position, SampledSpectrum intens
     return s;
 }
 
+Vec3f in_light_space(const Transform& world_from_light, Vec3f wi) {
+    return normalize(Vec3f(world_from_light.inverse_vector(Vec3d(wi))));
+}
 Vec2f map_point(const EnvironmentGrid& grid, const ImageInfiniteLight& light, Vec3f wi) {
-    return grid.locate(normalize(Vec3f(light.world_from_light.inverse_vector(Vec3d(wi)))));
+    return grid.locate(in_light_space(light.world_from_light, wi));
+}
+
+bool is_hidden(const SunLight& light, Vec3f wi) { return dot(wi, light.up) < 0; }
+
+std::optional<LightSample> sample_sun(const SunLight& light, const ReferencePoint& from, Vec2f u,
+                                      const SampledWavelengths& lambda) {
+    const Vec3f wi = light.disc.sample(u);
+    if (is_hidden(light, wi)) return std::nullopt;
+    return LightSample{.radiance = light.spectrum.sample(lambda) * light.scale,
+                       .wi = wi,
+                       .pdf = light.disc.pdf(),
+                       .shadow = shadow_ray_to_infinity(from, wi)};
+}
+
+std::optional<LightSample> sample_sky(const SkyLight& light, const SkyModel& sky,
+                                      const EnvironmentSampler& density, const ReferencePoint& from, Vec2f u,
+                                      const SampledWavelengths& lambda) {
+    const EnvironmentPoint s = density.sample(u);
+    if (!(s.pdf > 0)) return std::nullopt;
+    const Vec3f w = density.grid().direction(s.grid);
+    const Vec3f wi = normalize(light.world_from_light.vector(w));
+    return LightSample{.radiance = sky.radiance(w, lambda) * light.scale,
+                       .wi = wi,
+                       .pdf = s.pdf,
+                       .shadow = shadow_ray_to_infinity(from, wi)};
+}
+
+std::optional<LightSample> sample_uniform_sky(const UniformInfiniteLight& light, const ReferencePoint& from,
+                                              Vec2f u, const SampledWavelengths& lambda) {
+    LightSample s;
+    if (light.portal) {
+        const auto seen = light.portal->seen_from(from.p);
+        if (!seen) return std::nullopt;
+        s.wi = seen->sample(u);
+        s.pdf = seen->pdf();
+    } else {
+        s.wi = sample_uniform_sphere(u);
+        s.pdf = inv_four_pi_f;
+    }
+    s.radiance = light.spectrum.sample(lambda) * light.scale;
+    s.shadow = shadow_ray_to_infinity(from, s.wi);
+    return s;
+}
+
+std::optional<LightSample> sample_through_portal(const Scene& scene, const LightTables& tables,
+                                                 const ImageInfiniteLight& light, const PortalSampler& portal,
+                                                 const ReferencePoint& from, Vec2f u,
+                                                 const SampledWavelengths& lambda) {
+    const auto s = portal.sample(from.p, u);
+    if (!s) return std::nullopt;
+    const Vec2f place = map_point(portal.grid(), light, s->wi);
+    return LightSample{.radiance =
+                           tables.map_radiance(scene, light, portal.grid(), place, lambda) * light.scale,
+                       .wi = s->wi,
+                       .pdf = s->pdf,
+                       .shadow = shadow_ray_to_infinity(from, s->wi)};
 }
 
 } // namespace
@@ -121,16 +180,25 @@ SampledSpectrum emitted_radiance(const AreaLight& light, Normal3f n, Vec3f w,
     return light.spectrum.sample(lambda) * light.scale;
 }
 
-SampledSpectrum infinite_radiance(const Scene& scene, const LightTables& tables, Index index, Vec3f wi,
-                                  const SampledWavelengths& lambda) {
+SampledSpectrum infinite_radiance(const Scene& scene, const LightTables& tables, Index index, Point3f p,
+                                  Vec3f wi, const SampledWavelengths& lambda) {
     const Light& any = scene.lights[index];
-    if (const auto* light = std::get_if<UniformInfiniteLight>(&any))
+    if (const auto* light = std::get_if<UniformInfiniteLight>(&any)) {
+        if (light->portal && !light->portal->lets_through(p, wi)) return {};
         return light->spectrum.sample(lambda) * light->scale;
-    if (const auto* light = std::get_if<ImageInfiniteLight>(&any)) {
-        const EnvironmentGrid& grid = tables.environment(index).grid();
-        return tables.map_radiance(scene, *light, grid.texel(map_point(grid, *light, wi)), lambda) *
-               light->scale;
     }
+    if (const auto* light = std::get_if<ImageInfiniteLight>(&any)) {
+        if (light->portal && !light->portal->lets_through(p, wi)) return {};
+        const EnvironmentGrid& grid =
+            light->portal ? tables.portal(index).grid() : tables.environment(index).grid();
+        return tables.map_radiance(scene, *light, grid, map_point(grid, *light, wi), lambda) * light->scale;
+    }
+    if (const auto* light = std::get_if<SkyLight>(&any))
+        return scene.skies[light->sky].radiance(in_light_space(light->world_from_light, wi), lambda) *
+               light->scale;
+    if (const auto* light = std::get_if<SunLight>(&any))
+        if (light->disc.contains(wi) && !is_hidden(*light, wi))
+            return light->spectrum.sample(lambda) * light->scale;
     return {};
 }
 
@@ -176,24 +244,24 @@ std::optional<LightSample> sample_light(const Scene& scene, const LightTables& t
                            .pdf = 1,
                            .delta = true,
                            .shadow = shadow_ray_to_infinity(from, light->to_light)};
-    if (const auto* light = std::get_if<UniformInfiniteLight>(&any)) {
-        Vec3f wi = sample_uniform_sphere(u);
-        return LightSample{.radiance = light->spectrum.sample(lambda) * light->scale,
-                           .wi = wi,
-                           .pdf = inv_four_pi_f,
-                           .shadow = shadow_ray_to_infinity(from, wi)};
-    }
+    if (const auto* light = std::get_if<UniformInfiniteLight>(&any))
+        return sample_uniform_sky(*light, from, u, lambda);
+    if (const auto* light = std::get_if<SkyLight>(&any))
+        return sample_sky(*light, scene.skies[light->sky], tables.environment(index), from, u, lambda);
+    if (const auto* light = std::get_if<SunLight>(&any)) return sample_sun(*light, from, u, lambda);
     const auto& light = std::get<ImageInfiniteLight>(any);
+    if (light.portal)
+        return sample_through_portal(scene, tables, light, tables.portal(index), from, u, lambda);
     const EnvironmentSampler& environment = tables.environment(index);
     EnvironmentPoint s = environment.sample(u);
     if (!(s.pdf > 0)) return std::nullopt;
     Vec3f wi = light.world_from_light.vector(environment.grid().direction(s.grid));
     wi = normalize(wi);
-    return LightSample{
-        .radiance = tables.map_radiance(scene, light, environment.grid().texel(s.grid), lambda) * light.scale,
-        .wi = wi,
-        .pdf = s.pdf,
-        .shadow = shadow_ray_to_infinity(from, wi)};
+    return LightSample{.radiance = tables.map_radiance(scene, light, environment.grid(), s.grid, lambda) *
+                                   light.scale,
+                       .wi = wi,
+                       .pdf = s.pdf,
+                       .shadow = shadow_ray_to_infinity(from, wi)};
 }
 
 float area_light_pdf(const Scene& scene, const LightTables& tables, Index index, const ReferencePoint& from,
@@ -216,9 +284,22 @@ float area_light_pdf(const Scene& scene, const LightTables& tables, Index index,
     return cosine > 0 ? area_density * d2 / cosine : 0;
 }
 
-float infinite_light_pdf(const Scene& scene, const LightTables& tables, Index index, Vec3f wi) {
+float infinite_light_pdf(const Scene& scene, const LightTables& tables, Index index, Point3f p, Vec3f wi) {
+    if (const auto* sun = std::get_if<SunLight>(&scene.lights[index]))
+        return sun->disc.contains(wi) ? sun->disc.pdf() : 0;
+    if (const auto* sky = std::get_if<SkyLight>(&scene.lights[index])) {
+        const EnvironmentSampler& density = tables.environment(index);
+        return density.pdf(density.grid().locate(in_light_space(sky->world_from_light, wi)));
+    }
+    if (const auto* light = std::get_if<UniformInfiniteLight>(&scene.lights[index])) {
+        if (!light->portal) return inv_four_pi_f;
+        if (!light->portal->lets_through(p, wi)) return 0;
+        const auto seen = light->portal->seen_from(p);
+        return seen ? seen->pdf() : 0;
+    }
     const auto* light = std::get_if<ImageInfiniteLight>(&scene.lights[index]);
     if (light == nullptr) return inv_four_pi_f;
+    if (light->portal) return tables.portal(index).pdf(p, wi);
     const EnvironmentSampler& environment = tables.environment(index);
     return environment.pdf(map_point(environment.grid(), *light, wi));
 }

@@ -33,14 +33,14 @@ std::optional<LightSample> sample_light(const Scene& scene, const LightTables& t
 // area light.
 float area_light_pdf(const Scene& scene, const LightTables& tables, Index light,
                      const ReferencePoint& reference, Point3f p, Normal3f n);
-// The same for a direction to an infinite light.
-float infinite_light_pdf(const Scene& scene, const LightTables& tables, Index light, Vec3f wi);
+// The same for a direction to an infinite light, at `p`.
+float infinite_light_pdf(const Scene& scene, const LightTables& tables, Index light, Point3f p, Vec3f wi);
 
 // Radiance that leaves an area light along w at a point with geometric normal n.
 SampledSpectrum emitted_radiance(const AreaLight& light, Normal3f n, Vec3f w,
                                  const SampledWavelengths& lambda);
-// Radiance of an infinite light from direction wi; black for other lights.
-SampledSpectrum infinite_radiance(const Scene& scene, const LightTables& tables, Index light, Vec3f wi,
-                                  const SampledWavelengths& lambda);
+// Radiance of an infinite light that comes to `p` from direction wi; black for other lights.
+SampledSpectrum infinite_radiance(const Scene& scene, const LightTables& tables, Index light, Point3f p,
+                                  Vec3f wi, const SampledWavelengths& lambda);
 
 } // namespace montelux

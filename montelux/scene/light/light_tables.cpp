@@ -1,5 +1,6 @@
 #include "montelux/scene/light/light_tables.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -62,13 +63,24 @@ std::vector<RgbUnboundedSpectrum> map_spectra(const Image& map, const RgbColorSp
 
 } // namespace
 
-SampledSpectrum LightTables::map_radiance(const Scene& scene, const ImageInfiniteLight& light,
+SampledSpectrum LightTables::texel_factor(const Scene& scene, const ImageInfiniteLight& light,
                                           std::size_t texel, const SampledWavelengths& lambda) const {
     const auto& spectra = map_spectra_[light.environment];
+    if (!spectra.empty()) return spectra[texel].sample(lambda);
+    return texel_spectrum(scene.environments[light.environment], *light.color_space, texel).sample(lambda);
+}
+
+SampledSpectrum LightTables::map_radiance(const Scene& scene, const ImageInfiniteLight& light,
+                                          const EnvironmentGrid& grid, Vec2f place,
+                                          const SampledWavelengths& lambda) const {
     SampledSpectrum white = light.color_space->illuminant().sample(lambda);
-    if (!spectra.empty()) return spectra[texel].sample(lambda) * white;
-    return texel_spectrum(scene.environments[light.environment], *light.color_space, texel).sample(lambda) *
-           white;
+    if (lookup_ == EnvironmentLookup::nearest)
+        return texel_factor(scene, light, grid.texel(place), lambda) * white;
+    const EnvironmentGrid::Blend blend = grid.blend(place);
+    SampledSpectrum sum;
+    for (std::size_t k = 0; k < 4; ++k)
+        sum += texel_factor(scene, light, blend.texel[k], lambda) * blend.share[k];
+    return sum * white;
 }
 
 Bounds3 bounds_of(const Scene& scene) {
@@ -93,9 +105,9 @@ Bounds3 bounds_of(const Scene& scene) {
 }
 
 LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings)
-    : triangle_of_light_(scene.lights.size(), no_index), spheres_(scene.lights.size()),
-      disks_(scene.lights.size()), environment_of_light_(scene.lights.size(), no_index),
-      bounds_(bounds_of(scene)) {
+    : lookup_(settings.lookup), triangle_of_light_(scene.lights.size(), no_index),
+      spheres_(scene.lights.size()), disks_(scene.lights.size()),
+      environment_of_light_(scene.lights.size(), no_index), bounds_(bounds_of(scene)) {
     std::map<std::pair<Index, EnvironmentLayout>, Index> known_environments;
     map_spectra_.resize(scene.environments.size());
 
@@ -123,19 +135,43 @@ LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings
                 } else if constexpr (std::is_same_v<L, ImageInfiniteLight>) {
                     infinite_lights_.push_back(static_cast<Index>(i));
                     const Image& map = scene.environments[light.environment];
+                    auto& spectra = map_spectra_[light.environment];
+                    if (spectra.empty()) spectra = map_spectra(map, *light.color_space);
+                    // The photometric normalisation is in `scale`; so is the mean of the white illuminant.
+                    Spectrum white(RgbIlluminantSpectrum(*light.color_space, {1, 1, 1}));
+                    const double scale = double(light.scale) * mean(white);
+                    if (light.portal) {
+                        environment_of_light_[i] = static_cast<Index>(portals_.size());
+                        const PortalSampler& portal = portals_.emplace_back(
+                            map, light.layout, light.world_from_light, *light.portal, settings.lookup);
+                        return scale * std::min(light.portal->area() * portal.irradiance(),
+                                                cross_section * portal.fluence());
+                    }
                     auto [known, is_new] = known_environments.try_emplace(
                         {light.environment, light.layout}, static_cast<Index>(environments_.size()));
                     if (is_new) environments_.emplace_back(map, light.layout, settings);
                     environment_of_light_[i] = known->second;
-                    map_spectra_[light.environment] = map_spectra(map, *light.color_space);
-                    // The photometric normalisation is in `scale`; so is the mean of the white illuminant.
-                    Spectrum white(RgbIlluminantSpectrum(*light.color_space, {1, 1, 1}));
-                    return 4 * pi * cross_section * double(light.scale) * mean(white) *
-                           environments_[known->second].mean_radiance();
+                    return 4 * pi * cross_section * scale * environments_[known->second].mean_radiance();
+                } else if constexpr (std::is_same_v<L, SkyLight>) {
+                    infinite_lights_.push_back(static_cast<Index>(i));
+                    environment_of_light_[i] = static_cast<Index>(environments_.size());
+                    environments_.emplace_back(scene.environments[light.environment],
+                                               EnvironmentLayout::equirectangular, settings);
+                    return 4 * pi * cross_section * double(light.scale) *
+                           environments_.back().mean_radiance();
+                } else if constexpr (std::is_same_v<L, SunLight>) {
+                    infinite_lights_.push_back(static_cast<Index>(i));
+                    const double above =
+                        std::asin(std::clamp(double(dot(light.disc.centre, light.up)), -1.0, 1.0));
+                    return cross_section * double(light.scale) * mean(light.spectrum) *
+                           light.disc.solid_angle() *
+                           part_above_horizon(above, std::sqrt(2 * double(light.disc.versine)));
                 } else {
                     double flux = double(light.scale) * mean(light.spectrum);
                     if constexpr (std::is_same_v<L, UniformInfiniteLight>) {
                         infinite_lights_.push_back(static_cast<Index>(i));
+                        if (light.portal)
+                            return flux * std::min(pi * light.portal->area(), 2 * pi * cross_section);
                         return 4 * pi * cross_section * flux;
                     } else if constexpr (std::is_same_v<L, DistantLight>) {
                         return cross_section * flux;

@@ -1,5 +1,6 @@
 // Directives and defaults: what ends up in the scene.
 #include "test/formats/pbrt/parse.h"
+#include "test/near.h"
 #include <cmath>
 #include <gtest/gtest.h>
 #include <string>
@@ -11,11 +12,6 @@ namespace {
 
 using test::parse;
 using test::parse_world;
-
-void expect_near(Vec3f a, Vec3f b, float tolerance = 1e-5f) {
-    EXPECT_LE(length(a - b), tolerance)
-        << a.x << ' ' << a.y << ' ' << a.z << " and " << b.x << ' ' << b.y << ' ' << b.z;
-}
 
 const Sphere& sphere(const SceneDescription& d, std::size_t i = 0) {
     return std::get<Sphere>(d.scene.quadrics.at(i));

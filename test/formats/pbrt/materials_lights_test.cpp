@@ -274,6 +274,20 @@ TEST(PbrtLights, EnvironmentMaps) {
     // pbrt takes pi / 2 for the illuminance of a map of 1.
     EXPECT_NEAR(std::get<ImageInfiniteLight>(d.scene.lights[1]).scale * white, 10 / (pi / 2), 0.02);
     EXPECT_EQ(l.layout, EnvironmentLayout::equal_area);
+    d = load("Scale 2 2 2 Rotate 90 0 1 0 LightSource \"infinite\" \"string filename\" \"map.exr\" "
+             "\"point3 portal\" [0 0 3 0 2 3 4 2 3 4 0 3] "
+             "LightSource \"infinite\" \"rgb L\" [1 1 1] \"point3 portal\" [0 0 3 4 0 3 4 2 3 0 2 3]",
+             told);
+    // In world space, whatever turns the map.
+    const auto& through = std::get<ImageInfiniteLight>(d.scene.lights[0]).portal;
+    ASSERT_TRUE(through);
+    EXPECT_EQ(through->area(), 8);
+    EXPECT_LT(length(through->normal() - Vec3d{0, 0, 1}), 1e-12);
+    EXPECT_TRUE(through->lets_through({1, 1, 2}, {0, 0, 1}));
+    const auto& uniform = std::get<UniformInfiniteLight>(d.scene.lights[1]);
+    ASSERT_TRUE(uniform.portal);
+    EXPECT_LT(length(uniform.portal->normal() - Vec3d{0, 0, -1}), 1e-12);
+    EXPECT_NEAR(photometric(uniform), 1, 1e-5);
     Warnings of_wide;
     d = load("LightSource \"infinite\" \"string filename\" \"wide.exr\" \"float illuminance\" 10", of_wide);
     const auto& w = std::get<ImageInfiniteLight>(d.scene.lights[0]);

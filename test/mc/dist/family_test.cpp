@@ -183,6 +183,8 @@ TEST(Families, GgxAngleByItsCosine) {
         for (double xi : {0.01, 0.25, 0.5, 0.99}) {
             double printed = std::sqrt((1 - xi) / (xi * (a * a - 1) + 1));
             EXPECT_NEAR(std::cos(d.quantile(xi)), printed, 1e-14);
+            const double tangent = std::tan(d.quantile(xi));
+            EXPECT_NEAR(d.squared_tangent_quantile(xi) / (tangent * tangent), 1, 1e-12);
         }
     }
 }

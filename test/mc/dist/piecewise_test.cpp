@@ -4,6 +4,7 @@
 
 #include "montelux/mc/dist/piecewise_1d.h"
 #include "montelux/mc/dist/piecewise_2d.h"
+#include "montelux/mc/dist/piecewise_bilinear_2d.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/stats/chi_squared.h"
 
@@ -156,6 +157,51 @@ TEST(PiecewiseConstant2D, AllZeroIsUniformAndBadInputGetsASentence) {
     EXPECT_THROW(PiecewiseConstant1D(std::vector<double>{1}, 2, 2), Error);
     EXPECT_THROW(PiecewiseLinear1D(std::vector<double>{1}), Error);
     EXPECT_THROW((PiecewiseLinear1D{std::vector<double>{0, 0}, std::vector<double>{1, 1}}), Error);
+}
+
+TEST(PiecewiseBilinear2D, SamplesFollowTheFunction) {
+    const std::vector<float> x{-1, -0.5f, 1, 2, 2.25f}, y{0, 0.5f, 1, 2};
+    const std::vector<float> values{0,      3, 1, 0, 0, /**/ 2, 0, 4, 0, 0,
+                                    /**/ 1, 1, 1, 0, 0, /**/ 7, 0, 0, 2, 0};
+    const std::vector<double> scale{1, 0.5, 2};
+    const PiecewiseBilinear2D d(x, y, values, scale);
+    auto f = [&](Vec2d p) {
+        std::size_t i = 0, j = 0;
+        while (i + 2 < x.size() && p.x >= static_cast<double>(x[i + 1])) ++i;
+        while (j + 2 < y.size() && p.y >= static_cast<double>(y[j + 1])) ++j;
+        auto at = [&](std::size_t a, std::size_t b) { return static_cast<double>(values[b * x.size() + a]); };
+        const double s = (p.x - static_cast<double>(x[i])) / static_cast<double>(x[i + 1] - x[i]);
+        const double t = (p.y - static_cast<double>(y[j])) / static_cast<double>(y[j + 1] - y[j]);
+        return scale[j] * ((1 - t) * ((1 - s) * at(i, j) + s * at(i + 1, j)) +
+                           t * ((1 - s) * at(i, j + 1) + s * at(i + 1, j + 1)));
+    };
+    auto r = rectangle_chi_squared_test([&](Vec2f u) { return d.sample(u).p; },
+                                        [&](Vec2d p) { return f(p) / d.integral(); }, {-1, 0}, {2.25, 2},
+                                        {.cells_x = 26, .cells_y = 16});
+    EXPECT_TRUE(r.passes(significance)) << r.description;
+    TestUniforms uniforms(4);
+    for (int i = 0; i < 5000; ++i) {
+        const auto s = d.sample(uniforms.next_2f());
+        ASSERT_NEAR(static_cast<double>(s.pdf), f(Vec2d(s.p)) / d.integral(), 1e-5);
+        ASSERT_GT(s.pdf, 0);
+        const Vec2f p{static_cast<float>(3.25 * uniforms.next() - 1),
+                      static_cast<float>(2 * uniforms.next())};
+        ASSERT_NEAR(static_cast<double>(d.pdf(p)), f(Vec2d(p)) / d.integral(), 1e-5);
+    }
+    EXPECT_EQ(d.pdf({2.3f, 1}), 0);
+    EXPECT_EQ(d.pdf({2.1f, 0.7f}), 0); // a cell without light
+}
+
+TEST(PiecewiseBilinear2D, AllZeroIsUniformAndBadInputGetsASentence) {
+    const PiecewiseBilinear2D d({0, 1, 2}, {0, 1}, std::vector<float>(6));
+    EXPECT_EQ(d.integral(), 0);
+    EXPECT_NEAR(d.pdf({0.3f, 0.4f}), 0.5f, 1e-6f);
+    EXPECT_THROW(PiecewiseBilinear2D({0, 1}, {0, 1}, std::vector<float>(5)), Error);
+    EXPECT_THROW(PiecewiseBilinear2D({0, 0}, {0, 1}, std::vector<float>(4)), Error);
+    EXPECT_THROW(PiecewiseBilinear2D({0, 1}, {0}, std::vector<float>(2)), Error);
+    EXPECT_THROW(PiecewiseBilinear2D({0, 1}, {0, 1}, std::vector<float>{1, 1, 1, -1}), Error);
+    EXPECT_THROW(PiecewiseBilinear2D({0, 1}, {0, 1}, std::vector<float>(4), std::vector<double>{1, 1}),
+                 Error);
 }
 
 } // namespace

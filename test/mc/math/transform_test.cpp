@@ -1,15 +1,10 @@
+#include "test/near.h"
 #include <gtest/gtest.h>
 
 #include "montelux/mc/math/transform.h"
 
 namespace montelux {
 namespace {
-
-void expect_near(Vec3d a, Vec3d b) {
-    EXPECT_NEAR(a.x, b.x, 1e-12);
-    EXPECT_NEAR(a.y, b.y, 1e-12);
-    EXPECT_NEAR(a.z, b.z, 1e-12);
-}
 
 TEST(Transform, InverseUndoesAComposition) {
     Transform t =

@@ -40,6 +40,8 @@ class GgxAngleDistribution : public SampledByInversion<GgxAngleDistribution> {
         return ac * ac / (s * s + ac * ac);
     }
     double quantile(double xi) const { return angle(xi, 1 - xi); }
+    // tan^2(X), for directions without trigonometry; infinite at 1.
+    double squared_tangent_quantile(double xi) const { return alpha_ * alpha_ * xi / (1 - xi); }
     double quantile_complement(double q) const { return angle(1 - q, q); }
 
   private:

@@ -45,6 +45,29 @@ double sum_of(const std::vector<float>& light) {
     return sum.value();
 }
 
+std::vector<float> blended_light(const std::vector<float>& light, const EnvironmentGrid& grid) {
+    // The integral of the blend over a texel, in which equal areas are equal solid angles.
+    constexpr double shares[3] = {0.125, 0.75, 0.125};
+    const auto width = static_cast<std::size_t>(grid.width());
+    std::vector<float> blended(light.size());
+    for_each_row(grid, [&](int y, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            double sum = 0;
+            for (int dy = -1; dy <= 1; ++dy)
+                for (int dx = -1; dx <= 1; ++dx) {
+                    const std::size_t texel = grid.texel_around(static_cast<int>(i - begin) + dx, y + dy);
+                    sum += shares[dx + 1] * shares[dy + 1] * static_cast<double>(light[texel]) /
+                           grid.solid_angle(static_cast<int>(texel / width));
+                }
+            if (sum > 0)
+                blended[i] = static_cast<float>(std::clamp(
+                    sum * grid.solid_angle(y), static_cast<double>(std::numeric_limits<float>::min()),
+                    static_cast<double>(std::numeric_limits<float>::max())));
+        }
+    });
+    return blended;
+}
+
 bool compensate(std::vector<float>& light, const EnvironmentGrid& grid) {
     constexpr double least = 0.01;
     const double total = sum_of(light), mean = total / (4 * pi);

@@ -27,6 +27,9 @@ inline Vec2f keep_in_texel(Vec2f grid, std::uint32_t column, std::uint32_t row) 
 // times its solid angle. Above zero wherever a channel is.
 std::vector<float> texel_light(const Image& map, const EnvironmentGrid& grid);
 double sum_of(const std::vector<float>& light);
+// The same for maps that are looked up bilinearly, from the light of texels that are looked up alone. Above
+// zero wherever something shines in the texel.
+std::vector<float> blended_light(const std::vector<float>& light, const EnvironmentGrid& grid);
 
 // The light less that of a sky of its mean radiance, where that leaves something: Karlik et al. 2019, "MIS
 // Compensation: Optimizing Sampling Techniques in Multiple Importance Sampling", for one sample of the map

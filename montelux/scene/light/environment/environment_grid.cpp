@@ -56,15 +56,46 @@ double EnvironmentGrid::line_below(double share) const {
     return in_row(row_at(theta), share);
 }
 
-Vec3f EnvironmentGrid::direction(Vec2f grid) const {
+std::size_t EnvironmentGrid::texel_around(int x, int y) const {
+    if (layout_ == EnvironmentLayout::equal_area) {
+        if (x < 0 || x >= width_) {
+            x = x < 0 ? -1 - x : 2 * width_ - 1 - x;
+            y = height_ - 1 - y;
+        }
+        if (y < 0 || y >= height_) {
+            y = y < 0 ? -1 - y : 2 * height_ - 1 - y;
+            x = width_ - 1 - x;
+        }
+    } else {
+        if (y < 0 || y >= height_) {
+            y = y < 0 ? -1 - y : 2 * height_ - 1 - y;
+            x += width_ / 2;
+        }
+        x = (x + width_) % width_;
+    }
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+}
+
+EnvironmentGrid::Blend EnvironmentGrid::blend(Vec2f grid) const {
+    const float left = std::floor(grid.x - 0.5f), top = std::floor(grid.y - 0.5f);
+    const float u = grid.x - 0.5f - left, v = grid.y - 0.5f - top;
+    const int x = static_cast<int>(left), y = static_cast<int>(top);
+    return {{texel_around(x, y), texel_around(x + 1, y), texel_around(x, y + 1), texel_around(x + 1, y + 1)},
+            {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v}};
+}
+
+template <std::floating_point T>
+Vec3f EnvironmentGrid::direction(Vec2<T> grid) const {
     if (layout_ == EnvironmentLayout::equal_area)
-        return equal_area_square_to_sphere(
-            Vec2f{grid.x / static_cast<float>(width_), grid.y / static_cast<float>(height_)});
+        return Vec3f(equal_area_square_to_sphere(
+            Vec2<T>{grid.x / static_cast<T>(width_), grid.y / static_cast<T>(height_)}));
     double share = share_above(static_cast<double>(grid.y));
     auto sin_theta = static_cast<float>(2 * std::sqrt(std::max(0.0, share * (1 - share))));
-    float phi = two_pi_f * grid.x / static_cast<float>(width_);
+    auto phi = static_cast<float>(static_cast<T>(2 * pi) * grid.x / static_cast<T>(width_));
     return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), static_cast<float>(1 - 2 * share)};
 }
+template Vec3f EnvironmentGrid::direction(Vec2f grid) const;
+template Vec3f EnvironmentGrid::direction(Vec2d grid) const;
 
 Vec2f EnvironmentGrid::locate(Vec3f w) const {
     const float right = below(width_), bottom = below(height_);
@@ -76,8 +107,10 @@ Vec2f EnvironmentGrid::locate(Vec3f w) const {
     double x = double(w.x), y = double(w.y), z = double(w.z), r2 = x * x + y * y;
     // (1 - z) / 2 keeps its digits near both poles.
     double share = z > 0 ? r2 / (2 * (1 + z)) : 1 - r2 / (2 * (1 - z));
-    double theta = std::atan2(std::sqrt(r2), z);
-    std::size_t row = row_at(theta);
+    // Floats know the angle to a row or so, shares tell which it is.
+    std::size_t row = row_at(static_cast<double>(std::atan2(std::sqrt(static_cast<float>(r2)), w.z)));
+    while (row > 0 && share < edges_[row]) --row;
+    while (row + 2 < edges_.size() && share >= edges_[row + 1]) ++row;
     auto line = static_cast<float>(in_row(row, share));
     return {std::min(right, turn_fraction(w.x, w.y) * static_cast<float>(width_)),
             std::min(std::nextafter(static_cast<float>(row + 1), 0.0f), line)};

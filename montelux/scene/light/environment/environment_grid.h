@@ -1,9 +1,12 @@
 // The texels of an environment map on the sphere: directions to places on the map and back, solid angles.
 #pragma once
 
+#include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "montelux/mc/math/constants.h"
@@ -15,6 +18,10 @@ enum class EnvironmentLayout : std::uint8_t {
     equal_area,      // square, octahedral (Clarberg 2008): mc/warp/equal_area_square.h
     equirectangular, // latitude-longitude: rows from +z (theta = 0) to -z, columns phi from +x towards +y
 };
+
+constexpr std::string_view name_of(EnvironmentLayout layout) {
+    return layout == EnvironmentLayout::equal_area ? "equal-area" : "equirectangular";
+}
 
 // What maps of this size are: square ones equal-area, those twice as wide as high latitude-longitude, others
 // neither.
@@ -30,6 +37,13 @@ constexpr std::optional<EnvironmentLayout> layout_of_size(int width, int height)
 // that is looked up in the nearest texel is matched exactly.
 class EnvironmentGrid {
   public:
+    // The texels whose centres are around a place, and their shares in a bilinear blend; one may stand
+    // several times.
+    struct Blend {
+        std::array<std::size_t, 4> texel;
+        std::array<float, 4> share;
+    };
+
     // Width and height at least 1.
     EnvironmentGrid(EnvironmentLayout layout, int width, int height);
 
@@ -40,14 +54,21 @@ class EnvironmentGrid {
         return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
     }
 
-    // Unit, in the space of the map.
-    Vec3f direction(Vec2f grid) const;
+    // Unit, in the space of the map. Of float and double.
+    template <std::floating_point T = float>
+    Vec3f direction(Vec2<T> grid) const;
     // Within [0, width) x [0, height). `w` has unit length.
     Vec2f locate(Vec3f w) const;
     std::size_t texel(Vec2f grid) const {
         return static_cast<std::size_t>(grid.y) * static_cast<std::size_t>(width_) +
                static_cast<std::size_t>(grid.x);
     }
+
+    // Within [0, width] x [0, height]. Beyond an edge of the map follows what lies there on the sphere: the
+    // other side of the seam, the other side of the pole, or the same edge of an octahedral map, mirrored.
+    Blend blend(Vec2f grid) const;
+    // The texel at a place up to one texel beyond an edge.
+    std::size_t texel_around(int x, int y) const;
 
     // Of each texel of a row, in steradians.
     double solid_angle(int row) const {

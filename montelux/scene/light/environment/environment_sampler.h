@@ -5,6 +5,7 @@
 #include <string>
 #include <variant>
 
+#include "montelux/scene/light/environment/bilinear_environment.h"
 #include "montelux/scene/light/environment/environment_settings.h"
 #include "montelux/scene/light/environment/median_cut_environment.h"
 #include "montelux/scene/light/environment/structured_environment.h"
@@ -15,7 +16,8 @@ namespace montelux {
 
 class EnvironmentSampler {
   public:
-    // The map has the channels R, G and B. Values that are negative count as 0; others must be finite.
+    // The map has the channels R, G and B. Values that are negative count as 0; others must be finite. Throws
+    // Error for a number of parts that the density does not have.
     EnvironmentSampler(const Image& map, EnvironmentLayout layout, const EnvironmentSettings& settings = {});
 
     const EnvironmentGrid& grid() const { return *grid_; }
@@ -27,16 +29,20 @@ class EnvironmentSampler {
         return std::visit([&](const auto& d) { return d.pdf(grid); }, density_);
     }
 
-    using Density =
-        std::variant<TabulatedEnvironment, WithSun<MedianCutEnvironment>, WithSun<StructuredEnvironment>>;
+    using Density = std::variant<TabulatedEnvironment, WithSun<MedianCutEnvironment>,
+                                 WithSun<StructuredEnvironment>, BilinearEnvironment>;
     const Density& density() const { return density_; }
     // What was taken, where the settings left it open.
     EnvironmentSampling sampling() const;
     bool compensated() const { return compensated_; }
+    EnvironmentLookup lookup() const { return lookup_; }
     const Sun* sun() const;
+    // Of all but the sun; null where another density was taken.
+    const MedianCutEnvironment* median_cut() const;
+    const StructuredEnvironment* structured() const;
     // Mean of R, G and B over the sphere.
     double mean_radiance() const { return mean_radiance_; }
-    // For people: "tabulated, compensated, 1024 x 1024 texels, 4.5 MiB".
+    // For people: "tabulated, compensated; 1024 x 1024 texels, equal-area, 4.5 MiB".
     std::string description() const;
 
   private:
@@ -45,6 +51,7 @@ class EnvironmentSampler {
     std::unique_ptr<const EnvironmentGrid> grid_; // densities point to it
     double mean_radiance_ = 0;
     bool compensated_ = false;
+    EnvironmentLookup lookup_;
     Density density_;
 };
 

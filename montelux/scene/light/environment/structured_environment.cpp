@@ -180,6 +180,8 @@ class StratumBuilder {
             }
             const std::uint32_t centre = part.cells[far];
             centres.push_back(centre);
+            e_.centre_.push_back(centre);
+            e_.level_.push_back(static_cast<std::uint8_t>(part.level));
             for (std::size_t i = 0; i < n; ++i) {
                 const float d = distance(i, centre);
                 nearest_any[i] = std::min(nearest_any[i], d);
@@ -239,6 +241,15 @@ StructuredEnvironment::StructuredEnvironment(const EnvironmentGrid& grid, const 
     columns_ = blocks(width);
     rows_ = blocks(height);
     StratumBuilder(*this, light, strata);
+}
+
+Vec2f StructuredEnvironment::centre_of(std::size_t stratum) const {
+    auto middle = [this](std::size_t k, int n) {
+        return 0.5f *
+               static_cast<float>(k * block_ + std::min((k + 1) * block_, static_cast<std::size_t>(n)));
+    };
+    return {middle(centre_[stratum] % columns_, grid_->width()),
+            middle(centre_[stratum] / columns_, grid_->height())};
 }
 
 Vec2f StructuredEnvironment::place(std::uint32_t cell, float u, double v) const {

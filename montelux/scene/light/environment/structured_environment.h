@@ -34,6 +34,9 @@ class StructuredEnvironment {
                           int strata = default_strata);
 
     std::size_t strata() const { return pdf_.size(); }
+    // The threshold that the part of a stratum lies above, and the middle of the cell that it grew from.
+    int level_of(std::size_t stratum) const { return level_[stratum]; }
+    Vec2f centre_of(std::size_t stratum) const;
     static constexpr std::uint32_t no_stratum = 0xffffffff;
     std::uint32_t stratum_of(Vec2f grid) const {
         const auto x = static_cast<std::size_t>(grid.x), y = static_cast<std::size_t>(grid.y);
@@ -54,7 +57,8 @@ class StructuredEnvironment {
         return s == no_stratum ? 0 : pdf_[s];
     }
     std::size_t bytes() const {
-        return (stratum_of_.size() + first_.size() + cells_.size()) * sizeof(std::uint32_t) +
+        return (stratum_of_.size() + first_.size() + cells_.size() + centre_.size()) * sizeof(std::uint32_t) +
+               level_.size() + // one byte each
                before_.size() * sizeof(double) + pdf_.size() * sizeof(float);
     }
 
@@ -69,7 +73,10 @@ class StructuredEnvironment {
     std::vector<std::uint32_t> first_;      // of each stratum's cells, in cells_, and the end
     std::vector<std::uint32_t> cells_;
     std::vector<double> before_; // share of its stratum that lies in cells before it
-    std::vector<float> pdf_;     // of each stratum, over solid angle
+    // Of each stratum:
+    std::vector<float> pdf_; // over solid angle
+    std::vector<std::uint32_t> centre_;
+    std::vector<std::uint8_t> level_;
 };
 
 } // namespace montelux

@@ -1,4 +1,4 @@
-// Nodes and weights of the quadrature rules that baking uses, on [0, 1].
+// Nodes and weights of quadrature rules on [0, 1].
 #pragma once
 
 #include <vector>

@@ -1,0 +1,123 @@
+// montelux bake sky: the clear sky as an environment map.
+#include "app/bake.h"
+#include "app/bake_run.h"
+#include "app/commands.h"
+#include "app/json_number.h"
+#include "app/progress_line.h"
+#include "app/usage_error.h"
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "montelux/image/image_write.h"
+#include "montelux/scene/light/sky/sky_map.h"
+
+namespace montelux::app {
+namespace {
+
+struct SkyOptions {
+    std::vector<std::string> outputs;
+    SkySettings settings;
+    double albedo = 0.2, scale = 1;
+    int size = 1024;
+    float exposure = 0;
+    bool no_sun = false;
+    BakeRunOptions run;
+};
+
+double photometric(const SpectrumTable& t) {
+    return luminous_efficacy * integrate_luminance([&](float lambda) { return t(lambda); });
+}
+
+int run(const SkyOptions& o) {
+    if (o.size % 2 != 0)
+        throw UsageError("--size", "an even number is expected: the map is twice as wide as high");
+    for (const std::string& path : o.outputs) check_writable(path);
+    BakeRun bake(o.run.quiet, "the sky");
+    SkySettings settings = o.settings;
+    settings.ground_albedo = Spectrum(static_cast<float>(o.albedo));
+    const SkyModel sky(settings);
+    Image picture = sky_picture(sky, o.size / 2, !o.no_sun);
+    for (float& v : picture.f32()) v *= static_cast<float>(o.scale);
+    if (bake.interrupted(bake.cancel()->requested())) return exit_interrupted;
+    const double time = bake.seconds();
+
+    WriteOptions writing;
+    writing.exposure = o.exposure;
+    for (const std::string& path : o.outputs) write_image(path, picture, writing);
+    const double from_sky = photometric(sky.sky_irradiance()), from_sun = photometric(sky.sun_irradiance());
+    const double zenith = luminous_efficacy * sky.tristimulus({0, 0, 1}).y;
+    if (o.run.json) {
+        nlohmann::ordered_json out;
+        out["width"] = picture.width();
+        out["height"] = picture.height();
+        out["sky_illuminance"] = json_number(from_sky);
+        out["sun_illuminance"] = json_number(from_sun);
+        out["zenith_luminance"] = json_number(zenith);
+        out["seconds"] = time;
+        std::printf("%s\n", out.dump(2).c_str());
+    } else if (!o.run.quiet) {
+        for (const std::string& path : o.outputs)
+            std::printf(
+                "%s: %d x %d texels, %s; level ground gets %.4g lx from the sky and %.4g lx from the sun; "
+                "zenith %.4g cd/m^2\n",
+                path.c_str(), picture.width(), picture.height(), duration_text(time).c_str(), from_sky,
+                from_sun, zenith);
+    }
+    return exit_done;
+}
+
+} // namespace
+
+void add_bake_sky(CLI::App& bake, int& exit_code) {
+    auto o = std::make_shared<SkyOptions>();
+    o->settings.azimuth = 180; // the middle of the map
+    AtmosphereSettings& air = o->settings.atmosphere;
+    CLI::App* command = bake.add_subcommand("sky", "Compute a clear sky with its sun as an environment map");
+    command
+        ->add_option(
+            "-o,--output", o->outputs,
+            "Map to write, latitude-longitude, twice as wide as high; .exr, .hdr, .pfm or .png; may be "
+            "given several times")
+        ->type_name("FILE")
+        ->allow_extra_args(false)
+        ->required();
+    command->add_option("--elevation", o->settings.elevation, "Of the sun above the horizon, degrees (45)")
+        ->check(CLI::Range(lowest_sun, highest_sun))
+        ->type_name("DEGREES");
+    command
+        ->add_option("--azimuth", o->settings.azimuth,
+                     "Of the sun, degrees from the left edge of the map to the right (180, the middle)")
+        ->check(CLI::Range(-360.0, 360.0))
+        ->type_name("DEGREES");
+    command->add_option("--turbidity", air.turbidity, "Haze: 1 pure air, 2 a clear day (2), 10 dense haze")
+        ->check(CLI::Range(least_turbidity, most_turbidity))
+        ->type_name("T");
+    command->add_option("--albedo", o->albedo, "Reflectance of the ground (0.2)")
+        ->check(CLI::Range(0.0, 1.0))
+        ->type_name("A");
+    command->add_option("--ozone", air.ozone, "Dobson units (300)")
+        ->check(CLI::Range(0.0, 1000.0))
+        ->type_name("DU");
+    command->add_option("--size", o->size, "Width in texels (1024)")
+        ->check(CLI::Range(2, 16384))
+        ->type_name("N");
+    command->add_flag("--no-sun", o->no_sun, "Leave out the sun's disc");
+    command
+        ->add_option("--scale", o->scale,
+                     "Multiplies the map, whose luminance is in cd/m^2 without the option")
+        ->check(CLI::PositiveNumber)
+        ->type_name("S");
+    command->add_option("--exposure", o->exposure, "Of a .png picture, in stops")
+        ->check(CLI::Range(-100.0, 100.0))
+        ->type_name("STOPS");
+    declare(*command, o->run);
+    command->footer(
+        "The top row is the zenith; below the horizon is the ground in the light of sky and sun.\n\n"
+        "Example:\n  montelux bake sky --elevation 20 --turbidity 3 -o sky.exr");
+    on_command(*command, o->run, exit_code, [o] { return run(*o); });
+}
+
+} // namespace montelux::app

@@ -1,0 +1,43 @@
+// The sun as it is seen: a disc infinitely far away.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "montelux/mc/math/constants.h"
+#include "montelux/mc/math/frame.h"
+#include "montelux/mc/warp/cone.h"
+
+namespace montelux {
+
+// Of the sun as seen from the earth, radians.
+inline constexpr double sun_angular_radius = 0.2666 * pi / 180;
+
+// Part of a small disc that is above a horizon, whose centre is `above` over it and radius `radius` (both
+// radians).
+inline double part_above_horizon(double above, double radius) {
+    const double x = above / radius;
+    if (x >= 1) return 1;
+    if (x <= -1) return 0;
+    return 0.5 + (x * std::sqrt(1 - x * x) + std::asin(x)) / pi;
+}
+
+// Directions within an angle of its centre, uniform in solid angle.
+struct SunDisc {
+    Vec3f centre{0, 0, 1}; // unit
+    float versine = 0;     // 1 - cos(angle)
+
+    static SunDisc of_radius(Vec3f centre, double radius) {
+        const double s = std::sin(radius);
+        return {centre, static_cast<float>(versine_from_sin_squared(s * s))};
+    }
+    // |w - centre|^2 = 2 (1 - cos), which has all its digits where the cosine has none.
+    bool contains(Vec3f w) const { return length_squared(w - centre) < 2 * versine; }
+    double solid_angle() const { return 2 * pi * static_cast<double>(versine); }
+    float pdf() const { return uniform_cone_pdf_from_versine(versine); }
+    Vec3f sample(Vec2f u) const {
+        return normalize(Frame::from_normal(centre).to_world(sample_uniform_cone_from_versine(u, versine)));
+    }
+};
+
+} // namespace montelux

@@ -1,0 +1,25 @@
+// Small environment maps for the tests of how they are sampled and looked up.
+#pragma once
+
+#include "montelux/image/image.h"
+#include "montelux/mc/math/vec.h"
+#include "montelux/scene/light/environment/environment_grid.h"
+#include "montelux/scene/light/environment/environment_settings.h"
+
+namespace montelux {
+
+inline constexpr EnvironmentSampling environment_kinds[] = {
+    EnvironmentSampling::tabulated, EnvironmentSampling::median_cut, EnvironmentSampling::structured};
+inline constexpr EnvironmentLayout environment_layouts[] = {EnvironmentLayout::equal_area,
+                                                            EnvironmentLayout::equirectangular};
+
+// value(x, y) times `color`, whose mean of R, G and B is 1.
+Image map_of(int width, int height, const auto& value, Vec3f color = {0.5f, 2, 0.5f}) {
+    Image map(width, height, {"R", "G", "B"});
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < 3; ++c) map.set(x, y, c, static_cast<float>(value(x, y)) * color[c]);
+    return map;
+}
+
+} // namespace montelux
