@@ -30,6 +30,7 @@ from ._core import (
     Distribution,
     Domain,
     EnvironmentLight,
+    EnvironmentSampler,
     Error,
     Film,
     GaussianFilter,
@@ -48,10 +49,12 @@ from ._core import (
     RiemannSum,
     Sampler,
     Shape,
+    SkyLight,
     Spectrum,
     SphericalCamera,
     SpotLight,
     Stratified,
+    SunLight,
     Technique,
     ThinDielectric,
     TrapezoidRule,
@@ -76,7 +79,7 @@ from ._render import Progress, Render
 from ._result import History, Result
 from ._scene import Scene, load, parse
 
-from . import warp
+from . import bake, warp
 
 __all__ = [
     "__version__",
@@ -85,6 +88,7 @@ __all__ = [
     "AliasTable",
     "AreaLight",
     "Auto",
+    "bake",
     "BasicMonteCarlo",
     "BoxFilter",
     "Chains",
@@ -103,6 +107,7 @@ __all__ = [
     "Distribution",
     "Domain",
     "EnvironmentLight",
+    "EnvironmentSampler",
     "Error",
     "Film",
     "GaussianFilter",
@@ -137,11 +142,13 @@ __all__ = [
     "Sampler",
     "Scene",
     "Shape",
+    "SkyLight",
     "Spectrum",
     "SphericalCamera",
     "SpotLight",
     "star_discrepancy",
     "Stratified",
+    "SunLight",
     "Technique",
     "ThinDielectric",
     "train_map",
@@ -155,4 +162,4 @@ __all__ = [
     "ZScores",
 ]
 
-strict(*METHODS.values(), Distribution, Domain, Technique, AdaptiveMap, Spectrum, warp.Warp)
+strict(*METHODS.values(), Distribution, Domain, Technique, AdaptiveMap, Spectrum, EnvironmentSampler, warp.Warp)

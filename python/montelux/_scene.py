@@ -194,6 +194,8 @@ VALUES = (
     _core.DistantLight,
     _core.UniformInfiniteLight,
     _core.EnvironmentLight,
+    _core.SkyLight,
+    _core.SunLight,
     _core.PerspectiveCamera,
     _core.OrthographicCamera,
     _core.SphericalCamera,

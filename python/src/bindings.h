@@ -32,6 +32,8 @@ void bind_warps(nb::module_& m);
 void bind_tables(nb::module_& m); // discrete variables, tabulated densities
 void bind_spectra(nb::module_& m);
 void bind_images(nb::module_& m);
+void bind_environments(nb::module_& m); // sampling of maps
+void bind_bake(nb::module_& m);
 void bind_materials(nb::module_& m);
 void bind_lights(nb::module_& m);
 void bind_shapes(nb::module_& m);

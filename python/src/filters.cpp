@@ -1,49 +1,34 @@
 #include "python/src/bindings.h"
 #include "python/src/scene_values.h"
 #include <string>
-#include <vector>
 
 #include "montelux/film/pixel_filter.h"
 
 namespace montelux::python {
 namespace {
 
-// An array of shape (..., 2), and that shape without its last entry.
-struct Pairs {
-    Numbers numbers;
-    std::vector<std::size_t> rows;
-
-    Pairs(const nb::object& given, const std::string& what) : numbers(python::numbers_of(given, what)) {
-        rows = numbers.shape;
-        if (rows.empty() || rows.back() != 2) throw Error(what, "expected an array of shape (n, 2)");
-        rows.pop_back();
-    }
-    std::size_t count() const { return numbers.values.size() / 2; }
-    Vec2f operator[](std::size_t i) const {
-        return {static_cast<float>(numbers.values[2 * i]), static_cast<float>(numbers.values[2 * i + 1])};
-    }
-};
+Vec2f offset_of(const double* x) { return {static_cast<float>(x[0]), static_cast<float>(x[1])}; }
 
 DoubleArray values(const PixelFilter& filter, const nb::object& offsets) {
-    const Pairs x(offsets, "pixel filter, value");
-    NewArray out = new_array(x.rows);
+    const Rows x(offsets, 2, "pixel filter, value");
+    NewArray out = new_array(x.shape());
     {
         nb::gil_scoped_release unlocked;
         for (std::size_t i = 0; i < x.count(); ++i)
-            out.data[i] = static_cast<double>(filter_value(filter, x[i]));
+            out.data[i] = static_cast<double>(filter_value(filter, offset_of(x[i])));
     }
     return out.array;
 }
 
 nb::object samples(const PixelFilter& filter, const nb::object& numbers) {
-    const Pairs u(numbers, "pixel filter, sample");
+    const Rows u(numbers, 2, "pixel filter, sample");
     require_uniform(u.numbers.values, "pixel filter, sample");
     const PixelFilterSampler sampler(filter);
-    NewArray offsets = new_array(u.numbers.shape), weights = new_array(u.rows);
+    NewArray offsets = new_array(u.numbers.shape), weights = new_array(u.shape());
     {
         nb::gil_scoped_release unlocked;
         for (std::size_t i = 0; i < u.count(); ++i) {
-            const FilterSample s = sampler.sample(u[i]);
+            const FilterSample s = sampler.sample(offset_of(u[i]));
             offsets.data[2 * i] = static_cast<double>(s.offset.x);
             offsets.data[2 * i + 1] = static_cast<double>(s.offset.y);
             weights.data[i] = static_cast<double>(s.weight);

@@ -1,7 +1,9 @@
 #include "python/src/images.h"
 
 #include "python/src/bindings.h"
+#include "python/src/names.h"
 #include "python/src/numpy_bridge.h"
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -48,6 +50,35 @@ Image rgb_image(const Image& picture, const std::string& what) {
     Image rgb(picture.width(), picture.height(), {"R", "G", "B"});
     for (std::size_t i = 0; i < rgb.sample_count(); ++i) rgb.f32()[i] = colors.f32()[i / 3];
     return rgb;
+}
+
+Image light_map(const nb::object& given, const std::string& what) {
+    Image map = rgb_image(picture_of(given, what), what);
+    for (const float v : map.f32())
+        if (!(v >= 0 && std::isfinite(v)))
+            throw Error(what, "the map has a pixel that is negative or not finite");
+    return map;
+}
+
+namespace {
+constexpr Names<EnvironmentLayout, 2> layouts{
+    "layout",
+    {{{name_of(EnvironmentLayout::equirectangular), EnvironmentLayout::equirectangular},
+      {name_of(EnvironmentLayout::equal_area), EnvironmentLayout::equal_area}}}};
+} // namespace
+
+EnvironmentLayout map_layout(std::string_view name, const Image& map, const std::string& what) {
+    const std::string pixels = std::to_string(map.width()) + " x " + std::to_string(map.height()) + " pixels";
+    if (name == "auto") {
+        if (const auto usual = layout_of_size(map.width(), map.height())) return *usual;
+        throw Error(what, "the map has " + pixels +
+                              "; expected a square map (equal-area octahedral), or one twice as wide as high "
+                              "(latitude-longitude)");
+    }
+    const EnvironmentLayout layout = layouts.value(name);
+    if (layout == EnvironmentLayout::equal_area && map.width() != map.height())
+        throw Error(what, "an equal-area map of " + pixels + " was given; expected a square one");
+    return layout;
 }
 
 void note_pixels(SceneHolder& scene, const Image& image) {

@@ -5,9 +5,11 @@
 #include <memory>
 #include <nanobind/nanobind.h>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "montelux/image/image.h"
+#include "montelux/scene/light/environment/environment_grid.h"
 
 namespace montelux::python {
 
@@ -16,6 +18,10 @@ namespace montelux::python {
 Image picture_of(const nb::object& given, const std::string& what);
 // Its channels R, G, B (or three times Y), linear, and no others.
 Image rgb_image(const Image& picture, const std::string& what);
+// The same of an environment map; throws Error for a pixel that is negative or not finite.
+Image light_map(const nb::object& given, const std::string& what);
+// 'equirectangular', 'equal-area', or 'auto', by the shape of the map. Throws Error beginning with `what`.
+EnvironmentLayout map_layout(std::string_view name, const Image& map, const std::string& what);
 // Takes the pixels into the fingerprint of a scene.
 void note_pixels(SceneHolder& scene, const Image& image);
 

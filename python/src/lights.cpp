@@ -1,5 +1,6 @@
 #include "python/src/bindings.h"
 #include "python/src/scene_values.h"
+#include <array>
 #include <numbers>
 #include <string>
 
@@ -51,6 +52,39 @@ void angle(nb::class_<Ref<SpotLight>>& c, const char* name, float SpotLight::*me
             t.*member = static_cast<float>(std::cos(a * degree));
         },
         doc);
+}
+
+template <typename T>
+void portal(nb::class_<Ref<T>>& c) {
+    attribute<T>(
+        c, "portal", "typing.Any",
+        [](const T& t, const auto&) -> nb::object {
+            if (!t.portal) return nb::none();
+            std::vector<double> rows;
+            for (const Point3f& p : t.portal->corners())
+                for (const float x : {p.x, p.y, p.z}) rows.push_back(static_cast<double>(x));
+            return nb::cast(new_array(rows, 4, 3));
+        },
+        [](T& t, nb::handle v, auto&, const std::string& what) {
+            if (v.is_none()) {
+                t.portal.reset();
+                return;
+            }
+            const Numbers n = numbers_of(v, what);
+            if (n.shape != std::vector<std::size_t>{4, 3})
+                throw Error(what, "expected the corners of a rectangle, shape (4, 3)");
+            std::array<Point3f, 4> corners;
+            for (std::size_t i = 0; i < 4; ++i)
+                corners[i] = Point3f(Vec3d{n.values[3 * i], n.values[3 * i + 1], n.values[3 * i + 2]});
+            try {
+                t.portal = Portal(corners);
+            } catch (const Error& e) {
+                throw Error(what, e.what());
+            }
+        },
+        "The rectangle that its light comes through, corners of shape (4, 3) in world space, from the side "
+        "that cross(corners[3] - corners[0], corners[1] - corners[0]) points to; None for light from "
+        "everywhere.");
 }
 
 template <typename T>
@@ -108,6 +142,7 @@ void bind_lights(nb::module_& m) {
     auto sky =
         value_class<UniformInfiniteLight>(m, "UniformInfiniteLight", "The same radiance from everywhere.");
     emission(sky, "Radiance");
+    portal(sky);
     auto map = value_class<ImageInfiniteLight>(
         m, "EnvironmentLight",
         "Radiance from a square equal-area map; scenes make them by add_environment().");
@@ -120,6 +155,13 @@ void bind_lights(nb::module_& m) {
             t.world_from_light = transform_of(v, what);
         },
         "How the map is turned, shape (4, 4); its z axis is the centre of the picture.");
+    portal(map);
+    auto dome = value_class<SkyLight>(m, "SkyLight", "A clear sky without the sun, from a scene file.");
+    number(dome, "scale", &SkyLight::scale, not_negative, "a number that is not negative",
+           "Multiplies the sky; 683 is luminance in cd/m^2.");
+    auto sun = value_class<SunLight>(m, "SunLight", "The sun's disc, from a scene file.");
+    number(sun, "scale", &SunLight::scale, not_negative, "a number that is not negative",
+           "Multiplies the sun; 683 is luminance in cd/m^2.");
 }
 
 } // namespace montelux::python

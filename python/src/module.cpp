@@ -45,6 +45,8 @@ NB_MODULE(_core, m) {
     bind_tables(m);
     bind_spectra(m);
     bind_images(m);
+    bind_environments(m);
+    bind_bake(m);
     bind_materials(m);
     bind_lights(m);
     bind_shapes(m);

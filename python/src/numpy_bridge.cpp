@@ -188,6 +188,20 @@ Numbers numbers_of(const nb::handle& given, std::string_view what) {
     return numbers;
 }
 
+Rows::Rows(const nb::handle& given, std::size_t size_, std::string_view what)
+    : numbers(numbers_of(given, what)), size(size_) {
+    if (numbers.shape.empty() || numbers.shape.back() != size)
+        throw Error(what, "expected an array of shape (n, " + std::to_string(size) + ")");
+}
+
+std::vector<std::size_t> Rows::shape() const { return {numbers.shape.begin(), numbers.shape.end() - 1}; }
+
+std::vector<std::size_t> Rows::shape(std::size_t n) const {
+    std::vector<std::size_t> shape = numbers.shape;
+    shape.back() = n;
+    return shape;
+}
+
 void require_uniform(std::span<const double> u, std::string_view what) {
     for (const double v : u)
         if (!(v >= 0 && v <= 1))

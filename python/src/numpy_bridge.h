@@ -73,6 +73,19 @@ struct Numbers {
 };
 Numbers numbers_of(const nb::handle& given, std::string_view what);
 
+// Rows of `size` numbers: an array of shape (..., size). Throws Error beginning with `what` for other shapes.
+struct Rows {
+    Numbers numbers;
+    std::size_t size;
+
+    Rows(const nb::handle& given, std::size_t size, std::string_view what);
+    std::size_t count() const { return numbers.values.size() / size; }
+    const double* operator[](std::size_t i) const { return numbers.values.data() + size * i; }
+    // Shape of an array with one number for each row, and with n of them.
+    std::vector<std::size_t> shape() const;
+    std::vector<std::size_t> shape(std::size_t n) const;
+};
+
 // Throws Error beginning with `what` for a number outside [0, 1].
 void require_uniform(std::span<const double> u, std::string_view what);
 

@@ -57,6 +57,8 @@ Light plain_light(const nb::object& o) {
     if (std::holds_alternative<ImageInfiniteLight>(given->read()))
         throw Error("lights",
                     "an EnvironmentLight refers to a map of its scene; make one by add_environment()");
+    if (std::holds_alternative<SkyLight>(given->read()) || std::holds_alternative<SunLight>(given->read()))
+        throw Error("lights", "a SkyLight or SunLight belongs to the sky of its scene file");
     return given->read();
 }
 
@@ -192,21 +194,12 @@ SpectrumTextureHandle checkerboard(const SceneObject& s, const nb::object& a, co
 
 nb::object add_environment(const SceneObject& s, const nb::object& image, double scale,
                            const nb::object& world_from_light) {
-    Image map = rgb_image(picture_of(image, "add_environment"), "add_environment");
-    const auto layout = layout_of_size(map.width(), map.height());
-    if (!layout)
-        throw Error(
-            "add_environment",
-            "the map has " + std::to_string(map.width()) + " x " + std::to_string(map.height()) +
-                " pixels; expected a square map (equal-area octahedral), or one twice as wide as high "
-                "(latitude-longitude)");
-    for (const float v : map.f32())
-        if (!(v >= 0 && std::isfinite(v)))
-            throw Error("add_environment", "the map has a pixel that is negative or not finite");
+    Image map = light_map(image, "add_environment");
+    const EnvironmentLayout layout = map_layout("auto", map, "add_environment");
     if (!not_negative(scale)) throw Error("add_environment, scale", "expected a number that is not negative");
     ImageInfiniteLight light;
     light.environment = static_cast<Index>(s.holder->read().scene.environments.size());
-    light.layout = *layout;
+    light.layout = layout;
     light.scale = static_cast<float>(scale) *
                   photometric_scale(Spectrum(RgbColorSpace::srgb().illuminant()), "add_environment");
     light.world_from_light = transform_of(world_from_light, "add_environment, world_from_light");

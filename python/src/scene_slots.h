@@ -193,6 +193,8 @@ MONTELUX_KIND(SpotLight, Light);
 MONTELUX_KIND(DistantLight, Light);
 MONTELUX_KIND(UniformInfiniteLight, Light);
 MONTELUX_KIND(ImageInfiniteLight, Light);
+MONTELUX_KIND(SkyLight, Light);
+MONTELUX_KIND(SunLight, Light);
 MONTELUX_KIND(PerspectiveCamera, CameraSettings);
 MONTELUX_KIND(OrthographicCamera, CameraSettings);
 MONTELUX_KIND(SphericalCamera, CameraSettings);

@@ -15,6 +15,7 @@ constexpr Names<Strategy, 6> strategies{"strategy", strategy_names};
 constexpr Names<Heuristic, 2> heuristics{"heuristic", heuristic_names};
 constexpr Names<EnvironmentSampling, 4> environment_samplings{"environment_sampling",
                                                               environment_sampling_names};
+constexpr Names<EnvironmentLookup, 2> environment_lookups{"environment_lookup", environment_lookup_names};
 constexpr Names<SphericalCamera::Mapping, 2> mappings{
     "mapping",
     {{{"equal_area", SphericalCamera::Mapping::equal_area},
@@ -248,6 +249,8 @@ void bind_views(nb::module_& m) {
             s.environment_compensation = nb::cast<bool>(v);
         },
         "With the strategy mis and its terms, maps are not sampled where BSDFs find them as well.");
+    choice(integrator, "environment_lookup", &IntegratorSettings::environment_lookup, environment_lookups,
+           "What environment maps are between the centres of their texels: 'nearest' or 'bilinear'.");
 }
 
 } // namespace montelux::python

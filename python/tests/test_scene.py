@@ -60,6 +60,30 @@ def test_the_scale_of_a_new_light_multiplies(kind):
     assert double.scale == pytest.approx(plain.scale)
 
 
+@pytest.mark.parametrize("kind", ["uniform", "map"])
+def test_light_comes_through_a_portal(kind):
+    scene = montelux.Scene()
+    scene.camera = montelux.PerspectiveCamera(fov=90, look_at=((0, 0, 0), (0, 0, 1), (0, 1, 0)))
+    scene.film.resolution = 8, 8
+    if kind == "uniform":
+        scene.lights.append(montelux.UniformInfiniteLight(spectrum=(1, 1, 1)))
+    else:
+        scene.add_environment(np.ones((4, 4, 3)))
+    light = scene.lights[0]
+    assert light.portal is None
+    assert scene.render(samples=64).mean.mean() == pytest.approx(1, rel=1e-2)  # wavelengths are drawn
+    corners = np.array([[-0.5, -0.5, 1], [-0.5, 0.5, 1], [0.5, 0.5, 1], [0.5, -0.5, 1]])
+    light.portal = corners
+    assert np.array_equal(light.portal, corners)
+    assert scene.render(samples=4).mean.mean() < 0.5
+    with pytest.raises(montelux.Error, match="portal: the portal is no rectangle: edges are not perpendicular"):
+        light.portal = corners + [[0, 0, 0], [0.2, 0, 0], [0.2, 0, 0], [0, 0, 0]]
+    with pytest.raises(montelux.Error, match=r"corners of a rectangle, shape \(4, 3\)"):
+        light.portal = corners[:3]
+    light.portal = None
+    assert scene.render(samples=64).mean.mean() == pytest.approx(1, rel=1e-2)  # wavelengths are drawn
+
+
 def test_numbers_of_numpy_are_numbers(scene):
     render = scene.render(samples=np.int64(4), seed=np.uint8(3), threads=np.int32(1))
     assert np.array_equal(render.mean, scene.render(samples=4).mean)
