@@ -126,10 +126,4 @@ double WindowedPiecewise2D::pdf(Vec2d p, const Window2D& window) const {
     return rectangle(x, x + 1, y, y + 1) / all * inv_cell_.x * inv_cell_.y;
 }
 
-double WindowedPiecewise2D::share(const Window2D& window) const {
-    const auto r = ranges(window);
-    if (!r) return 0;
-    return total(r->x, columns_within(r->y)) / rectangle(0, columns_, 0, rows_);
-}
-
 } // namespace montelux

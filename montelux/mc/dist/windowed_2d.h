@@ -49,8 +49,6 @@ class WindowedPiecewise2D {
     std::optional<WindowedSample2D> sample(Vec2d u, const Window2D& window) const;
     // Zero outside the window, and everywhere where `sample` is empty.
     double pdf(Vec2d p, const Window2D& window) const;
-    // Share of the whole that lies in the window.
-    double share(const Window2D& window) const;
 
   private:
     // Cells first ... last of an axis; of the first and last one the parts `head` and `tail` lie in the
