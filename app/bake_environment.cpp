@@ -39,15 +39,17 @@ struct EnvironmentOptions {
 };
 
 std::vector<double> roughness_of(const EnvironmentOptions& o) {
-    const bool linear = o.roughness == "linear", filament = o.roughness == "filament",
-               babylon = o.roughness == "babylon";
-    if (linear || filament || babylon) {
-        const int levels = o.levels.value_or(babylon ? level_count(o.size) : usual_levels(o.size));
+    static const std::map<std::string, RoughnessRule> rules{{"linear", RoughnessRule::linear},
+                                                            {"filament", RoughnessRule::filament},
+                                                            {"babylon", RoughnessRule::babylon}};
+    auto check_levels = [&](const char* option, int levels) {
         if (levels > level_count(o.size))
-            throw UsageError("--levels", "faces of " + std::to_string(o.size) + " texels have at most " +
-                                             std::to_string(level_count(o.size)) + " levels");
-        if (babylon) return babylon_roughness(levels, o.size);
-        return linear ? linear_roughness(levels) : filament_roughness(levels);
+            throw UsageError(option, "faces of " + std::to_string(o.size) + " texels have at most " +
+                                         std::to_string(level_count(o.size)) + " levels");
+    };
+    if (const auto rule = rules.find(o.roughness); rule != rules.end()) {
+        if (o.levels) check_levels("--levels", *o.levels);
+        return roughness_by_rule(rule->second, o.levels, o.size);
     }
     std::vector<double> list;
     for (std::size_t begin = 0; begin <= o.roughness.size();) {
@@ -67,9 +69,7 @@ std::vector<double> roughness_of(const EnvironmentOptions& o) {
         throw UsageError("--levels", std::to_string(*o.levels) + " levels and " +
                                          std::to_string(list.size()) +
                                          " values of --roughness do not go together");
-    if (static_cast<int>(list.size()) > level_count(o.size))
-        throw UsageError("--roughness", "faces of " + std::to_string(o.size) + " texels have at most " +
-                                            std::to_string(level_count(o.size)) + " levels");
+    check_levels("--roughness", static_cast<int>(list.size()));
     return list;
 }
 

@@ -12,17 +12,16 @@ namespace {
 
 constexpr std::uint32_t finest = 1u << 24; // parts along a texel's edge
 constexpr std::uint64_t samples_per_part = 2;
+// Whatever is asked for: with a target, which keeps them, some 150 MB a thread.
+constexpr std::size_t most_parts = std::size_t{1} << 19;
 
 Vec3f lower(Vec3f a, Vec3f b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
 Vec3f upper(Vec3f a, Vec3f b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
 
 // Parts along the edge, so that a part is at most half as wide as a texel of the map.
 std::uint32_t first_cut(const EnvironmentMap& map, int size) {
-    const EnvironmentGrid& grid = map.grid();
-    const double map_texel = grid.layout() == EnvironmentLayout::equirectangular
-                                 ? pi / grid.height()
-                                 : std::sqrt(grid.solid_angle(0));
-    return static_cast<std::uint32_t>(std::clamp(std::ceil(pi / size / map_texel), 2.0, 256.0));
+    return static_cast<std::uint32_t>(
+        std::clamp(std::ceil(pi / size / map.grid().texel_angle()), 2.0, 256.0));
 }
 
 } // namespace
@@ -49,11 +48,14 @@ void AreaEstimator::finish(Part& part) const {
         last = {std::max(last.x, d.x), std::max(last.y, d.y)};
     }
     // All texels between the corners, and a little more, since sides are curved on the map. Where those are
-    // many, the part lies on a pole or an edge of the octahedron, and its corners are far apart on the map
-    // alone.
+    // many more than such a part can cover, it lies on a pole or an edge of the octahedron, and its corners
+    // are far apart on the map alone.
+    const double across = 0.5 * pi / (size_ * static_cast<double>(part.resolution) * grid.texel_angle());
     const Vec2f margin = (last - first) * 0.05f;
     const Vec2f begin = part.middle.grid + first - margin, end = part.middle.grid + last + margin;
-    if ((end.x - begin.x) * (end.y - begin.y) < 64) {
+    const bool seen =
+        static_cast<double>((end.x - begin.x) * (end.y - begin.y)) < 64 * std::max(1.0, across * across);
+    if (seen) {
         const int y0 = std::max(0, static_cast<int>(std::floor(begin.y)));
         const int y1 = std::min(grid.height() - 1, static_cast<int>(std::floor(end.y)));
         for (int y = y0; y <= y1; ++y)
@@ -68,6 +70,8 @@ void AreaEstimator::finish(Part& part) const {
     }
     const auto resolution = static_cast<float>(part.resolution);
     part.weighted_range = max_component(part.high - part.low) / (resolution * resolution);
+    // Finer ones know the texels that they touch by their corners and middle.
+    part.is_known = seen || across < 1;
 }
 
 void AreaEstimator::cut_evenly(std::uint32_t n) {
@@ -86,7 +90,8 @@ void AreaEstimator::cut_evenly(std::uint32_t n) {
                 place((x + 0.5) / n, (y + 0.5) / n),
                 {},
                 {},
-                0};
+                0,
+                true};
             finish(part);
             parts_.push_back(part);
         }
@@ -98,7 +103,7 @@ bool AreaEstimator::refine(float allowed, std::size_t most) {
         next_.clear();
         for (std::size_t i = 0; i < parts_.size(); ++i) {
             const Part& p = parts_[i];
-            if (p.weighted_range <= allowed || p.resolution >= finest) {
+            if ((p.weighted_range <= allowed && p.is_known) || p.resolution >= finest) {
                 next_.push_back(p);
                 continue;
             }
@@ -122,9 +127,10 @@ bool AreaEstimator::refine(float allowed, std::size_t most) {
                              place((x + 0.5) / fine, (y + 0.5) / fine),
                              {},
                              {},
-                             0};
+                             0,
+                             true};
                 finish(quarter);
-                again |= quarter.weighted_range > allowed && fine < finest;
+                again |= (quarter.weighted_range > allowed || !quarter.is_known) && fine < finest;
                 next_.push_back(quarter);
             }
         }
@@ -174,9 +180,9 @@ TexelEstimate AreaEstimator::estimate(const CubeTexel& texel, int size, const Te
                                       std::uint64_t key) {
     texel_ = texel;
     size_ = size;
-    const auto most = static_cast<std::size_t>(std::max<std::uint64_t>(1, goal.samples / samples_per_part));
-    const auto most_along =
-        static_cast<std::uint32_t>(std::sqrt(static_cast<double>(std::min<std::size_t>(most, 1 << 20))));
+    const auto most =
+        static_cast<std::size_t>(std::clamp<std::uint64_t>(goal.samples / samples_per_part, 1, most_parts));
+    const auto most_along = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(most)));
     if (goal.target_error <= 0) {
         cut_evenly(most_along);
         return sample(key, 0);
@@ -190,25 +196,29 @@ TexelEstimate AreaEstimator::estimate(const CubeTexel& texel, int size, const Te
         while (room) {
             double squares = 0, mean = 0;
             float widest = 0;
+            bool known = true;
             for (const Part& p : parts_) {
                 const auto range = static_cast<double>(p.weighted_range);
                 squares += range * range;
                 mean += static_cast<double>(p.middle.radiance.x + p.middle.radiance.y + p.middle.radiance.z) /
                         (3.0 * p.resolution * p.resolution);
                 widest = std::max(widest, p.weighted_range);
+                known &= p.is_known;
             }
             const double error = std::sqrt(squares / (6 * samples_per_part));
-            if (error <= aim * std::max(mean, goal.floor)) break;
-            room = refine(0.5f * widest, most);
+            const bool fine = error <= aim * std::max(mean, goal.floor);
+            if (fine && known) break;
+            room = refine(fine ? widest : 0.5f * widest, most);
             // Nothing left to cut.
             if (room && std::all_of(parts_.begin(), parts_.end(), [](const Part& p) {
-                    return p.weighted_range == 0 || p.resolution >= finest;
+                    return (p.weighted_range == 0 && p.is_known) || p.resolution >= finest;
                 }))
                 room = false;
         }
         TexelEstimate estimate = sample(key, round);
         samples += estimate.samples;
-        estimate.met = meets(estimate, goal);
+        estimate.met = meets(estimate, goal) &&
+                       std::all_of(parts_.begin(), parts_.end(), [](const Part& p) { return p.is_known; });
         if (estimate.met || !room || round == 30) {
             estimate.samples = samples;
             return estimate;

@@ -41,6 +41,7 @@ class AreaEstimator {
         Place middle;
         Vec3f low, high;          // of the map's radiance within the part
         float weighted_range = 0; // the largest of the channels, times the share of the texel
+        bool is_known = true;     // whether the range is that of all texels of the map in the part
     };
     Place place(double u, double v) const;
     void finish(Part& part) const;

@@ -144,27 +144,30 @@ void check_size(int size) {
 
 } // namespace
 
-std::vector<double> linear_roughness(int levels) {
+std::vector<double> roughness_by_rule(RoughnessRule rule, std::optional<int> levels, int size) {
+    check_size(size);
+    const int most = level_count(size);
+    const int count = levels.value_or(rule == RoughnessRule::babylon ? most : std::max(1, most - 4));
+    if (count < 1 || count > most)
+        throw Error("baking", std::to_string(count) + " levels; expected 1 to " + std::to_string(most) +
+                                  ", as many as faces of " + std::to_string(size) + " texels have");
     std::vector<double> roughness;
-    for (int i = 0; i < levels; ++i)
-        roughness.push_back(levels == 1 ? 0 : static_cast<double>(i) / (levels - 1));
+    for (int i = 0; i < count; ++i) {
+        const double part = count == 1 ? 0 : static_cast<double>(i) / (count - 1);
+        switch (rule) {
+        case RoughnessRule::linear:
+            roughness.push_back(part);
+            break;
+        case RoughnessRule::filament:
+            roughness.push_back(1 - std::sqrt(1 - part));
+            break;
+        case RoughnessRule::babylon:
+            roughness.push_back(i == 0 ? 0 : std::sqrt(std::min(1.0, std::exp2(i / 0.8) / size)));
+            break;
+        }
+    }
     return roughness;
 }
-
-std::vector<double> filament_roughness(int levels) {
-    std::vector<double> roughness = linear_roughness(levels);
-    for (double& r : roughness) r = 1 - std::sqrt(1 - r);
-    return roughness;
-}
-
-std::vector<double> babylon_roughness(int levels, int size) {
-    std::vector<double> roughness;
-    for (int i = 0; i < levels; ++i)
-        roughness.push_back(i == 0 ? 0 : std::sqrt(std::min(1.0, std::exp2(i / 0.8) / size)));
-    return roughness;
-}
-
-int usual_levels(int size) { return std::max(1, level_count(size) - 4); }
 
 BakedCubes prefilter_environment(const EnvironmentMap& map, int size, const std::vector<double>& roughness,
                                  const BakeSettings& settings) {

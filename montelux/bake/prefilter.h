@@ -50,16 +50,16 @@ struct BakedCubes {
     bool cancelled = false; // then the rest is incomplete
 };
 
-// Perceptual roughness of each level, alpha = roughness^2.
+// Perceptual roughness of each level, alpha = roughness^2, as engines look their levels up.
 // linear:   level / (levels - 1), which most engines take.
 // filament: 1 - sqrt(1 - level / (levels - 1)), the inverse of its level = (levels - 1) r (2 - r).
 // babylon:  alpha = 2^(level / 0.8) / size, at most 1, the inverse of its level = 0.8 log2(size alpha); 0 at
 //           level 0.
-std::vector<double> linear_roughness(int levels);
-std::vector<double> filament_roughness(int levels);
-std::vector<double> babylon_roughness(int levels, int size);
-// Levels from `size` down to 16 texels, or the one where there is no more.
-int usual_levels(int size);
+enum class RoughnessRule { linear, filament, babylon };
+// Of `levels` levels, the first with faces of `size` texels; without it from `size` down to 16 texels, or the
+// one where there is no more; with babylon's rule down to 1. Throws Error on more levels than such faces
+// have.
+std::vector<double> roughness_by_rule(RoughnessRule rule, std::optional<int> levels, int size);
 
 // One level for each roughness in [0, 1]; the first has faces of size x size texels. A roughness of 0 gives
 // the mean of the map over each texel, any other the radiance that the GGX lobe with n = v = r reflects, over

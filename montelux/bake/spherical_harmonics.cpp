@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "montelux/mc/math/quadrature.h"
 #include "montelux/mc/math/constants.h"
+#include "montelux/mc/math/quadrature.h"
 #include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux {

@@ -94,7 +94,8 @@ def environment(
 ) -> list[Level]:
     """A map blurred by the GGX lobe, level by level: a chain of cube maps.
 
-    roughness: 'linear', 'filament', or that of each level. levels None: down to 16 texels.
+    roughness: 'linear', 'filament', 'babylon', or that of each level. levels None: down to 16 texels, with 'babylon'
+    down to one.
     """
     given = [float(r) for r in roughness] if not isinstance(roughness, str) else roughness
     made = _core.bake_environment(

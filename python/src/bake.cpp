@@ -26,9 +26,10 @@ constexpr Names<BrdfTableExtra, 3> blues{"bake.brdf_table, blue",
 constexpr Names<PrefilterSampling, 2> prefilter_samplings{
     "bake.environment, sampling", {{{"cells", PrefilterSampling::cells}, {"lobe", PrefilterSampling::lobe}}}};
 constexpr Names<bool, 2> up_axes{"bake, up", {{{"y", false}, {"z", true}}}};
-using RoughnessRule = std::vector<double> (*)(int levels);
-constexpr Names<RoughnessRule, 2> roughness_rules{
-    "bake.environment, roughness", {{{"linear", &linear_roughness}, {"filament", &filament_roughness}}}};
+constexpr Names<RoughnessRule, 3> roughness_rules{"bake.environment, roughness",
+                                                  {{{"linear", RoughnessRule::linear},
+                                                    {"filament", RoughnessRule::filament},
+                                                    {"babylon", RoughnessRule::babylon}}}};
 
 // Runs a bake without Python's lock; Ctrl-C ends it.
 class Interruptible {
@@ -107,10 +108,8 @@ DoubleArray to_map(const nb::object& directions, std::string_view up, bool mirro
 using Roughness = std::variant<std::string, std::vector<double>>;
 
 std::vector<double> roughness_of(const Roughness& given, std::optional<int> levels, int size) {
-    if (const auto* rule = std::get_if<std::string>(&given)) {
-        if (levels && *levels < 1) throw Error("bake.environment, levels", "expected one level or more");
-        return roughness_rules.value(*rule)(levels.value_or(usual_levels(size)));
-    }
+    if (const auto* rule = std::get_if<std::string>(&given))
+        return roughness_by_rule(roughness_rules.value(*rule), levels, size);
     const auto& list = std::get<1>(given);
     if (levels && *levels != static_cast<int>(list.size()))
         throw Error("bake.environment, levels", std::to_string(*levels) + " levels and " +

@@ -77,5 +77,37 @@ TEST(AreaEstimator, HonestOnMapsThatAreFinerThanTheCube) {
     expect_honest(random_map(128, 64, 1e5f), 8, 0.02);
 }
 
+// A lamp that falls between the corners of a few parts: its texel has not met the target in so few samples,
+// or has found the lamp.
+TEST(AreaEstimator, LampsThatFewPartsCanMissAreNotForgotten) {
+    for (auto [width, height] : {std::pair(1024, 512), {512, 512}}) {
+        const EnvironmentLayout layout = *layout_of_size(width, height);
+        // On the pole and an edge of the octahedron, and elsewhere.
+        for (const Vec2f place : {Vec2f{101, 2}, {300, 200}, {260, 256}, {3, 90}, {400, 507}, {256, 300}}) {
+            Image lamp(width, height, {"R", "G", "B"});
+            for (int y = 0; y < 3; ++y)
+                for (int x = 0; x < 3; ++x)
+                    for (int c = 0; c < 3; ++c)
+                        lamp.set(static_cast<int>(place.x) - 1 + x, static_cast<int>(place.y) - 1 + y, c,
+                                 1e4f);
+            const EnvironmentMap map(lamp, layout);
+            const CubePoint at =
+                cube_point(CubeFrame{}.from_map(Vec3d(map.grid().direction(place + Vec2f{0.5f, 0.5f}))));
+            constexpr int size = 8;
+            const CubeTexel texel{at.face, static_cast<int>(at.u * size), static_cast<int>(at.v * size)};
+            AreaEstimator areas(map, CubeFrame{});
+            TexelGoal goal;
+            goal.floor = 0.01 * map.mean_radiance().y;
+            goal.samples = 64;
+            EXPECT_FALSE(areas.estimate(texel, size, goal, 5).met)
+                << width << " " << place.x << " " << place.y;
+            goal.samples = 1 << 20;
+            const TexelEstimate e = areas.estimate(texel, size, goal, 5);
+            EXPECT_TRUE(e.met);
+            EXPECT_GT(e.value.y, 0) << width << " " << place.x << " " << place.y;
+        }
+    }
+}
+
 } // namespace
 } // namespace montelux

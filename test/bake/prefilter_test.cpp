@@ -250,18 +250,23 @@ TEST(Prefilter, MissedTargetsAreCounted) {
 }
 
 TEST(Prefilter, RoughnessOfLevels) {
-    EXPECT_EQ(linear_roughness(5), (std::vector<double>{0, 0.25, 0.5, 0.75, 1}));
-    EXPECT_EQ(linear_roughness(1), (std::vector<double>{0}));
-    const std::vector<double> r = filament_roughness(5);
+    using enum RoughnessRule;
+    EXPECT_EQ(roughness_by_rule(linear, 5, 256), (std::vector<double>{0, 0.25, 0.5, 0.75, 1}));
+    EXPECT_EQ(roughness_by_rule(linear, 1, 256), (std::vector<double>{0}));
+    const std::vector<double> r = roughness_by_rule(filament, 5, 256);
     for (int level = 0; level < 5; ++level) EXPECT_NEAR(4 * r[level] * (2 - r[level]), level, 1e-12);
-    const std::vector<double> b = babylon_roughness(9, 256);
+    const std::vector<double> b = roughness_by_rule(babylon, 9, 256);
     EXPECT_EQ(b[0], 0);
     for (int level = 1; level < 7; ++level)
         EXPECT_NEAR(0.8 * std::log2(256 * b[level] * b[level]), level, 1e-12);
     EXPECT_EQ(b[7], 1);
     EXPECT_EQ(b[8], 1);
-    EXPECT_EQ(usual_levels(256), 5);
-    EXPECT_EQ(usual_levels(8), 1);
+    EXPECT_EQ(roughness_by_rule(linear, {}, 256).size(), 5u);
+    EXPECT_EQ(roughness_by_rule(filament, {}, 8).size(), 1u);
+    EXPECT_EQ(roughness_by_rule(babylon, {}, 256), b);
+    EXPECT_THROW(roughness_by_rule(linear, 0, 256), Error);
+    EXPECT_THROW(roughness_by_rule(linear, 10, 256), Error);
+    EXPECT_THROW(roughness_by_rule(linear, {}, 0), Error);
 }
 
 // The definition of done: 99.5 % of the texels within three of their standard errors. 0.27 % are outside by

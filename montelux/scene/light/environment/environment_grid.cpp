@@ -33,6 +33,10 @@ EnvironmentGrid::EnvironmentGrid(EnvironmentLayout layout, int width, int height
     }
 }
 
+double EnvironmentGrid::texel_angle() const {
+    return layout_ == EnvironmentLayout::equirectangular ? pi / height_ : std::sqrt(texel_solid_angle_);
+}
+
 std::size_t EnvironmentGrid::row_at(double theta) const {
     // What is no number goes to the last row.
     return static_cast<std::size_t>(std::min(static_cast<double>(height_ - 1), theta * inv_pi * height_));

@@ -75,6 +75,8 @@ class EnvironmentGrid {
         return layout_ == EnvironmentLayout::equal_area ? texel_solid_angle_
                                                         : solid_angles_[static_cast<std::size_t>(row)];
     }
+    // Angle across a texel where texels are largest.
+    double texel_angle() const;
     // Share of the map's solid angle in the rows above the line y of the grid, and the line above which that
     // share lies. Rectangles of the grid are uniform in solid angle over (x, share).
     double share_above(double y) const;

@@ -11,15 +11,9 @@ namespace montelux {
 
 namespace {
 
-// Angle across a texel where texels are largest.
-double texel_angle(const EnvironmentGrid& grid) {
-    return grid.layout() == EnvironmentLayout::equirectangular ? pi / grid.height()
-                                                               : std::sqrt(grid.solid_angle(0));
-}
-
 // Cells along each side: half a texel, unless the map is very fine.
 std::uint32_t cells_for(const EnvironmentGrid& grid) {
-    return static_cast<std::uint32_t>(std::clamp(std::ceil(2 * pi / texel_angle(grid)), 64.0, 2048.0));
+    return static_cast<std::uint32_t>(std::clamp(std::ceil(2 * pi / grid.texel_angle()), 64.0, 2048.0));
 }
 
 } // namespace
@@ -32,7 +26,7 @@ PortalSampler::PortalSampler(const Image& map, EnvironmentLayout layout, const T
 WindowedPiecewise2D PortalSampler::tabulate(const Image& map, const Transform& world_from_light,
                                             EnvironmentLookup lookup) {
     const std::uint32_t n = cells_for(grid_);
-    const double side = pi / n, spacing = texel_angle(grid_) / 4;
+    const double side = pi / n, spacing = grid_.texel_angle() / 4;
     const auto channels = static_cast<std::size_t>(map.channels());
     auto texel_radiance = [&](std::size_t texel) {
         double sum = 0;
