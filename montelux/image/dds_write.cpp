@@ -20,7 +20,7 @@ std::vector<std::uint8_t> dds_header(std::uint32_t size, std::uint32_t levels, b
                             all_faces = 0xfc00;
     ByteWriter bytes;
     bytes.put(std::uint32_t{0x20534444}); // "DDS "
-    bytes.put(std::uint32_t{124}); // of the header
+    bytes.put(std::uint32_t{124});        // of the header
     bytes.put(caps | height | width | pitch | pixel_format | level_count);
     bytes.put(size);
     bytes.put(size);

@@ -145,7 +145,7 @@ void bind_lights(nb::module_& m) {
     portal(sky);
     auto map = value_class<ImageInfiniteLight>(
         m, "EnvironmentLight",
-        "Radiance from a square equal-area map; scenes make them by add_environment().");
+        "Radiance from a map, equal-area or latitude-longitude; scenes make them by add_environment().");
     number(map, "scale", &ImageInfiniteLight::scale, not_negative, "a number that is not negative",
            "Multiplies the map.");
     attribute<ImageInfiniteLight>(

@@ -194,7 +194,7 @@ TEST(AreaLights, OneSidedLightsAreDarkBehind) {
 }
 
 TEST(InfiniteLights, DirectionsFollowTheirDensity) {
-    for (int which : {0, 1, 2}) {
+    for (int which : {0, 1, 2, 3}) {
         Scene scene;
         if (which == 0) {
             scene.lights.push_back(UniformInfiniteLight{Spectrum(1.0f), 3});
@@ -207,7 +207,10 @@ TEST(InfiniteLights, DirectionsFollowTheirDensity) {
             scene.lights.push_back(ImageInfiniteLight{
                 .environment = 0,
                 .scale = 2,
-                .world_from_light = which == 1 ? Transform() : Transform::rotate(77, {1, -2, 0.5})});
+                .world_from_light = which == 1 ? Transform()
+                                    : which == 2
+                                        ? Transform::rotate(77, {1, -2, 0.5})
+                                        : Transform::rotate(20, {1, 2, 3}) * Transform::scale({1, -3, 0.7})});
         }
         SceneTables tables(scene);
         auto sample = [&](Vec2f u) -> std::optional<Vec3f> {

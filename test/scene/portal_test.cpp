@@ -1,5 +1,5 @@
 // Infinite lights through portals: directions follow their density, light that is estimated is the light that
-// a quadrature finds, and where no light comes none is sampled. 18 chi-squared tests at 1e-9 each and 18
+// a quadrature finds, and where no light comes none is sampled. 24 chi-squared tests at 1e-9 each and 24
 // means at 6.5 standard errors (8e-11): below 1e-7 for the file.
 #include "test/scene/portal_testing.h"
 #include <algorithm>
@@ -53,8 +53,11 @@ Image test_map(int width, int height) {
     return map;
 }
 
-// 0: the same from everywhere; 1, 2: maps of both layouts.
-constexpr int kinds = 3;
+// 0: the same from everywhere; 1, 2: maps of both layouts; 3: as 2, between its texels.
+constexpr int kinds = 4;
+EnvironmentSettings settings_of(int kind) {
+    return {.lookup = kind == 3 ? EnvironmentLookup::bilinear : EnvironmentLookup::nearest};
+}
 Scene scene_with(int kind, const std::optional<Portal>& portal) {
     Scene scene;
     if (kind == 0) {
@@ -76,7 +79,7 @@ void for_each_view(const auto& f) {
         for (int kind = 0; kind < kinds; ++kind) {
             SCOPED_TRACE(v.name + ", light " + std::to_string(kind));
             const Scene scene = scene_with(kind, v.portal);
-            const SceneTables tables(scene);
+            const SceneTables tables(scene, settings_of(kind));
             f(v, scene, tables.lights());
         }
 }
@@ -223,7 +226,7 @@ TEST(Portals, OtherSideAndPlaneAreDark) {
     const Portal portal(corners_of(-1, -1, 1, 1));
     for (int kind = 0; kind < kinds; ++kind) {
         const Scene scene = scene_with(kind, portal);
-        const SceneTables tables(scene);
+        const SceneTables tables(scene, settings_of(kind));
         TestUniforms uniforms(1);
         for (Point3f p : {Point3f{0, 0, 0.5f}, {0, 0, 0}, {3, 0.5f, 0}, {9, 9, 20}})
             for (int i = 0; i < 100; ++i) {
@@ -288,8 +291,16 @@ TEST(Portals, IrradianceIsThatOfTheMapSeenThroughIt) {
         auto world = [&](Vec3f w) { return normalize(turn.vector(Vec3d(w))); };
         auto radiance = [&](Vec3d w) {
             if (light == nullptr) return 3.0;
-            const std::size_t texel = grid.texel(grid.locate(Vec3f(turn.inverse_vector(w))));
-            return 2 * static_cast<double>(scene.environments[0].value_at(3 * texel));
+            const Vec2f place = grid.locate(Vec3f(turn.inverse_vector(w)));
+            auto texel = [&](std::size_t i) {
+                return 2 * static_cast<double>(scene.environments[0].value_at(3 * i));
+            };
+            if (lights.lookup() == EnvironmentLookup::nearest) return texel(grid.texel(place));
+            const EnvironmentGrid::Blend blend = grid.blend(place);
+            double sum = 0;
+            for (std::size_t k = 0; k < 4; ++k)
+                sum += static_cast<double>(blend.share[k]) * texel(blend.texel[k]);
+            return sum;
         };
         const double truth = v.name == "wide" ? irradiance_over_sphere(v, n, grid, world, radiance)
                                               : irradiance_over_portal(v, n, radiance);

@@ -72,11 +72,11 @@ Light LightReader::sky(ParameterReader& r, const Transform& world_from_light) {
                                          return from_sky(lambda) + (with_sun ? from_sun(lambda) : 0);
                                      })));
     }
-    const auto side = [&](Vec3f v) { return normalize(world_from_light.vector(v)); };
     if (with_sun && model.sun_radiance().max_value() > 0)
-        scene_.lights.push_back(SunLight{Spectrum(model.sun_radiance()), scale,
-                                         SunDisc::of_radius(side(model.sun_direction()), sun_angular_radius),
-                                         side({0, 0, 1})});
+        scene_.lights.push_back(SunLight{
+            Spectrum(model.sun_radiance()), scale,
+            SunDisc::of_radius(normalize(world_from_light.vector(model.sun_direction())), sun_angular_radius),
+            normalize(world_from_light.normal(Vec3f(0, 0, 1)))});
     SkyLight light;
     light.sky = static_cast<Index>(scene_.skies.size());
     light.environment = static_cast<Index>(scene_.environments.size());

@@ -47,12 +47,11 @@ struct UniformInfiniteLight {
     float scale = 1;
     std::optional<Portal> portal{};
 };
-// Radiance from a map of RGB illuminants, looked up as EnvironmentSettings say; with a portal, through it
-// alone.
+// Radiance from a map of illuminants in linear sRGB, looked up as EnvironmentSettings say; with a portal,
+// through it alone.
 struct ImageInfiniteLight {
     Index environment = no_index; // into Scene::environments
     EnvironmentLayout layout = EnvironmentLayout::equal_area;
-    const RgbColorSpace* color_space = &RgbColorSpace::srgb();
     float scale = 1;
     Transform world_from_light;
     std::optional<Portal> portal{};

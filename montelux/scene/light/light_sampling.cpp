@@ -116,6 +116,12 @@ Vec2f map_point(const EnvironmentGrid& grid, const ImageInfiniteLight& light, Ve
     return grid.locate(in_light_space(light.world_from_light, wi));
 }
 
+// Solid angle in the light's space over that in the world: 1 unless the transformation scales unevenly.
+float solid_angle_change(const Transform& world_from_light, Vec3f wi) {
+    const double l = length(world_from_light.inverse_vector(Vec3d(wi)));
+    return static_cast<float>(std::abs(world_from_light.inverse_matrix().linear_determinant()) / (l * l * l));
+}
+
 bool is_hidden(const SunLight& light, Vec3f wi) { return dot(wi, light.up) < 0; }
 
 std::optional<LightSample> sample_sun(const SunLight& light, const ReferencePoint& from, Vec2f u,
@@ -137,7 +143,7 @@ std::optional<LightSample> sample_sky(const SkyLight& light, const SkyModel& sky
     const Vec3f wi = normalize(light.world_from_light.vector(w));
     return LightSample{.radiance = sky.radiance(w, lambda) * light.scale,
                        .wi = wi,
-                       .pdf = s.pdf,
+                       .pdf = s.pdf * solid_angle_change(light.world_from_light, wi),
                        .shadow = shadow_ray_to_infinity(from, wi)};
 }
 
@@ -260,7 +266,7 @@ std::optional<LightSample> sample_light(const Scene& scene, const LightTables& t
     return LightSample{.radiance = tables.map_radiance(scene, light, environment.grid(), s.grid, lambda) *
                                    light.scale,
                        .wi = wi,
-                       .pdf = s.pdf,
+                       .pdf = s.pdf * solid_angle_change(light.world_from_light, wi),
                        .shadow = shadow_ray_to_infinity(from, wi)};
 }
 
@@ -289,7 +295,8 @@ float infinite_light_pdf(const Scene& scene, const LightTables& tables, Index in
         return sun->disc.contains(wi) ? sun->disc.pdf() : 0;
     if (const auto* sky = std::get_if<SkyLight>(&scene.lights[index])) {
         const EnvironmentSampler& density = tables.environment(index);
-        return density.pdf(density.grid().locate(in_light_space(sky->world_from_light, wi)));
+        return density.pdf(density.grid().locate(in_light_space(sky->world_from_light, wi))) *
+               solid_angle_change(sky->world_from_light, wi);
     }
     if (const auto* light = std::get_if<UniformInfiniteLight>(&scene.lights[index])) {
         if (!light->portal) return inv_four_pi_f;
@@ -301,7 +308,8 @@ float infinite_light_pdf(const Scene& scene, const LightTables& tables, Index in
     if (light == nullptr) return inv_four_pi_f;
     if (light->portal) return tables.portal(index).pdf(p, wi);
     const EnvironmentSampler& environment = tables.environment(index);
-    return environment.pdf(map_point(environment.grid(), *light, wi));
+    return environment.pdf(map_point(environment.grid(), *light, wi)) *
+           solid_angle_change(light->world_from_light, wi);
 }
 
 } // namespace montelux

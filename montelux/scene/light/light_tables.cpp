@@ -41,22 +41,25 @@ double mean(const Spectrum& s) {
     return sum / n;
 }
 
-RgbUnboundedSpectrum texel_spectrum(const Image& map, const RgbColorSpace& space, std::size_t texel) {
+// That of every environment map, as of ImageInfiniteLight.
+const RgbColorSpace& map_color_space() { return RgbColorSpace::srgb(); }
+
+RgbUnboundedSpectrum texel_spectrum(const Image& map, std::size_t texel) {
     const std::size_t i = texel * static_cast<std::size_t>(map.channels());
     Vec3f rgb{map.value_at(i), map.value_at(i + 1), map.value_at(i + 2)};
-    return {space, max(rgb, Vec3f{0, 0, 0})};
+    return {map_color_space(), max(rgb, Vec3f{0, 0, 0})};
 }
 
 // Above this size (64 MiB of spectra) texels are uplifted when they are looked up.
 constexpr std::size_t max_precomputed_texels = std::size_t{1} << 22;
 
-std::vector<RgbUnboundedSpectrum> map_spectra(const Image& map, const RgbColorSpace& space) {
+std::vector<RgbUnboundedSpectrum> map_spectra(const Image& map) {
     if (map.pixel_count() > max_precomputed_texels) return {};
     std::vector<RgbUnboundedSpectrum> spectra(map.pixel_count());
     parallel_for(map.height(), [&](std::int64_t y) {
         for (std::size_t x = 0, i = static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width());
              x < static_cast<std::size_t>(map.width()); ++x, ++i)
-            spectra[i] = texel_spectrum(map, space, i);
+            spectra[i] = texel_spectrum(map, i);
     });
     return spectra;
 }
@@ -67,13 +70,13 @@ SampledSpectrum LightTables::texel_factor(const Scene& scene, const ImageInfinit
                                           std::size_t texel, const SampledWavelengths& lambda) const {
     const auto& spectra = map_spectra_[light.environment];
     if (!spectra.empty()) return spectra[texel].sample(lambda);
-    return texel_spectrum(scene.environments[light.environment], *light.color_space, texel).sample(lambda);
+    return texel_spectrum(scene.environments[light.environment], texel).sample(lambda);
 }
 
 SampledSpectrum LightTables::map_radiance(const Scene& scene, const ImageInfiniteLight& light,
                                           const EnvironmentGrid& grid, Vec2f place,
                                           const SampledWavelengths& lambda) const {
-    SampledSpectrum white = light.color_space->illuminant().sample(lambda);
+    SampledSpectrum white = map_color_space().illuminant().sample(lambda);
     if (lookup_ == EnvironmentLookup::nearest)
         return texel_factor(scene, light, grid.texel(place), lambda) * white;
     const EnvironmentGrid::Blend blend = grid.blend(place);
@@ -109,6 +112,13 @@ LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings
       spheres_(scene.lights.size()), disks_(scene.lights.size()),
       environment_of_light_(scene.lights.size(), no_index), bounds_(bounds_of(scene)) {
     std::map<std::pair<Index, EnvironmentLayout>, Index> known_environments;
+    auto environment_of = [&](std::size_t light, Index map, EnvironmentLayout layout) -> const auto& {
+        auto [known, is_new] =
+            known_environments.try_emplace({map, layout}, static_cast<Index>(environments_.size()));
+        if (is_new) environments_.emplace_back(scene.environments[map], layout, settings);
+        environment_of_light_[light] = known->second;
+        return environments_[known->second];
+    };
     map_spectra_.resize(scene.environments.size());
 
     double radius = std::max(bounds_.radius(), 1e-30);
@@ -136,9 +146,9 @@ LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings
                     infinite_lights_.push_back(static_cast<Index>(i));
                     const Image& map = scene.environments[light.environment];
                     auto& spectra = map_spectra_[light.environment];
-                    if (spectra.empty()) spectra = map_spectra(map, *light.color_space);
+                    if (spectra.empty()) spectra = map_spectra(map);
                     // The photometric normalisation is in `scale`; so is the mean of the white illuminant.
-                    Spectrum white(RgbIlluminantSpectrum(*light.color_space, {1, 1, 1}));
+                    Spectrum white(RgbIlluminantSpectrum(map_color_space(), {1, 1, 1}));
                     const double scale = double(light.scale) * mean(white);
                     if (light.portal) {
                         environment_of_light_[i] = static_cast<Index>(portals_.size());
@@ -147,18 +157,13 @@ LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings
                         return scale * std::min(light.portal->area() * portal.irradiance(),
                                                 cross_section * portal.fluence());
                     }
-                    auto [known, is_new] = known_environments.try_emplace(
-                        {light.environment, light.layout}, static_cast<Index>(environments_.size()));
-                    if (is_new) environments_.emplace_back(map, light.layout, settings);
-                    environment_of_light_[i] = known->second;
-                    return 4 * pi * cross_section * scale * environments_[known->second].mean_radiance();
+                    return 4 * pi * cross_section * scale *
+                           environment_of(i, light.environment, light.layout).mean_radiance();
                 } else if constexpr (std::is_same_v<L, SkyLight>) {
                     infinite_lights_.push_back(static_cast<Index>(i));
-                    environment_of_light_[i] = static_cast<Index>(environments_.size());
-                    environments_.emplace_back(scene.environments[light.environment],
-                                               EnvironmentLayout::equirectangular, settings);
                     return 4 * pi * cross_section * double(light.scale) *
-                           environments_.back().mean_radiance();
+                           environment_of(i, light.environment, EnvironmentLayout::equirectangular)
+                               .mean_radiance();
                 } else if constexpr (std::is_same_v<L, SunLight>) {
                     infinite_lights_.push_back(static_cast<Index>(i));
                     const double above =

@@ -33,6 +33,7 @@ class LightTables {
     float probability(Index light) const { return by_power_->probability(light); }
     // Of a light on a mesh.
     const LightTriangle& triangle(Index light) const { return triangles_[triangle_of_light_[light]]; }
+    EnvironmentLookup lookup() const { return lookup_; }
     // Radiance of an environment map at a place of its grid, before Light::scale.
     SampledSpectrum map_radiance(const Scene& scene, const ImageInfiniteLight& light,
                                  const EnvironmentGrid& grid, Vec2f place,
@@ -43,7 +44,7 @@ class LightTables {
     }
     // Of an infinite light with both.
     const PortalSampler& portal(Index light) const { return portals_[environment_of_light_[light]]; }
-    // Of all maps without portals, each layout of a map once.
+    // Of all maps without portals and of skies, each layout of a map once.
     const std::vector<EnvironmentSampler>& environments() const { return environments_; }
     const std::vector<PortalSampler>& portals() const { return portals_; }
     const std::vector<Index>& infinite_lights() const { return infinite_lights_; }

@@ -13,10 +13,9 @@
 namespace montelux {
 
 // Agarwal, Ramamoorthi, Belongie, Jensen 2003, "Structured Importance Sampling of Environment Maps":
-// 1. The map is cut at thresholds i * sigma, i = 0 ... 5, of its radiance's standard deviation. Connected
-// parts
-//    above a threshold, without what is above the next one, share the strata by the importance
-//    Gamma = L * min(solid angle, 0.01 sr)^(1/4) of their light L. Above threshold 0 there is one part.
+// 1. The map is cut at thresholds i * sigma, i = 0 ... 5, of its radiance's standard deviation. What hangs
+//    together above a threshold, without what is above the next one, shares the strata by the importance
+//    Gamma = L * min(solid angle, 0.01 sr)^(1/4) of its light L. Above threshold 0 there is one part.
 // 2. Within a part the centres of its strata are spread by the farthest-point rule of Hochbaum and Shmoys
 //    1985, "A Best Possible Heuristic for the k-Center Problem", from the centres of brighter parts within
 //    it on; each cell goes to the nearest centre.

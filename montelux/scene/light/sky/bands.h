@@ -1,7 +1,9 @@
 // Values at the wavelengths that the sky is computed for: 360, 370, ... 830 nm.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <concepts>
 
 #include "montelux/spectrum/float4.h"
 #include "montelux/spectrum/wavelengths.h"

@@ -1,6 +1,7 @@
 // Spherical harmonics of light that is symmetric about the plane of the sun.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>

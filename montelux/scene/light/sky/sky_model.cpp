@@ -115,9 +115,9 @@ SkyModel::SkyModel(const SkySettings& settings)
     const Bands passing = atmosphere.transmittance(atmosphere.path_to_space(0, mu_sun));
     const double disc = SunDisc::of_radius(sun_, sun_angular_radius).solid_angle();
     sun_radiance_ = in_sunlight(part > 0 ? static_cast<float>(1 / disc) * passing : Bands());
-    // The mean height of the visible part, which a sun on the horizon has too.
-    const double height = std::max(mu_sun, 0.0);
-    sun_irradiance_ = static_cast<float>(part * height) * passing;
+    const double sines =
+        elevation > sun_angular_radius ? mu_sun : height_above_horizon(elevation, sun_angular_radius);
+    sun_irradiance_ = static_cast<float>(sines) * passing;
 
     for (const QuadratureNode& n : gauss_legendre_rule(48))
         for (const QuadratureNode& m : gauss_legendre_rule(32)) {
@@ -141,10 +141,12 @@ SkyModel::Place SkyModel::place(Vec3f w) const {
     const float y = row_of(std::atan2(w.z, std::sqrt(along * along + across * across))) * (rows - 1);
     const float x = std::atan2(std::abs(across), along) * static_cast<float>((columns - 1) / pi);
     Place p;
-    p.row = std::min(static_cast<std::size_t>(y), static_cast<std::size_t>(rows - 2));
-    p.column = std::min(static_cast<std::size_t>(x), static_cast<std::size_t>(columns - 2));
-    p.in_row = y - static_cast<float>(p.row);
-    p.in_column = x - static_cast<float>(p.column);
+    // What is no number goes to the first.
+    const std::size_t row = y >= 0 ? std::min<std::size_t>(static_cast<std::size_t>(y), rows - 2) : 0;
+    const std::size_t column = x >= 0 ? std::min<std::size_t>(static_cast<std::size_t>(x), columns - 2) : 0;
+    p.first = row * columns + column;
+    const float v = y - static_cast<float>(row), u = x - static_cast<float>(column);
+    p.share = {(1 - v) * (1 - u), (1 - v) * u, v * (1 - u), v * u};
     p.aerosol_phase = static_cast<float>(aerosol_phase(
         static_cast<double>(std::clamp(dot(w, sun_), -1.0f, 1.0f)), settings_.atmosphere.aerosol_g));
     return p;
@@ -156,13 +158,12 @@ SampledSpectrum SkyModel::radiance(Vec3f w, const SampledWavelengths& lambda) co
         for (int i = 0; i < spectrum_samples; ++i) share.set(i, BandPlace(lambda.lambda[i]).of(ground_));
     } else {
         const Place p = place(w);
-        const float a = (1 - p.in_row) * (1 - p.in_column), b = (1 - p.in_row) * p.in_column;
-        const float c = p.in_row * (1 - p.in_column), d = p.in_row * p.in_column;
-        const std::size_t i = p.row * columns + p.column, below = i + columns;
         for (int s = 0; s < spectrum_samples; ++s) {
             const BandPlace at(lambda.lambda[s]);
             auto of = [&](const std::vector<Bands>& t) {
-                return a * at.of(t[i]) + b * at.of(t[i + 1]) + c * at.of(t[below]) + d * at.of(t[below + 1]);
+                float sum = 0;
+                for (std::size_t k = 0; k < 4; ++k) sum += p.share[k] * at.of(t[p.first + corners[k]]);
+                return sum;
             };
             share.set(s, of(smooth_) + p.aerosol_phase * of(aureole_));
         }
@@ -173,16 +174,11 @@ SampledSpectrum SkyModel::radiance(Vec3f w, const SampledWavelengths& lambda) co
 Bands SkyModel::scattering(Vec3f w) const {
     if (w.z < 0) return ground_;
     const Place p = place(w);
-    const std::size_t i = p.row * columns + p.column, below = i + columns;
-    auto of = [&](const std::vector<Bands>& t) {
-        Bands sum = (1 - p.in_row) * (1 - p.in_column) * t[i];
-        sum.add((1 - p.in_row) * p.in_column, t[i + 1]);
-        sum.add(p.in_row * (1 - p.in_column), t[below]);
-        sum.add(p.in_row * p.in_column, t[below + 1]);
-        return sum;
-    };
-    Bands sum = of(smooth_);
-    sum.add(p.aerosol_phase, of(aureole_));
+    Bands sum;
+    for (std::size_t k = 0; k < 4; ++k) {
+        sum.add(p.share[k], smooth_[p.first + corners[k]]);
+        sum.add(p.share[k] * p.aerosol_phase, aureole_[p.first + corners[k]]);
+    }
     return sum;
 }
 

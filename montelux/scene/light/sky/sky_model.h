@@ -51,11 +51,13 @@ class SkyModel {
   private:
     static constexpr int rows = 65, columns = 33;
 
+    // Between four entries: the one at `first`, and from it by `corners`.
     struct Place {
-        std::size_t row, column;
-        float in_row, in_column;
+        std::size_t first;
+        std::array<float, 4> share;
         float aerosol_phase;
     };
+    static constexpr std::array<std::size_t, 4> corners{0, 1, columns, columns + 1};
     Place place(Vec3f w) const;
     Bands scattering(Vec3f w) const;
     static SpectrumTable in_sunlight(const Bands& share);

@@ -22,6 +22,15 @@ inline double part_above_horizon(double above, double radius) {
     return 0.5 + (x * std::sqrt(1 - x * x) + std::asin(x)) / pi;
 }
 
+// Integral of the height over the horizon (radians) over that part, divided by the area of the whole disc.
+inline double height_above_horizon(double above, double radius) {
+    const double x = above / radius;
+    if (x >= 1) return above;
+    if (x <= -1) return 0;
+    const double y2 = 1 - x * x;
+    return above * part_above_horizon(above, radius) + radius * 2 / (3 * pi) * y2 * std::sqrt(y2);
+}
+
 // Directions within an angle of its centre, uniform in solid angle.
 struct SunDisc {
     Vec3f centre{0, 0, 1}; // unit
