@@ -20,19 +20,23 @@ void for_each_row(const EnvironmentGrid& grid, const F& f) {
 
 } // namespace
 
+double texel_radiance(const Image& map, std::size_t texel) {
+    const std::size_t first = texel * static_cast<std::size_t>(map.channels());
+    double sum = 0;
+    for (std::size_t c = 0; c < 3; ++c) sum += std::max(0.0, static_cast<double>(map.value_at(first + c)));
+    return sum / 3;
+}
+
 std::vector<float> texel_light(const Image& map, const EnvironmentGrid& grid) {
     std::vector<float> light(grid.texel_count());
-    const auto channels = static_cast<std::size_t>(map.channels());
     for_each_row(grid, [&](int y, std::size_t begin, std::size_t end) {
-        const double third = grid.solid_angle(y) / 3;
+        const double solid_angle = grid.solid_angle(y);
         for (std::size_t i = begin; i < end; ++i) {
-            double sum = 0;
-            for (std::size_t c = 0; c < 3; ++c)
-                sum += std::max(0.0, static_cast<double>(map.value_at(i * channels + c)));
+            const double radiance = texel_radiance(map, i);
             // Faint light is not to be lost, nor glaring light to become infinite.
-            if (sum > 0)
+            if (radiance > 0)
                 light[i] = static_cast<float>(
-                    std::clamp(sum * third, static_cast<double>(std::numeric_limits<float>::min()),
+                    std::clamp(radiance * solid_angle, static_cast<double>(std::numeric_limits<float>::min()),
                                static_cast<double>(std::numeric_limits<float>::max())));
         }
     });

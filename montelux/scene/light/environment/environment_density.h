@@ -23,8 +23,9 @@ inline Vec2f keep_in_texel(Vec2f grid, std::uint32_t column, std::uint32_t row) 
             std::min(grid.y, std::nextafter(static_cast<float>(row + 1), 0.0f))};
 }
 
-// Light of each texel, row by row: its radiance, the mean of R, G and B with what is negative taken for 0,
-// times its solid angle. Above zero wherever a channel is.
+// The mean of R, G and B, with what is negative taken for 0.
+double texel_radiance(const Image& map, std::size_t texel);
+// Light of each texel, row by row: its radiance times its solid angle. Above zero wherever a channel is.
 std::vector<float> texel_light(const Image& map, const EnvironmentGrid& grid);
 double sum_of(const std::vector<float>& light);
 // The same for maps that are looked up bilinearly, from the light of texels that are looked up alone. Above

@@ -6,6 +6,7 @@
 
 #include "montelux/mc/math/compensated.h"
 #include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/scene/light/environment/environment_density.h"
 
 namespace montelux {
 
@@ -27,21 +28,14 @@ WindowedPiecewise2D PortalSampler::tabulate(const Image& map, const Transform& w
                                             EnvironmentLookup lookup) {
     const std::uint32_t n = cells_for(grid_);
     const double side = pi / n, spacing = grid_.texel_angle() / 4;
-    const auto channels = static_cast<std::size_t>(map.channels());
-    auto texel_radiance = [&](std::size_t texel) {
-        double sum = 0;
-        for (std::size_t c = 0; c < 3; ++c)
-            sum += std::max(0.0, static_cast<double>(map.value_at(texel * channels + c)));
-        return sum / 3;
-    };
     auto radiance = [&](Vec3d local) {
         const Vec3d w = world_from_light.inverse_vector(portal_.to_world(local));
         const Vec2f place = grid_.locate(Vec3f(normalize(w)));
-        if (lookup == EnvironmentLookup::nearest) return texel_radiance(grid_.texel(place));
+        if (lookup == EnvironmentLookup::nearest) return texel_radiance(map, grid_.texel(place));
         const EnvironmentGrid::Blend blend = grid_.blend(place);
         double sum = 0;
         for (std::size_t k = 0; k < 4; ++k)
-            sum += static_cast<double>(blend.share[k]) * texel_radiance(blend.texel[k]);
+            sum += static_cast<double>(blend.share[k]) * texel_radiance(map, blend.texel[k]);
         return sum;
     };
     auto centre = [&](std::int64_t k) { return -pi / 2 + side * (static_cast<double>(k) + 0.5); };
