@@ -80,7 +80,7 @@ void for_each_view(const auto& f) {
             SCOPED_TRACE(v.name + ", light " + std::to_string(kind));
             const Scene scene = scene_with(kind, v.portal);
             const SceneTables tables(scene, settings_of(kind));
-            f(v, scene, tables.lights());
+            f(v, scene, tables.lights(), settings_of(kind).lookup);
         }
 }
 
@@ -140,7 +140,7 @@ TEST(Portals, AnglesAndSolidAnglesAgree) {
 }
 
 TEST(Portals, DirectionsFollowTheirDensity) {
-    for_each_view([](const View& v, const Scene& scene, const LightTables& lights) {
+    for_each_view([](const View& v, const Scene& scene, const LightTables& lights, EnvironmentLookup) {
         const Window2D seen = *v.portal.window(v.from);
         const Vec2d extent = seen.upper - seen.lower;
         constexpr int cells = 8, samples = 40000;
@@ -197,7 +197,7 @@ TEST(Portals, DirectionsFollowTheirDensity) {
 
 // The whole density lies in the portal, and the light of other directions is black.
 TEST(Portals, NothingComesBesideThePortal) {
-    for_each_view([](const View& v, const Scene& scene, const LightTables& lights) {
+    for_each_view([](const View& v, const Scene& scene, const LightTables& lights, EnvironmentLookup) {
         TestUniforms uniforms(5);
         int inside = 0;
         for (int i = 0; i < 4000; ++i) {
@@ -278,7 +278,8 @@ double irradiance_over_portal(const View& v, Vec3d n, const auto& radiance) {
 // 256 estimates of 256 samples each.
 TEST(Portals, IrradianceIsThatOfTheMapSeenThroughIt) {
     const SampledSpectrum white = RgbIlluminantSpectrum(RgbColorSpace::srgb(), {1, 1, 1}).sample(wavelengths);
-    for_each_view([&](const View& v, const Scene& scene, const LightTables& lights) {
+    for_each_view([&](const View& v, const Scene& scene, const LightTables& lights,
+                      EnvironmentLookup lookup) {
         const Window2D seen = *v.portal.window(v.from);
         const Vec3d n = normalize(v.portal.direction((seen.lower + seen.upper) / 2.0) +
                                   0.8 * normalize(room.vector(Vec3d{0.5, 0.2, 0.6})));
@@ -295,7 +296,7 @@ TEST(Portals, IrradianceIsThatOfTheMapSeenThroughIt) {
             auto texel = [&](std::size_t i) {
                 return 2 * static_cast<double>(scene.environments[0].value_at(3 * i));
             };
-            if (lights.lookup() == EnvironmentLookup::nearest) return texel(grid.texel(place));
+            if (lookup == EnvironmentLookup::nearest) return texel(grid.texel(place));
             const EnvironmentGrid::Blend blend = grid.blend(place);
             double sum = 0;
             for (std::size_t k = 0; k < 4; ++k)

@@ -33,7 +33,6 @@ class LightTables {
     float probability(Index light) const { return by_power_->probability(light); }
     // Of a light on a mesh.
     const LightTriangle& triangle(Index light) const { return triangles_[triangle_of_light_[light]]; }
-    EnvironmentLookup lookup() const { return lookup_; }
     // Radiance of an environment map at a place of its grid, before Light::scale.
     SampledSpectrum map_radiance(const Scene& scene, const ImageInfiniteLight& light,
                                  const EnvironmentGrid& grid, Vec2f place,
