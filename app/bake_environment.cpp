@@ -5,6 +5,7 @@
 #include "app/bake_run.h"
 #include "app/commands.h"
 #include "app/json_number.h"
+#include "app/option_values.h"
 #include "app/progress_line.h"
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -302,11 +303,9 @@ void add_bake_environment(CLI::App& bake, int& exit_code) {
     command->add_option("--preview", o->preview, "Contact sheet of the chain: a row a level, a column a face")
         ->type_name("FILE");
     declare(*command, o->files);
-    command
-        ->add_option("--target-error", o->target_error,
-                     "Standard error of each channel of each texel, beside the mean of its channels (0.01)")
-        ->type_name("E")
-        ->check(CLI::PositiveNumber);
+    add_parsed(*command, "--target-error", "ERROR", o->target_error, parse_share,
+               "Standard error of each channel of each texel, beside the mean of its channels: 0.01 (taken "
+               "without the option) or 1%");
     command->add_option("--samples", o->samples, "Take so many samples a texel instead")
         ->type_name("N")
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 30));
@@ -315,11 +314,8 @@ void add_bake_environment(CLI::App& bake, int& exit_code) {
                      "At most so many samples in a round of a texel (1048576)")
         ->type_name("N")
         ->check(CLI::Range(std::uint64_t{2}, std::uint64_t{1} << 30));
-    command
-        ->add_option("--dark-floor", o->dark_floor,
-                     "Texels darker than this share of the map's mean are measured by the share (0.01)")
-        ->type_name("SHARE")
-        ->check(CLI::NonNegativeNumber);
+    add_parsed(*command, "--dark-floor", "SHARE", o->dark_floor, parse_not_negative,
+               "Texels darker than this share of the map's mean are measured by the share (0.01)");
     command
         ->add_option("--sampling", o->sampling,
                      "cells: within cells of the map that fit the lobe; lobe: directions of the lobe alone")

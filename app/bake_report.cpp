@@ -4,6 +4,7 @@
 #include "app/bake_run.h"
 #include "app/commands.h"
 #include "app/json_number.h"
+#include "app/option_values.h"
 #include "app/usage_error.h"
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -103,9 +104,8 @@ void add_bake_report(CLI::App& bake, int& exit_code) {
     command->add_option("--sphere-f0", s.sphere_f0, "Reflectance of the spheres")
         ->check(CLI::Range(0.0, 1.0))
         ->type_name("F0");
-    command->add_option("--target-error", s.target_error, "Standard error of either side at one place (0.01)")
-        ->check(CLI::PositiveNumber)
-        ->type_name("E");
+    add_parsed(*command, "--target-error", "ERROR", s.target_error, parse_share,
+               "Standard error of either side at one place: 0.01 (taken without the option) or 1%");
     command->add_option("--exposure", o->exposure, "Of a .png picture, in stops")
         ->check(CLI::Range(-100.0, 100.0))
         ->type_name("STOPS");

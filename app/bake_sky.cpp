@@ -3,6 +3,7 @@
 #include "app/bake_run.h"
 #include "app/commands.h"
 #include "app/json_number.h"
+#include "app/option_values.h"
 #include "app/progress_line.h"
 #include "app/usage_error.h"
 #include <CLI/CLI.hpp>
@@ -105,11 +106,8 @@ void add_bake_sky(CLI::App& bake, int& exit_code) {
         ->check(CLI::Range(2, 16384))
         ->type_name("N");
     command->add_flag("--no-sun", o->no_sun, "Leave out the sun's disc");
-    command
-        ->add_option("--scale", o->scale,
-                     "Multiplies the map, whose luminance is in cd/m^2 without the option")
-        ->check(CLI::PositiveNumber)
-        ->type_name("S");
+    add_parsed(*command, "--scale", "S", o->scale, parse_positive,
+               "Multiplies the map, whose luminance is in cd/m^2 without the option");
     command->add_option("--exposure", o->exposure, "Of a .png picture, in stops")
         ->check(CLI::Range(-100.0, 100.0))
         ->type_name("STOPS");

@@ -1,6 +1,7 @@
 // montelux compare: how far a picture is from a reference, and whether its errors explain the distance.
 #include "app/commands.h"
 #include "app/json_number.h"
+#include "app/option_values.h"
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -208,19 +209,17 @@ void add_compare(CLI::App& app, int& exit_code) {
         ->add_option("--set-aside", s->options.set_aside_percent,
                      "Leave out this per cent of the pixels, those where the reference is noisiest")
         ->check(CLI::Range(0.0, 99.999));
-    command->add_option("--epsilon", s->options.relative_epsilon, "Epsilon of relMSE")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
+    add_parsed(*command, "--epsilon", "EPSILON", s->options.relative_epsilon, parse_positive,
+               "Epsilon of relMSE")
+        ->default_str("0.01");
     auto* difference =
         command->add_option("--difference", s->difference, "Write a picture of the signed difference (.png)");
     command->add_option("--difference-of", s->measure, "What it shows: relative difference or z-scores")
         ->check(CLI::IsMember({"relative", "z"}))
         ->capture_default_str()
         ->needs(difference);
-    command
-        ->add_option("--full-scale", s->full_scale,
-                     "Difference of the fullest colour; else the 99th percentile")
-        ->check(CLI::PositiveNumber)
+    add_parsed(*command, "--full-scale", "DIFFERENCE", s->full_scale, parse_positive,
+               "Difference of the fullest colour; else the 99th percentile")
         ->needs(difference);
     command->add_flag("--json", s->json, "Print JSON");
     command->footer("Examples:\n"

@@ -1,5 +1,6 @@
 #include "app/render_options.h"
 
+#include "app/option_values.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -24,30 +25,6 @@ std::string names(const Table& table) {
     std::string list;
     for (const auto& [name, value] : table) list += (list.empty() ? "" : ", ") + std::string(name);
     return list;
-}
-
-[[noreturn]] void refuse(const std::string& option, const std::string& given, const std::string& expected) {
-    throw CLI::ValidationError(option, "'" + given + "' was given; " + expected);
-}
-
-double parse_positive(const std::string& option, const std::string& s) {
-    double v = 0;
-    auto [stop, error] = std::from_chars(s.data(), s.data() + s.size(), v);
-    if (error != std::errc() || stop != s.data() + s.size() || !(v > 0) || !std::isfinite(v))
-        refuse(option, s, "a number above 0 is expected");
-    return v;
-}
-
-// 0.01 or 1%.
-double parse_share(const std::string& option, const std::string& s) {
-    const bool percent = s.ends_with('%');
-    double v = 0;
-    const char* end = s.data() + s.size() - (percent ? 1 : 0);
-    auto [stop, error] = std::from_chars(s.data(), end, v);
-    v *= percent ? 0.01 : 1;
-    if (error != std::errc() || stop != end || !(v > 0 && v < 1))
-        refuse(option, s, "a number above 0 and below 1 is expected, or above 0% and below 100%");
-    return v;
 }
 
 // Seconds: 90, 90s, 1.5m, 1h30m.
@@ -90,16 +67,6 @@ Slice parse_slice(const std::string& option, const std::string& s) {
         if (f == std::errc() && q == end && k >= 1 && k <= n && n <= 1'000'000) return {k - 1, n};
     }
     refuse(option, s, "K/N is expected with K from 1 to N, for example 3/16");
-}
-
-// An option that `parse(name, text)` reads, or refuses. Given twice, the last counts.
-template <typename Target, typename Parse>
-void add_parsed(CLI::App& c, const std::string& name, const char* type, Target& target, const Parse& parse,
-                const std::string& help) {
-    c.add_option_function<std::string>(
-         name, [name, &target, parse](const std::string& text) { target = parse(name, text); }, help)
-        ->type_name(type)
-        ->take_last();
 }
 
 // An option that takes a whole number of [lowest, highest]. "1e9", signs and fractions are no whole numbers.

@@ -58,7 +58,7 @@ expect 0 "texels" bake environment sky.pfm --size 8 --levels 3 -o up.pfm --up z
 cmp -s t1_m1.pfm up_m1.pfm && fail "--up changes nothing"
 expect 0 "texels" bake environment sky.pfm --size 8 --levels 3 -o mirror.pfm --mirror
 cmp -s t1_m1.pfm mirror_m1.pfm && fail "--mirror changes nothing"
-expect 0 "texels" bake environment sky.pfm --size 8 --levels 3 -o turn.pfm --turn 40
+expect 0 "texels" bake environment sky.pfm --size 8 --levels 3 -o turn.pfm --turn 40 --target-error 2%
 cmp -s t1_m1.pfm turn_m1.pfm && fail "--turn changes nothing"
 
 "$montelux" bake environment sky.pfm --size 4 -o q.exr --quiet >out 2>&1 || fail "--quiet ends in an error"
@@ -67,6 +67,9 @@ cmp -s t1_m1.pfm turn_m1.pfm && fail "--turn changes nothing"
 # Options that make no sense, and answers of "no".
 expect 2 "nothing is asked for" bake environment sky.pfm
 expect 2 "does not go with" bake environment sky.pfm -o x.exr --samples 10 --target-error 0.1
+expect 2 "'2' was given; a number above 0 and below 1 is expected" bake environment sky.pfm -o x.exr --target-error 2
+expect 2 "'-1' was given; a number that is not negative" bake environment sky.pfm -o x.exr --dark-floor -1
+expect 2 "'0' was given; a number above 0 is expected" bake sky -o x.exr --scale 0
 expect 2 "needs --sampling lobe" bake environment sky.pfm -o x.exr --source-mips
 expect 0 "do not know of their bias" bake environment sky.pfm --size 4 -o x.exr --sampling lobe --source-mips --samples 64
 expect 2 "expected linear, filament, babylon, or numbers" bake environment sky.pfm -o x.exr --roughness 0,2
