@@ -67,10 +67,6 @@ TEST(EnvironmentLookup, CentresAreTexelsAndBlendsAreContinuous) {
         }
 }
 
-struct MapCase {
-    std::string name;
-    Image map;
-};
 std::vector<MapCase> map_cases() {
     std::vector<MapCase> cases;
     cases.push_back({"rough", rough_map(16, 16)});
@@ -84,17 +80,7 @@ std::vector<MapCase> map_cases() {
                                    grey)});
     return cases;
 }
-void for_each_sampler(const auto& f) {
-    for (const MapCase& c : map_cases())
-        for (EnvironmentLayout layout : environment_layouts)
-            for (EnvironmentSampling kind : environment_kinds)
-                for (bool compensated : {false, true}) {
-                    EnvironmentSampler sampler(c.map, layout,
-                                               {kind, compensated, EnvironmentLookup::bilinear});
-                    SCOPED_TRACE(c.name + ", " + sampler.description());
-                    f(c.map, sampler);
-                }
-}
+void for_each_sampler(const auto& f) { for_each_sampler(map_cases(), EnvironmentLookup::bilinear, f); }
 
 // Over the parts of cells that a quarter of texels make, whose solid angles are equal in a texel; density and
 // samples are compared there.

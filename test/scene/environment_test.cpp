@@ -16,11 +16,6 @@
 namespace montelux {
 namespace {
 
-struct MapCase {
-    std::string name;
-    Image map;
-};
-
 std::vector<MapCase> map_cases() {
     std::vector<MapCase> cases;
     cases.push_back({"1x1", map_of(1, 1, [](int, int) { return 3; })});
@@ -39,17 +34,7 @@ std::vector<MapCase> map_cases() {
     return cases;
 }
 
-// Compensated ones too.
-void for_each_sampler(const auto& f) {
-    for (const MapCase& c : map_cases())
-        for (EnvironmentLayout layout : environment_layouts)
-            for (EnvironmentSampling kind : environment_kinds)
-                for (bool compensated : {false, true}) {
-                    EnvironmentSampler sampler(c.map, layout, {kind, compensated});
-                    SCOPED_TRACE(c.name + ", " + sampler.description());
-                    f(c.map, sampler);
-                }
-}
+void for_each_sampler(const auto& f) { for_each_sampler(map_cases(), EnvironmentLookup::nearest, f); }
 
 double light_of(const Image& map, std::size_t texel) {
     double sum = 0;

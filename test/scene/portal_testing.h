@@ -1,12 +1,15 @@
-// Rectangles for the tests of portals.
+// Rectangles and wavelengths for the tests of portals.
 #pragma once
 
 #include <array>
 
 #include "montelux/mc/math/transform.h"
 #include "montelux/scene/light/portal.h"
+#include "montelux/spectrum/wavelengths.h"
 
 namespace montelux::portals {
+
+inline const SampledWavelengths wavelengths = SampledWavelengths::sample_visible(0.37f);
 
 // Light from +z through the rectangle [x0, x1] x [y0, y1] of the plane at height z, then turned.
 inline std::array<Point3f, 4> corners_of(float x0, float y0, float x1, float y1, float z = 0,
