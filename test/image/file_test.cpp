@@ -1,9 +1,11 @@
 #include "test/image/image_testing.h"
 #include <csignal>
+#include <fcntl.h>
 #include <functional>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include "montelux/image/image_read.h"
 #include "montelux/image/image_write.h"
@@ -51,6 +53,39 @@ TEST(AtomicFile, AppearsOnlyWithACommit) {
     file.commit();
     EXPECT_EQ(read_bytes(folder / "a"), "new Contents");
     EXPECT_EQ(folder.file_count(), 1);
+}
+
+TEST(AtomicFile, LeavesNothingWhenItsProcessIsKilled) {
+    TemporaryFolder folder;
+    const int unnamed = ::open(folder.path().c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
+    if (unnamed < 0) GTEST_SKIP() << "this file system has no files without a name";
+    ::close(unnamed);
+    write_bytes(folder / "a", "old");
+    const pid_t child = ::fork();
+    if (child == 0) {
+        AtomicFile file(folder / "a");
+        file.write(std::vector<std::uint8_t>(1 << 20));
+        file.finish();
+        ::kill(::getpid(), SIGKILL);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+    EXPECT_EQ(folder.file_count(), 1);
+    EXPECT_EQ(read_bytes(folder / "a"), "old");
+}
+
+TEST(AtomicFile, TakesAnotherNameWhereOneIsTaken) {
+    TemporaryFolder folder;
+    // Of a process of the same number that was killed, as in a container that was begun anew.
+    for (int i = 0; i < 64; ++i)
+        write_bytes(folder / (".montelux-" + std::to_string(::getpid()) + "-" + std::to_string(i) + ".tmp"),
+                    "");
+    AtomicFile file(folder / "a");
+    file.write("new", 3);
+    file.commit();
+    EXPECT_EQ(read_bytes(folder / "a"), "new");
+    EXPECT_EQ(folder.file_count(), 65);
 }
 
 TEST(AtomicFile, FollowsASymbolicLink) {

@@ -32,6 +32,8 @@ std::filesystem::path folder_of(const std::filesystem::path& path) {
     return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
 }
 
+std::string own_path(int descriptor) { return "/proc/self/fd/" + std::to_string(descriptor); }
+
 } // namespace
 
 InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
@@ -112,18 +114,15 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_
         throw Error(path.string(), std::filesystem::is_directory(status)
                                        ? "cannot be written: it is a folder"
                                        : "cannot be written: it is not a regular file");
-    const auto folder = folder_of(target_);
-    static std::atomic<unsigned> counter{0};
-    for (int attempt = 0; attempt < 100; ++attempt) {
-        temporary_ = folder / (".montelux-" + std::to_string(::getpid()) + "-" +
-                               std::to_string(counter.fetch_add(1)) + ".tmp");
-        descriptor_ =
-            retried([&] { return ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
-        if (descriptor_ >= 0) return;
-        if (errno == EEXIST) continue;
-        throw Error(path.string(), "cannot be written: folder '" + folder.string() + "': " + reason(errno));
-    }
-    throw Error(path.string(), "cannot be written: no free temporary name in '" + folder.string() + "'");
+    // A file without a name is gone with its process, however that ends. Not every file system has them, and
+    // without /proc they could not be named.
+    descriptor_ =
+        retried([&] { return ::open(folder_of(target_).c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0666); });
+    if (descriptor_ >= 0 && ::access(own_path(descriptor_).c_str(), F_OK) == 0) return;
+    if (descriptor_ >= 0) ::close(descriptor_);
+    descriptor_ = take_temporary_name("folder '" + folder_of(target_).string() + "'", [](const char* name) {
+        return retried([&] { return ::open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
+    });
 }
 
 AtomicFile::~AtomicFile() {
@@ -131,9 +130,25 @@ AtomicFile::~AtomicFile() {
     if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
-void AtomicFile::fail(const char* doing, int error_number) {
+// The result of `call` with the first name that is free.
+template <typename Call>
+int AtomicFile::take_temporary_name(const std::string& doing, Call call) {
+    static std::atomic<unsigned> counter{0};
+    int result = -1;
+    for (int attempt = 0; attempt < 100; ++attempt) {
+        const auto name = folder_of(target_) / (".montelux-" + std::to_string(::getpid()) + "-" +
+                                                std::to_string(counter.fetch_add(1)) + ".tmp");
+        result = call(name.c_str());
+        if (result >= 0) temporary_ = name;
+        if (result >= 0 || errno != EEXIST) break;
+    }
+    if (result < 0) fail(doing, errno);
+    return result;
+}
+
+void AtomicFile::fail(const std::string& doing, int error_number) {
     failed_ = true;
-    throw Error(path_.string(), std::string("cannot be written: ") + doing + ": " + reason(error_number));
+    throw Error(path_.string(), "cannot be written: " + doing + ": " + reason(error_number));
 }
 
 void AtomicFile::write(std::span<const std::uint8_t> bytes) { write(bytes.data(), bytes.size()); }
@@ -174,15 +189,20 @@ void AtomicFile::finish() {
     flush();
     // Some file systems cannot synchronise.
     if (retried([&] { return ::fsync(descriptor_); }) != 0 && errno != EINVAL) fail("writing", errno);
-    const int descriptor = std::exchange(descriptor_, -1);
-    // An interrupted close has closed the file, and its bytes are on the disk already.
-    if (::close(descriptor) != 0 && errno != EINTR) fail("closing", errno);
     finished_ = true;
 }
 
 void AtomicFile::commit() {
     if (!finished_) finish();
     finished_ = false;
+    // A link cannot replace a file that is there, renaming can.
+    if (temporary_.empty())
+        take_temporary_name("naming", [&](const char* name) {
+            return ::linkat(AT_FDCWD, own_path(descriptor_).c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW);
+        });
+    const int descriptor = std::exchange(descriptor_, -1);
+    // An interrupted close has closed the file, and its bytes are on the disk already.
+    if (::close(descriptor) != 0 && errno != EINTR) fail("closing", errno);
     if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("renaming", errno);
     temporary_.clear();
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace montelux {
@@ -39,8 +40,9 @@ std::filesystem::path output_target(const std::filesystem::path& path);
 // Makes names that were given or taken in the folder of `path` permanent, where its file system can do so.
 void sync_folder_of(const std::filesystem::path& path);
 
-// Collects output in a temporary file beside `path`, which commit() renames over it. Without a commit the
-// temporary file is removed and `path` is as it was. A symbolic link is followed, not replaced.
+// Collects output in a file without a name, which commit() puts in the place of `path`. Without a commit
+// `path` is as it was, and nothing else is left. A symbolic link is followed, not replaced. Where the file
+// system has no files without a name, it has a temporary one beside `path`, which a killed process leaves.
 // Every failure is an Error that names the path and the reason; after one, commit() fails as well.
 class AtomicFile {
   public:
@@ -53,13 +55,15 @@ class AtomicFile {
     void write(const void* data, std::size_t size);
     std::uint64_t position() const { return written_to_ + buffer_.size(); }
     void seek(std::uint64_t position);
-    // Ends the writing: all bytes are on the disk, under the temporary name.
+    // Ends the writing: all bytes are on the disk, but not under their name.
     void finish();
     // Gives the file its name, after finish() where that has not been called.
     void commit();
 
   private:
-    [[noreturn]] void fail(const char* doing, int error_number);
+    template <typename Call>
+    int take_temporary_name(const std::string& doing, Call call);
+    [[noreturn]] void fail(const std::string& doing, int error_number);
     void flush();
     void write_out(std::span<const std::uint8_t> bytes);
 
