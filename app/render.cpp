@@ -77,7 +77,7 @@ void check_checkpoint(const RenderOptions& options, const std::vector<std::strin
 void check_memory(const FilmSettings& film, bool with_checkpoints) {
     auto pages = static_cast<double>(sysconf(_SC_PHYS_PAGES));
     double there = pages * static_cast<double>(sysconf(_SC_PAGESIZE));
-    constexpr double layers = 22, copies = 2; // the picture, and its encoding
+    constexpr double layers = 26, copies = 2; // the picture, and its encoding
     double pixels = static_cast<double>(film.crop.width()) * film.crop.height();
     double needed = pixels * ((with_checkpoints ? 2 : 1) * (sizeof(Pixel) + sizeof(std::uint32_t)) +
                               layers * copies * sizeof(float));
@@ -262,7 +262,7 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     const RenderReport& report = state.report;
 
     const FilmError error = state.film.error();
-    Image image = state.film.develop();
+    Image image = state.film.develop(target.slice.count > 1);
     add_render_header(image, std::filesystem::path(options.scene).filename().string(), description, renderer,
                       report, error, clamped_luminance(state.film));
     finish_on_signals();

@@ -20,10 +20,9 @@ struct MergedSlices {
 };
 
 // Joins what Film::develop() wrote for slices k/n of one render, one picture after the other in any order, so
-// that no two need be in memory. Means, standard errors, skewness and counts are those of all units together,
-// as far as 32-bit layers tell (relative differences of about 1e-7); the layer `outlier` is that of the slice
-// in which the brightest unit stood out most, against all. The standard error is infinite where there are
-// fewer than two units. Pictures say what they are of in the attributes `renderHash` and `slice`.
+// that no two need be in memory. All layers are those of all units together, as far as 32-bit layers tell
+// (relative differences of about 1e-7). The standard error is infinite where there are fewer than two units.
+// Pictures say what they are of in the attributes `renderHash` and `slice`.
 class SliceMerger {
   public:
     // Throws Error, naming the picture, where it is no slice, is of another render than those before, or of a
@@ -35,8 +34,9 @@ class SliceMerger {
   private:
     struct PixelSums {
         SkewMoments<3> units;
-        double samples = 0, largest = 0; // weighted squares that the brightest unit makes up
-        double depth = 0;                // these and the next are weighted by samples
+        Vec3d brightest; // unit
+        double samples = 0;
+        double depth = 0; // these and the next are weighted by samples
         std::array<double, 3> albedo{}, normal{};
     };
 

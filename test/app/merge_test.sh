@@ -12,6 +12,26 @@ for sampler in independent sobol; do
     awk -F '[:,]' '/"rmse"/ { found = 1; far = $2 + 0 >= 1e-6 } END { exit !found || far }' comparison ||
         fail "$sampler: the joined slices differ from the whole: $(cat comparison)"
 done
+# Pixels that owe their errors to one bright unit are told from all units, where a slice has one alone, too.
+scene lamp "$sky Material \"diffuse\" Shape \"sphere\" AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [500 500 500]
+    Translate 1.1 0.6 0 Shape \"sphere\" \"float radius\" 0.008 AttributeEnd" 16 12
+# Least, mean and largest value of two layers.
+roughness() {
+    "$montelux" info "$1" | awk '$1 == "outlier" || $1 == "doubt" { print $1, $2, $3, $4 }'
+}
+expect 0 "one bright sample" render lamp.pbrt --spp 256 --sampler halton -o whole.exr
+roughness whole.exr >expected
+for n in 3 16; do
+    rm -f lamp-*.exr
+    for k in $(seq $n); do
+        expect 0 "" render lamp.pbrt --spp 256 --sampler halton --slice $k/$n -o lamp-$k.exr
+    done
+    expect 0 "of $n slices" merge lamp-*.exr -o joined.exr
+    roughness joined.exr | paste -d ' ' - expected | awk '{ for (i = 2; i <= 4; i++) {
+            far = $i - $(i + 4); if (far < 0) far = -far; if (far > 1e-4) bad = 1 } seen++ }
+        END { exit bad || seen != 2 }' ||
+        fail "$n slices: outlier and doubt differ: $(roughness joined.exr) instead of $(cat expected)"
+done
 expect 0 "samples a pixel" render ball.pbrt --spp 32 --sampler sobol --slice 16/16 -o sixteenth.exr
 expect 0 "without slice 2: the picture is right" merge part1.exr part3.exr -o two.exr
 expect 1 "it is slice 1, as part1.exr is" merge part1.exr part1.exr -o x.exr
