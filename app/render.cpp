@@ -4,6 +4,7 @@
 #include "app/commands.h"
 #include "app/denoised_output.h"
 #include "app/interrupt.h"
+#include "app/picture_notices.h"
 #include "app/progress.h"
 #include "app/render_options.h"
 #include "app/sample_record_text.h"
@@ -111,36 +112,6 @@ void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed) {
         static_cast<unsigned long long>(bad.first->sample), bad.first->x, bad.first->y,
         static_cast<unsigned long long>(seed), bad.first->x, bad.first->y,
         static_cast<unsigned long long>(bad.first->sample));
-}
-
-void print_clamped(const RenderReport& report, const Film& film, const FilmError& error) {
-    if (report.clamped_samples == 0) return;
-    const double lost = clamped_luminance(film);
-    std::fprintf(
-        stderr,
-        "montelux: warning: %llu samples were clamped, which took %s of the light away; the errors do not "
-        "know of that\n",
-        static_cast<unsigned long long>(report.clamped_samples),
-        percent_text(lost / (lost + error.mean_luminance)).c_str());
-}
-
-// Says so where the error sits in few pixels.
-void print_outliers(const Film& film) {
-    constexpr double few = 0.01;
-    const OutlierReport o = outliers_of(film);
-    if (o.share_of_half > 0 && o.share_of_half < few)
-        std::printf("half of the squared error sits in %llu pixels (%s of all)\n",
-                    static_cast<unsigned long long>(o.pixels_of_half), percent_text(o.share_of_half).c_str());
-    if (o.heavy_tailed > 0)
-        std::printf(
-            "%llu pixels owe most of their error to one bright sample and carry %s of the squared error: "
-            "their errors are rough (layers outlier and doubt)\n",
-            static_cast<unsigned long long>(o.heavy_tailed), percent_text(o.heavy_error_share).c_str());
-    if (static_cast<double>(o.outshone) > few * static_cast<double>(film.pixels().size()))
-        std::printf(
-            "%llu pixels lie beside pixels of far larger variance: where that is no edge, they have missed "
-            "bright paths so far and are too sure (layer doubt)\n",
-            static_cast<unsigned long long>(o.outshone));
 }
 
 // What ended the render, where that is not the number of samples.
@@ -270,13 +241,14 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     for (const std::string& output : outputs) write_picture(output, image);
     if (!options.quiet) {
         print_bad_samples(report.bad, description.sampler.seed);
-        print_clamped(report, state.film, error);
+        print_clamped(static_cast<double>(report.clamped_samples), clamped_luminance(state.film),
+                      error.mean_luminance);
         for (const std::string& output : outputs)
             std::printf("%s: %d x %d pixels, %.7g samples a pixel, relative error %s, %s%s%s\n",
                         output.c_str(), image.width(), image.height(), error.mean_samples,
                         percent_text(error.relative).c_str(), duration_text(report.seconds).c_str(),
                         ending_text(report, target).c_str(), denoised.note.c_str());
-        print_outliers(state.film);
+        print_outliers(outliers_of(state.film));
         if (options.stats) {
             print_statistics(report, load_seconds, renderer.build_seconds());
             for (const EnvironmentSampler& map : renderer.tables().lights().environments())

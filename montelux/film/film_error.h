@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
+#include "montelux/film/doubtful_pixels.h"
 #include "montelux/mc/math/vec.h"
 
 namespace montelux {
@@ -40,7 +42,11 @@ struct OutlierReport {
     std::uint64_t heavy_tailed = 0; // pixels (Doubt::bright_unit)
     double heavy_error_share = 0;   // of the squared error, that those pixels carry
     std::uint64_t outshone = 0;     // pixels (Doubt::neighbours)
+    std::uint64_t unknown = 0;      // pixels (Doubt::unknown)
+    std::uint64_t pixels = 0;       // all
 };
 OutlierReport outliers_of(const Film& film);
+// Of the standard errors of the pixels' luminances.
+OutlierReport outliers_of(std::span<const double> errors, std::span<const Doubt> doubts);
 
 } // namespace montelux

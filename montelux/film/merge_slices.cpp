@@ -137,6 +137,10 @@ void SliceMerger::add(const Image& slice, const std::string& name) {
         throw Error(name, "it is slice " + std::to_string(number.index) + ", as " + other->second + " is");
     if (names_.begin()->first == number.index) attributes_ = slice.attributes();
     bad_samples_ += number_attribute(slice, "badSamples");
+    clamped_samples_ += number_attribute(slice, "clampedSamples");
+    const double samples = number_attribute(slice, "samplesTaken");
+    clamped_light_ += samples * number_attribute(slice, "clampedLuminance");
+    samples_taken_ += samples;
     seconds_ += number_attribute(slice, "renderSeconds");
     interrupted_ = std::max(interrupted_, number_attribute(slice, "interrupted"));
 
@@ -170,7 +174,9 @@ MergedSlices SliceMerger::finish() const {
     Image& out = result.image;
     const Layers to(out, "the joined picture");
     std::vector<PixelSpread> spreads;
+    std::vector<double> errors;
     spreads.reserve(pixels_.size());
+    errors.reserve(pixels_.size());
     double squares = 0, luminance = 0, all_samples = 0;
     std::size_t i = 0;
     for (int y = 0; y < height_; ++y)
@@ -195,29 +201,38 @@ MergedSlices SliceMerger::finish() const {
             const double largest = std::min(1.0, share_of_unit(units, sums.brightest));
             put(to.outlier, largest);
             spreads.push_back(pixel_spread(error, sums.samples, static_cast<double>(units.count()), largest));
+            errors.push_back(error);
             put(to.depth, sums.depth * inverse);
             squares += error * error;
             all_samples += sums.samples;
         }
     const std::vector<Doubt> doubts = doubtful_pixels(spreads, width_);
+    result.outliers = outliers_of(errors, doubts);
     const int layer = *out.find_channel("doubt");
     i = 0;
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x, ++i) out.set(x, y, layer, static_cast<float>(doubts[i]));
     const double pixels = static_cast<double>(out.pixel_count());
     result.mean_samples = all_samples / pixels;
+    result.mean_luminance = luminance / pixels;
+    result.clamped_samples = clamped_samples_;
+    if (samples_taken_ > 0) result.clamped_luminance = clamped_light_ / samples_taken_;
     result.relative_error = luminance > 0 ? std::sqrt(squares * pixels) / luminance : 0;
 
     Attributes& a = out.attributes();
     a = attributes_;
     // Of one slice alone.
-    for (const char* key : {"stoppedBy", "clampedLuminance", "denoiser", "denoiserGuides"}) a.erase(key);
+    for (const char* key : {"stoppedBy", "denoiser", "denoiserGuides"}) a.erase(key);
     a["slice"] =
         result.missing.empty() ? std::string("1/1") : std::string("some of ") + std::to_string(count_);
     a["samplesTaken"] = static_cast<float>(result.mean_samples);
     a["relativeError"] = static_cast<float>(result.relative_error);
     a["interrupted"] = static_cast<int>(interrupted_);
     a["badSamples"] = static_cast<int>(std::min(bad_samples_, 1e9));
+    if (result.clamped_luminance > 0) {
+        a["clampedLuminance"] = static_cast<float>(result.clamped_luminance);
+        a["clampedSamples"] = static_cast<int>(std::min(clamped_samples_, 1e9));
+    }
     a["renderSeconds"] = static_cast<float>(seconds_);
     return result;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "montelux/film/film_error.h"
 #include "montelux/image/image.h"
 #include "montelux/mc/stats/skew_moments.h"
 
@@ -16,7 +17,10 @@ struct MergedSlices {
     Image image;
     std::vector<int> missing;  // slices, counted from 1, that no picture was of
     double relative_error = 0; // FilmError::relative
-    double mean_samples = 0;
+    double mean_samples = 0, mean_luminance = 0;
+    // How many samples were clamped, and the mean luminance that this took away.
+    double clamped_samples = 0, clamped_luminance = 0;
+    OutlierReport outliers;
 };
 
 // Joins what Film::develop() wrote for slices k/n of one render, one picture after the other in any order, so
@@ -46,6 +50,7 @@ class SliceMerger {
     std::vector<PixelSums> pixels_;
     Attributes attributes_; // of the picture of the lowest slice
     double bad_samples_ = 0, seconds_ = 0, interrupted_ = 0;
+    double clamped_samples_ = 0, clamped_light_ = 0, samples_taken_ = 0; // the light weighted by samples
 };
 
 } // namespace montelux

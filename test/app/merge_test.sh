@@ -19,6 +19,7 @@ scene lamp "$sky Material \"diffuse\" Shape \"sphere\" AttributeBegin AreaLightS
 roughness() {
     "$montelux" info "$1" | awk '$1 == "outlier" || $1 == "doubt" { print $1, $2, $3, $4 }'
 }
+expect 0 "192 pixels have fewer than 16 units" render lamp.pbrt --spp 255 --sampler halton -o few.exr
 expect 0 "one bright sample" render lamp.pbrt --spp 256 --sampler halton -o whole.exr
 roughness whole.exr >expected
 for n in 3 16; do
@@ -27,11 +28,20 @@ for n in 3 16; do
         expect 0 "" render lamp.pbrt --spp 256 --sampler halton --slice $k/$n -o lamp-$k.exr
     done
     expect 0 "of $n slices" merge lamp-*.exr -o joined.exr
+    grep -q "one bright sample" out || fail "$n slices: nothing is told of outliers: $(cat out)"
     roughness joined.exr | paste -d ' ' - expected | awk '{ for (i = 2; i <= 4; i++) {
             far = $i - $(i + 4); if (far < 0) far = -far; if (far > 1e-4) bad = 1 } seen++ }
         END { exit bad || seen != 2 }' ||
         fail "$n slices: outlier and doubt differ: $(roughness joined.exr) instead of $(cat expected)"
 done
+# Light that was clamped away is told of the joined picture as of the whole.
+expect 0 "samples were clamped, which took" render ball.pbrt --spp 48 --clamp 0.5 -o whole.exr
+told=$(grep clamped out)
+for k in 1 2 3; do
+    expect 0 "" render ball.pbrt --spp 48 --clamp 0.5 --slice $k/3 -o clamped$k.exr
+done
+expect 0 "$told" merge clamped1.exr clamped2.exr clamped3.exr -o joined.exr
+expect 0 "clampedLuminance" info joined.exr
 expect 0 "samples a pixel" render ball.pbrt --spp 32 --sampler sobol --slice 16/16 -o sixteenth.exr
 expect 0 "without slice 2: the picture is right" merge part1.exr part3.exr -o two.exr
 expect 1 "it is slice 1, as part1.exr is" merge part1.exr part1.exr -o x.exr

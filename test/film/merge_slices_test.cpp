@@ -106,6 +106,26 @@ TEST(MergeSlices, TheBrightestUnitIsHeldAgainstTheMeanOfAll) {
     EXPECT_EQ(joined.value(1, 1, *joined.find_channel("doubt")), float(Doubt::bright_unit));
 }
 
+// Too dark for all samples together, and the errors do not know of it.
+TEST(MergeSlices, ClampedLightIsJoined) {
+    std::vector<Image> slices{picture(0, 3, 40), picture(1, 3, 40), picture(2, 3, 40)};
+    const std::vector<std::string> names{"a", "b", "c"};
+    EXPECT_FALSE(merge(slices, names).image.attributes().contains("clampedLuminance"));
+    // As a slice that is interrupted has fewer samples.
+    for (int k = 0; k < 3; ++k) {
+        Attributes& a = slices[static_cast<std::size_t>(k)].attributes();
+        a["samplesTaken"] = k == 0 ? 4.0f : 8.0f;
+        if (k == 2) continue;
+        a["clampedLuminance"] = k == 0 ? 0.25f : 0.5f;
+        a["clampedSamples"] = k == 0 ? 70 : 30;
+    }
+    const MergedSlices merged = merge(slices, names);
+    EXPECT_NEAR(merged.clamped_luminance, (4 * 0.25 + 8 * 0.5) / 20, 1e-6);
+    EXPECT_EQ(merged.clamped_samples, 100);
+    EXPECT_NEAR(std::get<float>(merged.image.attributes().at("clampedLuminance")), 0.25f, 1e-6f);
+    EXPECT_EQ(std::get<int>(merged.image.attributes().at("clampedSamples")), 100);
+}
+
 // Pictures that are not slices lack the brightest units; nothing is lost where there is one alone.
 TEST(MergeSlices, OneWholePictureStaysWhatItIs) {
     const Image whole = picture(0, 1, 24);
