@@ -51,6 +51,20 @@ FilmError error_of(const Film& film) {
     return e;
 }
 
+// Satterthwaite 1946, "An Approximate Distribution of Estimates of Variance Components", Biometrics Bulletin
+// 2(6), equation 17.
+double error_freedom(const Film& film) {
+    CompensatedSum variances, squares;
+    for (const Pixel& p : film.pixels()) {
+        const double variance = std::pow(luminance_error(p), 2);
+        if (!std::isfinite(variance)) return 0;
+        if (!(variance > 0)) continue;
+        variances.add(variance);
+        squares.add(variance * variance / (static_cast<double>(p.units().count()) - 1));
+    }
+    return squares.value() > 0 ? variances.value() * variances.value() / squares.value() : infinity;
+}
+
 double clamped_luminance(const Film& film) {
     CompensatedSum sum;
     for (const Pixel& p : film.pixels()) sum.add(p.clamped());

@@ -16,6 +16,11 @@ constexpr std::uint64_t pilot_samples = 16, pilot_units = 4;
 
 } // namespace
 
+std::uint64_t pilot_of(const SampleOrder& order) {
+    const std::uint64_t samples = std::max(pilot_samples, pilot_units * order.unit());
+    return (samples + order.unit() - 1) / order.unit() * order.unit();
+}
+
 SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& target) {
     if (settings.kind == SamplerKind::independent || settings.replicates >= 2 ||
         settings.replicate_points != 0)
@@ -37,18 +42,15 @@ std::vector<std::uint32_t> next_goals(const RenderState& state, const SamplerSet
     const SampleOrder order(sampler, target.slice);
     const std::uint64_t share = order.share();
     const std::size_t pixels = state.film.pixels().size();
-    const bool first = state.goals.empty();
-    if (target.adaptive && !first) return allocate(state.film, order, target);
-
-    const std::uint64_t begin = first ? 0 : state.goals.front();
+    const std::uint64_t begin = state.goals.empty() ? 0 : state.goals.front();
+    const std::uint64_t pilot = target.adaptive ? pilot_of(order) : 0;
+    if (target.adaptive && begin >= pilot) return allocate(state.film, order, target);
     if (begin >= share) return {};
-    std::uint64_t end;
-    if (target.adaptive) {
-        end = std::max(pilot_samples, pilot_units * order.unit());
-        end = (end + order.unit() - 1) / order.unit() * order.unit();
-    } else { // 1, 2, 4, 8, 16, 32, 48, ... samples
+    std::uint64_t end = pilot;
+    if (!target.adaptive || target.seconds > 0) { // 1, 2, 4, 8, 16, 32, 48, ... samples
         end = begin + std::clamp<std::uint64_t>(std::bit_floor(begin), 1, longest_round);
         if (order.unit() > 1) end = std::min(end, (begin / order.unit() + 1) * order.unit());
+        if (target.adaptive) end = std::min(end, pilot);
     }
     return std::vector<std::uint32_t>(pixels, static_cast<std::uint32_t>(std::min(end, share)));
 }
