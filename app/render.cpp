@@ -26,6 +26,7 @@
 #include "montelux/render/checkpoint.h"
 #include "montelux/render/render_header.h"
 #include "montelux/render/renderer.h"
+#include "montelux/render/rounds.h"
 
 namespace montelux::app {
 
@@ -147,6 +148,14 @@ void print_statistics(const RenderReport& report, double load_seconds, double bu
     std::printf("peak memory        %.1f MiB\n", static_cast<double>(usage.ru_maxrss) / 1024);
 }
 
+void check_slice_option(const SceneDescription& description, const RenderTarget& target) {
+    try {
+        check_slice(description, target);
+    } catch (const Error& e) {
+        throw UsageError("--slice", e.what());
+    }
+}
+
 int replay(const RenderOptions& options, const SceneDescription& description, const RenderTarget& target) {
     const SampleAddress& s = *options.debug_sample;
     try {
@@ -157,6 +166,7 @@ int replay(const RenderOptions& options, const SceneDescription& description, co
     if (!options.quiet && (!options.outputs.empty() || options.stats))
         std::fprintf(stderr, "montelux: warning: --debug-sample renders no picture: nothing is written, and "
                              "there are no statistics\n");
+    check_slice_option(description, target);
     const Renderer renderer(description, target);
     std::fputs(sample_record_text(renderer.replay(s.x, s.y, s.index), description).c_str(), stdout);
     return exit_done;
@@ -206,6 +216,7 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     if (options.denoise) denoiser.emplace(Denoiser::load(options.threads));
 
     RenderState state = initial_state(options, description, target);
+    check_slice_option(description, target);
     RoundExecutor* const executor = shared.begin(description, target, options);
     Renderer renderer(description, target);
     ProgressPrinter printer(options.quiet);

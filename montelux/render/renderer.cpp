@@ -250,11 +250,7 @@ Renderer::Renderer(const SceneDescription& description, const RenderTarget& targ
       camera_(description.scene.camera, description.film.width, description.film.height) {
     if (description.sampler.samples_per_pixel < 1)
         throw Error("sampler", "at least 1 sample a pixel is needed");
-    if (target.slice.index >= target.slice.count)
-        throw Error("slice",
-                    "slices are counted from 0, and there are " + std::to_string(target.slice.count));
-    if (SampleOrder(sampler_, target.slice).share() == 0)
-        throw Error("slice", "there are fewer units of samples than slices; more samples a pixel are needed");
+    check_slice(description, target);
     auto begin = Clock::now();
     tables_ = std::make_unique<SceneTables>(description.scene, description.integrator.environments());
     accelerator_ = std::make_unique<Accelerator>(description.scene, *tables_);

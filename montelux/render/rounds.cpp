@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <string>
 
+#include "montelux/mc/math/error.h"
 #include "montelux/render/allocation.h"
 
 namespace montelux {
@@ -35,6 +37,14 @@ SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& ta
             std::min(std::max(settings.samples_per_pixel < many_samples ? 8u : 16u, target.slice.count),
                      settings.samples_per_pixel);
     return settings;
+}
+
+void check_slice(const SceneDescription& description, const RenderTarget& target) {
+    const Slice& slice = target.slice;
+    if (slice.index >= slice.count)
+        throw Error("slices are counted from 0, and there are " + std::to_string(slice.count));
+    if (SampleOrder(with_replicates(description.sampler, target), slice).share() == 0)
+        throw Error("there are fewer units of samples than slices; more samples a pixel are needed");
 }
 
 std::vector<std::uint32_t> next_goals(const RenderState& state, const SamplerSettings& sampler,

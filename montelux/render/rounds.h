@@ -7,6 +7,7 @@
 #include "montelux/film/film.h"
 #include "montelux/mc/random/sampler_settings.h"
 #include "montelux/render/render_control.h"
+#include "montelux/scene/render_settings.h"
 
 namespace montelux {
 
@@ -16,6 +17,9 @@ namespace montelux {
 // With fewer than eight samples each stands alone. A target or a time needs many short replicates, of at most
 // eight points each, since nobody knows how many samples it takes.
 SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& target);
+
+// Throws Error, a sentence, where a slice is none or would take no samples.
+void check_slice(const SceneDescription& description, const RenderTarget& target);
 
 // Samples a pixel of the pilot of an adaptive render, which its first errors are made of.
 std::uint64_t pilot_of(const SampleOrder& order);

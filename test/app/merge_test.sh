@@ -54,6 +54,7 @@ expect 1 "missing.exr" merge part1.exr missing.exr -o x.exr
 expect 2 "it is one of the slices" merge part1.exr part2.exr -o part1.exr
 expect 2 "K/N is expected" render ball.pbrt --slice 4/3 -o x.exr
 expect 2 "slices share a number of samples" render ball.pbrt --slice 1/3 --target-error 0.1 -o x.exr
-expect 1 "fewer units of samples than slices" render ball.pbrt --spp 2 --slice 3/3 -o x.exr
+expect 2 "--slice: there are fewer units of samples than slices" render ball.pbrt --spp 2 --slice 3/3 -o x.exr
+expect 2 "--slice: there are fewer units of samples than slices" render ball.pbrt --spp 2 --slice 3/3 --debug-sample 1,1,0
 [ -e x.exr ] && fail "a refused command wrote a picture"
 finish
