@@ -231,8 +231,8 @@ void declare(CLI::App& c, RenderOptions& o) {
              "\n"
              "'mpirun -n 8 montelux render ...' shares the render among machines; the picture is the same.\n"
              "An EXR file holds every layer: mean, standard error, samples, albedo, normal, depth.\n"
-             "SIGINT (Ctrl-C) or SIGTERM ends the render early and saves what there is; a second one does "
-             "not save.");
+             "SIGINT (Ctrl-C) or SIGTERM ends the render early and saves what there is; another one, a "
+             "second later or more, ends it at once: the picture is not saved.");
 }
 
 void apply(const RenderOptions& o, SceneDescription& d) {

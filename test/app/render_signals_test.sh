@@ -35,6 +35,33 @@ for sampler in independent sobol; do
     done
 done
 
+# Paths in a sphere that takes no light away are long, and the first signal waits for those of a pixel. Another one
+# ends the program at once, but not one of the same second. Checkpoints stay.
+scene furnace 'Material "diffuse" "spectrum reflectance" [200 1 900 1] Shape "sphere" "float radius" 5' 2 2
+furnace="render furnace.pbrt --sampler sobol --spp 1000 --adaptive on --max-depth 1000000 --checkpoint furnace.state"
+expect 0 "time is up" $furnace --time 0.1
+cp furnace.state furnace.expected
+rm -f furnace.exr
+"$montelux" $furnace --resume >out 2>&1 &
+pid=$!
+end_later $pid
+sleep 0.5
+kill -INT $pid
+sleep 0.3
+kill -INT $pid
+sleep 0.8
+kill -0 $pid 2>/dev/null || fail "two signals within a second ended the program at once"
+begin=$(now)
+kill -INT $pid
+wait_for $pid
+milliseconds=$((($(now) - begin) / 1000000))
+[ $code -eq 130 ] || fail "a signal after another: exit code $code instead of 130"
+[ $milliseconds -lt 1000 ] || fail "a signal after another: it took $milliseconds ms to end"
+grep -q "ended at once by another signal: no result was written; checkpoints are as they were" out ||
+    fail "a signal after another: $(cat out)"
+[ -e furnace.exr ] && fail "a signal after another: a picture was written"
+cmp -s furnace.state furnace.expected || fail "a signal after another: the checkpoint is another"
+
 # While the scene is being read there is nothing to save.
 (cat long.pbrt && yes 'AttributeBegin AttributeEnd' | head -n 3000000) >slow.pbrt
 rm -f long.exr
