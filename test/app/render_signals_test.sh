@@ -74,6 +74,12 @@ wait_for $pid
 [ $code -eq 130 ] || fail "a signal while reading: exit code $code instead of 130"
 [ -e long.exr ] && fail "a signal while reading: a picture was written"
 
+# Files that a process has written more than 64 KiB of: they have no name, or a temporary one.
+being_written() {
+    find -L "/proc/$1/fd" -type f -size +64k
+    find . -name '.montelux-*' -size +64k
+} 2>/dev/null
+
 # Once the picture is being written, signals neither stop it nor leave a part of it behind.
 "$montelux" render long.pbrt --resolution 1200x900 --spp 1 --quiet -o large.exr >out 2>&1 &
 pid=$!
@@ -81,7 +87,7 @@ end_later $pid
 in_time=0
 while kill -0 $pid 2>/dev/null; do
     # Two of them: the first one would only have asked for an early end.
-    if find . -name '.montelux-*' -size +64k | grep -q . && kill -INT $pid && kill -INT $pid; then
+    if being_written $pid | grep -q . && kill -INT $pid && kill -INT $pid; then
         in_time=$((in_time + 1))
     fi 2>/dev/null
 done
