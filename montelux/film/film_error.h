@@ -27,9 +27,8 @@ inline constexpr Vec3d luminance_weight{0.2126, 0.7152, 0.0722};
 // inequality is close. Infinite below two units.
 double luminance_error(const Pixel& pixel);
 
-// Degrees of freedom of the picture's error: how many independent units it is known as well by as if all of
-// its error sat in one pixel of one more. Small where the picture has few pixels or few of them carry the
-// error, and have few units. Infinite without any spread.
+// Degrees of freedom of the picture's error: those of the pixels that carry it, added up. Small where few
+// pixels do, of few units each. Infinite without any spread, 0 where a pixel has fewer than two units.
 double error_freedom(const Film& film);
 
 // The error, relative to the mean luminance of the picture, within which a share `quantile` of the pixels
