@@ -133,7 +133,8 @@ void Coordinator::deal() {
             t.wanted_by = r;
             ByteWriter out;
             out.put(static_cast<std::uint32_t>(*pick));
-            send(t.holder, protocol::release, out.take());
+            // It forgets the tile, also where the round ends before the tile gets to the rank that wants it.
+            send(std::exchange(t.holder, TileSchedule::nobody), protocol::release, out.take());
         }
         if (!message.empty()) send(r, protocol::assign, std::move(message));
     }

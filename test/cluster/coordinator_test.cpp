@@ -1,0 +1,136 @@
+// The leader of a render among ranks whose every word is chosen by the test.
+#include "test/cluster/local_job.h"
+#include "test/render/mixed_scene.h"
+#include <gtest/gtest.h>
+#include <string>
+
+#include "montelux/cluster/coordinator.h"
+#include "montelux/mc/io/byte_stream.h"
+#include "montelux/render/renderer.h"
+
+namespace montelux::testing {
+namespace {
+
+using protocol::Assignment;
+
+constexpr int edge = 4, tile_pixels = edge * edge;
+
+// A rank without threads of its own.
+class PlayedRank {
+  public:
+    explicit PlayedRank(Mailbox& mailbox) : mailbox_(mailbox) {}
+
+    void say(protocol::Tag tag) { mailbox_.send(leading_rank, tag, {}); }
+    void say_hello() {
+        ByteWriter out;
+        out.put(std::int32_t{1});
+        mailbox_.send(leading_rank, protocol::hello, out.take());
+    }
+    void say_done(std::uint32_t tile, std::uint64_t remaining) {
+        ByteWriter out;
+        out.put(protocol::TaskReport{.tile = tile, .remaining = remaining});
+        mailbox_.send(leading_rank, protocol::done, out.take());
+    }
+    void send_empty_tile(std::uint32_t tile) {
+        const std::vector<Pixel> pixels(tile_pixels);
+        ByteWriter out;
+        out.put(protocol::TilePixelsHeader{tile, tile_pixels});
+        out.put(TileTally{});
+        out.put_all(std::span<const Pixel>(pixels));
+        mailbox_.send(leading_rank, protocol::tiles, out.take());
+    }
+    std::optional<Message> hear() { return mailbox_.receive(); }
+    // What it was assigned since it last listened.
+    std::vector<Assignment> hear_assignments() {
+        std::vector<Assignment> heard;
+        while (auto message = hear())
+            for (ByteReader in(message->bytes); message->tag == protocol::assign && !in.at_end();) {
+                heard.push_back(in.get<Assignment>());
+                std::vector<Pixel> pixels(tile_pixels);
+                if (heard.back().pixels == Assignment::Pixels::follow) in.get_all(std::span(pixels));
+                if (heard.back().goals == Assignment::Goals::uniform) in.get<std::uint32_t>();
+                std::vector<std::uint32_t> goals(tile_pixels);
+                if (heard.back().goals == Assignment::Goals::each) in.get_all(std::span(goals));
+            }
+        return heard;
+    }
+
+  private:
+    Mailbox& mailbox_;
+};
+
+// A leader with no threads to render with, over a film of three tiles side by side.
+class CoordinatorTest : public ::testing::Test {
+  protected:
+    static SceneBuilder scene() { return mixed_scene(1, 3 * edge, edge); }
+    // One round. stop() is called before tiles are dealt out, again and again.
+    void run(Coordinator& coordinator, const std::function<bool()>& stop) {
+        const RoundWatch watch{[&](bool) { return stop(); },
+                               [](std::uint64_t, const std::optional<FilmError>&) {}};
+        renderer_.serve(
+            [&](const TileRenderer& tile_renderer) { coordinator.run(tile_renderer, state_, watch); });
+    }
+    CoordinatorSettings settings(double patience_seconds = 60) const {
+        return {.tile_size = edge, .threads = 0, .patience_seconds = patience_seconds};
+    }
+    const PixelBounds& crop() const { return builder_.description.film.crop; }
+
+    SceneBuilder builder_ = scene();
+    Renderer renderer_{builder_.description};
+    RenderState state_{builder_.description.film};
+};
+
+// The round ends while a tile is on its way from one rank to another. In the next round it is the first
+// rank's turn again, which has forgotten the tile.
+TEST_F(CoordinatorTest, TilesInTransitAtTheEndOfARoundAreNotForgotten) {
+    LocalJob job(3);
+    PlayedRank first(job.mailbox(1)), second(job.mailbox(2));
+    Coordinator coordinator(job.mailbox(0), crop(), settings());
+    state_.goals.assign(state_.film.pixels().size(), 8);
+    std::optional<std::uint32_t> moved;
+    first.say_hello();
+    run(coordinator, [&] {
+        if (!moved) {
+            // With two of three tiles in hand it gives one back before its end, gets the third, and the other
+            // rank has none left but the one that was given back.
+            const std::vector<Assignment> heard = first.hear_assignments();
+            if (heard.empty()) return false;
+            EXPECT_EQ(heard.size(), 2u);
+            moved = heard.front().tile;
+            first.say_done(*moved, 1);
+            return false;
+        }
+        while (auto message = first.hear()) {
+            if (message->tag == protocol::assign) second.say_hello();
+            if (message->tag != protocol::release) continue;
+            EXPECT_EQ(ByteReader(message->bytes).get<std::uint32_t>(), *moved);
+            first.send_empty_tile(*moved);
+            first.say(protocol::gathered);
+            second.say(protocol::gathered);
+            return true;
+        }
+        return false;
+    });
+    ASSERT_TRUE(moved);
+
+    // Nothing else is left to do, and ranks are asked in their order.
+    state_.goals.assign(state_.film.pixels().size(), 0);
+    for (int y = 0; y < edge; ++y)
+        for (int x = 0; x < edge; ++x)
+            state_.goals[static_cast<std::size_t>(y * crop().width()) + *moved * edge +
+                         static_cast<std::size_t>(x)] = 8;
+    std::vector<Assignment> heard;
+    run(coordinator, [&] {
+        heard = first.hear_assignments();
+        if (heard.empty()) return false;
+        first.say(protocol::gathered);
+        second.say(protocol::gathered);
+        return true;
+    });
+    ASSERT_EQ(heard.size(), 1u);
+    EXPECT_EQ(heard.front().tile, *moved);
+    EXPECT_NE(heard.front().pixels, Assignment::Pixels::known);
+}
+
+} // namespace
+} // namespace montelux::testing
