@@ -217,7 +217,7 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
 
     RenderState state = initial_state(options, description, target);
     check_slice_option(description, target);
-    RoundExecutor* const executor = shared.begin(description, target, options);
+    RoundExecutor* const executor = shared.begin(description, target);
     Renderer renderer(description, target);
     ProgressPrinter printer(options.quiet);
     RenderControl control;
@@ -281,15 +281,15 @@ int run(const RenderOptions& options) {
     end_on_signals();
     // A closed pipe behind the messages must not end the render.
     std::signal(SIGPIPE, SIG_IGN);
-    const std::unique_ptr<Communicator> job = join_job();
-    const int fair_threads = job ? job->fair_threads() : 0;
+    Communicator* const job = join_job(options.rank_timeout);
+    const int fair_threads = job != nullptr ? job->fair_threads() : 0;
     const int threads = options.threads > 0 ? options.threads : fair_threads;
     return with_threads(threads, [&] {
-        if (job && job->rank() != 0) {
+        if (job != nullptr && job->rank() != 0) {
             help_rendering(*job, options, threads);
             return exit_done;
         }
-        SharedRender shared(job.get(), threads);
+        SharedRender shared(job, threads, options.rank_timeout);
         return load_and_render(options, shared);
     });
 }

@@ -53,6 +53,13 @@ double parse_time_limit(const std::string& option, const std::string& s) {
     return seconds;
 }
 
+// Ranks that are well may say nothing for a second.
+double parse_rank_timeout(const std::string& option, const std::string& s) {
+    const double seconds = parse_duration(option, s);
+    if (!(seconds >= 2)) refuse(option, s, "a time of at least 2s is expected, for example 10s or 2m");
+    return seconds;
+}
+
 bool parse_on_off(const std::string& option, const std::string& s) {
     if (s != "on" && s != "off") refuse(option, s, "on or off is expected");
     return s == "on";
@@ -196,7 +203,7 @@ void declare(CLI::App& c, RenderOptions& o) {
         c, "--threads", o.threads, 0, most_threads,
         "Threads, also more than processors; 0: one a processor. The picture does not depend on it");
     add_parsed(
-        c, "--rank-timeout", "TIME", o.rank_timeout, parse_time_limit,
+        c, "--rank-timeout", "TIME", o.rank_timeout, parse_rank_timeout,
         "Under mpirun: a rank that says nothing for so long is given up, and the render ends with what "
         "the others did. Default: 60s");
     add_parsed(c, "--resolution", "WxH", o.resolution, parse_resolution,

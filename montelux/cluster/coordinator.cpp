@@ -212,6 +212,8 @@ void Coordinator::handle(const Message& message) {
     case protocol::wish:
         if (on_wish_) on_wish_();
         return;
+    case protocol::failed:
+        return give_up(message.source, ": " + in.get_text());
     case protocol::beat:
         return;
     default:
@@ -287,16 +289,20 @@ void Coordinator::check_silence() {
     const Clock::time_point now = Clock::now();
     for (int r = 0; r < mailbox_.size(); ++r) {
         Rank& rank = ranks_[index(r)];
-        if (r == mailbox_.rank() || rank.threads == 0 || rank.lost) continue;
+        if (r == mailbox_.rank() || rank.lost) continue;
         const double silent = seconds_between(std::max(rank.last_heard, resumed_), now);
         if (silent <= settings_.patience_seconds) continue;
-        rank.lost = true;
-        rank.gathering = false;
-        char text[160];
-        std::snprintf(text, sizeof text,
-                      "has said nothing for %.0f s and is given up; what the others did is saved", silent);
-        if (!failure_) failure_ = "rank " + std::to_string(r) + " " + text;
+        someone_is_silent_ = true;
+        char text[80];
+        std::snprintf(text, sizeof text, " has said nothing for %.0f s and is given up", silent);
+        give_up(r, text);
     }
+}
+
+void Coordinator::give_up(int rank, const std::string& why) {
+    ranks_[index(rank)].lost = true;
+    ranks_[index(rank)].gathering = false;
+    if (!failure_) failure_ = "rank " + std::to_string(rank) + why + "; what the others did is saved";
 }
 
 void Coordinator::tell() {

@@ -22,6 +22,7 @@ for option in --spp --seed --threads --max-depth; do
 done
 expect 2 "--spp: '0' was given; a whole number from 1 to" render ok.pbrt --spp 0
 expect 2 "--threads: '5000'" render ok.pbrt --threads 5000
+expect 2 "--rank-timeout: '1' was given; a time of at least 2s" render ok.pbrt --rank-timeout 1
 for option in --sampler --strategy --heuristic; do
     expect 2 "$option: 'foo' was given; one of" render ok.pbrt $option foo
 done

@@ -3,9 +3,12 @@
 #include "test/render/mixed_scene.h"
 #include <gtest/gtest.h>
 #include <string>
+#include <thread>
 
 #include "montelux/cluster/coordinator.h"
+#include "montelux/cluster/tile_worker.h"
 #include "montelux/mc/io/byte_stream.h"
+#include "montelux/mc/math/error.h"
 #include "montelux/render/renderer.h"
 
 namespace montelux::testing {
@@ -130,6 +133,63 @@ TEST_F(CoordinatorTest, TilesInTransitAtTheEndOfARoundAreNotForgotten) {
     ASSERT_EQ(heard.size(), 1u);
     EXPECT_EQ(heard.front().tile, *moved);
     EXPECT_NE(heard.front().pixels, Assignment::Pixels::known);
+}
+
+TEST_F(CoordinatorTest, RanksThatNeverSayHelloAreGivenUp) {
+    LocalJob job(2);
+    Coordinator coordinator(job.mailbox(0), crop(), settings(0.1));
+    state_.goals.assign(state_.film.pixels().size(), 8);
+    const auto begin = std::chrono::steady_clock::now();
+    run(coordinator, [&] { return std::chrono::steady_clock::now() - begin > std::chrono::seconds(20); });
+    ASSERT_TRUE(coordinator.failed());
+    EXPECT_NE(coordinator.failure()->find("rank 1 has said nothing"), std::string::npos);
+    EXPECT_TRUE(coordinator.someone_hangs());
+}
+
+// A rank that takes longer to prepare than the leader's patience, and says that it is alive.
+TEST_F(CoordinatorTest, RanksThatPrepareForLongAreWaitedFor) {
+    LocalJob job(2);
+    PlayedRank rank(job.mailbox(1));
+    Coordinator coordinator(job.mailbox(0), crop(), settings(1.5));
+    state_.goals.assign(state_.film.pixels().size(), 8);
+    std::thread helper([&] {
+        prepare_and_beat(job.mailbox(1), [] { std::this_thread::sleep_for(std::chrono::seconds(3)); });
+        rank.say_hello();
+    });
+    bool waited_for = false;
+    run(coordinator, [&] {
+        waited_for = coordinator.threads() > 0;
+        if (waited_for) rank.say(protocol::gathered);
+        return waited_for;
+    });
+    helper.join();
+    EXPECT_TRUE(waited_for);
+    EXPECT_FALSE(coordinator.failed()) << *coordinator.failure();
+}
+
+TEST_F(CoordinatorTest, WhatPreparationThrowsComesThrough) {
+    LocalJob job(2);
+    EXPECT_THROW(prepare_and_beat(job.mailbox(1), [] { throw Error("scene", "is bad"); }), Error);
+}
+
+// The leader says why, for the rank that failed as for all.
+TEST_F(CoordinatorTest, RanksThatFailEndTheRender) {
+    LocalJob job(2);
+    Coordinator coordinator(job.mailbox(0), crop(), settings());
+    state_.goals.assign(state_.film.pixels().size(), 8);
+    std::thread failing([&] { serve_failure("there is not enough memory", job.mailbox(1), 60); });
+    const auto begin = std::chrono::steady_clock::now();
+    run(coordinator, [&] { return std::chrono::steady_clock::now() - begin > std::chrono::seconds(20); });
+    coordinator.end();
+    failing.join();
+    ASSERT_TRUE(coordinator.failed());
+    EXPECT_EQ(*coordinator.failure(), "rank 1: there is not enough memory; what the others did is saved");
+    EXPECT_FALSE(coordinator.someone_hangs());
+}
+
+TEST_F(CoordinatorTest, SilentLeadersAreNotWaitedForByRanksThatFailed) {
+    LocalJob job(2);
+    EXPECT_THROW(serve_failure("there is not enough memory", job.mailbox(1), 0.1), LeaderIsSilent);
 }
 
 } // namespace
