@@ -101,7 +101,9 @@ void Coordinator::begin_round() {
 void Coordinator::run(const TileRenderer& renderer, RenderState& state, const RoundWatch& watch) {
     state_ = &state;
     watch_ = &watch;
-    resumed_ = Clock::now();
+    // Nobody is silent whom the leader did not listen to: between rounds it writes checkpoints.
+    const Clock::time_point now = Clock::now();
+    for (Rank& r : ranks_) r.last_heard = worker_ ? r.last_heard + (now - paused_) : now;
     if (!worker_) worker_ = std::make_unique<TileWorker>(renderer, bounds_, settings_.threads, mailbox_);
     begin_round();
     // Polling more seldom while nothing happens leaves the processor to those that render.
@@ -116,6 +118,7 @@ void Coordinator::run(const TileRenderer& renderer, RenderState& state, const Ro
         if (!heard) worker_->wait(pause);
     }
     gather();
+    paused_ = Clock::now();
 }
 
 void Coordinator::deal() {
@@ -290,7 +293,7 @@ void Coordinator::check_silence() {
     for (int r = 0; r < mailbox_.size(); ++r) {
         Rank& rank = ranks_[index(r)];
         if (r == mailbox_.rank() || rank.lost) continue;
-        const double silent = seconds_between(std::max(rank.last_heard, resumed_), now);
+        const double silent = seconds_between(rank.last_heard, now);
         if (silent <= settings_.patience_seconds) continue;
         someone_is_silent_ = true;
         char text[80];

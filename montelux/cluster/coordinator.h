@@ -109,7 +109,7 @@ class Coordinator final : public RoundExecutor {
     bool something_done_ = false;
     double known_seconds_ = 0; // sum over tiles whose cost is known, and their number
     int known_costs_ = 0;
-    Clock::time_point last_told_, resumed_; // nobody was listened to before that
+    Clock::time_point last_told_, paused_; // nobody was listened to since that
 };
 
 } // namespace montelux
