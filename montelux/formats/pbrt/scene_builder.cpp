@@ -240,25 +240,27 @@ void SceneBuilder::add_defaults(std::string_view target, std::vector<Parameter> 
                                    "; expected shape, light, material, medium or texture" +
                                    did_you_mean(target, plugin_kind_names));
     auto kind = static_cast<PluginKind>(found - plugin_kind_names.begin());
+    if (parameters.empty()) return;
     Defaults& defaults = state_.defaults[static_cast<std::size_t>(kind)];
-    auto list = std::make_shared<std::vector<Parameter>>();
+    auto list = std::make_shared<std::vector<std::shared_ptr<const Parameter>>>();
     if (defaults) *list = *defaults;
     for (Parameter& p : parameters) {
         // A name may fit plugins other than those that follow, but one that fits none is a mistake.
-        if (has_parameter(kind, p.name))
-            list->push_back(std::move(p));
-        else
+        if (has_parameter(kind, p.name)) {
+            // One of each name and type: else a file that repeats an Attribute would fill the memory.
+            std::erase_if(*list, [&](const auto& old) { return old->name == p.name && old->type == p.type; });
+            list->push_back(std::make_shared<const Parameter>(std::move(p)));
+        } else {
             diagnostics_.warn_once("Attribute " + std::string(target) + "/" + p.name, p.at,
                                    "no " + std::string(target) + " has a parameter " + in_quotes(p.name) +
                                        did_you_mean(p.name, parameter_names(kind)) + "; it is ignored");
+        }
     }
-    if (list->size() > 10000) diagnostics_.error(at, "more than 10000 default parameters");
     defaults = std::move(list);
 }
 
 ParameterList SceneBuilder::with_defaults(std::vector<Parameter> own, PluginKind kind) const {
-    const Defaults& defaults = state_.defaults[static_cast<std::size_t>(kind)];
-    return {std::move(own), defaults ? *defaults : std::vector<Parameter>(), kind};
+    return {std::move(own), state_.defaults[static_cast<std::size_t>(kind)], kind};
 }
 
 void SceneBuilder::medium_interface(std::string_view inside, std::string_view outside, Location at) {

@@ -70,7 +70,7 @@ void SceneBuilder::shape(const std::string& name, std::vector<Parameter> paramet
         if (alpha->type == ParameterType::texture)
             alpha_uses_.push_back({index, ParameterList({*alpha}), r.plugin(), at});
         else
-            shape.alpha.value = r.number("alpha", 1);
+            shape.alpha.value = r.number_of(*alpha);
     }
     r.finish();
     material_uses_.push_back({index, state_.material, at});

@@ -98,10 +98,7 @@ std::optional<FloatParameter> TextureLibrary::find_float(ParameterReader& r, std
     if (!p) return std::nullopt;
     if (p->type == ParameterType::texture)
         return FloatParameter{0, resolve_float(look_up(*p, float_, spectrum_, "float"))};
-    if (p->numbers.size() != 1)
-        diagnostics_.error(p->at, "parameter " + in_quotes(name) + " has " +
-                                      std::to_string(p->numbers.size()) + " values; expected 1");
-    return FloatParameter{p->numbers[0]};
+    return FloatParameter{r.number_of(*p)};
 }
 
 std::optional<SpectrumParameter> TextureLibrary::find_spectrum(ParameterReader& r, std::string_view name,
