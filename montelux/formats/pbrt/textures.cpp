@@ -20,6 +20,9 @@ constexpr std::array<std::string_view, 13> texture_plugins = {
 
 // Deeper trees of textures are refused: looking one up is recursive.
 constexpr std::size_t most_nested = 64;
+// Nor may one look-up evaluate more textures than this: a texture that two parameters refer to is evaluated
+// twice, which doubles from level to level.
+constexpr std::size_t most_evaluations = 4096;
 
 std::string label(const TextureDeclaration& d) { return "texture " + in_quotes(d.plugin); }
 
@@ -112,18 +115,24 @@ std::optional<SpectrumParameter> TextureLibrary::find_spectrum(ParameterReader& 
 }
 
 Index TextureLibrary::resolve_float(Entry& entry) {
-    if (entry.nodes[0] != no_index) return entry.nodes[0];
-    FloatTexture node = make_node<FloatParameter>(entry, RgbMeaning::unbounded);
-    scene_.float_textures.push_back(std::move(node));
-    return entry.nodes[0] = static_cast<Index>(scene_.float_textures.size() - 1);
+    if (entry.nodes[0] == no_index) {
+        FloatTexture node = make_node<FloatParameter>(entry, RgbMeaning::unbounded);
+        scene_.float_textures.push_back(std::move(node));
+        entry.nodes[0] = static_cast<Index>(scene_.float_textures.size() - 1);
+    }
+    evaluations_ += entry.evaluations;
+    return entry.nodes[0];
 }
 
 Index TextureLibrary::resolve_spectrum(Entry& entry, RgbMeaning meaning) {
     Index& index = entry.nodes[static_cast<std::size_t>(meaning)];
-    if (index != no_index) return index;
-    SpectrumTexture node = make_node<SpectrumParameter>(entry, meaning);
-    scene_.spectrum_textures.push_back(std::move(node));
-    return index = static_cast<Index>(scene_.spectrum_textures.size() - 1);
+    if (index == no_index) {
+        SpectrumTexture node = make_node<SpectrumParameter>(entry, meaning);
+        scene_.spectrum_textures.push_back(std::move(node));
+        index = static_cast<Index>(scene_.spectrum_textures.size() - 1);
+    }
+    evaluations_ += entry.evaluations;
+    return index;
 }
 
 template <typename Parameter>
@@ -144,6 +153,7 @@ TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meanin
         diagnostics_.error(d.at, "textures refer to one another more than " + std::to_string(most_nested) +
                                      " levels deep");
     std::size_t outer = std::exchange(resolving_order_, entry.order);
+    std::size_t outer_evaluations = std::exchange(evaluations_, 1);
     ++resolving_;
     ParameterReader r(d.parameters, label(d), d.at, diagnostics_);
     TextureNode<Parameter> node;
@@ -175,6 +185,11 @@ TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meanin
     r.finish();
     --resolving_;
     resolving_order_ = outer;
+    entry.evaluations = std::exchange(evaluations_, outer_evaluations);
+    if (entry.evaluations > most_evaluations)
+        diagnostics_.error(d.at, "one look-up of this texture would evaluate more than " +
+                                     std::to_string(most_evaluations) +
+                                     " textures: it refers to others too often");
     return node;
 }
 
