@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "montelux/formats/nearest_name.h"
+#include "montelux/formats/pbrt/float_range.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
 namespace montelux::pbrt {
@@ -93,6 +94,8 @@ void SceneBuilder::object_end(Location at) {
 void SceneBuilder::object_instance(const std::string& name, Location at) {
     require_world("ObjectInstance", at);
     if (open_object_ != no_index) diagnostics_.error(at, "ObjectInstance inside an object's definition");
+    if (!fits_float(still_transform(at)))
+        diagnostics_.error(at, "the instance's transformation is beyond what single-precision numbers hold");
     instances_.push_back({name, still_transform(at), at});
 }
 
@@ -174,6 +177,8 @@ void SceneBuilder::set_option(std::optional<Plugin>& option, Plugin plugin, std:
 void SceneBuilder::set_camera(Plugin plugin) {
     Location at = plugin.at;
     set_option(camera_, std::move(plugin), "Camera");
+    if (!fits_float(still_transform(at)))
+        diagnostics_.error(at, "the camera's transformation is beyond what single-precision numbers hold");
     result_.scene.camera.world_from_camera = still_transform(at).inverse();
     const Transform& t = result_.scene.camera.world_from_camera;
     coordinate_systems_["camera"] = std::make_shared<TransformPair>(TransformPair{t, t});

@@ -132,6 +132,7 @@ class SceneBuilder {
     std::map<std::string, std::size_t> material_name_indices_;
     std::vector<MaterialUse> material_uses_;
     std::vector<AlphaUse> alpha_uses_;
+    std::size_t subdivided_ = 0; // triangles of 'loopsubdiv' shapes
 
     std::map<std::string, Index> objects_;
     Index open_object_ = no_index;

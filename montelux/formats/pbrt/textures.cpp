@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "montelux/formats/nearest_name.h"
+#include "montelux/formats/pbrt/float_range.h"
 #include "montelux/image/image_read.h"
 #include "montelux/mc/math/error.h"
 
@@ -41,6 +42,12 @@ std::optional<ColorEncoding> parse_encoding(const std::string& name) {
     } catch (const Error&) {
         return std::nullopt;
     }
+}
+
+Transform texture_space(ParameterReader& r, const TextureDeclaration& d) {
+    if (!fits_float(d.world_from_texture))
+        r.error("the texture's transformation is beyond what single-precision numbers hold");
+    return d.world_from_texture.inverse();
 }
 
 // A NaN would spread to every texel that filtering joins it with.
@@ -177,7 +184,7 @@ TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meanin
         if (c.dimension == 2)
             c.mapping = mapping(r, d);
         else
-            c.mapping.texture_from_world = d.world_from_texture.inverse();
+            c.mapping.texture_from_world = texture_space(r, d);
         c.values[0] = input<Parameter>(r, "tex1", meaning, 1);
         c.values[1] = input<Parameter>(r, "tex2", meaning, 0);
         node = std::move(c);
@@ -196,7 +203,7 @@ TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meanin
 TextureMapping TextureLibrary::mapping(ParameterReader& r, const TextureDeclaration& d) {
     TextureMapping m;
     std::string_view kind = r.choice("mapping", {"uv", "spherical", "cylindrical", "planar"}, "uv");
-    m.texture_from_world = d.world_from_texture.inverse();
+    if (kind != "uv") m.texture_from_world = texture_space(r, d);
     if (kind == "uv") {
         m.su = r.number("uscale", 1);
         m.sv = r.number("vscale", 1);
