@@ -101,12 +101,21 @@ void SceneBuilder::object_instance(const std::string& name, Location at) {
 
 SceneBuilder::Import SceneBuilder::begin_import(Location at) {
     require_world("Import", at);
-    return {state_, std::exchange(block_floor_, blocks_.size())};
+    ++open_imports_;
+    return {state_, std::exchange(block_floor_, blocks_.size()), replaced_systems_.size()};
 }
 
 void SceneBuilder::end_import(Import import) {
     if (blocks_.size() > block_floor_)
         diagnostics_.error(blocks_.back().at, "this block is not closed in the imported file");
+    for (; replaced_systems_.size() > import.replaced_systems; replaced_systems_.pop_back()) {
+        auto& [name, before] = replaced_systems_.back();
+        if (before)
+            coordinate_systems_[name] = std::move(before);
+        else
+            coordinate_systems_.erase(name);
+    }
+    --open_imports_;
     block_floor_ = import.outer_floor;
     state_ = std::move(import.state);
 }
@@ -141,7 +150,11 @@ void SceneBuilder::active_transform(std::string_view which, Location at) {
     state_.end_active = which != "StartTime";
 }
 
-void SceneBuilder::coordinate_system(const std::string& name) { coordinate_systems_[name] = state_.ctm; }
+void SceneBuilder::coordinate_system(const std::string& name) {
+    auto& system = coordinate_systems_[name];
+    if (open_imports_ > 0) replaced_systems_.emplace_back(name, system);
+    system = state_.ctm;
+}
 
 void SceneBuilder::coordinate_system_transform(const std::string& name, Location at) {
     auto found = coordinate_systems_.find(name);
