@@ -213,7 +213,25 @@ void SceneBuilder::set_accelerator(const Plugin& plugin) {
         "'Accelerator' is ignored: the ray tracer builds its own; the picture is the same");
 }
 
+namespace {
+
+// pbrt's own: '-' and '_' left out, in small letters.
+std::string normalized(std::string_view name) {
+    std::string result;
+    for (char c : name)
+        if (c != '-' && c != '_') result += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return result;
+}
+
+} // namespace
+
 void SceneBuilder::set_render_option(const Parameter& p) {
+    auto expect_one = [&](ParameterType type, const char* what) {
+        if (p.type != type || p.value_count() != 1)
+            diagnostics_.error(p.at, "option " + in_quotes(p.name) + " has type " +
+                                         std::string(name_of(p.type)) + "; expected 1 " + what);
+    };
+    const std::string option = normalized(p.name);
     constexpr std::array<std::string_view, 11> names = {"disablepixeljitter",
                                                         "disabletexturefiltering",
                                                         "disablewavelengthjitter",
@@ -225,18 +243,24 @@ void SceneBuilder::set_render_option(const Parameter& p) {
                                                         "rendercoordsys",
                                                         "seed",
                                                         "wavefront"};
-    if (p.name == "seed") {
-        if (p.type != ParameterType::integer || p.integers.size() != 1)
-            diagnostics_.error(p.at, "option 'seed' has type " + std::string(name_of(p.type)) +
-                                         "; expected 1 integer");
+    if (option == "seed") {
+        expect_one(ParameterType::integer, "integer");
         seed_ = static_cast<std::uint32_t>(p.integers[0]);
         return;
     }
     // The space that coordinates are computed in changes nothing here.
-    if (p.name == "rendercoordsys") return;
+    if (option == "rendercoordsys") {
+        expect_one(ParameterType::string, "string");
+        constexpr std::array<std::string_view, 3> systems = {"camera", "cameraworld", "world"};
+        if (std::find(systems.begin(), systems.end(), p.strings[0]) == systems.end())
+            diagnostics_.error(p.at, "option " + in_quotes(p.name) + " is " + in_quotes(p.strings[0]) +
+                                         "; expected one of camera, cameraworld, world" +
+                                         did_you_mean(p.strings[0], systems));
+        return;
+    }
     for (std::string_view name : names)
-        if (p.name == name) {
-            diagnostics_.warn_once("option " + p.name, p.at,
+        if (option == name) {
+            diagnostics_.warn_once("option " + option, p.at,
                                    "option " + in_quotes(p.name) + " is not supported; it is ignored");
             return;
         }
