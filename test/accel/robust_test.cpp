@@ -234,8 +234,7 @@ TEST(Robust, ShadowRaysReachTheirLights) {
                     if (hit.shape != 0) continue; // from within the lamp
                     SurfacePoint s = surface_point(world.scene, ray, hit, false);
                     Vec2f u = draws.uniform_2d();
-                    auto sample =
-                        sample_light(world.scene, world.tables.lights(), 0, {s.p, s.ng, s.error}, u, lambda);
+                    auto sample = sample_light(world.scene, world.tables, 0, {s.p, s.ng, s.error}, u, lambda);
                     if (!sample) continue;
                     // A partial sphere hides some of its own points, and what lies under the floor is hidden.
                     if (dot(sample->wi, s.ng) < 1e-3f) continue;

@@ -62,6 +62,16 @@ std::size_t zero_what_is_not_finite(Image& picture) {
     return count;
 }
 
+// Only then does pbrt-v4 take alpha for the value of a float texture.
+bool has_transparency(const Image& picture) {
+    const auto alpha = picture.find_channel("A");
+    if (!alpha || picture.color_channels().size() != 3) return false;
+    for (int y = 0; y < picture.height(); ++y)
+        for (int x = 0; x < picture.width(); ++x)
+            if (picture.value(x, y, *alpha) != 1) return true;
+    return false;
+}
+
 } // namespace
 
 void TextureLibrary::declare(std::string_view type, const std::string& name, TextureDeclaration declaration) {
@@ -167,7 +177,10 @@ TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meanin
     if (d.plugin == "constant") {
         node = ConstantTexture<Parameter>{input<Parameter>(r, "value", meaning, 1)};
     } else if (d.plugin == "imagemap") {
-        node = image_texture(r, d, meaning);
+        ImageTexture t = image_texture(r, d, meaning);
+        if (std::is_same_v<Parameter, FloatParameter> && has_transparency(scene_.images[t.image]))
+            t.channels = ImageChannels::alpha;
+        node = std::move(t);
     } else if (d.plugin == "scale") {
         Parameter texture = input<Parameter>(r, "tex", meaning, 1);
         node = ScaleTexture<Parameter>{std::move(texture), float_or(r, "scale", 1)};
