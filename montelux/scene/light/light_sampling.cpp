@@ -13,11 +13,12 @@ namespace montelux {
 
 namespace {
 
-// From off the surface at the reference to just before the point on the light.
+// From off the surface at the reference to just before the point on the light, also where rounding could not
+// have moved that.
 Ray shadow_ray(const ReferencePoint& from, Vec3f wi, Point3f to, Normal3f n, float error) {
     Point3f o = offset_origin(from.p, from.n, from.error, wi);
     Point3f end = offset_origin(to, n, error, -wi);
-    return {o, end - o, 1};
+    return {o, end - o, 1 - 0x1p-18f};
 }
 
 Ray shadow_ray_to_infinity(const ReferencePoint& from, Vec3f wi) {
@@ -199,18 +200,18 @@ std::optional<LightSample> sample_area_light(const Scene& scene, const SceneTabl
     } else if (const auto& disk = tables.disk(index)) {
         const Vec2f d = sample_uniform_disk_concentric(u);
         p = disk->center + d.x * disk->s + d.y * disk->t;
-        s = from_area_point(
-            light, from, p, shape.flip_normal ? -disk->n : disk->n,
-            coordinate_error(size_of(Vec3d(disk->center)) + max_component(abs(disk->s) + abs(disk->t))),
-            1 / disk->area, lambda);
+        const Vec3f reach = abs(disk->center) + abs(disk->s) + abs(disk->t);
+        s = from_area_point(light, from, p, shape.flip_normal ? -disk->n : disk->n,
+                            coordinate_error(disk->n, reach), 1 / disk->area, lambda);
     } else {
         if (const auto& sphere = tables.sphere(index))
             if (auto cone = cone_of(*sphere, from.p))
                 return sample_sphere(light, *sphere, *cone, shape.flip_normal, from, u, lambda);
         const QuadricAreaSample q = sample_area(scene.quadrics[shape.quadric], u);
         p = Vec3f(q.point.p);
-        s = from_area_point(light, from, p, Vec3f(shape.flip_normal ? -q.point.n : q.point.n),
-                            coordinate_error(size_of(q.point.p)), static_cast<float>(q.pdf), lambda);
+        const Normal3f n(shape.flip_normal ? -q.point.n : q.point.n);
+        s = from_area_point(light, from, p, n, coordinate_error(n, abs(p)), static_cast<float>(q.pdf),
+                            lambda);
     }
     if (!s || !is_cut_out(shape)) return s;
     if (constant_alpha(scene, shape).value_or(1) <= 0) {
