@@ -275,7 +275,7 @@ Index TextureLibrary::image(const std::string& file, const std::optional<std::st
     try {
         Image picture = read_image(bytes, path.string());
         if (picture.color_channels().empty())
-            throw Error(path.string(), "has neither channels R, G and B nor Y");
+            throw Error(path.string(), "has neither channels R, G and B nor Y alone");
         bool integers = picture.format() == PixelFormat::u8 || picture.format() == PixelFormat::u16;
         if (asked && integers) picture.set_encoding(*asked);
         if (std::size_t replaced = zero_what_is_not_finite(picture))
