@@ -66,9 +66,9 @@ for mistake in 'render ball.pbrt --spp none' 'integrate x* --over x=0:1'; do
     [ $code -eq $? ] || fail "$mistake: exit code $code: $(cat out)"
     told_once "$mistake, rank 0 late" $code "$(head -n 1 alone)"
 done
-# Mistakes that every rank meets, when it builds the scene; and one that a rank other than 0 meets alone.
+# Mistakes that every rank could tell of; and one that a rank other than 0 meets alone, when it builds the scene.
 ranks 3 render ball.pbrt --spp 4 --slice 5/9
-told_once "empty slice" 1 "montelux: error: slice: there are fewer"
+told_once "empty slice" 2 "montelux: error: --slice: there are fewer"
 timeout 60 mpirun --oversubscribe --bind-to none -n 3 sh -c \
     '[ "$OMPI_COMM_WORLD_RANK" != 1 ] || set -- "$@" --crop 0.5001,0.5002,0,1; exec "$@"' - \
     "$montelux" render ball.pbrt --spp 40 -o alone.exr >out 2>&1 </dev/null
