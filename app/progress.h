@@ -9,7 +9,8 @@ namespace montelux::app {
 
 class ProgressPrinter {
   public:
-    explicit ProgressPrinter(bool quiet) : line_(quiet) {}
+    // Above an error of `target`, unless that is 0, the end is not near however many samples were expected.
+    ProgressPrinter(bool quiet, double target) : line_(quiet), target_(target) {}
 
     void update(const RenderProgress& progress);
     // Ends the bar's line, if one is being drawn.
@@ -17,6 +18,7 @@ class ProgressPrinter {
 
   private:
     ProgressLine line_;
+    double target_;
 };
 
 } // namespace montelux::app

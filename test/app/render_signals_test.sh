@@ -35,6 +35,18 @@ for sampler in independent sobol; do
     done
 done
 
+# Replicates of 62500 samples: no two are finished, and the errors are unknown.
+"$montelux" render long.pbrt --sampler sobol -o none.exr >out 2>&1 &
+pid=$!
+end_later $pid
+sleep 1
+kill -TERM $pid
+wait_for $pid
+[ $code -eq 130 ] || fail "without errors: exit code $code instead of 130"
+grep -q "the errors are not known: they come from how sets of 62500 samples a pixel differ" out ||
+    fail "without errors: $(cat out)"
+"$montelux" info none.exr --json | grep -q '"relativeError": null' || fail "an unknown error in JSON is not null"
+
 # While the scene is being read there is nothing to save.
 (cat long.pbrt && yes 'AttributeBegin AttributeEnd' | head -n 3000000) >slow.pbrt
 rm -f long.exr

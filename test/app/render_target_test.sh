@@ -26,6 +26,9 @@ expect 2 "--clamp: '0' was given" render ball.pbrt --clamp 0 -o y.exr
 # A finished render goes on to more samples, and is the same as one that was never stopped.
 expect 0 "is not there yet: rendering from the start" render ball.pbrt --spp 20 --resume --checkpoint state -o a.pfm
 expect 0 "52 samples a pixel" render ball.pbrt --spp 52 --resume --checkpoint state -o a.pfm
+expect 0 "state has 52 samples a pixel already, more than the 20 asked for" render ball.pbrt --spp 20 --resume \
+    --checkpoint state -o less.pfm
+cmp -s a.pfm less.pfm || fail "a render that had more samples than asked for changed"
 expect 0 "" render ball.pbrt --spp 52 -o b.pfm
 cmp -s a.pfm b.pfm || fail "a render that was continued differs"
 expect 1 "of another render: the sampler or seed differs" render ball.pbrt --seed 9 --resume --checkpoint state -o x.pfm
