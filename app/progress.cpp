@@ -11,7 +11,8 @@ void ProgressPrinter::update(const RenderProgress& p) {
     if (p.samples_total == 0) return;
     double fraction = static_cast<double>(p.samples_done) / static_cast<double>(p.samples_total);
     bool end = p.samples_done == p.samples_total;
-    if (target_ > 0 && !(p.error && p.error->relative <= target_)) {
+    const bool open = target_ > 0 && !(p.error && p.error->relative <= target_);
+    if (open && static_cast<double>(p.samples_done) < most_samples_) {
         constexpr double almost = 0.99;
         fraction = std::min(fraction, almost);
         end = false;

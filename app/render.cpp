@@ -255,7 +255,10 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     RenderState state = initial_state(options, description, target);
     RoundExecutor* const executor = shared.begin(description, target, options);
     Renderer renderer(description, target);
-    ProgressPrinter printer(options.quiet, target.quantile > 0 ? 0 : target.error);
+    const PixelBounds& crop = description.film.crop;
+    ProgressPrinter printer(options.quiet, target.quantile > 0 ? 0 : target.error,
+                            static_cast<double>(crop.width()) * crop.height() *
+                                description.sampler.samples_per_pixel);
     RenderControl control;
     control.progress = [&](const RenderProgress& p) { printer.update(p); };
     control.cancel = &cancel_on_signals();
