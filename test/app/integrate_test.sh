@@ -38,6 +38,8 @@ for method in auto cubature; do
         --evaluations 1e5
     expect 0 "error target reached" integrate 'sin(x)/x' --over x=-1:1 --absolute-error 1e-9 --method $method
 done
+expect 3 "the integral may not exist" integrate 1/x --over x=-1:1 --absolute-error 1e-6
+expect 3 "the integral may not exist" integrate '1/(x-0.5)' --over x=0:1 --relative-error 1e-3
 value 1.892166140734366 1e-9 'sin(x)/x' --over x=-1:1 --absolute-error 1e-9
 value 4 1e-5 '1/sqrt(abs(x))' --over x=-1:1 --absolute-error 1e-6
 value 2.0943951 1e-4 'sqrt(1-x^2-y^2)' --over x,y=-1:1 --absolute-error 3e-5

@@ -294,6 +294,11 @@ TEST(Cubature, ValuesThatAreNotFiniteAreNoConvergence) {
                                                 {.absolute_error = 1e-3, .evaluations = 30'000});
         EXPECT_NE(two.stop, StopReason::error_target) << two;
     }
+    // Without a limit, too, it ends.
+    const IntegrationResult ended =
+        integrate([](double x) { return 1 / x; }, Domain::interval(-1, 1), Auto{}, {.absolute_error = 1e-6});
+    EXPECT_EQ(ended.stop, StopReason::finished) << ended;
+    EXPECT_FALSE(ended.converged());
     // A gap in a smooth function is found to be one, and a part that is not finite everywhere is left out.
     const IntegrationResult gap = integrate([](double x) { return std::sin(x) / x; }, Domain::interval(-1, 1),
                                             Cubature{}, {.absolute_error = 1e-9, .evaluations = 30'000});
