@@ -1,34 +1,51 @@
 #include "app/cluster_integrate.h"
 
 #include "app/cluster_job.h"
+#include "app/commands.h"
 #include "app/interrupt.h"
 #include <cstdio>
 #include <exception>
 
+#include "montelux/cluster/communicator.h"
 #include "montelux/mc/integrate/integrate.h"
+#include "montelux/mc/math/error.h"
 
 namespace montelux::app {
+namespace {
+
+// For there is a rank that cannot be waited for.
+[[noreturn]] void end_job_with(const std::exception& e) {
+    std::fprintf(stderr, "montelux: error: %s\n", e.what());
+    end_job(exit_failed);
+}
+
+} // namespace
+
 SharedIntegration::SharedIntegration(const IntegrationTask& task, bool alone) {
     if (alone) {
         helped_ = is_silent_rank();
         return;
     }
-    job_ = join_job();
-    if (!job_) return;
-    const int fair = job_->fair_threads();
+    Communicator* const job = join_job(patience_with_ranks);
+    if (job == nullptr) return;
+    const int fair = job->fair_threads();
     const int threads = task.options.threads > 0 ? task.options.threads : fair;
     const int components = task.formulas.count();
-    if (job_->rank() == 0) {
-        shared_ = std::make_unique<SharedIntegrand>(*job_, task.formulas, components, threads);
+    if (job->rank() == 0) {
+        try {
+            shared_ = std::make_unique<SharedIntegrand>(*job, task.formulas, components, threads,
+                                                        patience_with_ranks);
+        } catch (const Error& e) { // a rank never came
+            end_job_with(e);
+        }
         return;
     }
     helped_ = true;
     try {
-        serve_integrand(*job_, task.formulas, components, threads, &follow_on_signals(),
-                        patience_with_leader);
+        serve_integrand(*job, task.formulas, components, threads, &follow_on_signals(), patience_with_leader);
     } catch (const std::exception& e) {
         speak_up(e.what());
-        job_->abort(1);
+        end_job(exit_failed);
     }
 }
 
@@ -51,9 +68,7 @@ IntegrationResult SharedIntegration::integrate(const IntegrationTask& task, cons
             request_cancel);
     } catch (const std::exception& e) {
         if (!shared_->failed()) throw;
-        std::fprintf(stderr, "montelux: error: %s\n", e.what());
-        std::fflush(nullptr);
-        job_->abort(1);
+        end_job_with(e);
     }
     shared_.reset();
     return result;

@@ -4,7 +4,6 @@
 #include "app/integrate_options.h"
 #include <memory>
 
-#include "montelux/cluster/communicator.h"
 #include "montelux/cluster/shared_integrand.h"
 
 namespace montelux::app {
@@ -22,7 +21,6 @@ class SharedIntegration {
 
   private:
     bool helped_ = false;
-    std::unique_ptr<Communicator> job_;
     std::unique_ptr<SharedIntegrand> shared_;
 };
 

@@ -1,8 +1,13 @@
 #include "app/cluster_job.h"
 
+#include "app/commands.h"
+#include "app/interrupt.h"
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <fcntl.h>
+#include <limits>
+#include <memory>
 #include <thread>
 #include <unistd.h>
 
@@ -11,7 +16,12 @@
 namespace montelux::app {
 namespace {
 
+// Whoever sent a signal is in a hurry, and everything is written.
+constexpr double patience_when_interrupted = 2;
+
 int own_stderr = STDERR_FILENO;
+std::unique_ptr<Communicator> the_job;
+double patience_with_others = patience_with_ranks;
 
 } // namespace
 
@@ -40,10 +50,34 @@ void wait_for_the_speaker(const std::string& message) {
     speak_up(message);
 }
 
-std::unique_ptr<Communicator> join_job() {
+Communicator* join_job(double patience_seconds) {
     const auto launched = launched_as();
     if (!launched || launched->size == 1) return nullptr;
-    return std::make_unique<Communicator>();
+    the_job = std::make_unique<Communicator>();
+    patience_with_others = patience_seconds;
+    return the_job.get();
+}
+
+void leave_job(int exit_code) {
+    if (!the_job) return;
+    double patience = std::numeric_limits<double>::infinity();
+    if (the_job->rank() == 0)
+        patience = exit_code == exit_interrupted ? std::min(patience_with_others, patience_when_interrupted)
+                                                 : patience_with_others;
+    if (!the_job->leave(patience)) {
+        // Where the work went wrong, that was told, and is enough.
+        if (exit_code != exit_failed && exit_code != exit_usage)
+            std::fprintf(stderr,
+                         "montelux: warning: a rank does not come to its end, and is not waited for\n");
+        end_job(exit_code);
+    }
+    the_job.reset();
+}
+
+void end_job(int exit_code) {
+    std::fflush(nullptr);
+    finish_on_signals(); // the launcher sends one to all ranks, this one too
+    the_job->abort(exit_code);
 }
 
 } // namespace montelux::app

@@ -1,8 +1,6 @@
 // The program as one rank of an MPI job: who speaks, who leads, and how the others get the scene.
 #pragma once
 
-#include <memory>
-#include <optional>
 #include <string>
 
 namespace montelux {
@@ -13,6 +11,8 @@ namespace montelux::app {
 
 // Seconds. A leader that writes a checkpoint to a slow disk says nothing meanwhile.
 inline constexpr double patience_with_leader = 600;
+// Of the leader with the others, where no option says otherwise.
+inline constexpr double patience_with_ranks = 60;
 
 // Is this one of several processes that mpirun or srun started, and not the one that speaks, rank 0?
 bool is_silent_rank();
@@ -25,7 +25,13 @@ void speak_up(const std::string& message);
 // after all.
 void wait_for_the_speaker(const std::string& message);
 
-// The job, where there is one: empty for a program that was started alone. Throws Error.
-std::unique_ptr<Communicator> join_job();
+// The job, where there is one: null for a program that was started alone. It lasts until leave_job(). Throws
+// Error.
+Communicator* join_job(double patience_seconds);
+// The end of a rank that has said its last word. Rank 0 waits for the others for the patience that it joined
+// with, and then ends the job with its exit code: ranks that hang must not keep what is done from its end.
+void leave_job(int exit_code);
+// Ends the job at once, for there are ranks that cannot be waited for.
+[[noreturn]] void end_job(int exit_code);
 
 } // namespace montelux::app

@@ -1,10 +1,13 @@
 #include "app/cluster_render.h"
 
 #include "app/cluster_job.h"
+#include "app/commands.h"
 #include "app/interrupt.h"
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <new>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,29 +37,70 @@ int tile_size_for(const PixelBounds& crop, double threads) {
     return size;
 }
 
+constexpr const char* no_memory = "there is not enough memory";
+
+// Everything that a rank builds for the render. The renderer refers to the description.
+struct Prepared {
+    Opening opening;
+    SceneDescription description;
+    std::optional<Renderer> renderer;
+
+    Prepared(std::vector<std::uint8_t> bytes, const RenderOptions& options) {
+        ByteReader in(bytes);
+        opening = in.get<Opening>();
+        const auto target = in.get<RenderTarget>();
+        {
+            BundledFiles files(FileBundle::from_bytes(in.get_bytes()));
+            bytes = {};
+            Warnings ignored;
+            description = load_pbrt(options.scene, ignored, nullptr, &files);
+        }
+        if (description.content_hash != opening.content_hash)
+            throw Error("the scene", "this rank has read another one than rank 0");
+        apply(options, description);
+        description.sampler = opening.sampler;
+        renderer.emplace(description, target);
+    }
+};
+
+void help_with(std::vector<std::uint8_t> bytes, Communicator& job, const RenderOptions& options,
+               int threads) {
+    const CancelFlag& cancel = follow_on_signals();
+    std::unique_ptr<Prepared> prepared;
+    prepare_and_beat(job, [&] {
+        with_threads(threads, [&] { prepared = std::make_unique<Prepared>(std::move(bytes), options); });
+    });
+    prepared->renderer->serve([&](const TileRenderer& tiles) {
+        serve_tiles(tiles, prepared->description.film.crop, prepared->opening.tile_size, threads, job,
+                    &cancel, patience_with_leader);
+    });
+}
+
 } // namespace
 
 SharedRender::~SharedRender() {
     if (job_ == nullptr || told_) return;
     std::vector<std::uint8_t> nothing_to_do;
-    job_->broadcast(nothing_to_do);
+    try {
+        job_->broadcast(nothing_to_do, patience_seconds_);
+    } catch (const Error&) { // what went wrong before is told; leave_job() ends the others
+    }
 }
 
-RoundExecutor* SharedRender::begin(const SceneDescription& description, const RenderTarget& target,
-                                   const RenderOptions& options) {
+RoundExecutor* SharedRender::begin(const SceneDescription& description, const RenderTarget& target) {
     if (job_ == nullptr) return nullptr;
     CoordinatorSettings settings;
     settings.threads = threads_;
     settings.tile_size = tile_size_for(description.film.crop, static_cast<double>(threads_) * job_->size());
-    settings.patience_seconds = options.rank_timeout;
+    settings.patience_seconds = patience_seconds_;
     ByteWriter out;
     out.put(Opening{description.content_hash, description.sampler, settings.tile_size});
     out.put(target);
     out.put_bytes(files_.bundle().to_bytes());
     files_ = {};
     std::vector<std::uint8_t> bytes = out.take();
-    job_->broadcast(bytes);
     told_ = true;
+    job_->broadcast(bytes, patience_seconds_);
     coordinator_ = std::make_unique<Coordinator>(*job_, description.film.crop, settings, request_cancel);
     return coordinator_.get();
 }
@@ -83,48 +127,39 @@ void SharedRender::print_statistics() const {
 }
 
 void SharedRender::end_job_if_failed(int exit_code) const {
-    if (!coordinator_ || (!coordinator_->failed() && coordinator_->left_out().empty())) return;
+    if (!coordinator_) return;
+    if (!coordinator_->someone_hangs()) {
+        if (coordinator_->failed()) throw Error(*coordinator_->failure());
+        return;
+    }
     if (coordinator_->failed()) {
         std::fprintf(stderr, "montelux: error: %s\n", coordinator_->failure()->c_str());
-        exit_code = 1;
+        exit_code = exit_failed;
     }
-    std::fflush(nullptr);
-    job_->abort(exit_code);
+    end_job(exit_code);
 }
 
 void help_rendering(Communicator& job, const RenderOptions& options, int threads) {
+    const std::string this_rank = "rank " + std::to_string(job.rank());
     try {
         std::vector<std::uint8_t> bytes;
-        job.broadcast(bytes);
+        job.broadcast(bytes, patience_with_leader);
         if (bytes.empty()) return;
-        const CancelFlag& cancel = follow_on_signals();
-        SceneDescription description;
-        Opening opening;
-        RenderTarget target;
-        {
-            ByteReader in(bytes);
-            opening = in.get<Opening>();
-            target = in.get<RenderTarget>();
-            BundledFiles files(FileBundle::from_bytes(in.get_bytes()));
-            bytes = {};
-            Warnings ignored;
-            description = load_pbrt(options.scene, ignored, nullptr, &files);
+        try {
+            help_with(std::move(bytes), job, options, threads);
+        } catch (const LeaderIsSilent&) {
+            throw;
+        } catch (const std::bad_alloc&) {
+            serve_failure(no_memory, job, patience_with_leader);
+        } catch (const std::exception& e) {
+            serve_failure(e.what(), job, patience_with_leader);
         }
-        if (description.content_hash != opening.content_hash)
-            throw Error("rank " + std::to_string(job.rank()), "has read another scene than rank 0");
-        apply(options, description);
-        description.sampler = opening.sampler;
-        const Renderer renderer(description, target);
-        renderer.serve([&](const TileRenderer& tiles) {
-            serve_tiles(tiles, description.film.crop, opening.tile_size, threads, job, &cancel,
-                        patience_with_leader);
-        });
     } catch (const std::bad_alloc&) {
-        speak_up("rank " + std::to_string(job.rank()) + ": there is not enough memory");
-        job.abort(1);
+        speak_up(this_rank + ": " + no_memory);
+        end_job(exit_failed);
     } catch (const std::exception& e) {
         speak_up(e.what());
-        job.abort(1);
+        end_job(exit_failed);
     }
 }
 

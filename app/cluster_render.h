@@ -14,7 +14,8 @@ namespace montelux::app {
 class SharedRender {
   public:
     // `job` may be null: then everything happens in this process.
-    SharedRender(Communicator* job, int threads) : job_(job), threads_(threads) {}
+    SharedRender(Communicator* job, int threads, double patience_seconds)
+        : job_(job), threads_(threads), patience_seconds_(patience_seconds) {}
     ~SharedRender();
     SharedRender(const SharedRender&) = delete;
     SharedRender& operator=(const SharedRender&) = delete;
@@ -23,18 +24,18 @@ class SharedRender {
     FileSource* files() { return job_ != nullptr ? &files_ : nullptr; }
     // Sends scene and settings to the others, which begin to prepare them, and returns who leads; null where
     // the process is alone.
-    RoundExecutor* begin(const SceneDescription& description, const RenderTarget& target,
-                         const RenderOptions& options);
+    RoundExecutor* begin(const SceneDescription& description, const RenderTarget& target);
     // The render is over; files may be written yet. Prints what the ranks missed.
     void end();
     void print_statistics() const;
-    // Does nothing where all ranks are well. Otherwise prints why the render failed, and ends the job: ranks
-    // that do not answer cannot be waited for.
+    // Does nothing where all ranks are well. Throws Error for a rank that failed; where ranks do not answer,
+    // so that they cannot be waited for, prints what there is to tell and ends the job.
     void end_job_if_failed(int exit_code) const;
 
   private:
     Communicator* job_;
     int threads_;
+    double patience_seconds_; // with ranks that say nothing
     RecordedFiles files_;
     bool told_ = false; // the others know whether there is something to do
     std::unique_ptr<Coordinator> coordinator_;

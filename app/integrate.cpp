@@ -16,6 +16,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+
+#include "montelux/mc/io/generation_file.h"
 #ifdef MONTELUX_WITH_RENDER
 #include "app/cluster_integrate.h"
 #endif
@@ -35,10 +37,9 @@ void check_files(const IntegrateOptions& o) {
     check_output_names({o.plot, o.points, o.checkpoint}, {});
     for (const std::string& path : {o.plot, o.points, o.checkpoint})
         if (!path.empty()) check_output(path);
-    std::error_code ignored;
-    if (!o.checkpoint.empty() && !o.resume && std::filesystem::exists(o.checkpoint, ignored))
-        throw Error(o.checkpoint,
-                    "exists already; add --resume to go on from it, or remove it to begin anew");
+    if (!o.checkpoint.empty() && !o.resume && generation_exists(o.checkpoint))
+        throw UsageError(o.checkpoint,
+                         "exists already; add --resume to go on from it, or remove it to begin anew");
 }
 
 void show_progress(ProgressLine& line, const IntegrationTask& task, const IntegrationResult& r) {

@@ -37,7 +37,11 @@ extern "C" void on_signal(int) {
         cancel_flag.request();
         if (first == 0 || now == Phase::following || at - first < same_wish_milliseconds) return;
     }
-    constexpr std::string_view message = "\nmontelux: interrupted, nothing was written\n";
+    // There may be checkpoints, which this leaves alone.
+    constexpr std::string_view early = "\nmontelux: interrupted, nothing was written\n",
+                               hasty = "\nmontelux: ended at once by another signal: no result was written; "
+                                       "checkpoints are as they were last written\n";
+    const std::string_view message = now == Phase::cancellable ? hasty : early;
     if (::write(STDERR_FILENO, message.data(), message.size()) < 0) ::_exit(exit_interrupted);
     ::_exit(exit_interrupted);
 }

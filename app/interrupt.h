@@ -7,8 +7,9 @@ namespace montelux::app {
 
 // While nothing is worth saving: a signal ends the program at once with exit_interrupted.
 void end_on_signals();
-// From now on the first signal sets the flag that is returned, and one that comes more than a second later
-// ends the program at once: mpirun, a terminal and a shell may each pass on what was meant as one.
+// From now on the first signal sets the flag that is returned, and one that comes a second later or more ends
+// the program at once with exit_interrupted: mpirun, a terminal and a shell may each pass on what was meant
+// as one.
 const CancelFlag& cancel_on_signals();
 // From now on all signals set the flag that is returned and do nothing else: another process decides.
 const CancelFlag& follow_on_signals();

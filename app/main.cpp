@@ -98,9 +98,7 @@ int report_usage(const CLI::App& app, const CLI::ParseError& e, int argc, char**
     return give_up(message + "\nRun '" + line + " --help' for what it understands.", exit_usage);
 }
 
-} // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
     occupy_standard_streams();
 #ifdef MONTELUX_WITH_RENDER
     silence_other_ranks();
@@ -155,5 +153,15 @@ int main(int argc, char** argv) {
     } catch (const std::exception& e) {
         return give_up(e.what(), exit_failed);
     }
+    return exit_code;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const int exit_code = run(argc, argv);
+#ifdef MONTELUX_WITH_RENDER
+    leave_job(exit_code);
+#endif
     return exit_code;
 }

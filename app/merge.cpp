@@ -1,6 +1,7 @@
 // montelux merge: slices of one render, joined.
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/picture_notices.h"
 #include "app/progress_line.h"
 #include "app/usage_error.h"
 #include <CLI/CLI.hpp>
@@ -50,11 +51,13 @@ void run(const MergeSettings& settings) {
                      "montelux: warning: without slice%s %s: the picture is right, with fewer samples\n",
                      merged.missing.size() > 1 ? "s" : "", list.c_str());
     }
+    print_clamped(merged.clamped_samples, merged.clamped_luminance, merged.mean_luminance);
     for (const std::string& output : settings.outputs)
         std::printf("%s: %d x %d pixels of %zu slice%s, %.7g samples a pixel, relative error %s\n",
                     output.c_str(), merged.image.width(), merged.image.height(), settings.inputs.size(),
                     settings.inputs.size() > 1 ? "s" : "", merged.mean_samples,
                     percent_text(merged.relative_error).c_str());
+    print_outliers(merged.outliers);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "app/denoised_output.h"
 #include "app/interrupt.h"
 #include "app/output_files.h"
+#include "app/picture_notices.h"
 #include "app/progress.h"
 #include "app/render_options.h"
 #include "app/sample_record_text.h"
@@ -27,6 +28,7 @@
 #include "montelux/render/checkpoint.h"
 #include "montelux/render/render_header.h"
 #include "montelux/render/renderer.h"
+#include "montelux/render/rounds.h"
 #include "montelux/render/sample_order.h"
 
 namespace montelux::app {
@@ -80,7 +82,7 @@ void check_checkpoint(const RenderOptions& options, const std::vector<std::strin
 void check_memory(const FilmSettings& film, bool with_checkpoints) {
     auto pages = static_cast<double>(sysconf(_SC_PHYS_PAGES));
     double there = pages * static_cast<double>(sysconf(_SC_PAGESIZE));
-    constexpr double layers = 22, copies = 2; // the picture, and its encoding
+    constexpr double layers = 26, copies = 2; // the picture, and its encoding
     double pixels = static_cast<double>(film.crop.width()) * film.crop.height();
     double needed = pixels * ((with_checkpoints ? 2 : 1) * (sizeof(Pixel) + sizeof(std::uint32_t)) +
                               layers * copies * sizeof(float));
@@ -116,17 +118,6 @@ void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed) {
         static_cast<unsigned long long>(bad.first->sample));
 }
 
-void print_clamped(const RenderReport& report, const Film& film, const FilmError& error) {
-    if (report.clamped_samples == 0) return;
-    const double lost = clamped_luminance(film);
-    std::fprintf(
-        stderr,
-        "montelux: warning: %llu samples were clamped, which took %s of the light away; the errors do not "
-        "know of that\n",
-        static_cast<unsigned long long>(report.clamped_samples),
-        percent_text(lost / (lost + error.mean_luminance)).c_str());
-}
-
 // A render that was stopped may be without errors, which nothing in its picture would explain.
 void print_missing_error(const FilmError& error, const SamplerSettings& sampler, const RenderTarget& target) {
     if (target.slice.count > 1) return; // the joined slices will have them
@@ -136,25 +127,6 @@ void print_missing_error(const FilmError& error, const SamplerSettings& sampler,
                  "montelux: warning: the errors are not known: they come from how sets of %llu samples a "
                  "pixel differ, and no two were finished; with --time or --target-error the sets are short\n",
                  static_cast<unsigned long long>(points));
-}
-
-// Says so where the error sits in few pixels.
-void print_outliers(const Film& film) {
-    constexpr double few = 0.01;
-    const OutlierReport o = outliers_of(film);
-    if (o.share_of_half > 0 && o.share_of_half < few)
-        std::printf("half of the squared error sits in %llu pixels (%s of all)\n",
-                    static_cast<unsigned long long>(o.pixels_of_half), percent_text(o.share_of_half).c_str());
-    if (o.heavy_tailed > 0)
-        std::printf(
-            "%llu pixels owe most of their error to one bright sample and carry %s of the squared error: "
-            "their errors are rough (layers outlier and doubt)\n",
-            static_cast<unsigned long long>(o.heavy_tailed), percent_text(o.heavy_error_share).c_str());
-    if (static_cast<double>(o.outshone) > few * static_cast<double>(film.pixels().size()))
-        std::printf(
-            "%llu pixels lie beside pixels of far larger variance: where that is no edge, they have missed "
-            "bright paths so far and are too sure (layer doubt)\n",
-            static_cast<unsigned long long>(o.outshone));
 }
 
 // What ended the render, where that is not the number of samples.
@@ -190,6 +162,14 @@ void print_statistics(const RenderReport& report, double load_seconds, double bu
     std::printf("peak memory        %.1f MiB\n", static_cast<double>(usage.ru_maxrss) / 1024);
 }
 
+void check_slice_option(const SceneDescription& description, const RenderTarget& target) {
+    try {
+        check_slice(description, target);
+    } catch (const Error& e) {
+        throw UsageError("--slice", e.what());
+    }
+}
+
 int replay(const RenderOptions& options, const SceneDescription& description, const RenderTarget& target) {
     const SampleAddress& s = *options.debug_sample;
     try {
@@ -200,6 +180,7 @@ int replay(const RenderOptions& options, const SceneDescription& description, co
     if (!options.quiet && (!options.outputs.empty() || options.stats))
         std::fprintf(stderr, "montelux: warning: --debug-sample renders no picture: nothing is written, and "
                              "there are no statistics\n");
+    check_slice_option(description, target);
     const Renderer renderer(description, target);
     std::fputs(sample_record_text(renderer.replay(s.x, s.y, s.index), description).c_str(), stdout);
     return exit_done;
@@ -253,7 +234,8 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     if (options.denoise) denoiser.emplace(Denoiser::load(options.threads));
 
     RenderState state = initial_state(options, description, target);
-    RoundExecutor* const executor = shared.begin(description, target, options);
+    check_slice_option(description, target);
+    RoundExecutor* const executor = shared.begin(description, target);
     Renderer renderer(description, target);
     const PixelBounds& crop = description.film.crop;
     ProgressPrinter printer(options.quiet, target.quantile > 0 ? 0 : target.error,
@@ -283,7 +265,7 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     const RenderReport& report = state.report;
 
     const FilmError error = state.film.error();
-    Image image = state.film.develop();
+    Image image = state.film.develop(target.slice.count > 1);
     add_render_header(image, std::filesystem::path(options.scene).filename().string(), description, renderer,
                       report, error, clamped_luminance(state.film));
     finish_on_signals();
@@ -292,14 +274,15 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     for (const std::string& output : outputs) files.write(output, [&] { write_picture(output, image); });
     if (!options.quiet) {
         print_bad_samples(report.bad, description.sampler.seed);
-        print_clamped(report, state.film, error);
+        print_clamped(static_cast<double>(report.clamped_samples), clamped_luminance(state.film),
+                      error.mean_luminance);
         for (const std::string& output : files.written())
             std::printf("%s: %d x %d pixels, %.7g samples a pixel, relative error %s, %s%s%s\n",
                         output.c_str(), image.width(), image.height(), error.mean_samples,
                         percent_text(error.relative).c_str(), duration_text(report.seconds).c_str(),
                         ending_text(report, target).c_str(), denoised.note.c_str());
         print_missing_error(error, renderer.sampler(), target);
-        print_outliers(state.film);
+        print_outliers(outliers_of(state.film));
         if (options.stats) {
             print_statistics(report, load_seconds, renderer.build_seconds());
             for (const EnvironmentSampler& map : renderer.tables().lights().environments())
@@ -322,15 +305,15 @@ int run(const RenderOptions& options) {
     end_on_signals();
     // A closed pipe behind the messages must not end the render.
     std::signal(SIGPIPE, SIG_IGN);
-    const std::unique_ptr<Communicator> job = join_job();
-    const int fair_threads = job ? job->fair_threads() : 0;
+    Communicator* const job = join_job(options.rank_timeout);
+    const int fair_threads = job != nullptr ? job->fair_threads() : 0;
     const int threads = options.threads > 0 ? options.threads : fair_threads;
     return with_threads(threads, [&] {
-        if (job && job->rank() != 0) {
+        if (job != nullptr && job->rank() != 0) {
             help_rendering(*job, options, threads);
             return exit_done;
         }
-        SharedRender shared(job.get(), threads);
+        SharedRender shared(job, threads, options.rank_timeout);
         return load_and_render(options, shared);
     });
 }

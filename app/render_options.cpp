@@ -26,6 +26,13 @@ std::string names(const Table& table) {
     return list;
 }
 
+// Ranks that are well may say nothing for a second.
+double parse_rank_timeout(const std::string& option, const std::string& s) {
+    const double seconds = parse_duration(option, s);
+    if (!(seconds >= 2)) refuse(option, s, "a time of at least 2s is expected, for example 10s or 2m");
+    return seconds;
+}
+
 bool parse_on_off(const std::string& option, const std::string& s) {
     if (s != "on" && s != "off") refuse(option, s, "on or off is expected");
     return s == "on";
@@ -155,7 +162,7 @@ void declare(CLI::App& c, RenderOptions& o) {
         c, "--threads", o.threads, 0, most_threads,
         "Threads, also more than processors; 0: one a processor. The picture does not depend on it");
     add_parsed(
-        c, "--rank-timeout", "TIME", o.rank_timeout, parse_time_limit,
+        c, "--rank-timeout", "TIME", o.rank_timeout, parse_rank_timeout,
         "Under mpirun: a rank that says nothing for so long is given up, and the render ends with what "
         "the others did. Default: 60s");
     add_parsed(c, "--resolution", "WxH", o.resolution, parse_resolution,
@@ -190,8 +197,8 @@ void declare(CLI::App& c, RenderOptions& o) {
              "\n"
              "'mpirun -n 8 montelux render ...' shares the render among machines; the picture is the same.\n"
              "An EXR file holds every layer: mean, standard error, samples, albedo, normal, depth.\n"
-             "SIGINT (Ctrl-C) or SIGTERM ends the render early and saves what there is; a second one does "
-             "not save.");
+             "SIGINT (Ctrl-C) or SIGTERM ends the render early and saves what there is; another one, a "
+             "second later or more, ends it at once: the picture is not saved.");
 }
 
 void apply(const RenderOptions& o, SceneDescription& d) {

@@ -99,7 +99,7 @@ Figures render(SceneDescription d, const Reference& reference, const std::string
     std::size_t i = 0, doubtful = 0;
     for (int y = 0; y < picture.height(); ++y)
         for (int x = 0; x < picture.width(); ++x, ++i) {
-            const bool doubt = doubts[i] != Doubt::none;
+            const bool doubt = speaks_against(doubts[i]);
             const auto units = static_cast<double>(film.pixels()[i].units().count());
             double luminance = 0, difference = 0, error = 0;
             for (int c = 0; c < 3; ++c) {
@@ -221,7 +221,7 @@ void print_own_coverage(const Options& o, const std::string& name, SceneDescript
                         const double n = static_cast<double>(u.count());
                         renders.push_back({static_cast<float>(u.mean(c)),
                                            static_cast<float>(std::sqrt(u.variance(c) / n)),
-                                           static_cast<float>(n), doubts[i] != Doubt::none});
+                                           static_cast<float>(n), speaks_against(doubts[i])});
                         truth[3 * i + c].add(u.mean(c));
                     }
             }

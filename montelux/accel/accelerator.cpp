@@ -8,6 +8,7 @@
 
 #include "montelux/accel/alpha.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/scene/shape/alpha.h"
 
 namespace montelux {
 
@@ -208,7 +209,7 @@ Accelerator::Accelerator(const Scene& scene, const SceneTables& tables) : impl_(
         a.data[i].scene = &scene;
         a.data[i].tables = &tables;
         a.data[i].shape = static_cast<Index>(i);
-        a.data[i].cut_out = !shape.alpha.is_constant() || shape.alpha.value < 1;
+        a.data[i].cut_out = is_cut_out(shape);
         if (shape.quadric != no_index) a.data[i].sphere = whole_sphere(scene.quadrics[shape.quadric]);
     }
 

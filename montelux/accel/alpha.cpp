@@ -4,16 +4,13 @@
 #include <cstdint>
 
 #include "montelux/mc/random/hash.h"
-#include "montelux/scene/shape/surface_point.h"
-#include "montelux/scene/texture/evaluate.h"
+#include "montelux/scene/shape/alpha.h"
 
 namespace montelux {
 
 bool is_opaque(const Scene& scene, const SceneTables& tables, const Ray& ray, const Hit& hit) {
     // Instances: the ray is already in the space of the object, and so is the shape.
-    SurfacePoint s = surface_point(scene, ray, hit, true);
-    TextureContext context{.p = s.p, .n = s.ns, .uv = s.uv, .dpdx = {}, .dpdy = {}, .duvdx = {}, .duvdy = {}};
-    float alpha = evaluate(scene, tables, scene.shapes[hit.shape].alpha, context);
+    const float alpha = alpha_at(scene, tables, ray, hit);
     if (alpha >= 1) return true;
     if (!(alpha > 0)) return false;
     // Each surface along the ray decides for itself; a quadric may be hit twice.

@@ -1,6 +1,7 @@
 #include "montelux/cluster/communicator.h"
 
 #include <charconv>
+#include <cstdio>
 #include <cstdlib>
 #include <string_view>
 
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
+#include <limits>
 #include <list>
 #include <mpi.h>
 #include <sched.h>
@@ -51,23 +53,31 @@ namespace {
 
 constexpr std::chrono::microseconds shortest_nap{50}, longest_nap{5000};
 // What MPI counts is an int.
-constexpr std::size_t largest_piece = std::size_t{256} << 20;
+constexpr std::size_t largest_message = std::size_t{256} << 20;
+// Of what is broadcast: on a slow network too, a piece is soon taken by ranks that are well.
+constexpr std::size_t broadcast_piece = std::size_t{16} << 20;
+constexpr double without_limit = std::numeric_limits<double>::infinity();
 
-// Waits without the polling that would take a processor away from ranks beside this one.
-void wait_for(MPI_Request& request) {
-    int done = 0;
+// Waits without the polling that would take a processor away from ranks beside this one; calls meanwhile()
+// between. False: it was not done in this time.
+template <typename Done, typename Meanwhile>
+bool wait_until(const Done& done, double patience_seconds, const Meanwhile& meanwhile) {
+    const auto begin = std::chrono::steady_clock::now();
     std::chrono::microseconds nap = shortest_nap;
-    for (MPI_Test(&request, &done, MPI_STATUS_IGNORE); done == 0;
-         MPI_Test(&request, &done, MPI_STATUS_IGNORE)) {
+    while (!done()) {
+        meanwhile();
+        const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - begin;
+        if (waited.count() > patience_seconds) return false;
         std::this_thread::sleep_for(nap);
         nap = std::min(2 * nap, longest_nap);
     }
+    return true;
 }
 
-void broadcast_piece(void* data, std::size_t size, MPI_Comm world) {
-    MPI_Request request;
-    MPI_Ibcast(data, static_cast<int>(size), MPI_BYTE, 0, world, &request);
-    wait_for(request);
+bool is_done(MPI_Request& request) {
+    int done = 0;
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    return done != 0;
 }
 
 } // namespace
@@ -90,13 +100,18 @@ struct Communicator::State {
     int rank = 0, size = 1;
     std::list<Outgoing> outgoing; // MPI reads the bytes until the request is done
     std::deque<Message> to_itself;
+    std::vector<std::uint8_t> stuck; // a broadcast that MPI may still read
+    std::uint64_t broadcast_size = 0;
+    bool broken = false, left = false;
 
     void forget_what_was_sent() {
-        std::erase_if(outgoing, [](Outgoing& o) {
-            int done = 0;
-            MPI_Test(&o.request, &done, MPI_STATUS_IGNORE);
-            return done != 0;
-        });
+        std::erase_if(outgoing, [](Outgoing& o) { return is_done(o.request); });
+    }
+    bool broadcast_some(void* data, std::size_t bytes, double patience_seconds) const {
+        MPI_Request request;
+        MPI_Ibcast(data, static_cast<int>(bytes), MPI_BYTE, 0, world, &request);
+        return wait_until([&] { return is_done(request); }, rank == 0 ? patience_seconds : without_limit,
+                          [] {});
     }
 };
 
@@ -116,15 +131,32 @@ Communicator::Communicator() : state_(std::make_unique<State>()) {
 }
 
 Communicator::~Communicator() {
-    while (!state_->outgoing.empty()) {
+    if (!state_->left) leave(without_limit);
+}
+
+bool Communicator::leave(double patience_seconds) {
+    state_->left = true;
+    if (state_->broken) return false;
+    // Long messages are not sent before somebody takes them, and this rank may have stopped listening.
+    const auto listen = [this] {
+        while (receive()) {
+        }
+    };
+    const auto all_sent = [this] {
         state_->forget_what_was_sent();
-        std::this_thread::sleep_for(shortest_nap);
-    }
+        return state_->outgoing.empty();
+    };
     MPI_Request request;
-    MPI_Ibarrier(state_->world, &request);
-    wait_for(request);
+    bool waiting = false;
+    const auto all_here = [&] {
+        if (!waiting && !all_sent()) return false;
+        if (!std::exchange(waiting, true)) MPI_Ibarrier(state_->world, &request);
+        return is_done(request);
+    };
+    if (!wait_until(all_here, patience_seconds, listen)) return false;
     MPI_Comm_free(&state_->world);
     MPI_Finalize();
+    return true;
 }
 
 int Communicator::rank() const { return state_->rank; }
@@ -137,7 +169,7 @@ void Communicator::send(int to, int tag, std::vector<std::uint8_t> bytes) {
     }
     state_->forget_what_was_sent();
     auto& o = state_->outgoing.emplace_back(State::Outgoing{std::move(bytes), MPI_REQUEST_NULL});
-    if (o.bytes.size() > largest_piece) throw Error("MPI", "a message is too long");
+    if (o.bytes.size() > largest_message) throw Error("MPI", "a message is too long");
     MPI_Isend(o.bytes.data(), static_cast<int>(o.bytes.size()), MPI_BYTE, to, tag, state_->world, &o.request);
 }
 
@@ -161,12 +193,22 @@ std::optional<Message> Communicator::receive() {
     return message;
 }
 
-void Communicator::broadcast(std::vector<std::uint8_t>& bytes) {
-    std::uint64_t size = bytes.size();
-    broadcast_piece(&size, sizeof size, state_->world);
-    bytes.resize(size);
-    for (std::size_t at = 0; at < bytes.size(); at += largest_piece)
-        broadcast_piece(bytes.data() + at, std::min(largest_piece, bytes.size() - at), state_->world);
+void Communicator::broadcast(std::vector<std::uint8_t>& bytes, double patience_seconds) {
+    State& s = *state_;
+    s.broadcast_size = bytes.size();
+    bool taken = s.broadcast_some(&s.broadcast_size, sizeof s.broadcast_size, patience_seconds);
+    bytes.resize(s.broadcast_size);
+    for (std::size_t at = 0; at < bytes.size() && taken; at += broadcast_piece)
+        taken = s.broadcast_some(bytes.data() + at, std::min(broadcast_piece, bytes.size() - at),
+                                 patience_seconds);
+    if (taken) return;
+    s.broken = true;
+    s.stuck = std::move(bytes);
+    char text[120];
+    std::snprintf(text, sizeof text,
+                  "a rank has taken nothing of what was sent to all for %.0f s and is given up",
+                  patience_seconds);
+    throw Error("MPI", text);
 }
 
 int Communicator::fair_threads() {
@@ -206,7 +248,8 @@ int Communicator::rank() const { return 0; }
 int Communicator::size() const { return 1; }
 void Communicator::send(int, int, std::vector<std::uint8_t>) {}
 std::optional<Message> Communicator::receive() { return std::nullopt; }
-void Communicator::broadcast(std::vector<std::uint8_t>&) {}
+void Communicator::broadcast(std::vector<std::uint8_t>&, double) {}
+bool Communicator::leave(double) { return true; }
 int Communicator::fair_threads() { return 0; }
 void Communicator::abort(int exit_code) { std::_Exit(exit_code); }
 

@@ -101,7 +101,9 @@ void Coordinator::begin_round() {
 void Coordinator::run(const TileRenderer& renderer, RenderState& state, const RoundWatch& watch) {
     state_ = &state;
     watch_ = &watch;
-    resumed_ = Clock::now();
+    // Nobody is silent whom the leader did not listen to: between rounds it writes checkpoints.
+    const Clock::time_point now = Clock::now();
+    for (Rank& r : ranks_) r.last_heard = worker_ ? r.last_heard + (now - paused_) : now;
     if (!worker_) worker_ = std::make_unique<TileWorker>(renderer, bounds_, settings_.threads, mailbox_);
     begin_round();
     // Polling more seldom while nothing happens leaves the processor to those that render.
@@ -116,6 +118,7 @@ void Coordinator::run(const TileRenderer& renderer, RenderState& state, const Ro
         if (!heard) worker_->wait(pause);
     }
     gather();
+    paused_ = Clock::now();
 }
 
 void Coordinator::deal() {
@@ -133,7 +136,8 @@ void Coordinator::deal() {
             t.wanted_by = r;
             ByteWriter out;
             out.put(static_cast<std::uint32_t>(*pick));
-            send(t.holder, protocol::release, out.take());
+            // It forgets the tile, also where the round ends before the tile gets to the rank that wants it.
+            send(std::exchange(t.holder, TileSchedule::nobody), protocol::release, out.take());
         }
         if (!message.empty()) send(r, protocol::assign, std::move(message));
     }
@@ -211,6 +215,8 @@ void Coordinator::handle(const Message& message) {
     case protocol::wish:
         if (on_wish_) on_wish_();
         return;
+    case protocol::failed:
+        return give_up(message.source, ": " + in.get_text());
     case protocol::beat:
         return;
     default:
@@ -286,16 +292,20 @@ void Coordinator::check_silence() {
     const Clock::time_point now = Clock::now();
     for (int r = 0; r < mailbox_.size(); ++r) {
         Rank& rank = ranks_[index(r)];
-        if (r == mailbox_.rank() || rank.threads == 0 || rank.lost) continue;
-        const double silent = seconds_between(std::max(rank.last_heard, resumed_), now);
+        if (r == mailbox_.rank() || rank.lost) continue;
+        const double silent = seconds_between(rank.last_heard, now);
         if (silent <= settings_.patience_seconds) continue;
-        rank.lost = true;
-        rank.gathering = false;
-        char text[160];
-        std::snprintf(text, sizeof text,
-                      "has said nothing for %.0f s and is given up; what the others did is saved", silent);
-        if (!failure_) failure_ = "rank " + std::to_string(r) + " " + text;
+        someone_is_silent_ = true;
+        char text[80];
+        std::snprintf(text, sizeof text, " has said nothing for %.0f s and is given up", silent);
+        give_up(r, text);
     }
+}
+
+void Coordinator::give_up(int rank, const std::string& why) {
+    ranks_[index(rank)].lost = true;
+    ranks_[index(rank)].gathering = false;
+    if (!failure_) failure_ = "rank " + std::to_string(rank) + why + "; what the others did is saved";
 }
 
 void Coordinator::tell() {

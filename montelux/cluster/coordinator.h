@@ -41,6 +41,8 @@ class Coordinator final : public RoundExecutor {
     const std::optional<std::string>& failure() const { return failure_; }
     // Ranks whose work since the last gathering is missing, because they did not answer in time.
     const std::vector<int>& left_out() const { return left_out_; }
+    // Is there a rank that cannot be waited for?
+    bool someone_hangs() const { return someone_is_silent_ || !left_out_.empty(); }
     // Tells the workers that the render is over. The renderer of run() is not needed any more.
     void end();
 
@@ -80,6 +82,7 @@ class Coordinator final : public RoundExecutor {
     void take_tiles(const Message& message);
     void gather();
     void check_silence();
+    void give_up(int rank, const std::string& why);
     void send(int rank, protocol::Tag tag, std::vector<std::uint8_t> bytes);
     void tell();
     double work_of(int tile, std::uint64_t samples) const;
@@ -96,7 +99,7 @@ class Coordinator final : public RoundExecutor {
     Traffic traffic_;
     std::optional<std::string> failure_;
     std::vector<int> left_out_;
-    bool ended_ = false;
+    bool someone_is_silent_ = false, ended_ = false;
 
     // Of the present round.
     RenderState* state_ = nullptr;
@@ -106,7 +109,7 @@ class Coordinator final : public RoundExecutor {
     bool something_done_ = false;
     double known_seconds_ = 0; // sum over tiles whose cost is known, and their number
     int known_costs_ = 0;
-    Clock::time_point last_told_, resumed_; // nobody was listened to before that
+    Clock::time_point last_told_, paused_; // nobody was listened to since that
 };
 
 } // namespace montelux

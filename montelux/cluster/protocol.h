@@ -17,7 +17,8 @@ enum Tag : int {
     done,     // TaskReports, one after another
     tiles,    // TilePixels, one after another
     gathered, // after the last of the tiles that `gather` asked for
-    beat,     // nothing but that the worker is alive
+    beat,     // nothing but that the worker is alive, also before its hello
+    failed,   // why the worker cannot go on; it does nothing more
     wish,     // somebody asked this rank to end: cancel the render
 };
 

@@ -1,6 +1,8 @@
 #include "montelux/cluster/tile_worker.h"
 
 #include <cmath>
+#include <exception>
+#include <future>
 #include <string>
 #include <utility>
 
@@ -15,6 +17,17 @@ using Clock = std::chrono::steady_clock;
 // Of pixels in one message: memory at both ends stays small.
 constexpr std::size_t message_bytes = std::size_t{8} << 20;
 constexpr std::chrono::seconds beat_interval{1};
+// Polling more seldom while nothing happens leaves the processor to those that render.
+constexpr std::chrono::microseconds shortest_poll{50}, longest_poll{1000};
+// A reason that no reader would finish; short messages need nobody who waits for them.
+constexpr std::size_t longest_reason = 1000;
+
+// Throws when the leader has said nothing since then.
+void check_leader(const Mailbox& mailbox, Clock::time_point last_heard, double patience_seconds) {
+    if (std::chrono::duration<double>(Clock::now() - last_heard).count() > patience_seconds)
+        throw LeaderIsSilent("rank " + std::to_string(mailbox.rank()),
+                             "rank 0, which leads the render, has been silent for too long");
+}
 
 } // namespace
 
@@ -41,8 +54,7 @@ TileWorker::~TileWorker() {
 
 TileWorker::Tile& TileWorker::known(std::uint32_t tile) {
     if (tile >= tiles_.size() || !tiles_[tile])
-        throw Error("rank " + std::to_string(mailbox_.rank()),
-                    "was asked for tile " + std::to_string(tile) + ", which it does not hold");
+        throw Error("tile " + std::to_string(tile), "it was asked for, and is not here");
     return *tiles_[tile];
 }
 
@@ -113,8 +125,7 @@ void TileWorker::handle(const Message& message) {
         stop_.request();
         return;
     default:
-        throw Error("rank " + std::to_string(mailbox_.rank()),
-                    "got a message that it does not know: " + std::to_string(message.tag));
+        throw Error("a message came that is not known: " + std::to_string(message.tag));
     }
 }
 
@@ -207,9 +218,7 @@ void serve_tiles(const TileRenderer& renderer, const PixelBounds& crop, int tile
     TileWorker worker(renderer, tiles_of(crop, tile_size), threads, mailbox);
     bool wish_told = false;
     Clock::time_point last_heard = Clock::now();
-    // Polling more seldom while nothing happens leaves the processor to those that render.
-    constexpr std::chrono::microseconds shortest{50}, longest{1000};
-    std::chrono::microseconds pause = shortest;
+    std::chrono::microseconds pause = shortest_poll;
     while (!worker.ended()) {
         bool heard = false;
         while (auto message = mailbox.receive()) {
@@ -222,11 +231,40 @@ void serve_tiles(const TileRenderer& renderer, const PixelBounds& crop, int tile
             mailbox.send(leading_rank, protocol::wish, {});
             wish_told = true;
         }
-        if (std::chrono::duration<double>(Clock::now() - last_heard).count() > patience_seconds)
-            throw Error("rank " + std::to_string(mailbox.rank()),
-                        "rank 0, which leads the render, has been silent for too long");
-        pause = heard ? shortest : std::min(2 * pause, longest);
+        check_leader(mailbox, last_heard, patience_seconds);
+        pause = heard ? shortest_poll : std::min(2 * pause, longest_poll);
         worker.wait(pause);
+    }
+}
+
+void prepare_and_beat(Mailbox& mailbox, const std::function<void()>& prepare) {
+    std::promise<void> promise;
+    std::future<void> prepared = promise.get_future();
+    std::thread thread([&] {
+        try {
+            prepare();
+            promise.set_value();
+        } catch (...) {
+            promise.set_exception(std::current_exception());
+        }
+    });
+    while (prepared.wait_for(beat_interval) != std::future_status::ready)
+        mailbox.send(leading_rank, protocol::beat, {});
+    thread.join();
+    prepared.get();
+}
+
+void serve_failure(const std::string& why, Mailbox& mailbox, double patience_seconds) {
+    ByteWriter out;
+    out.put_text(why.substr(0, longest_reason));
+    mailbox.send(leading_rank, protocol::failed, out.take());
+    for (Clock::time_point last_heard = Clock::now();;) {
+        while (auto message = mailbox.receive()) {
+            if (message->tag == protocol::end) return;
+            last_heard = Clock::now();
+        }
+        check_leader(mailbox, last_heard, patience_seconds);
+        std::this_thread::sleep_for(longest_poll);
     }
 }
 

@@ -5,13 +5,16 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "montelux/cluster/mailbox.h"
 #include "montelux/cluster/protocol.h"
+#include "montelux/mc/math/error.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/render/tile_renderer.h"
 
@@ -70,9 +73,22 @@ class TileWorker {
     std::vector<std::thread> threads_;
 };
 
-// Of a rank that does not lead: serves until the leader ends the render. `cancel`, where it is requested
-// here, is passed on to the leader. Throws Error when the leader says nothing for `patience`.
+// The leader has said nothing for too long.
+struct LeaderIsSilent : Error {
+    using Error::Error;
+};
+
+// What ranks that do not lead do, one after another.
+// Calls prepare() in a thread of its own, and tells the leader meanwhile that this rank is alive: a large
+// scene may take longer to build than the leader waits for silent ranks. What it throws comes from here.
+void prepare_and_beat(Mailbox& mailbox, const std::function<void()>& prepare);
+// Serves until the leader ends the render. `cancel`, where it is requested here, is passed on to the leader.
+// Throws LeaderIsSilent when the leader says nothing for `patience`.
 void serve_tiles(const TileRenderer& renderer, const PixelBounds& crop, int tile_size, int threads,
                  Mailbox& mailbox, const CancelFlag* cancel, double patience_seconds);
+// In place of that, or after it has thrown: tells the leader why this rank cannot go on, and waits for the
+// end of the render. So the leader alone speaks, of a mistake that all ranks meet as of one that is a single
+// rank's. Throws LeaderIsSilent.
+void serve_failure(const std::string& why, Mailbox& mailbox, double patience_seconds);
 
 } // namespace montelux

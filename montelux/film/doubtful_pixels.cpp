@@ -38,7 +38,9 @@ std::vector<Doubt> doubtful_pixels(std::span<const PixelSpread> pixels, int widt
     std::size_t i = 0;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x, ++i) {
-            if (pixels[i].bright_unit)
+            if (std::isnan(pixels[i].variance))
+                doubts[i] = Doubt::unknown;
+            else if (pixels[i].bright_unit)
                 doubts[i] = Doubt::bright_unit;
             else if (mean_variance_around(pixels, width, height, x, y) > far_larger * pixels[i].variance)
                 doubts[i] = Doubt::neighbours;

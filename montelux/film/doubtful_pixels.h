@@ -15,7 +15,10 @@ enum class Doubt : std::uint8_t {
     none = 0,
     bright_unit = 1, // one unit alone makes up most of the variance
     neighbours = 2,  // the neighbours' variance is far larger: light may have been missed, or an edge is near
+    unknown = 3,     // fewer than 16 units, too few to tell
 };
+// Was there evidence that the error is rough?
+inline bool speaks_against(Doubt d) { return d == Doubt::bright_unit || d == Doubt::neighbours; }
 
 // What is asked of a pixel. Errors of too few units are no evidence either way: variance NaN.
 struct PixelSpread {

@@ -7,15 +7,15 @@
 
 namespace montelux {
 
-double Pixel::largest_share() const {
-    if (units_.count() < 2) return 0;
-    double largest = 0, all = 0;
+double share_of_unit(const SkewMoments<3>& units, Vec3d unit) {
+    if (units.count() < 2) return 0;
+    double own = 0, all = 0;
     for (int c = 0; c < 3; ++c) {
-        const double deviation = largest_[c] - units_.mean(c), w = luminance_weight[c] * luminance_weight[c];
-        largest += w * deviation * deviation;
-        all += w * units_.variance(c) * static_cast<double>(units_.count() - 1);
+        const double deviation = unit[c] - units.mean(c), w = luminance_weight[c] * luminance_weight[c];
+        own += w * deviation * deviation;
+        all += w * units.variance(c) * static_cast<double>(units.count() - 1);
     }
-    return all > 0 ? largest / all : 0;
+    return all > 0 ? own / all : 0;
 }
 
 Film::Film(const FilmSettings& settings) : settings_(settings) {
@@ -31,14 +31,17 @@ Film::Film(const FilmSettings& settings) : settings_(settings) {
     pixels_.resize(static_cast<std::size_t>(c.width()) * static_cast<std::size_t>(c.height()));
 }
 
-std::vector<std::string> film_layers() {
-    return {"R",          "G",          "B",       "stderr.R", "stderr.G", "stderr.B", "skewness.R",
-            "skewness.G", "skewness.B", "samples", "units",    "outlier",  "doubt",    "albedo.R",
-            "albedo.G",   "albedo.B",   "N.X",     "N.Y",      "N.Z",      "depth.Z"};
+std::vector<std::string> film_layers(bool of_slice) {
+    std::vector<std::string> layers{"R",        "G",          "B",          "stderr.R",   "stderr.G",
+                                    "stderr.B", "skewness.R", "skewness.G", "skewness.B", "samples",
+                                    "units",    "outlier",    "doubt",      "albedo.R",   "albedo.G",
+                                    "albedo.B", "N.X",        "N.Y",        "N.Z",        "depth.Z"};
+    if (of_slice) layers.insert(layers.end(), {"brightest.R", "brightest.G", "brightest.B"});
+    return layers;
 }
 
-Image Film::develop() const {
-    Image image(bounds().width(), bounds().height(), film_layers());
+Image Film::develop(bool as_slice) const {
+    Image image(bounds().width(), bounds().height(), film_layers(as_slice));
     auto out = image.f32().begin();
     auto put = [&](double v) { *out++ = static_cast<float>(v); };
     const std::vector<Doubt> doubts = doubtful_pixels(*this);
@@ -55,6 +58,8 @@ Image Film::develop() const {
         for (int c = 0; c < 3; ++c) put(double(p.albedo()[c]));
         for (int c = 0; c < 3; ++c) put(double(p.normal()[c]));
         put(double(p.depth()));
+        if (as_slice)
+            for (int c = 0; c < 3; ++c) put(p.brightest()[c]);
     }
     return image;
 }

@@ -32,6 +32,10 @@ struct BadSample {
     auto operator<=>(const BadSample&) const = default;
 };
 
+// Share of the units' squared deviations from their mean that one of them alone makes up, by luminance
+// weights; 0 without any.
+double share_of_unit(const SkewMoments<3>& units, Vec3d unit);
+
 // A pixel's value is the mean of independent, identically distributed units: single samples for the
 // independent sampler, means over one randomisation of a point set for the others. The standard error comes
 // from the spread of the units alone, so it holds for both.
@@ -57,8 +61,8 @@ class Pixel {
         if (unit_samples_ == 0) return;
         const Vec3d unit = unit_sum_ / static_cast<double>(unit_samples_);
         units_.add(unit);
-        if (units_.count() == 1 || dot(unit, luminance_weight) > dot(largest_, luminance_weight))
-            largest_ = unit;
+        if (units_.count() == 1 || dot(unit, luminance_weight) > dot(brightest_, luminance_weight))
+            brightest_ = unit;
         unit_sum_ = {};
         unit_samples_ = 0;
     }
@@ -76,13 +80,13 @@ class Pixel {
 
     // All units must have ended.
     const SkewMoments<3>& units() const { return units_; }
+    // The unit of greatest luminance; 0 without any.
+    Vec3d brightest() const { return brightest_; }
     std::uint32_t samples() const { return samples_; }
     std::uint32_t bad() const { return bad_; }
     // Mean luminance that clamping took away.
     double clamped() const { return samples_ > 0 ? clamped_ / samples_ : 0; }
-    // Share of the units' squared deviations from their mean that the brightest unit alone makes up, by
-    // luminance weights; 0 without any.
-    double largest_share() const;
+    double largest_share() const { return share_of_unit(units_, brightest_); }
     Vec3f albedo() const { return samples_ > 0 ? albedo_ / static_cast<float>(samples_) : Vec3f{}; }
     Vec3f normal() const { return samples_ > 0 ? normal_ / static_cast<float>(samples_) : Vec3f{}; }
     float depth() const { return samples_ > 0 ? depth_ / static_cast<float>(samples_) : 0; }
@@ -91,14 +95,14 @@ class Pixel {
     SkewMoments<3> units_;
     Vec3d unit_sum_;
     double clamped_ = 0;
-    Vec3d largest_; // the unit of greatest luminance
+    Vec3d brightest_;
     Vec3f albedo_, normal_;
     float depth_ = 0;
     std::uint32_t unit_samples_ = 0, samples_ = 0, bad_ = 0;
 };
 
 // The layers that Film::develop() makes, in order.
-std::vector<std::string> film_layers();
+std::vector<std::string> film_layers(bool of_slice = false);
 
 class Film {
   public:
@@ -120,8 +124,9 @@ class Film {
     // Layers R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples; units (of which the
     // standard error is made); outlier (Pixel::largest_share); doubt (Doubt); albedo.R, G, B; N.X, Y, Z;
     // depth.Z, of the cropped pixels. The standard error is infinite where fewer than two units have been
-    // taken.
-    Image develop() const;
+    // taken. A slice of a render has the layers brightest.R, G, B beside (Pixel::brightest), for the outlier
+    // of the whole cannot be told from those of its slices.
+    Image develop(bool as_slice = false) const;
 
   private:
     std::size_t index(int x, int y) const {

@@ -6,7 +6,6 @@
 #include <limits>
 #include <vector>
 
-#include "montelux/film/doubtful_pixels.h"
 #include "montelux/film/film.h"
 #include "montelux/mc/math/compensated.h"
 
@@ -52,6 +51,20 @@ FilmError error_of(const Film& film) {
     return e;
 }
 
+// Satterthwaite 1946, "An Approximate Distribution of Estimates of Variance Components", Biometrics Bulletin
+// 2(6), equation 17.
+double error_freedom(const Film& film) {
+    CompensatedSum variances, squares;
+    for (const Pixel& p : film.pixels()) {
+        const double variance = std::pow(luminance_error(p), 2);
+        if (!std::isfinite(variance)) return 0;
+        if (!(variance > 0)) continue;
+        variances.add(variance);
+        squares.add(variance * variance / (static_cast<double>(p.units().count()) - 1));
+    }
+    return squares.value() > 0 ? variances.value() * variances.value() / squares.value() : infinity;
+}
+
 double clamped_luminance(const Film& film) {
     CompensatedSum sum;
     for (const Pixel& p : film.pixels()) sum.add(p.clamped());
@@ -70,12 +83,20 @@ double error_quantile(const Film& film, double quantile) {
 }
 
 OutlierReport outliers_of(const Film& film) {
+    std::vector<double> errors;
+    errors.reserve(film.pixels().size());
+    for (const Pixel& p : film.pixels()) errors.push_back(luminance_error(p));
+    return outliers_of(errors, doubtful_pixels(film));
+}
+
+OutlierReport outliers_of(std::span<const double> errors, std::span<const Doubt> doubts) {
     OutlierReport report;
+    report.pixels = doubts.size();
     std::vector<double> squares;
     double total = 0, heavy = 0;
-    const std::vector<Doubt> doubts = doubtful_pixels(film);
     for (std::size_t i = 0; i < doubts.size(); ++i) {
-        const double error = luminance_error(film.pixels()[i]);
+        const double error = errors[i];
+        report.unknown += doubts[i] == Doubt::unknown;
         if (!std::isfinite(error)) continue;
         squares.push_back(error * error);
         total += error * error;
@@ -93,8 +114,7 @@ OutlierReport outliers_of(const Film& film) {
         sum += s;
         ++report.pixels_of_half;
     }
-    report.share_of_half =
-        static_cast<double>(report.pixels_of_half) / static_cast<double>(film.pixels().size());
+    report.share_of_half = static_cast<double>(report.pixels_of_half) / static_cast<double>(report.pixels);
     return report;
 }
 

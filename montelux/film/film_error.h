@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
+#include "montelux/film/doubtful_pixels.h"
 #include "montelux/mc/math/vec.h"
 
 namespace montelux {
@@ -25,6 +27,10 @@ inline constexpr Vec3d luminance_weight{0.2126, 0.7152, 0.0722};
 // inequality is close. Infinite below two units.
 double luminance_error(const Pixel& pixel);
 
+// Degrees of freedom of the picture's error: those of the pixels that carry it, added up. Small where few
+// pixels do, of few units each. Infinite without any spread, 0 where a pixel has fewer than two units.
+double error_freedom(const Film& film);
+
 // The error, relative to the mean luminance of the picture, within which a share `quantile` of the pixels
 // lies.
 double error_quantile(const Film& film, double quantile);
@@ -40,7 +46,11 @@ struct OutlierReport {
     std::uint64_t heavy_tailed = 0; // pixels (Doubt::bright_unit)
     double heavy_error_share = 0;   // of the squared error, that those pixels carry
     std::uint64_t outshone = 0;     // pixels (Doubt::neighbours)
+    std::uint64_t unknown = 0;      // pixels (Doubt::unknown)
+    std::uint64_t pixels = 0;       // all
 };
 OutlierReport outliers_of(const Film& film);
+// Of the standard errors of the pixels' luminances.
+OutlierReport outliers_of(std::span<const double> errors, std::span<const Doubt> doubts);
 
 } // namespace montelux

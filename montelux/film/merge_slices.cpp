@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 #include "montelux/film/doubtful_pixels.h"
 #include "montelux/film/film.h"
@@ -42,6 +43,7 @@ SliceNumber slice_of(const Image& image, const std::string& name) {
 struct Layers {
     std::array<int, 3> mean{}, error{}, skewness{}, albedo{}, normal{};
     int samples = 0, units = 0, outlier = 0, depth = 0;
+    std::optional<std::array<int, 3>> brightest; // of slices alone
 
     Layers(const Image& image, const std::string& name) {
         auto find = [&](const std::string& channel) {
@@ -62,6 +64,8 @@ struct Layers {
         units = find("units");
         outlier = find("outlier");
         depth = find("depth.Z");
+        if (image.find_channel("brightest.R"))
+            brightest = {find("brightest.R"), find("brightest.G"), find("brightest.B")};
     }
 };
 
@@ -81,13 +85,22 @@ SkewMoments<3> moments_of(const Image& image, const Layers& at, int x, int y) {
     }
     return SkewMoments<3>(static_cast<std::uint64_t>(n), mean, squares, cubes);
 }
-double weighted_squares(const SkewMoments<3>& m) {
-    double sum = 0;
-    if (m.count() >= 2)
-        for (int c = 0; c < 3; ++c)
-            sum += luminance_weight[c] * luminance_weight[c] * m.variance(c) *
-                   static_cast<double>(m.count() - 1);
-    return sum;
+// The brightest unit of a pixel. A picture without its layers is taken to have one that stands out by the
+// same share of the variance in each channel, which is exact where nothing is joined with it.
+Vec3d brightest_of(const Image& image, const Layers& at, int x, int y, const SkewMoments<3>& units) {
+    Vec3d unit;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const int channel = static_cast<int>(c);
+        if (at.brightest) {
+            unit[channel] = static_cast<double>(image.value(x, y, (*at.brightest)[c]));
+            continue;
+        }
+        unit[channel] = units.mean(channel);
+        if (units.count() >= 2)
+            unit[channel] += std::sqrt(static_cast<double>(image.value(x, y, at.outlier)) *
+                                       units.variance(channel) * static_cast<double>(units.count() - 1));
+    }
+    return unit;
 }
 
 double number_attribute(const Image& image, const char* key) {
@@ -126,6 +139,10 @@ void SliceMerger::add(const Image& slice, const std::string& name) {
                                                       other->second + " is");
     if (names_.begin()->first == number.index) attributes_ = slice.attributes();
     bad_samples_ += number_attribute(slice, "badSamples");
+    clamped_samples_ += number_attribute(slice, "clampedSamples");
+    const double samples = number_attribute(slice, "samplesTaken");
+    clamped_light_ += samples * number_attribute(slice, "clampedLuminance");
+    samples_taken_ += samples;
     seconds_ += number_attribute(slice, "renderSeconds");
     interrupted_ = std::max(interrupted_, number_attribute(slice, "interrupted"));
 
@@ -134,11 +151,14 @@ void SliceMerger::add(const Image& slice, const std::string& name) {
         for (int x = 0; x < width_; ++x, ++i) {
             PixelSums& sums = pixels_[i];
             const SkewMoments<3> part = moments_of(slice, at, x, y);
+            const Vec3d brightest = brightest_of(slice, at, x, y, part);
+            if (part.count() > 0 && (sums.units.count() == 0 || dot(brightest, luminance_weight) >
+                                                                    dot(sums.brightest, luminance_weight)))
+                sums.brightest = brightest;
             sums.units.merge(part);
             auto value = [&](int channel) { return static_cast<double>(slice.value(x, y, channel)); };
             const double n = value(at.samples);
             sums.samples += n;
-            sums.largest = std::max(sums.largest, value(at.outlier) * weighted_squares(part));
             sums.depth += n * value(at.depth);
             for (std::size_t c = 0; c < 3; ++c) {
                 sums.albedo[c] += n * value(at.albedo[c]);
@@ -156,7 +176,9 @@ MergedSlices SliceMerger::finish() const {
     Image& out = result.image;
     const Layers to(out, "the joined picture");
     std::vector<PixelSpread> spreads;
+    std::vector<double> errors;
     spreads.reserve(pixels_.size());
+    errors.reserve(pixels_.size());
     double squares = 0, luminance = 0, all_samples = 0;
     std::size_t i = 0;
     for (int y = 0; y < height_; ++y)
@@ -164,7 +186,7 @@ MergedSlices SliceMerger::finish() const {
             const PixelSums& sums = pixels_[i];
             const SkewMoments<3>& units = sums.units;
             auto put = [&](int channel, double v) { out.set(x, y, channel, static_cast<float>(v)); };
-            const double inverse = sums.samples > 0 ? 1 / sums.samples : 0, spread = weighted_squares(units);
+            const double inverse = sums.samples > 0 ? 1 / sums.samples : 0;
             double error = 0;
             for (int c = 0; c < 3; ++c) {
                 const auto k = static_cast<std::size_t>(c);
@@ -178,32 +200,41 @@ MergedSlices SliceMerger::finish() const {
             }
             put(to.samples, sums.samples);
             put(to.units, static_cast<double>(units.count()));
-            const double largest = spread > 0 ? std::min(1.0, sums.largest / spread) : 0;
+            const double largest = std::min(1.0, share_of_unit(units, sums.brightest));
             put(to.outlier, largest);
             spreads.push_back(pixel_spread(error, sums.samples, static_cast<double>(units.count()), largest));
+            errors.push_back(error);
             put(to.depth, sums.depth * inverse);
             squares += error * error;
             all_samples += sums.samples;
         }
     const std::vector<Doubt> doubts = doubtful_pixels(spreads, width_);
+    result.outliers = outliers_of(errors, doubts);
     const int layer = *out.find_channel("doubt");
     i = 0;
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x, ++i) out.set(x, y, layer, static_cast<float>(doubts[i]));
     const double pixels = static_cast<double>(out.pixel_count());
     result.mean_samples = all_samples / pixels;
+    result.mean_luminance = luminance / pixels;
+    result.clamped_samples = clamped_samples_;
+    if (samples_taken_ > 0) result.clamped_luminance = clamped_light_ / samples_taken_;
     result.relative_error = luminance > 0 ? std::sqrt(squares * pixels) / luminance : 0;
 
     Attributes& a = out.attributes();
     a = attributes_;
     // Of one slice alone.
-    for (const char* key : {"stoppedBy", "clampedLuminance", "denoiser", "denoiserGuides"}) a.erase(key);
+    for (const char* key : {"stoppedBy", "denoiser", "denoiserGuides"}) a.erase(key);
     a["slice"] =
         result.missing.empty() ? std::string("1/1") : std::string("some of ") + std::to_string(count_);
     a["samplesTaken"] = static_cast<float>(result.mean_samples);
     a["relativeError"] = static_cast<float>(result.relative_error);
     a["interrupted"] = static_cast<int>(interrupted_);
     a["badSamples"] = static_cast<int>(std::min(bad_samples_, 1e9));
+    if (result.clamped_luminance > 0) {
+        a["clampedLuminance"] = static_cast<float>(result.clamped_luminance);
+        a["clampedSamples"] = static_cast<int>(std::min(clamped_samples_, 1e9));
+    }
     a["renderSeconds"] = static_cast<float>(seconds_);
     return result;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "montelux/film/film_error.h"
 #include "montelux/image/image.h"
 #include "montelux/mc/stats/skew_moments.h"
 
@@ -16,14 +17,16 @@ struct MergedSlices {
     Image image;
     std::vector<int> missing;  // slices, counted from 1, that no picture was of
     double relative_error = 0; // FilmError::relative
-    double mean_samples = 0;
+    double mean_samples = 0, mean_luminance = 0;
+    // How many samples were clamped, and the mean luminance that this took away.
+    double clamped_samples = 0, clamped_luminance = 0;
+    OutlierReport outliers;
 };
 
 // Joins what Film::develop() wrote for slices k/n of one render, one picture after the other in any order, so
-// that no two need be in memory. Means, standard errors, skewness and counts are those of all units together,
-// as far as 32-bit layers tell (relative differences of about 1e-7); the layer `outlier` is that of the slice
-// in which the brightest unit stood out most, against all. The standard error is infinite where there are
-// fewer than two units. Pictures say what they are of in the attributes `renderHash` and `slice`.
+// that no two need be in memory. All layers are those of all units together, as far as 32-bit layers tell
+// (relative differences of about 1e-7). The standard error is infinite where there are fewer than two units.
+// Pictures say what they are of in the attributes `renderHash` and `slice`.
 class SliceMerger {
   public:
     // Throws Error, naming the picture, where it is no slice, is of another render than those before, or of a
@@ -35,8 +38,9 @@ class SliceMerger {
   private:
     struct PixelSums {
         SkewMoments<3> units;
-        double samples = 0, largest = 0; // weighted squares that the brightest unit makes up
-        double depth = 0;                // these and the next are weighted by samples
+        Vec3d brightest; // unit
+        double samples = 0;
+        double depth = 0; // these and the next are weighted by samples
         std::array<double, 3> albedo{}, normal{};
     };
 
@@ -46,6 +50,7 @@ class SliceMerger {
     std::vector<PixelSums> pixels_;
     Attributes attributes_; // of the picture of the lowest slice
     double bad_samples_ = 0, seconds_ = 0, interrupted_ = 0;
+    double clamped_samples_ = 0, clamped_light_ = 0, samples_taken_ = 0; // the light weighted by samples
 };
 
 } // namespace montelux

@@ -28,17 +28,24 @@ class Inflater {
 
 std::vector<std::uint8_t> gunzip(std::span<const std::uint8_t> bytes, std::string_view name,
                                  std::size_t max_bytes) {
+    constexpr std::size_t unsuspicious_bytes = std::size_t{16} << 20, largest_ratio = 128;
+    const std::size_t in_proportion = std::max(unsuspicious_bytes, largest_ratio * bytes.size());
+    const std::size_t limit = std::min(max_bytes, in_proportion);
     Inflater inflater(name);
     z_stream& z = inflater.stream();
     std::vector<std::uint8_t> result(
-        std::min(max_bytes, std::max<std::size_t>(4 * bytes.size(), std::size_t{1} << 12)));
+        std::min(limit, std::max<std::size_t>(4 * bytes.size(), std::size_t{1} << 12)));
     std::size_t read = 0, written = 0;
     constexpr std::size_t piece = std::numeric_limits<uInt>::max();
     for (;;) {
         if (written == result.size()) {
             if (written == max_bytes)
                 throw Error(name, "unpacks to more than " + std::to_string(max_bytes) + " bytes");
-            result.resize(std::min(max_bytes, 2 * written));
+            if (written == limit)
+                throw Error(name, "unpacks to more than " + std::to_string(limit >> 20) +
+                                      " MiB, which is out of proportion to its " +
+                                      std::to_string(bytes.size()) + " bytes");
+            result.resize(std::min(limit, 2 * written));
         }
         std::size_t room = std::min(piece, result.size() - written);
         std::size_t available = std::min(piece, bytes.size() - read);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -183,11 +184,19 @@ Vec3d limit_normal(const std::vector<Vec3d>& p, Index vertex, const Ring& ring) 
 
 } // namespace
 
+std::size_t subdivided_count(std::size_t triangles, int levels) {
+    constexpr std::size_t most = std::numeric_limits<std::size_t>::max();
+    for (int i = 0; i < levels && triangles > 0; ++i) {
+        if (triangles > most / 4) return most;
+        triangles *= 4;
+    }
+    return triangles;
+}
+
 SubdividedMesh subdivide_loop(std::span<const Vec3f> positions, std::span<const Index> indices, int levels) {
-    std::size_t triangles = indices.size() / 3;
-    if (static_cast<double>(triangles) * std::pow(4.0, levels) > 268435456.0)
-        throw Error("loop subdivision",
-                    std::to_string(levels) + " levels would give more than 2^28 triangles");
+    if (subdivided_count(indices.size() / 3, levels) > max_subdivided_triangles)
+        throw Error("loop subdivision", std::to_string(levels) + " levels would give more than " +
+                                            std::to_string(max_subdivided_triangles) + " triangles");
     Mesh mesh = make_mesh(positions, indices);
     for (int i = 0; i < levels; ++i) mesh = refine(mesh);
 

@@ -1,6 +1,7 @@
 // Loop subdivision: a smooth limit surface of a coarse triangle mesh.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,6 +10,11 @@
 #include "montelux/scene/index.h"
 
 namespace montelux {
+
+// Each takes about 80 bytes on the way: 2.5 GiB in all.
+inline constexpr std::size_t max_subdivided_triangles = std::size_t{1} << 25;
+// How many `triangles` become; the largest number there is when that is too small.
+std::size_t subdivided_count(std::size_t triangles, int levels);
 
 struct SubdividedMesh {
     std::vector<Vec3f> positions; // on the limit surface
@@ -21,7 +27,7 @@ struct SubdividedMesh {
 // 1994, "Piecewise Smooth Surface Reconstruction", appendix). Normals point to the side from which a
 // triangle's vertices run clockwise, as pbrt's do. `indices` must lie within `positions`. Throws Error when
 // an edge has more than two triangles or two that run through it in the same direction, or when the result
-// would have more than 2^28 triangles.
+// would have more than `max_subdivided_triangles`.
 SubdividedMesh subdivide_loop(std::span<const Vec3f> positions, std::span<const Index> indices, int levels);
 
 } // namespace montelux

@@ -114,6 +114,14 @@ class LineReader {
     std::size_t at_ = 0;
 };
 
+// Linear sRGB of CIE XYZ with an equal-energy white, which is Radiance's (Radiance's color.h; ra_xyze -r
+// takes the same way): Bradford's chromatic adaptation (CIE 159:2004) from the white x = y = 1/3 to sRGB's,
+// (0.3127, 0.3290), then the inverse of the matrix that the primaries of ITU-R BT.709 and that white give. So
+// (1, 1, 1) stays (1, 1, 1).
+constexpr double rgb_from_xyz[3][3] = {{3.146657654, -1.666463755, -0.480193900},
+                                       {-0.995521606, 1.955756734, 0.039764872},
+                                       {0.063594803, -0.214563222, 1.150968419}};
+
 } // namespace
 
 // Ward, "Real Pixels", Graphics Gems II, and the Radiance file format notes. A pixel is
@@ -149,8 +157,7 @@ Image decode_hdr(const EncodedImage& file) {
     check_image_size(file, scan->width(), scan->height(), 3, 4);
     if (cursor.remaining() < scan->lines * 4) throw damaged("it ends too early");
 
-    Image image(static_cast<int>(scan->width()), static_cast<int>(scan->height()),
-                xyz ? std::vector<std::string>{"X", "Y", "Z"} : std::vector<std::string>{"R", "G", "B"});
+    Image image(static_cast<int>(scan->width()), static_cast<int>(scan->height()), {"R", "G", "B"});
     image.attributes() = std::move(attributes);
     LineReader reader(cursor.rest(), file.name);
     std::vector<Rgbe> pixels(scan->line_length);
@@ -160,7 +167,13 @@ Image decode_hdr(const EncodedImage& file) {
             const Rgbe& p = pixels[i];
             float* out = image.f32().data() + 3 * scan->pixel(l, i);
             float scale = p.v[3] ? std::ldexp(1.0f, p.v[3] - 136) : 0.0f;
-            for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(p.v[c]) * scale;
+            for (int c = 0; c < 3; ++c) {
+                double v = p.v[c];
+                if (xyz)
+                    v = rgb_from_xyz[c][0] * p.v[0] + rgb_from_xyz[c][1] * p.v[1] +
+                        rgb_from_xyz[c][2] * p.v[2];
+                out[c] = static_cast<float>(v) * scale;
+            }
         }
     }
     return image;

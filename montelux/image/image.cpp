@@ -76,7 +76,7 @@ std::vector<int> Image::color_channels(std::string_view layer) const {
     auto find = [&](const char* last) { return find_channel(std::string(layer) + last); };
     auto r = find("R"), g = find("G"), b = find("B");
     if (r && g && b) return {*r, *g, *b};
-    if (auto y = find("Y")) return {*y};
+    if (auto y = find("Y"); y && !(find("X") && find("Z"))) return {*y};
     return {};
 }
 

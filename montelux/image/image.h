@@ -55,7 +55,8 @@ class Image {
 
     const std::vector<std::string>& channel_names() const { return names_; }
     std::optional<int> find_channel(std::string_view name) const;
-    // Indices of `layer`R, G, B (for example layer "stderr."); or the single channel `layer`Y; else empty.
+    // Indices of `layer`R, G, B (for example layer "stderr."); or the single channel `layer`Y, unless X and Z
+    // beside it tell that it is one of CIE XYZ; else empty.
     std::vector<int> color_channels(std::string_view layer = "") const;
 
     Attributes& attributes() { return attributes_; }

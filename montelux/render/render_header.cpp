@@ -42,7 +42,10 @@ void add_render_header(Image& image, const std::string& scene_name, const SceneD
     a["adaptive"] = target.adaptive ? 1 : 0;
     a["slice"] = std::to_string(target.slice.index + 1) + "/" + std::to_string(target.slice.count);
     a["pointsPerUnit"] = static_cast<int>(SampleOrder(renderer.sampler(), target.slice).unit());
-    if (clamped_luminance > 0) a["clampedLuminance"] = static_cast<float>(clamped_luminance);
+    if (clamped_luminance > 0) {
+        a["clampedLuminance"] = static_cast<float>(clamped_luminance);
+        a["clampedSamples"] = static_cast<int>(std::min<std::uint64_t>(report.clamped_samples, 1u << 30));
+    }
     a["samplesTaken"] = static_cast<float>(error.mean_samples);
     a["interrupted"] = report.cancelled() ? 1 : 0;
     a["sampler"] = std::string(name_of(description.sampler.kind));

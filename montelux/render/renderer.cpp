@@ -47,8 +47,7 @@ class RenderLoop {
                     next_goals(state_, renderer_.sampler(), renderer_.target());
                 if (goals.empty()) return end(RenderStop::samples);
                 state_.goals = std::move(goals);
-                if (looks_are_needless())
-                    std::ranges::fill(state_.goals, static_cast<std::uint32_t>(order_.share()));
+                join_rounds();
             }
             take_samples();
             state_.report.seconds = seconds();
@@ -74,10 +73,15 @@ class RenderLoop {
         if (checkpoint_is_due() || out_of_time()) pause_ = true;
     }
     // With an executor, ends of rounds are expensive. Where nothing is decided by the error, one round takes
-    // all samples that are left, after the first one.
-    bool looks_are_needless() const {
-        return control_.executor != nullptr && every_pixel_seen_ && !renderer_.target().adaptive &&
-               !(renderer_.target().error > 0);
+    // all samples that are left, after the first one; so does a pilot.
+    void join_rounds() {
+        const RenderTarget& target = renderer_.target();
+        if (control_.executor == nullptr || !every_pixel_seen_) return;
+        const std::uint64_t pilot = std::min(pilot_of(order_), order_.share());
+        if (target.adaptive && state_.goals.front() < pilot)
+            std::ranges::fill(state_.goals, static_cast<std::uint32_t>(pilot));
+        if (!target.adaptive && !(target.error > 0))
+            std::ranges::fill(state_.goals, static_cast<std::uint32_t>(order_.share()));
     }
     // Pixels of a restored film may lack samples of the present round, as those of a broken-off loop do.
     bool round_is_done() const {
@@ -107,10 +111,11 @@ class RenderLoop {
         if (!(target.error > 0)) return false;
         // Few samples may all be dark by chance; a quantile is satisfied by pixels that saw nothing yet.
         const std::uint64_t least = target.quantile > 0 ? 4 * least_samples : least_samples;
-        if (fewest_units() * order_.unit() < least) return false;
+        const std::uint64_t units = fewest_units();
+        if (units < least_units || units * order_.unit() < least) return false;
         if (!(error.mean_luminance > 0)) return error.mean_samples >= samples_of_black;
-        return (target.quantile > 0 ? error_quantile(state_.film, target.quantile) : error.relative) <=
-               target.error;
+        if (target.quantile > 0) return error_quantile(state_.film, target.quantile) <= target.error;
+        return error.relative <= target.error && error_freedom(state_.film) >= least_freedom;
     }
     std::uint64_t fewest_units() const {
         std::uint64_t fewest = state_.film.pixels().front().units().count();
@@ -205,7 +210,10 @@ class RenderLoop {
     }
 
     // Of each pixel, before its error is believed; and before a picture is taken for black.
-    static constexpr std::uint64_t least_samples = 16, samples_of_black = 4096;
+    static constexpr std::uint64_t least_samples = 16, least_units = 4, samples_of_black = 4096;
+    // Of the picture's error, as much as 16 units of one pixel have: who looks often and stops at the first
+    // error that is small enough stops at one that is small by chance, and the more so the less it is known.
+    static constexpr double least_freedom = 15;
 
     const Renderer& renderer_;
     RenderState& state_;
@@ -242,11 +250,7 @@ Renderer::Renderer(const SceneDescription& description, const RenderTarget& targ
       camera_(description.scene.camera, description.film.width, description.film.height) {
     if (description.sampler.samples_per_pixel < 1)
         throw Error("sampler", "at least 1 sample a pixel is needed");
-    if (target.slice.index >= target.slice.count)
-        throw Error("slice",
-                    "slices are counted from 0, and there are " + std::to_string(target.slice.count));
-    if (SampleOrder(sampler_, target.slice).share() == 0)
-        throw Error("slice", "there are fewer units of samples than slices; more samples a pixel are needed");
+    check_slice(description, target);
     auto begin = Clock::now();
     tables_ = std::make_unique<SceneTables>(description.scene, description.integrator.environments());
     accelerator_ = std::make_unique<Accelerator>(description.scene, *tables_);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <string>
 
+#include "montelux/mc/math/error.h"
 #include "montelux/render/allocation.h"
 
 namespace montelux {
@@ -15,6 +17,11 @@ constexpr std::uint32_t many_samples = 256; // so many are split into 16 replica
 constexpr std::uint64_t pilot_samples = 16, pilot_units = 4;
 
 } // namespace
+
+std::uint64_t pilot_of(const SampleOrder& order) {
+    const std::uint64_t samples = std::max(pilot_samples, pilot_units * order.unit());
+    return (samples + order.unit() - 1) / order.unit() * order.unit();
+}
 
 SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& target) {
     if (settings.kind == SamplerKind::independent || settings.replicates >= 2 ||
@@ -32,23 +39,28 @@ SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& ta
     return settings;
 }
 
+void check_slice(const SceneDescription& description, const RenderTarget& target) {
+    const Slice& slice = target.slice;
+    if (slice.index >= slice.count)
+        throw Error("slices are counted from 0, and there are " + std::to_string(slice.count));
+    if (SampleOrder(with_replicates(description.sampler, target), slice).share() == 0)
+        throw Error("there are fewer units of samples than slices; more samples a pixel are needed");
+}
+
 std::vector<std::uint32_t> next_goals(const RenderState& state, const SamplerSettings& sampler,
                                       const RenderTarget& target) {
     const SampleOrder order(sampler, target.slice);
     const std::uint64_t share = order.share();
     const std::size_t pixels = state.film.pixels().size();
-    const bool first = state.goals.empty();
-    if (target.adaptive && !first) return allocate(state.film, order, target);
-
-    const std::uint64_t begin = first ? 0 : state.goals.front();
+    const std::uint64_t begin = state.goals.empty() ? 0 : state.goals.front();
+    const std::uint64_t pilot = target.adaptive ? pilot_of(order) : 0;
+    if (target.adaptive && begin >= pilot) return allocate(state.film, order, target);
     if (begin >= share) return {};
-    std::uint64_t end;
-    if (target.adaptive) {
-        end = std::max(pilot_samples, pilot_units * order.unit());
-        end = (end + order.unit() - 1) / order.unit() * order.unit();
-    } else { // 1, 2, 4, 8, 16, 32, 48, ... samples
+    std::uint64_t end = pilot;
+    if (!target.adaptive || target.seconds > 0) { // 1, 2, 4, 8, 16, 32, 48, ... samples
         end = begin + std::clamp<std::uint64_t>(std::bit_floor(begin), 1, longest_round);
         if (order.unit() > 1) end = std::min(end, (begin / order.unit() + 1) * order.unit());
+        if (target.adaptive) end = std::min(end, pilot);
     }
     return std::vector<std::uint32_t>(pixels, static_cast<std::uint32_t>(std::min(end, share)));
 }

@@ -7,6 +7,7 @@
 #include "montelux/film/film.h"
 #include "montelux/mc/random/sampler_settings.h"
 #include "montelux/render/render_control.h"
+#include "montelux/scene/render_settings.h"
 
 namespace montelux {
 
@@ -17,11 +18,18 @@ namespace montelux {
 // eight points each, since nobody knows how many samples it takes.
 SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& target);
 
+// Throws Error, a sentence, where a slice is none or would take no samples.
+void check_slice(const SceneDescription& description, const RenderTarget& target);
+
+// Samples a pixel of the pilot of an adaptive render, which its first errors are made of.
+std::uint64_t pilot_of(const SampleOrder& order);
+
 // The goals of the next round, one a pixel, after one whose goals (`state.goals`, empty at first) all pixels
 // have reached; empty when all samples are taken. A function of its arguments alone.
 //
 // The same for all pixels without adaptive allocation: rounds are short at first, so that a first look comes
-// early, and never long. Adaptively: a pilot of equal numbers, then rounds of whole units (allocation.h).
+// early, and never long. Adaptively: a pilot of equal numbers, then rounds of whole units (allocation.h). The
+// pilot is one round; with a limit of time it is made of several short ones, between which it can end.
 std::vector<std::uint32_t> next_goals(const RenderState& state, const SamplerSettings& sampler,
                                       const RenderTarget& target);
 

@@ -27,7 +27,7 @@ std::optional<CoatingKey> closed_form(const Material& material) {
     if (c.roughness.remap) alpha = Ggx::alpha_from_roughness(alpha);
     float eta = c.eta(550);
     if (!(eta > 0)) return std::nullopt;
-    return CoatingKey{eta, alpha, c.thickness.value, c.max_depth};
+    return CoatingKey{eta, alpha, std::max(c.thickness.value, 0.0f), c.max_depth};
 }
 
 bool has_texture(const FloatParameter& p) { return !p.is_constant(); }
@@ -59,6 +59,11 @@ SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environm
     });
     mipmaps_.reserve(mipmaps.size());
     for (auto& m : mipmaps) mipmaps_.push_back(std::move(*m));
+    alpha_mipmaps_.resize(scene.images.size());
+    for (const FloatTexture& texture : scene.float_textures)
+        if (const auto* t = std::get_if<ImageTexture>(&texture))
+            if (t->channels == ImageChannels::alpha && !alpha_mipmaps_[t->image])
+                alpha_mipmaps_[t->image].emplace(scene.images[t->image], ImageChannels::alpha);
 
     std::map<CoatingKey, std::size_t> index_of;
     std::vector<CoatingKey> keys;

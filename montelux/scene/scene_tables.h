@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "montelux/scene/bsdf/coating.h"
@@ -17,7 +18,10 @@ class SceneTables {
     // parallel.
     explicit SceneTables(const Scene& scene, const EnvironmentSettings& environments = {});
 
-    const MipMap& mipmap(Index image) const { return mipmaps_[image]; }
+    // Of the alpha of images that a float texture takes it from.
+    const MipMap& mipmap(Index image, ImageChannels channels = ImageChannels::color) const {
+        return channels == ImageChannels::color ? mipmaps_[image] : *alpha_mipmaps_[image];
+    }
     // Null where the closed form of CoatingTable does not hold and the random walk is used.
     const CoatingTable* coating(Index material) const { return coating_of_material_[material]; }
     // The parameters of a material that look up textures want coordinates and footprints.
@@ -28,6 +32,7 @@ class SceneTables {
 
   private:
     std::vector<MipMap> mipmaps_;
+    std::vector<std::optional<MipMap>> alpha_mipmaps_;
     std::vector<std::unique_ptr<CoatingTable>> coatings_;
     std::vector<const CoatingTable*> coating_of_material_;
     std::vector<char> textured_, anisotropic_;

@@ -148,28 +148,27 @@ struct Path {
         const LightTables& lights = ps.tables.lights();
         if (lights.empty()) return;
         // Among few lights the choice takes the first number's leading digits and leaves the others for the
-        // point: one dimension less keeps point sets better stratified. Among many too few digits would be
-        // left.
+        // point: one dimension less keeps point sets better stratified.
         const bool few = lights.by_power().size() <= 64;
         Vec2f u = stream.next_2d();
-        float u_light = few ? u.x : stream.next_1d();
-        auto chosen = lights.by_power().sample(u_light);
-        if (few) u.x = chosen.remapped;
-        auto light = sample_light(ps.scene, lights, chosen.index, here, u, lambda);
+        const auto chosen = lights.by_power().sample(stream.refined(few ? u.x : stream.next_1d()));
+        const auto choice = static_cast<float>(chosen.probability);
+        if (few) u.x = std::min(static_cast<float>(chosen.remapped), largest_below_one<float>);
+        auto light = sample_light(ps.scene, ps.tables, chosen.index, here, u, lambda);
         if (!light || (!light->delta && !samples_lights())) {
             if (recorder)
                 recorder.sampled_light({.outcome = light ? Outcome::left_to_scattering : Outcome::dark,
                                         .light = chosen.index,
-                                        .choice = chosen.probability});
+                                        .choice = choice});
             return;
         }
         BsdfEvaluation e = bsdf.evaluate(wo, frame.to_local(light->wi), TransportMode::radiance, stream);
-        float light_pdf = chosen.probability * light->pdf;
+        float light_pdf = choice * light->pdf;
         auto record = [&](Outcome outcome, float weight) {
             if (recorder)
                 recorder.sampled_light({.outcome = outcome,
                                         .light = chosen.index,
-                                        .choice = chosen.probability,
+                                        .choice = choice,
                                         .delta = light->delta,
                                         .wi = light->wi,
                                         .shadow = light->shadow,

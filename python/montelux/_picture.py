@@ -64,8 +64,8 @@ class Picture:
     def layers(self) -> Mapping[str, Pixels]:
         """All layers by name: 'mean', 'standard_error', 'skewness' (of the mean), 'albedo' and 'normal' of the
         first surface, of shape (h, w, 3); 'samples', 'units' (independent parts that the error is made of),
-        'outlier', 'doubt' (not 0 where the error is rough) and 'depth', of shape (h, w). Where it was asked for also
-        'denoised', which `standard_error` does not hold for."""
+        'outlier', 'doubt' (0 where the error can be relied on; docs/images.md) and 'depth', of shape (h, w). Where it
+        was asked for also 'denoised', which `standard_error` does not hold for."""
         if self._made is None:
             self._made = MappingProxyType(self._look().layers)
         return self._made

@@ -118,7 +118,7 @@ std::optional<RenderLook> RenderJob::look(double seconds) {
 }
 
 std::shared_ptr<Image> RenderJob::developed(const Film& film, const RenderReport& report) const {
-    auto image = std::make_shared<Image>(film.develop());
+    auto image = std::make_shared<Image>(film.develop(settings_.target.slice.count > 1));
     add_render_header(*image, settings_.scene_name, *description_, *renderer_, report, film.error(),
                       clamped_luminance(film));
     return image;

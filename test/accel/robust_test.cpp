@@ -72,6 +72,64 @@ TEST(Robust, RaysLeaveTriangles) {
         40000, "triangle");
 }
 
+// Flat along one axis or two: what reaches far across adds nothing to the error along the normal. `flatness`
+// is how far the surface leaves its height, in sizes.
+void expect_small_offsets(float flatness) {
+    Draws draws(37);
+    for (int axis = 0; axis < 3; ++axis)
+        for (float size : {1e-2f, 1.0f, 1e5f})
+            for (float height : {0.0f, 0.3f, 50.0f})
+                for (bool disk : {false, true}) {
+                    Scene scene;
+                    auto place = [&](float a, float b, float c) {
+                        Vec3f p;
+                        p[axis] = height + flatness * size * c;
+                        p[(axis + 1) % 3] = size * a;
+                        p[(axis + 2) % 3] = size * b;
+                        return p;
+                    };
+                    const Vec3d axes[] = {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}};
+                    if (disk) {
+                        const Transform to_axis = axis == 2 ? Transform() : Transform::rotate(90, axes[axis]);
+                        add_shape(scene,
+                                  Quadric(Disk{.radius = size,
+                                               .world_from_object =
+                                                   Transform::translate(Vec3d(place(0, 0, 0))) * to_axis}));
+                    } else {
+                        TriangleMesh mesh;
+                        mesh.positions = {place(-1, -1, 0), place(1, -1, 1), place(0, 1, -1)};
+                        mesh.indices = {0, 1, 2};
+                        add_shape(scene, std::move(mesh));
+                    }
+                    const World world(std::move(scene));
+                    int again = 0, rays = 0;
+                    for (int i = 0; i < 20000; ++i) {
+                        const float a = draws.uniform(-0.5f, 0.5f), b = draws.uniform(-0.6f, 0.2f);
+                        Vec3f o = place(a, b, 0);
+                        o[axis] += draws.uniform(0.1f, 2) * size;
+                        Vec3f d = draws.direction();
+                        d[axis] = -std::abs(d[axis]);
+                        const Ray ray{o, d};
+                        Hit hit;
+                        if (!world.accelerator.intersect(ray, hit)) continue;
+                        const SurfacePoint s = surface_point(world.scene, ray, hit, false);
+                        ASSERT_LE(s.error, 4e-6f * (height + flatness * size) + 1e-11f * size);
+                        const Vec3f n = dot(s.ng, ray.d) < 0 ? s.ng : -s.ng;
+                        for (int k = 0; k < 4; ++k, ++rays) {
+                            const Vec3f w = leaving(draws, n);
+                            again +=
+                                world.accelerator.intersect({offset_origin(s.p, s.ng, s.error, w), w}, hit);
+                        }
+                    }
+                    EXPECT_GT(rays, 8000);
+                    EXPECT_EQ(again, 0) << axis << ' ' << size << ' ' << height << ' ' << disk;
+                }
+}
+TEST(Robust, OffsetsOfLargeFloorsAreSmall) { expect_small_offsets(0); }
+TEST(Robust, OffsetsOfGentleSlopesAreSmall) {
+    for (float flatness : {1e-7f, 1e-5f, 1e-2f}) expect_small_offsets(flatness);
+}
+
 TEST(Robust, RaysLeaveMeshesOfSpheres) {
     expect_no_self_hits([](Scene& scene, Vec3f center, float size,
                            Draws&) { add_shape(scene, geodesic_sphere(2, center, size)); },
@@ -234,8 +292,7 @@ TEST(Robust, ShadowRaysReachTheirLights) {
                     if (hit.shape != 0) continue; // from within the lamp
                     SurfacePoint s = surface_point(world.scene, ray, hit, false);
                     Vec2f u = draws.uniform_2d();
-                    auto sample =
-                        sample_light(world.scene, world.tables.lights(), 0, {s.p, s.ng, s.error}, u, lambda);
+                    auto sample = sample_light(world.scene, world.tables, 0, {s.p, s.ng, s.error}, u, lambda);
                     if (!sample) continue;
                     // A partial sphere hides some of its own points, and what lies under the floor is hidden.
                     if (dot(sample->wi, s.ng) < 1e-3f) continue;

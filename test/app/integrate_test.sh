@@ -131,7 +131,12 @@ for wait in 0.05 0.2 0.4; do
         --json | grep -v seconds >resumed
     cmp -s unbroken resumed || fail "killed after $wait s, the resumed run has other digits"
 done
-expect 1 "exists already; add --resume" integrate 'sin(x)*y' --over x,y=0:1 --checkpoint state
+expect 2 "exists already; add --resume" integrate 'sin(x)*y' --over x,y=0:1 --checkpoint state
+# The generation before alone is a checkpoint, too.
+cp state alone.previous
+expect 2 "exists already; add --resume" integrate 'sin(x)*y' --over x,y=0:1 --checkpoint alone
+cmp -s state alone.previous || fail "a refused run replaced the generation before"
+expect 0 "" integrate 'sin(x)*y' --over x,y=0:1 --method basic --evaluations 3e7 --checkpoint alone --resume
 expect 1 "belongs to another integrand, domain, method or seed" integrate x --over x=0:1 --method basic --checkpoint state --resume
 head -c 100 state >cut
 expect 1 "is cut short" integrate 'sin(x)*y' --over x,y=0:1 --method basic --checkpoint cut --resume

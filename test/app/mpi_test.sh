@@ -18,10 +18,12 @@ same() {
     [ "$(wc -c <"$2")" = "$(wc -c <"$3")" ] && [ "$(cmp -l "$2" "$3" | wc -l)" -le 4 ] ||
         fail "$1: the pictures differ in $(cmp -l "$2" "$3" | wc -l) bytes"
 }
-# told_once NAME CODE TEXT
+# told_once NAME CODE TEXT: and all ranks ended of themselves.
 told_once() {
     [ $code -eq "$2" ] || fail "$1: exit code $code instead of $2: $(cat out)"
     [ "$(grep -cF -- "$3" out)" -eq 1 ] || fail "$1: '$3' is not told once: $(cat out)"
+    [ "$(grep -c 'montelux: error: ' out)" -le 1 ] || fail "$1: more than one error is told: $(cat out)"
+    ! grep -q 'MPI_ABORT\|interrupted, nothing' out || fail "$1: ranks were killed: $(cat out)"
 }
 
 light='AttributeBegin Translate 0 3 1 AreaLightSource "diffuse" "rgb L" [9 9 9] Shape "sphere" "float radius" 0.3 AttributeEnd'
@@ -64,6 +66,14 @@ for mistake in 'render ball.pbrt --spp none' 'integrate x* --over x=0:1'; do
     [ $code -eq $? ] || fail "$mistake: exit code $code: $(cat out)"
     told_once "$mistake, rank 0 late" $code "$(head -n 1 alone)"
 done
+# Mistakes that every rank meets, when it builds the scene; and one that a rank other than 0 meets alone.
+ranks 3 render ball.pbrt --spp 4 --slice 5/9
+told_once "empty slice" 1 "montelux: error: slice: there are fewer"
+timeout 60 mpirun --oversubscribe --bind-to none -n 3 sh -c \
+    '[ "$OMPI_COMM_WORLD_RANK" != 1 ] || set -- "$@" --crop 0.5001,0.5002,0,1; exec "$@"' - \
+    "$montelux" render ball.pbrt --spp 40 -o alone.exr >out 2>&1 </dev/null
+code=$?
+told_once "a mistake of rank 1 alone" 1 "montelux: error: rank 1: "
 ranks 3 render ball.pbrt --crop 0.5001,0.5002,0,1
 told_once "empty crop" 2 "no pixel"
 ranks 3 render ball.pbrt --debug-sample 35,25,3
@@ -82,7 +92,7 @@ background() {
 }
 # rank K: the process of that rank.
 rank() {
-    for p in $(pgrep -f "^$montelux render ball.pbrt"); do
+    for p in $(pgrep -f "^$montelux render "); do
         tr '\0' '\n' <"/proc/$p/environ" 2>/dev/null | grep -qx "OMPI_COMM_WORLD_RANK=$1" &&
             grep -qxz "PWD=$PWD" "/proc/$p/environ" && echo "$p" && return
     done
@@ -167,4 +177,18 @@ kill -STOP "$(rank 1)"
 ended "a rank hangs" 10
 grep -q "error: rank 1 has said nothing for" out || fail "a rank hangs: $(cat out)"
 expect 0 '"interrupted" = 1' info many.exr
+
+# So is one that hangs before it has built the scene. Rank 0 has read it before the others get it, and renders first.
+scene slow "$sky $(yes 'Shape "sphere" "float radius" 0.01' | head -n 250000)" 70 50
+rm -f state* many.exr
+background 2 render slow.pbrt --spp 1000000 --adaptive on --threads 1 -o many.exr --checkpoint state --checkpoint-every 0.05 \
+    --rank-timeout 2
+wait_for_file state
+begin=$(now)
+kill -STOP "$(rank 1)"
+ended "a rank hangs before its beginning" 10
+[ $code -eq 1 ] || fail "a rank hangs before its beginning: exit code $code: $(cat out)"
+grep -q "error: rank 1 has said nothing for" out || fail "a rank hangs before its beginning: $(cat out)"
+expect 0 '"interrupted" = 1' info many.exr
+expect 0 'many.exr: 70 x 50' render slow.pbrt --spp 1 --adaptive on -o many.exr --checkpoint state --resume
 finish

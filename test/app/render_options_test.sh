@@ -25,6 +25,7 @@ expect 2 "--checkpoint-every requires --checkpoint" render ok.pbrt --checkpoint-
 expect 2 "--checkpoint: the name of a file is expected" render ok.pbrt --checkpoint ''
 expect 2 "--spp: '0' was given; a whole number from 1 to" render ok.pbrt --spp 0
 expect 2 "--threads: '5000'" render ok.pbrt --threads 5000
+expect 2 "--rank-timeout: '1' was given; a time of at least 2s" render ok.pbrt --rank-timeout 1
 for option in --sampler --strategy --heuristic; do
     expect 2 "$option: 'foo' was given; one of" render ok.pbrt $option foo
 done

@@ -47,6 +47,33 @@ grep -q "the errors are not known: they come from how sets of 62500 samples a pi
     fail "without errors: $(cat out)"
 "$montelux" info none.exr --json | grep -q '"relativeError": null' || fail "an unknown error in JSON is not null"
 
+# Paths in a sphere that takes no light away are long, and the first signal waits for those of a pixel. Another one
+# ends the program at once, but not one of the same second. Checkpoints stay.
+scene furnace 'Material "diffuse" "spectrum reflectance" [200 1 900 1] Shape "sphere" "float radius" 5' 2 2
+furnace="render furnace.pbrt --sampler sobol --spp 1000 --adaptive on --max-depth 1000000 --checkpoint furnace.state"
+expect 0 "time is up" $furnace --time 0.1
+cp furnace.state furnace.expected
+rm -f furnace.exr
+"$montelux" $furnace --resume >out 2>&1 &
+pid=$!
+end_later $pid
+sleep 0.5
+kill -INT $pid
+sleep 0.3
+kill -INT $pid
+sleep 0.8
+kill -0 $pid 2>/dev/null || fail "two signals within a second ended the program at once"
+begin=$(now)
+kill -INT $pid
+wait_for $pid
+milliseconds=$((($(now) - begin) / 1000000))
+[ $code -eq 130 ] || fail "a signal after another: exit code $code instead of 130"
+[ $milliseconds -lt 1000 ] || fail "a signal after another: it took $milliseconds ms to end"
+grep -q "ended at once by another signal: no result was written; checkpoints are as they were" out ||
+    fail "a signal after another: $(cat out)"
+[ -e furnace.exr ] && fail "a signal after another: a picture was written"
+cmp -s furnace.state furnace.expected || fail "a signal after another: the checkpoint is another"
+
 # While the scene is being read there is nothing to save.
 (cat long.pbrt && yes 'AttributeBegin AttributeEnd' | head -n 3000000) >slow.pbrt
 rm -f long.exr
@@ -59,6 +86,12 @@ wait_for $pid
 [ $code -eq 130 ] || fail "a signal while reading: exit code $code instead of 130"
 [ -e long.exr ] && fail "a signal while reading: a picture was written"
 
+# Files that a process has written more than 64 KiB of: they have no name, or a temporary one.
+being_written() {
+    find -L "/proc/$1/fd" -type f -size +64k
+    find . -name '.montelux-*' -size +64k
+} 2>/dev/null
+
 # Once the picture is being written, signals neither stop it nor leave a part of it behind.
 "$montelux" render long.pbrt --resolution 1200x900 --spp 1 --quiet -o large.exr >out 2>&1 &
 pid=$!
@@ -66,7 +99,7 @@ end_later $pid
 in_time=0
 while kill -0 $pid 2>/dev/null; do
     # Two of them: the first one would only have asked for an early end.
-    if find . -name '.montelux-*' -size +64k | grep -q . && kill -INT $pid && kill -INT $pid; then
+    if being_written $pid | grep -q . && kill -INT $pid && kill -INT $pid; then
         in_time=$((in_time + 1))
     fi 2>/dev/null
 done

@@ -10,7 +10,7 @@
 namespace montelux {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_evidence = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<Doubt> doubts_of(std::vector<double> variances, int width) {
     std::vector<PixelSpread> spreads;
@@ -39,14 +39,33 @@ TEST(DoubtfulPixels, RowsAreNotJoinedAtTheirEnds) {
 }
 
 TEST(DoubtfulPixels, ErrorsThatAreNotKnownSayNothing) {
-    EXPECT_EQ(doubts_of({unknown, 100, unknown}, 3), std::vector<Doubt>(3, Doubt::none));
-    EXPECT_EQ(doubts_of({1, unknown, 3.5}, 3)[0], Doubt::none);
+    using enum Doubt;
+    EXPECT_EQ(doubts_of({no_evidence, 100, no_evidence}, 3), (std::vector<Doubt>{unknown, none, unknown}));
+    EXPECT_EQ(doubts_of({1, no_evidence, 3.5}, 3), (std::vector<Doubt>{none, unknown, none}));
     EXPECT_EQ(doubts_of({7}, 1), std::vector<Doubt>(1, Doubt::none));
     EXPECT_TRUE(std::isnan(pixel_spread(2, 15, 15, 0.9).variance));
     EXPECT_FALSE(pixel_spread(2, 15, 15, 0.9).bright_unit);
     EXPECT_EQ(pixel_spread(2, 16, 16, 0.9).variance, 64);
     EXPECT_TRUE(pixel_spread(2, 16, 16, 0.9).bright_unit);
     EXPECT_FALSE(pixel_spread(2, 16, 16, 0.49).bright_unit);
+}
+
+// Pixels that nobody can judge must not look like reliable ones.
+TEST(DoubtfulPixels, TooFewUnitsAreToldApart) {
+    Film film({.width = 2, .height = 1, .crop = {0, 0, 2, 1}});
+    PhiloxStream random(3);
+    for (int x = 0; x < 2; ++x)
+        for (int k = 0; k < 15 + x; ++k) {
+            const auto v = static_cast<float>(random.next_double());
+            film.pixel(x, 0).add_sample({.radiance = {v, v, v}, .albedo = {}, .normal = {}});
+            film.pixel(x, 0).end_unit();
+        }
+    EXPECT_EQ(static_cast<int>(doubtful_pixels(film)[0]), 3);
+    EXPECT_EQ(static_cast<int>(doubtful_pixels(film)[1]), 0);
+    const Image image = film.develop();
+    EXPECT_EQ(image.value(0, 0, *image.find_channel("doubt")), 3);
+    EXPECT_EQ(outliers_of(film).unknown, 1u);
+    EXPECT_EQ(outliers_of(film).pixels, 2u);
 }
 
 // On the left all samples tell of the whole light, on the right one in 150 meets most of it: a sixth of the

@@ -28,6 +28,21 @@ TEST(FilmError, QuantileOfThePixels) {
     EXPECT_NEAR(luminance_error(film.pixel(2, 0)), 3, 1e-9);
 }
 
+TEST(FilmError, FreedomIsThatOfThePixelsThatCarryTheError) {
+    Film film = film_of(4);
+    for (int x = 0; x < 4; ++x) add(film.pixel(x, 0), {1, 3, 1, 3});
+    EXPECT_NEAR(error_freedom(film), 4 * 3, 1e-9);
+    add(film.pixel(1, 0), {1e6f});
+    EXPECT_NEAR(error_freedom(film), 4, 1e-6);
+    Film flat = film_of(2);
+    for (int x = 0; x < 2; ++x) add(flat.pixel(x, 0), {2, 2});
+    EXPECT_TRUE(std::isinf(error_freedom(flat)));
+    Film young = film_of(2);
+    add(young.pixel(0, 0), {1, 2});
+    add(young.pixel(1, 0), {1});
+    EXPECT_EQ(error_freedom(young), 0);
+}
+
 TEST(FilmError, ShareOfTheBrightestUnit) {
     Pixel pixel;
     EXPECT_EQ(pixel.largest_share(), 0);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "montelux/film/doubtful_pixels.h"
 #include "montelux/film/film.h"
 #include "montelux/film/merge_slices.h"
 #include "montelux/mc/math/error.h"
@@ -32,7 +33,7 @@ Film slice_film(int k, int n, int units) {
     return film;
 }
 Image picture(int k, int n, int units) {
-    Image image = slice_film(k, n, units).develop();
+    Image image = slice_film(k, n, units).develop(n > 1);
     image.attributes()["renderHash"] = std::string("abc");
     image.attributes()["slice"] = std::to_string(k + 1) + "/" + std::to_string(n);
     image.attributes()["badSamples"] = 2;
@@ -45,34 +46,99 @@ MergedSlices merge(const std::vector<Image>& slices, const std::vector<std::stri
     return merger.finish();
 }
 
-TEST(MergeSlices, AllLayersAreThoseOfTheWhole) {
-    const Film film = slice_film(0, 1, 40);
-    const Image whole = film.develop();
-    // Of different lengths, in another order.
-    const std::vector<Image> slices{picture(2, 3, 40), picture(0, 3, 40), picture(1, 3, 40)};
-    const std::vector<std::string> names{"c", "a", "b"};
-    const MergedSlices merged = merge(slices, names);
-    EXPECT_TRUE(merged.missing.empty());
-    ASSERT_EQ(merged.image.channel_names(), whole.channel_names());
-    for (int c = 0; c < whole.channels(); ++c) {
-        const std::string& name = whole.channel_names()[static_cast<std::size_t>(c)];
-        // The slices' own means stand for that of all in `outlier`.
-        const double tolerance = name == "outlier" ? 0.5 : 2e-6;
-        auto stands_out = [&](const Image& image, int x, int y) {
-            return image.value(x, y, *image.find_channel("outlier")) > 0.5f;
-        };
-        for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x) {
-                if (name == "doubt" && stands_out(whole, x, y) != stands_out(merged.image, x, y)) continue;
-                const double expected = whole.value(x, y, c);
-                EXPECT_NEAR(merged.image.value(x, y, c), expected, tolerance * (0.1 + std::abs(expected)))
-                    << name;
-            }
+MergedSlices merge_all(int slices, int units) {
+    std::vector<Image> pictures;
+    std::vector<std::string> names;
+    for (int k = slices - 1; k >= 0; --k) {
+        pictures.push_back(picture(k, slices, units));
+        names.push_back("slice " + std::to_string(k + 1));
     }
-    EXPECT_NEAR(merged.relative_error, film.error().relative, 1e-6);
-    EXPECT_EQ(merged.mean_samples, 40);
-    EXPECT_EQ(std::get<int>(merged.image.attributes().at("badSamples")), 6);
-    EXPECT_EQ(std::get<std::string>(merged.image.attributes().at("slice")), "1/1");
+    return merge(pictures, names);
+}
+
+// Of many units and few, of different lengths; one unit tells no spread of its own.
+TEST(MergeSlices, AllLayersAreThoseOfTheWhole) {
+    const int units = 40;
+    const Film film = slice_film(0, 1, units);
+    const Image whole = film.develop();
+    int stand_out = 0;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            stand_out += whole.value(x, y, *whole.find_channel("doubt")) == float(Doubt::bright_unit);
+    EXPECT_GT(stand_out, 1);
+    EXPECT_LT(stand_out, width * height - 1);
+    for (int slices : {1, 3, 13, 20, 39, 40}) {
+        const MergedSlices merged = merge_all(slices, units);
+        EXPECT_TRUE(merged.missing.empty());
+        ASSERT_EQ(merged.image.channel_names(), whole.channel_names());
+        for (int c = 0; c < whole.channels(); ++c)
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x) {
+                    const double expected = whole.value(x, y, c);
+                    EXPECT_NEAR(merged.image.value(x, y, c), expected, 2e-6 * (0.1 + std::abs(expected)))
+                        << whole.channel_names()[static_cast<std::size_t>(c)] << " of " << slices;
+                }
+        EXPECT_NEAR(merged.relative_error, film.error().relative, 1e-6);
+        EXPECT_EQ(merged.mean_samples, units);
+        EXPECT_EQ(std::get<int>(merged.image.attributes().at("badSamples")), 2 * slices);
+        EXPECT_EQ(std::get<std::string>(merged.image.attributes().at("slice")), "1/1");
+    }
+}
+
+// One slice meets the light, and all the others are dark.
+TEST(MergeSlices, TheBrightestUnitIsHeldAgainstTheMeanOfAll) {
+    std::vector<Image> slices;
+    std::vector<std::string> names;
+    for (int k = 0; k < 16; ++k) {
+        Film film = empty();
+        for (Pixel& p : film.pixels()) {
+            const float v = k == 5 ? 9 : 0.01f * static_cast<float>(k);
+            p.add_sample({.radiance = {v, v, v}, .albedo = {}, .normal = {}});
+            p.end_unit();
+        }
+        slices.push_back(film.develop(true));
+        slices.back().attributes()["renderHash"] = std::string("abc");
+        slices.back().attributes()["slice"] = std::to_string(k + 1) + "/16";
+        names.push_back(std::to_string(k));
+    }
+    const Image joined = merge(slices, names).image;
+    EXPECT_GT(joined.value(1, 1, *joined.find_channel("outlier")), 0.9);
+    EXPECT_EQ(joined.value(1, 1, *joined.find_channel("doubt")), float(Doubt::bright_unit));
+}
+
+// Too dark for all samples together, and the errors do not know of it.
+TEST(MergeSlices, ClampedLightIsJoined) {
+    std::vector<Image> slices{picture(0, 3, 40), picture(1, 3, 40), picture(2, 3, 40)};
+    const std::vector<std::string> names{"a", "b", "c"};
+    EXPECT_FALSE(merge(slices, names).image.attributes().contains("clampedLuminance"));
+    // As a slice that is interrupted has fewer samples.
+    for (int k = 0; k < 3; ++k) {
+        Attributes& a = slices[static_cast<std::size_t>(k)].attributes();
+        a["samplesTaken"] = k == 0 ? 4.0f : 8.0f;
+        if (k == 2) continue;
+        a["clampedLuminance"] = k == 0 ? 0.25f : 0.5f;
+        a["clampedSamples"] = k == 0 ? 70 : 30;
+    }
+    const MergedSlices merged = merge(slices, names);
+    EXPECT_NEAR(merged.clamped_luminance, (4 * 0.25 + 8 * 0.5) / 20, 1e-6);
+    EXPECT_EQ(merged.clamped_samples, 100);
+    EXPECT_NEAR(std::get<float>(merged.image.attributes().at("clampedLuminance")), 0.25f, 1e-6f);
+    EXPECT_EQ(std::get<int>(merged.image.attributes().at("clampedSamples")), 100);
+}
+
+// Pictures that are not slices lack the brightest units; nothing is lost where there is one alone.
+TEST(MergeSlices, OneWholePictureStaysWhatItIs) {
+    const Image whole = picture(0, 1, 24);
+    EXPECT_FALSE(whole.find_channel("brightest.R"));
+    const std::vector<Image> pictures{whole};
+    const std::vector<std::string> names{"whole"};
+    const Image joined = merge(pictures, names).image;
+    for (const char* layer : {"outlier", "doubt"}) {
+        const int c = *whole.find_channel(layer);
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                EXPECT_NEAR(joined.value(x, y, c), whole.value(x, y, c), 2e-6) << layer;
+    }
 }
 
 TEST(MergeSlices, MissingOnesAreTold) {

@@ -1,7 +1,7 @@
+#include "test/formats/gzip.h"
 #include <array>
 #include <gtest/gtest.h>
 #include <string>
-#include <zlib.h>
 
 #include "montelux/formats/content_hash.h"
 #include "montelux/formats/gunzip.h"
@@ -11,20 +11,6 @@
 
 namespace montelux {
 namespace {
-
-std::vector<std::uint8_t> gzip(const std::string& text) {
-    std::vector<std::uint8_t> out(text.size() + 1000);
-    z_stream z{};
-    EXPECT_EQ(deflateInit2(&z, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY), Z_OK);
-    z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
-    z.avail_in = static_cast<uInt>(text.size());
-    z.next_out = out.data();
-    z.avail_out = static_cast<uInt>(out.size());
-    EXPECT_EQ(deflate(&z, Z_FINISH), Z_STREAM_END);
-    out.resize(z.total_out);
-    deflateEnd(&z);
-    return out;
-}
 
 TEST(NearestName, FindsMisspeltNames) {
     constexpr std::array<std::string_view, 4> names = {"roughness", "uroughness", "reflectance", "fov"};
@@ -82,6 +68,20 @@ TEST(Gunzip, RefusesDamageTruncationAndBombs) {
     EXPECT_THROW(gunzip(damaged, "x", 1000), Error);
     EXPECT_THROW(gunzip(gzip(std::string(20000, 'a')), "x", 19999), Error);
     EXPECT_EQ(gunzip(gzip(std::string(20000, 'a')), "x", 20000).size(), 20000u);
+}
+
+// The proportion counts from 16 MiB on.
+TEST(Gunzip, RefusesWhatIsOutOfProportion) {
+    constexpr std::size_t free = std::size_t{16} << 20, limit = std::size_t{1} << 30;
+    EXPECT_EQ(gunzip(gzip(std::string(free, ' ')), "x", limit).size(), free);
+    EXPECT_THROW(gunzip(gzip(std::string(free + 1, ' ')), "x", limit), Error);
+    // Text that repeats itself more than any real one.
+    std::string text;
+    for (std::size_t i = 0; text.size() < 2 * free; ++i)
+        text += std::to_string(i % 100000) + std::string(500, '0') + "\n";
+    const std::vector<std::uint8_t> packed = gzip(text);
+    EXPECT_GT(text.size() / packed.size(), 30u);
+    EXPECT_EQ(gunzip(packed, "x", limit).size(), text.size());
 }
 
 } // namespace

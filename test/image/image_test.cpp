@@ -18,6 +18,16 @@ TEST(Image, KnowsItsChannelsAndSamples) {
     EXPECT_TRUE(image.color_channels("albedo.").empty());
 }
 
+// Y is the luminance of a colour there, and no grey picture.
+TEST(Image, XyzIsNotGrey) {
+    Image image = make_picture(3, 2, {"X", "Y", "Z", "stderr.X", "stderr.Y", "stderr.Z", "N.X", "N.Y"});
+    EXPECT_TRUE(image.color_channels().empty());
+    EXPECT_TRUE(image.color_channels("stderr.").empty());
+    EXPECT_EQ(make_picture(3, 2, {"Y", "A", "Z"}).color_channels(), (std::vector<int>{0})); // Z is a depth
+    EXPECT_EQ(make_picture(3, 2, {"R", "G", "B", "X", "Y", "Z"}).color_channels(),
+              (std::vector<int>{0, 1, 2}));
+}
+
 TEST(Image, RefusesImpossibleShapes) {
     expect_error([] { Image(0, 3, {"Y"}); }, {"0 x 3"});
     expect_error([] { Image(3, -1, {"Y"}); }, {"3 x -1"});

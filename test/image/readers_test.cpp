@@ -108,6 +108,18 @@ TEST(HdrFile, OldAndNewCodingAndOddHeaders) {
     EXPECT_EQ(many.value(299, 0, 0), 1);
 }
 
+// CIE XYZ, whose white (1, 1, 1) becomes that of sRGB.
+TEST(HdrFile, XyzBecomesLinearSrgb) {
+    const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 3\n";
+    // (1, 1, 1); (1, 0.5, 0.25); (0.25, 0.5, 1).
+    const Image image = read(head + raw("\x80\x80\x80\x81\x80\x40\x20\x81\x20\x40\x80\x81"));
+    EXPECT_EQ(image.channel_names(), (std::vector<std::string>{"R", "G", "B"}));
+    // By Bradford's method from the white (1/3, 1/3) to (0.3127, 0.3290), then by the primaries of BT.709.
+    const float expected[] = {1,          1,           1,          2.1933773f, -0.0077020f,
+                              0.2440550f, -0.5267614f, 0.7687628f, 1.0595855f};
+    for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(image.f32()[i], expected[i], 1e-5f) << i;
+}
+
 TEST(HdrFile, OrientationsAreTurnedUpright) {
     // Four pixels with exponents that make red 1, 2, 4, 8.
     std::string pixels = raw("\x80\0\0\x81\x80\0\0\x82\x80\0\0\x83\x80\0\0\x84");

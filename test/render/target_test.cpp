@@ -32,6 +32,41 @@ TEST(Target, ErrorIsReachedAndNotOvershot) {
         }
 }
 
+// A picture so small that its error is made of few units: looked at after each, one that is small by chance
+// would end the render far too early. The targets are shares of the error that 16 samples leave.
+TEST(Target, FewUnitsAreNotBelieved) {
+    SceneBuilder b;
+    b.description.film.width = b.description.film.height = 1;
+    b.description.film.crop = {0, 0, 1, 1};
+    b.add_quadric(Sphere{}, b.add(DiffuseMaterial{gray(0.5f)}));
+    b.add_uniform_light(1);
+    b.look({0, 0, 5}, {0, 0, 0}, 40);
+    b.description.sampler = {SamplerKind::sobol, 1, 1u << 15};
+    const RenderTarget endless{.error = 1e-9};
+    const RenderState truth = run(b.description, endless);
+    const SkewMoments<3>& units = truth.film.pixels()[0].units();
+    ASSERT_EQ(units.count(), (1u << 15) / 8);
+    auto luminance = [](const Film& film) { return film.error().mean_luminance; };
+    const double after_16 = truth.film.error().relative * std::sqrt(static_cast<double>(units.count()) / 2);
+    for (double target : {after_16 / 3, after_16 / 6})
+        for (bool adaptive : {false, true}) {
+            RunningMoments squares;
+            int at_once = 0;
+            for (std::uint64_t seed = 100; seed < 900; ++seed) {
+                b.description.sampler.seed = seed;
+                const RenderState state = run(b.description, {.error = target, .adaptive = adaptive});
+                EXPECT_EQ(state.report.stop, RenderStop::error);
+                at_once += state.report.samples <= 32;
+                squares.add(std::pow(luminance(state.film) / luminance(truth.film) - 1, 2));
+            }
+            const double ratio = std::sqrt(squares.mean()) / target;
+            RecordProperty("true error in % of the target", static_cast<int>(100 * ratio));
+            EXPECT_GT(ratio, 0.8) << adaptive;
+            EXPECT_LT(ratio, 1.2) << adaptive;
+            EXPECT_EQ(at_once, 0) << adaptive;
+        }
+}
+
 TEST(Target, SamplesThatRunOutAreSaid) {
     SceneBuilder b = mixed_scene(1, 16, 16);
     b.description.sampler.samples_per_pixel = 32;
@@ -96,25 +131,68 @@ TEST(Target, ShortIntervalsAndTimesDoNotStopTheWork) {
     for (const Pixel& p : hasty.film.pixels()) EXPECT_GT(p.samples(), 0u);
 }
 
+// One sample of each pixel is the least, whether or not an adaptive render would like more for its pilot.
+TEST(Target, TimeIsHeldFromTheFirstSampleOn) {
+    SceneBuilder b = mixed_scene(1, 40, 40);
+    b.description.sampler.samples_per_pixel = 1u << 20;
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol})
+        for (const RenderTarget& target : {RenderTarget{.seconds = 1e-6},
+                                           {.seconds = 1e-6, .adaptive = true},
+                                           {.error = 0.01, .seconds = 1e-6, .adaptive = true}}) {
+            b.description.sampler.kind = kind;
+            const RenderState state = run(b.description, target);
+            EXPECT_EQ(state.report.stop, RenderStop::time);
+            for (const Pixel& p : state.film.pixels()) EXPECT_EQ(p.samples(), 1u);
+        }
+}
+
+// Nobody sees from the picture whether a time was given that was not used up.
+TEST(Target, ATimeThatIsNotUsedUpChangesNothing) {
+    SceneBuilder b = mixed_scene(1, 12, 12);
+    b.description.sampler.samples_per_pixel = 100;
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
+        b.description.sampler.kind = kind;
+        const RenderState with = run(b.description, {.error = 1e-4, .seconds = 1e6, .adaptive = true});
+        const RenderState without = run(b.description, {.error = 1e-4, .adaptive = true});
+        EXPECT_EQ(with.report.samples, without.report.samples);
+        for (std::size_t i = 0; i < with.film.pixels().size(); ++i) {
+            const Pixel &p = with.film.pixels()[i], &q = without.film.pixels()[i];
+            EXPECT_EQ(p.samples(), q.samples());
+            for (int c = 0; c < 3; ++c) EXPECT_EQ(p.units().mean(c), q.units().mean(c));
+        }
+    }
+}
+
 // Adaptive allocation looks at the samples and must not lean on them: the mean over many seeds is that of
 // renders with equal numbers. Pixels that take few samples because their first ones were dark would show here
 // at once.
-TEST(TargetSlowTest, AdaptiveIsUnbiased) {
+void expect_unbiased(const SamplerSettings& sampler, int size, std::uint64_t seeds) {
     RunningMoments adaptive, equal;
-    for (std::uint64_t seed = 0; seed < 64; ++seed) {
-        SceneBuilder b = mixed_scene(1, 40, 40);
-        b.description.sampler.kind = SamplerKind::independent;
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        SceneBuilder b = mixed_scene(1, size, size);
+        b.description.sampler = sampler;
         b.description.sampler.seed = 1000 + seed;
-        b.description.sampler.samples_per_pixel = 64;
         adaptive.add(picture_mean(run(b.description, {.adaptive = true}).film).mean);
         b.description.sampler.seed = 2000 + seed;
         equal.add(picture_mean(run(b.description, {}).film).mean);
     }
     const double error = std::sqrt(adaptive.variance_of_mean() + equal.variance_of_mean());
-    RecordProperty("relative difference in 1e-6",
-                   static_cast<int>(1e6 * (adaptive.mean() / equal.mean() - 1)));
+    ::testing::Test::RecordProperty("relative difference in 1e-6",
+                                    static_cast<int>(1e6 * (adaptive.mean() / equal.mean() - 1)));
+    ::testing::Test::RecordProperty("its error in 1e-6", static_cast<int>(1e6 * error / equal.mean()));
     EXPECT_LT(std::abs(adaptive.mean() - equal.mean()), 5 * error);
     EXPECT_LT(error, 1e-3 * equal.mean());
+}
+
+TEST(TargetSlowTest, AdaptiveIsUnbiased) { expect_unbiased({SamplerKind::independent, 0, 64}, 40, 64); }
+
+// In the replicates that a target asks for: the first errors are made of four of them. Pixels of blue noise
+// lean on those around them, from which their numbers of samples come.
+TEST(TargetSlowTest, AdaptiveIsUnbiasedWithSobol) {
+    expect_unbiased({SamplerKind::sobol, 0, 128, 1, 8}, 56, 40);
+}
+TEST(TargetSlowTest, AdaptiveIsUnbiasedWithBlueNoise) {
+    expect_unbiased({SamplerKind::sobol_blue_noise, 0, 128, 1, 8}, 56, 40);
 }
 
 TEST(Target, SlicesAddUpToTheWhole) {

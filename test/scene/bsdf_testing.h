@@ -75,6 +75,22 @@ inline LayeredBsdf<ConductorBsdf> layered_conductor(float coat_alpha, float base
     return b;
 }
 
+// With a medium that scatters between coat and base.
+template <typename Base>
+LayeredBsdf<Base> in_fog(LayeredBsdf<Base> b, int max_depth) {
+    b.medium_albedo = SampledSpectrum(0.5f, 0.7f, 0.9f, 1.0f);
+    b.g = 0.4f;
+    b.thickness = 0.7f;
+    b.max_depth = max_depth;
+    return b;
+}
+
+template <typename Base>
+LayeredBsdf<Base> cut_at(LayeredBsdf<Base> b, int max_depth) {
+    b.max_depth = max_depth;
+    return b;
+}
+
 inline std::vector<BsdfCase> bsdf_cases() {
     SampledSpectrum eta(0.2f, 0.4f, 0.9f, 1.1f), k(3.9f, 3.0f, 2.4f, 2.1f);
     return {
@@ -123,6 +139,11 @@ inline std::vector<BsdfCase> bsdf_cases() {
         {"layered_conductor", [=] { return layered_conductor(0.2f, 0.3f); }, false},
         {"layered_conductor_smooth_coat", [=] { return layered_conductor(0, 0.3f); }, false},
         {"layered_conductor_smooth", [=] { return layered_conductor(0, 0); }, false},
+        {"layered_diffuse_depth_1", [=] { return cut_at(layered_diffuse(0.4f, 0.6f), 1); }, false},
+        {"layered_conductor_depth_3", [=] { return cut_at(layered_conductor(0.2f, 0.3f), 3); }, false},
+        {"layered_diffuse_fog", [=] { return in_fog(layered_diffuse(0.4f, 0.6f), 5); }, false},
+        {"layered_conductor_fog", [=] { return in_fog(layered_conductor(0.2f, 0.3f), 2); }, false},
+        {"layered_conductor_smooth_fog", [=] { return in_fog(layered_conductor(0, 0), 10); }, false},
     };
 }
 

@@ -95,6 +95,17 @@ TEST(Camera, EqualAreaMap) {
                                                 pinhole)
                                   .d);
     EXPECT_LT(length(sum) / (n * n), 1e-3);
+    // Filters reach over the edges: there the map goes on with what lies beyond on the sphere.
+    for (float along : {0.0f, 11.3f, 128.0f, 200.7f, 256.0f})
+        for (int side = 0; side < 4; ++side) {
+            auto direction = [&](float out) {
+                const float across = side % 2 == 0 ? -out : n + out;
+                const Point2f film = side < 2 ? Point2f{across, along} : Point2f{along, across};
+                return Vec3d(camera.generate_ray(film, pinhole).d);
+            };
+            const double step = length(direction(-1) - direction(0));
+            EXPECT_NEAR(length(direction(1) - direction(0)), step, 1e-3 * step) << along << ' ' << side;
+        }
 }
 
 // All rays of a film point meet on the plane in focus, and start all over the lens.

@@ -118,7 +118,7 @@ TEST(AreaLights, DirectionsFollowTheirDensity) {
         SceneTables tables(c.scene);
         const auto& light = std::get<AreaLight>(c.scene.lights[0]);
         auto sample = [&](Vec2f u) -> std::optional<Vec3f> {
-            auto s = sample_light(c.scene, tables.lights(), 0, origin, u, wavelengths);
+            auto s = sample_light(c.scene, tables, 0, origin, u, wavelengths);
             if (!s) return std::nullopt;
             return s->wi;
         };
@@ -149,7 +149,7 @@ TEST(AreaLights, SamplesAgreeWithHits) {
         int found = 0, samples = 0;
         for (int i = 0; i < 5000; ++i) {
             Vec2f u = uniforms.next_2f();
-            auto s = sample_light(c.scene, tables.lights(), 0, origin, u, wavelengths);
+            auto s = sample_light(c.scene, tables, 0, origin, u, wavelengths);
             if (!s) continue;
             ++samples;
             ASSERT_NEAR(length(s->wi), 1, 1e-5) << c.name;
@@ -186,7 +186,7 @@ TEST(AreaLights, OneSidedLightsAreDarkBehind) {
     for (int i = 0; i < 100; ++i)
         for (Index light : {0u, 1u, 2u}) {
             Vec2f u = uniforms.next_2f();
-            EXPECT_FALSE(sample_light(scene, tables.lights(), light, origin, u, wavelengths)) << light;
+            EXPECT_FALSE(sample_light(scene, tables, light, origin, u, wavelengths)) << light;
         }
     const auto& light = std::get<AreaLight>(scene.lights[0]);
     EXPECT_EQ(emitted_radiance(light, {0, 0, 1}, {0, 0, -1}, wavelengths)[0], 0);
@@ -214,7 +214,7 @@ TEST(InfiniteLights, DirectionsFollowTheirDensity) {
         }
         SceneTables tables(scene);
         auto sample = [&](Vec2f u) -> std::optional<Vec3f> {
-            auto s = sample_light(scene, tables.lights(), 0, origin, u, wavelengths);
+            auto s = sample_light(scene, tables, 0, origin, u, wavelengths);
             if (!s) return std::nullopt;
             return s->wi;
         };
@@ -229,7 +229,7 @@ TEST(InfiniteLights, DirectionsFollowTheirDensity) {
         int differing = 0;
         for (int i = 0; i < 5000; ++i) {
             Vec2f u = uniforms.next_2f();
-            auto s = sample_light(scene, tables.lights(), 0, origin, u, wavelengths);
+            auto s = sample_light(scene, tables, 0, origin, u, wavelengths);
             ASSERT_TRUE(s);
             ASSERT_FALSE(s->delta);
             ASSERT_TRUE(std::isinf(s->shadow.t_max));
@@ -263,7 +263,7 @@ TEST(InfiniteLights, MapsIntegrateToTheirMean) {
     TestUniforms uniforms(3);
     RunningMoments m;
     for (int i = 0; i < 20000; ++i) {
-        auto s = sample_light(scene, tables.lights(), 0, origin, uniforms.next_2f(), wavelengths);
+        auto s = sample_light(scene, tables, 0, origin, uniforms.next_2f(), wavelengths);
         if (s) m.add(double(s->radiance[0] / white[0] / s->pdf));
     }
     // Grey texels: density and radiance rise together, and the estimate has hardly any noise.
@@ -278,7 +278,7 @@ TEST(PointLights, InverseSquareAndFalloff) {
     scene.lights.push_back(DistantLight{Spectrum(1.0f), 5, normalize(Vec3f{1, 2, 2})});
     SceneTables tables(scene);
     auto at = [&](Index light, Point3f p) {
-        return sample_light(scene, tables.lights(), light, {p, {0, 0, 1}, 0}, {0.3f, 0.8f}, wavelengths);
+        return sample_light(scene, tables, light, {p, {0, 0, 1}, 0}, {0.3f, 0.8f}, wavelengths);
     };
     auto point = at(0, {0, 0, 0});
     ASSERT_TRUE(point && point->delta);

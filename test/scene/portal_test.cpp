@@ -78,7 +78,7 @@ void for_each_view(const auto& f) {
             SCOPED_TRACE(v.name + ", light " + std::to_string(kind));
             const Scene scene = scene_with(kind, v.portal);
             const SceneTables tables(scene, settings_of(kind));
-            f(v, scene, tables.lights(), settings_of(kind).lookup);
+            f(v, scene, tables, settings_of(kind).lookup);
         }
 }
 
@@ -138,7 +138,8 @@ TEST(Portals, AnglesAndSolidAnglesAgree) {
 }
 
 TEST(Portals, DirectionsFollowTheirDensity) {
-    for_each_view([](const View& v, const Scene& scene, const LightTables& lights, EnvironmentLookup) {
+    for_each_view([](const View& v, const Scene& scene, const SceneTables& tables, EnvironmentLookup) {
+        const LightTables& lights = tables.lights();
         const Window2D seen = *v.portal.window(v.from);
         const Vec2d extent = seen.upper - seen.lower;
         constexpr int cells = 8, samples = 40000;
@@ -166,7 +167,7 @@ TEST(Portals, DirectionsFollowTheirDensity) {
         for (double& e : expected) e /= all;
         TestUniforms draws(3);
         for (int i = 0; i < samples; ++i) {
-            const auto s = sample_light(scene, lights, 0, at(v.from), draws.next_2f(), wavelengths);
+            const auto s = sample_light(scene, tables, 0, at(v.from), draws.next_2f(), wavelengths);
             const auto a = s ? v.portal.angles(Vec3d(s->wi)) : std::nullopt;
             const bool inside = a && seen.contains(*a);
             counts.at(inside ? cell_of(*a) : cells * cells) += 1;
@@ -177,7 +178,7 @@ TEST(Portals, DirectionsFollowTheirDensity) {
         TestUniforms uniforms(9);
         int differing = 0;
         for (int i = 0; i < 2000; ++i) {
-            const auto s = sample_light(scene, lights, 0, at(v.from), uniforms.next_2f(), wavelengths);
+            const auto s = sample_light(scene, tables, 0, at(v.from), uniforms.next_2f(), wavelengths);
             ASSERT_TRUE(s);
             ASSERT_FALSE(s->delta);
             ASSERT_TRUE(std::isinf(s->shadow.t_max));
@@ -195,7 +196,8 @@ TEST(Portals, DirectionsFollowTheirDensity) {
 
 // The whole density lies in the portal, and the light of other directions is black.
 TEST(Portals, NothingComesBesideThePortal) {
-    for_each_view([](const View& v, const Scene& scene, const LightTables& lights, EnvironmentLookup) {
+    for_each_view([](const View& v, const Scene& scene, const SceneTables& tables, EnvironmentLookup) {
+        const LightTables& lights = tables.lights();
         TestUniforms uniforms(5);
         int inside = 0;
         for (int i = 0; i < 4000; ++i) {
@@ -229,7 +231,7 @@ TEST(Portals, OtherSideAndPlaneAreDark) {
         for (Point3f p : {Point3f{0, 0, 0.5f}, {0, 0, 0}, {3, 0.5f, 0}, {9, 9, 20}})
             for (int i = 0; i < 100; ++i) {
                 const Vec2f u = uniforms.next_2f();
-                EXPECT_FALSE(sample_light(scene, tables.lights(), 0, at(p), u, wavelengths));
+                EXPECT_FALSE(sample_light(scene, tables, 0, at(p), u, wavelengths));
                 const Vec3f w = normalize(Vec3f{u.x - 0.5f, u.y - 0.5f, i % 2 == 0 ? 0.3f : -0.3f});
                 EXPECT_EQ(infinite_light_pdf(scene, tables.lights(), 0, p, w), 0);
                 EXPECT_TRUE(is_black(infinite_radiance(scene, tables.lights(), 0, p, w, wavelengths)));
@@ -276,7 +278,7 @@ double irradiance_over_portal(const View& v, Vec3d n, const auto& radiance) {
 // 256 estimates of 256 samples each.
 TEST(Portals, IrradianceIsThatOfTheMapSeenThroughIt) {
     const SampledSpectrum white = RgbIlluminantSpectrum(RgbColorSpace::srgb(), {1, 1, 1}).sample(wavelengths);
-    for_each_view([&](const View& v, const Scene& scene, const LightTables& lights,
+    for_each_view([&](const View& v, const Scene& scene, const SceneTables& tables,
                       EnvironmentLookup lookup) {
         const Window2D seen = *v.portal.window(v.from);
         const Vec3d n = normalize(v.portal.direction((seen.lower + seen.upper) / 2.0) +
@@ -310,7 +312,7 @@ TEST(Portals, IrradianceIsThatOfTheMapSeenThroughIt) {
             TestUniforms uniforms(100 + seed);
             double sum = 0;
             for (int i = 0; i < 256; ++i) {
-                const auto s = sample_light(scene, lights, 0, at(v.from), uniforms.next_2f(), wavelengths);
+                const auto s = sample_light(scene, tables, 0, at(v.from), uniforms.next_2f(), wavelengths);
                 if (s)
                     sum += std::max(0.0, dot(Vec3d(s->wi), n)) *
                            static_cast<double>(s->radiance[0] / s->pdf) / unit;

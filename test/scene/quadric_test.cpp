@@ -12,6 +12,34 @@
 namespace montelux {
 namespace {
 
+// Two points that are close to one another differ by what the derivatives say of their coordinates.
+TEST(Quadrics, DerivativesAreThoseOfTheCoordinates) {
+    const Transform place = Transform::translate({1, 2, 3}) * Transform::rotate(40, {1, -2, 0.5}) *
+                            Transform::scale({2, -0.7, 1.3});
+    const Quadric quadrics[] = {
+        Sphere{.radius = 2, .z_min = -2, .z_max = 2, .world_from_object = place},
+        Sphere{.radius = 2, .z_min = -1, .z_max = 1.5f, .phi_max = 0.8f, .world_from_object = place},
+        Disk{.height = 0.5f, .radius = 2, .world_from_object = place},
+        Disk{.radius = 2, .inner_radius = 0.5f, .phi_max = 3, .world_from_object = place}};
+    TestUniforms u(3);
+    for (const Quadric& quadric : quadrics)
+        for (int i = 0; i < 200; ++i) {
+            const Vec2f at{0.1f + 0.8f * u.next_float(), 0.1f + 0.8f * u.next_float()};
+            auto point = [&](float dx, float dy) {
+                const Vec3d p = sample_area(quadric, {at.x + dx, at.y + dy}).point.p;
+                // Through the point and along its normal: floats of the ray are far coarser than the step.
+                return point_at(quadric, {Vec3f(p), {0, 0, 1}}, 0, true);
+            };
+            const QuadricPoint p = point(0, 0);
+            for (const auto& [dx, dy] : {Vec2f{1e-2f, 0}, Vec2f{0, 1e-2f}}) {
+                const QuadricPoint a = point(-dx, -dy), b = point(dx, dy);
+                const Vec2d uv = Vec2d(b.uv) - Vec2d(a.uv);
+                const Vec3d step = b.p - a.p;
+                EXPECT_LT(length(step - (uv.x * p.dpdu + uv.y * p.dpdv)), 0.01 * length(step) + 1e-5);
+            }
+        }
+}
+
 TEST(Quadrics, AreasInClosedForm) {
     Transform twice = Transform::rotate(30, {1, 2, 3}) * Transform::scale({2, -2, 2});
     EXPECT_NEAR(world_area(Sphere{.radius = 1.5f, .z_min = -1.5f, .z_max = 1.5f, .world_from_object = {}}),

@@ -42,7 +42,7 @@ void expect_directions_by_their_density(Scene scene) {
     for (Index light : {0u, 1u}) {
         int none = 0;
         auto sample = [&](Vec2f u) -> std::optional<Vec3f> {
-            auto s = sample_light(scene, tables.lights(), light, eye, u, some_wavelengths);
+            auto s = sample_light(scene, tables, light, eye, u, some_wavelengths);
             none += !s;
             if (!s) return std::nullopt;
             return s->wi;
@@ -78,7 +78,7 @@ TEST(SkyLights, SamplesAreWhatRaysFind) {
             constexpr int samples = 5000;
             for (int i = 0; i < samples; ++i) {
                 const Vec2f u = uniforms.next_2f();
-                const auto s = sample_light(scene, tables.lights(), light, eye, u, some_wavelengths);
+                const auto s = sample_light(scene, tables, light, eye, u, some_wavelengths);
                 if (!s) {
                     ++hidden;
                     continue;
@@ -121,7 +121,7 @@ TEST(SkyLights, GiveTheGroundTheIrradianceOfTheModel) {
             RunningMoments m;
             for (int i = 0; i < 40000; ++i) {
                 const Vec2f u = uniforms.next_2f();
-                const auto s = sample_light(scene, tables.lights(), light, eye, u, some_wavelengths);
+                const auto s = sample_light(scene, tables, light, eye, u, some_wavelengths);
                 m.add(s ? double(s->radiance[0] / s->pdf) * std::max(0.0, double(dot(s->wi, up))) / 3 : 0.0);
             }
             // The nearest nanometre against the wavelength.

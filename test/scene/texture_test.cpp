@@ -299,6 +299,53 @@ TEST_F(FloatTextures, ImagesScaleAndInvert) {
     EXPECT_FLOAT_EQ(value(add(mean), at({0.5f, 0.5f})), 0.3f);
 }
 
+// pbrt-v4 undoes the encoding for alpha, too.
+TEST_F(FloatTextures, TakeTheAlphaWhereTheyAreToldTo) {
+    for (PixelFormat format : {PixelFormat::u8, PixelFormat::u16}) {
+        scene_.images.clear();
+        Image& leaf = scene_.images.emplace_back(2, 2, std::vector<std::string>{"R", "G", "B", "A"}, format,
+                                                 ColorEncoding::srgb());
+        for (int y = 0; y < 2; ++y)
+            for (int x = 0; x < 2; ++x) {
+                const std::size_t i = leaf.index(x, y, 3);
+                const int alpha = x == 0 ? 255 : y == 0 ? 188 : 0;
+                if (format == PixelFormat::u8)
+                    leaf.u8()[i] = static_cast<std::uint8_t>(alpha);
+                else
+                    leaf.u16()[i] = static_cast<std::uint16_t>(alpha * 257);
+            }
+        ImageTexture t;
+        t.image = 0;
+        t.filter = TextureFilter::point;
+        const double gray = srgb_to_linear(188.0 / 255);
+        EXPECT_EQ(value(add(t), at(center(leaf, 0, 0))), 0);
+        t.channels = ImageChannels::alpha;
+        EXPECT_EQ(value(add(t), at(center(leaf, 0, 0))), 1);
+        EXPECT_NEAR(value(add(t), at(center(leaf, 1, 0))), gray, 1e-6);
+        EXPECT_EQ(value(add(t), at(center(leaf, 1, 1))), 0);
+        for (TextureFilter filter : {TextureFilter::bilinear, TextureFilter::trilinear, TextureFilter::ewa}) {
+            t.filter = filter;
+            TextureContext far = at({0.5f, 0.5f});
+            far.duvdx = {4, 0};
+            far.duvdy = {0, 4};
+            EXPECT_NEAR(value(add(t), far), (2 + gray) / 4, 1e-5) << static_cast<int>(filter);
+        }
+    }
+}
+
+// The largest image that may be read: products of its size and a place pass 2^31.
+TEST(MipMap, CoarserLevelsOfTheWidestImage) {
+    Image wide(Image::max_dimension, 1, {"Y"}, PixelFormat::u8);
+    for (std::uint8_t& v : wide.u8()) v = 255;
+    const MipMap pyramid(wide);
+    for (float width : {1e-5f, 4e-5f, 1e-3f, 0.1f, 1.0f})
+        for (float x : {0.0f, 0.5f, 0.99999f})
+            EXPECT_EQ(
+                pyramid.lookup({x, 0.5f}, {width, 0}, {0, 0}, TextureFilter::trilinear, TextureWrap::clamp, 8)
+                    .x,
+                1);
+}
+
 TEST(SpectrumTextures, AreReadAsTheyAreMeant) {
     Scene scene;
     Image image(1, 1, {"R", "G", "B"});

@@ -24,8 +24,6 @@ struct MaterialReference {
     std::size_t index = 0; // of the declaration, or of the name
 };
 
-using Defaults = std::shared_ptr<const std::vector<Parameter>>;
-
 // Small, since it is copied for each AttributeBegin: large parts are shared and replaced, never changed.
 struct GraphicsState {
     std::shared_ptr<const TransformPair> ctm = std::make_shared<TransformPair>();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "montelux/formats/nearest_name.h"
+#include "montelux/formats/pbrt/float_range.h"
 #include "montelux/image/image_read.h"
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
@@ -26,9 +27,15 @@ float photometric_scale(const Spectrum& s, ParameterReader& r) {
 
 Vec3f direction(ParameterReader& r, Vec3f v) {
     float l = length(v);
-    if (!(l > 0) || !std::isfinite(l))
-        r.error("'from' and 'to' are the same point: the light has no direction");
+    if (!std::isfinite(l)) r.error("the light's direction is not finite in world space");
+    if (!(l > 0)) r.error("'from' and 'to' are the same point: the light has no direction");
     return v / l;
+}
+
+Point3f place(ParameterReader& r, const Transform& world_from_light, Vec3f from) {
+    const Vec3d p = world_from_light.point(Vec3d(from));
+    if (!fits_float(p)) r.error("the light lies at infinity in world space");
+    return Vec3f(p);
 }
 
 // What pbrt takes for the illuminance of a map on an upward-facing (+z) patch: the mean over the sphere of
@@ -102,7 +109,7 @@ Light LightReader::read(const Plugin& plugin, const Transform& world_from_light,
         float power = r.number("power", -1);
         if (power > 0) s.scale *= power / (4 * pi_f);
         Vec3f from = r.point3("from").value_or(Vec3f());
-        light = PointLight{s.spectrum, s.scale, world_from_light.point(from)};
+        light = PointLight{s.spectrum, s.scale, place(r, world_from_light, from)};
     } else if (plugin.name == "spot") {
         Source s = source(r, "I", color_space);
         float cone = r.number("coneangle", 30), delta = r.number("conedeltaangle", 5);
@@ -121,7 +128,7 @@ Light LightReader::read(const Plugin& plugin, const Transform& world_from_light,
         Vec3f axis = direction(r, world_from_light.vector(direction(r, to - from)));
         light = SpotLight{s.spectrum,
                           s.scale,
-                          world_from_light.point(from),
+                          place(r, world_from_light, from),
                           axis,
                           static_cast<float>(start),
                           static_cast<float>(end)};
@@ -133,10 +140,10 @@ Light LightReader::read(const Plugin& plugin, const Transform& world_from_light,
         Vec3f to = r.point3("to").value_or(Vec3f(0, 0, 1));
         Vec3f to_light = direction(r, world_from_light.vector(direction(r, from - to)));
         light = DistantLight{s.spectrum, s.scale, to_light};
-    } else if (plugin.name == "infinite") {
-        light = infinite(r, world_from_light, color_space);
-    } else if (plugin.name == "sky") {
-        light = sky(r, world_from_light);
+    } else if (plugin.name == "infinite" || plugin.name == "sky") {
+        if (!turns_in_floats(world_from_light))
+            r.error("the light's transformation is beyond what single-precision numbers hold");
+        light = plugin.name == "sky" ? sky(r, world_from_light) : infinite(r, world_from_light, color_space);
     } else if (plugin.name == "goniometric" || plugin.name == "projection") {
         r.error("light " + in_quotes(plugin.name) + " is not supported yet");
     } else {
@@ -211,7 +218,8 @@ Index LightReader::environment(const std::string& file, Location at) {
                                       " pixels and is taken for a latitude-longitude map; pbrt-v4 wants it "
                                       "converted ('imgtool makeequiarea')");
         Image map = rgb_map(picture);
-        if (map.empty()) diagnostics_.error(at, path.string() + " has neither channels R, G and B nor Y");
+        if (map.empty())
+            diagnostics_.error(at, path.string() + " has neither channels R, G and B nor Y alone");
         bool negative = false, black = true;
         for (float& v : map.f32()) {
             if (!std::isfinite(v)) diagnostics_.error(at, path.string() + " has a pixel that is not finite");

@@ -117,16 +117,20 @@ void read_bracketed(Tokenizer& tokens, Parameter& p, Location open, Diagnostics&
 std::string_view name_of(ParameterType type) { return type_names[static_cast<std::size_t>(type)]; }
 
 const Parameter* ParameterList::find(std::string_view name) const {
-    for (const auto* list : {&own_, &defaults_})
-        for (auto p = list->rbegin(); p != list->rend(); ++p)
-            if (p->name == name) return &*p;
+    for (auto p = own_.rbegin(); p != own_.rend(); ++p)
+        if (p->name == name) return &*p;
+    if (!defaults_) return nullptr;
+    for (auto p = defaults_->rbegin(); p != defaults_->rend(); ++p)
+        if ((*p)->name == name) return p->get();
     return nullptr;
 }
 
-const Parameter* ParameterList::find(std::string_view name, ParameterType type) const {
-    for (const auto* list : {&own_, &defaults_})
-        for (auto p = list->rbegin(); p != list->rend(); ++p)
-            if (p->name == name && p->type == type) return &*p;
+const Parameter* ParameterList::find_default(std::string_view name,
+                                             std::span<const ParameterType> types) const {
+    if (!defaults_) return nullptr;
+    for (auto p = defaults_->rbegin(); p != defaults_->rend(); ++p)
+        if ((*p)->name == name && std::find(types.begin(), types.end(), (*p)->type) != types.end())
+            return p->get();
     return nullptr;
 }
 

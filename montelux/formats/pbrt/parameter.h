@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,24 +49,31 @@ struct Parameter {
     std::size_t value_count() const { return numbers.size() + integers.size() + strings.size(); }
 };
 
-// The parameters of one directive, in the file's order, with the defaults that an Attribute directive gave
-// behind them: of several with the same name and type, own ones win, and the last of each.
+// What Attribute directives gave, in the file's order, one of each name and type. Shared: it is kept with
+// every directive that it holds for.
+using Defaults = std::shared_ptr<const std::vector<std::shared_ptr<const Parameter>>>;
+
+// The parameters of one directive, in the file's order, with the defaults behind them: of several with the
+// same name own ones win, and the last of each.
 class ParameterList {
   public:
     ParameterList() = default;
     explicit ParameterList(std::vector<Parameter> own) : own_(std::move(own)) {}
-    ParameterList(std::vector<Parameter> own, std::vector<Parameter> defaults, PluginKind kind)
+    // `defaults` may be null.
+    ParameterList(std::vector<Parameter> own, Defaults defaults, PluginKind kind)
         : own_(std::move(own)), defaults_(std::move(defaults)), kind_(kind) {}
 
     const std::vector<Parameter>& own() const { return own_; }
     // Of plugins that take defaults.
     std::optional<PluginKind> kind() const { return kind_; }
-    // Null when there is none with that name (and type).
+    // Null when there is none with that name.
     const Parameter* find(std::string_view name) const;
-    const Parameter* find(std::string_view name, ParameterType type) const;
+    // The last default with that name and one of these types, or null.
+    const Parameter* find_default(std::string_view name, std::span<const ParameterType> types) const;
 
   private:
-    std::vector<Parameter> own_, defaults_;
+    std::vector<Parameter> own_;
+    Defaults defaults_;
     std::optional<PluginKind> kind_;
 };
 

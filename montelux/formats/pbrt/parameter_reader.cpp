@@ -25,19 +25,31 @@ Location ParameterReader::at(std::string_view name) const {
 
 const Parameter* ParameterReader::any(std::string_view name, std::initializer_list<ParameterType> types) {
     know(name);
-    const Parameter* best = nullptr;
-    for (ParameterType type : types)
-        if (const Parameter* p = list_.find(name, type); p && !best) best = p;
-    if (best) return best;
-    const Parameter* other = list_.find(name);
-    if (!other) return nullptr;
-    std::string expected;
-    for (const ParameterType* type = types.begin(); type != types.end(); ++type) {
-        if (type != types.begin()) expected += type + 1 == types.end() ? " or " : ", ";
-        expected += name_of(*type);
+    const Parameter* last = nullptr;
+    for (const Parameter& p : list_.own()) {
+        if (p.name != name) continue;
+        if (std::find(types.begin(), types.end(), p.type) == types.end()) wrong_type(p, types);
+        // Of the same type twice is told where the parameters are read.
+        if (last && last->type != p.type)
+            diagnostics_.warn(p.at, "parameter " + in_quotes(name) + " is given as " +
+                                        std::string(name_of(last->type)) + " and as " +
+                                        std::string(name_of(p.type)) + "; the last one counts");
+        last = &p;
     }
-    diagnostics_.error(other->at, "parameter " + in_quotes(name) + " has type " +
-                                      std::string(name_of(other->type)) + "; expected " + expected);
+    if (last) return last;
+    if (const Parameter* p = list_.find_default(name, types)) return p;
+    if (const Parameter* other = list_.find(name)) wrong_type(*other, types);
+    return nullptr;
+}
+
+void ParameterReader::wrong_type(const Parameter& p, std::span<const ParameterType> types) const {
+    std::string expected;
+    for (std::size_t i = 0; i < types.size(); ++i) {
+        if (i > 0) expected += i + 1 == types.size() ? " or " : ", ";
+        expected += name_of(types[i]);
+    }
+    diagnostics_.error(p.at, "parameter " + in_quotes(p.name) + " has type " + std::string(name_of(p.type)) +
+                                 "; expected " + expected);
 }
 
 const Parameter* ParameterReader::ignored(std::string_view name) {
@@ -45,14 +57,22 @@ const Parameter* ParameterReader::ignored(std::string_view name) {
     return list_.find(name);
 }
 
+void ParameterReader::check_count(const Parameter& p, std::size_t count) const {
+    if (p.value_count() != count)
+        diagnostics_.error(
+            p.at, "parameter " + in_quotes(p.name) + " has " + std::to_string(p.value_count()) +
+                      (p.value_count() == 1 ? " value" : " values") + "; expected " + std::to_string(count));
+}
+
 const Parameter* ParameterReader::one(std::string_view name, ParameterType type, std::size_t count) {
     const Parameter* p = any(name, {type});
-    if (p && p->value_count() != count)
-        diagnostics_.error(p->at, "parameter " + in_quotes(name) + " has " +
-                                      std::to_string(p->value_count()) +
-                                      (p->value_count() == 1 ? " value" : " values") + "; expected " +
-                                      std::to_string(count));
+    if (p) check_count(*p, count);
     return p;
+}
+
+float ParameterReader::number_of(const Parameter& p) const {
+    check_count(p, 1);
+    return p.numbers[0];
 }
 
 std::optional<float> ParameterReader::number(std::string_view name) {

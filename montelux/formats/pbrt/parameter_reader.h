@@ -13,14 +13,17 @@
 
 namespace montelux::pbrt {
 
-// Every getter names a parameter and gives its value or nothing. A parameter of that name but another type is
-// an error ("parameter 'fov' has type integer; expected float"), and so is a wrong number of values.
+// Every getter names a parameter and gives its value or nothing. One that the directive has in another type
+// is an error ("parameter 'fov' has type integer; expected float"), and so is a wrong number of values. A
+// default of another type is passed over where another default fits: it may be meant for another plugin.
 class ParameterReader {
   public:
     // `plugin` is what messages call it, such as "camera 'perspective'"; `at` is where its directive stands.
     ParameterReader(const ParameterList& list, std::string plugin, Location at, Diagnostics& diagnostics);
 
     std::optional<float> number(std::string_view name);
+    // The number of a parameter that `any` gave.
+    float number_of(const Parameter& p) const;
     std::optional<int> integer(std::string_view name);
     std::optional<bool> boolean(std::string_view name);
     std::optional<std::string> string(std::string_view name);
@@ -31,7 +34,7 @@ class ParameterReader {
     std::span<const float> numbers(std::string_view name, ParameterType type, std::size_t group = 1);
     std::span<const std::int32_t> integers(std::string_view name);
 
-    // The parameter if it is there with one of these types.
+    // The parameter if it is there with one of these types. That one has several of them is told.
     const Parameter* any(std::string_view name, std::initializer_list<ParameterType> types);
     // For parameters that change nothing here: known, and whether it was given.
     const Parameter* ignored(std::string_view name);
@@ -62,6 +65,8 @@ class ParameterReader {
   private:
     std::optional<Vec3f> triple(std::string_view name, ParameterType type);
     const Parameter* one(std::string_view name, ParameterType type, std::size_t count = 1);
+    void check_count(const Parameter& p, std::size_t count) const;
+    [[noreturn]] void wrong_type(const Parameter& p, std::span<const ParameterType> types) const;
     void know(std::string_view name);
 
     const ParameterList& list_;

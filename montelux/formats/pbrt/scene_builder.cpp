@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "montelux/formats/nearest_name.h"
+#include "montelux/formats/pbrt/float_range.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
 namespace montelux::pbrt {
@@ -93,17 +94,28 @@ void SceneBuilder::object_end(Location at) {
 void SceneBuilder::object_instance(const std::string& name, Location at) {
     require_world("ObjectInstance", at);
     if (open_object_ != no_index) diagnostics_.error(at, "ObjectInstance inside an object's definition");
+    if (!fits_float(still_transform(at)))
+        diagnostics_.error(at, "the instance's transformation is beyond what single-precision numbers hold");
     instances_.push_back({name, still_transform(at), at});
 }
 
 SceneBuilder::Import SceneBuilder::begin_import(Location at) {
     require_world("Import", at);
-    return {state_, std::exchange(block_floor_, blocks_.size())};
+    ++open_imports_;
+    return {state_, std::exchange(block_floor_, blocks_.size()), replaced_systems_.size()};
 }
 
 void SceneBuilder::end_import(Import import) {
     if (blocks_.size() > block_floor_)
         diagnostics_.error(blocks_.back().at, "this block is not closed in the imported file");
+    for (; replaced_systems_.size() > import.replaced_systems; replaced_systems_.pop_back()) {
+        auto& [name, before] = replaced_systems_.back();
+        if (before)
+            coordinate_systems_[name] = std::move(before);
+        else
+            coordinate_systems_.erase(name);
+    }
+    --open_imports_;
     block_floor_ = import.outer_floor;
     state_ = std::move(import.state);
 }
@@ -138,7 +150,11 @@ void SceneBuilder::active_transform(std::string_view which, Location at) {
     state_.end_active = which != "StartTime";
 }
 
-void SceneBuilder::coordinate_system(const std::string& name) { coordinate_systems_[name] = state_.ctm; }
+void SceneBuilder::coordinate_system(const std::string& name) {
+    auto& system = coordinate_systems_[name];
+    if (open_imports_ > 0) replaced_systems_.emplace_back(name, system);
+    system = state_.ctm;
+}
 
 void SceneBuilder::coordinate_system_transform(const std::string& name, Location at) {
     auto found = coordinate_systems_.find(name);
@@ -174,6 +190,8 @@ void SceneBuilder::set_option(std::optional<Plugin>& option, Plugin plugin, std:
 void SceneBuilder::set_camera(Plugin plugin) {
     Location at = plugin.at;
     set_option(camera_, std::move(plugin), "Camera");
+    if (!fits_float(still_transform(at)))
+        diagnostics_.error(at, "the camera's transformation is beyond what single-precision numbers hold");
     result_.scene.camera.world_from_camera = still_transform(at).inverse();
     const Transform& t = result_.scene.camera.world_from_camera;
     coordinate_systems_["camera"] = std::make_shared<TransformPair>(TransformPair{t, t});
@@ -195,7 +213,25 @@ void SceneBuilder::set_accelerator(const Plugin& plugin) {
         "'Accelerator' is ignored: the ray tracer builds its own; the picture is the same");
 }
 
+namespace {
+
+// pbrt's own: '-' and '_' left out, in small letters.
+std::string normalized(std::string_view name) {
+    std::string result;
+    for (char c : name)
+        if (c != '-' && c != '_') result += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return result;
+}
+
+} // namespace
+
 void SceneBuilder::set_render_option(const Parameter& p) {
+    auto expect_one = [&](ParameterType type, const char* what) {
+        if (p.type != type || p.value_count() != 1)
+            diagnostics_.error(p.at, "option " + in_quotes(p.name) + " has type " +
+                                         std::string(name_of(p.type)) + "; expected 1 " + what);
+    };
+    const std::string option = normalized(p.name);
     constexpr std::array<std::string_view, 11> names = {"disablepixeljitter",
                                                         "disabletexturefiltering",
                                                         "disablewavelengthjitter",
@@ -207,18 +243,24 @@ void SceneBuilder::set_render_option(const Parameter& p) {
                                                         "rendercoordsys",
                                                         "seed",
                                                         "wavefront"};
-    if (p.name == "seed") {
-        if (p.type != ParameterType::integer || p.integers.size() != 1)
-            diagnostics_.error(p.at, "option 'seed' has type " + std::string(name_of(p.type)) +
-                                         "; expected 1 integer");
+    if (option == "seed") {
+        expect_one(ParameterType::integer, "integer");
         seed_ = static_cast<std::uint32_t>(p.integers[0]);
         return;
     }
     // The space that coordinates are computed in changes nothing here.
-    if (p.name == "rendercoordsys") return;
+    if (option == "rendercoordsys") {
+        expect_one(ParameterType::string, "string");
+        constexpr std::array<std::string_view, 3> systems = {"camera", "cameraworld", "world"};
+        if (std::find(systems.begin(), systems.end(), p.strings[0]) == systems.end())
+            diagnostics_.error(p.at, "option " + in_quotes(p.name) + " is " + in_quotes(p.strings[0]) +
+                                         "; expected one of camera, cameraworld, world" +
+                                         did_you_mean(p.strings[0], systems));
+        return;
+    }
     for (std::string_view name : names)
-        if (p.name == name) {
-            diagnostics_.warn_once("option " + p.name, p.at,
+        if (option == name) {
+            diagnostics_.warn_once("option " + option, p.at,
                                    "option " + in_quotes(p.name) + " is not supported; it is ignored");
             return;
         }
@@ -240,25 +282,27 @@ void SceneBuilder::add_defaults(std::string_view target, std::vector<Parameter> 
                                    "; expected shape, light, material, medium or texture" +
                                    did_you_mean(target, plugin_kind_names));
     auto kind = static_cast<PluginKind>(found - plugin_kind_names.begin());
+    if (parameters.empty()) return;
     Defaults& defaults = state_.defaults[static_cast<std::size_t>(kind)];
-    auto list = std::make_shared<std::vector<Parameter>>();
+    auto list = std::make_shared<std::vector<std::shared_ptr<const Parameter>>>();
     if (defaults) *list = *defaults;
     for (Parameter& p : parameters) {
         // A name may fit plugins other than those that follow, but one that fits none is a mistake.
-        if (has_parameter(kind, p.name))
-            list->push_back(std::move(p));
-        else
+        if (has_parameter(kind, p.name)) {
+            // One of each name and type: else a file that repeats an Attribute would fill the memory.
+            std::erase_if(*list, [&](const auto& old) { return old->name == p.name && old->type == p.type; });
+            list->push_back(std::make_shared<const Parameter>(std::move(p)));
+        } else {
             diagnostics_.warn_once("Attribute " + std::string(target) + "/" + p.name, p.at,
                                    "no " + std::string(target) + " has a parameter " + in_quotes(p.name) +
                                        did_you_mean(p.name, parameter_names(kind)) + "; it is ignored");
+        }
     }
-    if (list->size() > 10000) diagnostics_.error(at, "more than 10000 default parameters");
     defaults = std::move(list);
 }
 
 ParameterList SceneBuilder::with_defaults(std::vector<Parameter> own, PluginKind kind) const {
-    const Defaults& defaults = state_.defaults[static_cast<std::size_t>(kind)];
-    return {std::move(own), defaults ? *defaults : std::vector<Parameter>(), kind};
+    return {std::move(own), state_.defaults[static_cast<std::size_t>(kind)], kind};
 }
 
 void SceneBuilder::medium_interface(std::string_view inside, std::string_view outside, Location at) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "montelux/formats/pbrt/graphics_state.h"
@@ -32,6 +33,7 @@ class SceneBuilder {
     struct Import {
         GraphicsState state;
         std::size_t outer_floor;
+        std::size_t replaced_systems;
     };
     Import begin_import(Location at);
     void end_import(Import import);
@@ -122,6 +124,9 @@ class SceneBuilder {
     std::size_t block_floor_ = 0; // blocks below it belong to the file that imports this one
     bool in_world_ = false;
     std::map<std::string, std::shared_ptr<const TransformPair>> coordinate_systems_;
+    // What the imported files that are being read have put something else for; null where there was nothing.
+    std::vector<std::pair<std::string, std::shared_ptr<const TransformPair>>> replaced_systems_;
+    std::size_t open_imports_ = 0;
     std::optional<Plugin> camera_, film_, filter_, sampler_, integrator_;
     std::optional<std::uint64_t> seed_;
 
@@ -132,6 +137,7 @@ class SceneBuilder {
     std::map<std::string, std::size_t> material_name_indices_;
     std::vector<MaterialUse> material_uses_;
     std::vector<AlphaUse> alpha_uses_;
+    std::size_t subdivided_ = 0; // triangles of 'loopsubdiv' shapes
 
     std::map<std::string, Index> objects_;
     Index open_object_ = no_index;

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "montelux/formats/nearest_name.h"
+#include "montelux/formats/pbrt/float_range.h"
 #include "montelux/formats/pbrt/scene_builder.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/spectrum/rgb_colorspace.h"
@@ -61,7 +62,8 @@ void SceneBuilder::shape(const std::string& name, std::vector<Parameter> paramet
     const Transform& world_from_object = still_transform(at);
     ParameterList list = with_defaults(std::move(parameters), PluginKind::shape);
     ParameterReader r(list, "shape " + in_quotes(name), at, diagnostics_);
-    Geometry geometry = read_shape(r, name, world_from_object, state_.reverse_orientation, files_);
+    Geometry geometry =
+        read_shape(r, name, world_from_object, state_.reverse_orientation, files_, subdivided_);
 
     Shape shape;
     Index index = static_cast<Index>(scene.shapes.size());
@@ -70,7 +72,7 @@ void SceneBuilder::shape(const std::string& name, std::vector<Parameter> paramet
         if (alpha->type == ParameterType::texture)
             alpha_uses_.push_back({index, ParameterList({*alpha}), r.plugin(), at});
         else
-            shape.alpha.value = r.number("alpha", 1);
+            shape.alpha.value = r.number_of(*alpha);
     }
     r.finish();
     material_uses_.push_back({index, state_.material, at});
@@ -155,7 +157,29 @@ void SceneBuilder::finish_materials() {
     }
 }
 
+namespace {
+
+Bounds3 bounds_of(const ObjectDefinition& object, const Scene& scene) {
+    Bounds3 bounds;
+    for (Index i : object.shapes) {
+        const Shape& shape = scene.shapes[i];
+        if (shape.mesh != no_index) {
+            for (Point3f p : scene.meshes[shape.mesh].positions) bounds.add(Vec3d(p));
+        } else {
+            const Bounds3 quadric = world_bounds(scene.quadrics[shape.quadric]);
+            bounds.add(quadric.lower);
+            bounds.add(quadric.upper);
+        }
+    }
+    return bounds;
+}
+
+} // namespace
+
 void SceneBuilder::finish_instances() {
+    std::vector<Bounds3> bounds;
+    for (const ObjectDefinition& object : result_.scene.objects)
+        bounds.push_back(bounds_of(object, result_.scene));
     for (InstanceUse& use : instances_) {
         auto found = objects_.find(use.name);
         if (found == objects_.end()) {
@@ -164,6 +188,13 @@ void SceneBuilder::finish_instances() {
             if (names.size() > 10000) names.clear();
             diagnostics_.error(use.at, "object " + in_quotes(use.name) + " is not defined" +
                                            did_you_mean(use.name, names));
+        }
+        const Bounds3& b = bounds[found->second];
+        for (int i = 0; i < 8 && !b.empty(); ++i) {
+            const Vec3d corner{((i & 1) != 0 ? b.upper : b.lower).x, ((i & 2) != 0 ? b.upper : b.lower).y,
+                               ((i & 4) != 0 ? b.upper : b.lower).z};
+            if (!fits_float(use.world_from_object.point(corner)))
+                diagnostics_.error(use.at, "the instance reaches to infinity in world space");
         }
         result_.scene.instances.push_back({found->second, use.world_from_object});
     }

@@ -6,6 +6,7 @@
 
 #include "montelux/formats/loop_subdivision.h"
 #include "montelux/formats/nearest_name.h"
+#include "montelux/formats/pbrt/float_range.h"
 #include "montelux/formats/ply.h"
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
@@ -41,6 +42,11 @@ Quadric read_disk(ParameterReader& r, const Transform& world_from_object) {
     d.phi_max = radians(r.number("phimax", 360));
     d.world_from_object = world_from_object;
     return d;
+}
+
+Quadric within_reach(const Quadric& quadric, ParameterReader& r) {
+    if (!fits_float(world_bounds(quadric))) r.error("the shape reaches to infinity in world space");
+    return quadric;
 }
 
 std::vector<Vec3f> triples(std::span<const float> numbers) {
@@ -128,7 +134,7 @@ TriangleMesh read_ply_mesh(ParameterReader& r, Files& files) {
     return std::move(ply.mesh);
 }
 
-TriangleMesh read_loop_subdivision(ParameterReader& r) {
+TriangleMesh read_loop_subdivision(ParameterReader& r, std::size_t& subdivided) {
     int levels = r.integer("levels", 3);
     if (levels < 0) r.error("levels", "parameter 'levels' is negative");
     r.choice("scheme", {"loop"}, "loop");
@@ -136,6 +142,12 @@ TriangleMesh read_loop_subdivision(ParameterReader& r) {
     if (positions.empty()) r.error("shape 'loopsubdiv' needs vertex positions 'P'");
     std::vector<Index> indices = read_indices(r, positions.size());
     if (indices.empty()) r.error("shape 'loopsubdiv' needs 'indices'");
+    const std::size_t count = subdivided_count(indices.size() / 3, levels);
+    if (count > max_subdivided_triangles - subdivided)
+        r.error("levels", std::to_string(levels) +
+                              " levels would take the triangles of all 'loopsubdiv' shapes together beyond " +
+                              std::to_string(max_subdivided_triangles));
+    subdivided += count;
     TriangleMesh mesh;
     try {
         SubdividedMesh fine = subdivide_loop(positions, indices, levels);
@@ -182,16 +194,16 @@ float Geometry::area(std::size_t primitive) const {
 }
 
 Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transform& world_from_object,
-                    bool reverse_orientation, Files& files) {
-    if (plugin == "sphere") return {read_sphere(r, world_from_object)};
-    if (plugin == "disk") return {read_disk(r, world_from_object)};
+                    bool reverse_orientation, Files& files, std::size_t& subdivided) {
+    if (plugin == "sphere") return {within_reach(read_sphere(r, world_from_object), r)};
+    if (plugin == "disk") return {within_reach(read_disk(r, world_from_object), r)};
     TriangleMesh mesh;
     if (plugin == "trianglemesh")
         mesh = read_triangle_mesh(r);
     else if (plugin == "plymesh")
         mesh = read_ply_mesh(r, files);
     else if (plugin == "loopsubdiv")
-        mesh = read_loop_subdivision(r);
+        mesh = read_loop_subdivision(r, subdivided);
     else if (std::find(shape_plugins.begin(), shape_plugins.end(), plugin) != shape_plugins.end())
         r.error("shape " + in_quotes(plugin) + " is not supported yet");
     else

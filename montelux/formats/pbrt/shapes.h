@@ -21,8 +21,9 @@ struct Geometry {
 };
 
 // Vertices of meshes are transformed by `world_from_object`; vertex normals too, and turned around with
-// `reverse_orientation`. A quadric keeps the transform.
+// `reverse_orientation`. A quadric keeps the transform. `subdivided` counts the triangles of all 'loopsubdiv'
+// shapes of the scene.
 Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transform& world_from_object,
-                    bool reverse_orientation, Files& files);
+                    bool reverse_orientation, Files& files, std::size_t& subdivided);
 
 } // namespace montelux::pbrt

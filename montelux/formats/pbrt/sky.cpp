@@ -51,7 +51,7 @@ Light LightReader::sky(ParameterReader& r, const Transform& world_from_light) {
     settings.atmosphere.turbidity = turbidity;
     if (const Parameter* p =
             r.any("groundalbedo", {ParameterType::rgb, ParameterType::spectrum, ParameterType::floating})) {
-        settings.ground_albedo = p->type == ParameterType::floating ? Spectrum(r.number("groundalbedo", 0))
+        settings.ground_albedo = p->type == ParameterType::floating ? Spectrum(r.number_of(*p))
                                                                     : spectra_.read(*p, RgbMeaning::albedo);
         for (float lambda = lambda_min; lambda <= lambda_max; lambda += 10)
             if (!(settings.ground_albedo(lambda) >= 0 && settings.ground_albedo(lambda) <= 1))

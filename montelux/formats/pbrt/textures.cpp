@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "montelux/formats/nearest_name.h"
+#include "montelux/formats/pbrt/float_range.h"
 #include "montelux/image/image_read.h"
 #include "montelux/mc/math/error.h"
 
@@ -20,6 +21,9 @@ constexpr std::array<std::string_view, 13> texture_plugins = {
 
 // Deeper trees of textures are refused: looking one up is recursive.
 constexpr std::size_t most_nested = 64;
+// Nor may one look-up evaluate more textures than this: a texture that two parameters refer to is evaluated
+// twice, which doubles from level to level.
+constexpr std::size_t most_evaluations = 4096;
 
 std::string label(const TextureDeclaration& d) { return "texture " + in_quotes(d.plugin); }
 
@@ -40,6 +44,12 @@ std::optional<ColorEncoding> parse_encoding(const std::string& name) {
     }
 }
 
+Transform texture_space(ParameterReader& r, const TextureDeclaration& d) {
+    if (!fits_float(d.world_from_texture))
+        r.error("the texture's transformation is beyond what single-precision numbers hold");
+    return d.world_from_texture.inverse();
+}
+
 // A NaN would spread to every texel that filtering joins it with.
 std::size_t zero_what_is_not_finite(Image& picture) {
     std::size_t count = 0;
@@ -50,6 +60,16 @@ std::size_t zero_what_is_not_finite(Image& picture) {
         for (std::uint16_t& v : picture.u16())
             if (!std::isfinite(half_to_float(v))) v = 0, ++count;
     return count;
+}
+
+// Only then does pbrt-v4 take alpha for the value of a float texture.
+bool has_transparency(const Image& picture) {
+    const auto alpha = picture.find_channel("A");
+    if (!alpha || picture.color_channels().size() != 3) return false;
+    for (int y = 0; y < picture.height(); ++y)
+        for (int x = 0; x < picture.width(); ++x)
+            if (picture.value(x, y, *alpha) != 1) return true;
+    return false;
 }
 
 } // namespace
@@ -98,10 +118,7 @@ std::optional<FloatParameter> TextureLibrary::find_float(ParameterReader& r, std
     if (!p) return std::nullopt;
     if (p->type == ParameterType::texture)
         return FloatParameter{0, resolve_float(look_up(*p, float_, spectrum_, "float"))};
-    if (p->numbers.size() != 1)
-        diagnostics_.error(p->at, "parameter " + in_quotes(name) + " has " +
-                                      std::to_string(p->numbers.size()) + " values; expected 1");
-    return FloatParameter{p->numbers[0]};
+    return FloatParameter{r.number_of(*p)};
 }
 
 std::optional<SpectrumParameter> TextureLibrary::find_spectrum(ParameterReader& r, std::string_view name,
@@ -115,18 +132,24 @@ std::optional<SpectrumParameter> TextureLibrary::find_spectrum(ParameterReader& 
 }
 
 Index TextureLibrary::resolve_float(Entry& entry) {
-    if (entry.nodes[0] != no_index) return entry.nodes[0];
-    FloatTexture node = make_node<FloatParameter>(entry, RgbMeaning::unbounded);
-    scene_.float_textures.push_back(std::move(node));
-    return entry.nodes[0] = static_cast<Index>(scene_.float_textures.size() - 1);
+    if (entry.nodes[0] == no_index) {
+        FloatTexture node = make_node<FloatParameter>(entry, RgbMeaning::unbounded);
+        scene_.float_textures.push_back(std::move(node));
+        entry.nodes[0] = static_cast<Index>(scene_.float_textures.size() - 1);
+    }
+    evaluations_ += entry.evaluations;
+    return entry.nodes[0];
 }
 
 Index TextureLibrary::resolve_spectrum(Entry& entry, RgbMeaning meaning) {
     Index& index = entry.nodes[static_cast<std::size_t>(meaning)];
-    if (index != no_index) return index;
-    SpectrumTexture node = make_node<SpectrumParameter>(entry, meaning);
-    scene_.spectrum_textures.push_back(std::move(node));
-    return index = static_cast<Index>(scene_.spectrum_textures.size() - 1);
+    if (index == no_index) {
+        SpectrumTexture node = make_node<SpectrumParameter>(entry, meaning);
+        scene_.spectrum_textures.push_back(std::move(node));
+        index = static_cast<Index>(scene_.spectrum_textures.size() - 1);
+    }
+    evaluations_ += entry.evaluations;
+    return index;
 }
 
 template <typename Parameter>
@@ -147,13 +170,17 @@ TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meanin
         diagnostics_.error(d.at, "textures refer to one another more than " + std::to_string(most_nested) +
                                      " levels deep");
     std::size_t outer = std::exchange(resolving_order_, entry.order);
+    std::size_t outer_evaluations = std::exchange(evaluations_, 1);
     ++resolving_;
     ParameterReader r(d.parameters, label(d), d.at, diagnostics_);
     TextureNode<Parameter> node;
     if (d.plugin == "constant") {
         node = ConstantTexture<Parameter>{input<Parameter>(r, "value", meaning, 1)};
     } else if (d.plugin == "imagemap") {
-        node = image_texture(r, d, meaning);
+        ImageTexture t = image_texture(r, d, meaning);
+        if (std::is_same_v<Parameter, FloatParameter> && has_transparency(scene_.images[t.image]))
+            t.channels = ImageChannels::alpha;
+        node = std::move(t);
     } else if (d.plugin == "scale") {
         Parameter texture = input<Parameter>(r, "tex", meaning, 1);
         node = ScaleTexture<Parameter>{std::move(texture), float_or(r, "scale", 1)};
@@ -170,7 +197,7 @@ TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meanin
         if (c.dimension == 2)
             c.mapping = mapping(r, d);
         else
-            c.mapping.texture_from_world = d.world_from_texture.inverse();
+            c.mapping.texture_from_world = texture_space(r, d);
         c.values[0] = input<Parameter>(r, "tex1", meaning, 1);
         c.values[1] = input<Parameter>(r, "tex2", meaning, 0);
         node = std::move(c);
@@ -178,13 +205,18 @@ TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meanin
     r.finish();
     --resolving_;
     resolving_order_ = outer;
+    entry.evaluations = std::exchange(evaluations_, outer_evaluations);
+    if (entry.evaluations > most_evaluations)
+        diagnostics_.error(d.at, "one look-up of this texture would evaluate more than " +
+                                     std::to_string(most_evaluations) +
+                                     " textures: it refers to others too often");
     return node;
 }
 
 TextureMapping TextureLibrary::mapping(ParameterReader& r, const TextureDeclaration& d) {
     TextureMapping m;
     std::string_view kind = r.choice("mapping", {"uv", "spherical", "cylindrical", "planar"}, "uv");
-    m.texture_from_world = d.world_from_texture.inverse();
+    if (kind != "uv") m.texture_from_world = texture_space(r, d);
     if (kind == "uv") {
         m.su = r.number("uscale", 1);
         m.sv = r.number("vscale", 1);
@@ -243,7 +275,7 @@ Index TextureLibrary::image(const std::string& file, const std::optional<std::st
     try {
         Image picture = read_image(bytes, path.string());
         if (picture.color_channels().empty())
-            throw Error(path.string(), "has neither channels R, G and B nor Y");
+            throw Error(path.string(), "has neither channels R, G and B nor Y alone");
         bool integers = picture.format() == PixelFormat::u8 || picture.format() == PixelFormat::u16;
         if (asked && integers) picture.set_encoding(*asked);
         if (std::size_t replaced = zero_what_is_not_finite(picture))

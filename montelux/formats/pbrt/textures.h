@@ -51,6 +51,7 @@ class TextureLibrary {
         TextureDeclaration declaration;
         std::size_t order = 0;
         std::array<Index, 3> nodes{no_index, no_index, no_index}; // float textures use the first alone
+        std::size_t evaluations = 0; // of textures, this one included, when it is looked up once
     };
     using Table = std::map<std::string, Entry, std::less<>>;
 
@@ -72,6 +73,7 @@ class TextureLibrary {
     std::map<std::string, Index> images_;
     std::size_t resolving_ = 0;       // how many textures are being resolved, one inside the other
     std::size_t resolving_order_ = 0; // of the innermost of them
+    std::size_t evaluations_ = 0;     // what looking it up takes, as far as it is known
 };
 
 } // namespace montelux::pbrt

@@ -37,7 +37,7 @@ void AliasTable::build(std::span<const T> weights) {
     while (!small.empty() && !large.empty()) {
         std::uint32_t s = small.back(), l = large.back();
         small.pop_back();
-        bins_[s].threshold = static_cast<float>(height[s]);
+        bins_[s].threshold = height[s];
         bins_[s].alias = l;
         height[l] -= 1 - height[s];
         if (height[l] < 1) {

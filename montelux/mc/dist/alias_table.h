@@ -12,8 +12,9 @@ namespace montelux {
 
 // Walker 1974; built in O(n) as in Vose 1991, "A Linear Algorithm for Generating Random Numbers with a
 // Given Distribution". Weights as for DiscreteDistribution: zero weights are never drawn, all-zero
-// weights are uniform, bad ones throw Error. A float uniform number has 24 bits: above some 2^14 entries
-// draw with a double, or the steps of u show in the probabilities.
+// weights are uniform, bad ones throw Error. A float uniform number has 24 bits: among more than some 2^14
+// entries, or where a probability is below some 2^-14, draw with a double (SampleStream::refined), or the
+// steps of u show in the probabilities.
 class AliasTable {
   public:
     explicit AliasTable(std::span<const float> weights);
@@ -39,7 +40,9 @@ class AliasTable {
 
   private:
     struct Bin {
-        float threshold;     // share of the bin that stands for its own index
+        // Share of the bin that stands for its own index. A double: an index that many bins stand for has the
+        // sum of their rests, each of them the small difference from 1.
+        double threshold;
         float probability;   // of its own index
         std::uint32_t alias; // the index that the rest of the bin stands for
     };

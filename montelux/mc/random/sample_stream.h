@@ -119,7 +119,17 @@ class SampleStream {
         }
     }
 
+    // A number that was drawn, with random bits below its 24: for a choice among many, or of the improbable.
+    // To be asked for once, before anything else is drawn.
+    double refined(float u) {
+        if (kind_ == SamplerKind::independent) [[likely]]
+            return double(u) + 0x1p-24 * double(unit_float(next_philox()));
+        const std::uint64_t below = hash_key(key_of(dimension_), refinement, index_, z_index_);
+        return double(u) + 0x1p-24 * double(unit_float(static_cast<std::uint32_t>(below)));
+    }
+
   private:
+    static constexpr std::uint64_t refinement = 0x7265666e; // no other hash of a dimension's key has it
     static constexpr std::uint32_t global_dimensions = sobol_nibble_dimensions;
     static constexpr std::uint32_t padded_dimensions = 4;
     static constexpr std::uint32_t halton_dimensions = 128;

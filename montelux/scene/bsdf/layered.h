@@ -31,7 +31,7 @@ struct LayeredBsdf {
     int max_depth = 10;
     int sample_count = 1;
 
-    bool is_specular() const { return coat.is_specular() && base.is_specular(); }
+    bool is_specular() const { return coat.is_specular() && base.is_specular() && is_black(medium_albedo); }
     bool has_specular() const { return coat.is_specular(); }
     // Without what bounces between the layers.
     SampledSpectrum albedo(Vec3f wo) const {
@@ -107,14 +107,17 @@ struct LayeredBsdf {
         return true;
     }
 
-    // Follows a walk that has entered through the coat until it leaves; s becomes the whole event.
+    // Follows a walk that has entered through the coat until it leaves; s becomes the whole event. After
+    // max_depth events it may still go out, as it does where `walk` looks for the exit.
     bool leave(BsdfSample& s, TransportMode mode, PhiloxStream& rng) const {
         SampledSpectrum beta = s.weight;
         Vec3f w = s.wi;
         float z = thickness;
-        for (int depth = 0; depth < max_depth; ++depth) {
+        for (int depth = 0; depth <= max_depth; ++depth) {
+            const bool may_scatter = depth < max_depth;
             if (!survives(depth, beta, rng) || w.z == 0) return false;
             if (!reaches_interface(z, w, beta, rng)) {
+                if (!may_scatter) return false;
                 Vec2f u = rng.next_2d();
                 w = HenyeyGreenstein{g}.sample(-w, u).wi;
                 beta *= medium_albedo;
@@ -123,6 +126,7 @@ struct LayeredBsdf {
             }
             std::optional<BsdfSample> event;
             if (z == 0) {
+                if (!may_scatter) return false;
                 event = base.sample(-w, mode, rng);
             } else {
                 float uc = rng.next_1d();
@@ -165,6 +169,29 @@ struct LayeredBsdf {
             return exit.f * (absorption(dz, w) * weight);
         };
 
+        // Between two mirrors light that was scattered upwards (with density p_up of to_exit) or downwards
+        // may go up and down before it leaves, and nothing but the scattering tells where to.
+        const bool mirrors = !rough && base.is_specular();
+        SampledSpectrum base_mirrors, round_trip;
+        if (mirrors) {
+            const float once = absorption(thickness, to_exit);
+            if (auto up = base.sample({-to_exit.x, -to_exit.y, to_exit.z}, mode, rng))
+                base_mirrors = up->weight * once;
+            if (auto down = coat.sample_lobes(out->wi, 0, {}, mode, Lobes::reflection))
+                round_trip = base_mirrors * down->weight * once;
+        }
+        auto ways_out = [&](float p_up, float p_down, float z, int depth) {
+            SampledSpectrum ways, up{p_up * absorption(z - thickness, to_exit)};
+            SampledSpectrum down = base_mirrors * (p_down * absorption(z, to_exit));
+            for (; depth < max_depth; depth += 2) {
+                ways += up;
+                if (depth + 1 < max_depth) ways += down;
+                up *= round_trip;
+                down *= round_trip;
+            }
+            return ways;
+        };
+
         SampledSpectrum sum, beta = in->weight;
         Vec3f w = in->wi;
         float z = thickness;
@@ -173,8 +200,12 @@ struct LayeredBsdf {
             if (!reaches_interface(z, w, beta, rng)) {
                 HenyeyGreenstein phase{g};
                 float p = phase.pdf(-w, to_exit);
-                sum += beta * medium_albedo * exit_weight *
-                       (p * out_weight(p) * absorption(z - thickness, to_exit));
+                if (mirrors)
+                    sum += beta * medium_albedo * exit_weight *
+                           ways_out(p, phase.pdf(-w, {to_exit.x, to_exit.y, -to_exit.z}), z, depth);
+                else
+                    sum += beta * medium_albedo * exit_weight *
+                           (p * out_weight(p) * absorption(z - thickness, to_exit));
                 Vec2f u = rng.next_2d();
                 PhaseSample event = phase.sample(-w, u);
                 beta *= medium_albedo;

@@ -78,7 +78,8 @@ Ray Camera::generate_ray(Point2f film, Point2f lens) const {
         break;
     case Kind::equal_area: {
         // The square's z axis is the camera's up.
-        Point2f square{std::clamp(film.x * dx_, 0.0f, 1.0f), std::clamp(film.y * dy_, 0.0f, 1.0f)};
+        Point2f square = wrap_equal_area_square(Point2f{film.x * dx_, film.y * dy_});
+        square = {std::clamp(square.x, 0.0f, 1.0f), std::clamp(square.y, 0.0f, 1.0f)};
         Vec3f w = equal_area_square_to_sphere(square);
         d = {w.x, w.z, w.y};
         break;

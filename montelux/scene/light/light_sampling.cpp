@@ -6,17 +6,19 @@
 #include "montelux/mc/warp/disk.h"
 #include "montelux/mc/warp/sphere.h"
 #include "montelux/mc/warp/triangle.h"
+#include "montelux/scene/shape/alpha.h"
 #include "montelux/scene/shape/surface_point.h"
 
 namespace montelux {
 
 namespace {
 
-// From off the surface at the reference to just before the point on the light.
+// From off the surface at the reference to just before the point on the light, also where rounding could not
+// have moved that.
 Ray shadow_ray(const ReferencePoint& from, Vec3f wi, Point3f to, Normal3f n, float error) {
     Point3f o = offset_origin(from.p, from.n, from.error, wi);
     Point3f end = offset_origin(to, n, error, -wi);
-    return {o, end - o, 1};
+    return {o, end - o, 1 - 0x1p-18f};
 }
 
 Ray shadow_ray_to_infinity(const ReferencePoint& from, Vec3f wi) {
@@ -178,6 +180,50 @@ std::optional<LightSample> sample_through_portal(const Scene& scene, const Light
                        .shadow = shadow_ray_to_infinity(from, s->wi)};
 }
 
+// A point on an area light and the density of its choice.
+std::optional<LightSample> sample_area_light(const Scene& scene, const SceneTables& scene_tables, Index index,
+                                             const AreaLight& light, const ReferencePoint& from, Vec2f u,
+                                             const SampledWavelengths& lambda) {
+    const LightTables& tables = scene_tables.lights();
+    const Shape& shape = scene.shapes[light.shape];
+    Hit hit{.t = 0, .shape = light.shape, .primitive = light.primitive};
+    Point3f p;
+    std::optional<LightSample> s;
+    if (shape.mesh != no_index) {
+        const LightTriangle& t = tables.triangle(index);
+        if (!(t.area > 0)) return std::nullopt;
+        const Vec3f b = sample_uniform_triangle(u);
+        hit.b1 = b.y;
+        hit.b2 = b.z;
+        p = t.p0 + b.y * t.e1 + b.z * t.e2;
+        s = from_area_point(light, from, p, t.n, t.error, 1 / t.area, lambda);
+    } else if (const auto& disk = tables.disk(index)) {
+        const Vec2f d = sample_uniform_disk_concentric(u);
+        p = disk->center + d.x * disk->s + d.y * disk->t;
+        const Vec3f reach = abs(disk->center) + abs(disk->s) + abs(disk->t);
+        s = from_area_point(light, from, p, shape.flip_normal ? -disk->n : disk->n,
+                            coordinate_error(disk->n, reach), 1 / disk->area, lambda);
+    } else {
+        if (const auto& sphere = tables.sphere(index))
+            if (auto cone = cone_of(*sphere, from.p))
+                return sample_sphere(light, *sphere, *cone, shape.flip_normal, from, u, lambda);
+        const QuadricAreaSample q = sample_area(scene.quadrics[shape.quadric], u);
+        p = Vec3f(q.point.p);
+        const Normal3f n(shape.flip_normal ? -q.point.n : q.point.n);
+        s = from_area_point(light, from, p, n, coordinate_error(n, abs(p)), static_cast<float>(q.pdf),
+                            lambda);
+    }
+    if (!s || !is_cut_out(shape)) return s;
+    if (constant_alpha(scene, shape).value_or(1) <= 0) {
+        s->delta = true;
+        return s;
+    }
+    const float alpha = alpha_at(scene, scene_tables, {p, s->wi}, hit);
+    if (!(alpha > 0)) return std::nullopt;
+    s->radiance *= std::min(alpha, 1.0f);
+    return s;
+}
+
 } // namespace
 
 SampledSpectrum emitted_radiance(const AreaLight& light, Normal3f n, Vec3f w,
@@ -208,35 +254,13 @@ SampledSpectrum infinite_radiance(const Scene& scene, const LightTables& tables,
     return {};
 }
 
-std::optional<LightSample> sample_light(const Scene& scene, const LightTables& tables, Index index,
+std::optional<LightSample> sample_light(const Scene& scene, const SceneTables& scene_tables, Index index,
                                         const ReferencePoint& from, Vec2f u,
                                         const SampledWavelengths& lambda) {
+    const LightTables& tables = scene_tables.lights();
     const Light& any = scene.lights[index];
-    if (const auto* light = std::get_if<AreaLight>(&any)) {
-        const Shape& shape = scene.shapes[light->shape];
-        if (shape.mesh != no_index) {
-            const LightTriangle& t = tables.triangle(index);
-            if (!(t.area > 0)) return std::nullopt;
-            Vec3f b = sample_uniform_triangle(u);
-            return from_area_point(*light, from, t.p0 + b.y * t.e1 + b.z * t.e2, t.n, t.error, 1 / t.area,
-                                   lambda);
-        }
-        if (const auto& sphere = tables.sphere(index))
-            if (auto cone = cone_of(*sphere, from.p))
-                return sample_sphere(*light, *sphere, *cone, shape.flip_normal, from, u, lambda);
-        if (const auto& disk = tables.disk(index)) {
-            Vec2f d = sample_uniform_disk_concentric(u);
-            Point3f p = disk->center + d.x * disk->s + d.y * disk->t;
-            return from_area_point(
-                *light, from, p, shape.flip_normal ? -disk->n : disk->n,
-                coordinate_error(size_of(Vec3d(disk->center)) + max_component(abs(disk->s) + abs(disk->t))),
-                1 / disk->area, lambda);
-        }
-        QuadricAreaSample s = sample_area(scene.quadrics[shape.quadric], u);
-        Normal3f n = Vec3f(shape.flip_normal ? -s.point.n : s.point.n);
-        return from_area_point(*light, from, Vec3f(s.point.p), n, coordinate_error(size_of(s.point.p)),
-                               static_cast<float>(s.pdf), lambda);
-    }
+    if (const auto* light = std::get_if<AreaLight>(&any))
+        return sample_area_light(scene, scene_tables, index, *light, from, u, lambda);
     if (const auto* light = std::get_if<PointLight>(&any))
         return sample_point(light->position, light->spectrum.sample(lambda) * light->scale, from);
     if (const auto* light = std::get_if<SpotLight>(&any)) {

@@ -17,15 +17,16 @@ struct ReferencePoint {
 };
 
 struct LightSample {
-    SampledSpectrum radiance; // for a delta light: irradiance on a plane facing it
+    SampledSpectrum radiance; // of a point or distant light: irradiance on a plane facing it
     Vec3f wi;                 // unit, towards the light
-    float pdf = 0;            // per solid angle, given the light; 1 for a delta light
-    bool delta = false;       // BSDF sampling cannot find this light
+    float pdf = 0;            // per solid angle, given the light; 1 for a point or distant light
+    bool delta = false;       // BSDF sampling cannot find this light: a delta light, or one of alpha 0
     Ray shadow;               // unoccluded when the light is seen
 };
 
-// Empty where the light cannot shine on the point.
-std::optional<LightSample> sample_light(const Scene& scene, const LightTables& tables, Index light,
+// Empty where the light cannot shine on the point. An area light shines with the share of its points that is
+// there (Shape::alpha), but one of alpha 0 everywhere shines whole and is not seen, as in pbrt-v4.
+std::optional<LightSample> sample_light(const Scene& scene, const SceneTables& tables, Index light,
                                         const ReferencePoint& reference, Vec2f u,
                                         const SampledWavelengths& lambda);
 

@@ -6,6 +6,7 @@
 
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/scene/shape/alpha.h"
 #include "montelux/scene/shape/surface_point.h"
 
 namespace montelux {
@@ -138,9 +139,12 @@ LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings
                     } else {
                         const Quadric& quadric = scene.quadrics[shape.quadric];
                         area = world_area(quadric);
-                        spheres_[i] = whole_sphere(quadric);
+                        // Through its holes the far side is seen, too, which the cone does not sample.
+                        if (!is_cut_out(shape)) spheres_[i] = whole_sphere(quadric);
                         disks_[i] = whole_disk(quadric);
                     }
+                    const float alpha = constant_alpha(scene, shape).value_or(1);
+                    if (alpha > 0 && alpha < 1) area *= double(alpha);
                     return pi * area * (light.two_sided ? 2 : 1) * double(light.scale) * mean(light.spectrum);
                 } else if constexpr (std::is_same_v<L, ImageInfiniteLight>) {
                     infinite_lights_.push_back(static_cast<Index>(i));

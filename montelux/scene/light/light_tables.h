@@ -47,6 +47,7 @@ class LightTables {
     const std::vector<EnvironmentSampler>& environments() const { return environments_; }
     const std::vector<PortalSampler>& portals() const { return portals_; }
     const std::vector<Index>& infinite_lights() const { return infinite_lights_; }
+    // Of lights that are whole ones without holes.
     const std::optional<WorldSphere>& sphere(Index light) const { return spheres_[light]; }
     const std::optional<WorldDisk>& disk(Index light) const { return disks_[light]; }
     const Bounds3& scene_bounds() const { return bounds_; }

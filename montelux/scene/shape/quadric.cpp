@@ -64,18 +64,29 @@ Vec3d project(const Disk& d, Vec3d p) { return {p.x, p.y, double(d.height)}; }
 Vec3d object_normal(const Sphere& s, Vec3d p) { return p / double(s.radius); }
 Vec3d object_normal(const Disk&, Vec3d) { return {0, 0, 1}; }
 
-Point2f coordinates(const Sphere& s, Vec3d p) {
-    double r = s.radius;
-    double theta_min = std::acos(std::clamp(std::min(double(s.z_min), double(s.z_max)) / r, -1.0, 1.0));
-    double theta_max = std::acos(std::clamp(std::max(double(s.z_min), double(s.z_max)) / r, -1.0, 1.0));
-    double theta = std::acos(std::clamp(p.z / r, -1.0, 1.0));
-    return {static_cast<float>(azimuth(p) / double(s.phi_max)),
-            static_cast<float>((theta - theta_min) / (theta_max - theta_min))};
+// The unit vector from the axis to p.
+Vec3d radial(Vec3d p) {
+    const double r = std::sqrt(p.x * p.x + p.y * p.y);
+    return r > 0 ? Vec3d{p.x / r, p.y / r, 0} : Vec3d{1, 0, 0};
 }
-Point2f coordinates(const Disk& d, Vec3d p) {
-    double r = std::sqrt(p.x * p.x + p.y * p.y);
-    return {static_cast<float>(azimuth(p) / double(d.phi_max)),
-            static_cast<float>((double(d.radius) - r) / (double(d.radius) - double(d.inner_radius)))};
+
+// The place in object space, and the change of p with it.
+struct Coordinates {
+    double u = 0, v = 0;
+    Vec3d dpdv;
+};
+Coordinates coordinates(const Sphere& s, Vec3d p) {
+    const double r = s.radius;
+    const double theta_min = std::acos(std::clamp(std::min(double(s.z_min), double(s.z_max)) / r, -1.0, 1.0));
+    const double theta_max = std::acos(std::clamp(std::max(double(s.z_min), double(s.z_max)) / r, -1.0, 1.0));
+    const double theta = std::acos(std::clamp(p.z / r, -1.0, 1.0));
+    return {azimuth(p) / double(s.phi_max), (theta - theta_min) / (theta_max - theta_min),
+            (theta_max - theta_min) * (p.z * radial(p) - Vec3d{0, 0, r * std::sin(theta)})};
+}
+Coordinates coordinates(const Disk& d, Vec3d p) {
+    const double width = double(d.radius) - double(d.inner_radius);
+    return {azimuth(p) / double(d.phi_max), (double(d.radius) - std::sqrt(p.x * p.x + p.y * p.y)) / width,
+            -width * radial(p)};
 }
 
 template <typename S>
@@ -84,10 +95,12 @@ QuadricPoint to_world(const S& s, Vec3d p, bool with_coordinates) {
     q.p = s.world_from_object.point(p);
     q.n = normalize(s.world_from_object.normal(object_normal(s, p)));
     if (!with_coordinates) return q;
-    q.uv = coordinates(s, p);
-    Vec3d dpdu{-p.y, p.x, 0};
+    const Coordinates at = coordinates(s, p);
+    q.uv = {static_cast<float>(at.u), static_cast<float>(at.v)};
+    Vec3d dpdu = double(s.phi_max) * Vec3d{-p.y, p.x, 0};
     if (!(dot(dpdu, dpdu) > 0)) dpdu = {0, 1, 0};
     q.dpdu = s.world_from_object.vector(dpdu);
+    q.dpdv = s.world_from_object.vector(at.dpdv);
     return q;
 }
 

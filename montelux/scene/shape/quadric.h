@@ -9,9 +9,9 @@
 namespace montelux {
 
 struct QuadricPoint {
-    Vec3d p, n; // n: unit outward normal (sphere), +z (disc); both in world space
-    Point2f uv; // u = phi / phi_max; v as in pbrt-v4's file format; only when asked for
-    Vec3d dpdu; // likewise
+    Vec3d p, n;       // n: unit outward normal (sphere), +z (disc); both in world space
+    Point2f uv;       // u = phi / phi_max; v as in pbrt-v4's file format; only when asked for
+    Vec3d dpdu, dpdv; // likewise; the first is never zero, though it should be at a pole or a disc's centre
 };
 
 struct Bounds3 {

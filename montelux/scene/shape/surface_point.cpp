@@ -42,8 +42,7 @@ SurfacePoint triangle_point(const TriangleMesh& mesh, const Shape& shape, const 
             if (dot(s.ns, s.ng) < 0) s.ng = -s.ng;
         }
     }
-    s.error = coordinate_error(
-        std::max(largest_coordinate(p0), std::max(largest_coordinate(p1), largest_coordinate(p2))));
+    s.error = coordinate_error(s.ng, max(abs(p0), max(abs(p1), abs(p2))));
     if (!coordinates) return s;
     Point2f uv0{0, 0}, uv1{1, 0}, uv2{1, 1};
     if (!mesh.uvs.empty()) {
@@ -64,11 +63,12 @@ SurfacePoint quadric_point(const Quadric& quadric, const Shape& shape, const Ray
     s.ng = Vec3f(shape.flip_normal ? -q.n : q.n);
     s.ns = s.ng;
     s.uv = q.uv;
-    s.error = coordinate_error(largest_coordinate(s.p) +
-                               std::visit([](const auto& x) { return x.radius; }, quadric) * 0.25f);
+    s.error =
+        coordinate_error(s.ng, abs(s.p)) +
+        0x1p-40f * (largest_coordinate(s.p) + std::visit([](const auto& x) { return x.radius; }, quadric));
     if (coordinates) {
         s.dpdu = Vec3f(q.dpdu);
-        s.dpdv = cross(s.ng, s.dpdu);
+        s.dpdv = Vec3f(q.dpdv);
     }
     return s;
 }

@@ -24,5 +24,10 @@ SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, b
 
 // Bound of the rounding error of coordinates of that size, for offset_origin.
 inline float coordinate_error(float largest) { return 0x1p-20f * largest; }
+// The same along the normal n, where the coordinates differ in size: a floor at height 0 has next to none,
+// however far it reaches. Never zero, for a ray must not begin on the surface.
+inline float coordinate_error(Normal3f n, Vec3f largest) {
+    return coordinate_error(dot(abs(n), largest) + 0x1p-40f * max_component(largest));
+}
 
 } // namespace montelux

@@ -37,7 +37,8 @@ float second_share(const CheckerboardTexture<Parameter>& t, const TextureContext
 Vec3f image_lookup(const SceneTables& tables, const ImageTexture& t, const TextureContext& context) {
     TextureCoordinates c = t.mapping(context);
     Vec3f rgb =
-        t.scale * tables.mipmap(t.image).lookup(c.st, c.dstdx, c.dstdy, t.filter, t.wrap, t.max_anisotropy);
+        t.scale *
+        tables.mipmap(t.image, t.channels).lookup(c.st, c.dstdx, c.dstdy, t.filter, t.wrap, t.max_anisotropy);
     if (t.invert) rgb = Vec3f{1, 1, 1} - rgb;
     return max(rgb, Vec3f{0, 0, 0});
 }

@@ -39,14 +39,27 @@ void wrap_octahedral(int& x, int& y, int width, int height) {
     y = std::clamp(y, 0, height - 1);
 }
 
+int part(int i, int size, int parts) { return static_cast<int>(std::int64_t{i} * size / parts); }
+
+Image decoded_alpha(const Image& image) {
+    Image alpha(image.width(), image.height(), {"Y"});
+    const int channel = image.find_channel("A").value();
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x)
+            alpha.set(x, y, 0, image.encoding().to_linear(image.value(x, y, channel)));
+    return alpha;
+}
+
 } // namespace
 
-MipMap::MipMap(const Image& image) : image_(&image) {
+MipMap::MipMap(const Image& image, ImageChannels channels) : image_(&image) {
     std::vector<int> color = image.color_channels();
-    if (color.empty()) color = {0};
+    if (color.empty() || channels == ImageChannels::alpha) color = {0};
     for (std::size_t i = 0; i < 3; ++i)
         channels_[i] = color.size() == 3 ? color[i] : (i == 0 ? color[0] : -1);
-    if (image.format() == PixelFormat::u8) {
+    if (channels == ImageChannels::alpha) {
+        converted_ = decoded_alpha(image);
+    } else if (image.format() == PixelFormat::u8) {
         for (std::size_t i = 0; i < 256; ++i) decode8_[i] = static_cast<float>(i) / 255;
         if (image.encoding().kind() != ColorEncoding::Kind::linear) decode8_ = image.encoding().table8();
     } else if (image.encoding().kind() != ColorEncoding::Kind::linear || image.format() == PixelFormat::u16) {
@@ -65,7 +78,8 @@ MipMap::MipMap(const Image& image) : image_(&image) {
         for (int y = 0; y < ch; ++y)
             for (int x = 0; x < cw; ++x) {
                 // The last cell of an odd size takes three texels.
-                int x0 = x * w / cw, x1 = (x + 1) * w / cw, y0 = y * h / ch, y1 = (y + 1) * h / ch;
+                const int x0 = part(x, w, cw), x1 = part(x + 1, w, cw), y0 = part(y, h, ch),
+                          y1 = part(y + 1, h, ch);
                 for (int c = 0; c < components; ++c) {
                     float sum = 0;
                     for (int yy = y0; yy < y1; ++yy)

@@ -11,10 +11,10 @@ namespace montelux {
 
 // Texture coordinates: (0, 0) is the lower left corner of the image, (1, 1) the upper right. Colours are
 // linear. The finest level is the image itself, which must outlive the pyramid; coarser ones halve it by box
-// averages.
+// averages. Alpha is taken to be encoded as the colours are, as pbrt-v4 takes it.
 class MipMap {
   public:
-    explicit MipMap(const Image& image);
+    explicit MipMap(const Image& image, ImageChannels channels = ImageChannels::color);
 
     bool is_color() const { return channels_[1] >= 0; }
     // dst0, dst1: the sides of a pixel in texture coordinates; only filters other than point look at them.

@@ -30,10 +30,14 @@ enum class RgbMeaning : std::uint8_t { albedo, unbounded, illuminant };
 enum class TextureFilter : std::uint8_t { point, bilinear, trilinear, ewa };
 enum class TextureWrap : std::uint8_t { repeat, black, clamp, octahedral_sphere };
 
+// What a texture looks up in an image: its colours, or its channel A.
+enum class ImageChannels : std::uint8_t { color, alpha };
+
 // Texels are filtered first, then scaled (and 1 - x taken when `invert`), then read as a spectrum;
-// a float texture uses the mean of the colour channels.
+// a float texture uses the mean of the colour channels, or the alpha.
 struct ImageTexture {
     Index image = no_index; // into Scene::images
+    ImageChannels channels = ImageChannels::color;
     TextureMapping mapping;
     TextureFilter filter = TextureFilter::bilinear;
     TextureWrap wrap = TextureWrap::repeat;

@@ -10,6 +10,7 @@
 namespace montelux {
 namespace {
 
+using test::error_of;
 using test::parse;
 using test::parse_world;
 
@@ -86,6 +87,30 @@ TEST(PbrtOptions, FilmCameraSamplerIntegratorFilter) {
     EXPECT_TRUE(std::holds_alternative<OrthographicCamera>(d.scene.camera.model));
     EXPECT_EQ(std::get<LanczosFilter>(d.film.filter).radius, Vec2f(4, 4));
     EXPECT_EQ(d.integrator.max_depth, 3);
+}
+
+// pbrt leaves out '-' and '_' and does not look at capitals.
+TEST(PbrtOptions, SpellingsOfOptions) {
+    EXPECT_EQ(parse("Option \"integer Seed\" 7 WorldBegin").sampler.seed, 7u);
+    EXPECT_EQ(parse("Option \"integer se-e_d\" 7 WorldBegin").sampler.seed, 7u);
+    Warnings told;
+    parse("Option \"bool disable-pixel-jitter\" true Option \"bool disablePixelJitter\" true\n"
+          "Option \"string render_coord_sys\" \"camera\" Option \"string rendercoordsys\" \"world\"\n"
+          "Option \"string RenderCoordSys\" \"cameraworld\" WorldBegin LightSource \"point\"",
+          &told);
+    EXPECT_EQ(
+        told.messages(),
+        std::vector<std::string>{"scene:1:8: option 'disable-pixel-jitter' is not supported; it is ignored"});
+    EXPECT_EQ(error_of("Option \"float Seed\" 7 WorldBegin"),
+              "scene:1:8: option 'Seed' has type float; expected 1 integer");
+    EXPECT_EQ(error_of("Option \"integer rendercoordsys\" 7 WorldBegin"),
+              "scene:1:8: option 'rendercoordsys' has type integer; expected 1 string");
+    EXPECT_EQ(
+        error_of("Option \"string rendercoordsys\" \"wolrd\" WorldBegin"),
+        "scene:1:8: option 'rendercoordsys' is 'wolrd'; expected one of camera, cameraworld, world (did you "
+        "mean 'world'?)");
+    EXPECT_EQ(error_of("Option \"integer Sed\" 7 WorldBegin"),
+              "scene:1:8: unknown option 'Sed' (did you mean 'seed'?)");
 }
 
 // Whatever is read but changes nothing is told.

@@ -174,6 +174,36 @@ TEST(PbrtTextures, PicturesAreReadOnceForEachEncoding) {
               std::vector<std::string>{"scene:8:9: texture 'unused' is not used and was not read"});
 }
 
+// As pbrt-v4: a number is the alpha of a picture in colour that has holes, and else the mean of its colours.
+TEST(PbrtTextures, NumbersFromPicturesWithAlpha) {
+    auto folder = std::filesystem::temp_directory_path() / "montelux_pbrt_alpha";
+    std::filesystem::create_directories(folder);
+    Image opaque(2, 2, {"R", "G", "B", "A"}, PixelFormat::u8, ColorEncoding::srgb());
+    for (std::uint8_t& v : opaque.u8()) v = 255;
+    Image leaf = opaque;
+    leaf.u8()[leaf.index(1, 1, 3)] = 0;
+    write_image(folder / "opaque.png", opaque);
+    write_image(folder / "leaf.png", leaf);
+    Warnings told;
+    SceneDescription d = parse_pbrt(R"(WorldBegin
+        Texture "leaf" "float" "imagemap" "string filename" "leaf.png"
+        Texture "opaque" "float" "imagemap" "string filename" "opaque.png"
+        Texture "leaf" "spectrum" "imagemap" "string filename" "leaf.png"
+        Material "diffuse" "texture reflectance" "leaf"
+        Shape "sphere" "texture alpha" "leaf"
+        Shape "sphere" "texture alpha" "opaque")",
+                                    "scene", folder, told);
+    std::filesystem::remove_all(folder);
+    auto channels = [&](std::size_t shape) {
+        return std::get<ImageTexture>(d.scene.float_textures[d.scene.shapes[shape].alpha.texture]).channels;
+    };
+    EXPECT_EQ(channels(0), ImageChannels::alpha);
+    EXPECT_EQ(channels(1), ImageChannels::color);
+    const auto& m = std::get<DiffuseMaterial>(d.scene.materials[d.scene.shapes[0].material]);
+    EXPECT_EQ(std::get<ImageTexture>(d.scene.spectrum_textures[m.reflectance.texture]).channels,
+              ImageChannels::color);
+}
+
 template <typename T>
 T light(const std::string& directive) {
     SceneDescription d = parse_world(directive);

@@ -92,6 +92,25 @@ TEST(AliasTable, SharesOfTheUnitIntervalAreTheProbabilities) {
     }
 }
 
+// A heavy index has a small rest of each of very many bins; all of them together are its probability.
+TEST(AliasTable, SmallRestsOfManyBinsAddUp) {
+    constexpr std::size_t n = 100000;
+    std::vector<double> weights(n, 1);
+    weights[0] = 3;
+    const AliasTable alias{std::span<const double>(weights)};
+    double rests = 0;
+    for (std::size_t i = 1; i < n; ++i) {
+        // Where in bin i its own index ends.
+        double own = 0, other = 1;
+        for (int step = 0; step < 48; ++step) {
+            const double middle = 0.5 * (own + other);
+            (alias.sample((static_cast<double>(i) + middle) / n).index == i ? own : other) = middle;
+        }
+        rests += 1 - own;
+    }
+    EXPECT_NEAR((1 + rests) / n, 3.0 / (n + 2), 1e-5 / n);
+}
+
 TEST(AliasTable, ZeroWeightsAreNeverDrawnByFloats) {
     std::vector<float> weights(777);
     TestUniforms u(5);

@@ -39,6 +39,28 @@ INSTANTIATE_TEST_SUITE_P(Kinds, SampleStreamOf, ::testing::ValuesIn(all_kinds), 
     return std::string(kind_names[static_cast<int>(kind.param)]);
 });
 
+// The bits below a number are uniform and know nothing of it, nor of those of the next number; two tests a
+// kind at 1e-9.
+TEST_P(SampleStreamOf, RefinedNumbersHaveRandomBitsBelow) {
+    std::vector<Vec2d> beside, next;
+    for (std::uint64_t s = 0; s < 40000; ++s) {
+        const SamplerSettings settings{GetParam(), s / 640, 64, 1};
+        SampleStream stream(settings, static_cast<std::uint32_t>(s / 64 % 10), 3, s % 64);
+        double below[2];
+        float u = 0;
+        for (double& b : below) {
+            u = stream.next_1d();
+            const double refined = stream.refined(u);
+            b = (refined - static_cast<double>(u)) * 0x1p24;
+            ASSERT_TRUE(b >= 0 && b < 1 && refined < 1);
+        }
+        beside.emplace_back(static_cast<double>(u), below[1]);
+        next.emplace_back(below[0], below[1]);
+    }
+    EXPECT_GT(uniform_square_p_value(beside, 16, 16), 1e-9);
+    EXPECT_GT(uniform_square_p_value(next, 16, 16), 1e-9);
+}
+
 // False alarms: 324 tests a kind at 1e-9, 2e-6 in all.
 TEST_P(SampleStreamOf, EachNumberAndEachPairOfOneSampleIsUniform) {
     constexpr int seeds = 20000, numbers = 36;

@@ -1,0 +1,139 @@
+// The files of a scene: fingerprint, compressed text, imports.
+#include "test/formats/gzip.h"
+#include "test/formats/pbrt/parse.h"
+#include "test/near.h"
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <string>
+#include <unistd.h>
+
+#include "montelux/image/image_write.h"
+
+namespace montelux {
+namespace {
+
+class PbrtFolder : public ::testing::Test {
+  protected:
+    PbrtFolder() {
+        folder_ =
+            std::filesystem::temp_directory_path() / ("montelux-pbrt-files-" + std::to_string(getpid()));
+        std::filesystem::create_directories(folder_);
+    }
+    ~PbrtFolder() override { std::filesystem::remove_all(folder_); }
+
+    std::filesystem::path write(const std::string& name, const std::string& bytes) const {
+        std::ofstream(folder_ / name, std::ios::binary) << bytes;
+        return folder_ / name;
+    }
+    static SceneDescription load(const std::filesystem::path& path) {
+        Warnings warnings;
+        return load_pbrt(path, warnings);
+    }
+    static std::string load_error(const std::filesystem::path& path) {
+        try {
+            load(path);
+        } catch (const Error& e) {
+            return e.what();
+        }
+        return {};
+    }
+
+    std::filesystem::path folder_;
+};
+
+std::string text_of(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
+
+// A square picture in the format PFM, whose bytes are the numbers themselves.
+std::string pfm(int size) {
+    std::string bytes = "PF\n" + std::to_string(size) + " " + std::to_string(size) + "\n-1\n";
+    for (int i = 0; i < 3 * size * size; ++i) bytes += std::string("\0\0\x80\x3f", 4);
+    return bytes;
+}
+
+TEST_F(PbrtFolder, FingerprintCoversEveryKindOfFile) {
+    const std::string ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                            "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                            "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2";
+    auto main = write("main.pbrt", R"(WorldBegin
+        LightSource "infinite" "string filename" "sky.pfm"
+        Texture "t" "spectrum" "imagemap" "string filename" "picture.pfm"
+        Material "conductor" "texture reflectance" "t"
+        Shape "plymesh" "string filename" "mesh.ply"
+        Shape "plymesh" "string filename" "packed.ply.gz"
+        Include "part.pbrt"
+        Import "part.pbrt.gz")");
+    struct File {
+        std::string name, bytes;
+        std::size_t change; // of a byte that may have another value
+    };
+    const std::string spd = "400 0.5 700 0.5",
+                      part = "Material \"diffuse\" \"spectrum reflectance\" \"grey.spd\" ",
+                      packed_part = text_of(gzip("Shape \"disk\"")), packed_ply = text_of(gzip(ply));
+    constexpr std::size_t time_of_gzip = 4; // the header's time stamp
+    const File files[] = {{"sky.pfm", pfm(8), pfm(8).size() - 3}, {"picture.pfm", pfm(4), pfm(4).size() - 3},
+                          {"mesh.ply", ply, ply.rfind("1 0\n")},  {"packed.ply.gz", packed_ply, time_of_gzip},
+                          {"part.pbrt", part, part.size() - 1},   {"part.pbrt.gz", packed_part, time_of_gzip},
+                          {"grey.spd", spd, spd.size() - 1}};
+    for (const File& f : files) write(f.name, f.bytes);
+    const std::uint64_t before = load(main).content_hash;
+    for (const File& f : files) {
+        std::string changed = f.bytes;
+        changed[f.change] = f.name == "part.pbrt" ? '\n' : static_cast<char>(changed[f.change] ^ 1);
+        write(f.name, changed);
+        EXPECT_NE(load(main).content_hash, before) << f.name;
+        write(f.name, f.bytes);
+        EXPECT_EQ(load(main).content_hash, before) << f.name;
+    }
+}
+
+TEST_F(PbrtFolder, TextThatUnpacksOutOfProportionIsRefused) {
+    const std::vector<std::uint8_t> packed = gzip("WorldBegin\n" + std::string(std::size_t{64} << 20, ' '));
+    auto bomb = write("bomb.pbrt.gz", text_of(packed));
+    const std::string sentence = bomb.string() +
+                                 ": unpacks to more than 16 MiB, which is out of proportion to its " +
+                                 std::to_string(packed.size()) + " bytes";
+    EXPECT_EQ(load_error(bomb), sentence);
+    auto main = write("main.pbrt", "WorldBegin Include \"bomb.pbrt.gz\"");
+    EXPECT_EQ(load_error(main), main.string() + ":1:12: " + sentence);
+}
+
+// X, Y and Z are no grey picture, though there is a Y.
+TEST_F(PbrtFolder, PicturesInXyzAreRefused) {
+    Image picture(8, 8, {"X", "Y", "Z"});
+    for (float& v : picture.f32()) v = 0.5f;
+    write_image(folder_ / "xyz.exr", picture);
+    for (const char* world : {"LightSource \"infinite\" \"string filename\" \"xyz.exr\"",
+                              "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"xyz.exr\" "
+                              "Shape \"sphere\" \"texture alpha\" \"t\""})
+        EXPECT_NE(load_error(write("main.pbrt", std::string("WorldBegin ") + world))
+                      .find("has neither channels R, G and B nor Y"),
+                  std::string::npos)
+            << world;
+}
+
+// pbrt reads an imported file with a table of names of its own.
+TEST_F(PbrtFolder, CoordinateSystemsOfAnImportedFileEndWithIt) {
+    write("inner.pbrt", "Translate 0 0 5 CoordinateSystem \"a\" CoordinateSystem \"c\"");
+    write("part.pbrt", R"(CoordSysTransform "b" Shape "sphere"
+        Translate 0 7 0 CoordinateSystem "a" CoordinateSystem "only here" Import "inner.pbrt"
+        CoordSysTransform "a" Shape "sphere")");
+    const std::string text = "WorldBegin Translate 1 0 0 CoordinateSystem \"a\" Translate 2 0 0\n"
+                             "CoordinateSystem \"b\" Identity Import \"part.pbrt\"\n";
+    SceneDescription d = load(write("main.pbrt", text + "CoordSysTransform \"a\" Shape \"sphere\""));
+    const Vec3f centers[] = {{3, 0, 0}, {3, 7, 0}, {1, 0, 0}};
+    ASSERT_EQ(d.scene.quadrics.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i)
+        expect_near(std::get<Sphere>(d.scene.quadrics[i]).world_from_object.point(Vec3f()), centers[i]);
+    for (const char* name : {"only here", "c"}) {
+        auto main = write("main.pbrt", text + "CoordSysTransform \"" + name + "\"");
+        EXPECT_EQ(load_error(main),
+                  main.string() + ":3:1: there is no coordinate system '" + std::string(name) + "'");
+    }
+    auto included = write("main.pbrt", "WorldBegin CoordinateSystem \"b\" Include \"part.pbrt\"\n"
+                                       "CoordSysTransform \"only here\"");
+    EXPECT_EQ(load_error(included), "");
+}
+
+} // namespace
+} // namespace montelux

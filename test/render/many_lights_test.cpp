@@ -1,0 +1,36 @@
+// One light among very many is chosen as often as its probability says.
+#include "test/render/scene_testing.h"
+#include <gtest/gtest.h>
+
+namespace montelux::testing {
+namespace {
+
+// The many shine away from the floor. With 24 bits for the choice the lamp would be 8 % too dark: 8 standard
+// errors and more; the comparison is at 5 (a false alarm in 1.7 million).
+TEST(ManyLights, OneAmongThemIsAsBrightAsAlone) {
+    constexpr int many = 1 << 18;
+    SceneBuilder b;
+    b.add_mesh(square(Transform::scale({100, 100, 1})), b.add(DiffuseMaterial{gray(0.6f)}));
+    TriangleMesh heap;
+    heap.positions = {{0, 0, -1}, {0, 1, -1}, {1, 0, -1}};
+    for (int i = 0; i < many; ++i) heap.indices.insert(heap.indices.end(), {0, 1, 2});
+    b.add_mesh(std::move(heap), b.add(DiffuseMaterial{gray(0)}), 1);
+    const double heap_power = pi * 0.5 * many;
+    // A tenth of the power is its.
+    const double intensity = heap_power / 9 / (4 * pi);
+    b.scene.lights.push_back(
+        PointLight{white_light(), static_cast<float>(intensity) * white_scale(), {0, 0, 10}});
+    b.description.integrator.max_depth = 1;
+    b.description.sampler.samples_per_pixel = 4096;
+    b.look({0, -0.1, 5}, {0, 0, 0}, 0.05f);
+    const double truth = 0.6 / pi * intensity / 100;
+    for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
+        b.description.sampler.kind = kind;
+        const PictureMean m = picture_mean(render(b.description));
+        EXPECT_NEAR(m.mean, truth, 5 * m.standard_error);
+        EXPECT_LT(m.standard_error, 0.01 * truth);
+    }
+}
+
+} // namespace
+} // namespace montelux::testing
