@@ -3,6 +3,7 @@
 #include "app/bake_run.h"
 #include "app/commands.h"
 #include "app/json_number.h"
+#include "app/output_files.h"
 #include "app/progress_line.h"
 #include "app/usage_error.h"
 #include <CLI/CLI.hpp>
@@ -92,7 +93,9 @@ double rounding(const std::string& path, double largest, const BrdfOptions& o) {
 }
 
 int run(const BrdfOptions& o) {
+    check_output_names(o.outputs, {});
     for (const std::string& path : o.outputs) {
+        check_extension(path, {".exr", ".ktx2", ".pfm", ".hdr", ".png"});
         if (is(path, ".ktx2")) {
             const AtomicFile never_committed(path);
         } else {
@@ -123,21 +126,23 @@ int run(const BrdfOptions& o) {
                 error = std::max(error, static_cast<double>(table.value(x, y, c + 3)));
             }
 
-    for (const std::string& path : o.outputs) write_table(path, table, o);
+    OutputFiles files;
+    for (const std::string& path : o.outputs) files.write(path, [&] { write_table(path, table, o); });
     if (o.run.json) {
         nlohmann::ordered_json out;
         out["size"] = o.size;
         out["largest_error_bound"] = json_number(error);
-        for (const std::string& path : o.outputs)
+        for (const std::string& path : files.written())
             out["files"].push_back(
                 {{"file", path}, {"largest_error_bound", json_number(error + rounding(path, largest, o))}});
         out["seconds"] = time;
         std::printf("%s\n", out.dump(2).c_str());
     } else if (!o.run.quiet) {
-        for (const std::string& path : o.outputs)
+        for (const std::string& path : files.written())
             std::printf("%s: %d x %d texels, error below %.2g, %s\n", path.c_str(), o.size, o.size,
                         error + rounding(path, largest, o), duration_text(time).c_str());
     }
+    files.throw_failures();
     return exit_done;
 }
 

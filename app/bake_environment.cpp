@@ -6,6 +6,7 @@
 #include "app/commands.h"
 #include "app/json_number.h"
 #include "app/option_values.h"
+#include "app/output_files.h"
 #include "app/progress_line.h"
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -140,6 +141,16 @@ void write_text(const std::string& path, const std::string& text) {
 void check_files(const EnvironmentOptions& o, std::size_t levels) {
     if (o.outputs.empty() && o.irradiance.empty() && o.harmonics.empty() && o.preview.empty())
         throw UsageError("nothing is asked for: give --output, --irradiance, --harmonics or --preview");
+    check(o.files);
+    std::vector<std::string> names = o.harmonics;
+    names.push_back(o.preview);
+    auto add = [&](const std::string& path, std::size_t count) {
+        const std::vector<std::string> more = cube_file_names(path, o.files, count);
+        names.insert(names.end(), more.begin(), more.end());
+    };
+    for (const std::string& path : o.outputs) add(path, levels);
+    for (const std::string& path : o.irradiance) add(path, 1);
+    check_output_names(names, {o.map.file});
     for (const std::string& path : o.outputs) check_cube_file(path, o.files, levels);
     for (const std::string& path : o.irradiance) check_cube_file(path, o.files, 1);
     for (const std::string& path : o.harmonics) {
@@ -213,22 +224,27 @@ int run(const EnvironmentOptions& o) {
         std::snprintf(text, sizeof text, "%.9g", r);
         list += (list.empty() ? "" : " ") + std::string(text);
     }
+    OutputFiles files;
     for (const std::string& path : o.outputs) {
         std::map<std::string, std::string> notes{{"montelux.roughness", list}};
         if (std::filesystem::path(path).extension() == ".ktx") notes["sh"] = harmonics_note(harmonics);
-        write_cube_file(path, o.files, chain, notes);
+        files.write(path, [&] { write_cube_file(path, o.files, chain, notes); });
     }
-    for (const std::string& path : o.irradiance) write_cube_file(path, o.files, irradiance, {});
+    for (const std::string& path : o.irradiance)
+        files.write(path, [&] { write_cube_file(path, o.files, irradiance, {}); });
     for (const std::string& path : o.harmonics)
-        write_text(path, std::filesystem::path(path).extension() == ".json"
-                             ? json_of(harmonics).dump(2) + "\n"
-                             : harmonics_text(harmonics));
-    if (!o.preview.empty()) {
-        const ContactSheet sheet = contact_sheet(chain.value);
-        WriteOptions writing;
-        writing.exposure = sheet.exposure;
-        write_image(o.preview, sheet.picture, writing);
-    }
+        files.write(path, [&] {
+            write_text(path, std::filesystem::path(path).extension() == ".json"
+                                 ? json_of(harmonics).dump(2) + "\n"
+                                 : harmonics_text(harmonics));
+        });
+    if (!o.preview.empty())
+        files.write(o.preview, [&] {
+            const ContactSheet sheet = contact_sheet(chain.value);
+            WriteOptions writing;
+            writing.exposure = sheet.exposure;
+            write_image(o.preview, sheet.picture, writing);
+        });
     if (o.run.json) {
         Json out;
         out["map"] = {{"file", o.map.file},
@@ -250,6 +266,7 @@ int run(const EnvironmentOptions& o) {
         if (o.source_mips)
             std::printf("averages over texels were used: the errors do not know of their bias\n");
     }
+    files.throw_failures();
     const std::uint64_t texels_missed = missed(chain) + missed(irradiance);
     if (texels_missed == 0) return exit_done;
     std::fprintf(stderr,
@@ -287,12 +304,15 @@ void add_bake_environment(CLI::App& bake, int& exit_code) {
             "- level / (levels - 1)); babylon: the root of 2^(level / 0.8) / size; or a list such as "
             "0,0.1,0.3,1")
         ->type_name("RULE");
-    command->add_option("--irradiance", o->irradiance, "Irradiance / pi as a cube map; files as for --output")
-        ->type_name("FILE")
-        ->allow_extra_args(false);
+    CLI::Option* irradiance = command
+                                  ->add_option("--irradiance", o->irradiance,
+                                               "Irradiance / pi as a cube map; files as for --output")
+                                  ->type_name("FILE")
+                                  ->allow_extra_args(false);
     command->add_option("--irradiance-size", o->irradiance_size, "Texels along its edge")
         ->type_name("N")
-        ->check(CLI::Range(1, 8192));
+        ->check(CLI::Range(1, 8192))
+        ->needs(irradiance);
     command
         ->add_option("--harmonics", o->harmonics,
                      "Order-2 spherical harmonics. .json: radiance, irradiance and the polynomial for "
@@ -306,14 +326,9 @@ void add_bake_environment(CLI::App& bake, int& exit_code) {
     add_parsed(*command, "--target-error", "ERROR", o->target_error, parse_share,
                "Standard error of each channel of each texel, beside the mean of its channels: 0.01 (taken "
                "without the option) or 1%");
-    command->add_option("--samples", o->samples, "Take so many samples a texel instead")
-        ->type_name("N")
-        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 30));
-    command
-        ->add_option("--samples-max", o->samples_max,
-                     "At most so many samples in a round of a texel (1048576)")
-        ->type_name("N")
-        ->check(CLI::Range(std::uint64_t{2}, std::uint64_t{1} << 30));
+    add_whole_number(*command, "--samples", o->samples, 1, 1u << 30, "Take so many samples a texel instead");
+    add_whole_number(*command, "--samples-max", o->samples_max, 2, 1u << 30,
+                     "At most so many samples in a round of a texel (1048576)");
     add_parsed(*command, "--dark-floor", "SHARE", o->dark_floor, parse_not_negative,
                "Texels darker than this share of the map's mean are measured by the share (0.01)");
     command
@@ -323,7 +338,7 @@ void add_bake_environment(CLI::App& bake, int& exit_code) {
         ->type_name("HOW");
     command->add_flag("--source-mips", o->source_mips,
                       "With --sampling lobe: look up averages over texels; less noise, but biased");
-    command->add_option("--seed", o->seed, "Another seed, other noise")->type_name("N");
+    add_whole_number(*command, "--seed", o->seed, 0, UINT64_MAX, "Another seed, other noise");
     declare(*command, o->run);
     command->footer(
         "Example:\n  montelux bake environment sky.hdr -o sky.ktx2 --harmonics sky.json --preview sky.png");

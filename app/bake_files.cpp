@@ -1,5 +1,7 @@
 #include "app/bake_files.h"
 
+#include "app/option_values.h"
+#include "app/output_files.h"
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -80,20 +82,38 @@ void declare(CLI::App& command, BakeFileOptions& options) {
             ".dds: the first two); with rgbm8 a .png holds RGBM as well")
         ->check(CLI::IsMember({"rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "rgbm8"}))
         ->type_name("FORMAT");
+    auto given = [&options](const std::string&) { options.rgbm_given = true; };
     command.add_option("--rgbm-range", options.rgbm.range, "RGBM: light = (range * RGB * M)^power")
-        ->check(CLI::Range(1.0, 65536.0))
-        ->type_name("RANGE");
+        ->check(number_within(1, 65536))
+        ->type_name("RANGE")
+        ->each(given);
     command.add_option("--rgbm-power", options.rgbm.power, "RGBM: 1, or 2 for more of the dark")
         ->check(CLI::Range(1, 2))
-        ->type_name("POWER");
+        ->type_name("POWER")
+        ->each(given);
     command.add_option("--exposure", options.exposure, "Of .png pictures, in stops")
-        ->check(CLI::Range(-100.0, 100.0))
+        ->check(number_within(-100.0, 100.0))
         ->type_name("STOPS");
+}
+
+void check(const BakeFileOptions& options) {
+    if (options.rgbm_given && options.format != "rgbm8")
+        throw UsageError("--rgbm-range and --rgbm-power",
+                         "they are of --format rgbm8; the format is " + options.format);
+}
+
+std::vector<std::string> cube_file_names(const std::string& path, const BakeFileOptions& options,
+                                         std::size_t levels) {
+    if (kind_of(path) != Kind::picture) return {path};
+    std::vector<std::string> names;
+    for (const Picture& picture : pictures_of(path, options, levels)) names.push_back(picture.path.string());
+    return names;
 }
 
 void check_cube_file(const std::string& path, const BakeFileOptions& options, std::size_t levels) {
     const Kind kind = kind_of(path);
     if (kind == Kind::picture) {
+        check_extension(path, {".ktx2", ".ktx", ".dds", ".exr", ".hdr", ".pfm", ".png"});
         for (const Picture& picture : pictures_of(path, options, levels)) check_writable(picture.path);
         return;
     }

@@ -18,11 +18,17 @@ namespace montelux::app {
 struct BakeFileOptions {
     std::string layout = "cross", format = "rgba16f";
     RgbmScale rgbm;
+    bool rgbm_given = false;
     float exposure = 0;
 };
 
 void declare(CLI::App& command, BakeFileOptions& options);
 
+// Throws UsageError for options that do not go together.
+void check(const BakeFileOptions& options);
+// The names of the files that `path` stands for.
+std::vector<std::string> cube_file_names(const std::string& path, const BakeFileOptions& options,
+                                         std::size_t levels);
 // Throws Error or UsageError for what writing would fail at later.
 void check_cube_file(const std::string& path, const BakeFileOptions& options, std::size_t levels);
 // .ktx2, .ktx, .dds: one file with all levels. .exr, .hdr, .pfm, .png: a picture a level (and a face, with

@@ -1,7 +1,7 @@
 #include "app/bake_map.h"
 
+#include "app/option_values.h"
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <cstdio>
 
 #include "montelux/image/image_read.h"
@@ -48,9 +48,7 @@ void declare(CLI::App& command, BakeMapOptions& options) {
                      "directions");
     command.add_option("--turn", options.turn, "Turn the map by so many degrees about the up axis")
         ->type_name("DEGREES")
-        ->check([](const std::string& text) {
-            return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : "a finite number is expected";
-        });
+        ->check(number_within(-360, 360));
 }
 
 CubeFrame frame_of(const BakeMapOptions& options) {

@@ -5,6 +5,7 @@
 #include "app/commands.h"
 #include "app/json_number.h"
 #include "app/option_values.h"
+#include "app/output_files.h"
 #include "app/usage_error.h"
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -47,6 +48,7 @@ void print_text(const SplitSumReport& report) {
 }
 
 int run(const ReportOptions& o) {
+    check_output_names(o.outputs, {o.map.file});
     for (const std::string& path : o.outputs) check_writable(path);
     const EnvironmentMap map = read_map(o.map, o.run.quiet);
     SplitSumSettings settings = o.settings;
@@ -59,11 +61,14 @@ int run(const ReportOptions& o) {
     if (bake.interrupted(report.cancelled)) return exit_interrupted;
     WriteOptions writing;
     writing.exposure = o.exposure;
-    for (const std::string& path : o.outputs) write_image(path, report.spheres, writing);
+    OutputFiles files;
+    for (const std::string& path : o.outputs)
+        files.write(path, [&] { write_image(path, report.spheres, writing); });
     if (o.run.json)
         print_json(o, report);
     else if (!o.run.quiet)
         print_text(report);
+    files.throw_failures();
     return exit_done;
 }
 
@@ -84,15 +89,15 @@ void add_bake_report(CLI::App& bake, int& exit_code) {
         ->allow_extra_args(false);
     command->add_option("--roughness", s.roughness, "Perceptual roughness")
         ->delimiter(',')
-        ->check(CLI::Range(0.03, 1.0))
+        ->check(number_within(0.03, 1.0))
         ->type_name("LIST");
     command->add_option("--n-dot-v", s.n_dot_v, "Cosines of the view in the table")
         ->delimiter(',')
-        ->check(CLI::Range(0.01, 1.0))
+        ->check(number_within(0.01, 1.0))
         ->type_name("LIST");
     command->add_option("--f0", s.f0, "Reflectances along the normal in the table")
         ->delimiter(',')
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(number_within(0.0, 1.0))
         ->type_name("LIST");
     command
         ->add_option("--orientations", s.orientations, "Random surfaces and views for each row of the table")
@@ -102,14 +107,14 @@ void add_bake_report(CLI::App& bake, int& exit_code) {
         ->check(CLI::Range(1, 4096))
         ->type_name("N");
     command->add_option("--sphere-f0", s.sphere_f0, "Reflectance of the spheres")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(number_within(0.0, 1.0))
         ->type_name("F0");
     add_parsed(*command, "--target-error", "ERROR", s.target_error, parse_share,
                "Standard error of either side at one place: 0.01 (taken without the option) or 1%");
     command->add_option("--exposure", o->exposure, "Of a .png picture, in stops")
-        ->check(CLI::Range(-100.0, 100.0))
+        ->check(number_within(-100.0, 100.0))
         ->type_name("STOPS");
-    command->add_option("--seed", s.seed, "Another seed, other noise")->type_name("N");
+    add_whole_number(*command, "--seed", s.seed, 0, UINT64_MAX, "Another seed, other noise");
     declare(*command, o->run);
     command->footer(
         "split - full is the mean difference beside the mean of the integral over random orientations, with "

@@ -2,6 +2,8 @@
 #include "app/commands.h"
 #include "app/json_number.h"
 #include "app/option_values.h"
+#include "app/output_files.h"
+#include "app/usage_error.h"
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -177,7 +179,15 @@ void print_text(const CompareSettings& s, const Side& a, const Side& b, const Co
 }
 
 void run_compare(const CompareSettings& s) {
-    if (!s.difference.empty()) check_writable(s.difference);
+    if (!s.difference.empty()) {
+        const std::string extension = std::filesystem::path(s.difference).extension().string();
+        if (extension != ".png" && extension != ".PNG")
+            throw UsageError("--difference",
+                             "'" + s.difference + "' was given; expected a name that ends in .png");
+        check_output_names({s.difference}, {s.a, s.b, s.error_a, s.error_b, sibling_error_file(s.a),
+                                            sibling_error_file(s.b)});
+        check_writable(s.difference);
+    }
     Side a, b;
     load(a, s.a, s.error_a);
     load(b, s.b, s.error_b);
@@ -208,7 +218,7 @@ void add_compare(CLI::App& app, int& exit_code) {
     command
         ->add_option("--set-aside", s->options.set_aside_percent,
                      "Leave out this per cent of the pixels, those where the reference is noisiest")
-        ->check(CLI::Range(0.0, 99.999));
+        ->check(number_within(0.0, 99.999));
     add_parsed(*command, "--epsilon", "EPSILON", s->options.relative_epsilon, parse_positive,
                "Epsilon of relMSE")
         ->default_str("0.01");

@@ -2,6 +2,7 @@
 #include "app/commands.h"
 #include "app/denoised_output.h"
 #include "app/interrupt.h"
+#include "app/output_files.h"
 #include "app/progress_line.h"
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -34,11 +35,14 @@ int run(const DenoiseSettings& settings) {
     double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const std::string note = describe(denoiser, report, settings.quiet);
     finish_on_signals();
-    for (const std::string& output : settings.outputs) write_picture(output, image);
+    OutputFiles files;
+    for (const std::string& output : settings.outputs)
+        files.write(output, [&] { write_picture(output, image); });
     if (!settings.quiet)
-        for (const std::string& output : settings.outputs)
+        for (const std::string& output : files.written())
             std::printf("%s: %d x %d pixels, %s, %s\n", output.c_str(), image.width(), image.height(),
                         duration_text(seconds).c_str(), note.c_str());
+    files.throw_failures();
     return exit_done;
 }
 

@@ -75,12 +75,13 @@ std::string unknown_name(const std::string& name, bool called, const mu::Parser&
     std::vector<std::string> known;
     if (!called) {
         known = variables;
-        for (const auto& [constant_name, value] : parser.GetConst()) known.push_back(constant_name);
+        for (const auto& [constant_name, value] : parser.GetConst())
+            if (!std::isnan(value)) known.push_back(constant_name); // which nobody means
     }
     for (const auto& [function_name, callback] : parser.GetFunDef()) known.push_back(function_name);
     const std::vector<std::string_view> views(known.begin(), known.end());
-    std::string what = "there is no " + std::string(called ? "function" : "variable") + " '" + name + "'" +
-                       did_you_mean(name, views);
+    std::string what = "there is no " + std::string(called ? "function" : "variable") + " '" + name + "'";
+    if (name.size() > 1) what += did_you_mean(name, views); // every short name is near to a letter
     if (called) return what + "; expected one of " + formula_functions();
     if (variables.empty()) return what + "; a number is expected here, without variables";
     if (variables.size() <= 12) {

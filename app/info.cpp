@@ -2,9 +2,11 @@
 #include "app/commands.h"
 #include "app/json_number.h"
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <type_traits>
 
 #include "montelux/image/image_read.h"
@@ -87,6 +89,14 @@ void print_json(const InfoSettings& settings, const Image& image) {
     std::printf("%s\n", dump(out, 2).c_str());
 }
 
+// "-" where no sample is finite.
+std::string value_text(double v) {
+    if (!std::isfinite(v)) return "-";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", v);
+    return text;
+}
+
 void print_text(const InfoSettings& settings, const Image& image) {
     std::printf("%s: %d x %d pixels, %d channels, %s, %s\n", settings.file.c_str(), image.width(),
                 image.height(), image.channels(), std::string(name_of(image.format())).c_str(),
@@ -95,9 +105,10 @@ void print_text(const InfoSettings& settings, const Image& image) {
                 "infinite", "negative");
     for (int c = 0; c < image.channels(); ++c) {
         ChannelSummary s = summarize_channel(image, c);
-        std::printf("%-20s %13.6g %13.6g %13.6g %9llu %9llu %9llu\n", image.channel_names()[c].c_str(),
-                    s.minimum, s.mean, s.maximum, static_cast<unsigned long long>(s.nan),
-                    static_cast<unsigned long long>(s.infinite), static_cast<unsigned long long>(s.negative));
+        std::printf("%-20s %13s %13s %13s %9llu %9llu %9llu\n", image.channel_names()[c].c_str(),
+                    value_text(s.minimum).c_str(), value_text(s.mean).c_str(), value_text(s.maximum).c_str(),
+                    static_cast<unsigned long long>(s.nan), static_cast<unsigned long long>(s.infinite),
+                    static_cast<unsigned long long>(s.negative));
     }
     if (!image.attributes().empty()) std::printf("header\n");
     // JSON quoting keeps control characters of a file away from the terminal.

@@ -4,6 +4,7 @@
 #include "app/integrate_options.h"
 #include "app/integration_report.h"
 #include "app/interrupt.h"
+#include "app/output_files.h"
 #include "app/point_recorder.h"
 #include "app/progress_line.h"
 #include "app/table_file.h"
@@ -33,6 +34,7 @@ void check_extension(const std::string& path, const std::string& option, const s
 void check_files(const IntegrateOptions& o) {
     if (!o.plot.empty()) check_extension(o.plot, "--plot", ".svg");
     if (!o.points.empty()) check_extension(o.points, "--points", ".csv");
+    check_output_names({o.plot, o.points, o.checkpoint}, {});
     for (const std::string& path : {o.plot, o.points, o.checkpoint})
         if (!path.empty()) check_output(path);
     if (!o.checkpoint.empty() && !o.resume && generation_exists(o.checkpoint))

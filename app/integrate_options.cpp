@@ -1,6 +1,7 @@
 #include "app/integrate_options.h"
 
 #include "app/joined.h"
+#include "app/option_values.h"
 #include "app/usage_error.h"
 #include "app/variables.h"
 #include <CLI/CLI.hpp>
@@ -9,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "montelux/formats/nearest_name.h"
 #include "montelux/mc/parallel/parallel_for.h"
@@ -35,6 +37,21 @@ double positive(const std::string& text, const std::string& option, const std::s
     return value;
 }
 
+// A relative error: also 1%.
+double relative_error(const std::string& text) {
+    const bool percent = text.ends_with('%');
+    const std::string hint = "; leave it out to stop at --evaluations or --time";
+    return positive(percent ? text.substr(0, text.size() - 1) : text, "--relative-error", hint) *
+           (percent ? 0.01 : 1);
+}
+
+// Seconds as a formula, or with units: 90s, 10m, 1h30m.
+double seconds(const std::string& text) {
+    const bool units = text.find_first_not_of("0123456789.hms") == std::string::npos &&
+                       text.find_first_of("hms") != std::string::npos;
+    return units ? parse_time_limit("--time", text) : positive(text, "--time", " of seconds");
+}
+
 std::vector<double> read_centre(const std::string& text, std::size_t dimensions) {
     if (text.empty()) return std::vector<double>(dimensions);
     std::vector<double> centre;
@@ -51,10 +68,14 @@ std::vector<double> read_centre(const std::string& text, std::size_t dimensions)
 
 Domain make_domain(const IntegrateOptions& o, const Variables& variables) {
     const std::size_t n = variables.names.size();
+    const bool round = o.domain == "ball" || o.domain == "sphere";
+    for (const auto& [option, value] : {std::pair("--radius", &o.radius), std::pair("--centre", &o.centre)})
+        if (!round && !value->empty())
+            throw UsageError(option, "a " + o.domain + " has none; expected --domain ball or sphere with it");
     if (o.domain == "box") return box_domain(variables);
     try {
         if (o.domain == "simplex") return Domain::simplex(static_cast<int>(n));
-        const double radius = positive(o.radius, "--radius", "");
+        const double radius = o.radius.empty() ? 1 : positive(o.radius, "--radius", "");
         std::vector<double> centre = read_centre(o.centre, n);
         return o.domain == "ball" ? Domain::ball(std::move(centre), radius)
                                   : Domain::sphere(std::move(centre), radius);
@@ -110,12 +131,13 @@ void declare(CLI::App& c, IntegrateOptions& o) {
          "Draw a variable from a density that is proportional to this formula, for example x=exp(-5*x)",
          "NAME=FORMULA");
     text("--method", o.method, "How: " + joined(Method::names()) + ". Default: " + Method().name(), "NAME");
-    text("--relative-error", o.relative_error, "Stop at this standard error relative to the value", "E");
+    text("--relative-error", o.relative_error,
+         "Stop at this standard error relative to the value, for example 1e-3 or 0.1%", "E");
     text("--absolute-error", o.absolute_error, "Stop at this standard error; with both, at the larger one",
          "E");
     text("--evaluations", o.evaluations,
          "Evaluate at most so often. Default: 1e6 where neither an error nor a time is asked for", "N");
-    text("--time", o.time, "Stop after this time", "SECONDS");
+    text("--time", o.time, "Stop after this time, for example 90, 90s, 10m or 1h30m", "TIME");
     text("--seed", o.seed, "Seed of all random numbers. Default: 0", "N");
     text("--threads", o.threads, "Threads; 0: one a processor. The result does not depend on it", "N");
     text("--domain", o.domain,
@@ -125,7 +147,7 @@ void declare(CLI::App& c, IntegrateOptions& o) {
     text("--non-finite", o.non_finite,
          "Values that are not finite numbers: skip counts and reports them, throw ends with an error",
          "POLICY");
-    text("--checkpoint", o.checkpoint, "Keep the running state in this file", "FILE");
+    text("--checkpoint", o.checkpoint, "Keep the running state in this file", "FILE")->check(file_name());
     text("--checkpoint-every", o.checkpoint_every, "How often it is written. Default: 60", "SECONDS");
     c.add_flag("--resume", o.resume, "Go on from the checkpoint, where there is one");
     text("--plot", o.plot, "Draw value and error against the evaluations (.svg)", "FILE");
@@ -159,11 +181,10 @@ IntegrationTask make_task(const IntegrateOptions& o) {
 
     Method method = make_method(o.method);
     Budget budget;
-    budget.relative_error =
-        positive(o.relative_error, "--relative-error", "; leave it out to stop at --evaluations or --time");
+    budget.relative_error = relative_error(o.relative_error);
     budget.absolute_error =
         positive(o.absolute_error, "--absolute-error", "; leave it out to stop at --evaluations or --time");
-    budget.time = std::chrono::duration<double>(positive(o.time, "--time", " of seconds"));
+    budget.time = std::chrono::duration<double>(seconds(o.time));
     if (!o.evaluations.empty())
         budget.evaluations = whole_number(o.evaluations, "--evaluations", 1, UINT64_MAX);
 
@@ -172,7 +193,9 @@ IntegrationTask make_task(const IntegrateOptions& o) {
     options.threads = static_cast<int>(whole_number(o.threads, "--threads", 0, most_threads));
     options.non_finite = o.non_finite == "skip" ? NonFinitePolicy::skip : NonFinitePolicy::throw_error;
     options.checkpoint = o.checkpoint;
-    const double every = constant(o.checkpoint_every, "--checkpoint-every");
+    if (!o.checkpoint_every.empty() && o.checkpoint.empty())
+        throw UsageError("--checkpoint-every", "expected --checkpoint FILE, which says what to write");
+    const double every = o.checkpoint_every.empty() ? 60 : constant(o.checkpoint_every, "--checkpoint-every");
     if (!(every >= 0 && every < 1e9))
         throw UsageError("--checkpoint-every", "'" + o.checkpoint_every + "' was given; expected seconds");
     options.checkpoint_every = std::chrono::duration<double>(every);

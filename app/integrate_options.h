@@ -17,11 +17,11 @@ namespace montelux::app {
 // As typed; numbers may be formulas ("1e6", "pi/2") and are read by make_task.
 struct IntegrateOptions {
     std::vector<std::string> formulas, over, densities;
-    std::string domain = "box", radius = "1", centre;
+    std::string domain = "box", radius, centre;
     std::string method;
     std::string relative_error, absolute_error, evaluations, time, seed = "0", threads = "0";
     std::string non_finite = "skip";
-    std::string checkpoint, checkpoint_every = "60", plot, points, points_limit = "10000";
+    std::string checkpoint, checkpoint_every, plot, points, points_limit = "10000";
     bool resume = false, json = false, quiet = false;
 };
 

@@ -6,10 +6,9 @@
 
 namespace montelux::app {
 
-// null for NaN, the strings "inf" and "-inf" for infinities.
+// null for NaN and infinities: whoever reads it meets one type and that.
 inline nlohmann::ordered_json json_number(double v) {
-    if (std::isnan(v)) return nullptr;
-    if (std::isinf(v)) return v > 0 ? "inf" : "-inf";
+    if (!std::isfinite(v)) return nullptr;
     return v;
 }
 

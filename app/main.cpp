@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 #ifdef MONTELUX_WITH_RENDER
 #include "app/cluster_job.h"
@@ -53,28 +54,48 @@ int give_up(const std::string& message, int exit_code) {
     return exit_code;
 }
 
+// Why the word after `command`, or nothing, is none of its subcommands.
+std::string command_wanted(const CLI::App& command, std::string_view word) {
+    std::vector<std::string_view> names;
+    for (const CLI::App* sub : command.get_subcommands({})) names.push_back(sub->get_name());
+    const std::string known = joined(names), of = command.get_parent() ? command.get_name() + " " : "";
+    if (word.empty()) return "a " + of + "command is expected: " + known;
+    if (word.starts_with('-'))
+        return "there is no option '" + std::string(word) + "' without a " + of +
+               "command; expected one of " + known;
+    return "there is no " + of + "command '" + std::string(word) + "'" + montelux::did_you_mean(word, names) +
+           "; expected one of " + known;
+}
+
+// What is left over: the first option that the command does not know, else the first word. An option comes
+// before what would have been its value.
+std::string not_expected(const CLI::App& command, const std::vector<std::string>& left, std::string message) {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    const std::vector<std::string_view> names(known.begin(), known.end());
+    for (const std::string& word : left)
+        if (word.size() > 1 && word[0] == '-') {
+            const std::string name = word.substr(0, word.find('='));
+            return "there is no option '" + name + "'" + montelux::did_you_mean(name, names);
+        }
+    return left.empty() ? std::move(message) : "'" + left.front() + "' is not expected";
+}
+
 // A mistake of the command line in the program's own style.
 int report_usage(const CLI::App& app, const CLI::ParseError& e, int argc, char** argv) {
-    std::string command = "montelux", message = e.what();
-    for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
-        at = at->get_subcommands().front();
-        command += " " + at->get_name();
+    std::string line = "montelux", message = e.what();
+    const CLI::App* command = &app;
+    int words = 1;
+    for (; !command->get_subcommands().empty(); ++words) {
+        command = command->get_subcommands().front();
+        line += " " + command->get_name();
     }
-    if (app.get_subcommands().empty()) {
-        std::vector<std::string_view> names;
-        for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
-        const std::string known = joined(names);
-        std::string_view first = argc > 1 ? argv[1] : "";
-        if (first.empty())
-            message = "a command is expected: " + known;
-        else if (first.starts_with('-'))
-            message =
-                "there is no option '" + std::string(first) + "' without a command; expected one of " + known;
-        else
-            message = "there is no command '" + std::string(first) + "'" +
-                      montelux::did_you_mean(first, names) + "; expected one of " + known;
-    }
-    return give_up(message + "\nRun '" + command + " --help' for what it understands.", exit_usage);
+    if (!command->get_subcommands({}).empty())
+        message = command_wanted(*command, words < argc ? argv[words] : "");
+    else if (dynamic_cast<const CLI::ExtrasError*>(&e) != nullptr)
+        message = not_expected(*command, command->remaining(), std::move(message));
+    return give_up(message + "\nRun '" + line + " --help' for what it understands.", exit_usage);
 }
 
 int run(int argc, char** argv) {
@@ -121,8 +142,10 @@ int run(int argc, char** argv) {
         } catch (const CLI::ParseError& e) {
             return report_usage(app, e, argc, argv);
         }
-        // A full disk behind a redirection is a failure too.
-        if (std::fflush(stdout) != 0) throw montelux::Error("standard output", "cannot be written");
+        // A full disk behind a redirection is a failure too; the stream remembers what was lost before its
+        // last piece.
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+            throw montelux::Error("standard output", "cannot be written");
     } catch (const UsageError& e) {
         return give_up(e.what(), exit_usage);
     } catch (const std::bad_alloc&) {

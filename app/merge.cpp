@@ -48,14 +48,15 @@ void run(const MergeSettings& settings) {
         if (merged.missing.size() > most)
             list += " and " + std::to_string(merged.missing.size() - most) + " more";
         std::fprintf(stderr,
-                     "montelux: warning: without slice %s: the picture is right, with fewer samples\n",
-                     list.c_str());
+                     "montelux: warning: without slice%s %s: the picture is right, with fewer samples\n",
+                     merged.missing.size() > 1 ? "s" : "", list.c_str());
     }
     print_clamped(merged.clamped_samples, merged.clamped_luminance, merged.mean_luminance);
     for (const std::string& output : settings.outputs)
-        std::printf("%s: %d x %d pixels of %zu slices, %.7g samples a pixel, relative error %s\n",
+        std::printf("%s: %d x %d pixels of %zu slice%s, %.7g samples a pixel, relative error %s\n",
                     output.c_str(), merged.image.width(), merged.image.height(), settings.inputs.size(),
-                    merged.mean_samples, percent_text(merged.relative_error).c_str());
+                    settings.inputs.size() > 1 ? "s" : "", merged.mean_samples,
+                    percent_text(merged.relative_error).c_str());
     print_outliers(merged.outliers);
 }
 

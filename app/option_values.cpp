@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 
 namespace montelux::app {
@@ -40,6 +41,66 @@ double parse_share(const std::string& option, const std::string& s) {
     if (!(share > 0 && share < 1))
         refuse(option, s, "a number above 0 and below 1 is expected, or above 0% and below 100%");
     return share;
+}
+
+double parse_duration(const std::string& option, const std::string& s) {
+    const char *at = s.data(), *end = s.data() + s.size();
+    double seconds = 0, last_unit = 1e9;
+    bool good = at != end;
+    while (good && at != end) {
+        double v = 0, unit = 1;
+        auto [stop, error] = std::from_chars(at, end, v);
+        good = error == std::errc() && v >= 0 && std::isfinite(v);
+        if (!good) break;
+        if (stop != end) unit = *stop == 'h' ? 3600 : *stop == 'm' ? 60 : *stop == 's' ? 1 : 0;
+        // A bare number is seconds, and stands alone.
+        good = unit > 0 && unit < last_unit && !(stop == end && last_unit < 1e9);
+        last_unit = unit;
+        seconds += v * unit;
+        at = stop == end ? end : stop + 1;
+    }
+    if (!good) refuse(option, s, "a time is expected, for example 90, 90s, 10m or 1h30m");
+    return seconds;
+}
+double parse_time_limit(const std::string& option, const std::string& s) {
+    const double seconds = parse_duration(option, s);
+    if (!(seconds > 0)) refuse(option, s, "a time above 0 is expected, for example 90, 90s, 10m or 1h30m");
+    return seconds;
+}
+
+std::uint64_t parse_whole_number(const std::string& option, const std::string& s, std::uint64_t lowest,
+                                 std::uint64_t highest) {
+    std::uint64_t v = 0;
+    const char* end = s.data() + s.size();
+    const auto [stop, error] = std::from_chars(s.data(), end, v);
+    bool good = error == std::errc() && stop == end;
+    // Doubles hold whole numbers up to 2^53.
+    if (const auto d = number(s, s.size()); !good && d && *d >= 0 && *d <= 0x1p53 && *d == std::floor(*d)) {
+        v = static_cast<std::uint64_t>(*d);
+        good = !s.starts_with('-');
+    }
+    if (!good || v < lowest || v > highest)
+        refuse(option, s,
+               highest == UINT64_MAX ? "a whole number is expected, at least " + std::to_string(lowest)
+                                     : "a whole number from " + std::to_string(lowest) + " to " +
+                                           std::to_string(highest) + " is expected");
+    return v;
+}
+
+CLI::Validator number_within(double lower, double upper) {
+    auto check = [lower, upper](std::string& s) -> std::string {
+        const auto v = number(s, s.size());
+        if (v && *v >= lower && *v <= upper) return "";
+        char text[96];
+        std::snprintf(text, sizeof text, "' was given; a number from %g to %g is expected", lower, upper);
+        return "'" + s + text;
+    };
+    return {check, ""};
+}
+
+CLI::Validator file_name() {
+    return {[](std::string& s) -> std::string { return s.empty() ? "the name of a file is expected" : ""; },
+            ""};
 }
 
 } // namespace montelux::app

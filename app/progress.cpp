@@ -1,5 +1,6 @@
 #include "app/progress.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -8,14 +9,21 @@ namespace montelux::app {
 
 void ProgressPrinter::update(const RenderProgress& p) {
     if (p.samples_total == 0) return;
-    const double fraction = static_cast<double>(p.samples_done) / static_cast<double>(p.samples_total);
-    const bool end = p.samples_done == p.samples_total;
+    double fraction = static_cast<double>(p.samples_done) / static_cast<double>(p.samples_total);
+    bool end = p.samples_done == p.samples_total;
+    const bool open = target_ > 0 && !(p.error && p.error->relative <= target_);
+    if (open && static_cast<double>(p.samples_done) < most_samples_) {
+        constexpr double almost = 0.99;
+        fraction = std::min(fraction, almost);
+        end = false;
+    }
     if (!line_.due(p.seconds) && !end) return;
     const double rate = p.seconds > 0 ? static_cast<double>(p.samples_done) / p.seconds : 0;
     char percent[16];
     std::snprintf(percent, sizeof percent, "%3.0f %%", std::floor(100 * fraction));
     std::string numbers = std::string(percent) + "  " + duration_text(p.seconds) + " elapsed";
-    if (!end && fraction > 0) numbers += ", " + duration_text(p.seconds * (1 / fraction - 1)) + " left";
+    if (!end && fraction > 0 && p.samples_done < p.samples_total)
+        numbers += ", " + duration_text(p.seconds * (1 / fraction - 1)) + " left";
     numbers += ", " + count_text(rate) + "samples/s";
     if (p.error) numbers += ", error " + percent_text(p.error->relative);
     if (line_.on_terminal()) {

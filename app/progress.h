@@ -9,7 +9,10 @@ namespace montelux::app {
 
 class ProgressPrinter {
   public:
-    explicit ProgressPrinter(bool quiet) : line_(quiet) {}
+    // Above an error of `target`, unless that is 0, the end is not near however many samples were expected,
+    // but for the largest number that there may be.
+    ProgressPrinter(bool quiet, double target, double most_samples)
+        : line_(quiet), target_(target), most_samples_(most_samples) {}
 
     void update(const RenderProgress& progress);
     // Ends the bar's line, if one is being drawn.
@@ -17,6 +20,7 @@ class ProgressPrinter {
 
   private:
     ProgressLine line_;
+    double target_, most_samples_;
 };
 
 } // namespace montelux::app

@@ -4,6 +4,7 @@
 #include "app/commands.h"
 #include "app/denoised_output.h"
 #include "app/interrupt.h"
+#include "app/output_files.h"
 #include "app/picture_notices.h"
 #include "app/progress.h"
 #include "app/render_options.h"
@@ -11,6 +12,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -27,6 +29,7 @@
 #include "montelux/render/render_header.h"
 #include "montelux/render/renderer.h"
 #include "montelux/render/rounds.h"
+#include "montelux/render/sample_order.h"
 
 namespace montelux::app {
 
@@ -69,10 +72,10 @@ void check_checkpoint(const RenderOptions& options, const std::vector<std::strin
             if (std::filesystem::absolute(output).lexically_normal() ==
                 std::filesystem::absolute(file).lexically_normal())
                 throw UsageError(output, "the checkpoint has this name; the picture needs another");
+    check_generation_writable(checkpoint);
     if (!options.resume && generation_exists(checkpoint))
         throw UsageError(checkpoint,
                          "the file is there already; add --resume to go on from it, or remove it");
-    const AtomicFile never_committed(checkpoint);
 }
 
 // Asking for more than there is would end in the killing of some program, seconds or hours later.
@@ -113,6 +116,17 @@ void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed) {
         static_cast<unsigned long long>(bad.first->sample), bad.first->x, bad.first->y,
         static_cast<unsigned long long>(seed), bad.first->x, bad.first->y,
         static_cast<unsigned long long>(bad.first->sample));
+}
+
+// A render that was stopped may be without errors, which nothing in its picture would explain.
+void print_missing_error(const FilmError& error, const SamplerSettings& sampler, const RenderTarget& target) {
+    if (target.slice.count > 1) return; // the joined slices will have them
+    const std::uint64_t points = SampleOrder(sampler, target.slice).unit();
+    if (std::isfinite(error.relative) || error.mean_samples < 2 || points < 2) return;
+    std::fprintf(stderr,
+                 "montelux: warning: the errors are not known: they come from how sets of %llu samples a "
+                 "pixel differ, and no two were finished; with --time or --target-error the sets are short\n",
+                 static_cast<unsigned long long>(points));
 }
 
 // What ended the render, where that is not the number of samples.
@@ -186,6 +200,10 @@ RenderState initial_state(const RenderOptions& options, SceneDescription& descri
         std::fprintf(stderr, "montelux: warning: going on from the checkpoint before the last: %s\n",
                      restored.newest_refused_because.c_str());
     description.sampler.replicate_points = restored.replicate_points;
+    if (const double there = restored.state.film.error().mean_samples;
+        !options.quiet && target.slice.count == 1 && there > description.sampler.samples_per_pixel)
+        std::fprintf(stderr, "montelux: %s has %.7g samples a pixel already, more than the %u asked for\n",
+                     options.checkpoint.c_str(), there, description.sampler.samples_per_pixel);
     return std::move(restored.state);
 }
 
@@ -219,7 +237,10 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     check_slice_option(description, target);
     RoundExecutor* const executor = shared.begin(description, target);
     Renderer renderer(description, target);
-    ProgressPrinter printer(options.quiet);
+    const PixelBounds& crop = description.film.crop;
+    ProgressPrinter printer(options.quiet, target.quantile > 0 ? 0 : target.error,
+                            static_cast<double>(crop.width()) * crop.height() *
+                                description.sampler.samples_per_pixel);
     RenderControl control;
     control.progress = [&](const RenderProgress& p) { printer.update(p); };
     control.cancel = &cancel_on_signals();
@@ -249,16 +270,18 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
                       report, error, clamped_luminance(state.film));
     finish_on_signals();
     const DenoiseOutcome denoised = denoise_render(denoiser, image, report.cancelled(), options.quiet);
-    for (const std::string& output : outputs) write_picture(output, image);
+    OutputFiles files;
+    for (const std::string& output : outputs) files.write(output, [&] { write_picture(output, image); });
     if (!options.quiet) {
         print_bad_samples(report.bad, description.sampler.seed);
         print_clamped(static_cast<double>(report.clamped_samples), clamped_luminance(state.film),
                       error.mean_luminance);
-        for (const std::string& output : outputs)
+        for (const std::string& output : files.written())
             std::printf("%s: %d x %d pixels, %.7g samples a pixel, relative error %s, %s%s%s\n",
                         output.c_str(), image.width(), image.height(), error.mean_samples,
                         percent_text(error.relative).c_str(), duration_text(report.seconds).c_str(),
                         ending_text(report, target).c_str(), denoised.note.c_str());
+        print_missing_error(error, renderer.sampler(), target);
         print_outliers(outliers_of(state.film));
         if (options.stats) {
             print_statistics(report, load_seconds, renderer.build_seconds());
@@ -269,6 +292,7 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
             shared.print_statistics();
         }
     }
+    files.throw_failures();
     shared.end_job_if_failed(exit_interrupted);
     if (!denoised.failure.empty()) throw Error(denoised.failure);
     if (!checkpoint_failure.empty())

@@ -6,7 +6,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <type_traits>
 #include <utility>
 
 #include "montelux/image/image.h"
@@ -25,32 +24,6 @@ std::string names(const Table& table) {
     std::string list;
     for (const auto& [name, value] : table) list += (list.empty() ? "" : ", ") + std::string(name);
     return list;
-}
-
-// Seconds: 90, 90s, 1.5m, 1h30m.
-double parse_duration(const std::string& option, const std::string& s) {
-    const char *at = s.data(), *end = s.data() + s.size();
-    double seconds = 0, last_unit = 1e9;
-    bool good = at != end;
-    while (good && at != end) {
-        double v = 0, unit = 1;
-        auto [stop, error] = std::from_chars(at, end, v);
-        good = error == std::errc() && v >= 0 && std::isfinite(v);
-        if (!good) break;
-        if (stop != end) unit = *stop == 'h' ? 3600 : *stop == 'm' ? 60 : *stop == 's' ? 1 : 0;
-        // A bare number is seconds, and stands alone.
-        good = unit > 0 && unit < last_unit && !(stop == end && last_unit < 1e9);
-        last_unit = unit;
-        seconds += v * unit;
-        at = stop == end ? end : stop + 1;
-    }
-    if (!good) refuse(option, s, "a time is expected, for example 90, 90s, 10m or 1h30m");
-    return seconds;
-}
-double parse_time_limit(const std::string& option, const std::string& s) {
-    const double seconds = parse_duration(option, s);
-    if (!(seconds > 0)) refuse(option, s, "a time above 0 is expected, for example 90, 90s, 10m or 1h30m");
-    return seconds;
 }
 
 // Ranks that are well may say nothing for a second.
@@ -74,24 +47,6 @@ Slice parse_slice(const std::string& option, const std::string& s) {
         if (f == std::errc() && q == end && k >= 1 && k <= n && n <= 1'000'000) return {k - 1, n};
     }
     refuse(option, s, "K/N is expected with K from 1 to N, for example 3/16");
-}
-
-// An option that takes a whole number of [lowest, highest]. "1e9", signs and fractions are no whole numbers.
-template <typename Target>
-void add_whole_number(CLI::App& c, const std::string& name, Target& target, std::uint64_t lowest,
-                      std::uint64_t highest, const std::string& help) {
-    auto read = [name, &target, lowest, highest](const std::string& text) {
-        std::uint64_t v = 0;
-        const char* end = text.data() + text.size();
-        auto [stop, error] = std::from_chars(text.data(), end, v);
-        if (error != std::errc() || stop != end || v < lowest || v > highest)
-            refuse(name, text,
-                   "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest) +
-                       " is expected");
-        using Value = std::conditional_t<std::is_same_v<Target, int>, int, std::uint64_t>;
-        target = static_cast<Value>(v);
-    };
-    c.add_option_function<std::string>(name, read, help)->type_name("N")->take_last();
 }
 
 // An option that takes one of the names of a table.
@@ -191,9 +146,13 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_parsed(c, "--clamp", "VALUE", o.clamp, parse_positive,
                "Largest RGB value of a sample; what it takes away is said at the end. Default: none but the "
                "scene's");
-    c.add_option("--checkpoint", o.checkpoint, "Keep the running state in this file")->type_name("FILE");
+    CLI::Option* checkpoint =
+        c.add_option("--checkpoint", o.checkpoint, "Keep the running state in this file")
+            ->type_name("FILE")
+            ->check(file_name());
     add_parsed(c, "--checkpoint-every", "TIME", o.checkpoint_every, parse_duration,
-               "How often it is written. Default: 60s");
+               "How often it is written. Default: 60s")
+        ->needs(checkpoint);
     c.add_flag("--resume", o.resume, "Go on from the checkpoint, where there is one");
     add_parsed(c, "--slice", "K/N", o.slice, parse_slice,
                "Take a part of the samples, K/N with K from 1 to N; montelux merge joins the parts");

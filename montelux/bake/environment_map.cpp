@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "montelux/mc/math/constants.h"
@@ -44,8 +45,15 @@ EnvironmentMap::EnvironmentMap(const Image& image, EnvironmentLayout layout)
     const int width = grid_.width(), height = grid_.height();
     const std::vector<float> texels = texels_of(image);
 
-    // The largest power of two that is not above the largest sample.
     const float largest = *std::max_element(texels.begin(), texels.end());
+    if (largest > largest_radiance) {
+        char text[96];
+        std::snprintf(text, sizeof text,
+                      "a sample is %.3g; at most %.0e is expected, so that sums are finite",
+                      static_cast<double>(largest), static_cast<double>(largest_radiance));
+        throw Error("environment map", text);
+    }
+    // The largest power of two that is not above the largest sample.
     if (largest > 0) unit_ = std::ldexp(1.0f, std::max(std::ilogb(largest), -126));
 
     Level base;
@@ -233,7 +241,7 @@ Vec3f EnvironmentMap::radiance(Vec3f direction, int level) const {
 
 Vec3f EnvironmentMap::radiance(const MapCell& block) const {
     const double omega = block.level == 0 ? grid_.solid_angle(block.y) : solid_angle(block);
-    return energy(block) * static_cast<float>(static_cast<double>(unit_) / omega);
+    return Vec3f(Vec3d(energy(block)) * (static_cast<double>(unit_) / omega)); // small texels: a large factor
 }
 
 Vec3d EnvironmentMap::mean_radiance() const {

@@ -33,8 +33,12 @@ class EnvironmentMap {
     // Larger maps are averaged by halves until they are below.
     static constexpr std::int64_t most_texels = std::int64_t{1} << 26;
 
+    // Sums over larger ones might not fit into floats.
+    static constexpr float largest_radiance = 1e36f;
+
     // Colour channels R, G, B or Y of the image as linear light; NaN, infinite and negative samples become 0.
-    // Throws Error when there are none, or an equal-area map is not square.
+    // Throws Error when there are none, a sample is above `largest_radiance`, or an equal-area map is not
+    // square.
     EnvironmentMap(const Image& image, EnvironmentLayout layout);
 
     const EnvironmentGrid& grid() const { return grid_; }

@@ -97,10 +97,12 @@ bool bake_level(const EnvironmentMap& map, const LevelTask& task, const BakeSett
                     const Vec3f direction(settings.frame.to_map(cube_texel_direction(texel, task.size)));
                     e = by_lobe ? lobe.estimate(direction, goal, key) : cells.estimate(direction, goal, key);
                 }
+                const double relative = missed_by(e, goal, 1);
+                if (std::isinf(relative)) e.standard_error = {relative, relative, relative};
                 set(value, texel, e.value);
                 set(error, texel, e.standard_error);
-                const double relative = missed_by(e, goal, 1);
-                local = local + Tally{e.samples, e.met ? 0u : 1u, relative, relative};
+                const bool met = e.met && std::isfinite(relative);
+                local = local + Tally{e.samples, met ? 0u : 1u, relative, relative};
             }
             return local;
         };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "montelux/mc/math/vec.h"
@@ -59,9 +60,13 @@ class StratifiedSum {
     Vec3d value_, variance_, inverse_;
 };
 
-// How many times the error that the goal allows; 0 where a black texel has none.
+// How many times the error that the goal allows; 0 where a black texel has none, and infinite where value or
+// error is not a finite number, of which nothing is known.
 inline double missed_by(const TexelEstimate& e, const TexelGoal& goal, double target_error) {
     const double reference = std::max((e.value.x + e.value.y + e.value.z) / 3, goal.floor);
+    double finite = 0; // or NaN
+    for (int c = 0; c < 3; ++c) finite += 0 * (e.value[c] + e.standard_error[c]);
+    if (finite != 0) return std::numeric_limits<double>::infinity();
     const double error = max_component(e.standard_error);
     if (error == 0) return 0;
     return reference > 0 ? error / (target_error * reference) : 2;

@@ -134,7 +134,9 @@ void SliceMerger::add(const Image& slice, const std::string& name) {
     if (slice.width() != width_ || slice.height() != height_)
         throw Error(name, "it has another size than " + first_name_);
     if (const auto [other, fresh] = names_.emplace(number.index, name); !fresh)
-        throw Error(name, "it is slice " + std::to_string(number.index) + ", as " + other->second + " is");
+        throw Error(name, other->second == name ? "it is given twice"
+                                                : "it is slice " + std::to_string(number.index) + ", as " +
+                                                      other->second + " is");
     if (names_.begin()->first == number.index) attributes_ = slice.attributes();
     bad_samples_ += number_attribute(slice, "badSamples");
     clamped_samples_ += number_attribute(slice, "clampedSamples");

@@ -34,6 +34,9 @@ expect 2 "--elevation" bake sky --elevation 91 -o x.exr
 expect 2 "--turbidity" bake sky --turbidity 0 -o x.exr
 expect 2 "an even number" bake sky --size 63 -o x.exr
 expect 2 "--output is required" bake sky
+expect 2 "becomes too large for a float" bake sky --size 16 --scale 1e300 -o x.exr
+expect 2 "becomes too small for a float" bake sky --size 16 --scale 1e-300 -o x.exr
+expect 0 "texels" bake sky --size 16 --scale 1e-20 -o x.exr
 
 # The chain, in all kinds of files.
 expect 0 "equirectangular map of 4 x 2 texels" bake environment sky.pfm --size 8 --levels 3 -o a.ktx2 -o a.ktx -o a.dds \
@@ -66,6 +69,19 @@ cmp -s t1_m1.pfm turn_m1.pfm && fail "--turn changes nothing"
 
 # Options that make no sense, and answers of "no".
 expect 2 "nothing is asked for" bake environment sky.pfm
+expect 2 "--seed: '-1' was given; a whole number is expected" bake environment sky.pfm -o x.exr --seed -1
+expect 2 "--seed: '-1' was given" bake report sky.pfm --seed -1
+expect 2 "--exposure: 'nan' was given; a number from -100 to 100" bake environment sky.pfm -o x.png --exposure nan
+expect 2 "--turn: '1e300' was given; a number from -360 to 360" bake environment sky.pfm -o x.exr --turn 1e300
+expect 2 "--dark-floor: 'nan' was given" bake environment sky.pfm -o x.exr --dark-floor nan
+expect 2 "--elevation: 'nan' was given; a number from" bake sky --elevation nan -o x.exr
+expect 2 "--roughness: 'nan' was given" bake report sky.pfm --roughness 0.5,nan
+expect 2 "they are of --format rgbm8" bake environment sky.pfm -o x.ktx2 --rgbm-range 7
+expect 2 "they are of --format rgbm8" bake environment sky.pfm -o x.ktx2 --rgbm-power 2
+expect 0 "texels" bake environment sky.pfm --size 4 --levels 1 -o rgbm.ktx2 --format rgbm8 --rgbm-range 7
+expect 2 "--irradiance-size requires --irradiance" bake environment sky.pfm -o x.exr --irradiance-size 8
+expect 1 "'.xyz' is not one of .ktx2, .ktx, .dds, .exr, .hdr, .pfm, .png" bake environment sky.pfm -o q.xyz
+expect 1 "the extension '.dds' is not one of .exr, .ktx2, .pfm, .hdr, .png" bake brdf -o brdf.dds
 expect 2 "does not go with" bake environment sky.pfm -o x.exr --samples 10 --target-error 0.1
 expect 2 "'2' was given; a number above 0 and below 1 is expected" bake environment sky.pfm -o x.exr --target-error 2
 expect 2 "'-1' was given; a number that is not negative" bake environment sky.pfm -o x.exr --dark-floor -1
@@ -93,6 +109,43 @@ pfm bad.pfm 2 1 "$minus_one" "$not_a_number" "$infinite" "$one" "$one" "$one"
 expect 0 "3 samples became 0 (1 not a number, 1 infinite, 1 negative)" bake environment bad.pfm --size 2 -o x.exr --roughness 0.5
 pfm black.pfm 2 1 "$zero" "$zero" "$zero" "$zero" "$zero" "$zero"
 expect 0 "0 %" bake environment black.pfm --size 4 -o x.exr --irradiance y.exr --roughness 0,0.5
+
+# Texels too large for sums are refused, and large ones have finite results.
+huge='\231\166\226\176' too_huge='\346\261\141\177' # 1e38 and 3e38
+pfm large.pfm 2 1 "$one" "$one" "$one" "$too_huge" "$one" "$one"
+expect 1 "large.pfm: environment map: a sample is 3" bake environment large.pfm --size 2 -o x.exr --roughness 0.5
+expect 1 "is expected, so that sums are finite" bake report large.pfm --roughness 0.5 --orientations 2
+pfm large.pfm 2 1 "$one" "$huge" "$one" "$one" "$one" "$one"
+expect 1 "a sample is 1" bake environment large.pfm --size 2 -o x.exr --roughness 0,0.5
+
+# Nothing is written over the map, and no two outputs share a name.
+cp sky.pfm map.pfm && ln -s map.pfm link.pfm && ln map.pfm hard.pfm
+for name in map.pfm ./map.pfm link.pfm hard.pfm; do
+    expect 2 "this file is read; what is written needs another name" bake environment map.pfm --size 2 --levels 1 -o $name
+    expect 2 "this file is read" bake environment map.pfm --size 2 --irradiance $name
+    expect 2 "this file is read" bake environment map.pfm --size 2 -o x.ktx2 --preview $name
+    expect 2 "this file is read" bake report map.pfm --roughness 0.5 --orientations 2 -o $name
+done
+cp sky.pfm map_m1.pfm
+expect 2 "map_m1.pfm: this file is read" bake environment map_m1.pfm --size 4 --levels 2 -o map.pfm
+cmp -s map.pfm sky.pfm && cmp -s map_m1.pfm sky.pfm || fail "a map was written over"
+expect 2 "w.ktx2: two outputs have the same name" bake environment sky.pfm --size 4 -o w.ktx2 --irradiance ./w.ktx2
+expect 2 "two outputs have the same name" bake environment sky.pfm --size 4 --levels 1 -o w.exr --preview w.exr
+expect 2 "w_m1.exr: two outputs" bake environment sky.pfm --size 4 --levels 2 -o w.exr --irradiance w_m1.exr
+expect 2 "two outputs have the same name" bake environment sky.pfm --harmonics w.txt --harmonics "$PWD/w.txt"
+for part in brdf sky "report sky.pfm"; do
+    expect 2 "two outputs have the same name" bake $part -o w.exr -o w.exr
+done
+ls | grep -q '^w[._]' && fail "a refused command wrote a file: $(ls)"
+expect 0 "texels" bake environment sky.pfm --size 4 --levels 2 -o both.exr -o both.pfm --roughness 0.5,1
+
+# One output that cannot be written does not cost the others.
+(trap '' XFSZ && ulimit -f 8 && exec "$montelux" bake environment sky.pfm --size 64 --levels 1 --roughness 1 --samples 2 \
+    -o lost.exr --harmonics kept.json) >out 2>&1
+[ $? -eq 1 ] || fail "a full disk: exit code is not 1: $(cat out)"
+grep -q "montelux: error: lost.exr: cannot be written: writing: File too large" out || fail "a full disk: $(cat out)"
+[ -e lost.exr ] && fail "a full disk left a file"
+[ -s kept.json ] || fail "a file that failed took the one after it along"
 
 # The report.
 expect 0 "split - full" bake report sky.pfm --roughness 0.3,1 --n-dot-v 0.5 --orientations 4 -o r.exr --sphere-size 8

@@ -13,10 +13,17 @@ for command in integrate sample render info compare; do expect 0 "Example" $comm
 expect 0 "--max-depth N" render --help
 expect 2 "a command is expected: integrate, sample, render, merge, compare, denoise, bake, info" # no arguments
 expect 2 "there is no command 'rendr' (did you mean 'render'?)" rendr
+expect 2 "there is no bake command 'skye' (did you mean 'sky'?); expected one of environment" bake skye
+expect 2 "a bake command is expected: environment, brdf, report, sky" bake
+expect 2 "there is no option '--speed' (did you mean '--seed'?)" render x.pbrt --speed 3
+expect 2 "there is no option '--speed' (did you mean '--seed'?)" render --speed=3 x.pbrt
+expect 2 "there is no option '-z'" info -z a.pfm
+expect 2 "'b.pfm' is not expected" info a.pfm b.pfm c.pfm
 expect 2 "--nonsense" --nonsense
 expect 2 "--nonsense" info --nonsense a.pfm
 expect 2 "Run 'montelux info --help'" info
 expect 2 "required" compare a.pfm
+expect 2 "'nan' was given; a number from 0 to 99.999 is expected" compare a.pfm b.pfm --set-aside nan
 expect 2 "set-aside" compare a.pfm b.pfm --set-aside 100
 expect 2 "difference" compare a.pfm b.pfm --full-scale 1
 
@@ -35,10 +42,34 @@ expect 0 "1 x 2 pixels, 3 channels, 8-bit integer, sRGB" info d.png
 expect 0 "standard errors of B alone" compare a.pfm b.pfm --stderr-b b.pfm
 expect 0 '"largest": 0.5' compare a.pfm b.pfm --stderr-b b.pfm --json
 expect 1 "wide.pfm is 2 x 1" compare a.pfm wide.pfm
-expect 1 "'.gif'" compare a.pfm b.pfm --difference d.gif
+expect 2 "expected a name that ends in .png" compare a.pfm b.pfm --difference d.gif
 expect 1 "standard errors" compare a.pfm b.pfm --set-aside 1
 expect 1 "standard errors" compare a.pfm b.pfm --difference d.png --difference-of z
 
+# What is compared is not written over, under whatever name.
+cp d.png e.png && ln -s e.png link.png && ln e.png hard.png && cp e.png kept.png
+for name in e.png ./e.png link.png hard.png "$PWD/e.png"; do
+    expect 2 "this file is read; what is written needs another name" compare d.png e.png --difference "$name"
+    expect 2 "this file is read" compare e.png d.png --difference "$name"
+    expect 2 "this file is read" compare d.png d.png --stderr-b e.png --difference "$name"
+done
+cmp -s e.png kept.png || fail "compare wrote over what it reads"
+
+# Values that are not finite: their number is told, the others have minimum, mean and maximum.
+infinite='\000\000\200\177'
+pfm infinite.pfm 2 1 "$one" "$infinite" "$one" "$one" "$infinite" "$not_a_number"
+"$montelux" info infinite.pfm >out || fail "info of infinite values: exit code $?"
+awk '$1 == "R" { r = $2 == 1 && $4 == 1 } $1 == "G" { g = $2 == "-" && $3 == "-" && $4 == "-" && $6 == 2 }
+    END { exit !r || !g }' out || fail "infinite values: $(cat out)"
+expect 0 '"maximum": null' info infinite.pfm --json
+
+# The JSON of many layers is longer than what is kept until the end.
+scene layers "$sky" 2 2 1
+expect 0 "layers.exr" render layers.pbrt
+for command in "info a.pfm" "info layers.exr --json" --version --help "compare a.pfm b.pfm --json"; do
+    "$montelux" $command >/dev/full 2>err && fail "$command: a full disk behind standard output went unnoticed"
+    "$montelux" $command >&- 2>err && fail "$command: a closed standard output went unnoticed"
+done
 if "$montelux" info a.pfm >/dev/full 2>err; then fail "a full disk behind standard output went unnoticed"; fi
 if "$montelux" info a.pfm >&- 2>err; then fail "a closed standard output went unnoticed"; fi
 finish

@@ -44,7 +44,11 @@ expect 0 "$told" merge clamped1.exr clamped2.exr clamped3.exr -o joined.exr
 expect 0 "clampedLuminance" info joined.exr
 expect 0 "samples a pixel" render ball.pbrt --spp 32 --sampler sobol --slice 16/16 -o sixteenth.exr
 expect 0 "without slice 2: the picture is right" merge part1.exr part3.exr -o two.exr
-expect 1 "it is slice 1, as part1.exr is" merge part1.exr part1.exr -o x.exr
+expect 0 "without slices 2, 3: the picture is right" merge part1.exr -o one.exr
+expect 0 "of 1 slice, " merge part1.exr -o one.exr
+expect 1 "part1.exr: it is given twice" merge part1.exr part1.exr -o x.exr
+cp part1.exr copy.exr
+expect 1 "copy.exr: it is slice 1, as part1.exr is" merge part1.exr copy.exr -o x.exr
 expect 0 "" render ball.pbrt --spp 48 --sampler sobol --seed 5 --slice 2/3 -o other.exr
 expect 1 "other.exr: it is of another render than part1.exr" merge part1.exr other.exr -o x.exr
 expect 0 "" render ball.pbrt --spp 48 --sampler sobol --slice 1/4 -o quarter.exr

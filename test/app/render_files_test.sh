@@ -13,6 +13,11 @@ expect 1 "the extension '.gif' is not one of .exr, .png, .hdr, .pfm" render long
 expect 1 "the extension '.pbrt'" render long.pbrt -o long.pbrt
 expect 1 "the name has no extension" render long.pbrt -o x
 expect 1 "the name has no extension" render long.pbrt -o ''
+long_name=$(printf 'x%.0s' $(seq 252)) # with .exr it has a letter too many
+expect 1 "File name too long" render long.pbrt -o $long_name.exr
+expect 1 "File name too long" render long.pbrt -o x.exr --checkpoint ${long_name%xxxxxxx} # too long with .previous
+expect 1 "no files can be made in the folder '/proc'" render long.pbrt -o /proc/x.exr
+expect 1 "it is a folder" render long.pbrt -o x.exr --checkpoint folder.exr
 mkdir locked && chmod 500 locked
 if [ "$(id -u)" -ne 0 ]; then expect 1 "Permission denied" render long.pbrt -o locked/x.exr; fi
 
@@ -21,6 +26,16 @@ printf 'old' >limited.exr
 (trap '' XFSZ && ulimit -f 1 && "$montelux" render ok.pbrt --resolution 300x200 -o limited.exr >out 2>&1)
 [ $? -eq 1 ] || fail "a full disk: exit code is not 1"
 [ "$(cat limited.exr)" = old ] || fail "a full disk: the older file is damaged"
+grep -q "limited.exr: cannot be written: writing: File too large" out || fail "a full disk: $(cat out)"
+# The outputs after it are written.
+(trap '' XFSZ && ulimit -f 800 && "$montelux" render ok.pbrt --resolution 300x200 -o limited.exr -o small.png \
+    -o big.pfm -o small.hdr >out 2>&1)
+[ $? -eq 1 ] || fail "a full disk: exit code is not 1"
+[ "$(grep -c 'montelux: error: ' out)" -eq 1 ] || fail "a full disk: not one error: $(cat out)"
+grep -q "error: limited.exr: .*File too large; big.pfm: .*File too large" out || fail "a full disk: $(cat out)"
+grep -q '^limited.exr: 300' out && fail "a file that was not written is told of: $(cat out)"
+expect 0 "300 x 200 pixels" info small.png
+expect 0 "300 x 200 pixels" info small.hdr
 find . -name '.montelux-*' | grep -q . && fail "a temporary file was left behind"
 "$montelux" render ok.pbrt >/dev/full 2>err && fail "a full disk behind standard output went unnoticed"
 # Messages must not get into a picture that is opened while the standard streams are closed.

@@ -16,10 +16,13 @@ for value in 0,1 0,1,0,1,1 a,b,c,d 1,0,0,1 0,0,0,0 -1,1,0,1 nan,1,0,1 0,1,0,2 ''
 done
 expect 2 "no pixel of the 64x48 film" render ok.pbrt --crop 0.001,0.002,0,1
 for option in --spp --seed --threads --max-depth; do
-    for value in -1 1.5 1e9 99999999999999999999 0x10 x ''; do
+    for value in -1 1.5 1e-1 1e30 99999999999999999999 0x10 x ''; do
         expect 2 "$option: '$value' was given" render ok.pbrt $option "$value"
     done
 done
+expect 0 "20 samples a pixel" render ok.pbrt --resolution 8x6 --spp 2e1 --seed 1e3 -o twenty.pfm
+expect 2 "--checkpoint-every requires --checkpoint" render ok.pbrt --checkpoint-every 5
+expect 2 "--checkpoint: the name of a file is expected" render ok.pbrt --checkpoint ''
 expect 2 "--spp: '0' was given; a whole number from 1 to" render ok.pbrt --spp 0
 expect 2 "--threads: '5000'" render ok.pbrt --threads 5000
 expect 2 "--rank-timeout: '1' was given; a time of at least 2s" render ok.pbrt --rank-timeout 1

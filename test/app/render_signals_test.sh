@@ -35,6 +35,18 @@ for sampler in independent sobol; do
     done
 done
 
+# Replicates of 62500 samples: no two are finished, and the errors are unknown.
+"$montelux" render long.pbrt --sampler sobol -o none.exr >out 2>&1 &
+pid=$!
+end_later $pid
+sleep 1
+kill -TERM $pid
+wait_for $pid
+[ $code -eq 130 ] || fail "without errors: exit code $code instead of 130"
+grep -q "the errors are not known: they come from how sets of 62500 samples a pixel differ" out ||
+    fail "without errors: $(cat out)"
+"$montelux" info none.exr --json | grep -q '"relativeError": null' || fail "an unknown error in JSON is not null"
+
 # Paths in a sphere that takes no light away are long, and the first signal waits for those of a pixel. Another one
 # ends the program at once, but not one of the same second. Checkpoints stay.
 scene furnace 'Material "diffuse" "spectrum reflectance" [200 1 900 1] Shape "sphere" "float radius" 5' 2 2

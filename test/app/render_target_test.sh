@@ -11,6 +11,14 @@ expect 3 "time is up before the target was reached" render ball.pbrt --target-er
 expect 0 "time is up" render ball.pbrt --time 0.2s -o x.exr
 expect 0 "16 samples a pixel" render ball.pbrt --time 1h --spp 16 -o x.exr
 expect 0 "samples were clamped, which took" render ball.pbrt --clamp 0.5 -o x.exr
+# The bar is not full while the target is open.
+if command -v script >/dev/null; then
+    scene lit "$sky LightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [0 0.9 1.2] Material \"diffuse\"
+Shape \"sphere\" Translate 1 0 0 Shape \"sphere\"" 200 150
+    script -qec "'$montelux' render lit.pbrt --target-error 7% -o x.exr" /dev/null >out 2>&1 </dev/null
+    tr '\r' '\n' <out | awk '/100 %/ && / error / { sub(/.* error /, ""); if ($1 + 0 > 7) bad = 1 } END { exit bad }' ||
+        fail "100 % above the target: $(tr '\r' '\n' <out | grep '100 %')"
+fi
 for value in 0 -1 1 2 nan x '' 120% 1e-2x; do
     expect 2 "--target-error: '$value' was given" render ball.pbrt --target-error "$value" -o y.exr
 done
@@ -26,6 +34,9 @@ expect 2 "--clamp: '0' was given" render ball.pbrt --clamp 0 -o y.exr
 # A finished render goes on to more samples, and is the same as one that was never stopped.
 expect 0 "is not there yet: rendering from the start" render ball.pbrt --spp 20 --resume --checkpoint state -o a.pfm
 expect 0 "52 samples a pixel" render ball.pbrt --spp 52 --resume --checkpoint state -o a.pfm
+expect 0 "state has 52 samples a pixel already, more than the 20 asked for" render ball.pbrt --spp 20 --resume \
+    --checkpoint state -o less.pfm
+cmp -s a.pfm less.pfm || fail "a render that had more samples than asked for changed"
 expect 0 "" render ball.pbrt --spp 52 -o b.pfm
 cmp -s a.pfm b.pfm || fail "a render that was continued differs"
 expect 1 "of another render: the sampler or seed differs" render ball.pbrt --seed 9 --resume --checkpoint state -o x.pfm

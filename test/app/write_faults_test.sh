@@ -81,6 +81,9 @@ faults() {
                 elif [ $code -ne 0 ]; then
                     fail "$where: exit code $code: $(cat out)"
                 fi
+                # What the first failure was, even where a library swallows it.
+                [ "$kind" != ENOSPC ] || [ $code -ne 1 ] || grep -q 'No space left on device' out ||
+                    fail "$where: the reason is not told: $(cat out)"
                 # Probes and what is only read may fail to open or close; nothing else goes unnoticed.
                 case $kind in ENOSPC | EIO | EDQUOT | full-disk)
                     [ $code -eq 1 ] || grep -q 'montelux: warning: ' out || head -n 1 report | grep -q 'fault \(open\|close\)' ||

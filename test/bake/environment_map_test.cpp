@@ -60,6 +60,21 @@ TEST(EnvironmentMap, BlocksHoldTheEnergyOfTheirTexels) {
     }
 }
 
+// Sums stay finite up to the largest radiance, also over the small texels at the poles of a fine map.
+TEST(EnvironmentMap, LargeValuesAreFiniteOrRefused) {
+    Image image = random_map(8, 4096);
+    for (int y : {0, 2000, 4095})
+        for (int c = 0; c < 3; ++c) image.set(1, y, c, EnvironmentMap::largest_radiance);
+    const EnvironmentMap map(image, EnvironmentLayout::equirectangular);
+    for (int y : {0, 2000, 4095}) {
+        const Vec3f l = map.radiance(MapCell{0, 1, y});
+        EXPECT_NEAR(static_cast<double>(l.x / image.value(1, y, 0)), 1, 1e-5) << y;
+    }
+    EXPECT_TRUE(std::isfinite(map.mean_radiance().y));
+    image.set(3, 2, 1, 3e38f);
+    EXPECT_THROW(EnvironmentMap(image, EnvironmentLayout::equirectangular), Error);
+}
+
 // Balls hold their cells, directions come back to their texels, for both layouts and parts of texels too.
 TEST(EnvironmentMap, BallsHoldTheirCells) {
     for (EnvironmentLayout layout : {EnvironmentLayout::equirectangular, EnvironmentLayout::equal_area}) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "montelux/bake/prefilter.h"
+#include "montelux/bake/texel_estimate.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
@@ -247,6 +248,14 @@ TEST(Prefilter, MissedTargetsAreCounted) {
     EXPECT_THROW(prefilter_environment(map, 2, {0.5, 0.6, 0.7}, settings), Error);
     EXPECT_THROW(prefilter_environment(map, 2, {1.5}, settings), Error);
     EXPECT_THROW(prefilter_environment(map, 0, {0.5}, settings), Error);
+}
+
+TEST(Prefilter, TexelsThatAreNotFiniteAreMissed) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(meets({{1, nan, 1}, {0, 0, 0}}, {}));
+    EXPECT_FALSE(meets({{1, 1, 1}, {0, nan, 0}}, {}));
+    EXPECT_TRUE(meets({{1, 1, 1}, {0, 0, 0}}, {}));
+    EXPECT_FALSE(std::isfinite(missed_by({{1, 1, nan}, {0, 0, 0}}, {}, 1)));
 }
 
 TEST(Prefilter, RoughnessOfLevels) {

@@ -1,5 +1,7 @@
 #include "test/image/image_testing.h"
+#include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <fcntl.h>
 #include <functional>
 #include <sys/resource.h>
@@ -105,8 +107,33 @@ TEST(AtomicFile, RefusesFoldersDevicesAndMissingPlaces) {
     expect_error([&] { AtomicFile f(folder / "sub"); }, {"sub", "is a folder"});
     expect_error([&] { AtomicFile f("/dev/full"); }, {"/dev/full", "not a regular file"});
     expect_error([&] { AtomicFile f(folder / "none/a"); }, {"none/a", "No such file or directory"});
-    expect_error([&] { AtomicFile f("/proc/montelux-test"); }, {"/proc/montelux-test", "cannot be written"});
+    expect_error([&] { AtomicFile f("/proc/montelux-test"); },
+                 {"/proc/montelux-test", "cannot be written", "no files can be made in the folder '/proc'"});
+    // As long as a name may be, without and with a letter more.
+    { const AtomicFile longest(folder / std::string(255, 'x')); }
+    expect_error([&] { AtomicFile f(folder / std::string(256, 'x')); }, {"File name too long"});
     EXPECT_EQ(folder.file_count(), 1);
+}
+
+TEST(AtomicFile, RemembersItsFirstFailure) {
+    TemporaryFolder folder;
+    // OpenEXR swallows what is thrown while it closes a file.
+    auto swallowed = [&] {
+        AtomicFile file(folder / "a");
+        const std::vector<std::uint8_t> bytes(1 << 20);
+        EXPECT_THROW(file.write(bytes), Error);
+        try {
+            file.commit();
+        } catch (const Error& e) {
+            if (std::string(e.what()).find(std::strerror(EFBIG)) == std::string::npos) ::_exit(4);
+            throw;
+        }
+    };
+    EXPECT_EQ(exit_code_on_full_disk(1000, swallowed), 1);
+    EXPECT_EQ(folder.file_count(), 0);
+    AtomicFile file(folder / "a");
+    file.commit();
+    expect_error([&] { file.write("more", 4); }, {"cannot be written: it has its name already"});
 }
 
 TEST(ImageWrite, AFullDiskIsAnErrorAndLeavesNothing) {

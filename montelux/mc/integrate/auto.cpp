@@ -19,6 +19,9 @@ namespace {
 constexpr int cubature_dimensions = 8; // a region of more costs more points than sampling takes to begin
 constexpr double least_pilot = 1500;   // evaluations of cubature before it is judged,
 constexpr double pilot_share = 0.25;   // or this share of what sampling is expected to need
+// Errors that fall more slowly with the evaluations, as a power, do so at poles that have no integral: halves
+// of an interval close in on all others.
+constexpr double slowest_of_one_variable = 0.25;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // What Adaptive needs for a relative error, roughly, as measured on Genz's families in 5 and 8 dimensions
@@ -61,6 +64,7 @@ class AutoEstimator final : public Estimator {
 
     StepOutcome step(const StepRequest& request) override {
         if (switched_) return sampling_->step(request);
+        if (diverges_) return StepOutcome::finished;
         const StepOutcome outcome = cubature_->step(request);
         if (outcome == StepOutcome::cancelled) return outcome;
         if (outcome == StepOutcome::advanced) {
@@ -92,6 +96,9 @@ class AutoEstimator final : public Estimator {
             Tally tally = rule;
             tally.method = Cubature::name;
             tally.reason = reason_;
+            if (diverges_)
+                tally.doubts.push_back(
+                    "the error does not fall where values are not finite; the integral may not exist");
             // A rule that doubts itself is replaced rather than believed.
             tally.ready = tally.ready && tally.doubts.empty();
             return tally;
@@ -107,7 +114,7 @@ class AutoEstimator final : public Estimator {
     }
 
     void save(StateWriter& state) const override {
-        state.put(switched_);
+        state.put(std::uint64_t{switched_} | std::uint64_t{diverges_} << 1);
         state.put(reason_);
         state.put(ratios_);
         state.put(costs_);
@@ -115,7 +122,9 @@ class AutoEstimator final : public Estimator {
         sampling_->save(state);
     }
     void load(StateReader& state) override {
-        switched_ = state.get_word() != 0;
+        const std::uint64_t flags = state.get_word();
+        switched_ = (flags & 1) != 0;
+        diverges_ = (flags & 2) != 0;
         reason_ = state.get_text();
         ratios_ = state.get_doubles();
         costs_ = state.get_doubles();
@@ -169,7 +178,11 @@ class AutoEstimator final : public Estimator {
             const double alternative = sampling_cost(std::min(1.0, tightest)) * (one_variable_ ? 10 : 1);
             if (cost < std::max(least_pilot, pilot_share * alternative)) return;
             const double needed = cost * std::pow(ratio, 1 / std::max(rate, 0.05));
-            if (needed > alternative)
+            if (needed > alternative && one_variable_ && tally.non_finite.count > 0 &&
+                rate < slowest_of_one_variable) {
+                diverges_ = true;
+                reason_ = "cubature does not converge";
+            } else if (needed > alternative)
                 give_up("after " + printed(cost) + " evaluations cubature seemed to need " + printed(needed) +
                         ", sampling about " + printed(alternative));
             return;
@@ -195,6 +208,7 @@ class AutoEstimator final : public Estimator {
     std::unique_ptr<Estimator> cubature_, sampling_;
     bool one_variable_;
     bool switched_ = false;
+    bool diverges_ = false; // neither method could do more
     std::string reason_;
     std::vector<double> ratios_, costs_; // of error to target, and evaluations, after each step of cubature
 };

@@ -74,8 +74,13 @@ class CubatureEstimator final : public Estimator {
         NonFiniteCount non_finite;
         std::vector<char> nonzero(nonzero_);
         std::vector<SymmetricRule::FaceValue> faces(parents.empty() ? 0 : rules.size() * components());
-        const CubatureWork work{rules, regions_, parents,
-                                fresh, faces,    n_ == 1 && parents.empty() ? &nested : nullptr};
+        const CubatureWork work{rules,
+                                regions_,
+                                parents,
+                                fresh,
+                                faces,
+                                n_ == 1 && parents.empty() ? &nested : nullptr,
+                                nested.count() > 0 && non_finite_.count > 0};
         if (!evaluate_regions(problem_.evaluator, work, totals_.value, non_finite, nonzero, request.cancel))
             return StepOutcome::cancelled;
 

@@ -12,9 +12,10 @@ namespace {
 // One evaluator call takes at least so many points where there are regions enough.
 constexpr std::size_t points_per_task = 512;
 
-// Value, error and marks of a region from the integrand's values.
+// Value, error and marks of a region from the integrand's values. `not_finite`: some were not, and are zero.
 void assess(CubatureRegions& fresh, std::size_t r, const SymmetricRule& rule,
-            const std::vector<std::span<const double>>& values, std::span<const double> totals) {
+            const std::vector<std::span<const double>>& values, bool not_finite,
+            std::span<const double> totals) {
     const std::size_t n = fresh.centre(r).size();
     std::vector<double> nulls(static_cast<std::size_t>(rule.null_rules()));
     std::vector<double> differences(n, 0.0);
@@ -26,12 +27,17 @@ void assess(CubatureRegions& fresh, std::size_t r, const SymmetricRule& rule,
     double worst = -1, ratio = 0;
     for (std::size_t c = 0; c < values.size(); ++c) {
         const double mean = rule.apply(values[c], nulls);
-        double size = 0;
-        for (double v : values[c]) size += std::abs(v);
+        double size = 0, largest = 0;
+        for (double v : values[c]) {
+            size += std::abs(v);
+            largest = std::max(largest, std::abs(v));
+        }
         size /= static_cast<double>(values[c].size());
         const double rounding = 8 * std::numeric_limits<double>::epsilon() * size;
         const SymmetricRule::Assessment found = rule.assess(nulls, rounding);
-        const double error = found.error + rule.edge_surprise(values[c]);
+        // The odd 1/x would vanish with its middle left out: zeros beside other values may be poles.
+        const double pole = not_finite ? largest : 0;
+        const double error = std::max(found.error + rule.edge_surprise(values[c]), pole);
         marks.exhausted = marks.exhausted && error <= rounding;
         fresh.value(r)[c] = volume * mean;
         fresh.error(r)[c] = volume * std::max(error, rounding);
@@ -79,7 +85,12 @@ void evaluate_some(const Evaluator& evaluator, const CubatureWork& work, std::sp
         }
     }
     ValueBuffer values(count, evaluator.components());
-    evaluator(u, values.view().slice(known, count - known), non_finite);
+    std::vector<std::size_t> not_finite; // indices of points
+    evaluator(u, values.view().slice(known, count - known), non_finite, &not_finite);
+    for (std::size_t& i : not_finite) i += known;
+    if (work.nested_not_finite) not_finite.insert(not_finite.begin(), 0);
+    std::ranges::sort(not_finite);
+    auto next = not_finite.begin();
     if (work.nested != nullptr) {
         for (int c = 0; c < evaluator.components(); ++c)
             std::ranges::copy(std::as_const(*work.nested).component(c), values.component(c).begin());
@@ -94,7 +105,9 @@ void evaluate_some(const Evaluator& evaluator, const CubatureWork& work, std::sp
             if (nonzero[c] == 0)
                 nonzero[c] = std::ranges::any_of(of_region[c], [](double v) { return v != 0; });
         }
-        assess(fresh, r, *rules[r], of_region, totals);
+        const auto end_of_region = std::lower_bound(next, not_finite.end(), first + rules[r]->points());
+        assess(fresh, r, *rules[r], of_region, next != end_of_region, totals);
+        next = end_of_region;
         if (!work.parents.empty()) {
             const int axis = work.regions.marks(work.parents[r / 2]).axis;
             for (std::size_t c = 0; c < components; ++c)

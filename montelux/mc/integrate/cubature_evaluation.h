@@ -23,6 +23,7 @@ struct CubatureWork {
     // Of the only region, if it is one: its values at the first points of its rule, known already, and
     // afterwards those at all of them; component after component.
     ValueBuffer* nested = nullptr;
+    bool nested_not_finite = false; // were some of the known ones not finite?
 };
 
 // Evaluates all regions of `work.fresh` on all threads, and sets their values, errors and marks. `totals` are

@@ -25,7 +25,8 @@ Evaluator::Evaluator(Integrand integrand, Domain domain, NonFinitePolicy policy)
                                      " dimensions; expected f(std::span<const double>)");
 }
 
-void Evaluator::screen(const PointBatch& x, ValueBatch values, NonFiniteCount& non_finite) const {
+void Evaluator::screen(const PointBatch& x, ValueBatch values, NonFiniteCount& non_finite,
+                       std::vector<std::size_t>* where) const {
     for (int c = 0; c < values.components(); ++c) {
         // Zero times a finite number is zero, else NaN, which stays in a sum.
         double sum = 0;
@@ -49,6 +50,7 @@ void Evaluator::screen(const PointBatch& x, ValueBatch values, NonFiniteCount& n
             }
             NonFiniteCount one{1, std::move(point)};
             non_finite.merge(one);
+            if (where != nullptr) where->push_back(i);
             // One point counts once, and contributes to no component.
             for (int other = 0; other < values.components(); ++other) values(i, other) = 0;
         }
@@ -60,8 +62,12 @@ void Evaluator::at_points(const PointBatch& x, ValueBatch f, NonFiniteCount& non
     screen(x, f, non_finite);
 }
 
-void Evaluator::operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& non_finite) const {
-    if (domain_.is_unit_cube()) return at_points(u, g, non_finite);
+void Evaluator::operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& non_finite,
+                           std::vector<std::size_t>* where) const {
+    if (domain_.is_unit_cube()) {
+        integrand_(u, g);
+        return screen(u, g, non_finite, where);
+    }
     thread_local PointBuffer x_buffer;
     thread_local std::vector<double> volume_buffer;
     // Taken, not borrowed: an integrand may itself integrate on this thread.
@@ -80,7 +86,7 @@ void Evaluator::operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& no
             for (std::size_t i = 0; i < values.size(); ++i)
                 values[i] = values[i] == 0 ? 0 : values[i] * volume[i];
     }
-    screen(x, g, non_finite);
+    screen(x, g, non_finite, where);
     x_buffer = std::move(x);
     volume_buffer = std::move(volume);
 }

@@ -2,6 +2,7 @@
 // finite.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -38,14 +39,17 @@ class Evaluator {
     const Integrand& integrand() const { return integrand_; }
     NonFinitePolicy policy() const { return policy_; }
 
-    // g at points u; values that are not finite become zero and are counted. Scratch memory is the thread's.
-    void operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& non_finite) const;
+    // g at points u; values that are not finite become zero and are counted, and the indices of their points
+    // added to `where`, if that is given. Scratch memory is the thread's.
+    void operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& non_finite,
+                    std::vector<std::size_t>* where = nullptr) const;
 
     // f at points x of the domain, for estimators that draw them themselves; same treatment.
     void at_points(const PointBatch& x, ValueBatch f, NonFiniteCount& non_finite) const;
 
   private:
-    void screen(const PointBatch& x, ValueBatch values, NonFiniteCount& non_finite) const;
+    void screen(const PointBatch& x, ValueBatch values, NonFiniteCount& non_finite,
+                std::vector<std::size_t>* where = nullptr) const;
 
     Integrand integrand_;
     Domain domain_;

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "montelux/mc/integrate/interruptible.h"
-#include "montelux/mc/io/file.h"
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/special.h"
@@ -64,7 +63,7 @@ class Run {
 
     IntegrationResult operator()() {
         if (!options_.checkpoint.empty()) {
-            AtomicFile probe(options_.checkpoint); // that it can be written is known before the work begins
+            check_generation_writable(options_.checkpoint); // before the work, not after it
             fingerprint_ = fingerprint();
             if (options_.resume && generation_exists(options_.checkpoint)) restore();
         }

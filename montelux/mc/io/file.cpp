@@ -16,7 +16,6 @@ namespace montelux {
 namespace {
 
 constexpr std::size_t buffer_size = std::size_t{1} << 18;
-constexpr const char* after_failure = "cannot be written: an earlier write failed";
 
 std::string reason(int error_number) { return std::strerror(error_number); }
 
@@ -108,8 +107,11 @@ void sync_folder_of(const std::filesystem::path& path) {
 }
 
 AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_(output_target(path)) {
-    std::error_code ignored;
-    auto status = std::filesystem::status(target_, ignored);
+    std::error_code error;
+    auto status = std::filesystem::status(target_, error);
+    // A file without a name would find that out when it gets one.
+    if (error == std::errc::filename_too_long)
+        throw Error(path.string(), "cannot be written: " + reason(ENAMETOOLONG));
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
         throw Error(path.string(), std::filesystem::is_directory(status)
                                        ? "cannot be written: it is a folder"
@@ -120,8 +122,13 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_
         retried([&] { return ::open(folder_of(target_).c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0666); });
     if (descriptor_ >= 0 && ::access(own_path(descriptor_).c_str(), F_OK) == 0) return;
     if (descriptor_ >= 0) ::close(descriptor_);
-    descriptor_ = take_temporary_name("folder '" + folder_of(target_).string() + "'", [](const char* name) {
-        return retried([&] { return ::open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
+    const std::string folder = "folder '" + folder_of(target_).string() + "'";
+    descriptor_ = take_temporary_name(folder, [&](const char* name) {
+        const int made = retried([&] { return ::open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
+        // As in /proc, which is there: "no such file" would be said of the folder.
+        if (made < 0 && errno == ENOENT && std::filesystem::is_directory(folder_of(target_), error))
+            throw Error(path.string(), "cannot be written: no files can be made in the " + folder);
+        return made;
     });
 }
 
@@ -147,14 +154,19 @@ int AtomicFile::take_temporary_name(const std::string& doing, Call call) {
 }
 
 void AtomicFile::fail(const std::string& doing, int error_number) {
-    failed_ = true;
-    throw Error(path_.string(), "cannot be written: " + doing + ": " + reason(error_number));
+    failure_ = "cannot be written: " + doing + ": " + reason(error_number);
+    throw Error(path_.string(), failure_);
+}
+
+void AtomicFile::check_usable() const {
+    if (!failure_.empty()) throw Error(path_.string(), failure_);
+    if (descriptor_ < 0) throw Error(path_.string(), "cannot be written: it has its name already");
 }
 
 void AtomicFile::write(std::span<const std::uint8_t> bytes) { write(bytes.data(), bytes.size()); }
 
 void AtomicFile::write(const void* data, std::size_t size) {
-    if (failed_ || descriptor_ < 0) throw Error(path_.string(), after_failure);
+    check_usable();
     const std::span<const std::uint8_t> bytes(static_cast<const std::uint8_t*>(data), size);
     if (buffer_.size() + size > buffer_size) flush();
     if (size > buffer_size)
@@ -185,7 +197,7 @@ void AtomicFile::write_out(std::span<const std::uint8_t> bytes) {
 }
 
 void AtomicFile::finish() {
-    if (failed_ || descriptor_ < 0) throw Error(path_.string(), after_failure);
+    check_usable();
     flush();
     // Some file systems cannot synchronise.
     if (retried([&] { return ::fsync(descriptor_); }) != 0 && errno != EINVAL) fail("writing", errno);

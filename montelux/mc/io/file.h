@@ -43,7 +43,8 @@ void sync_folder_of(const std::filesystem::path& path);
 // Collects output in a file without a name, which commit() puts in the place of `path`. Without a commit
 // `path` is as it was, and nothing else is left. A symbolic link is followed, not replaced. Where the file
 // system has no files without a name, it has a temporary one beside `path`, which a killed process leaves.
-// Every failure is an Error that names the path and the reason; after one, commit() fails as well.
+// Every failure is an Error that names the path and the reason; after one, all that follows fails with the
+// same sentence, for a library in between may have swallowed it.
 class AtomicFile {
   public:
     explicit AtomicFile(const std::filesystem::path& path);
@@ -64,6 +65,7 @@ class AtomicFile {
     template <typename Call>
     int take_temporary_name(const std::string& doing, Call call);
     [[noreturn]] void fail(const std::string& doing, int error_number);
+    void check_usable() const;
     void flush();
     void write_out(std::span<const std::uint8_t> bytes);
 
@@ -71,7 +73,8 @@ class AtomicFile {
     int descriptor_ = -1;
     std::vector<std::uint8_t> buffer_;
     std::uint64_t written_to_ = 0; // where the buffer begins in the file
-    bool failed_ = false, finished_ = false;
+    std::string failure_;          // the first, as a sentence
+    bool finished_ = false;
 };
 
 } // namespace montelux

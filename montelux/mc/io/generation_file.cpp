@@ -120,6 +120,10 @@ bool are_one_file(const std::filesystem::path& a, const std::filesystem::path& b
            x.st_ino == y.st_ino;
 }
 
+std::filesystem::path before_its_renaming(const std::filesystem::path& previous) {
+    return previous.string() + ".tmp";
+}
+
 // Gives the present file the name of the generation before, and keeps its own.
 void keep_as_previous(const std::filesystem::path& present, const std::filesystem::path& previous,
                       const std::filesystem::path& path) {
@@ -130,7 +134,7 @@ void keep_as_previous(const std::filesystem::path& present, const std::filesyste
                                        previous.string() + "': " + std::strerror(error_number));
     };
     // A second name cannot replace a name that is taken, renaming can.
-    const std::filesystem::path second = previous.string() + ".tmp";
+    const std::filesystem::path second = before_its_renaming(previous);
     ::unlink(second.c_str()); // of a process that was killed
     if (::link(present.c_str(), second.c_str()) == 0) {
         if (::rename(second.c_str(), previous.c_str()) == 0) return;
@@ -147,6 +151,10 @@ void keep_as_previous(const std::filesystem::path& present, const std::filesyste
 
 std::filesystem::path previous_generation(const std::filesystem::path& path) {
     return output_target(path).string() + ".previous";
+}
+
+void check_generation_writable(const std::filesystem::path& path) {
+    const AtomicFile never_committed(path), second(before_its_renaming(previous_generation(path)));
 }
 
 bool generation_exists(const std::filesystem::path& path) {

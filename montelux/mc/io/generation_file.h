@@ -26,6 +26,10 @@ bool generation_exists(const std::filesystem::path& path);
 void write_generation(const std::filesystem::path& path, std::string_view kind,
                       std::span<const std::uint8_t> payload);
 
+// Throws the Error that write_generation would meet for a reason that is known now: a missing or read-only
+// folder, a path that is a folder, a name that is too long with what is added to it.
+void check_generation_writable(const std::filesystem::path& path);
+
 struct Generation {
     std::vector<std::uint8_t> payload;
     bool previous = false;              // it is that of PATH.previous,

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "montelux/mc/integrate/auto.h"
 #include "montelux/mc/integrate/cubature.h"
 #include "montelux/mc/integrate/integrate.h"
 #include "montelux/mc/math/error.h"
@@ -276,6 +277,37 @@ TEST(Cubature, NonFiniteValuesAreCounted) {
         integrate(f, Domain::interval(0, 1), Cubature{}, {.relative_error = 1e-2, .evaluations = 5000});
     EXPECT_GE(r.non_finite, 1u);
     EXPECT_EQ(r.first_non_finite_point, std::vector<double>{0.5});
+}
+
+// Left out of its middle, an odd function with a pole there would cancel.
+TEST(Cubature, ValuesThatAreNotFiniteAreNoConvergence) {
+    for (const auto& method : {Method(Cubature{}), Method(Auto{})}) {
+        const IntegrationResult one = integrate([](double x) { return 1 / x; }, Domain::interval(-1, 1),
+                                                method, {.absolute_error = 1e-6, .evaluations = 30'000});
+        EXPECT_NE(one.stop, StopReason::error_target) << one;
+        EXPECT_GT(one.standard_error[0], 1e-3);
+        const auto pole = [](std::span<const double> x) {
+            const double square = x[0] * x[0] + x[1] * x[1];
+            return x[0] / (square * square);
+        };
+        const IntegrationResult two = integrate(pole, Domain({{-1, 1}, {-1, 1}}), method,
+                                                {.absolute_error = 1e-3, .evaluations = 30'000});
+        EXPECT_NE(two.stop, StopReason::error_target) << two;
+    }
+    // Without a limit, too, it ends.
+    const IntegrationResult ended =
+        integrate([](double x) { return 1 / x; }, Domain::interval(-1, 1), Auto{}, {.absolute_error = 1e-6});
+    EXPECT_EQ(ended.stop, StopReason::finished) << ended;
+    EXPECT_FALSE(ended.converged());
+    // A gap in a smooth function is found to be one, and a part that is not finite everywhere is left out.
+    const IntegrationResult gap = integrate([](double x) { return std::sin(x) / x; }, Domain::interval(-1, 1),
+                                            Cubature{}, {.absolute_error = 1e-9, .evaluations = 30'000});
+    EXPECT_EQ(gap.stop, StopReason::error_target);
+    EXPECT_NEAR(gap.value[0], 1.892166140734366, 1e-9);
+    const IntegrationResult part = integrate([](double x) { return std::sqrt(x); }, Domain::interval(-1, 1),
+                                             Cubature{}, {.absolute_error = 1e-6, .evaluations = 30'000});
+    EXPECT_EQ(part.stop, StopReason::error_target);
+    EXPECT_NEAR(part.value[0], 2.0 / 3, 1e-6);
 }
 
 // Its values at the first 65 points are so small that their squares are zero: no reason to believe in them.

@@ -53,6 +53,18 @@ class GenerationFile : public testing::Test {
     fs::path folder_, path_;
 };
 
+// The generation before has a longer name than the newest.
+TEST_F(GenerationFile, SaysNowWhatWouldFailLater) {
+    check_generation_writable(path_);
+    EXPECT_EQ(files(), 0u);
+    EXPECT_THROW(check_generation_writable(folder_), Error);
+    EXPECT_THROW(check_generation_writable(folder_ / "none" / "state"), Error);
+    const fs::path longest = folder_ / std::string(255 - std::string(".previous.tmp").size(), 'x');
+    check_generation_writable(longest);
+    for (unsigned seed : {1u, 2u, 3u}) write_generation(longest, "test", payload(9, seed));
+    EXPECT_THROW(check_generation_writable(longest.string() + "x"), Error);
+}
+
 TEST_F(GenerationFile, HoldsWhatWasWrittenAndTheOneBefore) {
     EXPECT_FALSE(generation_exists(path_));
     for (std::size_t size : {0UL, 1UL, 7UL, 8UL, 4097UL, 3UL << 20}) {
