@@ -155,7 +155,7 @@ struct Path {
         const auto choice = static_cast<float>(chosen.probability);
         if (few) u.x = std::min(static_cast<float>(chosen.remapped), largest_below_one<float>);
         auto light = sample_light(ps.scene, ps.tables, chosen.index, here, u, lambda);
-        if (!light || (!light->delta && !samples_lights())) {
+        if (!light || (!light->invisible && !samples_lights())) {
             if (recorder)
                 recorder.sampled_light({.outcome = light ? Outcome::left_to_scattering : Outcome::dark,
                                         .light = chosen.index,
@@ -182,7 +182,7 @@ struct Path {
             record(Outcome::no_transport, 0);
             return;
         }
-        float weight = light->delta || ps.settings.strategy == Strategy::light
+        float weight = light->invisible || ps.settings.strategy == Strategy::light
                            ? 1
                            : mis_weight(ps.settings.heuristic, light_pdf, e.pdf);
         if (ps.settings.strategy == Strategy::mis_bsdf) {

@@ -42,7 +42,7 @@ struct DirectLight {
     Outcome outcome = Outcome::dark;
     Index light = no_index;
     float choice = 0;           // probability of choosing this light
-    bool delta = false;         // nothing can hit it
+    bool delta = false;         // a light of a point or one direction
     Vec3f wi{};                 // world space, towards the light
     Ray shadow{};               // free when the light is seen
     SampledSpectrum radiance{}; // for a delta light: irradiance on a plane facing it

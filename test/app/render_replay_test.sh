@@ -18,6 +18,11 @@ expect 0 "strategy mis-bsdf with the power heuristic" render ok.pbrt --strategy 
 scene lamp 'LightSource "point" "point3 from" [0 0 3] Shape "sphere"' 64 48
 expect 0 "to the term mis-light, which is left out" render lamp.pbrt --strategy mis-bsdf --debug-sample 32,24,0
 expect 0 "to the term mis-bsdf, which is left out" render ok.pbrt --strategy mis-light --debug-sample 0,0,0
+# A lamp that nothing can meet, and yet no point: its radiance has a density.
+scene hidden 'AttributeBegin AreaLightSource "diffuse" "bool twosided" true Translate 0 0 3 Shape "disk" "float alpha" 0 AttributeEnd
+    Shape "sphere"' 64 48
+expect 0 "per steradian; weight 1" render hidden.pbrt --strategy bsdf --debug-sample 32,20,0
+grep -q irradiance out && fail "a hidden lamp: $(cat out)"
 expect 0 "vertex 1: shape 0, a sphere, material 0" render ok.pbrt --debug-sample 32,24,0
 expect 0 "coated diffuse" render ok.pbrt --debug-sample 32,24,0
 expect 0 "the path left the scene" render ok.pbrt --debug-sample 0,0,0

@@ -105,7 +105,7 @@ std::optional<LightSample> sample_point(Point3f position, SampledSpectrum intens
     s.wi = d / std::sqrt(d2);
     s.radiance = intensity / d2;
     s.pdf = 1;
-    s.delta = true;
+    s.delta = s.invisible = true;
     Point3f o = offset_origin(from.p, from.n, from.error, s.wi);
     s.shadow = {o, position - o, 1};
     return s;
@@ -215,7 +215,7 @@ std::optional<LightSample> sample_area_light(const Scene& scene, const SceneTabl
     }
     if (!s || !is_cut_out(shape)) return s;
     if (constant_alpha(scene, shape).value_or(1) <= 0) {
-        s->delta = true;
+        s->invisible = true;
         return s;
     }
     const float alpha = alpha_at(scene, scene_tables, {p, s->wi}, hit);
@@ -273,6 +273,7 @@ std::optional<LightSample> sample_light(const Scene& scene, const SceneTables& s
                            .wi = light->to_light,
                            .pdf = 1,
                            .delta = true,
+                           .invisible = true,
                            .shadow = shadow_ray_to_infinity(from, light->to_light)};
     if (const auto* light = std::get_if<UniformInfiniteLight>(&any))
         return sample_uniform_sky(*light, from, u, lambda);

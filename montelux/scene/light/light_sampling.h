@@ -17,10 +17,11 @@ struct ReferencePoint {
 };
 
 struct LightSample {
-    SampledSpectrum radiance; // of a point or distant light: irradiance on a plane facing it
+    SampledSpectrum radiance; // for a delta light: irradiance on a plane facing it
     Vec3f wi;                 // unit, towards the light
-    float pdf = 0;            // per solid angle, given the light; 1 for a point or distant light
-    bool delta = false;       // BSDF sampling cannot find this light: a delta light, or one of alpha 0
+    float pdf = 0;            // per solid angle, given the light; 1 for a delta light
+    bool delta = false;       // of a point or one direction
+    bool invisible = false;   // BSDF sampling cannot find this light: a delta light, or one of alpha 0
     Ray shadow;               // unoccluded when the light is seen
 };
 
