@@ -35,14 +35,21 @@ for sampler in independent sobol; do
     done
 done
 
+# stopped WHAT SIGNAL SECONDS arguments...: a render that gets the signal then ends with 130.
+stopped() {
+    what=$1 signal=$2 seconds=$3
+    shift 3
+    "$montelux" render "$@" >out 2>&1 &
+    pid=$!
+    end_later $pid
+    sleep "$seconds"
+    kill -"$signal" $pid
+    wait_for $pid
+    [ $code -eq 130 ] || fail "$what: exit code $code instead of 130"
+}
+
 # Replicates of 62500 samples: no two are finished, and the errors are unknown.
-"$montelux" render long.pbrt --sampler sobol -o none.exr >out 2>&1 &
-pid=$!
-end_later $pid
-sleep 1
-kill -TERM $pid
-wait_for $pid
-[ $code -eq 130 ] || fail "without errors: exit code $code instead of 130"
+stopped "without errors" TERM 1 long.pbrt --sampler sobol -o none.exr
 grep -q "the errors are not known: they come from how sets of 62500 samples a pixel differ" out ||
     fail "without errors: $(cat out)"
 "$montelux" info none.exr --json | grep -q '"relativeError": null' || fail "an unknown error in JSON is not null"
@@ -77,18 +84,13 @@ cmp -s furnace.state furnace.expected || fail "a signal after another: the check
 # While the scene is being read there is nothing to save.
 (cat long.pbrt && yes 'AttributeBegin AttributeEnd' | head -n 3000000) >slow.pbrt
 rm -f long.exr
-"$montelux" render slow.pbrt >out 2>&1 &
-pid=$!
-end_later $pid
-sleep 0.2
-kill -INT $pid
-wait_for $pid
-[ $code -eq 130 ] || fail "a signal while reading: exit code $code instead of 130"
+stopped "a signal while reading" INT 0.2 slow.pbrt
 [ -e long.exr ] && fail "a signal while reading: a picture was written"
 
-# Files that a process has written more than 64 KiB of: they have no name, or a temporary one.
+# Files here that a process has written more than 64 KiB of: they have no name, or a temporary one. (Elsewhere it
+# opens others: its libraries, before it can heed a signal.)
 being_written() {
-    find -L "/proc/$1/fd" -type f -size +64k
+    find -L $(find "/proc/$1/fd" -lname "$(pwd -P)/*") /dev/null -type f -size +64k
     find . -name '.montelux-*' -size +64k
 } 2>/dev/null
 

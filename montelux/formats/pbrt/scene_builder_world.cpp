@@ -191,9 +191,7 @@ void SceneBuilder::finish_instances() {
         }
         const Bounds3& b = bounds[found->second];
         for (int i = 0; i < 8 && !b.empty(); ++i) {
-            const Vec3d corner{((i & 1) != 0 ? b.upper : b.lower).x, ((i & 2) != 0 ? b.upper : b.lower).y,
-                               ((i & 4) != 0 ? b.upper : b.lower).z};
-            if (!fits_float(use.world_from_object.point(corner)))
+            if (!fits_float(use.world_from_object.point(b.corner(i))))
                 diagnostics_.error(use.at, "the instance reaches to infinity in world space");
         }
         result_.scene.instances.push_back({found->second, use.world_from_object});

@@ -95,10 +95,8 @@ Bounds3 bounds_of(const Scene& scene) {
         if (shape.mesh != no_index) {
             for (Point3f p : scene.meshes[shape.mesh].positions) add(Vec3d(p));
         } else {
-            Bounds3 b = world_bounds(scene.quadrics[shape.quadric]);
-            for (int i = 0; i < 8; ++i)
-                add({(i & 1) != 0 ? b.upper.x : b.lower.x, (i & 2) != 0 ? b.upper.y : b.lower.y,
-                     (i & 4) != 0 ? b.upper.z : b.lower.z});
+            const Bounds3 b = world_bounds(scene.quadrics[shape.quadric]);
+            for (int i = 0; i < 8; ++i) add(b.corner(i));
         }
     };
     for (Index shape : scene.world_shapes) add_shape(shape, nullptr);

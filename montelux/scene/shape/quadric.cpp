@@ -158,9 +158,7 @@ Bounds3 world_bounds(const Quadric& quadric) {
             }
             Bounds3 bounds;
             for (int i = 0; i < 8; ++i)
-                bounds.add(s.world_from_object.point(Vec3d{(i & 1) != 0 ? upper.x : lower.x,
-                                                           (i & 2) != 0 ? upper.y : lower.y,
-                                                           (i & 4) != 0 ? upper.z : lower.z}));
+                bounds.add(s.world_from_object.point(Bounds3{lower, upper}.corner(i)));
             return bounds;
         },
         quadric);

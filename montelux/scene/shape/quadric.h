@@ -22,6 +22,11 @@ struct Bounds3 {
         upper = max(upper, p);
     }
     bool empty() const { return !(lower.x <= upper.x); }
+    // i from 0 to 7.
+    Vec3d corner(int i) const {
+        return {(i & 1) != 0 ? upper.x : lower.x, (i & 2) != 0 ? upper.y : lower.y,
+                (i & 4) != 0 ? upper.z : lower.z};
+    }
     Vec3d center() const { return 0.5 * (lower + upper); }
     double radius() const { return empty() ? 0 : 0.5 * length(upper - lower); }
 };
