@@ -80,12 +80,12 @@ def test_targets_and_times(scene):
 
 def test_iterating_gives_pictures_meanwhile(scene):
     scene.film.resolution = 64, 48
-    pictures = list(scene.render(samples=256, every=0.1))
+    pictures = list(scene.render(samples=1024, every=0.02))
     assert len(pictures) >= 3 and isinstance(pictures[-1], montelux.Render)
     taken = [p.samples_per_pixel for p in pictures]
-    assert taken == sorted(taken) and taken[0] < taken[-1] == 256
+    assert taken == sorted(taken) and taken[0] < taken[-1] == 1024
     assert all(p.mean.shape == (48, 64, 3) for p in pictures)
-    whole = scene.render(samples=256).mean
+    whole = scene.render(samples=1024).mean
     assert np.array_equal(pictures[-1].mean, whole)  # looking changes no bit
     seen = pictures[-2]
     assert np.median(np.abs(seen.mean - whole)) < 0.1 and not np.array_equal(seen.mean, whole)
