@@ -128,8 +128,10 @@ std::vector<std::string> split(const std::string& line) {
 [[noreturn]] void serve(const HardPlan& plan, std::size_t first, std::size_t last, int to) {
     setpgid(0, 0); // with whatever a method starts, so that both can be ended together
     std::signal(SIGINT, SIG_IGN);
+#ifndef __SANITIZE_ADDRESS__ // whose shadow memory is larger
     const rlimit memory{memory_limit, memory_limit};
     setrlimit(RLIMIT_AS, &memory);
+#endif
     const ThreadLimit one(1);
     std::FILE* out = fdopen(to, "w");
     std::optional<HardProblem> problem;
@@ -226,7 +228,7 @@ class Pool {
                 if (n > 0) take(server, {buffer.data(), static_cast<std::size_t>(n)});
             }
             const std::chrono::duration<double> quiet = Clock::now() - server.since;
-            const bool hangs = quiet.count() > 2 * plan_.seconds + 30;
+            const bool hangs = quiet.count() > plan_.patience;
             if (!ended && !hangs) continue;
             const std::size_t at = server.at, last = server.last;
             servers_.erase(servers_.begin() + static_cast<std::ptrdiff_t>(i));

@@ -16,8 +16,9 @@ struct HardPlan {
     std::vector<Method> methods;
     std::vector<Goal> goals;
     std::uint64_t first_seed = 0, seeds = 40;
-    double seconds = 60; // wall time that a run may ask for; it is ended by force after twice that and more
-    int jobs = 1;        // processes at a time
+    double seconds = 60;   // wall time that a method may take where it knows such a limit
+    double patience = 150; // wall time after which a run is ended by force
+    int jobs = 1;          // processes at a time
 };
 
 // `run.line` is the family in the plan's list.

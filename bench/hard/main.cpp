@@ -58,6 +58,7 @@ HardPlan plan_of(const HardOptions& options) {
     plan.first_seed = options.first_seed;
     plan.seeds = options.seeds;
     plan.seconds = options.seconds;
+    plan.patience = 2 * options.seconds + 30;
     plan.jobs = options.jobs;
     return plan;
 }

@@ -24,7 +24,7 @@ struct Goal {
 };
 
 struct Run {
-    std::size_t line, method, goal; // in the plan's lists
+    std::size_t line = 0, method = 0, goal = 0; // in the plan's lists
     std::uint64_t seed = 0;
     Answer answer;
     double exact = 0;
