@@ -34,7 +34,7 @@ HardIntegral of_mean_one(Draws& draws) {
         parameters = words("box, n = ", n);
     } else if (kind == 2) {
         const double radius = draws.uniform(0.3, 0.49);
-        mean = std::pow(radius, n) * std::exp(0.5 * n * std::log(pi_) - std::lgamma(0.5 * n + 1));
+        mean = std::pow(radius, n) * std::exp(0.5 * n * std::log(pi) - std::lgamma(0.5 * n + 1));
         f = [=](const double* x) {
             double square = 0;
             for (int j = 0; j < n; ++j) square += (x[j] - 0.5) * (x[j] - 0.5);
@@ -42,7 +42,7 @@ HardIntegral of_mean_one(Draws& draws) {
         };
         parameters = words("ball of radius ", radius, ", n = ", n);
     } else {
-        const std::vector<double> k = draws.uniforms(n, 1, 8), phase = draws.uniforms(n, 0, 2 * pi_);
+        const std::vector<double> k = draws.uniforms(n, 1, 8), phase = draws.uniforms(n, 0, 2 * pi);
         mean = 1;
         for (int j = 0; j < n; ++j) mean *= 1 + 0.7 * (std::sin(k[j] + phase[j]) - std::sin(phase[j])) / k[j];
         f = [=](const double* x) {
@@ -82,7 +82,7 @@ HardIntegral nearly_constant(Draws& draws) {
 // cos(p + c.x) less its mean, plus a share of the mean of |cos|.
 HardIntegral cancelling(Draws& draws) {
     const int n = draws.integer(1, 6);
-    const double share = draws.log_uniform(1e-3, 1e-2) * 2 / pi_, phase = draws.uniform(0, 2 * pi_);
+    const double share = draws.log_uniform(1e-3, 1e-2) * 2 / pi, phase = draws.uniform(0, 2 * pi);
     const std::vector<double> c = draws.uniforms(n, 3, 15);
     double mean = 1, middle = phase;
     for (double c_j : c) {
@@ -114,7 +114,7 @@ HardIntegral genz(Draws& draws) {
             .parameters = line_name(line)};
 }
 
-constexpr HardFamily families[] = {
+constexpr HardFamily control_table[] = {
     {"scale",
      "10^k times a Gaussian, a box, a ball or waves of mean 1 over the unit cube; n in 1..5, k in -300..300. "
      "Exact: error functions, volumes, sines",
@@ -131,6 +131,6 @@ constexpr HardFamily families[] = {
 
 } // namespace
 
-std::span<const HardFamily> control_families() { return families; }
+std::span<const HardFamily> control_families() { return control_table; }
 
 } // namespace montelux::bench

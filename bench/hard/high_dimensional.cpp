@@ -64,7 +64,7 @@ HardIntegral wide_gaussian(Draws& draws) {
 HardIntegral cosine_of_sum(Draws& draws) {
     const int n = draws.integer(50, 200);
     std::vector<double> c = draws.uniforms(n, 0, 1);
-    const double norm = draws.uniform(1, 4), angle = draws.uniform(-pi_ / 4, pi_ / 4);
+    const double norm = draws.uniform(1, 4), angle = draws.uniform(-pi / 4, pi / 4);
     double square = 0;
     for (double c_j : c) square += c_j * c_j;
     double phase = angle, exact = std::cos(angle);
@@ -97,7 +97,7 @@ HardIntegral high_dimensional(Draws& draws) {
     }
 }
 
-constexpr HardFamily families[] = {
+constexpr HardFamily high_dimensional_table[] = {
     {"high_dimensional",
      "Sobol's g-function, a_j = g j^2, and prod 1 + c_j (x_j - 1/2) j^-p, n in 20..200; Gaussians of widths "
      "0.3..1, n in 20..50; cos(p + c.x), |c| in 1..4, n in 50..200; over the unit cube. Exact: products",
@@ -106,6 +106,6 @@ constexpr HardFamily families[] = {
 
 } // namespace
 
-std::span<const HardFamily> high_dimensional_families() { return families; }
+std::span<const HardFamily> high_dimensional_families() { return high_dimensional_table; }
 
 } // namespace montelux::bench

@@ -2,13 +2,10 @@
 #include "bench/hard/bank.h"
 #include "bench/hard/draws.h"
 #include "bench/hard/quadrature.h"
-#include <limits>
 
 namespace montelux::bench {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 HardIntegral heavy_tails(Draws& draws) {
     const int n = draws.integer(1, 4), kind = draws.integer(0, 2);
@@ -31,7 +28,7 @@ HardIntegral heavy_tails(Draws& draws) {
     const std::vector<double> centre = draws.uniforms(n, -5, 5);
     const double scale = draws.log_uniform(0.1, 10);
     if (kind == 1) { // product of Student's densities without their constants
-        const double one = std::sqrt(freedom * pi_) *
+        const double one = std::sqrt(freedom * pi) *
                            std::exp(std::lgamma(freedom / 2) - std::lgamma((freedom + 1) / 2)) * scale;
         return {.ranges = box(n, -infinity, infinity),
                 .f =
@@ -47,7 +44,7 @@ HardIntegral heavy_tails(Draws& draws) {
                 .parameters = words("n = ", n, ", product, freedom ", freedom, ", scale ", scale)};
     }
     // Student's density of several variables.
-    const double exact = std::pow(freedom * pi_ * scale * scale, 0.5 * n) *
+    const double exact = std::pow(freedom * pi * scale * scale, 0.5 * n) *
                          std::exp(std::lgamma(freedom / 2) - std::lgamma((freedom + n) / 2));
     return {.ranges = box(n, -infinity, infinity),
             .f =
@@ -84,7 +81,7 @@ HardIntegral far_peak(Draws& draws) {
         mean.push_back((draws.chance(0.5) ? 1 : -1) *
                        (even ? draws.uniform(0, 1000) : draws.log_uniform(1, 1000)));
         s.push_back(draws.log_uniform(0.1, 10));
-        factor /= s[j] * std::sqrt(2 * pi_);
+        factor /= s[j] * std::sqrt(2 * pi);
     }
     return {.ranges = box(n, -infinity, infinity),
             .f =
@@ -101,7 +98,7 @@ HardIntegral far_peak(Draws& draws) {
                 words("n = ", n, ", normal densities, first mean ", mean[0], ", first width ", s[0])};
 }
 
-constexpr HardFamily families[] = {
+constexpr HardFamily infinite_table[] = {
     {"heavy_tails",
      "products of (1 + x / s)^-(1 + a), a in 0.5..2, over half-lines; of Student's densities of 1..5 degrees "
      "of freedom, centres in +-5, or that density of n variables, over lines; n in 1..4, s log-uniform in "
@@ -116,6 +113,6 @@ constexpr HardFamily families[] = {
 
 } // namespace
 
-std::span<const HardFamily> infinite_families() { return families; }
+std::span<const HardFamily> infinite_families() { return infinite_table; }
 
 } // namespace montelux::bench

@@ -2,7 +2,6 @@
 #include "bench/hard/bank.h"
 #include "bench/hard/draws.h"
 #include "bench/hard/quadrature.h"
-#include <limits>
 
 #include "montelux/mc/math/special.h"
 
@@ -108,7 +107,6 @@ HardIntegral rare_event(Draws& draws) {
     const Region region(draws);
     // Over all of space with the normal density, in a third of the cases of sums.
     if (!region.corner && region.n <= 4 && draws.chance(0.33)) {
-        const double infinity = std::numeric_limits<double>::infinity();
         return {.ranges = box(region.n, -infinity, infinity),
                 .f =
                     [region](const double* x) {
@@ -119,7 +117,7 @@ HardIntegral rare_event(Draws& draws) {
                         }
                         if (!(total > region.threshold * std::sqrt(static_cast<double>(region.n))))
                             return 0.0;
-                        return std::exp(-0.5 * square) * std::pow(2 * pi_, -0.5 * region.n);
+                        return std::exp(-0.5 * square) * std::pow(2 * pi, -0.5 * region.n);
                     },
                 .exact = region.p,
                 .parameters = region.text() + " over space"};
@@ -138,7 +136,7 @@ HardIntegral rare_complement(Draws& draws) {
             .parameters = region.text()};
 }
 
-constexpr HardFamily families[] = {
+constexpr HardFamily jump_table[] = {
     {"jump_sphere",
      "1, exp(-2 r^2) or 1 + 3 r^2 inside a ball, r from its centre, a constant outside, over the unit cube; "
      "n "
@@ -157,6 +155,6 @@ constexpr HardFamily families[] = {
 
 } // namespace
 
-std::span<const HardFamily> jump_families() { return families; }
+std::span<const HardFamily> jump_families() { return jump_table; }
 
 } // namespace montelux::bench

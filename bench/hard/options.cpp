@@ -85,7 +85,7 @@ HardIntegral basket(Draws& draws) {
 
 HardIntegral option(Draws& draws) { return draws.chance(0.6) ? asian(draws) : basket(draws); }
 
-constexpr HardFamily families[] = {
+constexpr HardFamily option_table[] = {
     {"option",
      "geometric Asian options of 12 or 16 dates, geometric baskets of 3..8 assets with a common factor, "
      "calls "
@@ -97,6 +97,6 @@ constexpr HardFamily families[] = {
 
 } // namespace
 
-std::span<const HardFamily> option_families() { return families; }
+std::span<const HardFamily> option_families() { return option_table; }
 
 } // namespace montelux::bench

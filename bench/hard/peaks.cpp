@@ -8,10 +8,10 @@ namespace montelux::bench {
 namespace {
 
 HardIntegral eggbox(Draws& draws) {
-    const double upper = 10 * pi_;
+    const double upper = 10 * pi;
     const int power = draws.integer(2, 5);
     const double kx = draws.uniform(0.4, 0.6), ky = draws.uniform(0.4, 0.6);
-    const double px = draws.uniform(0, 2 * pi_), py = draws.uniform(0, 2 * pi_);
+    const double px = draws.uniform(0, 2 * pi), py = draws.uniform(0, 2 * pi);
     auto value = [power](double product) { return std::exp(std::pow(2 + product, power)); };
     // Panels of 0.3 in the phase, where the narrowest peak has a standard deviation of 0.05.
     std::vector<double> cosines[2], weights[2];
@@ -106,16 +106,16 @@ HardIntegral spike(Draws& draws) {
     const double share = draws.uniform(0.2, 0.8);
     const std::vector<double> centre = draws.uniforms(n, 0.1, 0.9);
     const bool varies = draws.chance(0.5);
-    const std::vector<double> frequency = draws.uniforms(n, 0.5, 2), phase = draws.uniforms(n, 0, 2 * pi_);
+    const std::vector<double> frequency = draws.uniforms(n, 0.5, 2), phase = draws.uniforms(n, 0, 2 * pi);
     auto plateau = [=](const double* x) {
         double product = 1;
         for (int j = 0; j < n && varies; ++j)
-            product *= 1 + 0.5 * std::cos(2 * pi_ * frequency[j] * x[j] + phase[j]);
+            product *= 1 + 0.5 * std::cos(2 * pi * frequency[j] * x[j] + phase[j]);
         return product;
     };
     double below = 1, under_spike = 1;
     for (int j = 0; j < n; ++j) {
-        const double k = 2 * pi_ * frequency[j];
+        const double k = 2 * pi * frequency[j];
         if (varies) below *= 1 + 0.5 * (std::sin(k + phase[j]) - std::sin(phase[j])) / k;
         under_spike *= gaussian_integral(0, 1, centre[j], s);
     }
@@ -143,7 +143,7 @@ HardIntegral bump(Draws& draws) {
             .parameters = words("n = ", n, ", radius ", radius)};
 }
 
-constexpr HardFamily families[] = {
+constexpr HardFamily peak_table[] = {
     {"eggbox",
      "exp((2 + cos(k x + p) cos(l y + q))^m) over [0, 10 pi]^2; m in 2..5, k and l in 0.4..0.6, any phases. "
      "Exact: product of Gauss panels",
@@ -169,6 +169,6 @@ constexpr HardFamily families[] = {
 
 } // namespace
 
-std::span<const HardFamily> peak_families() { return families; }
+std::span<const HardFamily> peak_families() { return peak_table; }
 
 } // namespace montelux::bench

@@ -4,7 +4,6 @@
 #include "bench/hard/quadrature.h"
 #include <boost/math/special_functions/ellint_1.hpp>
 #include <boost/math/special_functions/zeta.hpp>
-#include <limits>
 #include <utility>
 
 namespace montelux::bench {
@@ -65,11 +64,11 @@ double scaled_bessel(double t) {
             term *= (2 * k - 1) * (2 * k - 1) / (8 * t * k);
             sum += term;
         }
-        return sum / std::sqrt(2 * pi_ * t);
+        return sum / std::sqrt(2 * pi * t);
     }
     constexpr int points = 64;
     double total = 0;
-    for (int i = 0; i < points; ++i) total += std::exp(-t * (1 - std::cos(2 * pi_ * i / points)));
+    for (int i = 0; i < points; ++i) total += std::exp(-t * (1 - std::cos(2 * pi * i / points)));
     return total / points;
 }
 
@@ -93,13 +92,13 @@ HardIntegral lattice(Draws& draws) {
     if (n == 2) {
         gap = draws.log_uniform(1e-6, 1e-1);
         const double energy = 2 + gap;
-        exact = 2 / (pi_ * energy) * boost::math::ellint_1(2 / energy);
+        exact = 2 / (pi * energy) * boost::math::ellint_1(2 / energy);
     } else {
         if (draws.chance(0.6)) a = draws.uniforms(3, 0.3, 1.5);
         exact = watson(a);
     }
-    const std::vector<double> shift = draws.uniforms(n, 0.2 * pi_, 1.8 * pi_);
-    return {.ranges = box(n, 0, inside ? 2 * pi_ : pi_),
+    const std::vector<double> shift = draws.uniforms(n, 0.2 * pi, 1.8 * pi);
+    return {.ranges = box(n, 0, inside ? 2 * pi : pi),
             .f =
                 [=](const double* x) {
                     double total = gap;
@@ -109,7 +108,7 @@ HardIntegral lattice(Draws& draws) {
                     }
                     return 1 / total;
                 },
-            .exact = exact * std::pow(inside ? 2 * pi_ : pi_, n),
+            .exact = exact * std::pow(inside ? 2 * pi : pi, n),
             .parameters = words("n = ", n, ", gap ", gap, ", first coupling ", a[0],
                                 inside ? ", pole inside" : ", pole at the corner"),
             .accuracy = 1e-10};
@@ -121,7 +120,7 @@ HardIntegral kite(Draws& draws) {
     const int fixed = draws.integer(0, 4);
     std::vector<double> scale;
     for (int j = 0; j < 4; ++j) scale.push_back(draws.log_uniform(0.5, 2));
-    return {.ranges = box(4, 0, std::numeric_limits<double>::infinity()),
+    return {.ranges = box(4, 0, infinity),
             .f =
                 [=](const double* y) {
                     double x[5], jacobian = 1;
@@ -172,7 +171,7 @@ HardIntegral feynman(Draws& draws) {
     return kind < 0.5 ? kite(draws) : kind < 0.8 ? triangle(draws) : bubble_chain(draws);
 }
 
-constexpr HardFamily families[] = {
+constexpr HardFamily physics_table[] = {
     {"phase_space",
      "1 or 2 Breit-Wigner resonances in each of 1..3 invariant masses in [0, 1], M Gamma = M^2 times "
      "1e-4..1e-2 "
@@ -193,6 +192,6 @@ constexpr HardFamily families[] = {
 
 } // namespace
 
-std::span<const HardFamily> physics_families() { return families; }
+std::span<const HardFamily> physics_families() { return physics_table; }
 
 } // namespace montelux::bench

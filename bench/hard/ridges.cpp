@@ -40,7 +40,7 @@ struct Curve {
     double frequency, phase, height;
 
     double operator()(double x) const {
-        if (wave) return 0.5 + height * std::sin(2 * pi_ * frequency * x + phase);
+        if (wave) return 0.5 + height * std::sin(2 * pi * frequency * x + phase);
         return 0.5 + height * (8 * (x - 0.5) * (x - 0.5) - 1);
     }
 };
@@ -50,12 +50,10 @@ HardIntegral ridge_on_curve(Draws& draws) {
     const double w = draws.log_uniform(0.005, 0.05);
     std::vector<Curve> curves;
     for (int j = 1; j < n; ++j)
-        curves.push_back({draws.chance(0.7), draws.uniform(0.7, 2.5), draws.uniform(0, 2 * pi_),
-                          draws.uniform(0.2, 0.35)});
+        curves.push_back(
+            {draws.chance(0.7), draws.uniform(0.7, 2.5), draws.uniform(0, 2 * pi), draws.uniform(0.2, 0.35)});
     const double frequency = draws.uniform(0.5, 3), slope = draws.uniform(-1, 1);
-    auto along = [=](double x) {
-        return std::exp(slope * x) * (1 + 0.5 * std::cos(2 * pi_ * frequency * x));
-    };
+    auto along = [=](double x) { return std::exp(slope * x) * (1 + 0.5 * std::cos(2 * pi * frequency * x)); };
     auto f = [=](const double* x) {
         double square = 0;
         for (std::size_t k = 0; k < curves.size(); ++k) {
@@ -75,7 +73,7 @@ HardIntegral ridge_on_curve(Draws& draws) {
             .parameters = words("n = ", n, ", width ", w, curves[0].wave ? ", wave" : ", parabola")};
 }
 
-constexpr HardFamily families[] = {
+constexpr HardFamily ridge_table[] = {
     {"ridge_diagonal",
      "the Gaussian of width w, its centre carried along a segment of a random diagonal, over the unit cube; "
      "n "
@@ -90,6 +88,6 @@ constexpr HardFamily families[] = {
 
 } // namespace
 
-std::span<const HardFamily> ridge_families() { return families; }
+std::span<const HardFamily> ridge_families() { return ridge_table; }
 
 } // namespace montelux::bench

@@ -42,7 +42,7 @@ HardIntegral two_shells(Draws& draws) {
         centres[k][0] = (k == 0 ? -1 : 1) * draws.uniform(3.2, 3.7);
         radius.push_back(draws.uniform(1.8, 2.2));
         width.push_back(draws.uniform(0.08, 0.12));
-        exact += shell_integral(n, radius[k], width[k]) / (width[k] * std::sqrt(2 * pi_));
+        exact += shell_integral(n, radius[k], width[k]) / (width[k] * std::sqrt(2 * pi));
     }
     return {.ranges = box(n, -7, 7),
             .f =
@@ -50,7 +50,7 @@ HardIntegral two_shells(Draws& draws) {
                     double total = 0;
                     for (int k = 0; k < 2; ++k)
                         total += shell_value(distance_squared(x, centres[k]), radius[k], width[k]) /
-                                 (width[k] * std::sqrt(2 * pi_));
+                                 (width[k] * std::sqrt(2 * pi));
                     return total;
                 },
             .exact = exact,
@@ -109,7 +109,7 @@ HardIntegral rosenbrock(Draws& draws) {
             .accuracy = 1e-10};
 }
 
-constexpr HardFamily families[] = {
+constexpr HardFamily shell_table[] = {
     {"rosenbrock",
      "exp(-sum (a - x_j)^2 + b (x_j+1 - x_j^2)^2) over a box of about [-5, 5]^n; n in 2..6, a in 0.8..1.2, b "
      "in 50..150. Exact: transfer matrix on Gauss panels",
@@ -126,6 +126,6 @@ constexpr HardFamily families[] = {
 
 } // namespace
 
-std::span<const HardFamily> shell_families() { return families; }
+std::span<const HardFamily> shell_families() { return shell_table; }
 
 } // namespace montelux::bench

@@ -94,7 +94,7 @@ HardIntegral diagonal(Draws& draws) {
     return kind < 0.45 ? on_line(draws) : kind < 0.9 ? coulomb(draws) : logarithm(draws);
 }
 
-constexpr HardFamily families[] = {
+constexpr HardFamily singular_table[] = {
     {"endpoint",
      "prod x_j^-a_j (1 + x_j) over the unit cube; n in 1..3; a in 0.5..0.99 (n = 1), 0.5..0.9, or all 1/2. "
      "Exact: 1 / (1 - a) + 1 / (2 - a)",
@@ -107,6 +107,6 @@ constexpr HardFamily families[] = {
 
 } // namespace
 
-std::span<const HardFamily> singular_families() { return families; }
+std::span<const HardFamily> singular_families() { return singular_table; }
 
 } // namespace montelux::bench

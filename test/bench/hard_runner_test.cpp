@@ -65,7 +65,7 @@ HardPlan small_plan() {
 
 TEST(HardRunner, OneRunThatCrashesOrHangsCostsThatRunAlone) {
     HardPlan plan = small_plan();
-    plan.patience = 2;
+    plan.patience = 8;
     plan.jobs = 2;
     plan.methods.push_back(method("good", [](const CountedIntegrand& f, const Request&) {
         const std::vector<double> u(static_cast<std::size_t>(f.dimensions()), 0.5);
