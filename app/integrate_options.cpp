@@ -92,7 +92,34 @@ Method make_method(const std::string& name) {
     return Method::named(name);
 }
 
+// 10k, 1.5M and 2G as 10e3, 1.5e6 and 2e9; other texts as they are.
+std::string with_exponent(const std::string& text) {
+    constexpr std::string_view units = "kMG", exponents = "369";
+    const std::size_t unit = text.empty() ? std::string_view::npos : units.find(text.back());
+    if (unit == std::string_view::npos || text.size() < 2) return text;
+    const std::string digits = text.substr(0, text.size() - 1);
+    if (digits.find_first_not_of("0123456789.") != std::string::npos) return text;
+    return digits + "e" + exponents[unit];
+}
+
 } // namespace
+
+std::vector<std::string> with_negative_formulas(std::vector<std::string> words) {
+    CLI::App command;
+    IntegrateOptions unused;
+    declare(command, unused);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        std::string& word = words[i];
+        if (word == "--") break; // whatever follows is a formula
+        const CLI::Option* const option = command.get_option_no_throw(word);
+        if (option != nullptr) {
+            i += static_cast<std::size_t>(option->get_expected_min());
+        } else if (word.size() > 1 && word[0] == '-' && word[1] != '-') {
+            word.insert(0, 1, ' ');
+        }
+    }
+    return words;
+}
 
 std::uint64_t whole_number(const std::string& text, const std::string& option, std::uint64_t lowest,
                            std::uint64_t highest) {
@@ -102,7 +129,7 @@ std::uint64_t whole_number(const std::string& text, const std::string& option, s
     const auto [stop, error] = std::from_chars(text.data(), end, exact);
     bool good = error == std::errc() && stop == end && !text.empty();
     if (!good) {
-        const double value = constant(text, option);
+        const double value = constant(with_exponent(text), option);
         good = value >= 0 && value <= 0x1p53 && value == std::floor(value);
         if (good) exact = static_cast<std::uint64_t>(value);
     }
@@ -136,7 +163,10 @@ void declare(CLI::App& c, IntegrateOptions& o) {
     text("--absolute-error", o.absolute_error, "Stop at this standard error; with both, at the larger one",
          "E");
     text("--evaluations", o.evaluations,
-         "Evaluate at most so often. Default: 1e6 where neither an error nor a time is asked for", "N");
+         "Evaluate at most so often, for example 50000, 50k, 1M or 1e6. Default: 1e6 where neither an error "
+         "nor a "
+         "time is asked for",
+         "N");
     text("--time", o.time, "Stop after this time, for example 90, 90s, 10m or 1h30m", "TIME");
     text("--seed", o.seed, "Seed of all random numbers. Default: 0", "N");
     text("--threads", o.threads, "Threads; 0: one a processor. The result does not depend on it", "N");
@@ -166,7 +196,6 @@ void declare(CLI::App& c, IntegrateOptions& o) {
         "  " +
         formula_functions() +
         ".\n"
-        "One that begins with '-' needs a blank or a bracket before it: ' -x^2'.\n"
         "Exit codes: 0 done, 1 could not, 2 wrong usage, 3 stopped before the error asked for (the result "
         "is\nprinted), 130 interrupted (so is what there was).");
 }
@@ -177,7 +206,10 @@ IntegrationTask make_task(const IntegrateOptions& o) {
     const bool box = o.domain == "box";
     Variables variables = read_variables(o.over, box);
     if (!box && !o.densities.empty()) throw UsageError("--density", "only a box takes densities");
-    Formulas formulas(o.formulas, variables.names, "");
+    std::vector<std::string> texts = o.formulas;
+    for (std::string& text : texts)
+        if (text.starts_with(" -")) text.erase(0, 1); // the blank of with_negative_formulas
+    Formulas formulas(texts, variables.names, "");
 
     Method method = make_method(o.method);
     Budget budget;

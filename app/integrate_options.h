@@ -40,10 +40,14 @@ struct IntegrationTask {
 
 void declare(CLI::App& command, IntegrateOptions& options);
 
+// Words of the command line, the command's own left out, in which formulas such as -x^2 have got a blank
+// before the minus sign, so that they are not taken for options. Values of options stay as they are.
+std::vector<std::string> with_negative_formulas(std::vector<std::string> words);
+
 // Throws UsageError for what makes no sense, and Error for a density that does not suit the integrand.
 IntegrationTask make_task(const IntegrateOptions& options);
 
-// A whole number of [lowest, highest], which may be written as 1e6; throws UsageError.
+// A whole number of [lowest, highest], which may be written as 1e6, 10k, 1.5M or 2G; throws UsageError.
 std::uint64_t whole_number(const std::string& text, const std::string& option, std::uint64_t lowest,
                            std::uint64_t highest);
 

@@ -28,15 +28,18 @@ std::string report_text(const IntegrationTask& task, const IntegrationResult& r)
     std::string text;
     for (std::size_t c = 0; c < r.value.size(); ++c) {
         Estimate one = r.estimate(static_cast<int>(c));
-        one.non_finite = 0; // a doubt tells
+        one.non_finite = 0; // a warning tells
         if (r.value.size() > 1) text += task.formulas.texts()[c] + ": ";
         text += to_string(one) + "\n";
     }
     // The library's own words for the rest, which follow a line a component.
-    const std::string all = to_string(r);
+    IntegrationResult without_doubts = r;
+    without_doubts.doubts.clear();
+    const std::string all = to_string(without_doubts);
     std::size_t rest = 0;
     for (std::size_t c = 0; c < r.value.size(); ++c) rest = all.find('\n', rest) + 1;
     text += all.substr(rest) + "\n";
+    for (const std::string& doubt : r.doubts) text += "warning: " + doubt + "\n";
     if (!r.statistical)
         text += "the error is an estimate by a deterministic rule, not a standard deviation\n";
     return text;
@@ -59,9 +62,9 @@ Json report_json(const IntegrationTask& task, const IntegrationResult& r) {
     out["method"] = r.method;
     out["reason"] = r.reason;
     const bool compared = r.degrees_of_freedom > 0;
-    out["chi2"] = compared ? number(r.chi_squared) : Json(nullptr);
+    out["chi_squared"] = compared ? number(r.chi_squared) : Json(nullptr);
     out["degrees_of_freedom"] = r.degrees_of_freedom;
-    out["chi2_dof"] = compared ? number(r.chi_squared_per_degree()) : Json(nullptr);
+    out["chi_squared_per_degree"] = compared ? number(r.chi_squared_per_degree()) : Json(nullptr);
     out["p_value"] = compared ? number(r.p_value) : Json(nullptr);
     out["converged"] = r.converged();
     out["stop"] = to_string(r.stop);
