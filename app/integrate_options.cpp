@@ -92,6 +92,15 @@ Method make_method(const std::string& name) {
     return Method::named(name);
 }
 
+void check_logarithm(const IntegrateOptions& o) {
+    if (o.formulas.size() > 1)
+        throw UsageError("--log", std::to_string(o.formulas.size()) + " formulas were given; expected one");
+    if (!o.absolute_error.empty())
+        throw UsageError("--absolute-error",
+                         "with --log, expected --relative-error, which is the error of log Z");
+    if (!o.plot.empty()) throw UsageError("--plot", "log Z is not drawn; leave out one of --log and --plot");
+}
+
 // 10k, 1.5M and 2G as 10e3, 1.5e6 and 2e9; other texts as they are.
 std::string with_exponent(const std::string& text) {
     constexpr std::string_view units = "kMG", exponents = "369";
@@ -154,6 +163,10 @@ void declare(CLI::App& c, IntegrateOptions& o) {
     };
     many("--over", o.over, "A variable and its range, for example x=0:inf, x,y=-1:1 or x1..x8=0:1",
          "NAME=LOWER:UPPER");
+    c.add_flag(
+        "--log", o.log,
+        "FORMULA is log f, the natural logarithm of the integrand; print log Z, that of the integral, for "
+        "values such as e^-5000");
     many("--density", o.densities,
          "Draw a variable from a density that is proportional to this formula, for example x=exp(-5*x)",
          "NAME=FORMULA");
@@ -191,6 +204,7 @@ void declare(CLI::App& c, IntegrateOptions& o) {
         "  montelux integrate 'sin(x)*y' --over x=0:pi/2 --over y=0:1 --relative-error 1e-4\n"
         "  montelux integrate 'exp(-5*x)*cos(x)' --over x=0:inf --density x='exp(-5*x)' --evaluations 1e5\n"
         "  montelux integrate 1 x^2 --domain ball --over x,y,z --json\n"
+        "  montelux integrate --log -5000-x^2/2 --over x=-inf:inf --relative-error 1e-6\n"
         "\n"
         "Formulas know + - * / ^, comparisons, && ||, c ? a : b, pi, e, inf, and\n"
         "  " +
@@ -211,6 +225,7 @@ IntegrationTask make_task(const IntegrateOptions& o) {
         if (text.starts_with(" -")) text.erase(0, 1); // the blank of with_negative_formulas
     Formulas formulas(texts, variables.names, "");
 
+    if (o.log) check_logarithm(o);
     Method method = make_method(o.method);
     Budget budget;
     budget.relative_error = relative_error(o.relative_error);
@@ -246,10 +261,10 @@ IntegrationTask make_task(const IntegrateOptions& o) {
     const std::uint64_t points_limit = whole_number(o.points_limit, "--points-limit", 1, 100'000'000);
 
     read_densities(o.densities, variables);
-    check_densities(variables, formulas);
+    check_densities(variables, formulas, o.log);
     Domain domain = make_domain(o, variables);
     return {variables.names, std::move(formulas), std::move(domain), std::move(method),
-            budget,          std::move(options),  points_limit};
+            budget,          std::move(options),  points_limit,      o.log};
 }
 
 } // namespace montelux::app

@@ -22,7 +22,7 @@ struct IntegrateOptions {
     std::string relative_error, absolute_error, evaluations, time, seed = "0", threads = "0";
     std::string non_finite = "skip";
     std::string checkpoint, checkpoint_every, plot, points, points_limit = "10000";
-    bool resume = false, json = false, quiet = false;
+    bool log = false, resume = false, json = false, quiet = false;
 };
 
 // An integration that is ready to run. `options` lacks progress and cancel.
@@ -34,6 +34,7 @@ struct IntegrationTask {
     Budget budget;
     IntegrationOptions options;
     std::uint64_t points_limit;
+    bool logarithm; // the formula is log f
 
     bool targeted() const { return budget.relative_error > 0 || budget.absolute_error > 0; }
 };

@@ -22,6 +22,20 @@ Json matrix(const std::vector<double>& values, std::size_t columns) {
     return out;
 }
 
+// What follows the values, in the library's own words.
+std::string report_rest(const IntegrationResult& r) {
+    IntegrationResult without_doubts = r;
+    without_doubts.doubts.clear();
+    const std::string all = to_string(without_doubts);
+    std::size_t rest = 0;
+    for (std::size_t c = 0; c < r.value.size(); ++c) rest = all.find('\n', rest) + 1;
+    std::string text = all.substr(rest) + "\n";
+    for (const std::string& doubt : r.doubts) text += "warning: " + doubt + "\n";
+    if (!r.statistical)
+        text += "the error is an estimate by a deterministic rule, not a standard deviation\n";
+    return text;
+}
+
 } // namespace
 
 std::string report_text(const IntegrationTask& task, const IntegrationResult& r) {
@@ -32,17 +46,11 @@ std::string report_text(const IntegrationTask& task, const IntegrationResult& r)
         if (r.value.size() > 1) text += task.formulas.texts()[c] + ": ";
         text += to_string(one) + "\n";
     }
-    // The library's own words for the rest, which follow a line a component.
-    IntegrationResult without_doubts = r;
-    without_doubts.doubts.clear();
-    const std::string all = to_string(without_doubts);
-    std::size_t rest = 0;
-    for (std::size_t c = 0; c < r.value.size(); ++c) rest = all.find('\n', rest) + 1;
-    text += all.substr(rest) + "\n";
-    for (const std::string& doubt : r.doubts) text += "warning: " + doubt + "\n";
-    if (!r.statistical)
-        text += "the error is an estimate by a deterministic rule, not a standard deviation\n";
-    return text;
+    return text + report_rest(r);
+}
+
+std::string report_text(const LogIntegrationResult& r) {
+    return "log Z = " + to_string(Estimate{r.log_value, r.log_error}) + "\n" + report_rest(r.relative);
 }
 
 Json report_json(const IntegrationTask& task, const IntegrationResult& r) {
@@ -86,6 +94,17 @@ Json report_json(const IntegrationTask& task, const IntegrationResult& r) {
         record["seconds"] = number(h.seconds);
         out["history"].push_back(std::move(record));
     }
+    return out;
+}
+
+Json report_json(const IntegrationTask& task, const LogIntegrationResult& r) {
+    Json out;
+    out["log_value"] = number(r.log_value);
+    out["log_error"] = number(r.log_error);
+    out["log_reference"] = number(r.log_reference);
+    out.update(report_json(task, r.relative));
+    // In a unit of their own, they would be taken for Z.
+    for (const char* relative : {"value", "standard_error", "covariance"}) out.erase(relative);
     return out;
 }
 

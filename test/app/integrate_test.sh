@@ -108,6 +108,37 @@ cmp -s threads1 threads2 && cmp -s threads1 threads5 || fail "the number of thre
 "$montelux" integrate 'sin(x*y)' --over x,y=0:1 --evaluations 1e5 --seed 1 --json | grep -v seconds >seed
 cmp -s threads1 seed && fail "the seed changes nothing"
 
+# Logarithms of integrals that no double holds.
+log_value() {
+    exact=$1
+    shift
+    "$montelux" integrate --log "$@" --json --quiet >json 2>err || fail "montelux integrate --log $*: exit code $?: $(cat err)"
+    close "$(field log_value)" "$exact" "$(awk -v e="$(field log_error)" 'BEGIN { print 5 * e + 1e-11 }')" ||
+        fail "montelux integrate --log $*: $(head -n 4 json) instead of $exact"
+    [ "$(field converged)" = true ] || fail "montelux integrate --log $*: not converged"
+}
+log_value -4999.081061466796 -5000-x^2/2 --over x=-inf:inf --relative-error 1e-6
+log_value 5000.918938533204 '5000-x^2/2' --over x=-inf:inf --relative-error 1e-3 --method vegas
+log_value -1998.162122933590 '-2000-(x^2+y^2)/2' --over x,y=-inf:inf --relative-error 1e-3 --method adaptive
+log_value -2001.609437912434 'x<0 ? -inf : -2000-5*x' --over x=-1:9 --relative-error 1e-3 --method quasi
+log_value -8001.609437912434 '-8000-5*x' --over x=0:inf --density 'x=exp(-5*x)' --method basic --relative-error 1e-3
+log_value -898.567588041694 '-900' --domain ball --over x,y,z --relative-error 1e-6
+grep -q '^  "value"' json && fail "a relative value stands for Z: $(cat json)"
+expect 0 "log Z = -4999.08106" integrate --log -5000-x^2/2 --over x=-inf:inf --relative-error 1e-6
+expect 3 "stopped at the number of evaluations" integrate --log -5000-x^2/2 --over x=-inf:inf --relative-error 1e-6 --method basic --evaluations 10k
+expect 0 "log Z = -inf" integrate --log 'log(0*x)' --over x=0:1 --method basic --evaluations 1000
+expect 2 "--log: 2 formulas were given; expected one" integrate --log x 1 --over x=0:1
+expect 2 "expected --relative-error, which is the error of log Z" integrate --log x --over x=0:1 --absolute-error 1
+expect 2 "leave out one of --log and --plot" integrate --log x --over x=0:1 --plot plot.svg
+expect 1 "is zero where '-5*x-8000' is not" integrate --log -5*x-8000 --over x=-1:1 --density 'x=x<0 ? 0 : exp(-5*x)'
+# A run of logarithms that was killed goes on to the same digits.
+log_run="--log x*y-3000 --over x,y=0:1 --method basic --evaluations 5M --quiet"
+"$montelux" integrate $log_run --json | grep -v seconds >unbroken
+rm -f log log.previous
+timeout -s KILL 0.2 "$montelux" integrate $log_run --checkpoint log --checkpoint-every 0 >/dev/null 2>&1
+"$montelux" integrate $log_run --checkpoint log --resume --json | grep -v seconds >resumed
+cmp -s unbroken resumed || fail "log Z of a resumed run: $(head -n 3 resumed) instead of $(head -n 3 unbroken)"
+
 # Exit codes: 3 where a target was not reached.
 expect 3 "stopped at the number of evaluations" integrate x --over x=0:1 --method basic --relative-error 1e-9 --evaluations 1e4
 expect 3 "stopped by time" integrate x --over x=0:1 --method basic --relative-error 1e-12 --time 0.3
