@@ -7,7 +7,6 @@
 #include <exception>
 
 #include "montelux/cluster/communicator.h"
-#include "montelux/mc/integrate/integrate.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux::app {
@@ -49,21 +48,17 @@ SharedIntegration::SharedIntegration(const IntegrationTask& task, bool alone) {
     }
 }
 
-IntegrationResult SharedIntegration::integrate(const IntegrationTask& task, const BatchFunction& f) {
+void SharedIntegration::integrate(const IntegrationTask& task, const BatchFunction& f, const Work& work) {
     const int components = task.formulas.count();
-    auto integrated = [&](const Integrand& integrand, const IntegrationOptions& options) {
-        return montelux::integrate(integrand, task.domain, task.method, task.budget, options);
-    };
-    if (!shared_) return integrated(Integrand::batch(f, components), task.options);
+    if (!shared_) return work(Integrand::batch(f, components), task.options);
 
     IntegrationOptions options = task.options;
     options.threads = shared_->threads();
-    IntegrationResult result;
     try {
         shared_->lead(
             [&] {
                 auto shared = [this](const PointBatch& x, ValueBatch y) { (*shared_)(x, y); };
-                result = integrated(Integrand::batch(shared, components), options);
+                work(Integrand::batch(shared, components), options);
             },
             request_cancel);
     } catch (const std::exception& e) {
@@ -71,7 +66,6 @@ IntegrationResult SharedIntegration::integrate(const IntegrationTask& task, cons
         end_job_with(e);
     }
     shared_.reset();
-    return result;
 }
 
 } // namespace montelux::app

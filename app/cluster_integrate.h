@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/integrate_options.h"
+#include <functional>
 #include <memory>
 
 #include "montelux/cluster/shared_integrand.h"
@@ -16,8 +17,10 @@ class SharedIntegration {
 
     // Has this rank only helped? Then there is nothing else for it to do.
     bool helped() const { return helped_; }
-    // montelux::integrate(), with the task's options but for the number of threads.
-    IntegrationResult integrate(const IntegrationTask& task, const BatchFunction& f);
+    // Calls work(integrand, options) with an integrand that the job evaluates, and with the task's options
+    // but for the number of threads.
+    using Work = std::function<void(const Integrand&, const IntegrationOptions&)>;
+    void integrate(const IntegrationTask& task, const BatchFunction& f, const Work& work);
 
   private:
     bool helped_ = false;

@@ -70,8 +70,14 @@ std::string name_at(const std::string& text, std::size_t at) {
     throw UsageError(option.empty() ? "formula" : option, message);
 }
 
-std::string unknown_name(const std::string& name, bool called, const mu::Parser& parser,
+// `word`: the text is this name behind a minus sign, which an option of another program would be.
+std::string unknown_name(const std::string& name, bool called, bool word, const mu::Parser& parser,
                          const std::vector<std::string>& variables, const std::string& option) {
+    if (const auto function = parser.GetFunDef().find(name);
+        !called && function != parser.GetFunDef().end()) {
+        const char* const arguments = function->second.GetArgc() == 2 ? "(x, y)" : "(x)";
+        return "the function '" + name + "' takes its arguments in brackets: " + name + arguments;
+    }
     std::vector<std::string> known;
     if (!called) {
         known = variables;
@@ -81,6 +87,7 @@ std::string unknown_name(const std::string& name, bool called, const mu::Parser&
     for (const auto& [function_name, callback] : parser.GetFunDef()) known.push_back(function_name);
     const std::vector<std::string_view> views(known.begin(), known.end());
     std::string what = "there is no " + std::string(called ? "function" : "variable") + " '" + name + "'";
+    if (word) what += ", and no option '-" + name + "'";
     if (name.size() > 1) what += did_you_mean(name, views); // every short name is near to a letter
     if (called) return what + "; expected one of " + formula_functions();
     if (variables.empty()) return what + "; a number is expected here, without variables";
@@ -103,7 +110,7 @@ std::string unknown_name(const std::string& name, bool called, const mu::Parser&
         if (name.empty()) refuse(option, text, at, "this cannot be read");
         const std::size_t next = text.find_first_not_of(' ', at + name.size());
         const bool called = next != std::string::npos && text[next] == '(';
-        refuse(option, text, at, unknown_name(name, called, parser, variables, option));
+        refuse(option, text, at, unknown_name(name, called, text == "-" + name, parser, variables, option));
     }
     case mu::ecUNEXPECTED_EOF:
         refuse(option, text, text.size(), "the formula ends too early");
@@ -140,6 +147,8 @@ void check_form(const std::string& text, const std::string& option) {
         if (c == ')') --depth;
         const bool compares =
             after == '=' || before == '=' || before == '<' || before == '>' || before == '!';
+        if (c == '*' && after == '*')
+            refuse(option, text, i, "'**' is not expected here; powers are written x^2");
         if (c == '=' && !compares) refuse(option, text, i, "'=' is not expected here; '==' compares");
         if (c == ',' && depth == 0)
             refuse(option, text, i, "',' is not expected here; each component is an argument of its own");

@@ -1,4 +1,4 @@
-// montelux integrate: from a formula to a value with its error.
+// montelux integrate: from a formula to a value, or log Z, with its error.
 #include "app/commands.h"
 #include "app/convergence_plot.h"
 #include "app/integrate_options.h"
@@ -44,8 +44,10 @@ void check_files(const IntegrateOptions& o) {
 
 void show_progress(ProgressLine& line, const IntegrationTask& task, const IntegrationResult& r) {
     if (!line.due(r.seconds)) return;
-    std::string text = to_string(r.estimate()) + "  " + count_text(static_cast<double>(r.evaluations)) +
-                       "evaluations, " + duration_text(r.seconds);
+    // Of logarithms the reference of the value still moves.
+    std::string text = (task.logarithm ? "" : to_string(r.estimate()) + "  ") +
+                       count_text(static_cast<double>(r.evaluations)) + "evaluations, " +
+                       duration_text(r.seconds);
     if (task.targeted()) text += ", relative error " + percent_text(r.estimate().relative_error());
     line.show("integrating", text);
 }
@@ -83,13 +85,20 @@ int run(const IntegrateOptions& o) {
     ProgressLine line(o.quiet);
     task.options.progress = [&](const IntegrationResult& r) { show_progress(line, task, r); };
     task.options.cancel = &cancel_on_signals();
+    LogIntegrationResult logarithm; // of which `relative` alone is used without --log
+    auto work = [&](const Integrand& f, const IntegrationOptions& options) {
+        if (task.logarithm)
+            logarithm = integrate_log(f, task.domain, task.method, task.budget, options);
+        else
+            logarithm.relative = integrate(f, task.domain, task.method, task.budget, options);
+    };
 #ifdef MONTELUX_WITH_RENDER
-    const IntegrationResult result = shared.integrate(task, evaluate);
+    shared.integrate(task, evaluate, work);
 #else
-    const IntegrationResult result = integrate(Integrand::batch(evaluate, task.formulas.count()), task.domain,
-                                               task.method, task.budget, task.options);
+    work(Integrand::batch(evaluate, task.formulas.count()), task.options);
 #endif
     line.finish();
+    const IntegrationResult& result = logarithm.relative;
 
     finish_on_signals();
     if (!result.checkpoint_refused_because.empty())
@@ -100,11 +109,14 @@ int run(const IntegrateOptions& o) {
     if (result.evaluations == 0)
         std::fprintf(stderr,
                      "montelux: warning: the run ended before its first step; nothing is known yet\n");
-    const std::string text =
-        o.json ? report_json(task, result)
-                         .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-                     "\n"
-               : report_text(task, result);
+    std::string text;
+    if (o.json) {
+        const nlohmann::ordered_json json =
+            task.logarithm ? report_json(task, logarithm) : report_json(task, result);
+        text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    } else {
+        text = task.logarithm ? report_text(logarithm) : report_text(task, result);
+    }
     std::fputs(text.c_str(), stdout);
     return exit_code_of(task, result);
 }

@@ -92,7 +92,43 @@ Method make_method(const std::string& name) {
     return Method::named(name);
 }
 
+void check_logarithm(const IntegrateOptions& o) {
+    if (o.formulas.size() > 1)
+        throw UsageError("--log", std::to_string(o.formulas.size()) + " formulas were given; expected one");
+    if (!o.absolute_error.empty())
+        throw UsageError("--absolute-error",
+                         "with --log, expected --relative-error, which is the error of log Z");
+    if (!o.plot.empty()) throw UsageError("--plot", "log Z is not drawn; leave out one of --log and --plot");
+}
+
+// 10k, 1.5M and 2G as 10e3, 1.5e6 and 2e9; other texts as they are.
+std::string with_exponent(const std::string& text) {
+    constexpr std::string_view units = "kMG", exponents = "369";
+    const std::size_t unit = text.empty() ? std::string_view::npos : units.find(text.back());
+    if (unit == std::string_view::npos || text.size() < 2) return text;
+    const std::string digits = text.substr(0, text.size() - 1);
+    if (digits.find_first_not_of("0123456789.") != std::string::npos) return text;
+    return digits + "e" + exponents[unit];
+}
+
 } // namespace
+
+std::vector<std::string> with_negative_formulas(std::vector<std::string> words) {
+    CLI::App command;
+    IntegrateOptions unused;
+    declare(command, unused);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        std::string& word = words[i];
+        if (word == "--") break; // whatever follows is a formula
+        const CLI::Option* const option = command.get_option_no_throw(word);
+        if (option != nullptr) {
+            i += static_cast<std::size_t>(option->get_expected_min());
+        } else if (word.size() > 1 && word[0] == '-' && word[1] != '-') {
+            word.insert(0, 1, ' ');
+        }
+    }
+    return words;
+}
 
 std::uint64_t whole_number(const std::string& text, const std::string& option, std::uint64_t lowest,
                            std::uint64_t highest) {
@@ -102,7 +138,7 @@ std::uint64_t whole_number(const std::string& text, const std::string& option, s
     const auto [stop, error] = std::from_chars(text.data(), end, exact);
     bool good = error == std::errc() && stop == end && !text.empty();
     if (!good) {
-        const double value = constant(text, option);
+        const double value = constant(with_exponent(text), option);
         good = value >= 0 && value <= 0x1p53 && value == std::floor(value);
         if (good) exact = static_cast<std::uint64_t>(value);
     }
@@ -127,6 +163,10 @@ void declare(CLI::App& c, IntegrateOptions& o) {
     };
     many("--over", o.over, "A variable and its range, for example x=0:inf, x,y=-1:1 or x1..x8=0:1",
          "NAME=LOWER:UPPER");
+    c.add_flag(
+        "--log", o.log,
+        "FORMULA is log f, the natural logarithm of the integrand; print log Z, that of the integral, for "
+        "values such as e^-5000");
     many("--density", o.densities,
          "Draw a variable from a density that is proportional to this formula, for example x=exp(-5*x)",
          "NAME=FORMULA");
@@ -136,7 +176,10 @@ void declare(CLI::App& c, IntegrateOptions& o) {
     text("--absolute-error", o.absolute_error, "Stop at this standard error; with both, at the larger one",
          "E");
     text("--evaluations", o.evaluations,
-         "Evaluate at most so often. Default: 1e6 where neither an error nor a time is asked for", "N");
+         "Evaluate at most so often, for example 50000, 50k, 1M or 1e6. Default: 1e6 where neither an error "
+         "nor a "
+         "time is asked for",
+         "N");
     text("--time", o.time, "Stop after this time, for example 90, 90s, 10m or 1h30m", "TIME");
     text("--seed", o.seed, "Seed of all random numbers. Default: 0", "N");
     text("--threads", o.threads, "Threads; 0: one a processor. The result does not depend on it", "N");
@@ -161,12 +204,12 @@ void declare(CLI::App& c, IntegrateOptions& o) {
         "  montelux integrate 'sin(x)*y' --over x=0:pi/2 --over y=0:1 --relative-error 1e-4\n"
         "  montelux integrate 'exp(-5*x)*cos(x)' --over x=0:inf --density x='exp(-5*x)' --evaluations 1e5\n"
         "  montelux integrate 1 x^2 --domain ball --over x,y,z --json\n"
+        "  montelux integrate --log -5000-x^2/2 --over x=-inf:inf --relative-error 1e-6\n"
         "\n"
         "Formulas know + - * / ^, comparisons, && ||, c ? a : b, pi, e, inf, and\n"
         "  " +
         formula_functions() +
         ".\n"
-        "One that begins with '-' needs a blank or a bracket before it: ' -x^2'.\n"
         "Exit codes: 0 done, 1 could not, 2 wrong usage, 3 stopped before the error asked for (the result "
         "is\nprinted), 130 interrupted (so is what there was).");
 }
@@ -177,8 +220,12 @@ IntegrationTask make_task(const IntegrateOptions& o) {
     const bool box = o.domain == "box";
     Variables variables = read_variables(o.over, box);
     if (!box && !o.densities.empty()) throw UsageError("--density", "only a box takes densities");
-    Formulas formulas(o.formulas, variables.names, "");
+    std::vector<std::string> texts = o.formulas;
+    for (std::string& text : texts)
+        if (text.starts_with(" -")) text.erase(0, 1); // the blank of with_negative_formulas
+    Formulas formulas(texts, variables.names, "");
 
+    if (o.log) check_logarithm(o);
     Method method = make_method(o.method);
     Budget budget;
     budget.relative_error = relative_error(o.relative_error);
@@ -214,10 +261,10 @@ IntegrationTask make_task(const IntegrateOptions& o) {
     const std::uint64_t points_limit = whole_number(o.points_limit, "--points-limit", 1, 100'000'000);
 
     read_densities(o.densities, variables);
-    check_densities(variables, formulas);
+    check_densities(variables, formulas, o.log);
     Domain domain = make_domain(o, variables);
     return {variables.names, std::move(formulas), std::move(domain), std::move(method),
-            budget,          std::move(options),  points_limit};
+            budget,          std::move(options),  points_limit,      o.log};
 }
 
 } // namespace montelux::app

@@ -22,7 +22,7 @@ struct IntegrateOptions {
     std::string relative_error, absolute_error, evaluations, time, seed = "0", threads = "0";
     std::string non_finite = "skip";
     std::string checkpoint, checkpoint_every, plot, points, points_limit = "10000";
-    bool resume = false, json = false, quiet = false;
+    bool log = false, resume = false, json = false, quiet = false;
 };
 
 // An integration that is ready to run. `options` lacks progress and cancel.
@@ -34,16 +34,21 @@ struct IntegrationTask {
     Budget budget;
     IntegrationOptions options;
     std::uint64_t points_limit;
+    bool logarithm; // the formula is log f
 
     bool targeted() const { return budget.relative_error > 0 || budget.absolute_error > 0; }
 };
 
 void declare(CLI::App& command, IntegrateOptions& options);
 
+// Words of the command line, the command's own left out, in which formulas such as -x^2 have got a blank
+// before the minus sign, so that they are not taken for options. Values of options stay as they are.
+std::vector<std::string> with_negative_formulas(std::vector<std::string> words);
+
 // Throws UsageError for what makes no sense, and Error for a density that does not suit the integrand.
 IntegrationTask make_task(const IntegrateOptions& options);
 
-// A whole number of [lowest, highest], which may be written as 1e6; throws UsageError.
+// A whole number of [lowest, highest], which may be written as 1e6, 10k, 1.5M or 2G; throws UsageError.
 std::uint64_t whole_number(const std::string& text, const std::string& option, std::uint64_t lowest,
                            std::uint64_t highest);
 

@@ -22,24 +22,35 @@ Json matrix(const std::vector<double>& values, std::size_t columns) {
     return out;
 }
 
+// What follows the values, in the library's own words.
+std::string report_rest(const IntegrationResult& r) {
+    IntegrationResult without_doubts = r;
+    without_doubts.doubts.clear();
+    const std::string all = to_string(without_doubts);
+    std::size_t rest = 0;
+    for (std::size_t c = 0; c < r.value.size(); ++c) rest = all.find('\n', rest) + 1;
+    std::string text = all.substr(rest) + "\n";
+    for (const std::string& doubt : r.doubts) text += "warning: " + doubt + "\n";
+    if (!r.statistical)
+        text += "the error is an estimate by a deterministic rule, not a standard deviation\n";
+    return text;
+}
+
 } // namespace
 
 std::string report_text(const IntegrationTask& task, const IntegrationResult& r) {
     std::string text;
     for (std::size_t c = 0; c < r.value.size(); ++c) {
         Estimate one = r.estimate(static_cast<int>(c));
-        one.non_finite = 0; // a doubt tells
+        one.non_finite = 0; // a warning tells
         if (r.value.size() > 1) text += task.formulas.texts()[c] + ": ";
         text += to_string(one) + "\n";
     }
-    // The library's own words for the rest, which follow a line a component.
-    const std::string all = to_string(r);
-    std::size_t rest = 0;
-    for (std::size_t c = 0; c < r.value.size(); ++c) rest = all.find('\n', rest) + 1;
-    text += all.substr(rest) + "\n";
-    if (!r.statistical)
-        text += "the error is an estimate by a deterministic rule, not a standard deviation\n";
-    return text;
+    return text + report_rest(r);
+}
+
+std::string report_text(const LogIntegrationResult& r) {
+    return "log Z = " + to_string(Estimate{r.log_value, r.log_error}) + "\n" + report_rest(r.relative);
 }
 
 Json report_json(const IntegrationTask& task, const IntegrationResult& r) {
@@ -59,9 +70,9 @@ Json report_json(const IntegrationTask& task, const IntegrationResult& r) {
     out["method"] = r.method;
     out["reason"] = r.reason;
     const bool compared = r.degrees_of_freedom > 0;
-    out["chi2"] = compared ? number(r.chi_squared) : Json(nullptr);
+    out["chi_squared"] = compared ? number(r.chi_squared) : Json(nullptr);
     out["degrees_of_freedom"] = r.degrees_of_freedom;
-    out["chi2_dof"] = compared ? number(r.chi_squared_per_degree()) : Json(nullptr);
+    out["chi_squared_per_degree"] = compared ? number(r.chi_squared_per_degree()) : Json(nullptr);
     out["p_value"] = compared ? number(r.p_value) : Json(nullptr);
     out["converged"] = r.converged();
     out["stop"] = to_string(r.stop);
@@ -83,6 +94,17 @@ Json report_json(const IntegrationTask& task, const IntegrationResult& r) {
         record["seconds"] = number(h.seconds);
         out["history"].push_back(std::move(record));
     }
+    return out;
+}
+
+Json report_json(const IntegrationTask& task, const LogIntegrationResult& r) {
+    Json out;
+    out["log_value"] = number(r.log_value);
+    out["log_error"] = number(r.log_error);
+    out["log_reference"] = number(r.log_reference);
+    out.update(report_json(task, r.relative));
+    // In a unit of their own, they would be taken for Z.
+    for (const char* relative : {"value", "standard_error", "covariance"}) out.erase(relative);
     return out;
 }
 

@@ -1,4 +1,5 @@
 #include "app/commands.h"
+#include "app/integrate_options.h"
 #include "app/joined.h"
 #include "app/usage_error.h"
 #include <CLI/CLI.hpp>
@@ -98,6 +99,13 @@ int report_usage(const CLI::App& app, const CLI::ParseError& e, int argc, char**
     return give_up(message + "\nRun '" + line + " --help' for what it understands.", exit_usage);
 }
 
+void parse(CLI::App& app, int argc, char** argv) {
+    if (argc < 2 || std::string_view(argv[1]) != "integrate") return app.parse(argc, argv);
+    std::vector<std::string> words = with_negative_formulas({argv + 2, argv + argc});
+    words.insert(words.begin(), argv[1]);
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend())); // the last one first
+}
+
 int run(int argc, char** argv) {
     occupy_standard_streams();
 #ifdef MONTELUX_WITH_RENDER
@@ -136,7 +144,7 @@ int run(int argc, char** argv) {
         add_info(app, exit_code);
 #endif
         try {
-            app.parse(argc, argv);
+            parse(app, argc, argv);
         } catch (const CLI::Success& e) { // asking for help or the version
             app.exit(e);
         } catch (const CLI::ParseError& e) {

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -175,7 +176,7 @@ Domain box_domain(const Variables& variables) {
     return Domain::mapped_batch(dimensions, dimensions, std::move(map), std::move(description));
 }
 
-void check_densities(const Variables& variables, const Formulas& formulas) {
+void check_densities(const Variables& variables, const Formulas& formulas, bool logarithm) {
     if (variables.densities.empty()) return;
     constexpr std::size_t points = 4096;
     const int dimensions = static_cast<int>(variables.names.size());
@@ -185,6 +186,13 @@ void check_densities(const Variables& variables, const Formulas& formulas) {
     Domain(variables.ranges).map(u, x, volume);
     ValueBuffer values(points, formulas.count());
     formulas(x, values);
+    if (logarithm) {
+        std::span<double> logs = values.component(0);
+        double largest = -std::numeric_limits<double>::infinity();
+        for (double v : logs)
+            if (std::isfinite(v)) largest = std::max(largest, v);
+        for (double& v : logs) v = std::exp(v - largest); // NaN where all are -infinity
+    }
     std::vector<double> everywhere(static_cast<std::size_t>(formulas.count())), missed(everywhere);
     std::vector<std::size_t> where(everywhere.size());
     for (std::size_t i = 0; i < points; ++i) {

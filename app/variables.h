@@ -30,7 +30,7 @@ void read_densities(const std::vector<std::string>& densities, Variables& variab
 Domain box_domain(const Variables& variables);
 
 // Throws Error where a density is zero in places in which a formula is not, for the integral would then be
-// wrong without a trace. Looks at 4096 points.
-void check_densities(const Variables& variables, const Formulas& formulas);
+// wrong without a trace. Looks at 4096 points. `logarithm`: the formulas are those of log f.
+void check_densities(const Variables& variables, const Formulas& formulas, bool logarithm);
 
 } // namespace montelux::app

@@ -72,11 +72,11 @@ from ._core import version as __version__
 from ._chains import Chains, metropolis
 from ._compare import ChannelComparison, Comparison, ZScores, compare
 from ._filters import pixel_filter
-from ._integrate import METHODS, integrate, train_map
+from ._integrate import METHODS, integrate, integrate_log, train_map
 from ._names import UnknownAttribute, strict
 from ._picture import Picture
 from ._render import Progress, Render
-from ._result import History, Result
+from ._result import History, LogResult, Result
 from ._scene import Scene, load, parse
 
 from . import bake, warp
@@ -114,10 +114,12 @@ __all__ = [
     "History",
     "Importance",
     "integrate",
+    "integrate_log",
     "Integrator",
     "l2_star_discrepancy",
     "LanczosFilter",
     "load",
+    "LogResult",
     "METHODS",
     "Metropolis",
     "metropolis",

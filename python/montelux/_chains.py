@@ -46,7 +46,7 @@ class Chains:
         lines = [f"{m:.6g} +- {e:.2g}, R-hat {r:.4f}" for m, e, r in zip(self.mean, self.standard_error, self.r_hat)]
         chains, states, _ = self.states.shape
         lines.append(f"{chains} chains of {states} states, {100 * self.acceptance_rate:.0f} % accepted")
-        return "\n".join([*lines, *(f"doubt: {doubt}" for doubt in self.doubts)])
+        return "\n".join([*lines, *(f"warning: {doubt}" for doubt in self.doubts)])
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):

@@ -1,4 +1,4 @@
-"""The front door: integrate a function over a domain until an error, a budget or a time is reached."""
+"""The front door: integrate a function, or its logarithm, over a domain until an error, a budget or a time is reached."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from . import _core
 from ._core import Domain, Error
 from ._names import MOST_THREADS, did_you_mean, is_number, is_whole, settings_of, unknown
 from ._progress import IntegrationProgress
-from ._result import Array, Result, from_core
+from ._result import Array, LogResult, Result, from_core, log_from_core
 
 Ranges = Union[Domain, Sequence[float], Sequence[Sequence[float]]]
 Progress = Union[bool, Callable[[Result], object]]
@@ -65,8 +65,8 @@ def as_domain(domain: Ranges) -> Domain:
     return Domain.box([(float(a), float(b)) for a, b in ranges])
 
 
-def as_method(method: Any, settings: dict[str, Any]) -> _core.Method:
-    """The method that a name, a class or an object of settings stands for."""
+def as_method(method: Any, settings: dict[str, Any], arguments: Sequence[str]) -> _core.Method:
+    """The method that a name, a class or an object of settings stands for; `arguments`: the caller's own."""
     if isinstance(method, str):
         if method not in METHODS:
             raise Error("method: " + unknown("method", method, METHODS))
@@ -78,7 +78,7 @@ def as_method(method: Any, settings: dict[str, Any]) -> _core.Method:
             names += ["weights", "parameter"]
         for name in settings:
             if name not in names:
-                known = [*names, *_ARGUMENTS]
+                known = [*names, *arguments]
                 raise Error(f"method '{kind}': " + unknown("setting", name, known))
         missing = [name for name in _REQUIRED.get(kind, ()) if name not in settings]
         if missing:
@@ -86,7 +86,7 @@ def as_method(method: Any, settings: dict[str, Any]) -> _core.Method:
         method = method(**settings)
     elif settings:
         name = next(iter(settings))
-        hint = did_you_mean(name, _ARGUMENTS)
+        hint = did_you_mean(name, arguments)
         raise Error(
             f"integrate: there is no argument '{name}'{hint}; settings of a method object are given to the object"
         )
@@ -150,15 +150,120 @@ def integrate(
     eight points, to see.
 
     covariance: False leaves out covariances, for thousands of components. non_finite: 'skip' leaves out NaN and
-    infinite values, counted and told as a doubt; 'throw' ends with an Error that names the point.
+    infinite values, counted and reported as a warning (`doubts`); 'throw' ends with an Error that names the point.
 
     progress: True shows a line on standard error; a function is called with the Result so far, between steps.
 
     checkpoint: a file that keeps the running state, written every `checkpoint_every` seconds and at the end;
     with `resume` the run goes on from it, to the digits of one that was not broken.
     """
+    return _run(
+        _core.integrate,
+        f,
+        domain,
+        method,
+        settings,
+        relative_error=relative_error,
+        absolute_error=absolute_error,
+        evaluations=evaluations,
+        seconds=seconds,
+        seed=seed,
+        threads=threads,
+        batch=batch,
+        out=out,
+        components=components,
+        covariance=covariance,
+        non_finite=non_finite,
+        progress=progress,
+        checkpoint=checkpoint,
+        checkpoint_every=checkpoint_every,
+        resume=resume,
+        made=from_core,
+    )
+
+
+def integrate_log(
+    log_f: Callable[..., Any],
+    domain: Ranges,
+    method: Any = "auto",
+    *,
+    relative_error: float = 0.0,
+    evaluations: int | float | None = None,
+    seconds: float | None = None,
+    seed: int = 0,
+    threads: int = 1,
+    batch: bool = True,
+    out: bool = False,
+    non_finite: str = "skip",
+    progress: Progress = False,
+    checkpoint: str | os.PathLike[str] | None = None,
+    checkpoint_every: float = 60.0,
+    resume: bool = False,
+    **settings: Any,
+) -> LogResult:
+    """log Z with its error, Z being the integral of exp(log_f): for values such as e^-5000.
+
+        >>> montelux.integrate_log(lambda x: -5000 - x**2 / 2, (-np.inf, np.inf), relative_error=1e-6).log_value
+        -4999.0810614...
+
+    log_f returns one number a point, natural logarithms; -inf is an f of zero. `relative_error`, that of Z, is
+    the error of log Z. The other arguments are those of integrate(); a `progress` function gets a Result
+    relative to a reference that moves while larger values are met.
+    """
+    if "absolute_error" in settings:
+        raise Error("integrate_log: an absolute_error was given; expected relative_error, which is the error of log Z")
+    return _run(
+        _core.integrate_log,
+        log_f,
+        domain,
+        method,
+        settings,
+        relative_error=relative_error,
+        absolute_error=0.0,
+        evaluations=evaluations,
+        seconds=seconds,
+        seed=seed,
+        threads=threads,
+        batch=batch,
+        out=out,
+        components=None if not out else 0,
+        covariance=True,
+        non_finite=non_finite,
+        progress=progress,
+        checkpoint=checkpoint,
+        checkpoint_every=checkpoint_every,
+        resume=resume,
+        made=log_from_core,
+    )
+
+
+def _run(
+    call: Callable[..., Any],
+    f: Callable[..., Any],
+    domain: Ranges,
+    method: Any,
+    settings: dict[str, Any],
+    *,
+    relative_error: float,
+    absolute_error: float,
+    evaluations: int | float | None,
+    seconds: float | None,
+    seed: int,
+    threads: int,
+    batch: bool,
+    out: bool,
+    components: int | None,
+    covariance: bool,
+    non_finite: str,
+    progress: Progress,
+    checkpoint: str | os.PathLike[str] | None,
+    checkpoint_every: float,
+    resume: bool,
+    made: Callable[[Any, bool], Any],
+) -> Any:
+    """Checks the arguments, calls the library, and makes of its result what `made` does."""
     region = as_domain(domain)
-    chosen = as_method(method, settings)
+    chosen = as_method(method, settings, _ARGUMENTS[call])
     if non_finite not in ("skip", "throw"):
         raise Error("non_finite: " + unknown("choice", non_finite, ["skip", "throw"]))
     if not callable(f):
@@ -184,13 +289,13 @@ def integrate(
     function = f if batch else pointwise(f, region.dimensions == 1)
     if components is None:
         components = 0 if out else _components(function, region)
-    watch = IntegrationProgress() if progress is True else progress
+    watch = IntegrationProgress(made is log_from_core) if progress is True else progress
     report = None
     vector = components > 0
     if watch:
         report = lambda r: watch(from_core(r, vector))  # noqa: E731
     try:
-        result = _core.integrate(
+        result = call(
             function,
             components,
             out,
@@ -212,10 +317,13 @@ def integrate(
     finally:
         if isinstance(watch, IntegrationProgress):
             watch.finish()
-    return from_core(result, vector)
+    return made(result, vector)
 
 
-_ARGUMENTS = [name for name, p in signature(integrate).parameters.items() if p.kind is Parameter.KEYWORD_ONLY]
+_ARGUMENTS = {
+    call: [name for name, p in signature(door).parameters.items() if p.kind is Parameter.KEYWORD_ONLY]
+    for call, door in ((_core.integrate, integrate), (_core.integrate_log, integrate_log))
+}
 
 
 def _components(function: Callable[[Array], Any], region: Domain) -> int:

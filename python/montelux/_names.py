@@ -23,13 +23,38 @@ def is_whole(value: Any) -> bool:
     return isinstance(value, (int, np.integer))
 
 
+# What other integrators and libraries of statistics call the same.
+_ELSEWHERE = {
+    "relative_error": ("rtol", "reltol", "rel_tol", "epsrel", "eps_rel", "rel_err", "tol"),
+    "absolute_error": ("atol", "abstol", "abs_tol", "epsabs", "eps_abs", "abs_err"),
+    "evaluations": ("neval", "nitn", "maxeval", "max_eval", "max_nfev", "nfev", "n", "N", "n_samples", "num_samples"),
+    "seconds": ("time", "timeout", "time_limit", "max_time"),
+    "threads": ("nproc", "workers", "n_jobs", "n_threads", "num_threads"),
+    "seed": ("rng", "random_state"),
+    "value": ("mean", "val", "integral", "result", "estimate"),
+    "standard_error": ("sdev", "std", "stderr", "error", "err", "sigma", "abserr", "uncertainty"),
+    "covariance": ("cov",),
+    "chi_squared": ("chi2", "chisq"),
+    "degrees_of_freedom": ("dof",),
+    "p_value": ("Q", "pvalue"),
+    "doubts": ("warnings",),
+    "converged": ("success",),
+    "log_value": ("logz", "logZ", "log_z"),
+    "log_error": ("logzerr", "logz_err"),
+}
+_OF_LOGARITHMS = {"value": "log_value", "standard_error": "log_error"}
+_OURS = {theirs: ours for ours, names in _ELSEWHERE.items() for theirs in names}
+
+
 class UnknownAttribute(Error, AttributeError):
     """An attribute that does not exist; the message offers the nearest one that does."""
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """`" (did you mean 'x'?)"`, or nothing where no known name is near."""
-    nearest = nearest_name(name, list(known))
+    known = list(known)
+    ours = _OURS.get(name, name)
+    nearest = next((n for n in (ours, _OF_LOGARITHMS.get(ours)) if n in known), None) or nearest_name(name, known)
     return f" (did you mean '{nearest}'?)" if nearest else ""
 
 

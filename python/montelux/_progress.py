@@ -41,11 +41,13 @@ class ProgressLine:
 class IntegrationProgress:
     """Shows value, evaluations and time of an integration."""
 
-    def __init__(self) -> None:
+    def __init__(self, relative: bool) -> None:
         self._line = ProgressLine()
+        self._relative = relative  # the unit of the value says nothing to a reader
 
     def __call__(self, r: Result) -> None:
-        self._line.show(f"integrating: {str(r).splitlines()[0]}  {r.evaluations:.3g} evaluations, {r.seconds:.1f} s")
+        said = f"relative error {r.relative_error:.2g}" if self._relative else str(r).splitlines()[0]
+        self._line.show(f"integrating: {said}  {r.evaluations:.3g} evaluations, {r.seconds:.1f} s")
 
     def finish(self) -> None:
         self._line.finish()

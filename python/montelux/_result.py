@@ -43,7 +43,7 @@ class Result:
     statistical: bool
     #: Of the integrand, pilots included.
     evaluations: int
-    #: Values that were NaN or infinite: left out as zeros, and doubted.
+    #: Values that were NaN or infinite: left out as zeros, with a warning.
     non_finite: int
     #: The point of the first of them, shape (dimensions,); None without any.
     first_non_finite_point: Array | None
@@ -118,6 +118,89 @@ class Result:
         fields = {name: plain(v) for name, v in vars(self).items() if name != "_text"}
         fields["converged"] = self.converged
         return fields
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class LogResult:
+    """log Z with its error; `float(result)` is log Z. What `relative` says of the run can be asked of it directly."""
+
+    #: Natural logarithm of the integral; -inf where that is zero.
+    log_value: float
+    #: Standard error of log Z to first order, which is the relative error of Z; good while it is small beside 1.
+    log_error: float
+    #: The integration itself: its values and errors are those of Z exp(-log_reference).
+    relative: Result
+    log_reference: float
+    _text: str = field(default="", compare=False)
+
+    @property
+    def converged(self) -> bool:
+        """The target was met, and nothing speaks against the result."""
+        return self.relative.converged
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Reasons to doubt the value or its error, as sentences. Empty is the normal case."""
+        return self.relative.doubts
+
+    @property
+    def evaluations(self) -> int:
+        """Of the integrand, pilots included."""
+        return self.relative.evaluations
+
+    @property
+    def method(self) -> str:
+        """The method that was asked for, or that Auto picked."""
+        return self.relative.method
+
+    @property
+    def stop(self) -> str:
+        """'error_target', 'evaluations', 'time', 'cancelled' or 'finished'."""
+        return self.relative.stop
+
+    @property
+    def seconds(self) -> float:
+        """Wall time."""
+        return self.relative.seconds
+
+    def __float__(self) -> float:
+        return self.log_value
+
+    def __format__(self, form: str) -> str:
+        """With a form such as `.3f` log Z alone, as that of a float; else all that `str` says."""
+        return format(self.log_value, form) if form else self._text
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        known = {n for n in [*dir(type(self)), *type(self).__dataclass_fields__] if not n.startswith("_")}
+        raise UnknownAttribute(unknown("attribute of LogResult", name, known))
+
+    def __str__(self) -> str:
+        return self._text
+
+    def __repr__(self) -> str:
+        return self._text
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain numbers, strings, lists and None, ready for JSON (infinite and NaN become None)."""
+        logs = {"log_value": self.log_value, "log_error": self.log_error, "log_reference": self.log_reference}
+        return {
+            **{name: v if np.isfinite(v) else None for name, v in logs.items()},
+            "relative": self.relative.to_dict(),
+            "converged": self.converged,
+        }
+
+
+def log_from_core(r: _core.LogIntegrationResult, vector: bool) -> LogResult:
+    """The Python form of log Z; `vector`: the integrand returns shape (n, 1)."""
+    return LogResult(
+        log_value=r.log_value,
+        log_error=r.log_error,
+        relative=from_core(r.relative, vector),
+        log_reference=r.log_reference,
+        _text=str(r),
+    )
 
 
 def from_core(r: _core.IntegrationResult, vector: bool) -> Result:

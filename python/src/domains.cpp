@@ -16,6 +16,21 @@ Domain box(const std::vector<std::pair<double, double>>& ranges) {
     return Domain(std::move(all));
 }
 
+// The centre of a ball or sphere: its coordinates, or a number of dimensions, which stands for the origin.
+std::vector<double> centre_of(const nb::object& centre, const std::string& what) {
+    if (int dimensions = 0; nb::try_cast(centre, dimensions)) {
+        if (dimensions < 1)
+            throw Error(what, std::to_string(dimensions) + " dimensions were given; expected at least one");
+        return std::vector<double>(static_cast<std::size_t>(dimensions));
+    }
+    std::vector<double> coordinates;
+    if (nb::try_cast(centre, coordinates)) return coordinates;
+    throw Error(what,
+                "an object of type '" + std::string(nb::type_name(centre.type()).c_str()) +
+                    "' was given; expected the coordinates of the centre, for example (0, 0, 1), or a number "
+                    "of dimensions, for the origin");
+}
+
 // x, volume = map(u).
 Domain mapped(int uniforms, int dimensions, nb::object map, const std::string& description) {
     PythonFunction f(std::move(map), "Domain.mapped");
@@ -69,10 +84,22 @@ void bind_domains(nb::module_& m) {
         .def_static("unit_cube", &Domain::unit_cube, "dimensions"_a, "[0, 1]^dimensions.")
         .def_static("simplex", &Domain::simplex, "dimensions"_a,
                     "x_j >= 0 with sum <= 1; its volume is 1 / dimensions!.")
-        .def_static("ball", &Domain::ball, "centre"_a, "radius"_a = 1.0,
-                    "|x - centre| <= radius; the measure is volume.")
-        .def_static("sphere", &Domain::sphere, "centre"_a, "radius"_a = 1.0,
-                    "|x - centre| = radius; the measure is the surface's area.")
+        .def_static(
+            "ball",
+            [](const nb::object& centre, double radius) {
+                return Domain::ball(centre_of(centre, "Domain.ball"), radius);
+            },
+            "centre"_a, "radius"_a = 1.0,
+            "|x - centre| <= radius; the measure is volume. The centre is a sequence of coordinates, or a "
+            "number "
+            "of dimensions, for the origin: ball(3) is the unit ball in three dimensions.")
+        .def_static(
+            "sphere",
+            [](const nb::object& centre, double radius) {
+                return Domain::sphere(centre_of(centre, "Domain.sphere"), radius);
+            },
+            "centre"_a, "radius"_a = 1.0,
+            "|x - centre| = radius; the measure is the surface's area. The centre as for ball().")
         .def_static("product", &Domain::product, "a"_a, "b"_a,
                     "Points whose coordinates are those of a, then those of b.")
         .def_static(

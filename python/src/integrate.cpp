@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "montelux/mc/integrate/integrate_log.h"
+
 namespace montelux::python {
 namespace {
 
@@ -19,8 +21,15 @@ DoubleArray history_of(const IntegrationResult& r) {
     return new_array(rows, r.history.size(), 4);
 }
 
-IntegrationResult run(nb::object f, int components, bool into, const Domain& domain, const Method& method,
-                      const Budget& budget, IntegrationOptions options, const nb::object& progress) {
+// log Z with its error in the first line, then what to_string says of the integration.
+std::string text_of(const LogIntegrationResult& r) {
+    const std::string all = to_string(r.relative);
+    return "log Z = " + to_string(Estimate{r.log_value, r.log_error}) + all.substr(all.find('\n'));
+}
+
+template <typename Integrate>
+auto run(const Integrate& integrate, nb::object f, int components, bool into, const Domain& domain,
+         const Method& method, const Budget& budget, IntegrationOptions options, const nb::object& progress) {
     const Integrand integrand = integrand_of(PythonFunction(std::move(f), "integrand"), components, into);
     if (!progress.is_none()) {
         // Called between steps from this thread, while the result is this scope's.
@@ -31,6 +40,34 @@ IntegrationResult run(nb::object f, int components, bool into, const Domain& dom
     }
     nb::gil_scoped_release unlocked;
     return integrate(integrand, domain, method, budget, options);
+}
+
+// Binds a function with the arguments of montelux::integrate.
+template <typename Integrate>
+void bind_call(nb::module_& m, const char* name, const char* help, const Integrate& integrate) {
+    m.def(
+        name,
+        [integrate](nb::object f, int components, bool into, const Domain& domain, const Method& method,
+                    double relative_error, double absolute_error, std::uint64_t evaluations, double seconds,
+                    std::uint64_t seed, int threads, bool throw_non_finite, bool covariance,
+                    const nb::object& progress, const std::string& checkpoint, double checkpoint_every,
+                    bool resume) {
+            IntegrationOptions options;
+            options.seed = seed;
+            options.threads = threads;
+            options.non_finite = throw_non_finite ? NonFinitePolicy::throw_error : NonFinitePolicy::skip;
+            options.full_covariance = covariance;
+            options.checkpoint = checkpoint;
+            options.checkpoint_every = std::chrono::duration<double>(checkpoint_every);
+            options.resume = resume;
+            const Budget budget{relative_error, absolute_error, evaluations,
+                                std::chrono::duration<double>(seconds)};
+            return run(integrate, std::move(f), components, into, domain, method, budget, std::move(options),
+                       progress);
+        },
+        "f"_a, "components"_a, "into"_a, "domain"_a, "method"_a, "relative_error"_a, "absolute_error"_a,
+        "evaluations"_a, "seconds"_a, "seed"_a, "threads"_a, "throw_non_finite"_a, "covariance"_a,
+        "progress"_a.none(), "checkpoint"_a, "checkpoint_every"_a, "resume"_a, help);
 }
 
 } // namespace
@@ -66,28 +103,19 @@ void bind_integrate(nb::module_& m) {
             "component"_a)
         .def("__str__", [](const IntegrationResult& r) { return to_string(r); });
 
-    m.def(
-        "integrate",
-        [](nb::object f, int components, bool into, const Domain& domain, const Method& method,
-           double relative_error, double absolute_error, std::uint64_t evaluations, double seconds,
-           std::uint64_t seed, int threads, bool throw_non_finite, bool covariance,
-           const nb::object& progress, const std::string& checkpoint, double checkpoint_every, bool resume) {
-            IntegrationOptions options;
-            options.seed = seed;
-            options.threads = threads;
-            options.non_finite = throw_non_finite ? NonFinitePolicy::throw_error : NonFinitePolicy::skip;
-            options.full_covariance = covariance;
-            options.checkpoint = checkpoint;
-            options.checkpoint_every = std::chrono::duration<double>(checkpoint_every);
-            options.resume = resume;
-            const Budget budget{relative_error, absolute_error, evaluations,
-                                std::chrono::duration<double>(seconds)};
-            return run(std::move(f), components, into, domain, method, budget, std::move(options), progress);
-        },
-        "f"_a, "components"_a, "into"_a, "domain"_a, "method"_a, "relative_error"_a, "absolute_error"_a,
-        "evaluations"_a, "seconds"_a, "seed"_a, "threads"_a, "throw_non_finite"_a, "covariance"_a,
-        "progress"_a.none(), "checkpoint"_a, "checkpoint_every"_a, "resume"_a,
-        "montelux.integrate, with everything decided. components 0: one value a point, as shape (n,).");
+    nb::class_<LogIntegrationResult>(m, "LogIntegrationResult",
+                                     "What integrate_log returns; montelux.LogResult is made of it.")
+        .def_ro("log_value", &LogIntegrationResult::log_value)
+        .def_ro("log_error", &LogIntegrationResult::log_error)
+        .def_ro("log_reference", &LogIntegrationResult::log_reference)
+        .def_ro("relative", &LogIntegrationResult::relative)
+        .def("__str__", &text_of);
+
+    bind_call(m, "integrate",
+              "montelux.integrate, with everything decided. components 0: one value a point, as shape (n,).",
+              [](auto&&... arguments) { return integrate(arguments...); });
+    bind_call(m, "integrate_log", "montelux.integrate_log, with everything decided, as integrate.",
+              [](auto&&... arguments) { return integrate_log(arguments...); });
     m.def(
         "values_a_point",
         [](const nb::object& returned, std::size_t n) { return values_a_point(returned, n, "integrand"); },

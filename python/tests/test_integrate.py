@@ -65,6 +65,16 @@ def test_one_variable_has_shape_n():
     assert shapes == {1}
 
 
+def test_balls_about_the_origin_by_their_dimensions():
+    ball = montelux.integrate(lambda x: np.ones(len(x)), montelux.Domain.ball(3), "quasi", evaluations=4096)
+    assert float(ball) == pytest.approx(4 / 3 * math.pi, rel=1e-12)
+    sphere = montelux.integrate(lambda x: np.ones(len(x)), montelux.Domain.sphere(np.int64(2), 3), evaluations=100)
+    assert float(sphere) == pytest.approx(6 * math.pi, rel=1e-12)
+    x, _ = montelux.Domain.ball(2).map(np.random.default_rng(1).random((50, 2)))
+    y, _ = montelux.Domain.ball((0, 0)).map(np.random.default_rng(1).random((50, 2)))
+    assert np.array_equal(x, y)
+
+
 def test_vector_valued_integrands_have_covariances():
     def f(x):
         return np.stack([x[:, 0], 1 - x[:, 0], x[:, 1] ** 2], axis=-1)

@@ -42,6 +42,10 @@ def sine_times_y(x):
         ({"seed": -1}, "expected a whole number in"),
         ({"non_finite": "ignore"}, "there is no choice 'ignore'"),
         ({"method": "vegas", "points": "sobol", "replicates": 1}, "replicates"),
+        *(({name: 1}, rf"there is no setting '{name}' \(did you mean 'relative_error'\?\)") for name in ("rtol", "epsrel")),
+        *(({name: 1}, rf"'{name}' \(did you mean 'absolute_error'\?\)") for name in ("atol", "epsabs")),
+        *(({name: 1}, rf"'{name}' \(did you mean 'evaluations'\?\)") for name in ("neval", "nitn", "maxeval", "n")),
+        ({"method": montelux.Vegas(), "neval": 1}, r"no argument 'neval' \(did you mean 'evaluations'\?\)"),
         ({"resume": True}, "resume was asked for without a checkpoint"),
     ],
 )
@@ -63,6 +67,32 @@ def test_wrong_arguments_are_answered(arguments, sentence):
 def test_wrong_domains_are_answered(domain, sentence):
     with pytest.raises(montelux.Error, match=sentence):
         montelux.integrate(lambda x: x, domain)
+
+
+@pytest.mark.parametrize(
+    "make, sentence",
+    [
+        (lambda: montelux.Domain.ball("x"), "Domain.ball: an object of type 'str' was given; expected the coordinates"),
+        (lambda: montelux.Domain.ball(2.5), "Domain.ball: an object of type 'float' was given; expected"),
+        (lambda: montelux.Domain.ball(0), "Domain.ball: 0 dimensions were given; expected at least one"),
+        (lambda: montelux.Domain.sphere([1, "a"]), "Domain.sphere: an object of type 'list' was given; expected"),
+        (lambda: montelux.Domain.sphere(1), "at least 2 dimensions"),
+    ],
+)
+def test_wrong_centres_are_answered(make, sentence):
+    with pytest.raises(montelux.Error, match=sentence):
+        make()
+
+
+@pytest.mark.parametrize(
+    "other, ours",
+    [("mean", "value"), ("sdev", "standard_error"), ("error", "standard_error"), ("std", "standard_error"),
+     ("chi2", "chi_squared"), ("dof", "degrees_of_freedom"), ("neval", "evaluations"), ("Q", "p_value")],
+)  # fmt: skip
+def test_names_of_other_integrators_are_answered_with_ours(other, ours):
+    r = montelux.integrate(lambda x: x, (0, 1), evaluations=1000)
+    with pytest.raises(AttributeError, match=rf"no attribute of Result '{other}' \(did you mean '{ours}'\?\)"):
+        getattr(r, other)
 
 
 def test_unknown_attributes_are_answered_with_the_nearest():

@@ -27,6 +27,18 @@ value 2 0.01 'x<1 ? 2 : 2' --over x=0:1
 value 1 0.02 '(x^2 - 2*x + 1)*3' --over x=0:1
 value 0.842700793 0.01 'erf(1) + 0*x' --over x=0:1
 value 2 0.01 'e' --over e=0:2 # a variable may be called like a constant
+# A leading minus sign begins a formula, not an option; option values and what follows '--' are left alone.
+value -0.33333333 1e-6 -x^2 --over x=0:1
+value -0.5 1e-6 '-(x)' --over x=0:1
+value -1 1e-6 --over x=0:1 -2*x
+expect 0 '-0.5000' integrate --over x=0:1 -- -x
+"$montelux" integrate -x x^2 -.5*x --over=x=0:1 --evaluations 1e4 >out 2>&1
+[ "$(cut -d: -f1 out | head -n 3 | tr '\n' ' ')" = "-x x^2 -.5*x " ] || fail "formulas with a minus sign: $(cat out)"
+# Counts with units.
+for count in 3000=3k 3000=3e3 2500=2.5k 100000=.1M 1000000=1M 2000000=0.002G; do
+    "$montelux" integrate x --over x=0:1 --method basic --evaluations "${count#*=}" >out 2>&1
+    grep -q "^${count%=*} evaluations" out || fail "--evaluations ${count#*=}: $(cat out)"
+done
 # Without a target, the method of choice does not throw away what it has.
 value 1 1e-6 'exp(-x)' --over x=0:inf --evaluations 1e5
 value 0.25 1e-6 'x*y' --over x,y=0:1 --evaluations 1e5
@@ -74,8 +86,8 @@ def read(name):
     def refuse(text): raise ValueError(text)
     return json.load(open(name), parse_constant=refuse)
 v, one, nan = read("vector.json"), read("one.json"), read("nan.json")
-keys = "value standard_error covariance evaluations method reason chi2_dof p_value converged stop doubts non_finite history"
-assert all(k in v for k in keys.split())
+keys = "value standard_error covariance evaluations method reason chi_squared degrees_of_freedom chi_squared_per_degree p_value converged stop doubts non_finite history"
+assert all(k in v for k in keys.split()) and not any("chi2" in k for k in v)
 assert len(v["value"]) == 2 and len(v["standard_error"]) == 2
 assert len(v["covariance"]) == 2 and len(v["covariance"][0]) == 2
 assert v["covariance"][0][1] == v["covariance"][1][0]
@@ -95,6 +107,37 @@ done
 cmp -s threads1 threads2 && cmp -s threads1 threads5 || fail "the number of threads changes the result"
 "$montelux" integrate 'sin(x*y)' --over x,y=0:1 --evaluations 1e5 --seed 1 --json | grep -v seconds >seed
 cmp -s threads1 seed && fail "the seed changes nothing"
+
+# Logarithms of integrals that no double holds.
+log_value() {
+    exact=$1
+    shift
+    "$montelux" integrate --log "$@" --json --quiet >json 2>err || fail "montelux integrate --log $*: exit code $?: $(cat err)"
+    close "$(field log_value)" "$exact" "$(awk -v e="$(field log_error)" 'BEGIN { print 5 * e + 1e-11 }')" ||
+        fail "montelux integrate --log $*: $(head -n 4 json) instead of $exact"
+    [ "$(field converged)" = true ] || fail "montelux integrate --log $*: not converged"
+}
+log_value -4999.081061466796 -5000-x^2/2 --over x=-inf:inf --relative-error 1e-6
+log_value 5000.918938533204 '5000-x^2/2' --over x=-inf:inf --relative-error 1e-3 --method vegas
+log_value -1998.162122933590 '-2000-(x^2+y^2)/2' --over x,y=-inf:inf --relative-error 1e-3 --method adaptive
+log_value -2001.609437912434 'x<0 ? -inf : -2000-5*x' --over x=-1:9 --relative-error 1e-3 --method quasi
+log_value -8001.609437912434 '-8000-5*x' --over x=0:inf --density 'x=exp(-5*x)' --method basic --relative-error 1e-3
+log_value -898.567588041694 '-900' --domain ball --over x,y,z --relative-error 1e-6
+grep -q '^  "value"' json && fail "a relative value stands for Z: $(cat json)"
+expect 0 "log Z = -4999.08106" integrate --log -5000-x^2/2 --over x=-inf:inf --relative-error 1e-6
+expect 3 "stopped at the number of evaluations" integrate --log -5000-x^2/2 --over x=-inf:inf --relative-error 1e-6 --method basic --evaluations 10k
+expect 0 "log Z = -inf" integrate --log 'log(0*x)' --over x=0:1 --method basic --evaluations 1000
+expect 2 "--log: 2 formulas were given; expected one" integrate --log x 1 --over x=0:1
+expect 2 "expected --relative-error, which is the error of log Z" integrate --log x --over x=0:1 --absolute-error 1
+expect 2 "leave out one of --log and --plot" integrate --log x --over x=0:1 --plot plot.svg
+expect 1 "is zero where '-5*x-8000' is not" integrate --log -5*x-8000 --over x=-1:1 --density 'x=x<0 ? 0 : exp(-5*x)'
+# A run of logarithms that was killed goes on to the same digits.
+log_run="--log x*y-3000 --over x,y=0:1 --method basic --evaluations 5M --quiet"
+"$montelux" integrate $log_run --json | grep -v seconds >unbroken
+rm -f log log.previous
+timeout -s KILL 0.2 "$montelux" integrate $log_run --checkpoint log --checkpoint-every 0 >/dev/null 2>&1
+"$montelux" integrate $log_run --checkpoint log --resume --json | grep -v seconds >resumed
+cmp -s unbroken resumed || fail "log Z of a resumed run: $(head -n 3 resumed) instead of $(head -n 3 unbroken)"
 
 # Exit codes: 3 where a target was not reached.
 expect 3 "stopped at the number of evaluations" integrate x --over x=0:1 --method basic --relative-error 1e-9 --evaluations 1e4
@@ -188,6 +231,13 @@ expect 2 "is given twice" integrate x --over x=0:1 --over x=0:2
 expect 2 "there is no variable 'z'" integrate 'x*z' --over x=0:1
 expect 2 "at character 3" integrate 'x*z' --over x=0:1
 expect 2 "there is no function 'sine' (did you mean 'sin'?)" integrate 'sine(x)' --over x=0:1
+expect 2 "the function 'sin' takes its arguments in brackets: sin(x)" integrate 'sin x' --over x=0:1
+expect 2 "the function 'pow' takes its arguments in brackets: pow(x, y)" integrate '2*pow' --over x=0:1
+expect 2 "there is no variable 'sine' (did you mean 'sin'?)" integrate 'sine x' --over x=0:1
+expect 2 "at character 4: the function 'exp' takes" integrate '-2*exp x' --over x=0:1
+expect 2 "at character 2: '**' is not expected here; powers are written x^2" integrate 'x**2' --over x=0:1
+expect 2 "there is no variable 'o', and no option '-o'" integrate x -o out.txt --over x=0:1
+expect 2 "there is no option '--evaluation' (did you mean '--evaluations'?)" integrate x --over x=0:1 --evaluation 10
 expect 2 "a closing bracket is missing" integrate 'sin(x' --over x=0:1
 expect 2 "the formula ends too early" integrate 'x+' --over x=0:1
 expect 2 "the formula is empty" integrate '' --over x=0:1
@@ -208,6 +258,8 @@ expect 2 "expected a finite number above 0" integrate x --over x=0:1 --absolute-
 expect 2 "expected a finite number above 0 of seconds" integrate x --over x=0:1 --time nan
 expect 2 "expected a whole number from 1" integrate x --over x=0:1 --evaluations 0
 expect 2 "expected a whole number" integrate x --over x=0:1 --evaluations 1.5
+expect 2 "'1.0005k' was given; expected a whole number" integrate x --over x=0:1 --evaluations 1.0005k
+expect 2 "--evaluations: at character" integrate x --over x=0:1 --evaluations k
 expect 2 "expected a whole number from 0 to 4096" integrate x --over x=0:1 --threads -1
 expect 2 "there is no policy 'ignore'" integrate x --over x=0:1 --non-finite ignore
 expect 2 "expected --checkpoint FILE" integrate x --over x=0:1 --resume
@@ -225,5 +277,7 @@ expect 2 "has a density already" integrate 1 --over x=0:1 --density x=1 --densit
 expect 1 "is a finite number" integrate 'sqrt(-1-x)' --over x=0:1
 expect 1 "the integrand is nan at (" integrate 'sqrt(x-0.5)' --over x=0:1 --non-finite throw
 expect 0 "were not finite and were left out" integrate 'sqrt(x-0.5)' --over x=0:1 --evaluations 1e4
+grep -q '^warning: ' out || fail "no warning: $(cat out)"
+grep -q doubt out && fail "the text has another word for a warning: $(cat out)"
 value 5000 0.05 'x9999 + x10000 + 4999' --over x1..x10000=0:1 --method basic --evaluations 2000
 finish

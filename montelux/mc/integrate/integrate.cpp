@@ -1,13 +1,18 @@
 #include "montelux/mc/integrate/integrate.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <filesystem>
+#include <limits>
+#include <numbers>
 #include <optional>
 #include <sstream>
 #include <utility>
 
+#include "montelux/mc/integrate/integrand_scale.h"
+#include "montelux/mc/integrate/integrate_log.h"
 #include "montelux/mc/integrate/interruptible.h"
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/math/error.h"
@@ -39,14 +44,25 @@ std::string point_text(const std::vector<double>& point) {
     return text.str();
 }
 
+// log2 |dx/du| at a point inside the domain; 0 where it is zero or infinite there.
+double volume_exponent(const Domain& domain) {
+    PointBuffer u(1, domain.uniforms()), x(1, domain.dimensions());
+    for (int d = 0; d < u.dimensions(); ++d) u(0, d) = 0.4 + 0.2 / (d + 1);
+    std::array<double, 1> volume{1};
+    domain.map(u, x, volume);
+    const double size = std::abs(domain.constant_volume() != 0 ? domain.constant_volume() : volume[0]);
+    return size > 0 && std::isfinite(size) ? std::log2(size) : 0;
+}
+
 // One run: the estimator and what drives it.
 class Run {
   public:
-    Run(const Integrand& f, const Domain& domain, const Method& method, const Budget& budget,
-        const IntegrationOptions& options)
-        : interruption_(options.cancel),
-          evaluator_(interruptible(f, interruption_), domain, options.non_finite), budget_(budget),
-          options_(options), method_(method.name()),
+    Run(const Integrand& f, IntegrandForm form, const Domain& domain, const Method& method,
+        const Budget& budget, const IntegrationOptions& options)
+        : interruption_(options.cancel), f_(interruptible(f, interruption_)),
+          scale_(f.components(), form, budget.absolute_error > 0, volume_exponent(domain)),
+          evaluator_(scaled(f_, scale_), domain, options.non_finite), budget_(budget), options_(options),
+          make_estimator_(method), method_(method.name()),
           targeted_(budget.relative_error > 0 || budget.absolute_error > 0) {
         check_error("relative", budget.relative_error);
         check_error("absolute", budget.absolute_error);
@@ -58,8 +74,10 @@ class Run {
         limit_ = budget.evaluations > 0    ? budget.evaluations
                  : targeted_ || has_time() ? no_limit
                                            : default_evaluations;
-        estimator_ = method.estimator({evaluator_, options.seed, options.full_covariance});
+        make_estimator();
     }
+
+    double exponent() const { return scale_.exponent(0); }
 
     IntegrationResult operator()() {
         if (!options_.checkpoint.empty()) {
@@ -72,6 +90,10 @@ class Run {
         while (!(stop = reason_to_stop())) {
             stop = step();
             if (stop) break;
+            if (scale_.adjust()) {
+                start_again();
+                continue;
+            }
             check_finite();
             record();
             if (options_.progress) options_.progress(result(StopReason::finished));
@@ -86,6 +108,24 @@ class Run {
 
   private:
     bool has_time() const { return budget_.time.count() > 0; }
+
+    void make_estimator() {
+        estimator_ = make_estimator_.estimator({evaluator_, options_.seed, options_.full_covariance});
+        absolute_error_ = budget_.absolute_error > 0 ? scale_.scaled(budget_.absolute_error) : 0;
+    }
+
+    // After a change of scale: sums so far overflowed or underflowed.
+    void start_again() {
+        const std::uint64_t made = estimator_->tally().evaluations;
+        lost_ += made;
+        // The evaluations that are left must be worth a result.
+        if (limit_ != no_limit && limit_ < lost_ + made) {
+            limit_ += made;
+            granted_ += made;
+        }
+        history_.clear();
+        make_estimator();
+    }
 
     std::optional<StopReason> reason_to_stop() const {
         const Tally tally = estimator_->tally();
@@ -102,8 +142,7 @@ class Run {
     // One step of the estimator; the reason to stop where it did not advance.
     std::optional<StopReason> step() {
         const std::uint64_t done = estimator_->tally().evaluations;
-        StepRequest request{limit_ - done - lost_, budget_.relative_error, budget_.absolute_error,
-                            options_.cancel};
+        StepRequest request{limit_ - done - lost_, budget_.relative_error, absolute_error_, options_.cancel};
         if (!has_time()) return outcome_of(attempt(request), false);
 
         const double remaining = budget_.time.count() - elapsed();
@@ -205,16 +244,22 @@ class Run {
         if (nothing_found(tally) && tally.evaluations < default_evaluations) return false;
         for (std::size_t c = 0; c < tally.value.size(); ++c) {
             const double target =
-                std::max(budget_.absolute_error, budget_.relative_error * std::abs(tally.value[c]));
+                std::max(absolute_error_, budget_.relative_error * std::abs(tally.value[c]));
             if (!(tally.standard_error[c] <= target)) return false;
         }
         return true;
     }
 
+    // In the unit of f; of logarithms, relative to 2^exponent().
+    double in_unit(double x, std::size_t component) const {
+        return scale_.form() == IntegrandForm::logarithm ? x : scale_.unscaled(x, component);
+    }
+
     void record() {
         const Tally tally = estimator_->tally();
         if (tally.value.empty()) return;
-        history_.push_back({tally.evaluations, tally.value.at(0), tally.standard_error.at(0), elapsed()});
+        history_.push_back({tally.evaluations + lost_, in_unit(tally.value.at(0), 0),
+                            in_unit(tally.standard_error.at(0), 0), elapsed()});
         // Memory stays bounded however long a run is: every second of the older records goes.
         constexpr std::size_t most = 4096;
         if (history_.size() < most) return;
@@ -229,6 +274,14 @@ class Run {
         r.value = std::move(tally.value);
         r.standard_error = std::move(tally.standard_error);
         r.covariance = std::move(tally.covariance);
+        for (std::size_t c = 0; c < r.value.size(); ++c) {
+            r.value[c] = in_unit(r.value[c], c);
+            r.standard_error[c] = in_unit(r.standard_error[c], c);
+        }
+        for (std::size_t i = 0; i < r.covariance.size(); ++i)
+            if (scale_.form() == IntegrandForm::value)
+                r.covariance[i] =
+                    scale_.unscaled_product(r.covariance[i], i / r.value.size(), i % r.value.size());
         r.statistical = tally.statistical;
         r.evaluations = tally.evaluations + lost_;
         r.non_finite = tally.non_finite.count;
@@ -273,7 +326,7 @@ class Run {
         for (int d = 0; d < x.dimensions(); ++d)
             for (double v : x.coordinate(d)) mix(v);
         ValueBuffer g(u.count(), evaluator_.components());
-        evaluator_.integrand()(x, g);
+        f_(x, g);
         for (int c = 0; c < g.components(); ++c)
             for (double v : std::as_const(g).component(c)) mix(v);
         return key;
@@ -284,6 +337,8 @@ class Run {
         state.put(fingerprint_);
         state.put(elapsed());
         state.put(lost_);
+        state.put(granted_);
+        scale_.save(state);
         state.put(static_cast<std::uint64_t>(history_.size()));
         for (const IterationRecord& h : history_) {
             state.put(h.evaluations);
@@ -303,6 +358,10 @@ class Run {
             throw Error(options_.checkpoint, "belongs to another integrand, domain, method or seed");
         seconds_before_ = state.get_double();
         lost_ = state.get_word();
+        granted_ = state.get_word();
+        if (limit_ != no_limit) limit_ += granted_;
+        scale_.load(state);
+        make_estimator();
         history_.resize(std::min<std::uint64_t>(state.get_word(), 1 << 16));
         for (IterationRecord& h : history_) {
             h.evaluations = state.get_word();
@@ -319,14 +378,19 @@ class Run {
     }
 
     Interruption interruption_;
+    Integrand f_;
+    IntegrandScale scale_;
     Evaluator evaluator_;
     Budget budget_;
+    double absolute_error_ = 0; // in the unit of the scaled integrand
     const IntegrationOptions& options_;
+    Method make_estimator_;
     std::string method_;
     bool targeted_;
     std::uint64_t limit_ = 0;
-    std::uint64_t lost_ = 0; // evaluations of a first step that had to be given up
-    double rate_ = 0;        // evaluations a second in the last step
+    std::uint64_t granted_ = 0; // of the limit: for what a change of scale had to repeat
+    std::uint64_t lost_ = 0;    // evaluations of steps that were given up, for time or scale
+    double rate_ = 0;           // evaluations a second in the last step
     std::uint64_t fingerprint_ = 0;
     std::string checkpoint_refused_because_;
     std::unique_ptr<Estimator> estimator_;
@@ -339,7 +403,28 @@ class Run {
 
 IntegrationResult integrate(const Integrand& f, const Domain& domain, const Method& method,
                             const Budget& budget, const IntegrationOptions& options) {
-    return with_threads(options.threads, [&] { return Run(f, domain, method, budget, options)(); });
+    return with_threads(options.threads,
+                        [&] { return Run(f, IntegrandForm::value, domain, method, budget, options)(); });
+}
+
+LogIntegrationResult integrate_log(const Integrand& log_f, const Domain& domain, const Method& method,
+                                   const Budget& budget, const IntegrationOptions& options) {
+    if (log_f.components() != 1)
+        throw Error("integrate_log", "expected one component, got " + std::to_string(log_f.components()));
+    if (budget.absolute_error > 0)
+        throw Error("integrate_log", "an absolute error of Z was asked for; expected a relative error, which "
+                                     "is the absolute error of log Z");
+    return with_threads(options.threads, [&] {
+        Run run(log_f, IntegrandForm::logarithm, domain, method, budget, options);
+        LogIntegrationResult result;
+        result.relative = run();
+        result.log_reference = run.exponent() * std::numbers::ln2;
+        const double value = result.relative.value[0], error = result.relative.standard_error[0];
+        result.log_value =
+            value > 0 ? std::log(value) + result.log_reference : -std::numeric_limits<double>::infinity();
+        result.log_error = value > 0 ? error / value : std::numeric_limits<double>::infinity();
+        return result;
+    });
 }
 
 } // namespace montelux

@@ -34,17 +34,24 @@ class Interruption {
   private:
     friend Integrand interruptible(const Integrand& f, Interruption& interruption);
     void evaluate(const Integrand& f, const PointBatch& x, ValueBatch y);
+    void evaluate_in_parallel(const Integrand& f, const PointBatch& x, ValueBatch y, std::size_t slice);
+    void evaluate_slice(const Integrand& f, const PointBatch& x, ValueBatch y, std::size_t whole,
+                        std::size_t slice);
 
     const CancelFlag* cancel_;
     Clock::time_point deadline_ = Clock::time_point::max();
     std::atomic<std::uint64_t> evaluations_{0};
     // Points that take about a fiftieth of a second; learned from what they took so far.
     std::atomic<std::size_t> slice_{8};
+    std::atomic<double> point_seconds_{0}; // of the last slice that was timed
 };
 
 // f, called for slices of a batch that take about a fiftieth of a second each. Before each slice the
-// interruption is asked, and IntegrandInterrupted thrown. Slices are multiples of eight points, where points
-// are not slower than that, so that vectorised functions see no remainders that they would not see else.
+// interruption is asked, and IntegrandInterrupted thrown. Slices are multiples of eight points, where eight
+// points fit into that time, so that vectorised functions see no remainders that they would not see else.
+// Where points take more than 20 microseconds, the slices of a batch are evaluated in parallel, and are
+// shorter so that each thread gets some: an estimator's loop over large batches keeps one thread busy
+// otherwise.
 Integrand interruptible(const Integrand& f, Interruption& interruption);
 
 } // namespace montelux

@@ -96,6 +96,13 @@ bool parallel_for(std::int64_t count, const Body& body, const CancelFlag* cancel
     return complete.load();
 }
 
+// parallel_for for the body of another loop that holds scratch memory or locks: a thread that waits for the
+// inner loop takes no iterations of outer ones meanwhile.
+template <typename Body>
+bool parallel_for_isolated(std::int64_t count, const Body& body, const CancelFlag* cancel = nullptr) {
+    return tbb::this_task_arena::isolate([&] { return parallel_for(count, body, cancel); });
+}
+
 // combine(...combine(combine(map(0), map(1)), map(2))..., map(count - 1)), grouped into runs whose lengths
 // depend on `count` alone, so rounding does not depend on the threads. `combine` takes two values and
 // returns one; it need not commute. A count of zero gives a value-initialised result; a loop that
