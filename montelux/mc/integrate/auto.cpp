@@ -22,7 +22,10 @@ constexpr double pilot_share = 0.25;   // or this share of what sampling is expe
 // Errors that fall more slowly with the evaluations, as a power, do so at poles that have no integral: halves
 // of an interval close in on all others.
 constexpr double slowest_of_one_variable = 0.25;
-constexpr double surprising = 4; // growth of the error that makes a new problem
+constexpr std::uint64_t patience = 60000; // evaluations of sampling before cubature gets a second chance,
+constexpr double second_share = 0.2;      // and the share of sampling's evaluations that it then gets
+constexpr double rough_error = 0.03;      // relative, of what a localised result is compared with
+constexpr double surprising = 4;          // growth of the error that makes a new problem
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // What Adaptive needs for a relative error, roughly, as measured on Genz's families in 5 and 8 dimensions
@@ -64,8 +67,9 @@ class AutoEstimator final : public Estimator {
           one_variable_(problem.evaluator.dimensions() == 1) {}
 
     StepOutcome step(const StepRequest& request) override {
-        if (switched_) return sampling_->step(request);
+        if (switched_) return step_both(request);
         if (diverges_) return StepOutcome::finished;
+        if (comparing_) return compare(request);
         const StepOutcome outcome = cubature_->step(request);
         if (outcome == StepOutcome::cancelled) return outcome;
         if (outcome == StepOutcome::advanced) {
@@ -95,17 +99,93 @@ class AutoEstimator final : public Estimator {
         return other == StepOutcome::advanced ? other : outcome;
     }
 
+    // Sampling goes first; where it takes long, cubature gets a part of the evaluations, since what it seemed
+    // to need was a guess from its first regions.
+    StepOutcome step_both(const StepRequest& request) {
+        const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
+        const std::uint64_t rules = cubature_->tally().evaluations;
+        const std::uint64_t sampled = sampling_->tally().evaluations;
+        const bool chance = targeted && !rules_end_;
+        if (chance && sampled >= patience &&
+            static_cast<double>(rules) < second_share * static_cast<double>(sampled))
+            return step_rules(request);
+        const StepOutcome outcome = sampling_->step(request);
+        const bool left = outcome == StepOutcome::exhausted || outcome == StepOutcome::finished;
+        return left && chance ? step_rules(request) : outcome;
+    }
+
+    StepOutcome step_rules(const StepRequest& request) {
+        const StepOutcome outcome = cubature_->step(request);
+        if (outcome == StepOutcome::cancelled) return outcome;
+        if (outcome != StepOutcome::advanced) {
+            rules_end_ = true;
+            return sampling_->step(request);
+        }
+        const Tally rule = cubature_->tally();
+        bool reached = rule.ready && rule.doubts.empty();
+        for (std::size_t c = 0; c < rule.value.size(); ++c)
+            reached = reached &&
+                      rule.standard_error[c] <=
+                          std::max(request.absolute_error, request.relative_error * std::abs(rule.value[c]));
+        if (!reached) return outcome;
+        const Agreement found = agreement(0.5);
+        if (found == Agreement::disagree) rules_end_ = true;
+        if (found == Agreement::agree || (found == Agreement::unknown && !rule.localised)) {
+            switched_ = false;
+            agreed_ = true;
+            reason_ = "cubature and sampling in turns: cubature arrived first";
+        }
+        return outcome;
+    }
+
+    enum class Agreement : std::uint8_t { unknown, agree, disagree };
+    // Of the values of both methods; unknown while sampling's relative error is above `most`.
+    Agreement agreement(double most) const {
+        const Tally rule = cubature_->tally(), sampled = sampling_->tally();
+        bool agree = true;
+        for (std::size_t c = 0; c < rule.value.size(); ++c) {
+            const double error = sampled.standard_error[c];
+            if (!(error <= most * std::abs(rule.value[c]))) return Agreement::unknown;
+            agree = agree && std::abs(rule.value[c] - sampled.value[c]) <= 4 * error + rule.standard_error[c];
+        }
+        return agree ? Agreement::agree : Agreement::disagree;
+    }
+
+    // What is too narrow for random points to check is compared with a rough result of sampling, which
+    // searches for peaks.
+    StepOutcome compare(const StepRequest& request) {
+        StepRequest rough = request;
+        rough.relative_error = std::max(request.relative_error, rough_error);
+        const StepOutcome outcome = sampling_->step(rough);
+        if (outcome == StepOutcome::cancelled) return outcome;
+        const bool over = outcome != StepOutcome::advanced;
+        if (!over && !sampling_->tally().ready) return outcome;
+        const Agreement found = agreement(2 * rough_error);
+        agreed_ = found == Agreement::agree;
+        if (agreed_) reason_ = "cubature converges, and sampling agrees";
+        if (found == Agreement::disagree) {
+            give_up("cubature and sampling disagree");
+            rules_end_ = true;
+        }
+        comparing_ = !over && found == Agreement::unknown;
+        return over && (agreed_ || switched_) ? StepOutcome::advanced : outcome;
+    }
+
     Tally tally() const override {
         const Tally rule = cubature_->tally();
         if (!switched_) {
             Tally tally = rule;
             tally.method = Cubature::name;
             tally.reason = reason_;
+            const Tally sampled = sampling_->tally();
+            tally.evaluations += sampled.evaluations;
+            tally.non_finite.merge(sampled.non_finite);
             if (diverges_)
                 tally.doubts.push_back(
                     "the error does not fall where values are not finite; the integral may not exist");
             // A rule that doubts itself is replaced rather than believed.
-            tally.ready = tally.ready && tally.doubts.empty();
+            tally.ready = tally.ready && tally.doubts.empty() && (agreed_ || !tally.localised);
+            tally.localised = tally.localised && !agreed_;
             return tally;
         }
         Tally tally = sampling_->tally();
@@ -119,7 +199,8 @@ class AutoEstimator final : public Estimator {
     }
 
     void save(StateWriter& state) const override {
-        state.put(std::uint64_t{switched_} | std::uint64_t{diverges_} << 1);
+        state.put(std::uint64_t{switched_} | std::uint64_t{diverges_} << 1 | std::uint64_t{rules_end_} << 2 |
+                  std::uint64_t{comparing_} << 3 | std::uint64_t{agreed_} << 4);
         state.put(reason_);
         state.put(ratios_);
         state.put(costs_);
@@ -131,6 +212,9 @@ class AutoEstimator final : public Estimator {
         const std::uint64_t flags = state.get_word();
         switched_ = (flags & 1) != 0;
         diverges_ = (flags & 2) != 0;
+        rules_end_ = (flags & 4) != 0;
+        comparing_ = (flags & 8) != 0;
+        agreed_ = (flags & 16) != 0;
         reason_ = state.get_text();
         ratios_ = state.get_doubles();
         costs_ = state.get_doubles();
@@ -184,6 +268,7 @@ class AutoEstimator final : public Estimator {
         if (targeted && ratio <= 1) {
             // A target that is reached with doubts is not reached.
             if (!tally.doubts.empty()) give_up("cubature doubts itself: " + tally.doubts.front());
+            comparing_ = !switched_ && tally.ready && tally.localised && !agreed_;
             return;
         }
         const double spent = cost - begin_;
@@ -225,7 +310,9 @@ class AutoEstimator final : public Estimator {
     std::unique_ptr<Estimator> cubature_, sampling_;
     bool one_variable_;
     bool switched_ = false;
-    bool diverges_ = false; // neither method could do more
+    bool comparing_ = false, agreed_ = false; // cubature with sampling
+    bool rules_end_ = false;                  // cubature can do no more
+    bool diverges_ = false;                   // neither method could do more
     std::string reason_;
     double begin_ = 0;                   // evaluations before the problem that is judged
     std::vector<double> ratios_, costs_; // of error to target, and evaluations, after each step of cubature

@@ -127,6 +127,8 @@ class CubatureEstimator final : public Estimator {
         tally.standard_error = totals_.error;
         tally.ready = !searching() && verification_.verified(totals_.value);
         tally.at_rounding = at_rounding_;
+        // Of one variable halving alone finds all that has a width.
+        tally.localised = n_ > 1 && verification_.evaluations() > 0 && verification_.blind();
         tally.check_evaluations = verification_.evaluations();
         tally.singular = singular_;
         tally.non_finite.merge(verification_.non_finite());

@@ -13,6 +13,7 @@ namespace {
 constexpr double widening = 0.5;      // of the range that a rule saw
 constexpr double error_allowance = 4; // times the claimed error density of a region
 constexpr double tolerance_part = 0.25;
+constexpr double regions_share = 0.2;           // of the points, shared equally among the regions
 constexpr std::size_t blocks = 16;              // parts whose spread is the error of the mean
 constexpr std::uint64_t points_per_task = 4096; // unless one region has more
 constexpr std::uint64_t stream = 0x6368656b;    // apart from those of the methods that sample
@@ -21,22 +22,26 @@ constexpr std::uint64_t stream = 0x6368656b;    // apart from those of the metho
 struct Share {
     std::size_t region;
     std::uint64_t count, first; // first: points of the regions before it
+    double weight;              // volume over measure
 };
 
-// Systematic sampling: a region gets a number of points within one of its share by volume, the right one on
-// average.
+// Systematic sampling: a region gets a number of points within one of its share of the measure, the right one
+// on average. Most of the measure is volume; the rest is the same for each region, since small regions lie
+// where the integrand has structure, and what was overlooked often has its place beside it.
 std::vector<Share> share_out(const CubatureRegions& regions, std::uint64_t count, std::uint64_t key) {
     const double offset = static_cast<double>(hash_key(key, 0) >> 11) * 0x1p-53;
     std::vector<Share> shares;
-    double volume = 0;
+    const double each = regions_share / static_cast<double>(regions.count());
+    double measure = 0;
     std::uint64_t given = 0;
     for (std::size_t r = 0; r < regions.count(); ++r) {
-        volume += regions.volume(r);
-        const double end = static_cast<double>(count) * volume - offset;
+        const double volume = regions.volume(r), own = (1 - regions_share) * volume + each;
+        measure += own;
+        const double end = static_cast<double>(count) * measure - offset;
         const auto until = r + 1 == regions.count()
                                ? count
                                : std::min(count, static_cast<std::uint64_t>(std::max(0.0, std::ceil(end))));
-        if (until > given) shares.push_back({r, until - given, given});
+        if (until > given) shares.push_back({r, until - given, given, volume / own});
         given = std::max(given, until);
     }
     return shares;
@@ -113,7 +118,7 @@ Part check_some(const Evaluator& evaluator, const CubatureRegions& regions, std:
             for (std::size_t c = 0; c < m; ++c) {
                 const double value = g(at, static_cast<int>(c));
                 residual[c] = value - regions.value(s.region)[c] * inverse_volume;
-                part.block_sums[block * m + c] += residual[c];
+                part.block_sums[block * m + c] += s.weight * residual[c];
                 part.lowest[c] = std::min(part.lowest[c], value);
                 part.highest[c] = std::max(part.highest[c], value);
                 surprising = surprising || surprise(regions, s.region, c, value, tolerance[c]) > 0;
@@ -180,6 +185,7 @@ std::optional<CubatureCheck> check_regions(const Evaluator& evaluator, const Cub
     for (std::size_t c = 0; c < m; ++c) {
         double squares = 0, mean = 0;
         for (std::size_t b = 0; b < blocks; ++b) mean += all->block_sums[b * m + c] / blocks;
+        check.difference.push_back(mean * blocks / static_cast<double>(count));
         for (std::size_t b = 0; b < blocks; ++b) squares += std::pow(all->block_sums[b * m + c] - mean, 2);
         check.standard_error.push_back(std::sqrt(squares * blocks / (blocks - 1)) /
                                        static_cast<double>(count));

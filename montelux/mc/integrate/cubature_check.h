@@ -21,10 +21,11 @@ struct CubatureWitness {
 
 struct CubatureCheck {
     std::vector<CubatureWitness> surprises;
-    // Of g - (mean of its region), over the points: their mean is the error of the rules, as the points see
-    // it.
+    // Of g - (mean of its region), over the points.
     CovarianceMoments residual;
-    // Standard error of that mean, from the spread of its parts (scrambled Sobol' blocks): mostly too large.
+    std::vector<double> difference; // of the integral by these points and its value by the rules
+    // Standard error of the difference, from the spread of its parts (scrambled Sobol' blocks): mostly too
+    // large.
     std::vector<double> standard_error;
     std::vector<double> lowest, highest; // values met
     NonFiniteCount non_finite;
@@ -37,9 +38,10 @@ struct CubatureCheck {
 double surprise(const CubatureRegions& regions, std::size_t region, std::size_t component, double value,
                 double tolerance);
 
-// Evaluates `count` points, spread over the regions by volume; within a region they are scrambled Sobol'
-// points. (seed, round) key the randomisation. Empty when cancelled. A part of the cube of volume v whose
-// values are a surprise is overlooked with a probability of at most about exp(-count v).
+// Evaluates `count` points, four fifths of them spread over the regions by volume, the others equally over
+// the regions; within a region they are scrambled Sobol' points. (seed, round) key the randomisation. Empty
+// when cancelled. A part of the cube of volume v whose values are a surprise is overlooked with a probability
+// of at most about exp(-0.8 count v).
 std::optional<CubatureCheck> check_regions(const Evaluator& evaluator, const CubatureRegions& regions,
                                            std::uint64_t count, std::uint64_t seed, std::uint64_t round,
                                            std::span<const double> tolerance, bool full_covariance,

@@ -111,6 +111,17 @@ bool CubatureVerification::run(CubatureRegions& regions, std::span<const double>
         lowest_[c] = std::min(lowest_[c], check->lowest[c]);
         highest_[c] = std::max(highest_[c], check->highest[c]);
     }
+    effective_points_ = std::numeric_limits<double>::infinity();
+    for (std::size_t c = 0; c < value.size(); ++c) {
+        double sizes = 0, squares = 0; // integrals of |mean of a region| and of its square
+        for (std::size_t r = 0; r < regions.count(); ++r) {
+            sizes += std::abs(regions.value(r)[c]);
+            squares += regions.value(r)[c] * regions.value(r)[c] / regions.volume(r);
+        }
+        if (squares > 0)
+            effective_points_ =
+                std::min(effective_points_, static_cast<double>(points) * sizes * sizes / squares);
+    }
     witnesses_ = std::move(check->surprises);
     if (!witnesses_.empty() && rounds_ >= most_rounds) {
         witnesses_.clear();
@@ -123,13 +134,11 @@ bool CubatureVerification::run(CubatureRegions& regions, std::span<const double>
     add_errors(regions, of_regions);
     if (!witnesses_.empty()) return true;
     for (std::size_t c = 0; c < value.size(); ++c) {
-        const double difference = residual_.mean(static_cast<int>(c)), noise = check->standard_error[c];
+        const double difference = check->difference[c], noise = check->standard_error[c];
         if (std::abs(difference) <= error[c] + significance * noise) continue;
         char text[160];
-        std::snprintf(
-            text, sizeof text,
-            "%llu random points give %.3g, which is %.1f standard errors from the value of the rules",
-            static_cast<unsigned long long>(points), value[c] + difference, std::abs(difference) / noise);
+        std::snprintf(text, sizeof text, "%llu random points give %.3g +- %.2g where the rules give %.3g",
+                      static_cast<unsigned long long>(points), value[c] + difference, noise, value[c]);
         warning_ = text;
         break;
     }
@@ -220,6 +229,7 @@ void CubatureVerification::save(StateWriter& state) const {
     state.put(rounds_);
     state.put(evaluations_);
     state.put(next_);
+    state.put(effective_points_);
     montelux::save(state, non_finite_);
     state.put(std::string_view(warning_));
 }
@@ -250,6 +260,7 @@ void CubatureVerification::load(StateReader& state, std::size_t regions) {
     rounds_ = state.get_word();
     evaluations_ = state.get_word();
     next_ = state.get_word();
+    effective_points_ = state.get_double();
     montelux::load(state, non_finite_);
     warning_ = state.get_text();
 }

@@ -51,6 +51,9 @@ class CubatureVerification {
     // the first check.
     double correlation(std::size_t a, std::size_t b) const;
     bool knows_correlations() const { return residual_.full() && residual_.count() > 1; }
+    // Did so few points fall where the integral is, as the rules see it, that others like it may have been
+    // missed?
+    bool blind() const { return effective_points_ < enough_effective_points; }
     // Empty in the normal case.
     const std::string& warning() const { return warning_; }
 
@@ -58,6 +61,7 @@ class CubatureVerification {
     void load(StateReader& state, std::size_t regions);
 
   private:
+    static constexpr double enough_effective_points = 16;
     std::vector<double> tolerances(const CubatureRegions& regions, std::span<const double> value,
                                    std::span<const double> error, const StepRequest& request) const;
     // Error that the witness adds to its region; 0 where it is expected or negligible.
@@ -74,6 +78,7 @@ class CubatureVerification {
     std::uint64_t rounds_ = 0, evaluations_ = 0;
     std::uint64_t next_ = 0; // evaluations at which a run without a target is checked
     NonFiniteCount non_finite_;
+    double effective_points_ = 0;
     std::string warning_;
 };
 

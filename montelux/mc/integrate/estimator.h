@@ -41,7 +41,7 @@ struct Tally {
     std::vector<double> value, standard_error; // infinite errors while nothing is known
     std::vector<double> covariance;            // components x components, or empty
     bool statistical = true;
-    std::uint64_t evaluations = 0; // pilots included
+    std::uint64_t evaluations = 0;       // pilots included
     std::uint64_t check_evaluations = 0; // of these: independent points that check a rule
     NonFiniteCount non_finite;
     // Points replaced by others nearby, since the integrand was not finite there.
@@ -52,6 +52,8 @@ struct Tally {
     bool ready = true;
     // All that is left of the error is rounding: no method reaches a smaller one.
     bool at_rounding = false;
+    // A rule found so little of the domain to matter that random points cannot check it.
+    bool localised = false;
     std::vector<std::string> doubts;
     std::string method, reason; // filled by estimators that choose among others
 };

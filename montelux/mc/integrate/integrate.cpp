@@ -312,6 +312,10 @@ class Run {
                 "a narrow peak would not have been seen");
         if (targeted_ && stop == StopReason::finished && rounding)
             r.doubts.push_back("the error asked for is below the rounding error of double precision");
+        if (tally.localised)
+            r.doubts.push_back(
+                "the integrand is concentrated in a part of the domain that is too small for a check by "
+                "random points; other such parts may have been missed");
         if (r.non_finite > 0)
             r.doubts.push_back(std::to_string(r.non_finite) + " of " + std::to_string(r.evaluations) +
                                " values of the integrand were not finite and were left out, the first at " +
