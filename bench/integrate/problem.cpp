@@ -28,8 +28,8 @@ void BenchProblem::rows_on_unit_cube(const double* u, std::size_t n, double* val
             for (int j = 0; j < dimensions(); ++j) points(i, j) = u[i * d + static_cast<std::size_t>(j)];
         std::vector<double> volume(n, 1.0);
         domain_.map(points, mapped, volume);
-        std::vector<const double*> columns;
-        for (int j = 0; j < dimensions(); ++j) columns.push_back(mapped.coordinate(j).data());
+        std::vector<const double*> columns(d);
+        for (std::size_t j = 0; j < d; ++j) columns[j] = mapped.coordinate(static_cast<int>(j)).data();
         evaluate(columns.data(), n, values);
         for (std::size_t i = 0; i < n; ++i) values[i] *= volume[i];
     }
