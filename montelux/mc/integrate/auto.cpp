@@ -22,6 +22,7 @@ constexpr double pilot_share = 0.25;   // or this share of what sampling is expe
 // Errors that fall more slowly with the evaluations, as a power, do so at poles that have no integral: halves
 // of an interval close in on all others.
 constexpr double slowest_of_one_variable = 0.25;
+constexpr double surprising = 4; // growth of the error that makes a new problem
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // What Adaptive needs for a relative error, roughly, as measured on Genz's families in 5 and 8 dimensions
@@ -84,6 +85,10 @@ class AutoEstimator final : public Estimator {
             reason_ = "the value cannot be told from zero, and no relative error can be met";
             return outcome;
         }
+        if (outcome == StepOutcome::finished && rule.at_rounding) {
+            reason_ = "the error is that of rounding";
+            return outcome;
+        }
         give_up("cubature could do no more");
         const StepOutcome other = sampling_->step(request);
         if (other != StepOutcome::advanced) switched_ = false;
@@ -118,6 +123,7 @@ class AutoEstimator final : public Estimator {
         state.put(reason_);
         state.put(ratios_);
         state.put(costs_);
+        state.put(begin_);
         cubature_->save(state);
         sampling_->save(state);
     }
@@ -128,6 +134,7 @@ class AutoEstimator final : public Estimator {
         reason_ = state.get_text();
         ratios_ = state.get_doubles();
         costs_ = state.get_doubles();
+        begin_ = state.get_double();
         if (ratios_.size() != costs_.size()) throw Error("the saved state is damaged");
         cubature_->load(state);
         sampling_->load(state);
@@ -163,7 +170,14 @@ class AutoEstimator final : public Estimator {
             if (tally.standard_error[c] > 0) ratio = std::max(ratio, tally.standard_error[c] / tolerance);
             if (size > 0) tightest = std::min(tightest, tolerance / size);
         }
-        const double cost = static_cast<double>(tally.evaluations);
+        const double cost = static_cast<double>(tally.evaluations - tally.check_evaluations);
+        // Random points that meet the unexpected make a new problem of it: what was seen before says nothing
+        // about how fast its error falls.
+        if (!ratios_.empty() && ratio > surprising * std::max(1.0, ratios_.back())) {
+            ratios_.clear();
+            costs_.clear();
+            begin_ = cost;
+        }
         ratios_.push_back(ratio);
         costs_.push_back(cost);
         reason_ = "cubature converges";
@@ -172,13 +186,14 @@ class AutoEstimator final : public Estimator {
             if (!tally.doubts.empty()) give_up("cubature doubts itself: " + tally.doubts.front());
             return;
         }
+        const double spent = cost - begin_;
         const double rate = falling_rate();
         if (targeted) {
             // One variable is what the rules are best at.
             const double alternative = sampling_cost(std::min(1.0, tightest)) * (one_variable_ ? 10 : 1);
-            if (cost < std::max(least_pilot, pilot_share * alternative)) return;
-            const double needed = cost * std::pow(ratio, 1 / std::max(rate, 0.05));
-            if (needed > alternative && one_variable_ && tally.non_finite.count > 0 &&
+            if (spent < std::max(least_pilot, pilot_share * alternative)) return;
+            const double needed = spent * std::pow(ratio, 1 / std::max(rate, 0.05));
+            if (needed > alternative && one_variable_ && tally.non_finite.count + tally.singular > 0 &&
                 rate < slowest_of_one_variable) {
                 diverges_ = true;
                 reason_ = "cubature does not converge";
@@ -187,9 +202,10 @@ class AutoEstimator final : public Estimator {
                         ", sampling about " + printed(alternative));
             return;
         }
-        if (cost < least_pilot) return;
+        if (spent < least_pilot) return;
         const double budget = cost + static_cast<double>(request.max_evaluations);
-        const double reached = ratio * std::pow(cost / budget, rate), alternative = sampling_error(budget);
+        const double reached = ratio * std::pow(spent / (budget - begin_), rate),
+                     alternative = sampling_error(budget);
         if (reached > alternative && !(one_variable_ && reached < 10 * alternative))
             give_up("cubature seemed to reach a relative error of " + printed(reached) +
                     ", sampling one of " + printed(alternative));
@@ -198,11 +214,12 @@ class AutoEstimator final : public Estimator {
     // Exponent p of error ~ evaluations^-p, between now and when half as many had been made.
     double falling_rate() const {
         std::size_t i = costs_.size() - 1;
-        while (i > 0 && costs_[i] > 0.5 * costs_.back()) --i;
+        while (i > 0 && costs_[i] - begin_ > 0.5 * (costs_.back() - begin_)) --i;
         if (i + 1 == costs_.size() || !(costs_[i] < costs_.back())) return 1;
         if (!(ratios_[i] < infinity)) return 1;
-        return std::clamp(std::log(ratios_[i] / ratios_.back()) / std::log(costs_.back() / costs_[i]), 0.0,
-                          8.0);
+        return std::clamp(std::log(ratios_[i] / ratios_.back()) /
+                              std::log((costs_.back() - begin_) / std::max(1.0, costs_[i] - begin_)),
+                          0.0, 8.0);
     }
 
     std::unique_ptr<Estimator> cubature_, sampling_;
@@ -210,6 +227,7 @@ class AutoEstimator final : public Estimator {
     bool switched_ = false;
     bool diverges_ = false; // neither method could do more
     std::string reason_;
+    double begin_ = 0;                   // evaluations before the problem that is judged
     std::vector<double> ratios_, costs_; // of error to target, and evaluations, after each step of cubature
 };
 

@@ -10,7 +10,9 @@
 #include "montelux/mc/integrate/cubature_evaluation.h"
 #include "montelux/mc/integrate/cubature_regions.h"
 #include "montelux/mc/integrate/cubature_rules.h"
+#include "montelux/mc/integrate/cubature_verification.h"
 #include "montelux/mc/integrate/sampling.h"
+#include "montelux/mc/integrate/unseen_share.h"
 #include "montelux/mc/math/compensated.h"
 #include "montelux/mc/math/error.h"
 
@@ -23,15 +25,17 @@ constexpr std::uint64_t search_evaluations = 4096;
 constexpr std::size_t search_regions = 16;
 // Errors are as many times larger while there is one region alone.
 constexpr double lone_caution = 9;
+// Points after which an integrand that was the same at all of them is examined no further.
+constexpr std::uint64_t most_equal_values = 1 << 21;
 // One variable's seven points are believed only where they see far more smoothness than was asked for.
 constexpr double caution_with_few_points = 16;
 
 class CubatureEstimator final : public Estimator {
   public:
-    CubatureEstimator(const Problem& problem, std::uint64_t max_memory)
+    CubatureEstimator(const Problem& problem, std::uint64_t max_memory, std::uint64_t check_points)
         : problem_(problem), n_(problem.evaluator.dimensions()), m_(problem.evaluator.components()),
           regions_(n_, m_), max_regions_(max_memory / regions_.bytes_each()), totals_(m_), nonzero_(m_, 0),
-          disagreement_(m_, 0.0), expected_(m_, 0.0) {
+          disagreement_(m_, 0.0), expected_(m_, 0.0), verification_(problem, check_points) {
         if (max_regions_ < 64)
             throw Error("cubature", "expected memory for at least 64 regions, " +
                                         std::to_string(64 * regions_.bytes_each()) + " bytes, got " +
@@ -55,15 +59,18 @@ class CubatureEstimator final : public Estimator {
         std::vector<std::size_t> parents;
         // In one dimension, and in four and more, the cube is first tried by the cheaper rule, which may do.
         const bool retry = regions_.count() == 1 && started_coarse() && !regions_.marks(0).rough && !refined_;
+        const bool check = !regions_.empty() && !searching();
+        if (check && verification_.due(regions_, totals_.value, totals_.error, evaluations_, request,
+                                       reached(request)))
+            return verify(request);
         if (regions_.empty() || retry) {
             fresh.add_cube();
             rules.push_back(regions_.empty() && started_coarse() ? &*coarse_ : &*fine_);
         } else {
             parents = choose(request);
-            if (parents.empty()) return StepOutcome::finished;
             if (regions_.count() + parents.size() > max_regions_)
                 parents.resize(max_regions_ - regions_.count());
-            if (parents.empty()) return StepOutcome::finished;
+            if (parents.empty()) return end(request);
             for (std::size_t p : parents) rules.insert(rules.end(), 2, rule_for_halves(p));
         }
         ValueBuffer nested;
@@ -81,9 +88,13 @@ class CubatureEstimator final : public Estimator {
                                 faces,
                                 n_ == 1 && parents.empty() ? &nested : nullptr,
                                 nested.count() > 0 && non_finite_.count > 0};
-        if (!evaluate_regions(problem_.evaluator, work, totals_.value, non_finite, nonzero, request.cancel))
+        std::uint64_t shifted = 0;
+        if (!evaluate_regions(problem_.evaluator, work, totals_.value, non_finite, shifted, nonzero,
+                              request.cancel))
             return StepOutcome::cancelled;
 
+        evaluations_ += shifted;
+        singular_ += shifted;
         for (const SymmetricRule* rule : rules) evaluations_ += rule->points();
         if (work.nested != nullptr) evaluations_ -= nested_.count();
         nested_ = std::move(nested);
@@ -114,7 +125,16 @@ class CubatureEstimator final : public Estimator {
         }
         tally.value = totals_.value;
         tally.standard_error = totals_.error;
-        tally.ready = !searching();
+        tally.ready = !searching() && verification_.verified(totals_.value);
+        tally.at_rounding = at_rounding_;
+        tally.check_evaluations = verification_.evaluations();
+        tally.singular = singular_;
+        tally.non_finite.merge(verification_.non_finite());
+        if (m_ > 1 && verification_.knows_correlations())
+            for (std::size_t a = 0; a < components(); ++a)
+                for (std::size_t b = 0; b < components(); ++b)
+                    tally.covariance.push_back(verification_.correlation(a, b) * totals_.error[a] *
+                                               totals_.error[b]);
         say_doubts(tally);
         return tally;
     }
@@ -131,6 +151,9 @@ class CubatureEstimator final : public Estimator {
         state.put_all(std::vector<std::uint64_t>(nonzero_.begin(), nonzero_.end()));
         state.put(disagreement_);
         state.put(expected_);
+        state.put(at_rounding_);
+        state.put(singular_);
+        verification_.save(state);
     }
     void load(StateReader& state) override {
         regions_.load(state);
@@ -152,19 +175,67 @@ class CubatureEstimator final : public Estimator {
         if (nonzero_.size() != components || disagreement_.size() != components ||
             expected_.size() != components)
             throw Error("the saved state has another number of components");
+        at_rounding_ = state.get<int>() != 0;
+        singular_ = state.get_word();
+        verification_.load(state, regions_.count());
         if (!regions_.empty()) add_up();
     }
 
   private:
     struct Totals {
         explicit Totals(int components)
-            : value(static_cast<std::size_t>(components)), error(value.size()), inflation(value.size(), 1.0) {
-        }
-        std::vector<double> value, error, inflation;
+            : value(static_cast<std::size_t>(components)), error(value.size()), rule_error(value.size()),
+              inflation(value.size(), 1.0), equal(value.size(), 0) {}
+        std::vector<double> value, error, rule_error, inflation;
+        std::vector<char> equal; // were all values the same, other than zero?
     };
 
     std::size_t components() const { return static_cast<std::size_t>(m_); }
     bool started_coarse() const { return n_ == 1 || n_ >= 4; }
+
+    bool reached(const StepRequest& request) const { return reaches(totals_.error, request); }
+    bool reaches(const std::vector<double>& error, const StepRequest& request) const {
+        if (!(request.relative_error > 0 || request.absolute_error > 0)) return false;
+        for (std::size_t c = 0; c < components(); ++c)
+            if (!(error[c] <=
+                  std::max(request.absolute_error, request.relative_error * std::abs(totals_.value[c]))))
+                return false;
+        return true;
+    }
+
+    StepOutcome verify(const StepRequest& request) {
+        const std::uint64_t points = verification_.points(regions_, totals_.value, evaluations_, request);
+        if (points == 0) {
+            verification_.skip(totals_.value, totals_.error);
+            return request.max_evaluations > 0 ? StepOutcome::advanced : StepOutcome::exhausted;
+        }
+        if (!verification_.run(regions_, totals_.value, totals_.error, points, request))
+            return StepOutcome::cancelled;
+        evaluations_ += points;
+        add_up();
+        return StepOutcome::advanced;
+    }
+
+    // No region is left to halve. Equal values everywhere are known the better the more points were met.
+    StepOutcome end(const StepRequest& request) {
+        if (verification_.due(regions_, totals_.value, totals_.error, evaluations_, request, true))
+            return verify(request);
+        if (equal_values() && evaluations_ < most_equal_values && !reached(request) &&
+            verification_.points(regions_, totals_.value, evaluations_, request) > 0) {
+            verification_.renew();
+            return verify(request);
+        }
+        at_rounding_ = !equal_values();
+        for (std::size_t r = 0; r < regions_.count(); ++r)
+            at_rounding_ = at_rounding_ && regions_.marks(r).exhausted;
+        return StepOutcome::finished;
+    }
+
+    // Was the integrand the same at all points, and not zero? A constant beside other components, as for a
+    // normalisation, is no sign of a part that was not met.
+    bool equal_values() const {
+        return std::ranges::all_of(totals_.equal, [](char equal) { return equal != 0; });
+    }
 
     // All values of a component were zero so far: its part may not have been found.
     bool searching() const {
@@ -182,6 +253,8 @@ class CubatureEstimator final : public Estimator {
     std::vector<std::size_t> choose(const StepRequest& request) const {
         const std::size_t count = regions_.count();
         const bool search = searching();
+        // What equal values leave open is no matter of regions.
+        if (!search && !reached(request) && reaches(totals_.rule_error, request)) return {};
         const std::vector<double> scale = scales(request);
         std::vector<double> key(count, 0.0);
         std::vector<std::size_t> order;
@@ -326,21 +399,32 @@ class CubatureEstimator final : public Estimator {
             regions_.copy(parents[p], halves, 2 * p);
             regions_.copy(next, halves, 2 * p + 1);
         }
+        verification_.follow(regions_, parents, regions_.count() - parents.size());
     }
 
     void add_up() {
         for (std::size_t c = 0; c < components(); ++c) {
             CompensatedSum value, error;
+            double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
             for (std::size_t r = 0; r < regions_.count(); ++r) {
                 value.add(regions_.value(r)[c]);
                 error.add(regions_.error(r)[c]);
+                lowest = std::min(lowest, regions_.lowest(r)[c]);
+                highest = std::max(highest, regions_.highest(r)[c]);
             }
+            verification_.widen(c, lowest, highest);
             totals_.value[c] = value.value();
             totals_.inflation[c] =
                 expected_[c] > 0 ? std::max(1.0, std::sqrt(disagreement_[c] / expected_[c])) : 1;
             totals_.error[c] = error.value() * totals_.inflation[c] *
                                (1 + (lone_caution - 1) / static_cast<double>(regions_.count()));
+            totals_.rule_error[c] = totals_.error[c];
+            totals_.equal[c] = lowest == highest && lowest != 0;
         }
+        if (equal_values())
+            for (std::size_t c = 0; c < components(); ++c)
+                totals_.error[c] =
+                    std::max(totals_.error[c], unseen_share(evaluations_) * std::abs(totals_.value[c]));
     }
 
     void say_doubts(Tally& tally) const {
@@ -354,6 +438,10 @@ class CubatureEstimator final : public Estimator {
         if (regions_.count() >= max_regions_)
             tally.doubts.push_back("the memory for regions is used up at " + std::to_string(max_regions_) +
                                    " regions; raise max_memory, or take a method that samples");
+        if (!verification_.warning().empty()) tally.doubts.push_back(verification_.warning());
+        if (equal_values() && evaluations_ >= most_equal_values)
+            tally.doubts.push_back("the integrand was the same at each of " + std::to_string(evaluations_) +
+                                   " points; the error is a bound on what they did not meet");
         for (std::size_t c = 0; c < components(); ++c) {
             if (totals_.inflation[c] < 4) continue;
             std::ostringstream text;
@@ -379,7 +467,12 @@ class CubatureEstimator final : public Estimator {
     std::vector<char> nonzero_; // a component: was it ever seen to be other than zero?
     // Squared differences of regions from their halves, and what their errors expected, of late.
     std::vector<double> disagreement_, expected_;
+    bool at_rounding_ = false;   // no region is left whose error is more than rounding
+    std::uint64_t singular_ = 0; // evaluations repeated beside singularities
+    CubatureVerification verification_;
 };
+
+std::uint64_t default_check_points(int dimensions) { return dimensions == 1 ? 128 : 4096; }
 
 } // namespace
 
@@ -389,7 +482,8 @@ std::unique_ptr<Estimator> Cubature::estimator(const Problem& problem) const {
                                     " variables, since a region costs 2^n evaluations; the domain has " +
                                     std::to_string(problem.evaluator.dimensions()) +
                                     ". Take a method that samples");
-    return std::make_unique<CubatureEstimator>(problem, max_memory);
+    return std::make_unique<CubatureEstimator>(
+        problem, max_memory, check_points.value_or(default_check_points(problem.evaluator.dimensions())));
 }
 
 } // namespace montelux

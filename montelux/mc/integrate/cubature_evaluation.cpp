@@ -41,6 +41,9 @@ void assess(CubatureRegions& fresh, std::size_t r, const SymmetricRule& rule,
         marks.exhausted = marks.exhausted && error <= rounding;
         fresh.value(r)[c] = volume * mean;
         fresh.error(r)[c] = volume * std::max(error, rounding);
+        const auto [low, high] = std::ranges::minmax(values[c]);
+        fresh.lowest(r)[c] = low;
+        fresh.highest(r)[c] = high;
         // The component that is worst for its size decides how to go on.
         const double weight = totals[c] != 0 ? 1 / std::abs(totals[c]) : size > 0 ? 1 / (volume * size) : 0;
         if (n > 1) rule.add_roughness(values[c], weight, differences);
@@ -64,9 +67,45 @@ void assess(CubatureRegions& fresh, std::size_t r, const SymmetricRule& rule,
                         volume < std::numeric_limits<double>::min() * 1e8;
 }
 
+// The points of symmetric rules often coincide with singularities on diagonals and at centres. Where the
+// integrand is not finite it is evaluated again at a point nearby, off every such coincidence; `not_finite`
+// keeps those that are not finite there either.
+void shift_off_singularities(const Evaluator& evaluator, const PointBuffer& u, std::size_t known,
+                             const CubatureWork& work, std::size_t begin, ValueBuffer& values,
+                             std::vector<std::size_t>& not_finite, NonFiniteCount& non_finite,
+                             std::uint64_t& shifted) {
+    constexpr double step = 1e-3; // of the half width
+    const int n = evaluator.dimensions();
+    std::vector<std::size_t> distinct = not_finite; // one entry for each component that is not finite
+    std::ranges::sort(distinct);
+    distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+    PointBuffer moved(distinct.size(), n);
+    std::size_t region = begin, end_of_region = work.rules[begin]->points();
+    for (std::size_t i = 0; i < distinct.size(); ++i) {
+        while (distinct[i] >= end_of_region) end_of_region += work.rules[++region]->points();
+        for (int d = 0; d < n; ++d) {
+            const double h = work.fresh.half_width(region)[static_cast<std::size_t>(d)];
+            const double x = u.view()(distinct[i] - known, d);
+            // Towards the middle of the cube, by amounts that no two coordinates share.
+            const double by = step * h * (0.5 + std::fmod(0.6180339887498949 * (d + 1), 1.0));
+            moved(i, d) = x < 0.5 ? x + by : x - by;
+        }
+    }
+    ValueBuffer again(distinct.size(), evaluator.components());
+    std::vector<std::size_t> still;
+    evaluator(moved, again, non_finite, &still);
+    shifted += distinct.size();
+    for (std::size_t i = 0; i < distinct.size(); ++i)
+        for (int c = 0; c < evaluator.components(); ++c)
+            values.view()(distinct[i], c) = std::as_const(again)(i, c);
+    not_finite.clear();
+    for (std::size_t i : still) not_finite.push_back(distinct[i]);
+    non_finite.count += still.size(); // at the points themselves, too
+}
+
 // Regions [begin, end).
 void evaluate_some(const Evaluator& evaluator, const CubatureWork& work, std::span<const double> totals,
-                   std::size_t begin, std::size_t end, NonFiniteCount& non_finite,
+                   std::size_t begin, std::size_t end, NonFiniteCount& non_finite, std::uint64_t& shifted,
                    std::vector<char>& nonzero) {
     const std::size_t components = nonzero.size();
     const int n = evaluator.dimensions();
@@ -86,8 +125,11 @@ void evaluate_some(const Evaluator& evaluator, const CubatureWork& work, std::sp
     }
     ValueBuffer values(count, evaluator.components());
     std::vector<std::size_t> not_finite; // indices of points
-    evaluator(u, values.view().slice(known, count - known), non_finite, &not_finite);
+    NonFiniteCount first_time;
+    evaluator(u, values.view().slice(known, count - known), first_time, &not_finite);
     for (std::size_t& i : not_finite) i += known;
+    if (!not_finite.empty())
+        shift_off_singularities(evaluator, u, known, work, begin, values, not_finite, non_finite, shifted);
     if (work.nested_not_finite) not_finite.insert(not_finite.begin(), 0);
     std::ranges::sort(not_finite);
     auto next = not_finite.begin();
@@ -120,7 +162,8 @@ void evaluate_some(const Evaluator& evaluator, const CubatureWork& work, std::sp
 } // namespace
 
 bool evaluate_regions(const Evaluator& evaluator, const CubatureWork& work, std::span<const double> totals,
-                      NonFiniteCount& non_finite, std::vector<char>& nonzero, const CancelFlag* cancel) {
+                      NonFiniteCount& non_finite, std::uint64_t& shifted, std::vector<char>& nonzero,
+                      const CancelFlag* cancel) {
     const std::vector<const SymmetricRule*>& rules = work.rules;
     std::vector<std::size_t> starts; // of the tasks
     std::size_t points = points_per_task;
@@ -134,14 +177,16 @@ bool evaluate_regions(const Evaluator& evaluator, const CubatureWork& work, std:
     const std::size_t tasks = starts.size();
     starts.push_back(rules.size());
     std::vector<NonFiniteCount> counts(tasks);
+    std::vector<std::uint64_t> shifts(tasks, 0);
     std::vector<std::vector<char>> seen(tasks, std::vector<char>(nonzero.size(), 0));
     auto run = [&](std::int64_t task) {
         const auto t = static_cast<std::size_t>(task);
-        evaluate_some(evaluator, work, totals, starts[t], starts[t + 1], counts[t], seen[t]);
+        evaluate_some(evaluator, work, totals, starts[t], starts[t + 1], counts[t], shifts[t], seen[t]);
     };
     if (!parallel_for(static_cast<std::int64_t>(tasks), run, cancel)) return false;
     for (std::size_t t = 0; t < tasks; ++t) {
         non_finite.merge(counts[t]);
+        shifted += shifts[t];
         for (std::size_t c = 0; c < nonzero.size(); ++c) nonzero[c] |= seen[t][c];
     }
     return true;

@@ -28,8 +28,10 @@ struct CubatureWork {
 
 // Evaluates all regions of `work.fresh` on all threads, and sets their values, errors and marks. `totals` are
 // the components' values so far, by which their errors are compared; nonzero[c] is set where component c was
-// other than zero anywhere. False when cancelled.
+// other than zero anywhere; `shifted` grows by
+// the evaluations that were repeated beside singularities. False when cancelled.
 bool evaluate_regions(const Evaluator& evaluator, const CubatureWork& work, std::span<const double> totals,
-                      NonFiniteCount& non_finite, std::vector<char>& nonzero, const CancelFlag* cancel);
+                      NonFiniteCount& non_finite, std::uint64_t& shifted, std::vector<char>& nonzero,
+                      const CancelFlag* cancel);
 
 } // namespace montelux

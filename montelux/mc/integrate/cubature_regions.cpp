@@ -1,6 +1,7 @@
 #include "montelux/mc/integrate/cubature_regions.h"
 
 #include <algorithm>
+#include <array>
 
 #include "montelux/mc/math/error.h"
 
@@ -18,6 +19,8 @@ void CubatureRegions::resize(std::size_t count) {
     value_.resize(count * m_);
     error_.resize(count * m_);
     face_error_.resize(count * m_);
+    lowest_.resize(count * m_);
+    highest_.resize(count * m_);
     marks_.resize(count);
 }
 
@@ -45,22 +48,26 @@ void CubatureRegions::copy(std::size_t to, const CubatureRegions& from, std::siz
     std::ranges::copy(from.value(r), value(to).begin());
     std::ranges::copy(from.error(r), error(to).begin());
     std::ranges::copy(from.face_error(r), face_error(to).begin());
+    std::ranges::copy(from.lowest(r), lowest(to).begin());
+    std::ranges::copy(from.highest(r), highest(to).begin());
     marks(to) = from.marks(r);
 }
 
 void CubatureRegions::save(StateWriter& state) const {
-    for (const auto* numbers : {&centre_, &half_width_, &value_, &error_, &face_error_}) state.put(*numbers);
+    for (const auto* numbers : {&centre_, &half_width_, &value_, &error_, &face_error_, &lowest_, &highest_})
+        state.put(*numbers);
     for (const Marks& m : marks_)
         state.put(static_cast<std::uint64_t>(m.axis | m.face_axis << 8 | m.rough << 16 | m.exhausted << 17 |
                                              m.indivisible << 18 | m.face_upper << 19));
 }
 
 void CubatureRegions::load(StateReader& state) {
-    for (auto* numbers : {&centre_, &half_width_, &value_, &error_, &face_error_})
+    for (auto* numbers : {&centre_, &half_width_, &value_, &error_, &face_error_, &lowest_, &highest_})
         *numbers = state.get_doubles();
     const std::size_t regions = centre_.size() / n_;
     if (centre_.size() != regions * n_ || half_width_.size() != regions * n_ ||
-        value_.size() != regions * m_ || error_.size() != regions * m_ || face_error_.size() != regions * m_)
+        std::ranges::any_of(std::array{&value_, &error_, &face_error_, &lowest_, &highest_},
+                            [&](const auto* numbers) { return numbers->size() != regions * m_; }))
         throw Error("the saved regions do not fit the dimensions or components");
     marks_.resize(regions);
     for (Marks& m : marks_) {

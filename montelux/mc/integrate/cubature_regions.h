@@ -27,7 +27,7 @@ class CubatureRegions {
     std::size_t count() const { return marks_.size(); }
     bool empty() const { return marks_.empty(); }
     // Bytes that one region takes.
-    std::size_t bytes_each() const { return 8 * (2 * n_ + 3 * m_) + sizeof(Marks); }
+    std::size_t bytes_each() const { return 8 * (2 * n_ + 5 * m_) + sizeof(Marks); }
 
     std::span<double> centre(std::size_t r) { return {&centre_[r * n_], n_}; }
     std::span<const double> centre(std::size_t r) const { return {&centre_[r * n_], n_}; }
@@ -40,6 +40,11 @@ class CubatureRegions {
     // The part of the error that comes of a jump suspected at a face.
     std::span<double> face_error(std::size_t r) { return {&face_error_[r * m_], m_}; }
     std::span<const double> face_error(std::size_t r) const { return {&face_error_[r * m_], m_}; }
+    // The least and the greatest value that the rule saw.
+    std::span<double> lowest(std::size_t r) { return {&lowest_[r * m_], m_}; }
+    std::span<const double> lowest(std::size_t r) const { return {&lowest_[r * m_], m_}; }
+    std::span<double> highest(std::size_t r) { return {&highest_[r * m_], m_}; }
+    std::span<const double> highest(std::size_t r) const { return {&highest_[r * m_], m_}; }
     Marks& marks(std::size_t r) { return marks_[r]; }
     const Marks& marks(std::size_t r) const { return marks_[r]; }
     double volume(std::size_t r) const;
@@ -60,7 +65,7 @@ class CubatureRegions {
     static std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
     std::size_t n_, m_;
-    std::vector<double> centre_, half_width_, value_, error_, face_error_;
+    std::vector<double> centre_, half_width_, value_, error_, face_error_, lowest_, highest_;
     std::vector<Marks> marks_;
 };
 

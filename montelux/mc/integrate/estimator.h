@@ -42,11 +42,16 @@ struct Tally {
     std::vector<double> covariance;            // components x components, or empty
     bool statistical = true;
     std::uint64_t evaluations = 0; // pilots included
+    std::uint64_t check_evaluations = 0; // of these: independent points that check a rule
     NonFiniteCount non_finite;
+    // Points replaced by others nearby, since the integrand was not finite there.
+    std::uint64_t singular = 0;
     double chi_squared = 0;
     int degrees_of_freedom = 0;
     // The target must not be believed before this is true (a pilot is running, too few replicates).
     bool ready = true;
+    // All that is left of the error is rounding: no method reaches a smaller one.
+    bool at_rounding = false;
     std::vector<std::string> doubts;
     std::string method, reason; // filled by estimators that choose among others
 };

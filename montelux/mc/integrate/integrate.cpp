@@ -132,6 +132,7 @@ class Run {
         // Nothing is known without evaluations.
         if (tally.evaluations > 0) {
             if (targeted_ && tally.ready && reached(tally)) return StopReason::error_target;
+            if (targeted_ && tally.ready && is_rounding(tally)) return StopReason::finished;
             if (tally.evaluations + lost_ >= limit_) return StopReason::evaluations;
             if (has_time() && elapsed() >= budget_.time.count()) return StopReason::time;
         }
@@ -240,6 +241,15 @@ class Run {
         return false;
     }
 
+    // Errors below which doubles tell nothing apart.
+    static bool is_rounding(const Tally& tally) {
+        for (std::size_t c = 0; c < tally.value.size(); ++c)
+            if (!(tally.standard_error[c] <=
+                  std::numeric_limits<double>::epsilon() * std::abs(tally.value[c])))
+                return false;
+        return true;
+    }
+
     bool reached(const Tally& tally) const {
         if (nothing_found(tally) && tally.evaluations < default_evaluations) return false;
         for (std::size_t c = 0; c < tally.value.size(); ++c) {
@@ -270,6 +280,7 @@ class Run {
 
     IntegrationResult result(StopReason stop) const {
         Tally tally = estimator_->tally();
+        const bool rounding = tally.at_rounding || is_rounding(tally);
         IntegrationResult r;
         r.value = std::move(tally.value);
         r.standard_error = std::move(tally.standard_error);
@@ -299,6 +310,8 @@ class Run {
             r.doubts.push_back(
                 "a value is zero with an error of zero: no point has met anything but zeros, and "
                 "a narrow peak would not have been seen");
+        if (targeted_ && stop == StopReason::finished && rounding)
+            r.doubts.push_back("the error asked for is below the rounding error of double precision");
         if (r.non_finite > 0)
             r.doubts.push_back(std::to_string(r.non_finite) + " of " + std::to_string(r.evaluations) +
                                " values of the integrand were not finite and were left out, the first at " +
