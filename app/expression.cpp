@@ -44,7 +44,9 @@ void define_functions(const Define& define) {
 mu::Parser make_parser(const std::vector<std::string>& variables) {
     mu::Parser parser;
     parser.ClearConst();
-    parser.ResetLocale();
+    // Of all parsers, and not guarded: threads make parsers at the same time.
+    static const bool once = (parser.ResetLocale(), true);
+    static_cast<void>(once);
     define_functions([&](const char* name, auto function) { parser.DefineFun(name, +function); });
     for (const auto& [name, value] : constants)
         if (std::find(variables.begin(), variables.end(), name) == variables.end())

@@ -2,6 +2,7 @@
 
 #include "bench/hard/quick.h"
 #include "bench/integrate/command_line.h"
+#include <iterator>
 
 namespace montelux::bench {
 
@@ -46,7 +47,7 @@ HardOptions parse_hard_options(const std::vector<std::string_view>& arguments) {
         else if (option == "--quick") {
             options.quick = options.verbose = true;
             options.methods = {"auto", "adaptive"};
-            options.targets = {quick_target};
+            options.targets.assign(std::begin(quick_targets), std::end(quick_targets));
             options.cap = quick_cap;
             options.seconds = quick_seconds;
             options.seeds = quick_seeds;

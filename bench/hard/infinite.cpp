@@ -59,8 +59,8 @@ HardIntegral heavy_tails(Draws& draws) {
 HardIntegral far_peak(Draws& draws) {
     const int n = draws.integer(1, 3);
     if (draws.chance(0.3)) {
-        std::vector<double> scale;
-        for (int j = 0; j < n; ++j) scale.push_back(draws.log_uniform(1e-3, 1e3));
+        std::vector<double> scale(static_cast<std::size_t>(n));
+        for (double& s : scale) s = draws.log_uniform(1e-3, 1e3);
         return {.ranges = box(n, 0, infinity),
                 .f =
                     [=](const double* x) {

@@ -75,6 +75,7 @@ HardIntegral mixture(Draws& draws) {
     const int n = draws.integer(1, 10), count = draws.integer(2, 20);
     const double width = draws.log_uniform(n <= 3 ? 0.003 : 0.02, 0.2);
     std::vector<Component> components;
+    components.reserve(static_cast<std::size_t>(count));
     for (int k = 0; k < count; ++k)
         components.push_back({draws.uniform(0.2, 1), draws.uniforms(n, 0.05, 0.95),
                               std::vector<double>(static_cast<std::size_t>(n), width)});

@@ -118,8 +118,8 @@ HardIntegral lattice(Draws& draws) {
 // is set to 1 (Cheng, Wu): 6 zeta(3). The others are scaled, which changes no integral.
 HardIntegral kite(Draws& draws) {
     const int fixed = draws.integer(0, 4);
-    std::vector<double> scale;
-    for (int j = 0; j < 4; ++j) scale.push_back(draws.log_uniform(0.5, 2));
+    std::vector<double> scale(4);
+    for (double& factor : scale) factor = draws.log_uniform(0.5, 2);
     return {.ranges = box(4, 0, infinity),
             .f =
                 [=](const double* y) {

@@ -14,8 +14,8 @@ HardIntegral ridge_on_diagonal(Draws& draws) {
     const int n = draws.integer(2, 6);
     const double w = draws.log_uniform(0.01, 0.05), length = draws.uniform(0.2, 0.4);
     const std::vector<double> centre = draws.uniforms(n, 0.45, 0.55);
-    std::vector<double> sign;
-    for (int j = 0; j < n; ++j) sign.push_back(draws.chance(0.5) ? 1 : -1);
+    std::vector<double> sign(static_cast<std::size_t>(n));
+    for (double& s : sign) s = draws.chance(0.5) ? 1 : -1;
     auto f = [=](const double* x) {
         double along = 0;
         for (int j = 0; j < n; ++j) along += sign[j] * (x[j] - centre[j]) / n;

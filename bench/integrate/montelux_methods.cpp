@@ -22,8 +22,6 @@ Integrand integrand_of(const CountedIntegrand& f, Form form) {
 }
 
 Answer run(const montelux::Method& method, const CountedIntegrand& f, const Request& request) {
-    const std::span<const Range> ranges = f.problem().ranges();
-    const Domain domain(std::vector<Range>(ranges.begin(), ranges.end()));
     Budget budget;
     budget.relative_error = request.relative_error;
     budget.evaluations = request.evaluations;
@@ -32,7 +30,7 @@ Answer run(const montelux::Method& method, const CountedIntegrand& f, const Requ
     options.seed = request.seed;
     options.threads = 1;
     const IntegrationResult result =
-        integrate(integrand_of(f, request.form), domain, method, budget, options);
+        integrate(integrand_of(f, request.form), f.problem().domain(), method, budget, options);
     std::string warnings;
     for (const std::string& doubt : result.doubts) warnings += (warnings.empty() ? "" : "; ") + doubt;
     return {.value = result.value[0],

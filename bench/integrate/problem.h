@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "montelux/mc/integrate/domain.h"
@@ -18,9 +19,10 @@ class BenchProblem {
     // From its name and its seed another process makes the same problem.
     virtual std::string name() const = 0;
     std::uint64_t seed() const { return seed_; }
-    int dimensions() const { return static_cast<int>(ranges_.size()); }
+    int dimensions() const { return domain_.dimensions(); }
+    const Domain& domain() const { return domain_; }
     // Of each coordinate; ends may be infinite.
-    std::span<const Range> ranges() const { return ranges_; }
+    std::span<const Range> ranges() const { return domain_.ranges(); }
     // The integral over the box.
     double exact() const { return exact_; }
 
@@ -40,14 +42,13 @@ class BenchProblem {
     BenchProblem(const BenchProblem&) = default;
     BenchProblem& operator=(const BenchProblem&) = default;
 
-    void set_ranges(std::vector<Range> ranges);
+    void set_ranges(std::vector<Range> ranges) { domain_ = Domain(std::move(ranges)); }
     void set_exact(double exact) { exact_ = exact; }
 
   private:
-    std::vector<Range> ranges_;
+    Domain domain_ = Domain::unit_cube(1);
     std::uint64_t seed_;
     double exact_ = 0;
-    bool unit_cube_ = false;
 };
 
 } // namespace montelux::bench

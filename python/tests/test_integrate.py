@@ -65,6 +65,26 @@ def test_one_variable_has_shape_n():
     assert shapes == {1}
 
 
+@pytest.mark.parametrize("name", ["basic", "vegas", "quasi", "cubature", "adaptive"])
+def test_slow_functions_that_release_the_lock_run_at_the_same_time(name):
+    running, most = 0, 0
+
+    def f(x):
+        nonlocal running, most
+        running += 1
+        most = max(most, running)
+        time.sleep(1e-4)  # without the lock
+        running -= 1
+        return abs(x[0] - 0.3) * (1 + x[1])
+
+    results = []
+    for threads in (1, 2):
+        running = most = 0
+        results.append(montelux.integrate(f, BOX, name, evaluations=2500, threads=threads, batch=False))
+        assert most == threads
+    assert results[0].value == results[1].value and results[0].standard_error == results[1].standard_error
+
+
 def test_balls_about_the_origin_by_their_dimensions():
     ball = montelux.integrate(lambda x: np.ones(len(x)), montelux.Domain.ball(3), "quasi", evaluations=4096)
     assert float(ball) == pytest.approx(4 / 3 * math.pi, rel=1e-12)

@@ -139,6 +139,13 @@ timeout -s KILL 0.2 "$montelux" integrate $log_run --checkpoint log --checkpoint
 "$montelux" integrate $log_run --checkpoint log --resume --json | grep -v seconds >resumed
 cmp -s unbroken resumed || fail "log Z of a resumed run: $(head -n 3 resumed) instead of $(head -n 3 unbroken)"
 
+# Threads make their parsers at the same time.
+formulas=$(seq -f '1.5*x+%g.5' 200)
+for run in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+    "$montelux" integrate $formulas --over x=0:1 --method quasi --evaluations 1024 --threads 16 --quiet >out 2>&1 ||
+        fail "200 formulas by 16 threads: exit code $?"
+done
+
 # Exit codes: 3 where a target was not reached.
 expect 3 "stopped at the number of evaluations" integrate x --over x=0:1 --method basic --relative-error 1e-9 --evaluations 1e4
 expect 3 "stopped by time" integrate x --over x=0:1 --method basic --relative-error 1e-12 --time 0.3

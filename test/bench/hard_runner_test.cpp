@@ -144,6 +144,7 @@ TEST(HardReport, CountsWhatTheRunsSay) {
             HardRun run = run_of(m == 1 && f == 1 ? 2.5 : 2.0001, 0.001, true);
             run.run.method = m;
             run.run.line = f;
+            run.run.answer.chosen = m == 0 ? "adaptive" : "";
             runs.push_back(run);
         }
     std::ostringstream report, silent;
@@ -152,6 +153,7 @@ TEST(HardReport, CountsWhatTheRunsSay) {
     EXPECT_NE(report.str().find("| 50.0 % (1) | spike"), std::string::npos) << report.str();
     print_silent_failures(silent, plan, runs);
     EXPECT_EQ(silent.str().find("silent spike seed 0 vegas+ at 1e-2"), 0u) << silent.str();
+    EXPECT_NE(report.str().find("| auto: adaptive | 2 "), std::string::npos) << report.str();
     // The worst family is the first of its method's table.
     const std::string vegas = report.str().substr(report.str().find("Families, vegas+"));
     EXPECT_LT(vegas.find("spike"), vegas.find("genz"));
@@ -164,7 +166,7 @@ TEST(HardOptions, AreReadAndRefused) {
     EXPECT_EQ(options.seeds, 3u);
     EXPECT_EQ(options.jobs, 2);
     EXPECT_EQ(options.targets.size(), 3u);
-    EXPECT_EQ(parse_hard_options({"--quick"}).targets.size(), 1u);
+    EXPECT_EQ(parse_hard_options({"--quick"}).methods, (std::vector<std::string>{"auto", "adaptive"}));
     EXPECT_EQ(parse_hard_options({"--quick", "--seeds", "2"}).seeds, 2u);
     EXPECT_THROW(parse_hard_options({"--seeds"}), Error);
     EXPECT_THROW(parse_hard_options({"--targets", ""}), Error);
