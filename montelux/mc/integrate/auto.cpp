@@ -89,8 +89,8 @@ class AutoEstimator final : public Estimator {
             reason_ = "the value cannot be told from zero, and no relative error can be met";
             return outcome;
         }
-        if (outcome == StepOutcome::finished && rule.at_rounding) {
-            reason_ = "the error is that of rounding";
+        if (outcome == StepOutcome::finished && rule.at_limit) {
+            reason_ = "no further evaluations would help";
             return outcome;
         }
         give_up("cubature could do no more");
@@ -128,7 +128,7 @@ class AutoEstimator final : public Estimator {
                       rule.standard_error[c] <=
                           std::max(request.absolute_error, request.relative_error * std::abs(rule.value[c]));
         if (!reached) return outcome;
-        const Agreement found = agreement(0.5);
+        const Agreement found = agreement(0);
         if (found == Agreement::disagree) rules_end_ = true;
         if (found == Agreement::agree || (found == Agreement::unknown && !rule.localised)) {
             switched_ = false;
@@ -139,13 +139,15 @@ class AutoEstimator final : public Estimator {
     }
 
     enum class Agreement : std::uint8_t { unknown, agree, disagree };
-    // Of the values of both methods; unknown while sampling's relative error is above `most`.
+    // Of the values of both methods; unknown while sampling's relative error is above `most`, and above three
+    // times that of cubature.
     Agreement agreement(double most) const {
         const Tally rule = cubature_->tally(), sampled = sampling_->tally();
         bool agree = true;
         for (std::size_t c = 0; c < rule.value.size(); ++c) {
             const double error = sampled.standard_error[c];
-            if (!(error <= most * std::abs(rule.value[c]))) return Agreement::unknown;
+            if (!(error <= std::max(most * std::abs(rule.value[c]), 3 * rule.standard_error[c])))
+                return Agreement::unknown;
             agree = agree && std::abs(rule.value[c] - sampled.value[c]) <= 4 * error + rule.standard_error[c];
         }
         return agree ? Agreement::agree : Agreement::disagree;
@@ -287,8 +289,8 @@ class AutoEstimator final : public Estimator {
                         ", sampling about " + printed(alternative));
             return;
         }
-        if (spent < least_pilot) return;
         const double budget = cost + static_cast<double>(request.max_evaluations);
+        if (spent < std::min(least_pilot, 0.2 * budget)) return; // few evaluations are not worth a long pilot
         const double reached = ratio * std::pow(spent / (budget - begin_), rate),
                      alternative = sampling_error(budget);
         if (reached > alternative && !(one_variable_ && reached < 10 * alternative))

@@ -126,7 +126,7 @@ class CubatureEstimator final : public Estimator {
         tally.value = totals_.value;
         tally.standard_error = totals_.error;
         tally.ready = !searching() && verification_.verified(totals_.value);
-        tally.at_rounding = at_rounding_;
+        tally.at_limit = at_limit_;
         // Of one variable halving alone finds all that has a width.
         tally.localised = n_ > 1 && verification_.evaluations() > 0 && verification_.blind();
         tally.check_evaluations = verification_.evaluations();
@@ -153,7 +153,7 @@ class CubatureEstimator final : public Estimator {
         state.put_all(std::vector<std::uint64_t>(nonzero_.begin(), nonzero_.end()));
         state.put(disagreement_);
         state.put(expected_);
-        state.put(at_rounding_);
+        state.put(at_limit_);
         state.put(singular_);
         verification_.save(state);
     }
@@ -177,7 +177,7 @@ class CubatureEstimator final : public Estimator {
         if (nonzero_.size() != components || disagreement_.size() != components ||
             expected_.size() != components)
             throw Error("the saved state has another number of components");
-        at_rounding_ = state.get<int>() != 0;
+        at_limit_ = state.get<int>() != 0;
         singular_ = state.get_word();
         verification_.load(state, regions_.count());
         if (!regions_.empty()) add_up();
@@ -211,9 +211,9 @@ class CubatureEstimator final : public Estimator {
             verification_.skip(totals_.value, totals_.error);
             return request.max_evaluations > 0 ? StepOutcome::advanced : StepOutcome::exhausted;
         }
-        if (!verification_.run(regions_, totals_.value, totals_.error, points, request))
-            return StepOutcome::cancelled;
-        evaluations_ += points;
+        const std::uint64_t made = verification_.run(regions_, totals_.value, totals_.error, points, request);
+        if (made == 0) return StepOutcome::cancelled;
+        evaluations_ += made;
         add_up();
         return StepOutcome::advanced;
     }
@@ -227,9 +227,9 @@ class CubatureEstimator final : public Estimator {
             verification_.renew();
             return verify(request);
         }
-        at_rounding_ = !equal_values();
+        at_limit_ = true;
         for (std::size_t r = 0; r < regions_.count(); ++r)
-            at_rounding_ = at_rounding_ && regions_.marks(r).exhausted;
+            at_limit_ = at_limit_ && regions_.marks(r).exhausted;
         return StepOutcome::finished;
     }
 
@@ -420,6 +420,7 @@ class CubatureEstimator final : public Estimator {
                 expected_[c] > 0 ? std::max(1.0, std::sqrt(disagreement_[c] / expected_[c])) : 1;
             totals_.error[c] = error.value() * totals_.inflation[c] *
                                (1 + (lone_caution - 1) / static_cast<double>(regions_.count()));
+            totals_.error[c] += verification_.slack(c);
             totals_.rule_error[c] = totals_.error[c];
             totals_.equal[c] = lowest == highest && lowest != 0;
         }
@@ -469,7 +470,7 @@ class CubatureEstimator final : public Estimator {
     std::vector<char> nonzero_; // a component: was it ever seen to be other than zero?
     // Squared differences of regions from their halves, and what their errors expected, of late.
     std::vector<double> disagreement_, expected_;
-    bool at_rounding_ = false;   // no region is left whose error is more than rounding
+    bool at_limit_ = false;      // no region is left whose error is more than rounding
     std::uint64_t singular_ = 0; // evaluations repeated beside singularities
     CubatureVerification verification_;
 };

@@ -25,11 +25,12 @@ namespace montelux {
 // - a factor 1 + 8 / regions, since few regions have not yet tested one another (for one variable's 13 points
 //   twice what its 7 were wrong by over what they expected, if that is less), and
 // - the factor by which errors of the regions halved of late were too small, where they were.
-// No rule is believed on its own word. A result that reaches its target is checked by random points, four
-// fifths of them spread over the regions by volume and the others equally over the regions; where a value is
-// far from what the rule of its region saw, the region is halved until its rule expects it. A part of the
-// unit cube of volume v whose values are a surprise is overlooked with a probability of at most about
-// exp(-0.8 check_points v). The seed has an effect on these points alone.
+// No rule is believed on its own word. A result that reaches its target is checked by random points: three
+// fifths of them spread over the regions by volume, the others where values vary and equally over the
+// regions. Where a value is far from what the rule of its region saw, or the mean of the points from the
+// value of the rules, regions are halved and checked again. A part of the unit cube of volume v whose values
+// are a surprise is overlooked with a probability of at most about exp(-0.6 check_points v). The seed has an
+// effect on these points alone.
 struct Cubature {
     static constexpr std::string_view name = "cubature";
     static constexpr int max_dimensions = 15;

@@ -13,10 +13,10 @@ namespace {
 constexpr double widening = 0.5;      // of the range that a rule saw
 constexpr double error_allowance = 4; // times the claimed error density of a region
 constexpr double tolerance_part = 0.25;
-constexpr double regions_share = 0.2;           // of the points, shared equally among the regions
-constexpr std::size_t blocks = 16;              // parts whose spread is the error of the mean
-constexpr std::uint64_t points_per_task = 4096; // unless one region has more
-constexpr std::uint64_t stream = 0x6368656b;    // apart from those of the methods that sample
+constexpr double volume_share = 0.6, spread_share = 0.3; // of the points; the rest goes equally to regions
+constexpr std::size_t blocks = 16;                       // parts whose spread is the error of the mean
+constexpr std::uint64_t points_per_task = 4096;          // unless one region has more
+constexpr std::uint64_t stream = 0x6368656b;             // apart from those of the methods that sample
 
 // The points of one region.
 struct Share {
@@ -26,21 +26,33 @@ struct Share {
 };
 
 // Systematic sampling: a region gets a number of points within one of its share of the measure, the right one
-// on average. Most of the measure is volume; the rest is the same for each region, since small regions lie
+// on average. Most of the measure is volume. A part follows volume times range, as the variance of the
+// difference asks for (Neyman allocation); and a part is the same for each region, since small regions lie
 // where the integrand has structure, and what was overlooked often has its place beside it.
 std::vector<Share> share_out(const CubatureRegions& regions, std::uint64_t count, std::uint64_t key) {
     const double offset = static_cast<double>(hash_key(key, 0) >> 11) * 0x1p-53;
+    const std::size_t all = regions.count(), components = regions.value(0).size();
+    std::vector<double> spread(all, 0.0); // volume times range, relative to the sum of a component
+    for (std::size_t c = 0; c < components; ++c) {
+        double sum = 0;
+        for (std::size_t r = 0; r < all; ++r)
+            sum += regions.volume(r) * (regions.highest(r)[c] - regions.lowest(r)[c]);
+        for (std::size_t r = 0; r < all; ++r) {
+            const double own = regions.volume(r) * (regions.highest(r)[c] - regions.lowest(r)[c]);
+            spread[r] += (sum > 0 ? own / sum : regions.volume(r)) / static_cast<double>(components);
+        }
+    }
     std::vector<Share> shares;
-    const double each = regions_share / static_cast<double>(regions.count());
     double measure = 0;
     std::uint64_t given = 0;
-    for (std::size_t r = 0; r < regions.count(); ++r) {
-        const double volume = regions.volume(r), own = (1 - regions_share) * volume + each;
+    for (std::size_t r = 0; r < all; ++r) {
+        const double volume = regions.volume(r);
+        const double own = volume_share * volume + spread_share * spread[r] +
+                           (1 - volume_share - spread_share) / static_cast<double>(all);
         measure += own;
         const double end = static_cast<double>(count) * measure - offset;
-        const auto until = r + 1 == regions.count()
-                               ? count
-                               : std::min(count, static_cast<std::uint64_t>(std::max(0.0, std::ceil(end))));
+        const auto until =
+            r + 1 == all ? count : std::min(count, static_cast<std::uint64_t>(std::max(0.0, std::ceil(end))));
         if (until > given) shares.push_back({r, until - given, given, volume / own});
         given = std::max(given, until);
     }
@@ -52,6 +64,8 @@ struct Part {
     CovarianceMoments residual;
     std::vector<double> block_sums; // blocks x components
     std::vector<double> lowest, highest;
+    std::vector<std::size_t> regions;
+    std::vector<double> differences; // of each, components side by side
     NonFiniteCount non_finite;
 
     Part() = default;
@@ -63,6 +77,8 @@ struct Part {
     void merge(const Part& later) {
         surprises.insert(surprises.end(), later.surprises.begin(), later.surprises.end());
         residual.merge(later.residual);
+        regions.insert(regions.end(), later.regions.begin(), later.regions.end());
+        differences.insert(differences.end(), later.differences.begin(), later.differences.end());
         for (std::size_t i = 0; i < block_sums.size(); ++i) block_sums[i] += later.block_sums[i];
         for (std::size_t c = 0; c < lowest.size(); ++c) {
             lowest[c] = std::min(lowest[c], later.lowest[c]);
@@ -110,6 +126,9 @@ Part check_some(const Evaluator& evaluator, const CubatureRegions& regions, std:
     std::size_t at = 0;
     for (const Share& s : shares) {
         const double inverse_volume = 1 / regions.volume(s.region);
+        part.regions.push_back(s.region);
+        part.differences.resize(part.differences.size() + m, 0.0);
+        double* const sums = part.differences.data() + part.differences.size() - m;
         for (std::uint64_t i = 0; i < s.count; ++i, ++at) {
             bool surprising = false;
             // Consecutive Sobol' points of a region make one block, small regions go round.
@@ -119,6 +138,7 @@ Part check_some(const Evaluator& evaluator, const CubatureRegions& regions, std:
                 const double value = g(at, static_cast<int>(c));
                 residual[c] = value - regions.value(s.region)[c] * inverse_volume;
                 part.block_sums[block * m + c] += s.weight * residual[c];
+                sums[c] += s.weight * residual[c];
                 part.lowest[c] = std::min(part.lowest[c], value);
                 part.highest[c] = std::max(part.highest[c], value);
                 surprising = surprising || surprise(regions, s.region, c, value, tolerance[c]) > 0;
@@ -178,6 +198,9 @@ std::optional<CubatureCheck> check_regions(const Evaluator& evaluator, const Cub
     CubatureCheck check;
     check.surprises = std::move(all->surprises);
     check.residual = std::move(all->residual);
+    check.regions = std::move(all->regions);
+    check.differences = std::move(all->differences);
+    for (double& d : check.differences) d /= static_cast<double>(count);
     check.lowest = std::move(all->lowest);
     check.highest = std::move(all->highest);
     check.non_finite = std::move(all->non_finite);

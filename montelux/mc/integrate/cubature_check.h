@@ -24,6 +24,9 @@ struct CubatureCheck {
     // Of g - (mean of its region), over the points.
     CovarianceMoments residual;
     std::vector<double> difference; // of the integral by these points and its value by the rules
+    // The same, region by region, of those that have points; components side by side.
+    std::vector<std::size_t> regions;
+    std::vector<double> differences;
     // Standard error of the difference, from the spread of its parts (scrambled Sobol' blocks): mostly too
     // large.
     std::vector<double> standard_error;
@@ -38,10 +41,10 @@ struct CubatureCheck {
 double surprise(const CubatureRegions& regions, std::size_t region, std::size_t component, double value,
                 double tolerance);
 
-// Evaluates `count` points, four fifths of them spread over the regions by volume, the others equally over
-// the regions; within a region they are scrambled Sobol' points. (seed, round) key the randomisation. Empty
-// when cancelled. A part of the cube of volume v whose values are a surprise is overlooked with a probability
-// of at most about exp(-0.8 count v).
+// Evaluates `count` points: three fifths of them spread over the regions by volume, the others by volume
+// times the range of the values that the rules saw, and equally over the regions; within a region they are
+// scrambled Sobol' points. (seed, round) key the randomisation. Empty when cancelled. A part of the cube of
+// volume v whose values are a surprise is overlooked with a probability of at most about exp(-0.6 count v).
 std::optional<CubatureCheck> check_regions(const Evaluator& evaluator, const CubatureRegions& regions,
                                            std::uint64_t count, std::uint64_t seed, std::uint64_t round,
                                            std::span<const double> tolerance, bool full_covariance,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "montelux/mc/math/error.h"
 
@@ -11,6 +12,16 @@ double CubatureRegions::volume(std::size_t r) const {
     double volume = 1;
     for (double h : half_width(r)) volume *= 2 * h;
     return volume;
+}
+
+std::size_t CubatureRegions::containing(std::span<const double> x) const {
+    for (std::size_t r = 0; r < count(); ++r) {
+        bool inside = true;
+        for (std::size_t d = 0; d < n_ && inside; ++d)
+            inside = std::abs(x[d] - centre(r)[d]) <= half_width(r)[d];
+        if (inside) return r;
+    }
+    return 0;
 }
 
 void CubatureRegions::resize(std::size_t count) {

@@ -48,6 +48,8 @@ class CubatureRegions {
     Marks& marks(std::size_t r) { return marks_[r]; }
     const Marks& marks(std::size_t r) const { return marks_[r]; }
     double volume(std::size_t r) const;
+    // A region that holds the point of the unit cube.
+    std::size_t containing(std::span<const double> x) const;
 
     void resize(std::size_t count);
     // Adds the unit cube, not yet evaluated.

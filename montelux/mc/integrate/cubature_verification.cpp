@@ -1,12 +1,14 @@
 #include "montelux/mc/integrate/cubature_verification.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
+#include "montelux/mc/integrate/adaptive/mode_search.h"
 #include "montelux/mc/integrate/sampling.h"
 
 namespace montelux {
@@ -14,14 +16,95 @@ namespace {
 
 constexpr double negligible = 0.02;      // share of the tolerance
 constexpr double least_tolerance = 1e-7; // share of the integral of the absolute value
-constexpr double significance = 6;       // standard errors between rules and points
+constexpr double suspicion = 2.5;        // standard errors beyond which the difference counts as an error
+constexpr double significance = 5;       // standard errors between rules and points
 constexpr std::uint64_t most_rounds = 12;
 constexpr std::uint64_t fewest_points = 16;
 constexpr double plateau = 0.1;             // range of the values beside their mean
 constexpr std::uint64_t plateau_points = 4; // times as many points where nothing but a plateau was seen
+constexpr std::size_t most_climbs = 8;      // of a check
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool targeted(const StepRequest& request) { return request.relative_error > 0 || request.absolute_error > 0; }
+
+// The least volume that holds half of the integral of |g|, of the component that is most concentrated.
+double volume_of_half(const CubatureRegions& regions) {
+    double least = 1;
+    std::vector<std::size_t> order(regions.count());
+    for (std::size_t c = 0; c < regions.value(0).size(); ++c) {
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        auto density = [&](std::size_t r) { return std::abs(regions.value(r)[c]) / regions.volume(r); };
+        std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return density(a) > density(b); });
+        double all = 0, found = 0, volume = 0;
+        for (std::size_t r : order) all += std::abs(regions.value(r)[c]);
+        for (std::size_t r : order) {
+            if (found >= 0.5 * all) break;
+            found += std::abs(regions.value(r)[c]);
+            volume += regions.volume(r);
+        }
+        if (all > 0) least = std::min(least, volume);
+    }
+    return least;
+}
+
+// Surprises often lie in the tails of peaks whose tops are in other regions. The greatest ones climb, and the
+// tops become witnesses as well. The evaluations made.
+std::uint64_t climb(const Evaluator& evaluator, const CubatureRegions& regions,
+                    std::span<const double> tolerance, std::uint64_t most, CubatureCheck& check) {
+    const int n = evaluator.dimensions(), m = evaluator.components();
+    std::vector<CubatureWitness>& witnesses = check.surprises;
+    std::vector<std::pair<double, std::size_t>> order; // greatest surprise, relative to the tolerance
+    for (std::size_t i = 0; i < witnesses.size(); ++i) {
+        double size = 0;
+        for (std::size_t c = 0; c < tolerance.size(); ++c)
+            if (tolerance[c] > 0)
+                size = std::max(
+                    size, surprise(regions, witnesses[i].region, c, witnesses[i].value[c], tolerance[c]) /
+                              tolerance[c]);
+        order.emplace_back(-size, i);
+    }
+    std::ranges::sort(order);
+    const auto d = static_cast<std::uint64_t>(n);
+    const std::uint64_t of_each = 80 * d + 4 * d * d;
+    std::uint64_t evaluations = 0;
+    for (std::size_t k = 0; k < std::min(order.size(), most_climbs); ++k) {
+        if (evaluations + of_each + 1 > most) break;
+        const CubatureWitness from = witnesses[order[k].second];
+        ValueBuffer g;
+        // Distance of the components from what the region of the surprise has on average.
+        const DensityFunction h = [&](const PointBatch& x, std::span<double> values) {
+            g.resize(x.count(), m);
+            evaluator(x, g, check.non_finite);
+            evaluations += x.count();
+            for (std::size_t i = 0; i < x.count(); ++i) {
+                values[i] = 0;
+                for (int c = 0; c < m; ++c) {
+                    const auto component = static_cast<std::size_t>(c);
+                    const double mean = regions.value(from.region)[component] / regions.volume(from.region);
+                    if (tolerance[component] > 0)
+                        values[i] += std::abs(std::as_const(g)(i, c) - mean) / tolerance[component];
+                }
+            }
+        };
+        PointBuffer start(1, n);
+        for (int j = 0; j < n; ++j) start(0, j) = from.x[static_cast<std::size_t>(j)];
+        std::array<double, 1> at_start{-order[k].first};
+        ModeSearch settings;
+        settings.most_modes = 1;
+        settings.fruitless = 1;
+        settings.max_evaluations = of_each;
+        for (const Gaussian& mode : find_modes(h, start, at_start, settings)) {
+            CubatureWitness top{
+                regions.containing(mode.mean()), {mode.mean().begin(), mode.mean().end()}, {}};
+            for (int j = 0; j < n; ++j) start(0, j) = top.x[static_cast<std::size_t>(j)];
+            std::array<double, 1> ignored{};
+            h(start, ignored);
+            for (int c = 0; c < m; ++c) top.value.push_back(std::as_const(g)(0, c));
+            witnesses.push_back(std::move(top));
+        }
+    }
+    return evaluations;
+}
 
 } // namespace
 
@@ -34,6 +117,7 @@ bool CubatureVerification::verified(std::span<const double> value) const {
     if (points_ == 0) return true;
     if (checked_value_.empty() || !witnesses_.empty()) return false;
     if (!warning_.empty()) return true; // no further check would help
+    if (disagrees_) return false;
     for (std::size_t c = 0; c < value.size(); ++c)
         if (!(std::abs(value[c] - checked_value_[c]) <= checked_error_[c])) return false;
     return true;
@@ -92,57 +176,63 @@ std::vector<double> CubatureVerification::tolerances(const CubatureRegions& regi
     return tolerance;
 }
 
-bool CubatureVerification::run(CubatureRegions& regions, std::span<const double> value,
-                               std::span<const double> error, std::uint64_t points,
-                               const StepRequest& request) {
+std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<const double> value,
+                                        std::span<const double> error, std::uint64_t points,
+                                        const StepRequest& request) {
     std::vector<double> tolerance = tolerances(regions, value, error, request);
     auto check = check_regions(problem_.evaluator, regions, points, problem_.seed, rounds_, tolerance,
                                problem_.full_covariance, request.cancel);
-    if (!check) return false;
+    if (!check) return 0;
+    const std::uint64_t climbed =
+        climb(problem_.evaluator, regions, tolerance, (request.max_evaluations - points) / 4, *check);
     ++rounds_;
-    evaluations_ += points;
+    evaluations_ += points + climbed;
     non_finite_.merge(check->non_finite);
     next_ = 8 * std::max(next_, points);
     tolerance_ = std::move(tolerance);
     residual_ = std::move(check->residual);
     checked_value_.assign(value.begin(), value.end());
     checked_error_.assign(error.begin(), error.end());
+    slack_.resize(lowest_.size(), 0.0);
     for (std::size_t c = 0; c < lowest_.size(); ++c) {
         lowest_[c] = std::min(lowest_[c], check->lowest[c]);
         highest_[c] = std::max(highest_[c], check->highest[c]);
+        slack_[c] = 0;
+        if (!check->surprises.empty()) slack_[c] = 2 * negligible * tolerance_[c];
+        const double difference = std::abs(check->difference[c]);
+        if (difference > error[c] + suspicion * check->standard_error[c])
+            slack_[c] = std::max(slack_[c], std::min(difference, tolerance_[c]));
     }
-    effective_points_ = std::numeric_limits<double>::infinity();
-    for (std::size_t c = 0; c < value.size(); ++c) {
-        double sizes = 0, squares = 0; // integrals of |mean of a region| and of its square
-        for (std::size_t r = 0; r < regions.count(); ++r) {
-            sizes += std::abs(regions.value(r)[c]);
-            squares += regions.value(r)[c] * regions.value(r)[c] / regions.volume(r);
-        }
-        if (squares > 0)
-            effective_points_ =
-                std::min(effective_points_, static_cast<double>(points) * sizes * sizes / squares);
-    }
+    points_in_bulk_ = static_cast<double>(points) * volume_of_half(regions);
     witnesses_ = std::move(check->surprises);
-    if (!witnesses_.empty() && rounds_ >= most_rounds) {
+    disagrees_ = false;
+    for (std::size_t c = 0; c < value.size(); ++c) {
+        const double difference = check->difference[c], noise = check->standard_error[c];
+        if (std::abs(difference) <= error[c] + significance * noise) continue;
+        disagrees_ = true;
+        if (rounds_ < most_rounds) add_differences(regions, *check, c);
+    }
+    if ((disagrees_ || !witnesses_.empty()) && rounds_ >= most_rounds) {
         witnesses_.clear();
-        warning_ = "random points keep meeting values that the rules do not expect (" +
-                   std::to_string(rounds_) + " checks)";
-        return true;
+        warning_ = "random points keep disagreeing with the rules (" + std::to_string(rounds_) + " checks)";
+        return points + climbed;
     }
     std::vector<std::size_t> of_regions;
     for (const CubatureWitness& w : witnesses_) of_regions.push_back(w.region);
     add_errors(regions, of_regions);
-    if (!witnesses_.empty()) return true;
-    for (std::size_t c = 0; c < value.size(); ++c) {
-        const double difference = check->difference[c], noise = check->standard_error[c];
-        if (std::abs(difference) <= error[c] + significance * noise) continue;
-        char text[160];
-        std::snprintf(text, sizeof text, "%llu random points give %.3g +- %.2g where the rules give %.3g",
-                      static_cast<unsigned long long>(points), value[c] + difference, noise, value[c]);
-        warning_ = text;
-        break;
+    return points + climbed;
+}
+
+void CubatureVerification::add_differences(CubatureRegions& regions, const CubatureCheck& check,
+                                           std::size_t component) {
+    const std::size_t m = lowest_.size();
+    for (std::size_t i = 0; i < check.regions.size(); ++i) {
+        double& error = regions.error(check.regions[i])[component];
+        const double difference = std::abs(check.differences[i * m + component]);
+        if (difference <= error || regions.marks(check.regions[i]).indivisible) continue;
+        error = difference;
+        regions.marks(check.regions[i]).exhausted = false;
     }
-    return true;
 }
 
 void CubatureVerification::skip(std::span<const double> value, std::span<const double> error) {
@@ -229,7 +319,9 @@ void CubatureVerification::save(StateWriter& state) const {
     state.put(rounds_);
     state.put(evaluations_);
     state.put(next_);
-    state.put(effective_points_);
+    state.put(points_in_bulk_);
+    state.put(slack_);
+    state.put(disagrees_);
     montelux::save(state, non_finite_);
     state.put(std::string_view(warning_));
 }
@@ -260,7 +352,10 @@ void CubatureVerification::load(StateReader& state, std::size_t regions) {
     rounds_ = state.get_word();
     evaluations_ = state.get_word();
     next_ = state.get_word();
-    effective_points_ = state.get_double();
+    points_in_bulk_ = state.get_double();
+    slack_ = state.get_doubles();
+    if (!slack_.empty()) fits(slack_, m);
+    disagrees_ = state.get<int>() != 0;
     montelux::load(state, non_finite_);
     warning_ = state.get_text();
 }

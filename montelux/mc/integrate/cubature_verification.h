@@ -30,10 +30,10 @@ class CubatureVerification {
     // Points of a check that is due; 0 where the evaluations left are too few for one.
     std::uint64_t points(const CubatureRegions& regions, std::span<const double> value,
                          std::uint64_t evaluations, const StepRequest& request) const;
-    // Makes a check, and adds what witnesses tell to the errors of their regions. False when cancelled, and
-    // then nothing changed.
-    bool run(CubatureRegions& regions, std::span<const double> value, std::span<const double> error,
-             std::uint64_t points, const StepRequest& request);
+    // Makes a check, and adds what witnesses tell to the errors of their regions. The evaluations made; none
+    // when cancelled, and then nothing changed.
+    std::uint64_t run(CubatureRegions& regions, std::span<const double> value, std::span<const double> error,
+                      std::uint64_t points, const StepRequest& request);
     // Forgets that the values were checked.
     void renew() { checked_value_.clear(); }
     // Takes note of a check that could not be made.
@@ -51,9 +51,12 @@ class CubatureVerification {
     // the first check.
     double correlation(std::size_t a, std::size_t b) const;
     bool knows_correlations() const { return residual_.full() && residual_.count() > 1; }
-    // Did so few points fall where the integral is, as the rules see it, that others like it may have been
-    // missed?
-    bool blind() const { return effective_points_ < enough_effective_points; }
+    // Did so few points fall where half of the integral is, as the rules see it, that other such places may
+    // have been missed?
+    bool blind() const { return points_in_bulk_ < enough_in_bulk; }
+    // Error of a component that the rules do not see: of surprises too small to be followed, and of a mean of
+    // the points that is farther off than it should be, but not far enough to halve regions for.
+    double slack(std::size_t component) const { return slack_.empty() ? 0 : slack_[component]; }
     // Empty in the normal case.
     const std::string& warning() const { return warning_; }
 
@@ -61,12 +64,14 @@ class CubatureVerification {
     void load(StateReader& state, std::size_t regions);
 
   private:
-    static constexpr double enough_effective_points = 16;
+    static constexpr double enough_in_bulk = 8;
     std::vector<double> tolerances(const CubatureRegions& regions, std::span<const double> value,
                                    std::span<const double> error, const StepRequest& request) const;
     // Error that the witness adds to its region; 0 where it is expected or negligible.
     double weight(const CubatureRegions& regions, const CubatureWitness& witness,
                   std::size_t component) const;
+    // Of regions whose points disagree with their rule, where the whole does.
+    void add_differences(CubatureRegions& regions, const CubatureCheck& check, std::size_t component);
     void add_errors(CubatureRegions& regions, std::span<const std::size_t> of_regions);
 
     Problem problem_;
@@ -78,7 +83,9 @@ class CubatureVerification {
     std::uint64_t rounds_ = 0, evaluations_ = 0;
     std::uint64_t next_ = 0; // evaluations at which a run without a target is checked
     NonFiniteCount non_finite_;
-    double effective_points_ = 0;
+    double points_in_bulk_ = 0;
+    std::vector<double> slack_;
+    bool disagrees_ = false; // the mean of the points, in the last check
     std::string warning_;
 };
 

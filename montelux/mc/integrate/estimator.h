@@ -50,8 +50,9 @@ struct Tally {
     int degrees_of_freedom = 0;
     // The target must not be believed before this is true (a pilot is running, too few replicates).
     bool ready = true;
-    // All that is left of the error is rounding: no method reaches a smaller one.
-    bool at_rounding = false;
+    // All that is left of the error is rounding, or what points that all agree leave open: more evaluations
+    // do not help.
+    bool at_limit = false;
     // A rule found so little of the domain to matter that random points cannot check it.
     bool localised = false;
     std::vector<std::string> doubts;

@@ -280,7 +280,7 @@ class Run {
 
     IntegrationResult result(StopReason stop) const {
         Tally tally = estimator_->tally();
-        const bool rounding = tally.at_rounding || is_rounding(tally);
+        const bool rounding = (tally.at_limit && tally.doubts.empty()) || is_rounding(tally);
         IntegrationResult r;
         r.value = std::move(tally.value);
         r.standard_error = std::move(tally.standard_error);
