@@ -87,7 +87,11 @@ class AdaptiveEstimator final : public Estimator {
         // Of uniform points the best may weigh much, and yet be no surprise.
         const bool heavy = weighted && estimate.heavy_tailed(tally.standard_error[0]);
         const bool lost = weighted && estimate.lost_what_is_in(uniform_);
-        if (heavy || lost) tally.ready = false;
+        std::vector<std::string> tail;
+        doubt_heavy_tail(estimate.sums().extremes.tail(), estimate.all_points(),
+                         static_cast<double>(estimate.all_points()), tally.standard_error[0], tail);
+        if (heavy || lost || !tail.empty()) tally.ready = false;
+        tally.doubts = std::move(tail);
         add_doubts(estimate, heavy, lost, tally);
         return tally;
     }

@@ -10,6 +10,7 @@ namespace montelux {
 namespace {
 
 constexpr std::size_t least_points = 20;
+constexpr double rounding = 1e-9; // spread of a tail over its size, below which values count as equal
 constexpr double prior_points = 10, prior_shape = 0.5;
 
 } // namespace
@@ -91,6 +92,7 @@ std::optional<ParetoFit> ParetoTail::fit(std::uint64_t n) const {
     const std::size_t m = std::min(static_cast<std::size_t>(points), sorted.empty() ? 0 : sorted.size() - 1);
     if (m == 0) return std::nullopt;
     const double threshold = sorted[m];
+    if (!(sorted.front() - threshold > rounding * sorted.front())) return std::nullopt;
     std::vector<double> exceedances(m);
     for (std::size_t i = 0; i < m; ++i) exceedances[m - 1 - i] = sorted[i] - threshold;
     std::optional<ParetoFit> fit = fit_pareto(exceedances);

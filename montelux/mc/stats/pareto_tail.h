@@ -30,7 +30,8 @@ std::optional<ParetoFit> fit_pareto(std::span<const double> exceedances);
 // The largest `capacity` of all values added. The result does not depend on the order or grouping of values.
 class ParetoTail {
   public:
-    explicit ParetoTail(std::size_t capacity = 1024) : capacity_(capacity) {}
+    ParetoTail() = default;
+    explicit ParetoTail(std::size_t capacity) : capacity_(capacity) {}
 
     // Values must not be NaN.
     void add(double value) {
@@ -56,7 +57,7 @@ class ParetoTail {
     void insert(double value);
     void prune();
 
-    std::size_t capacity_;
+    std::size_t capacity_ = 1024;
     double floor_ = 0;         // smaller values are not among the largest
     std::vector<double> kept_; // in no order, less than twice the capacity
 };
