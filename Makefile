@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo lab build test test-all bench bench-integrate lint format install dependencies clean
+.PHONY: help demo lab build test test-all bench bench-integrate bench-hard lint format install dependencies clean
 
 JOBS ?= $(shell cmake/jobs.sh)
 BUILD := build/release
@@ -52,6 +52,16 @@ bench-integrate: dependencies ## integrators beside GSL, cubature, vegas (hours;
 	$(INTEGRATE)/bench/integrate/montelux_bench_integrate --vegas-python $(INTEGRATE)/vegas/bin/python \
 	    --json $(INTEGRATE)/result.json $(if $(SEEDS),--seeds $(SEEDS)) $(if $(LINES),--lines $(LINES)) \
 	    $(if $(METHODS),--methods $(METHODS)) $(if $(TARGETS),--targets $(TARGETS)) | tee $(INTEGRATE)/result.md
+
+HARD := build/bench-hard
+bench-hard: dependencies ## integrators on hard integrals: silent failures (hours; less with SEEDS=5 FAMILIES=ring METHODS=auto TARGETS=1e-3)
+	@cmake/install-dependencies.sh bench || echo "Going on without the rivals that are missing."
+	bench/integrate/vegas-environment.sh $(HARD)/vegas
+	cmake --preset mc -B $(HARD) -D MONTELUX_BENCH=ON -D MONTELUX_TESTS=OFF -D MONTELUX_LTO=ON
+	cmake --build $(HARD) --parallel $(JOBS) --target montelux_bench_hard
+	$(HARD)/bench/hard/montelux_bench_hard --vegas-python $(HARD)/vegas/bin/python --jobs $(JOBS) --verbose \
+	    --json $(HARD)/result.json $(if $(SEEDS),--seeds $(SEEDS)) $(if $(FAMILIES),--families $(FAMILIES)) \
+	    $(if $(METHODS),--methods $(METHODS)) $(if $(TARGETS),--targets $(TARGETS)) | tee $(HARD)/result.md
 
 lint: ## formatting and static analysis (FILES="a.cpp b.cpp" for some, else all)
 	cmake/install-dependencies.sh lint

@@ -24,6 +24,8 @@ constexpr Line lines[] = {
     {four_peaks, 8},    {ridge, 4},         {ridge, 8},
 };
 
+constexpr Line line_of_costs{sum, 8};
+
 struct FamilyFacts {
     const char* name;
     double difficulty; // sum of the c_j
@@ -73,6 +75,7 @@ std::string line_name(Line line) {
 std::optional<Line> line_named(std::string_view name) {
     for (Line line : lines)
         if (line_name(line) == name) return line;
+    if (name == line_name(line_of_costs)) return line_of_costs;
     return std::nullopt;
 }
 
@@ -96,18 +99,20 @@ Group line_group(Line line) {
     }
 }
 
-BenchIntegrand::BenchIntegrand(Line line, std::uint64_t seed) : line_(line), seed_(seed) {
+BenchIntegrand::BenchIntegrand(Line line, std::uint64_t seed) : BenchProblem(seed), line_(line) {
     const bool flat = line_group(line) == Group::one_dimensional;
     const int least = line.family == discontinuous ? 2 : 1;
     if (line.dimensions < least || line.dimensions > (flat ? 1 : max_dimensions))
         throw Error("BenchIntegrand", "the family '" + std::string(facts_of(line.family).name) +
                                           "' has no integrand in " + std::to_string(line.dimensions) +
                                           " dimensions");
-    if (line.family == sine) upper_ = std::numbers::pi / 2;
-    if (line.family == exponential) upper_ = std::numeric_limits<double>::infinity();
-    if (line.family == quadratic) lower_ = -1;
+    Range range;
+    if (line.family == sine) range.upper = std::numbers::pi / 2;
+    if (line.family == exponential) range.upper = std::numeric_limits<double>::infinity();
+    if (line.family == quadratic) range.lower = -1;
+    set_ranges(std::vector<Range>(static_cast<std::size_t>(line.dimensions), range));
     draw_parameters(seed);
-    exact_ = exact_integral(*this);
+    set_exact(exact_integral(*this));
 }
 
 void BenchIntegrand::draw_parameters(std::uint64_t seed) {
@@ -262,28 +267,6 @@ void BenchIntegrand::evaluate(const double* const* x, std::size_t n, double* val
         }
     }
     }
-}
-
-double BenchIntegrand::on_unit_cube(const double* u) const {
-    if (lower_ == 0 && upper_ == 1) {
-        const double value = (*this)(u);
-        return std::isfinite(value) ? value : 0;
-    }
-    double x, jacobian;
-    if (std::isinf(upper_)) {
-        x = u[0] / (1 - u[0]);
-        jacobian = 1 / ((1 - u[0]) * (1 - u[0]));
-    } else {
-        x = lower_ + (upper_ - lower_) * u[0];
-        jacobian = upper_ - lower_;
-    }
-    const double value = (*this)(&x) * jacobian;
-    return std::isfinite(value) ? value : 0;
-}
-
-void BenchIntegrand::rows_on_unit_cube(const double* u, std::size_t n, double* values) const {
-    for (std::size_t i = 0; i < n; ++i)
-        values[i] = on_unit_cube(u + i * static_cast<std::size_t>(line_.dimensions));
 }
 
 } // namespace montelux::bench

@@ -2,6 +2,7 @@
 // peaks.
 #pragma once
 
+#include "bench/integrate/problem.h"
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -71,12 +72,14 @@ struct Line {
 std::span<const Line> bench_lines();
 // "osc-5", "ridge-8", "sin", ...
 std::string line_name(Line line);
+// Also "sum-8".
 std::optional<Line> line_named(std::string_view name);
 Group line_group(Line line);
 
-// One integrand: the parameters that a seed draws for a line. The numbers are those of Philox, keyed by
+// One integrand: the parameters that a seed draws for a line, its integral known to at least 12 digits. The
+// numbers are those of Philox, keyed by
 // family, dimensions and seed: first all w, then all c, then the rest.
-class BenchIntegrand {
+class BenchIntegrand final : public BenchProblem {
   public:
     static constexpr int max_dimensions = 8;
     static constexpr int max_peaks = 4;
@@ -84,25 +87,13 @@ class BenchIntegrand {
     BenchIntegrand(Line line, std::uint64_t seed);
 
     Line line() const { return line_; }
-    int dimensions() const { return line_.dimensions; }
-    std::uint64_t seed() const { return seed_; }
+    std::string name() const override { return line_name(line_); }
     // Range of a coordinate; all coordinates have the same one. The upper end may be infinite.
-    double lower() const { return lower_; }
-    double upper() const { return upper_; }
-    // The integral over the box, to at least 12 digits.
-    double exact() const { return exact_; }
+    double lower() const { return ranges()[0].lower; }
+    double upper() const { return ranges()[0].upper; }
 
-    // At one point of the box.
-    double operator()(const double* x) const;
-    // At n points in structure of arrays: coordinate j of point i is x[j][i].
-    void evaluate(const double* const* x, std::size_t n, double* values) const;
-
-    // The integrand carried to the unit cube, with the Jacobian of the map in it: x = lower + (upper - lower)
-    // u, or x = u / (1 - u) on [0, infinity). Its integral over the cube is exact(). A value that is not
-    // finite, at the end of a range, is returned as 0.
-    double on_unit_cube(const double* u) const;
-    // Row after row: coordinate j of point i is u[i * dimensions + j].
-    void rows_on_unit_cube(const double* u, std::size_t n, double* values) const;
+    double operator()(const double* x) const override;
+    void evaluate(const double* const* x, std::size_t n, double* values) const override;
 
     // The parameters, by the symbols above; unused ones are 0.
     std::span<const double> c() const { return {c_.data(), static_cast<std::size_t>(line_.dimensions)}; }
@@ -122,8 +113,6 @@ class BenchIntegrand {
     double ridge_value(double mean, double mean_square) const;
 
     Line line_;
-    std::uint64_t seed_;
-    double lower_ = 0, upper_ = 1;
     std::array<double, max_dimensions> w_{}, c_{};
     double phase_ = 0;
     double narrowness_ = 0;
@@ -131,7 +120,6 @@ class BenchIntegrand {
     std::array<std::array<double, max_dimensions>, max_peaks> centres_{};
     double begin_ = 0, end_ = 0;
     double scale_ = 1; // of the peaks and the ridge, so that they are normalised
-    double exact_ = 0;
 };
 
 // The integral over the box of the integrand with these parameters.

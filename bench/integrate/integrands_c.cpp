@@ -1,25 +1,33 @@
 // The integrands as a shared library with a C interface, for integrators in other languages: the same code,
 // so that an evaluation costs the same.
+#include "bench/hard/bank.h"
+#include "bench/integrate/integrands.h"
 #include "bench/integrate/method.h"
-#include <string>
+#include <memory>
+#include <utility>
 
 namespace {
 
+using namespace montelux::bench;
+
 struct Handle {
-    explicit Handle(montelux::bench::Line line, std::uint64_t seed)
-        : integrand(line, seed), counted(integrand) {}
-    montelux::bench::BenchIntegrand integrand;
-    montelux::bench::CountedIntegrand counted;
+    explicit Handle(std::unique_ptr<const BenchProblem> made) : problem(std::move(made)), counted(*problem) {}
+    std::unique_ptr<const BenchProblem> problem;
+    CountedIntegrand counted;
 };
 
 } // namespace
 
 #define MONTELUX_BENCH_EXPORT extern "C" __attribute__((visibility("default")))
 
-// Null for a line that there is not.
-MONTELUX_BENCH_EXPORT void* montelux_bench_integrand(int family, int dimensions, std::uint64_t seed) {
+// A line of the tables, or a family of the bank of hard integrals; null where neither has this name.
+MONTELUX_BENCH_EXPORT void* montelux_bench_integrand(const char* name, std::uint64_t seed) {
     try {
-        return new Handle({static_cast<montelux::bench::Family>(family), dimensions}, seed);
+        if (const std::optional<Line> line = line_named(name))
+            return new Handle(std::make_unique<BenchIntegrand>(*line, seed));
+        if (const HardFamily* family = hard_family_named(name))
+            return new Handle(std::make_unique<HardProblem>(*family, seed));
+        return nullptr;
     } catch (const std::exception&) {
         return nullptr;
     }

@@ -1,4 +1,5 @@
 // montelux_bench_integrate: Montelux's integrators beside those of others, one thread each.
+#include "bench/integrate/command_line.h"
 #include "bench/integrate/montelux_methods.h"
 #include "bench/integrate/options.h"
 #include "bench/integrate/report.h"
@@ -18,11 +19,6 @@ using namespace montelux::bench;
 // An interrupted comparison, which may take hours, still reports what it has.
 montelux::CancelFlag interrupted;
 void interrupt(int) { interrupted.request(); }
-
-bool asked_for(const std::vector<std::string>& beginnings, const std::string& name) {
-    return std::any_of(beginnings.begin(), beginnings.end(),
-                       [&](const std::string& beginning) { return name.starts_with(beginning); });
-}
 
 std::vector<Method> all_methods(const Options& options) {
     std::vector<Method> methods = montelux_methods();
@@ -50,9 +46,10 @@ Plan plan_of(const Options& options, const std::vector<Method>& methods) {
     Plan plan;
     plan.seeds = options.seeds;
     for (Line line : bench_lines())
-        if (options.lines.empty() || asked_for(options.lines, line_name(line))) plan.lines.push_back(line);
+        if (options.lines.empty() || begins_with_one_of(options.lines, line_name(line)))
+            plan.lines.push_back(line);
     for (const Method& method : methods)
-        if (options.methods.empty() ? method.by_default : asked_for(options.methods, method.name))
+        if (options.methods.empty() ? method.by_default : begins_with_one_of(options.methods, method.name))
             plan.methods.push_back(method);
     for (double target : options.targets)
         plan.goals.push_back({target, static_cast<std::uint64_t>(options.cap)});

@@ -1,7 +1,7 @@
 // What the comparison asks of an integrator, ours or another's, and what it answers.
 #pragma once
 
-#include "bench/integrate/integrands.h"
+#include "bench/integrate/problem.h"
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -14,31 +14,31 @@ namespace montelux::bench {
 // For one thread.
 class CountedIntegrand {
   public:
-    explicit CountedIntegrand(const BenchIntegrand& integrand) : integrand_(integrand) {}
+    explicit CountedIntegrand(const BenchProblem& problem) : problem_(problem) {}
 
-    const BenchIntegrand& integrand() const { return integrand_; }
-    int dimensions() const { return integrand_.dimensions(); }
+    const BenchProblem& problem() const { return problem_; }
+    int dimensions() const { return problem_.dimensions(); }
     std::uint64_t evaluations() const { return evaluations_; }
 
     double operator()(const double* x) const {
         ++evaluations_;
-        return integrand_(x);
+        return problem_(x);
     }
     void evaluate(const double* const* x, std::size_t n, double* values) const {
         evaluations_ += n;
-        integrand_.evaluate(x, n, values);
+        problem_.evaluate(x, n, values);
     }
     double on_unit_cube(const double* u) const {
         ++evaluations_;
-        return integrand_.on_unit_cube(u);
+        return problem_.on_unit_cube(u);
     }
     void rows_on_unit_cube(const double* u, std::size_t n, double* values) const {
         evaluations_ += n;
-        integrand_.rows_on_unit_cube(u, n, values);
+        problem_.rows_on_unit_cube(u, n, values);
     }
 
   private:
-    const BenchIntegrand& integrand_;
+    const BenchProblem& problem_;
     mutable std::uint64_t evaluations_ = 0;
 };
 
@@ -50,6 +50,7 @@ struct Request {
     std::uint64_t evaluations = 0; // the cap, or what is to be spent
     std::uint64_t seed = 0;
     Form form = Form::batch;
+    double seconds = 0; // wall time, for methods that know a limit of it; 0: none
 };
 
 struct Answer {
@@ -58,6 +59,9 @@ struct Answer {
     bool converged = false; // it claims the relative error asked for
     bool doubtful = false;  // its own diagnostics speak against the result
     std::string chosen;     // the method that an automatic one picked
+    std::string reason;     // why it did
+    std::string warnings;   // its diagnostics, where it has any, in words
+    bool out_of_time = false;
     // For methods that run in another process.
     std::optional<std::uint64_t> evaluations;
     std::optional<double> cpu_seconds;

@@ -15,29 +15,34 @@ namespace {
 Integrand integrand_of(const CountedIntegrand& f, Form form) {
     if (form == Form::scalar) return Integrand([&f](std::span<const double> x) { return f(x.data()); });
     return Integrand::batch([&f](const PointBatch& x, ValueBatch y) {
-        std::array<const double*, BenchIntegrand::max_dimensions> columns;
+        std::vector<const double*> columns(static_cast<std::size_t>(x.dimensions()));
         for (int j = 0; j < x.dimensions(); ++j) columns[j] = x.coordinate(j).data();
         f.evaluate(columns.data(), x.count(), y.component(0).data());
     });
 }
 
 Answer run(const montelux::Method& method, const CountedIntegrand& f, const Request& request) {
-    const BenchIntegrand& integrand = f.integrand();
-    const Domain domain(std::vector<Range>(static_cast<std::size_t>(f.dimensions()),
-                                           Range{integrand.lower(), integrand.upper()}));
+    const std::span<const Range> ranges = f.problem().ranges();
+    const Domain domain(std::vector<Range>(ranges.begin(), ranges.end()));
     Budget budget;
     budget.relative_error = request.relative_error;
     budget.evaluations = request.evaluations;
+    budget.time = std::chrono::duration<double>(request.seconds);
     IntegrationOptions options;
     options.seed = request.seed;
     options.threads = 1;
     const IntegrationResult result =
         integrate(integrand_of(f, request.form), domain, method, budget, options);
+    std::string warnings;
+    for (const std::string& doubt : result.doubts) warnings += (warnings.empty() ? "" : "; ") + doubt;
     return {.value = result.value[0],
             .error = result.standard_error[0],
             .converged = request.relative_error > 0 && result.stop == StopReason::error_target,
             .doubtful = !result.doubts.empty(),
             .chosen = result.method,
+            .reason = result.reason,
+            .warnings = warnings,
+            .out_of_time = result.stop == StopReason::time,
             .evaluations = {},
             .cpu_seconds = {}};
 }

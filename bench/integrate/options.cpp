@@ -1,32 +1,8 @@
 #include "bench/integrate/options.h"
 
-#include <charconv>
-
-#include "montelux/mc/math/error.h"
+#include "bench/integrate/command_line.h"
 
 namespace montelux::bench {
-
-namespace {
-
-std::vector<std::string> split(std::string_view text) {
-    std::vector<std::string> parts;
-    while (!text.empty()) {
-        const std::size_t comma = text.find(',');
-        if (comma != 0) parts.emplace_back(text.substr(0, comma));
-        text = comma == std::string_view::npos ? "" : text.substr(comma + 1);
-    }
-    return parts;
-}
-
-double number(std::string_view option, std::string_view text, double least, double most) {
-    double value = 0;
-    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (failure != std::errc() || end != text.data() + text.size() || !(value >= least && value <= most))
-        throw Error(option, "'" + std::string(text) + "' is not a number in range");
-    return value;
-}
-
-} // namespace
 
 std::string_view options_help() {
     return "Compares integrators: evaluations, CPU time, claimed and true errors.\n"
@@ -59,21 +35,21 @@ Options parse_options(const std::vector<std::string_view>& arguments) {
             return arguments[++i];
         };
         if (option == "--lines")
-            options.lines = split(value());
+            options.lines = comma_separated(value());
         else if (option == "--methods")
-            options.methods = split(value());
+            options.methods = comma_separated(value());
         else if (option == "--targets") {
             options.targets.clear();
-            for (const std::string& target : split(value()))
-                if (target != "none") options.targets.push_back(number(option, target, 1e-14, 1));
+            for (const std::string& target : comma_separated(value()))
+                if (target != "none") options.targets.push_back(number_in_range(option, target, 1e-14, 1));
         } else if (option == "--fixed")
-            options.fixed = number(option, value(), 0, 1e12);
+            options.fixed = number_in_range(option, value(), 0, 1e12);
         else if (option == "--cap")
-            options.cap = number(option, value(), 1, 1e12);
+            options.cap = number_in_range(option, value(), 1, 1e12);
         else if (option == "--seeds")
-            options.seeds = static_cast<std::uint64_t>(number(option, value(), 1, 1e6));
+            options.seeds = static_cast<std::uint64_t>(number_in_range(option, value(), 1, 1e6));
         else if (option == "--overhead")
-            options.overhead = number(option, value(), 0, 1e12);
+            options.overhead = number_in_range(option, value(), 0, 1e12);
         else if (option == "--json")
             options.json = value();
         else if (option == "--vegas-python")

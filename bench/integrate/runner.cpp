@@ -29,11 +29,9 @@ std::string Goal::name() const {
     return spends() ? name + " evaluations" : name;
 }
 
-namespace {
-
-Run run_one(const Method& method, const BenchIntegrand& integrand, const Request& request) {
+Run run_one(const Method& method, const BenchProblem& problem, const Request& request) {
     Run run{};
-    const CountedIntegrand counted(integrand);
+    const CountedIntegrand counted(problem);
     const double begin = process_cpu_seconds();
     try {
         run.answer = method.run(counted, request);
@@ -42,12 +40,10 @@ Run run_one(const Method& method, const BenchIntegrand& integrand, const Request
     }
     run.cpu_seconds = run.answer.cpu_seconds.value_or(process_cpu_seconds() - begin);
     run.evaluations = run.answer.evaluations.value_or(counted.evaluations());
-    run.exact = integrand.exact();
+    run.exact = problem.exact();
     if (run.failure.empty() && !std::isfinite(run.answer.value)) run.failure = "the value is not finite";
     return run;
 }
-
-} // namespace
 
 std::vector<Run> run_all(const Plan& plan, const Progress& progress, const CancelFlag* cancel) {
     std::vector<Run> runs;

@@ -1,6 +1,7 @@
 // Runs every method on every line, target and seed, and keeps what each run answered.
 #pragma once
 
+#include "bench/integrate/integrands.h"
 #include "bench/integrate/method.h"
 #include <cstdint>
 #include <functional>
@@ -23,7 +24,7 @@ struct Goal {
 };
 
 struct Run {
-    std::size_t line, method, goal; // in the plan's lists
+    std::size_t line = 0, method = 0, goal = 0; // in the plan's lists
     std::uint64_t seed = 0;
     Answer answer;
     double exact = 0;
@@ -48,6 +49,9 @@ using Progress = std::function<void(const Line&, const Goal&, const Method&, dou
 
 // `cancel` is asked before each run; what was run until then is returned.
 std::vector<Run> run_all(const Plan& plan, const Progress& progress, const CancelFlag* cancel = nullptr);
+
+// One run, its list indices left at 0.
+Run run_one(const Method& method, const BenchProblem& problem, const Request& request);
 
 // CPU time of this process so far.
 double process_cpu_seconds();

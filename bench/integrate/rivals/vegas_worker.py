@@ -24,7 +24,7 @@ FIRST = 1000  # evaluations an iteration, at first
 def load(path):
     library = ctypes.CDLL(path)
     library.montelux_bench_integrand.restype = ctypes.c_void_p
-    library.montelux_bench_integrand.argtypes = [ctypes.c_int, ctypes.c_int, ctypes.c_uint64]
+    library.montelux_bench_integrand.argtypes = [ctypes.c_char_p, ctypes.c_uint64]
     library.montelux_bench_release.argtypes = [ctypes.c_void_p]
     library.montelux_bench_evaluations.restype = ctypes.c_uint64
     library.montelux_bench_evaluations.argtypes = [ctypes.c_void_p]
@@ -66,7 +66,7 @@ def integrate(library, handle, request):
 
 
 def answer(library, request):
-    handle = library.montelux_bench_integrand(request["family"], request["dimensions"], request["parameters"])
+    handle = library.montelux_bench_integrand(request["problem"].encode(), request["parameters"])
     if not handle:
         return {"failure": "there is no such integrand"}
     try:
