@@ -24,12 +24,14 @@ constexpr double least_training = 20000;            // or so many, if they are n
 constexpr std::uint64_t enough_nonzero = 16;        // points that must see anything before training begins,
 constexpr std::uint64_t most_exploration = 1 << 20; // or evaluations without
 constexpr double peaky = 0.1; // effective share of exploring points below which peaks are searched for
+constexpr double narrow_peaks = 0.01;        // the same, where the search is thorough
 constexpr double trusted_exploration = 0.05; // the same, above which the error of uniform points is believed
 constexpr double flat = 0.6; // the same, of integrands that uniform points are likely to be best for
 constexpr double uniform_reach = 32768; // evaluations within which uniform points may be expected to arrive
 // Uniform points that a claim takes in several variables: what has an integral of one 1/5000 of the cube is
 // missed by all of them in 4 % of cases.
 constexpr std::uint64_t plateau_evaluations = 16384;
+constexpr double even_values = 0.7;          // effective share of exploring points of a plateau
 constexpr std::uint64_t most_kept = 1 << 18; // uniform points of a step that are kept for training
 constexpr double uncovered_matters = 2e-3;   // of the integral, for training to go on
 constexpr double surprise_matters = 2;       // error over target, from which heavy weights are acted on
@@ -84,8 +86,7 @@ class AdaptiveEstimator final : public Estimator {
         tally.non_finite.merge(weighted_.sums().non_finite);
         tally.non_finite.merge(abandoned_non_finite_);
         tally.ready = estimate.compared() && (phase_ == Phase::uniform || weighted) &&
-                      (weighted || problem_.evaluator.dimensions() == 1 ||
-                       uniform_.evaluations() >= plateau_evaluations);
+                      (weighted || !plateau() || uniform_.evaluations() >= plateau_evaluations);
         if (estimate.points() == 0) return tally;
         if (weighted)
             for (const DensityTrainer::Check& check : trainer_.checks()) {
@@ -162,6 +163,14 @@ class AdaptiveEstimator final : public Estimator {
             phase_ = trainer_.nonzero() == 0 ? Phase::uniform : first_training();
         return StepOutcome::advanced;
     }
+    // Points of each replicate that the trained density is tried with: half of the exploration.
+    std::uint64_t first_sample() const {
+        return problem_.evaluator.dimensions() == 1 ? explored_ : explored_ / 2;
+    }
+    // Values of one size, beside which a spike may be: only more points can tell.
+    bool plateau() const {
+        return problem_.evaluator.dimensions() > 1 && trainer_.effective_share() > even_values;
+    }
     // Does training begin by a search for peaks?
     Phase first_training() const { return trainer_.effective_share() < peaky ? Phase::search : Phase::train; }
 
@@ -177,7 +186,10 @@ class AdaptiveEstimator final : public Estimator {
 
     StepOutcome search(const StepRequest& request) {
         const auto n = static_cast<std::uint64_t>(problem_.evaluator.dimensions());
-        trainer_.find_peaks(std::min(request.max_evaluations / 4, 32 * (60 * n + 3 * n * n)));
+        // Where many points saw much, few searches tell whether there are peaks at all.
+        const bool narrow = trainer_.effective_share() < narrow_peaks;
+        trainer_.find_peaks(std::min(request.max_evaluations / 4, (narrow ? 32 : 8) * (60 * n + 3 * n * n)),
+                            narrow ? 5 : 2);
         phase_ = Phase::train;
         return StepOutcome::advanced;
     }
@@ -225,7 +237,7 @@ class AdaptiveEstimator final : public Estimator {
                        MixtureEstimate& estimate) {
         const std::uint64_t points = estimate.points();
         const std::uint64_t affordable = points + request.max_evaluations / replicates();
-        std::uint64_t goal = points == 0 ? explored_ : next_balanced(points);
+        std::uint64_t goal = points == 0 ? first_sample() : next_balanced(points);
         if (points > 0 && targeted(request)) {
             // No further than the target is expected to need, but at most twice as far.
             const double needed = static_cast<double>(points) * std::min(2.0, estimate.error_ratio(request));
@@ -268,14 +280,16 @@ class AdaptiveEstimator final : public Estimator {
         // Of uneven integrands uniform points know their error too little for that.
         const bool sooner = targeted(request) && trainer_.effective_share() > flat &&
                             uniform_.expected_rest(request) < much_sooner * weighted_.expected_rest(request);
-        const bool better =
-            first && uniform_.points() == weighted_.points() && uniform_.error_ratio(request) < ratio;
+        const double more = static_cast<double>(uniform_.points()) / static_cast<double>(weighted_.points());
+        const bool better = first && more <= 2 &&
+                            uniform_.error_ratio(request) * (first_sample() < explored_ ? more : 1) < ratio;
         if (trainer_.effective_share() > trusted_exploration && (sooner || better)) {
             uniform_.compare_anew();
             phase_ = Phase::uniform;
             return;
         }
-        if (!targeted(request) || weighted_.points() < 4 * explored_ || retrained_ >= max_retrainings) return;
+        if (!targeted(request) || weighted_.points() < 4 * first_sample() || retrained_ >= max_retrainings)
+            return;
         const double sampled = static_cast<double>(weighted_.evaluations());
         const double left =
             std::min(sampled * (std::pow(ratio, 1.5) - 1), static_cast<double>(request.max_evaluations));

@@ -10,7 +10,8 @@
 namespace montelux {
 
 // 1. Explores with uniform scrambled Sobol' points, 16 x 256 at first in several variables. Where these alone
-//    will reach the target soon (smooth, flat or oscillating integrands), they continue, to 16384 at least.
+//    will reach the target soon (smooth, flat or oscillating integrands), they continue, on plateaus to 16384
+//    at least.
 // 2. Otherwise trains a mixture density. Where the values are uneven, peaks are searched for by climbing the
 //    logarithm of |f|. Rounds of importance sampling then fit a product of one-dimensional maps (Lepage 1978)
 //    and Gaussians, and add Gaussians at the points with the largest weights, until the weights are even and

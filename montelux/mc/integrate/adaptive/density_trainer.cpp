@@ -6,7 +6,6 @@
 #include <numeric>
 #include <utility>
 
-#include "montelux/mc/integrate/adaptive/mode_search.h"
 #include "montelux/mc/integrate/adaptive/surprises.h"
 #include "montelux/mc/random/hash.h"
 
@@ -124,7 +123,7 @@ void DensityTrainer::start(SamplePoints&& points) {
     recent_.push_back({density_, std::move(points.x), std::move(h), std::move(points.density)});
 }
 
-void DensityTrainer::find_peaks(std::uint64_t max_evaluations) {
+void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless) {
     if (density_.dimensions() > max_gaussian_dimensions) return;
     // Taken over at the end, so that an exception of the integrand leaves everything as it was.
     std::uint64_t evaluations = 0;
@@ -136,7 +135,8 @@ void DensityTrainer::find_peaks(std::uint64_t max_evaluations) {
         std::ranges::copy(steering(g), values.begin());
     };
     const Round& seen = recent_.back();
-    std::vector<Gaussian> modes = find_modes(h, seen.x, seen.h, {.max_evaluations = max_evaluations});
+    std::vector<Gaussian> modes =
+        find_modes(h, seen.x, seen.h, {.fruitless = fruitless, .max_evaluations = max_evaluations});
     evaluations_ += evaluations;
     non_finite_.merge(non_finite);
     if (modes.empty()) return;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "montelux/mc/integrate/adaptive/mixture_sampling.h"
+#include "montelux/mc/integrate/adaptive/mode_search.h"
 
 namespace montelux {
 
@@ -23,8 +24,9 @@ class DensityTrainer {
     std::uint64_t nonzero() const { return nonzero_; }
     double effective_share() const { return effective_share_; }
 
-    // Looks for peaks; evaluations are counted in evaluations().
-    void find_peaks(std::uint64_t max_evaluations);
+    // Looks for peaks, until so many searches in a row have led to known ones; evaluations are counted in
+    // evaluations().
+    void find_peaks(std::uint64_t max_evaluations, int fruitless = ModeSearch().fruitless);
     // One round of n points, about (a multiple of MixtureDensity::units). False when cancelled: nothing
     // changed.
     bool round(std::uint64_t n, const CancelFlag* cancel);
