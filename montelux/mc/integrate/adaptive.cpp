@@ -23,11 +23,19 @@ constexpr double fixed_training_share = 0.1;        // of a fixed number of eval
 constexpr double least_training = 20000;            // or so many, if they are no more than a third
 constexpr std::uint64_t enough_nonzero = 16;        // points that must see anything before training begins,
 constexpr std::uint64_t most_exploration = 1 << 20; // or evaluations without
-constexpr double peaky = 0.01; // effective share of exploring points below which peaks are searched for
+constexpr double peaky = 0.1; // effective share of exploring points below which peaks are searched for
+constexpr double narrow_peaks = 0.01;        // the same, where the search is thorough
 constexpr double trusted_exploration = 0.05; // the same, above which the error of uniform points is believed
 constexpr double flat = 0.6; // the same, of integrands that uniform points are likely to be best for
 constexpr double uniform_reach = 32768; // evaluations within which uniform points may be expected to arrive
-constexpr double much_sooner = 0.5;     // share of the expected rest at which uniform points are gone back to
+// Uniform points that a claim takes in several variables: what has an integral of one 1/5000 of the cube is
+// missed by all of them in 4 % of cases.
+constexpr std::uint64_t plateau_evaluations = 16384;
+constexpr double even_values = 0.7;          // effective share of exploring points of a plateau
+constexpr std::uint64_t most_kept = 1 << 18; // uniform points of a step that are kept for training
+constexpr double uncovered_matters = 2e-3;   // of the integral, for training to go on
+constexpr double surprise_matters = 2;       // error over target, from which heavy weights are acted on
+constexpr double much_sooner = 0.5; // share of the expected rest at which uniform points are gone back to
 constexpr std::uint64_t step_points = 65536; // of each replicate in one step
 constexpr std::uint64_t smallest_budget = 4; // rounds of training that must fit in for training to begin
 
@@ -44,10 +52,12 @@ class AdaptiveEstimator final : public Estimator {
     AdaptiveEstimator(const Problem& problem, const Adaptive& settings)
         : problem_(problem), settings_(settings),
           explored_(std::max<std::uint64_t>(
-              128, std::bit_ceil(4 * static_cast<std::uint64_t>(problem.evaluator.dimensions())))),
+              problem.evaluator.dimensions() == 1 ? 128 : 256,
+              std::bit_ceil(4 * static_cast<std::uint64_t>(problem.evaluator.dimensions())))),
           trainer_(problem, std::max(1, static_cast<int>(
                                             std::lround(settings.uniform_share * MixtureDensity::units)))),
-          cube_(problem.evaluator.dimensions()), round_points_(explored_ / 128 * training_points),
+          cube_(problem.evaluator.dimensions()),
+          round_points_(std::max<std::uint64_t>(1, explored_ / 256) * training_points),
           uniform_(settings.replicates, problem.evaluator.components()), weighted_(uniform_) {}
 
     StepOutcome step(const StepRequest& request) override {
@@ -75,7 +85,8 @@ class AdaptiveEstimator final : public Estimator {
         tally.non_finite.merge(uniform_.sums().non_finite);
         tally.non_finite.merge(weighted_.sums().non_finite);
         tally.non_finite.merge(abandoned_non_finite_);
-        tally.ready = estimate.compared() && (phase_ == Phase::uniform || weighted);
+        tally.ready = estimate.compared() && (phase_ == Phase::uniform || weighted) &&
+                      (weighted || !plateau() || uniform_.evaluations() >= plateau_evaluations);
         if (estimate.points() == 0) return tally;
         if (weighted)
             for (const DensityTrainer::Check& check : trainer_.checks()) {
@@ -87,7 +98,11 @@ class AdaptiveEstimator final : public Estimator {
         // Of uniform points the best may weigh much, and yet be no surprise.
         const bool heavy = weighted && estimate.heavy_tailed(tally.standard_error[0]);
         const bool lost = weighted && estimate.lost_what_is_in(uniform_);
-        if (heavy || lost) tally.ready = false;
+        std::vector<std::string> tail;
+        doubt_heavy_tail(estimate.sums().extremes.tail(), estimate.all_points(),
+                         static_cast<double>(estimate.all_points()), tally.standard_error[0], tail);
+        if (heavy || lost || !tail.empty()) tally.ready = false;
+        tally.doubts = std::move(tail);
         add_doubts(estimate, heavy, lost, tally);
         return tally;
     }
@@ -145,11 +160,19 @@ class AdaptiveEstimator final : public Estimator {
         if (!room || uniform_will_do(request))
             phase_ = Phase::uniform;
         else if (trainer_.nonzero() >= enough_nonzero || uniform_.evaluations() >= most_exploration)
-            phase_ = trainer_.nonzero() == 0              ? Phase::uniform
-                     : trainer_.effective_share() < peaky ? Phase::search
-                                                          : Phase::train;
+            phase_ = trainer_.nonzero() == 0 ? Phase::uniform : first_training();
         return StepOutcome::advanced;
     }
+    // Points of each replicate that the trained density is tried with: half of the exploration.
+    std::uint64_t first_sample() const {
+        return problem_.evaluator.dimensions() == 1 ? explored_ : explored_ / 2;
+    }
+    // Values of one size, beside which a spike may be: only more points can tell.
+    bool plateau() const {
+        return problem_.evaluator.dimensions() > 1 && trainer_.effective_share() > even_values;
+    }
+    // Does training begin by a search for peaks?
+    Phase first_training() const { return trainer_.effective_share() < peaky ? Phase::search : Phase::train; }
 
     // Are uniform points expected to arrive soon? Their error falls faster than 1 / n for what is smooth.
     bool uniform_will_do(const StepRequest& request) const {
@@ -163,7 +186,10 @@ class AdaptiveEstimator final : public Estimator {
 
     StepOutcome search(const StepRequest& request) {
         const auto n = static_cast<std::uint64_t>(problem_.evaluator.dimensions());
-        trainer_.find_peaks(std::min(request.max_evaluations / 4, 12 * (60 * n + 3 * n * n)));
+        // Where many points saw much, few searches tell whether there are peaks at all.
+        const bool narrow = trainer_.effective_share() < narrow_peaks;
+        trainer_.find_peaks(std::min(request.max_evaluations / 4, (narrow ? 32 : 8) * (60 * n + 3 * n * n)),
+                            narrow ? 5 : 2);
         phase_ = Phase::train;
         return StepOutcome::advanced;
     }
@@ -186,6 +212,8 @@ class AdaptiveEstimator final : public Estimator {
             allowed = std::min(allowed, settings_.training_share *
                                             std::pow(std::sqrt(variance) / request.relative_error, 1.4));
         allowed = std::max(allowed, training_goal_);
+        if (targeted(request) && trainer_.uncovered_share() > uncovered_matters)
+            allowed = std::max(allowed, 0.25 * all);
         if (trainer_.rounds() >= 2 &&
             (trained + static_cast<double>(round_points_) > allowed || trainer_.rounds() >= max_rounds))
             phase_ = Phase::weighted;
@@ -209,7 +237,7 @@ class AdaptiveEstimator final : public Estimator {
                        MixtureEstimate& estimate) {
         const std::uint64_t points = estimate.points();
         const std::uint64_t affordable = points + request.max_evaluations / replicates();
-        std::uint64_t goal = points == 0 ? explored_ : next_balanced(points);
+        std::uint64_t goal = points == 0 ? first_sample() : next_balanced(points);
         if (points > 0 && targeted(request)) {
             // No further than the target is expected to need, but at most twice as far.
             const double needed = static_cast<double>(points) * std::min(2.0, estimate.error_ratio(request));
@@ -224,8 +252,13 @@ class AdaptiveEstimator final : public Estimator {
         goal = goal / units * units;
         if (goal <= points) return StepOutcome::exhausted;
         const std::uint64_t end = std::min(goal, (points / units + step_points / units) * units);
-        auto added = sample_mixture(problem_.evaluator, density, hash_key(problem_.seed, stream),
-                                    settings_.replicates, points, end, nullptr, request.cancel);
+        // What uniform points have found since the exploration, training is to know.
+        const bool keep = phase_ == Phase::uniform && trainer_.rounds() == 0 && targeted(request) &&
+                          (end - points) * replicates() <= most_kept;
+        SamplePoints drawn;
+        auto added =
+            sample_mixture(problem_.evaluator, density, hash_key(problem_.seed, stream), settings_.replicates,
+                           points, end, keep ? &drawn : nullptr, request.cancel);
         if (!added) return StepOutcome::cancelled;
         estimate.grow(*added, end);
         if (phase_ == Phase::weighted)
@@ -234,7 +267,8 @@ class AdaptiveEstimator final : public Estimator {
                  estimate.error_ratio(request) > 1 && !uniform_will_do(request) &&
                  request.max_evaluations >= smallest_budget * training_points) {
             estimate.compare_anew(); // slower than expected
-            phase_ = Phase::train;
+            if (keep) trainer_.start(std::move(drawn));
+            phase_ = first_training();
         }
         return StepOutcome::advanced;
     }
@@ -246,27 +280,41 @@ class AdaptiveEstimator final : public Estimator {
         // Of uneven integrands uniform points know their error too little for that.
         const bool sooner = targeted(request) && trainer_.effective_share() > flat &&
                             uniform_.expected_rest(request) < much_sooner * weighted_.expected_rest(request);
-        const bool better =
-            first && uniform_.points() == weighted_.points() && uniform_.error_ratio(request) < ratio;
+        const double more = static_cast<double>(uniform_.points()) / static_cast<double>(weighted_.points());
+        const bool better = first && more <= 2 &&
+                            uniform_.error_ratio(request) * (first_sample() < explored_ ? more : 1) < ratio;
         if (trainer_.effective_share() > trusted_exploration && (sooner || better)) {
             uniform_.compare_anew();
             phase_ = Phase::uniform;
             return;
         }
-        if (!targeted(request) || weighted_.points() < 4 * explored_ || retrained_ >= max_retrainings) return;
+        if (!targeted(request) || weighted_.points() < 4 * first_sample() || retrained_ >= max_retrainings)
+            return;
         const double sampled = static_cast<double>(weighted_.evaluations());
         const double left =
             std::min(sampled * (std::pow(ratio, 1.5) - 1), static_cast<double>(request.max_evaluations));
         const double trained = static_cast<double>(trainer_.evaluations());
-        if (!(settings_.training_share * left > 2 * trained && sampled < left)) return;
+        const bool far = settings_.training_share * left > 2 * trained && sampled < left;
+        // Weights that the density had not promised: it misses a part of the integrand.
+        const bool surprised = ratio <= surprise_matters && surprising(weighted_) &&
+                               4 * trained < static_cast<double>(request.max_evaluations);
+        if (!far && !surprised) return;
         // These samples are given up: an estimate that joined densities chosen by what was seen would be
         // biased.
         ++retrained_;
         abandoned_evaluations_ += weighted_.evaluations();
         abandoned_non_finite_.merge(weighted_.sums().non_finite);
         weighted_ = MixtureEstimate(settings_.replicates, problem_.evaluator.components());
-        training_goal_ = settings_.training_share * left;
+        training_goal_ = surprised ? 2 * trained : settings_.training_share * left;
         phase_ = Phase::train;
+    }
+
+    bool surprising(const MixtureEstimate& estimate) const {
+        Tally tally;
+        estimate.tally(false, tally);
+        doubt_heavy_tail(estimate.sums().extremes.tail(), estimate.all_points(),
+                         static_cast<double>(estimate.all_points()), tally.standard_error[0], tally.doubts);
+        return !tally.doubts.empty() || estimate.heavy_tailed(tally.standard_error[0]);
     }
 
     void add_doubts(const MixtureEstimate& estimate, bool heavy, bool lost, Tally& tally) const {

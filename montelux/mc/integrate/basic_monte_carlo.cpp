@@ -8,7 +8,8 @@ namespace {
 
 class BasicEstimator final : public Estimator {
   public:
-    explicit BasicEstimator(const Problem& problem) : problem_(problem), sum_(empty()) {}
+    explicit BasicEstimator(const Problem& problem)
+        : problem_(problem), sum_{empty_moments(), {}, ExtremeValues(problem.evaluator.components())} {}
 
     StepOutcome step(const StepRequest& request) override {
         const std::uint64_t done = sum_.moments.count();
@@ -16,7 +17,10 @@ class BasicEstimator final : public Estimator {
         if (size == 0) return StepOutcome::exhausted;
         const Evaluator& g = problem_.evaluator;
         auto sum = sum_batches(
-            size, [&] { return empty(); },
+            size,
+            [&] {
+                return SampleMoments{empty_moments(), {}, sum_.extremes.empty()};
+            },
             [&](std::uint64_t first, std::uint64_t count, SampleMoments& to) {
                 PointBuffer u(count, g.dimensions());
                 ValueBuffer values(count, g.components());
@@ -32,7 +36,7 @@ class BasicEstimator final : public Estimator {
 
     Tally tally() const override {
         Tally tally;
-        tally_mean(sum_.moments, tally);
+        tally_mean(sum_, tally);
         tally.evaluations = sum_.moments.count();
         tally.non_finite = sum_.non_finite;
         return tally;
@@ -40,15 +44,17 @@ class BasicEstimator final : public Estimator {
     void save(StateWriter& state) const override {
         montelux::save(state, sum_.moments);
         montelux::save(state, sum_.non_finite);
+        sum_.extremes.save(state);
     }
     void load(StateReader& state) override {
         montelux::load(state, sum_.moments);
         montelux::load(state, sum_.non_finite);
+        sum_.extremes.load(state);
     }
 
   private:
-    SampleMoments empty() const {
-        return {CovarianceMoments(problem_.evaluator.components(), problem_.full_covariance), {}};
+    CovarianceMoments empty_moments() const {
+        return CovarianceMoments(problem_.evaluator.components(), problem_.full_covariance);
     }
 
     Problem problem_;

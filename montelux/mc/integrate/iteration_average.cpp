@@ -5,12 +5,14 @@
 #include <cstdio>
 #include <limits>
 
+#include "montelux/mc/integrate/sampling.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/special.h"
 
 namespace montelux {
 namespace {
 
+constexpr double few_of_all = 1 / 16.; // points that make up the variance, where these count as few
 constexpr double significance = 1e-3;
 // Of a value, relative: constants would else disagree with themselves.
 constexpr double rounding_error = 1e-13;
@@ -19,7 +21,8 @@ constexpr double rounding_error = 1e-13;
 
 IterationEstimate IterationEstimate::zero(int components, bool full_covariance) {
     const auto m = static_cast<std::size_t>(components);
-    return {std::vector<double>(m), std::vector<double>(m * (full_covariance ? m : 1)), 0};
+    return {std::vector<double>(m), std::vector<double>(m * (full_covariance ? m : 1)), 0,
+            std::vector<double>(m), 0};
 }
 
 void IterationEstimate::add_mean(const CovarianceMoments& samples) {
@@ -36,7 +39,8 @@ void IterationEstimate::add_mean(const CovarianceMoments& samples) {
 
 IterationAverage::IterationAverage(int components, bool full_covariance)
     : full_(full_covariance), value_(static_cast<std::size_t>(components)),
-      covariance_(value_.size() * (full_covariance ? value_.size() : 1)), chi_squared_(value_) {}
+      covariance_(value_.size() * (full_covariance ? value_.size() : 1)), chi_squared_(value_),
+      largest_(value_) {}
 
 double IterationAverage::variance(int component) const {
     const auto c = static_cast<std::size_t>(component);
@@ -67,6 +71,9 @@ void IterationAverage::add(double weight, const IterationEstimate& iteration) {
         value_[c] += weight / weight_ * (iteration.value[c] - value_[c]);
     for (std::size_t k = 0; k < covariance_.size(); ++k)
         covariance_[k] += weight * weight * iteration.covariance[k];
+    for (std::size_t c = 0; c < iteration.largest_variance.size(); ++c)
+        largest_[c] = std::max(largest_[c], weight * weight * iteration.largest_variance[c]);
+    points_ += iteration.points;
 }
 
 void IterationAverage::tally(Tally& tally) const {
@@ -83,6 +90,15 @@ void IterationAverage::tally(Tally& tally) const {
             for (std::size_t b = 0; b < m; ++b)
                 tally.covariance.push_back(covariance_[std::max(a, b) * m + std::min(a, b)] /
                                            (weight_ * weight_));
+    std::vector<double> least(m);
+    for (std::size_t c = 0; c < m; ++c) {
+        const double error = tally.standard_error[c], largest = largest_[c] / (weight_ * weight_);
+        const double k = largest > 0 ? error * error / largest : points_;
+        least[c] = k < few_of_all * points_ ? error * few_values_factor(k) : 0;
+        if (points_ > 0 && !(error > rounding_error * std::abs(value_[c])))
+            least[c] = equal_values_error(value_[c], points_);
+    }
+    raise_standard_errors(least, tally);
     tally.degrees_of_freedom = degrees_of_freedom_;
     if (degrees_of_freedom_ == 0) return;
     tally.chi_squared = *std::max_element(chi_squared_.begin(), chi_squared_.end());
@@ -101,17 +117,20 @@ void IterationAverage::save(StateWriter& state) const {
     state.put(value_);
     state.put(covariance_);
     state.put(chi_squared_);
+    state.put(largest_);
+    state.put(points_);
     state.put(degrees_of_freedom_);
 }
 
 void IterationAverage::load(StateReader& state) {
     iterations_ = state.get<int>();
     weight_ = state.get_double();
-    for (std::vector<double>* part : {&value_, &covariance_, &chi_squared_}) {
+    for (std::vector<double>* part : {&value_, &covariance_, &chi_squared_, &largest_}) {
         std::vector<double> numbers = state.get_doubles();
         if (numbers.size() != part->size()) throw Error("the saved state has another number of components");
         *part = std::move(numbers);
     }
+    points_ = state.get_double();
     degrees_of_freedom_ = state.get<int>();
 }
 

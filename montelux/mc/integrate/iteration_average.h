@@ -15,6 +15,9 @@ struct IterationEstimate {
     std::vector<double> value, covariance;
     // Degrees of freedom of the variances; 0 where they are as good as known.
     int degrees_of_freedom = 0;
+    // Of each component, where known: the largest share of one value in the variance.
+    std::vector<double> largest_variance = {};
+    double points = 0; // that the estimate was made of; 0 where equal values prove that it is exact
 
     static IterationEstimate zero(int components, bool full_covariance);
     // Adds an independent part: the mean of samples of these moments, with its own covariance.
@@ -50,6 +53,8 @@ class IterationAverage {
     std::vector<double> value_;      // weighted mean
     std::vector<double> covariance_; // sum of squared weights times covariances
     std::vector<double> chi_squared_;
+    std::vector<double> largest_; // squared weight times variance, of one value
+    double points_ = 0;
     int degrees_of_freedom_ = 0;
 };
 

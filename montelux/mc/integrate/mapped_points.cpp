@@ -62,6 +62,8 @@ void MapInsight::merge(const MapInsight& later) {
     }
     size += later.size;
     largest_square = std::max(largest_square, later.largest_square);
+    tail.merge(later.tail);
+    tail_values += later.tail_values;
     training.merge(later.training);
     non_finite.merge(later.non_finite);
 }

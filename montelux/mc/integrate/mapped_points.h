@@ -6,6 +6,7 @@
 
 #include "montelux/mc/integrate/adaptive_map.h"
 #include "montelux/mc/integrate/evaluator.h"
+#include "montelux/mc/stats/pareto_tail.h"
 
 namespace montelux {
 
@@ -47,6 +48,9 @@ struct MapInsight {
     std::vector<double> absolute;       // mean of |w_c|
     double size = 0;                    // mean of the root of squares()
     double largest_square = 0;          // of all points
+    // Of |w_0|, or of its deviations within strata, times the point's share times the number of points.
+    ParetoTail tail;
+    std::uint64_t tail_values = 0;
     MapTraining training;
     NonFiniteCount non_finite;
 

@@ -5,6 +5,7 @@
 
 #include "montelux/mc/integrate/estimator.h"
 #include "montelux/mc/integrate/iteration_average.h"
+#include "montelux/mc/stats/pareto_tail.h"
 
 namespace montelux {
 
@@ -20,6 +21,8 @@ class PassEstimator : public Estimator {
         // Decided before the pass ran; see IterationAverage.
         double weight = 0;
         IterationEstimate estimate;
+        ParetoTail tail = {}; // as StrataSum has it
+        std::uint64_t tail_values = 0;
         NonFiniteCount non_finite;
         std::uint64_t evaluations = 0; // pilot included
     };
@@ -38,6 +41,9 @@ class PassEstimator : public Estimator {
   private:
     Problem problem_;
     IterationAverage average_;
+    ParetoTail tail_;
+    std::uint64_t tail_values_ = 0;
+    double points_ = 0; // that the tail is of
     NonFiniteCount non_finite_;
     std::uint64_t evaluations_ = 0;
     std::uint32_t passes_ = 0;

@@ -35,7 +35,8 @@ class QuasiEstimator final : public Estimator {
         : problem_(problem), kind_(settings.points),
           randomisation_(settings.randomisation.value_or(best_randomisation(kind_))),
           plain_(randomisation_ == Randomisation::none && kind_ != PointSetKind::independent),
-          asked_(settings.replicates) {
+          asked_(settings.replicates), completed_extremes_(problem.evaluator.components()),
+          running_extremes_(completed_extremes_) {
         if (asked_ < 0 || asked_ == 1 || asked_ > 65536)
             throw Error("quasi", std::to_string(asked_) + " replicates; expected 2 to 65536, or 0");
         // Tells at once whether the set exists.
@@ -55,7 +56,9 @@ class QuasiEstimator final : public Estimator {
         if (size == 0) return StepOutcome::exhausted;
         ReplicateSums sums(replicates, problem_.evaluator.components());
         NonFiniteCount non_finite;
-        if (!add(begin, size, next, sums, non_finite, request.cancel)) return StepOutcome::cancelled;
+        ExtremeValues extremes = running_extremes_.empty();
+        if (!add(begin, size, next, sums, non_finite, extremes, request.cancel))
+            return StepOutcome::cancelled;
 
         if (replicates_ == 0) {
             replicates_ = replicates;
@@ -68,6 +71,7 @@ class QuasiEstimator final : public Estimator {
         absolute_target_ = request.absolute_error;
         non_finite_.merge(non_finite);
         running_.merge(sums);
+        running_extremes_.merge(extremes);
         if (begin + size == next_) complete();
         return StepOutcome::advanced;
     }
@@ -87,6 +91,7 @@ class QuasiEstimator final : public Estimator {
             tally.covariance.clear();
             return tally;
         }
+        judge_extremes(completed_extremes_, points_ * static_cast<std::uint64_t>(replicates_), tally);
         tally.ready = trusted(tally);
         doubt(tally);
         return tally;
@@ -102,6 +107,8 @@ class QuasiEstimator final : public Estimator {
         state.put(absolute_target_);
         state.put(completed_.all());
         state.put(running_.all());
+        completed_extremes_.save(state);
+        running_extremes_.save(state);
         state.put(previous_value_);
         state.put(previous_error_);
         montelux::save(state, non_finite_);
@@ -123,6 +130,8 @@ class QuasiEstimator final : public Estimator {
             *sums = ReplicateSums(replicates_, m);
             sums->restore(std::move(all));
         }
+        completed_extremes_.load(state);
+        running_extremes_.load(state);
         previous_value_ = state.get_doubles();
         previous_error_ = state.get_doubles();
         montelux::load(state, non_finite_);
@@ -170,13 +179,14 @@ class QuasiEstimator final : public Estimator {
     // Adds points [begin, begin + size) of each replicate. Parts of the work are cut by number alone, and
     // added up in order.
     bool add(std::uint64_t begin, std::uint64_t size, std::uint64_t set, ReplicateSums& sums,
-             NonFiniteCount& non_finite, const CancelFlag* cancel) const {
+             NonFiniteCount& non_finite, ExtremeValues& extremes, const CancelFlag* cancel) const {
         constexpr std::uint64_t part = batch_size * batches_per_task;
         const std::uint64_t parts = (size + part - 1) / part;
         const int m = problem_.evaluator.components();
         struct Slot {
             std::vector<double> sums;
             NonFiniteCount non_finite;
+            ExtremeValues extremes;
         };
         std::vector<Slot> slots(static_cast<std::size_t>(sums.replicates()) * parts);
         std::vector<RandomisedPoints> sets;
@@ -190,6 +200,7 @@ class QuasiEstimator final : public Estimator {
             [&](std::int64_t task) {
                 Slot& slot = slots[static_cast<std::size_t>(task)];
                 slot.sums.assign(static_cast<std::size_t>(m), 0.0);
+                slot.extremes = running_extremes_.empty();
                 const RandomisedPoints& replicate = sets[static_cast<std::size_t>(task) / parts];
                 const std::uint64_t from = static_cast<std::uint64_t>(task) % parts * part;
                 const std::uint64_t to = std::min(size, from + part);
@@ -205,6 +216,7 @@ class QuasiEstimator final : public Estimator {
                         std::span<const double> v = std::as_const(values).component(c);
                         slot.sums[static_cast<std::size_t>(c)] +=
                             lane_sum(count, [v](std::size_t i) { return v[i]; });
+                        slot.extremes.add(c, v);
                     }
                 }
             },
@@ -214,6 +226,7 @@ class QuasiEstimator final : public Estimator {
             for (int c = 0; c < m; ++c)
                 sums.sum(static_cast<int>(i / parts), c) += slots[i].sums[static_cast<std::size_t>(c)];
             non_finite.merge(slots[i].non_finite);
+            extremes.merge(slots[i].extremes);
         }
         return true;
     }
@@ -225,10 +238,14 @@ class QuasiEstimator final : public Estimator {
             previous_value_ = std::move(before.value);
             previous_error_ = std::move(before.standard_error);
         }
-        if (extensible())
+        if (extensible()) {
             completed_.merge(running_);
-        else
+            completed_extremes_.merge(running_extremes_);
+        } else {
             completed_ = running_;
+            completed_extremes_ = running_extremes_;
+        }
+        running_extremes_ = ExtremeValues(completed_.components());
         running_ = ReplicateSums(replicates_, completed_.components());
         points_ = next_;
         next_ = position_ = 0;
@@ -288,6 +305,7 @@ class QuasiEstimator final : public Estimator {
     std::uint64_t evaluations_ = 0;
     double relative_target_ = 0, absolute_target_ = 0; // of the last request
     ReplicateSums completed_, running_;
+    ExtremeValues completed_extremes_, running_extremes_;
     std::vector<double> previous_value_, previous_error_; // at the number of points before
     NonFiniteCount non_finite_;
 };

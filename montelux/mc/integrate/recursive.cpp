@@ -32,6 +32,8 @@ class RecursiveEstimator final : public PassEstimator {
         Pass pass;
         pass.weight = std::pow(static_cast<double>(size), 1 + 2.0 / problem().evaluator.dimensions());
         pass.estimate = std::move(sum->estimate);
+        pass.tail = std::move(sum->tail);
+        pass.tail_values = sum->tail_values;
         pass.non_finite = std::move(boxes->non_finite);
         pass.non_finite.merge(sum->non_finite);
         pass.evaluations = boxes->pilot + boxes->offsets.back();

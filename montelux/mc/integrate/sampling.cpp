@@ -7,6 +7,7 @@ namespace montelux {
 
 void SampleMoments::add(const ValueBuffer& values) {
     const std::size_t n = values.count();
+    for (int c = 0; c < extremes.components(); ++c) extremes.add(c, values.component(c));
     if (values.components() == 1) {
         // Two passes over values in the cache are exact enough and vectorise; a running mean does neither.
         constexpr std::size_t lanes = 8;
@@ -43,6 +44,35 @@ void tally_mean(const CovarianceMoments& moments, Tally& tally) {
     if (!moments.full()) return;
     for (int a = 0; a < m; ++a)
         for (int b = 0; b < m; ++b) tally.covariance.push_back(moments.covariance(a, b) * inverse);
+}
+
+void tally_mean(const SampleMoments& samples, Tally& tally) {
+    tally_mean(samples.moments, tally);
+    judge_extremes(samples.extremes, samples.moments.count(), tally);
+}
+
+void judge_extremes(const ExtremeValues& extremes, std::uint64_t n, Tally& tally) {
+    if (n < 2 || extremes.components() == 0) return;
+    std::vector<double> least;
+    for (int c = 0; c < extremes.components(); ++c) least.push_back(extremes.least_standard_error(c, n));
+    raise_standard_errors(least, tally);
+    doubt_heavy_tail(extremes.tail(), n, static_cast<double>(n), tally.standard_error[0], tally.doubts);
+}
+
+void raise_standard_errors(std::span<const double> least, Tally& tally) {
+    const std::size_t m = tally.standard_error.size();
+    for (std::size_t c = 0; c < least.size(); ++c) {
+        double& error = tally.standard_error[c];
+        if (!(least[c] > error)) continue;
+        const double factor = error > 0 ? least[c] / error : 0;
+        error = least[c];
+        if (tally.covariance.empty()) continue;
+        for (std::size_t k = 0; k < m; ++k) {
+            tally.covariance[c * m + k] *= factor;
+            tally.covariance[k * m + c] *= factor;
+        }
+        tally.covariance[c * m + c] = error * error;
+    }
 }
 
 void save(StateWriter& state, const CovarianceMoments& moments) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "montelux/mc/integrate/estimator.h"
+#include "montelux/mc/integrate/extreme_values.h"
 #include "montelux/mc/integrate/interruptible.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/stats/covariance_moments.h"
@@ -44,22 +45,30 @@ std::optional<Sum> sum_batches(std::uint64_t count, const Make& make, const Add&
     }
 }
 
-// Moments of samples, and what was not finite among them.
+// Moments of samples, and what was not finite among them; their extreme values where `extremes` has
+// components.
 struct SampleMoments {
     CovarianceMoments moments;
     NonFiniteCount non_finite;
+    ExtremeValues extremes = {};
 
     // All values of a batch.
     void add(const ValueBuffer& values);
     void merge(const SampleMoments& later) {
         moments.merge(later.moments);
         non_finite.merge(later.non_finite);
+        extremes.merge(later.extremes);
     }
 };
 
 // Fills value, standard_error and covariance of `tally` from moments whose mean is the estimate and whose
 // covariance, divided by `count`, is that of the mean.
 void tally_mean(const CovarianceMoments& moments, Tally& tally);
+void tally_mean(const SampleMoments& samples, Tally& tally);
+// Raises errors of means of n values where too few of the values made them, and doubts heavy tails.
+void judge_extremes(const ExtremeValues& extremes, std::uint64_t n, Tally& tally);
+// Standard errors of at least `least`, one a component; covariances grow in proportion.
+void raise_standard_errors(std::span<const double> least, Tally& tally);
 
 void save(StateWriter& state, const CovarianceMoments& moments);
 void load(StateReader& state, CovarianceMoments& moments);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "montelux/mc/integrate/sampling.h"
@@ -10,12 +11,22 @@
 namespace montelux {
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 // What the strata of one task add.
 struct PartialSum {
     std::vector<double> value, covariance;
+    std::vector<double> largest_variance; // that one value added, where there is one component
+    ParetoTail
+        tail; // of the largest deviations within strata, times the number of samples over the stratum's share
+    std::uint64_t tail_values = 0;
     NonFiniteCount non_finite;
 
     void merge(const PartialSum& later) {
+        for (std::size_t c = 0; c < value.size(); ++c)
+            largest_variance[c] = std::max(largest_variance[c], later.largest_variance[c]);
+        tail.merge(later.tail);
+        tail_values += later.tail_values;
         for (std::size_t c = 0; c < value.size(); ++c) value[c] += later.value[c];
         for (std::size_t k = 0; k < covariance.size(); ++k) covariance[k] += later.covariance[k];
         non_finite.merge(later.non_finite);
@@ -38,6 +49,7 @@ class StrataTask {
         const auto m = static_cast<std::size_t>(components());
         sum_.value.resize(m);
         sum_.covariance.resize(m * (problem.full_covariance ? m : 1));
+        sum_.largest_variance.resize(m);
     }
 
     // Strata [first, last).
@@ -89,7 +101,11 @@ class StrataTask {
             std::span<const double> v =
                 std::as_const(values_).component(0).subspan(piece.begin, piece.end - piece.begin);
             double mean = 0;
-            for (double x : v) mean += x;
+            for (double x : v) {
+                mean += x;
+                least_ = std::min(least_, x);
+                greatest_ = std::max(greatest_, x);
+            }
             mean /= static_cast<double>(v.size());
             double squares = 0;
             for (double x : v) squares += (x - mean) * (x - mean);
@@ -131,7 +147,14 @@ class StrataTask {
     void finish(const Piece& piece, std::uint64_t count, double mean, double squares) {
         const double n = static_cast<double>(count), variance = squares / (n - 1);
         sum_.value[0] += piece.volume * mean;
-        sum_.covariance[0] += piece.volume * piece.volume * variance / n;
+        const double share = piece.volume * piece.volume / (n * (n - 1));
+        sum_.covariance[0] += share * squares;
+        const double deviation = std::max(greatest_ - mean, mean - least_);
+        sum_.largest_variance[0] = std::max(sum_.largest_variance[0], share * deviation * deviation);
+        sum_.tail.add(piece.volume / n * static_cast<double>(offsets_.back()) * deviation);
+        ++sum_.tail_values;
+        least_ = infinity;
+        greatest_ = -infinity;
         if (variances_) (*variances_)[piece.stratum] = variance;
     }
 
@@ -148,7 +171,7 @@ class StrataTask {
     // The stratum that the batches so far have begun.
     CovarianceMoments moments_;
     std::uint64_t count_ = 0;
-    double mean_ = 0, squares_ = 0;
+    double mean_ = 0, squares_ = 0, least_ = infinity, greatest_ = -infinity;
 };
 
 } // namespace
@@ -206,7 +229,11 @@ std::optional<StrataSum> sample_strata(const Problem& problem, const Strata& str
         },
         cancel);
     if (!sum) return std::nullopt;
-    return StrataSum{{std::move(sum->value), std::move(sum->covariance), 0}, std::move(sum->non_finite)};
+    return StrataSum{{std::move(sum->value), std::move(sum->covariance), 0, std::move(sum->largest_variance),
+                      static_cast<double>(offsets.back())},
+                     std::move(sum->tail),
+                     sum->tail_values,
+                     std::move(sum->non_finite)};
 }
 
 std::vector<std::uint64_t> allocate_samples(std::uint64_t strata, std::uint64_t samples, std::uint64_t least,

@@ -9,6 +9,7 @@
 
 #include "montelux/mc/integrate/estimator.h"
 #include "montelux/mc/integrate/iteration_average.h"
+#include "montelux/mc/stats/pareto_tail.h"
 
 namespace montelux {
 
@@ -27,6 +28,10 @@ std::vector<std::uint64_t> balanced_cells(int dimensions, std::uint64_t count);
 struct StrataSum {
     // Sum over strata of volume * mean of its samples; the variance adds volume^2 * s^2 / n. Both unbiased.
     IterationEstimate estimate;
+    // Where there is one component: of the largest deviation in each stratum, times the sample's share times
+    // the number of samples.
+    ParetoTail tail;
+    std::uint64_t tail_values = 0;
     NonFiniteCount non_finite;
 };
 

@@ -75,6 +75,8 @@ class StratifiedEstimator final : public PassEstimator {
         const double exponent = settings_.strata != 0 ? 1 : 1 + 2.0 / d;
         pass.weight = std::pow(static_cast<double>(samples), exponent);
         pass.estimate = std::move(sum->estimate);
+        pass.tail = std::move(sum->tail);
+        pass.tail_values = sum->tail_values;
         pass.evaluations = samples + strata.count * pilot;
         add(pass);
         return StepOutcome::advanced;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "montelux/mc/integrate/extreme_values.h"
 #include "montelux/mc/integrate/unit_points.h"
 #include "montelux/mc/random/hash.h"
 
@@ -43,6 +44,8 @@ void VegasState::save(StateWriter& state) const {
     state.put(training_limit);
     state.put(training_done);
     for (double x : {last_spread, points, sum_of_squares, largest_square}) state.put(x);
+    state.put(tail.values());
+    state.put(tail_values);
 }
 
 void VegasState::load(StateReader& state) {
@@ -62,6 +65,8 @@ void VegasState::load(StateReader& state) {
     training_limit = state.get_word();
     training_done = state.get<int>();
     for (double* x : {&last_spread, &points, &sum_of_squares, &largest_square}) *x = state.get_double();
+    tail.restore(state.get_doubles());
+    tail_values = state.get_word();
 }
 
 VegasEstimator::VegasEstimator(const Problem& problem, const Vegas& settings, int least_evaluations)
@@ -193,6 +198,8 @@ void VegasEstimator::note_iteration(VegasState& next, const MapInsight& insight,
     next.points += points;
     next.sum_of_squares += points * squares;
     next.largest_square = std::max(next.largest_square, insight.largest_square);
+    next.tail.merge(insight.tail);
+    next.tail_values += insight.tail_values;
 }
 
 Tally VegasEstimator::tally() const {
@@ -209,6 +216,7 @@ Tally VegasEstimator::tally() const {
                       state_.points, 100 * state_.largest_square / state_.sum_of_squares);
         tally.doubts.emplace_back(text);
     }
+    doubt_heavy_tail(state_.tail, state_.tail_values, state_.points, tally.standard_error[0], tally.doubts);
     return tally;
 }
 

@@ -31,6 +31,8 @@ struct VegasState {
     double last_spread = 0;           // squared, of the values relative to their size, in the last iteration
     // Over the iterations that count, for the share of the largest value in the sum of squares.
     double points = 0, sum_of_squares = 0, largest_square = 0;
+    ParetoTail tail = {};
+    std::uint64_t tail_values = 0;
 
     void save(StateWriter& state) const;
     void load(StateReader& state);

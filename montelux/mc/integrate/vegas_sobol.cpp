@@ -147,6 +147,7 @@ class SobolVegas final : public VegasEstimator {
                       std::uint64_t count, std::uint64_t all_points, bool training) const {
         const Evaluator& g = problem_.evaluator;
         ReplicatePass pass{ReplicateSums(settings_.replicates, g.components()), MapInsight(g.components())};
+        pass.insight.tail = next.tail.empty();
         pass.insight.training = MapTraining(g.dimensions(), next.map.increments());
         // Streams of different iterations are independent, too.
         const ScrambledSobol sobol(g.dimensions(), problem_.seed,
@@ -162,6 +163,9 @@ class SobolVegas final : public VegasEstimator {
             sobol.fill(y, first + done);
             points.evaluate(g, next.map, y, next.inverse_scale, pass.insight.non_finite);
             pass.insight.add(points, {share.data(), n});
+            for (std::size_t i = 0; i < n; ++i) weighted[i] = std::abs(points.values(0)[i]);
+            pass.insight.tail.add({weighted.data(), n});
+            pass.insight.tail_values += n;
             for (int c = 0; c < g.components(); ++c) {
                 const double* w = points.values(c).data();
                 pass.sums.sum(replicate, c) += lane_sum(n, [&](std::size_t i) { return w[i]; });
@@ -184,7 +188,11 @@ class SobolVegas final : public VegasEstimator {
     IterationEstimate estimate(const Iteration& iteration) const {
         const CovarianceMoments moments = iteration.sums.moments(iteration.points, problem_.full_covariance);
         const double r = settings_.replicates;
-        IterationEstimate estimate{moments.means(), moments.products(), settings_.replicates - 1};
+        IterationEstimate estimate{moments.means(),
+                                   moments.products(),
+                                   settings_.replicates - 1,
+                                   {},
+                                   r * static_cast<double>(iteration.points)};
         for (double& p : estimate.covariance) p /= r * (r - 1);
         return estimate;
     }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "montelux/mc/integrate/hypercubes.h"
 #include "montelux/mc/integrate/sampling.h"
@@ -10,6 +11,7 @@
 namespace montelux {
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t most_boxes = 1 << 18;
 constexpr std::uint64_t points_per_box = 8; // at least two of them are each box's own
 
@@ -18,6 +20,7 @@ class BoxMoments {
   public:
     BoxMoments(int components, bool full)
         : full_(full), mean_(static_cast<std::size_t>(components)), run_mean_(mean_),
+          least_(mean_.size(), infinity), greatest_(mean_.size(), -infinity),
           products_(mean_.size() * (full ? mean_.size() : 1)) {}
 
     std::uint32_t count() const { return count_; }
@@ -28,6 +31,10 @@ class BoxMoments {
             const double* w = points.values(static_cast<int>(c)).data() + begin;
             double sum = 0;
             for (std::uint32_t i = 0; i < n; ++i) sum += w[i];
+            for (std::uint32_t i = 0; i < n; ++i) {
+                least_[c] = std::min(least_[c], w[i]);
+                greatest_[c] = std::max(greatest_[c], w[i]);
+            }
             run_mean_[c] = sum / n;
         }
         // Chan, Golub and LeVeque 1983: moments of two parts.
@@ -44,6 +51,8 @@ class BoxMoments {
         count_ += n;
         for (std::size_t c = 0; c < m; ++c) mean_[c] += (run_mean_[c] - mean_[c]) * n / count_;
     }
+    // Greatest distance of a value of the first component from the mean.
+    double largest_deviation() const { return std::max(greatest_[0] - mean_[0], mean_[0] - least_[0]); }
     // Adds the box's part of the mean over `boxes` boxes and of its covariance; returns the variance of all
     // components together, each scaled; and starts afresh.
     double finish(double boxes, std::span<const double> inverse_scale, IterationEstimate& to) {
@@ -59,7 +68,11 @@ class BoxMoments {
                 if (a == b) variance += products_[k] * inverse_scale[a] * inverse_scale[a] / (n - 1);
                 products_[k] = 0;
             }
+            const double deviation = std::max(greatest_[a] - mean_[a], mean_[a] - least_[a]);
+            to.largest_variance[a] = std::max(to.largest_variance[a], factor * deviation * deviation);
             mean_[a] = 0;
+            least_[a] = infinity;
+            greatest_[a] = -infinity;
         }
         count_ = 0;
         return variance;
@@ -68,7 +81,7 @@ class BoxMoments {
   private:
     bool full_;
     std::uint32_t count_ = 0;
-    std::vector<double> mean_, run_mean_, products_;
+    std::vector<double> mean_, run_mean_, least_, greatest_, products_;
 };
 
 struct IterationSum {
@@ -79,6 +92,9 @@ struct IterationSum {
         for (std::size_t c = 0; c < estimate.value.size(); ++c) estimate.value[c] += later.estimate.value[c];
         for (std::size_t k = 0; k < estimate.covariance.size(); ++k)
             estimate.covariance[k] += later.estimate.covariance[k];
+        for (std::size_t c = 0; c < estimate.largest_variance.size(); ++c)
+            estimate.largest_variance[c] =
+                std::max(estimate.largest_variance[c], later.estimate.largest_variance[c]);
         insight.merge(later.insight);
     }
 };
@@ -106,7 +122,7 @@ class StratifiedVegas final : public VegasEstimator {
         cubes.resize(std::clamp<std::uint64_t>(points / points_per_box, 1, most_boxes));
         const std::vector<std::uint32_t> counts = cubes.allocate(points, settings_.beta);
         std::vector<double> variances(counts.size());
-        const auto sum = sample(next, cubes, counts, variances, request.cancel);
+        auto sum = sample(next, cubes, counts, variances, request.cancel);
         if (!sum) return StepOutcome::cancelled;
         std::uint64_t taken = 0;
         for (std::uint32_t n : counts) taken += n;
@@ -120,6 +136,7 @@ class StratifiedVegas final : public VegasEstimator {
                                 next.inverse_scale, next.non_finite, request.cancel))
                 return StepOutcome::cancelled;
             used += uniform;
+            sum->estimate.points = weight;
             next.average.add(weight, sum->estimate);
             note_iteration(next, sum->insight, weight);
             next.evaluations += used;
@@ -183,6 +200,7 @@ class StratifiedVegas final : public VegasEstimator {
         const int m = g.components(), dimensions = g.dimensions();
         const double boxes = static_cast<double>(counts.size());
         IterationSum sum{empty(), MapInsight(m)};
+        sum.insight.tail = next.tail.empty();
         sum.insight.training = MapTraining(dimensions, next.map.increments());
         BoxMoments moments(m, problem_.full_covariance);
         PointBuffer y;
@@ -219,8 +237,11 @@ class StratifiedVegas final : public VegasEstimator {
                 const std::uint32_t run = std::min<std::uint32_t>(rest, static_cast<std::uint32_t>(n - at));
                 moments.add(points, at, run);
                 at += run;
-                if (moments.count() == counts[k])
-                    variances[k] = moments.finish(boxes, next.inverse_scale, sum.estimate);
+                if (moments.count() < counts[k]) continue;
+                const double relative_weight = static_cast<double>(all_points) / (boxes * counts[k]);
+                sum.insight.tail.add(relative_weight * moments.largest_deviation());
+                ++sum.insight.tail_values;
+                variances[k] = moments.finish(boxes, next.inverse_scale, sum.estimate);
             }
             first += n;
         }

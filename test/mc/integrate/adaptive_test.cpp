@@ -211,6 +211,51 @@ TEST(Adaptive, FindsNarrowPeaksInEightDimensions) {
     }
 }
 
+// No run may be wrong without a doubt, and most must arrive.
+void expect_found(const KnownIntegral& problem, int seeds, int least_converged) {
+    int converged = 0;
+    for (int seed = 1; seed <= seeds; ++seed) {
+        const IntegrationResult r =
+            integrate(problem.f, problem.domain, Adaptive{}, {.relative_error = 1e-2, .evaluations = 400'000},
+                      {.seed = static_cast<std::uint64_t>(seed), .threads = 1});
+        converged += r.converged();
+        if (!r.doubts.empty()) continue;
+        EXPECT_LT(std::abs(r.value[0] - problem.truth[0]), 5 * r.standard_error[0]) << "seed " << seed;
+    }
+    EXPECT_GE(converged, least_converged);
+}
+
+// 25 peaks, among them twelve halves and quarters.
+TEST(Adaptive, FindsAllPeaksOfAnEggbox) {
+    auto f = [](std::span<const double> x) {
+        return std::exp(std::pow(2 + std::cos(x[0] / 2) * std::cos(x[1] / 2), 5));
+    };
+    expect_found({f, Domain({{0, 10 * pi}, {0, 10 * pi}}), {2.66206e105}}, 5, 4);
+}
+
+TEST(Adaptive, FollowsThinRingsAndCurvedRidges) {
+    const double width = 0.01, radius = 0.7;
+    auto ring = [=](std::span<const double> x) {
+        return std::exp(-0.5 * std::pow((std::hypot(x[0], x[1]) - radius) / width, 2));
+    };
+    const double truth = 2 * pi * radius * width * std::sqrt(2 * pi);
+    expect_found({ring, Domain({{-1.3, 1.3}, {-1.3, 1.3}}), {truth}}, 4, 3);
+    auto rosenbrock = [](std::span<const double> x) {
+        return std::exp(-std::pow(1 - x[0], 2) - 100 * std::pow(x[1] - x[0] * x[0], 2));
+    };
+    expect_found({rosenbrock, Domain({{-5, 5}, {-5, 5}}), {0.301507}}, 4, 3);
+}
+
+// Half of the integral in 1 / 5000 of the square: most explorations do not see it.
+TEST(Adaptive, SpikesOnAPlateauAreSeldomMissed) {
+    const double width = 0.005;
+    auto f = [=](std::span<const double> x) {
+        const double r2 = std::pow(x[0] - 0.317, 2) + std::pow(x[1] - 0.731, 2);
+        return 1 + std::exp(-0.5 * r2 / (width * width)) / (2 * pi * width * width);
+    };
+    expect_found({f, Domain::unit_cube(2), {2}}, 4, 3);
+}
+
 TEST(Adaptive, ZeroIntegrandIsDoubted) {
     auto zero = [](std::span<const double>) { return 0.0; };
     const IntegrationResult r = integrate(zero, Domain::unit_cube(3), Adaptive{},

@@ -105,7 +105,8 @@ TEST(Importance, PerfectDensityHasNoVariance) {
     const IntegrationResult r = integrate([](double x) { return 3 * std::cos(x); }, quarter,
                                           Importance{CosineDistribution()}, {.evaluations = 1000});
     EXPECT_NEAR(r.value[0], 3, 1e-13);
-    EXPECT_NEAR(r.standard_error[0], 0, 1e-14);
+    // Half of the rule of three: all values equal.
+    EXPECT_NEAR(r.standard_error[0], 1.5 * 3 / 970, 2e-4);
 }
 
 TEST(Importance, InfiniteDomainsAndUniformTechniques) {

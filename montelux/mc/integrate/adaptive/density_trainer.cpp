@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "montelux/mc/integrate/adaptive/mode_search.h"
+#include "montelux/mc/integrate/adaptive/surprises.h"
 #include "montelux/mc/random/hash.h"
 
 namespace montelux {
@@ -16,6 +16,9 @@ constexpr int max_gaussian_dimensions = 32;   // their covariances grow with the
 constexpr double enough_even = 0.3;           // relative variance below which no Gaussians are added
 constexpr int first_fit_before_gaussians = 2; // rounds that maps alone are given
 constexpr int em_steps = 20;
+constexpr int most_gaussians = 40, most_added = 6; // in all, and by a round
+constexpr double far_above = 10;                   // times the mean of h / q
+constexpr std::size_t most_remembered = 128;
 constexpr double safe_width = 1.1;
 constexpr std::uint64_t least_seen = 16; // points of a round that saw anything, for the round to teach
 
@@ -120,7 +123,7 @@ void DensityTrainer::start(SamplePoints&& points) {
     recent_.push_back({density_, std::move(points.x), std::move(h), std::move(points.density)});
 }
 
-void DensityTrainer::find_peaks(std::uint64_t max_evaluations) {
+void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless) {
     if (density_.dimensions() > max_gaussian_dimensions) return;
     // Taken over at the end, so that an exception of the integrand leaves everything as it was.
     std::uint64_t evaluations = 0;
@@ -132,7 +135,8 @@ void DensityTrainer::find_peaks(std::uint64_t max_evaluations) {
         std::ranges::copy(steering(g), values.begin());
     };
     const Round& seen = recent_.back();
-    std::vector<Gaussian> modes = find_modes(h, seen.x, seen.h, {.max_evaluations = max_evaluations});
+    std::vector<Gaussian> modes =
+        find_modes(h, seen.x, seen.h, {.fruitless = fruitless, .max_evaluations = max_evaluations});
     evaluations_ += evaluations;
     non_finite_.merge(non_finite);
     if (modes.empty()) return;
@@ -187,6 +191,8 @@ DensityTrainer::Pool DensityTrainer::pool() const {
     const int dimensions = density_.dimensions();
     std::size_t count = 0;
     for (const Round& r : recent_) count += r.h.size();
+    const std::size_t drawn = count;
+    count += remembered_h_.size();
     Pool pool;
     pool.x.resize(count, dimensions);
     pool.p.assign(count, 0.0);
@@ -196,11 +202,15 @@ DensityTrainer::Pool DensityTrainer::pool() const {
             std::ranges::copy(r.x.view().coordinate(d), pool.x.coordinate(d).begin() + at);
         pool.h.insert(pool.h.end(), r.h.begin(), r.h.end());
     }
+    for (int d = 0; d < dimensions && drawn < count; ++d)
+        std::ranges::copy(remembered_.view().coordinate(d),
+                          pool.x.coordinate(d).begin() + static_cast<std::ptrdiff_t>(drawn));
+    pool.h.insert(pool.h.end(), remembered_h_.begin(), remembered_h_.end());
     std::vector<double> part(count);
     for (const Round& r : recent_) {
         r.density.pdf(pool.x, part);
         for (std::size_t i = 0; i < count; ++i)
-            pool.p[i] += part[i] * static_cast<double>(r.h.size()) / static_cast<double>(count);
+            pool.p[i] += part[i] * static_cast<double>(r.h.size()) / static_cast<double>(drawn);
     }
     return pool;
 }
@@ -220,26 +230,85 @@ void DensityTrainer::fit() {
             fit_monotone_map(last.x.view().coordinate(static_cast<int>(d)), weights, settings);
     });
     std::vector<Gaussian> gaussians(density_.gaussians().begin(), density_.gaussians().end());
-    const bool more = !enriched_ && rounds_ > first_fit_before_gaussians &&
-                      relative_variance_ > enough_even && dimensions <= max_gaussian_dimensions;
-    if (gaussians.empty() && !more) {
-        density_ = MixtureDensity(dimensions, std::move(maps), {});
-        density_.optimise_shares(last.x, last.h, last.p, uniform_units_);
-        return;
-    }
+    const bool uneven = rounds_ > first_fit_before_gaussians && relative_variance_ > enough_even &&
+                        dimensions <= max_gaussian_dimensions;
+    const bool more = !enriched_ && uneven;
     // Gaussians have more to learn: all recent points, weighted by the mixture of the densities that drew
     // them.
     const Pool all = pool();
     weights.resize(all.h.size());
-    for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = all.h[i] / all.p[i];
+    double total = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) total += weights[i] = all.h[i] / all.p[i];
+    // Truncated, so that no single point draws a Gaussian to itself (Ionides 2008, "Truncated Importance
+    // Sampling").
+    const double largest = total / std::sqrt(static_cast<double>(weights.size()));
+    for (double& w : weights) w = std::min(w, largest);
     if (more) {
         enriched_ = true;
         gaussians = gaussians.empty() ? scattered_gaussians(all.x, weights) : split(gaussians);
     }
-    fit_gaussians(gaussians, all.x, weights, em_steps);
+    if (!gaussians.empty()) fit_gaussians(gaussians, all.x, weights, em_steps);
     for (Gaussian& g : gaussians) g = g.widened(safe_width); // tails cost little, and their absence much
-    density_ = MixtureDensity(dimensions, std::move(maps), std::move(gaussians));
+    MixtureDensity density_before = std::move(density_);
+    density_ = MixtureDensity(dimensions, maps, gaussians);
     density_.optimise_shares(all.x, all.h, all.p, uniform_units_);
+    std::vector<double> ratios(all.h.size());
+    auto compare = [&] {
+        density_.pdf(all.x, ratios);
+        for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] = all.h[i] / ratios[i];
+    };
+    auto second_moment = [&] {
+        double sum = 0;
+        for (std::size_t i = 0; i < ratios.size(); ++i) sum += weights[i] * ratios[i];
+        return sum;
+    };
+    density_before.pdf(all.x, ratios);
+    for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] = all.h[i] / ratios[i];
+    const double before = second_moment();
+    compare();
+    if (second_moment() > before) {
+        density_ = std::move(density_before);
+        maps.assign(density_.maps().begin(), density_.maps().end());
+        compare();
+    }
+    density_.drop_idle();
+    const int room = most_gaussians - static_cast<int>(density_.gaussians().size());
+    if (uneven && room > 0) {
+        std::vector<Gaussian> added =
+            gaussians_at_surprises(all.x, weights, ratios, {.most = std::min(room, most_added)});
+        if (!added.empty()) {
+            const int newest = static_cast<int>(added.size());
+            gaussians.assign(density_.gaussians().begin(), density_.gaussians().end());
+            gaussians.insert(gaussians.end(), added.begin(), added.end());
+            density_ = MixtureDensity(dimensions, std::move(maps), std::move(gaussians));
+            density_.optimise_shares(all.x, all.h, all.p, uniform_units_, newest);
+            compare();
+        }
+    }
+    double uncovered = 0;
+    for (std::size_t i = 0; i < ratios.size(); ++i)
+        if (ratios[i] > far_above * total / static_cast<double>(ratios.size()))
+            uncovered += all.h[i] / all.p[i] / total;
+    uncovered_share_ = uncovered;
+    remember(all, ratios);
+}
+
+void DensityTrainer::remember(const Pool& all, std::span<const double> ratios) {
+    std::vector<std::uint32_t> order(ratios.size());
+    std::iota(order.begin(), order.end(), std::uint32_t{0});
+    const std::size_t kept = std::min(most_remembered, order.size());
+    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept), order.end(),
+                      [&](std::uint32_t a, std::uint32_t b) {
+                          return ratios[a] != ratios[b] ? ratios[a] > ratios[b] : a < b;
+                      });
+    PointBuffer x(kept, all.x.dimensions());
+    std::vector<double> h(kept);
+    for (std::size_t i = 0; i < kept; ++i) {
+        for (int d = 0; d < x.dimensions(); ++d) x(i, d) = all.x.view()(order[i], d);
+        h[i] = all.h[order[i]];
+    }
+    remembered_ = std::move(x);
+    remembered_h_ = std::move(h);
 }
 
 void DensityTrainer::save(StateWriter& state) const {
@@ -254,6 +323,9 @@ void DensityTrainer::save(StateWriter& state) const {
         for (double v : r.h) state.put(v);
         for (double v : r.p) state.put(v);
     }
+    state.put(remembered_h_);
+    for (int d = 0; d < remembered_.dimensions(); ++d)
+        for (double v : remembered_.view().coordinate(d)) state.put(v);
     state.put(static_cast<std::uint64_t>(checks_.size()));
     for (const Check& c : checks_) {
         state.put(c.value);
@@ -263,6 +335,7 @@ void DensityTrainer::save(StateWriter& state) const {
     state.put(enriched_);
     state.put(relative_variance_);
     state.put(effective_share_);
+    state.put(uncovered_share_);
     state.put(nonzero_);
     state.put(evaluations_);
     montelux::save(state, non_finite_);
@@ -286,6 +359,10 @@ void DensityTrainer::load(StateReader& state) {
         for (double& v : r.p) v = state.get_double();
         recent_.push_back(std::move(r));
     }
+    remembered_h_ = state.get_doubles();
+    remembered_.resize(remembered_h_.size(), dimensions);
+    for (int d = 0; d < dimensions; ++d)
+        for (double& v : remembered_.coordinate(d)) v = state.get_double();
     checks_.clear();
     for (std::uint64_t n = state.get_word(); n > 0; --n) {
         const double value = state.get_double();
@@ -295,6 +372,7 @@ void DensityTrainer::load(StateReader& state) {
     enriched_ = state.get<int>() != 0;
     relative_variance_ = state.get_double();
     effective_share_ = state.get_double();
+    uncovered_share_ = state.get_double();
     nonzero_ = state.get_word();
     evaluations_ = state.get_word();
     montelux::load(state, non_finite_);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "montelux/mc/integrate/adaptive/mixture_sampling.h"
+#include "montelux/mc/integrate/adaptive/mode_search.h"
 
 namespace montelux {
 
@@ -23,8 +24,9 @@ class DensityTrainer {
     std::uint64_t nonzero() const { return nonzero_; }
     double effective_share() const { return effective_share_; }
 
-    // Looks for peaks; evaluations are counted in evaluations().
-    void find_peaks(std::uint64_t max_evaluations);
+    // Looks for peaks, until so many searches in a row have led to known ones; evaluations are counted in
+    // evaluations().
+    void find_peaks(std::uint64_t max_evaluations, int fruitless = ModeSearch().fruitless);
     // One round of n points, about (a multiple of MixtureDensity::units). False when cancelled: nothing
     // changed.
     bool round(std::uint64_t n, const CancelFlag* cancel);
@@ -35,6 +37,9 @@ class DensityTrainer {
     const NonFiniteCount& non_finite() const { return non_finite_; }
     // Relative variance of g / q within channels, of the last round.
     double relative_variance() const { return relative_variance_; }
+    // Share of the integral at points of the last rounds where h is far above its mean under the density
+    // fitted to them: places that it does not cover.
+    double uncovered_share() const { return uncovered_share_; }
     // The last two rounds' estimates of the first component, with variances as of independent points.
     struct Check {
         double value = 0, variance = 0;
@@ -50,7 +55,7 @@ class DensityTrainer {
         PointBuffer x;
         std::vector<double> h, p; // p: the density there
     };
-    // The points of all recent rounds; p is the mixture of their densities.
+    // The points of all recent rounds, and those remembered; p is the mixture of the rounds' densities.
     struct Pool {
         PointBuffer x;
         std::vector<double> h, p;
@@ -59,16 +64,21 @@ class DensityTrainer {
     std::vector<double> steering(const ValueBuffer& g) const;
     void fit();
     Pool pool() const;
+    void remember(const Pool& all, std::span<const double> ratios);
 
     Problem problem_;
     int uniform_units_;
     MixtureDensity density_;
     std::vector<double> scale_; // one a component
     std::vector<Round> recent_; // two at most
+    // Points of all rounds where h was greatest beside the density fitted then: what was seen once is not
+    // forgotten.
+    PointBuffer remembered_;
+    std::vector<double> remembered_h_;
     std::vector<Check> checks_;
     int rounds_ = 0;
     bool enriched_ = false;
-    double relative_variance_ = 0, effective_share_ = 0;
+    double relative_variance_ = 0, effective_share_ = 0, uncovered_share_ = 0;
     std::uint64_t nonzero_ = 0, evaluations_ = 0;
     NonFiniteCount non_finite_;
 };

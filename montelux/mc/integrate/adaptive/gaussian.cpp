@@ -9,6 +9,11 @@
 #include "montelux/mc/math/special.h"
 
 namespace montelux {
+namespace {
+
+constexpr std::size_t most_points = 16384; // that a fit takes
+
+} // namespace
 
 Gaussian::Gaussian(std::vector<double> mean, std::vector<double> cholesky)
     : mean_(std::move(mean)), cholesky_(std::move(cholesky)) {
@@ -143,6 +148,26 @@ void fit_gaussians(std::vector<Gaussian>& components, const PointBatch& x, std::
     std::vector<std::size_t> used;
     for (std::size_t i = 0; i < x.count(); ++i)
         if (weights[i] * static_cast<double>(x.count()) > 1e-9 * total) used.push_back(i);
+    // Of many points some that are drawn by weight, systematically, and then have equal weights.
+    std::vector<double> resampled;
+    if (used.size() > most_points) {
+        double sum = 0;
+        for (std::size_t i : used) sum += weights[i];
+        std::vector<std::size_t> drawn;
+        resampled.assign(weights.size(), 0.0);
+        double below = 0, next = 0.5;
+        for (std::size_t i : used) {
+            below += weights[i] / sum * static_cast<double>(most_points);
+            if (!(next < below)) continue;
+            const double times = std::ceil(below - next);
+            resampled[i] = times;
+            next += times;
+            drawn.push_back(i);
+        }
+        used = std::move(drawn);
+        weights = resampled;
+        total = static_cast<double>(most_points);
+    }
     PointBuffer points(used.size(), x.dimensions());
     for (int d = 0; d < x.dimensions(); ++d)
         for (std::size_t j = 0; j < used.size(); ++j) points(j, d) = x(used[j], d);

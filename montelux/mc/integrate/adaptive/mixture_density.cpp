@@ -8,6 +8,11 @@
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
+namespace {
+
+constexpr double most_weight = 10; // times the mean, of a point that shares are fitted to
+
+} // namespace
 
 MixtureDensity::MixtureDensity(int dimensions, std::vector<MonotoneMap> maps, std::vector<Gaussian> gaussians)
     : dimensions_(dimensions), maps_(std::move(maps)), gaussians_(std::move(gaussians)) {
@@ -81,12 +86,16 @@ void MixtureDensity::pdf(const PointBatch& x, std::span<double> density) const {
 }
 
 void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double> h,
-                                     std::span<const double> p, int uniform_units) {
+                                     std::span<const double> p, int uniform_units, int newest) {
     const auto n = static_cast<std::size_t>(channels());
     if (n == 1) return;
     std::vector<std::vector<double>> q(n, std::vector<double>(x.count()));
     for (std::size_t k = 0; k < n; ++k) channel_pdf(static_cast<int>(k), x, q[k]);
     const double least = static_cast<double>(uniform_units) / units;
+    // One point with a weight far above all others must not decide over the shares.
+    double total = 0;
+    for (std::size_t i = 0; i < x.count(); ++i) total += h[i] / p[i];
+    const double largest = most_weight * total / static_cast<double>(x.count());
     std::vector<double> a(n, 1 / static_cast<double>(n)), moment(n), scale(x.count());
     auto normalise = [&] {
         const double sum = std::accumulate(a.begin(), a.end(), 0.0);
@@ -96,7 +105,8 @@ void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double
         for (std::size_t i = 0; i < x.count(); ++i) {
             double mixture = 0;
             for (std::size_t k = 0; k < n; ++k) mixture += a[k] * q[k][i];
-            scale[i] = h[i] > 0 ? h[i] * h[i] / (mixture * mixture * p[i]) : 0;
+            const double weight = std::min(h[i] / p[i], largest);
+            scale[i] = h[i] > 0 ? weight * weight * (p[i] / mixture) / mixture : 0;
         }
         for (std::size_t k = 0; k < n; ++k)
             moment[k] = std::inner_product(scale.begin(), scale.end(), q[k].begin(), 0.0);
@@ -112,9 +122,21 @@ void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double
     for (std::size_t k = 0; k < n; ++k) {
         shares_[k] = static_cast<int>(std::lround(a[k] * units));
         if (k == 0) shares_[k] = std::max(shares_[k], uniform_units);
+        if (k + static_cast<std::size_t>(newest) >= n) shares_[k] = std::max(shares_[k], 1);
         left -= shares_[k];
     }
-    *std::max_element(shares_.begin(), shares_.end()) += left;
+    // One by one: no share falls below zero, and that of the uniform channel stays.
+    for (; left != 0; left -= left > 0 ? 1 : -1)
+        *std::max_element(shares_.begin() + 1, shares_.end()) += left > 0 ? 1 : -1;
+}
+
+void MixtureDensity::drop_idle() {
+    const std::size_t first = shares_.size() - gaussians_.size();
+    for (std::size_t k = gaussians_.size(); k-- > 0;) {
+        if (shares_[first + k] > 0) continue;
+        shares_.erase(shares_.begin() + static_cast<std::ptrdiff_t>(first + k));
+        gaussians_.erase(gaussians_.begin() + static_cast<std::ptrdiff_t>(k));
+    }
 }
 
 void MixtureDensity::save(StateWriter& state) const {

@@ -48,9 +48,11 @@ class MixtureDensity {
 
     // Shares that make the second moment of h / q small, given points x drawn with density p and h there
     // (Kleiss and Pittau 1994, "Weight optimization in multichannel Monte Carlo"). The uniform channel keeps
-    // `uniform_units` at least.
+    // `uniform_units` at least, and each of the last `newest` channels one unit: what it can do is not known.
     void optimise_shares(const PointBatch& x, std::span<const double> h, std::span<const double> p,
-                         int uniform_units);
+                         int uniform_units, int newest = 0);
+    // Removes Gaussians that draw no points.
+    void drop_idle();
 
     void save(StateWriter& state) const;
     static MixtureDensity load(StateReader& state, int dimensions);

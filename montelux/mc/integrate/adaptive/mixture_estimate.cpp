@@ -23,6 +23,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 MixtureEstimate::MixtureEstimate(int replicates, int components) {
     sums_.sums = ReplicateSums(replicates, components);
+    sums_.extremes = ExtremeValues(components);
 }
 
 void MixtureEstimate::explore(const MixtureSums& added, std::uint64_t end) {
@@ -51,7 +52,8 @@ double MixtureEstimate::inflation(double standard_error, int component) const {
 double MixtureEstimate::standard_error(const CovarianceMoments& moments, int component) const {
     const double error =
         std::sqrt(moments.variance(component) / static_cast<double>(sums_.sums.replicates()));
-    return error * inflation(error, component);
+    return std::max(error * inflation(error, component),
+                    sums_.extremes.least_standard_error(component, all_points()));
 }
 
 double MixtureEstimate::error_ratio(const StepRequest& request) const {
@@ -85,13 +87,18 @@ void MixtureEstimate::tally(bool full_covariance, Tally& tally) const {
     for (std::size_t c = 0; c < m; ++c) tally.standard_error[c] *= factor[c];
     for (std::size_t i = 0; i < tally.covariance.size(); ++i)
         tally.covariance[i] *= factor[i / m] * factor[i % m];
+    std::vector<double> least(m);
+    for (std::size_t c = 0; c < m; ++c)
+        least[c] = sums_.extremes.least_standard_error(static_cast<int>(c), all_points());
+    raise_standard_errors(least, tally);
 }
 
 bool MixtureEstimate::heavy_tailed(double standard_error) const {
     const double n = static_cast<double>(points_) * sums_.sums.replicates();
     double size = 0;
     for (const MixtureSums::Channel& c : sums_.channels) size += std::abs(c.sum) / n;
-    return sums_.largest > heavy_weight * size && sums_.largest > heavy_influence * n * standard_error;
+    const double largest = sums_.extremes.largest();
+    return largest > heavy_weight * size && largest > heavy_influence * n * standard_error;
 }
 
 bool MixtureEstimate::one_replicate_stands_out() const {

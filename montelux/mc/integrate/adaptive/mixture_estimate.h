@@ -18,6 +18,7 @@ class MixtureEstimate {
 
     const MixtureSums& sums() const { return sums_; }
     std::uint64_t points() const { return points_; } // of each replicate
+    std::uint64_t all_points() const { return points_ * static_cast<std::uint64_t>(sums_.sums.replicates()); }
     std::uint64_t evaluations() const { return sums_.evaluations; }
 
     // Points [points(), end) of each replicate, found by exploring: the next error is compared with none.

@@ -29,7 +29,10 @@ void MixtureSums::merge(const MixtureSums& later) {
     sums.merge(later.sums);
     non_finite.merge(later.non_finite);
     evaluations += later.evaluations;
-    largest = std::max(largest, later.largest);
+    if (extremes.components() == 0)
+        extremes = later.extremes;
+    else if (later.extremes.components() > 0)
+        extremes.merge(later.extremes);
     channels.resize(std::max(channels.size(), later.channels.size()));
     for (std::size_t k = 0; k < later.channels.size(); ++k) {
         channels[k].count += later.channels[k].count;
@@ -49,7 +52,7 @@ void MixtureSums::save(StateWriter& state) const {
     state.put(sums.all());
     montelux::save(state, non_finite);
     state.put(evaluations);
-    state.put(largest);
+    extremes.save(state);
     state.put(static_cast<std::uint64_t>(channels.size()));
     for (const Channel& c : channels) {
         state.put(c.count);
@@ -65,7 +68,7 @@ void MixtureSums::load(StateReader& state) {
     sums.restore(std::move(all));
     montelux::load(state, non_finite);
     evaluations = state.get_word();
-    largest = state.get_double();
+    extremes.load(state);
     channels.clear();
     for (std::uint64_t n = state.get_word(); n > 0; --n) {
         Channel c;
@@ -93,6 +96,7 @@ std::optional<MixtureSums> sample_mixture(const Evaluator& evaluator, const Mixt
         const Chunk& chunk = chunks[static_cast<std::size_t>(c)];
         MixtureSums total;
         total.sums = ReplicateSums(replicates, components);
+        total.extremes = ExtremeValues(components);
         total.channels.resize(static_cast<std::size_t>(mixture.channels()));
         MixtureSums::Channel& channel = total.channels[static_cast<std::size_t>(chunk.channel)];
         channel.count = chunk.count;
@@ -102,7 +106,7 @@ std::optional<MixtureSums> sample_mixture(const Evaluator& evaluator, const Mixt
         const std::uint64_t batch = points ? longest : batch_size;
         PointBuffer u, x;
         ValueBuffer g;
-        std::vector<double> density;
+        std::vector<double> density, weights;
         for (std::uint64_t i = 0; i < chunk.count; i += batch) {
             u.resize(std::min(batch, chunk.count - i), mixture.dimensions());
             sobol.fill(u, chunk.first + i);
@@ -113,19 +117,19 @@ std::optional<MixtureSums> sample_mixture(const Evaluator& evaluator, const Mixt
             total.evaluations += x.count();
             const bool weighted = mixture.channels() > 1;
             for (int m = 0; m < components; ++m) {
-                double sum = 0, squares = 0, largest = 0;
+                double sum = 0, squares = 0;
                 std::span<const double> values = g.component(m);
-                for (std::size_t j = 0; j < values.size(); ++j) {
-                    const double w = weighted ? values[j] / density[j] : values[j];
+                weights.assign(values.begin(), values.end());
+                for (std::size_t j = 0; weighted && j < values.size(); ++j) weights[j] /= density[j];
+                for (double w : weights) {
                     sum += w;
                     squares += w * w;
-                    largest = std::max(largest, std::abs(w));
                 }
                 total.sums.sum(chunk.replicate, m) += sum;
+                total.extremes.add(m, weights);
                 if (m > 0) continue;
                 channel.sum += sum;
                 channel.squares += squares;
-                total.largest = std::max(total.largest, largest);
             }
             if (points) kept[static_cast<std::size_t>(c)] = {x, g, density};
         }

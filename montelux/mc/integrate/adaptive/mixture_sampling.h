@@ -24,7 +24,7 @@ struct MixtureSums {
     ReplicateSums sums; // of g / q
     NonFiniteCount non_finite;
     std::uint64_t evaluations = 0; // points outside the cube cost none
-    double largest = 0;            // |g / q| of the first component
+    ExtremeValues extremes;        // of g / q
     // Of the first component, for each channel: points, sums of g / q and of its squares.
     struct Channel {
         std::uint64_t count = 0;

@@ -41,7 +41,7 @@ class Climber {
         double top = log_at({x})[0];
         double width = 0.02;
         constexpr std::array lengths{1.0, 0.4, 0.16, 0.064, 0.026, 0.01};
-        for (int step = 0; step < 30 && budget_ >= 2 * n_ + lengths.size(); ++step) {
+        for (int step = 0; step < 60 && budget_ >= 2 * n_ + lengths.size(); ++step) {
             std::vector<std::vector<double>> around;
             std::vector<double> h(n_);
             for (std::size_t d = 0; d < n_; ++d) {
@@ -81,7 +81,7 @@ class Climber {
                 if (top - before < 1e-3) break;
             } else {
                 width *= 0.3;
-                if (width < 1e-4) break;
+                if (width < 1e-8) break;
             }
         }
         return top;
@@ -92,7 +92,7 @@ class Climber {
         if (budget_ < 8 * n_ + 2 * n_ * n_) return std::nullopt;
         // Steps over which log h falls by something like one half.
         std::vector<double> h(n_, 0.02);
-        for (int round = 0; round < 6; ++round) {
+        for (int round = 0; round < 16; ++round) {
             std::vector<std::vector<double>> around;
             for (std::size_t d = 0; d < n_; ++d)
                 for (double sign : {1.0, -1.0}) {

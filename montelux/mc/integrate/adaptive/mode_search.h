@@ -12,8 +12,8 @@
 namespace montelux {
 
 struct ModeSearch {
-    int most_modes = 12;
-    int fruitless = 2;                 // searches in a row that lead to a known mode, before giving up
+    int most_modes = 24;
+    int fruitless = 5;                 // searches in a row that lead to a known mode, before giving up
     std::uint64_t max_evaluations = 0; // in all
     double widest = 0.3;               // largest standard deviation of a Gaussian, of the cube's width
 };

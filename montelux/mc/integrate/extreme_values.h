@@ -1,0 +1,61 @@
+// The extreme values among samples, and what they say about the error of a mean.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "montelux/mc/integrate/state_archive.h"
+#include "montelux/mc/stats/pareto_tail.h"
+
+namespace montelux {
+
+// The factor by which the standard error of an estimate is too small if k independent values make up its
+// variance, for there may be as many that were not drawn: 1 + 1.32 k^-1.5. With it, more than four errors
+// between k hits of a rare event and their expectation have a probability below 0.3 %, as 10 expected ones
+// for one hit (where the factor is the upper limit of Gehrels 1986, "Confidence limits for small numbers of
+// events").
+double few_values_factor(double k);
+// The standard error of a mean of n values that are all equal: half of the rule of three, a bound of 95 %.
+inline double equal_values_error(double value, double n) { return 1.5 * (value < 0 ? -value : value) / n; }
+
+// Adds a sentence where the largest of `values` values follow a tail whose variance is probably infinite, and
+// where these matter for the standard error of a mean to which each adds 1 / n of itself.
+void doubt_heavy_tail(const ParetoTail& tail, std::uint64_t values, double n, double standard_error,
+                      std::vector<std::string>& doubts);
+
+// Sums and extremes of the values of each component; of the first component the tail of the magnitudes too.
+class ExtremeValues {
+  public:
+    ExtremeValues() = default;
+    explicit ExtremeValues(int components);
+
+    int components() const { return static_cast<int>(components_.size()); }
+    void add(int component, std::span<const double> values);
+    void merge(const ExtremeValues& later);
+    // Holds nothing, and is to be merged into this one.
+    ExtremeValues empty() const;
+    const ParetoTail& tail() const { return tail_; }
+    // Magnitude of the first component; 0 without values.
+    double largest() const;
+
+    // The standard error of the mean of n values that they justify, were they independent, where only few of
+    // them (hits of a rare event, misses of a common one) make up the variance, or where all are equal; else
+    // 0, and 0 where all are zero. Values that were not added count as zeros.
+    double least_standard_error(int component, std::uint64_t n) const;
+
+    void save(StateWriter& state) const;
+    // Throws Error where the saved number of components differs.
+    void load(StateReader& state);
+
+  private:
+    struct Component {
+        std::uint64_t count = 0;
+        double least, greatest, sum = 0, squares = 0;
+    };
+    std::vector<Component> components_;
+    ParetoTail tail_;
+};
+
+} // namespace montelux
