@@ -197,11 +197,11 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
     for (std::size_t c = 0; c < lowest_.size(); ++c) {
         lowest_[c] = std::min(lowest_[c], check->lowest[c]);
         highest_[c] = std::max(highest_[c], check->highest[c]);
-        slack_[c] = 0;
-        if (!check->surprises.empty()) slack_[c] = 2 * negligible * tolerance_[c];
-        const double difference = std::abs(check->difference[c]);
-        if (difference > error[c] + suspicion * check->standard_error[c])
-            slack_[c] = std::max(slack_[c], std::min(difference, tolerance_[c]));
+        const double difference = std::abs(check->difference[c]), noise = check->standard_error[c];
+        const bool doubtful = difference > error[c] + suspicion * noise;
+        surprised_ = surprised_ || doubtful || !check->surprises.empty();
+        // Rules that were wrong once know no error that is smaller than what the points can tell.
+        slack_[c] = surprised_ ? std::min(std::max(difference, noise), tolerance_[c] / 2) : 0;
     }
     points_in_bulk_ = static_cast<double>(points) * volume_of_half(regions);
     witnesses_ = std::move(check->surprises);
@@ -321,6 +321,7 @@ void CubatureVerification::save(StateWriter& state) const {
     state.put(next_);
     state.put(points_in_bulk_);
     state.put(slack_);
+    state.put(surprised_);
     state.put(disagrees_);
     montelux::save(state, non_finite_);
     state.put(std::string_view(warning_));
@@ -354,6 +355,7 @@ void CubatureVerification::load(StateReader& state, std::size_t regions) {
     next_ = state.get_word();
     points_in_bulk_ = state.get_double();
     slack_ = state.get_doubles();
+    surprised_ = state.get<int>() != 0;
     if (!slack_.empty()) fits(slack_, m);
     disagrees_ = state.get<int>() != 0;
     montelux::load(state, non_finite_);

@@ -54,8 +54,7 @@ class CubatureVerification {
     // Did so few points fall where half of the integral is, as the rules see it, that other such places may
     // have been missed?
     bool blind() const { return points_in_bulk_ < enough_in_bulk; }
-    // Error of a component that the rules do not see: of surprises too small to be followed, and of a mean of
-    // the points that is farther off than it should be, but not far enough to halve regions for.
+    // Error of a component beyond that of the rules, where points have shown that these may be wrong.
     double slack(std::size_t component) const { return slack_.empty() ? 0 : slack_[component]; }
     // Empty in the normal case.
     const std::string& warning() const { return warning_; }
@@ -84,6 +83,7 @@ class CubatureVerification {
     std::uint64_t next_ = 0; // evaluations at which a run without a target is checked
     NonFiniteCount non_finite_;
     double points_in_bulk_ = 0;
+    bool surprised_ = false; // by any check
     std::vector<double> slack_;
     bool disagrees_ = false; // the mean of the points, in the last check
     std::string warning_;

@@ -244,8 +244,8 @@ class Run {
     // Errors below which doubles tell nothing apart.
     static bool is_rounding(const Tally& tally) {
         for (std::size_t c = 0; c < tally.value.size(); ++c)
-            if (!(tally.standard_error[c] <=
-                  std::numeric_limits<double>::epsilon() * std::abs(tally.value[c])))
+            if (tally.value[c] == 0 || !(tally.standard_error[c] <=
+                                         std::numeric_limits<double>::epsilon() * std::abs(tally.value[c])))
                 return false;
         return true;
     }

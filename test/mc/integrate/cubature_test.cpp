@@ -119,7 +119,7 @@ TEST(Cubature, SurvivesSingularitiesAtTheEnds) {
     auto root = [](double x) { return 0.5 / std::sqrt(x); };
     const IntegrationResult near_zero =
         integrate(root, Domain::interval(0, 1), Cubature{}, {.relative_error = 1e-9, .evaluations = 100'000});
-    EXPECT_TRUE(near_zero.converged());
+    EXPECT_TRUE(near_zero.converged()) << near_zero;
     EXPECT_NEAR(near_zero.value[0], 1, 1e-9);
     auto logarithm = [](double x) { return -std::log(1 - x); };
     const IntegrationResult near_one = integrate(logarithm, Domain::interval(0, 1), Cubature{},
@@ -335,7 +335,8 @@ TEST(Cubature, FindsAPeakThatItSawTheFaintestTailOf) {
     };
     const IntegrationResult r = integrate(peak, Domain(std::vector<Range>(4, {0, 1})), Cubature{},
                                           {.relative_error = 1e-3, .evaluations = 200'000}, {.threads = 1});
-    EXPECT_TRUE(r.converged());
+    EXPECT_EQ(r.stop, StopReason::error_target);
+    EXPECT_FALSE(r.doubts.empty()); // too narrow for a check by random points
     EXPECT_NEAR(r.value[0] / std::pow(2 * std::numbers::pi * width * width, 2), 1, 3e-3);
 }
 
