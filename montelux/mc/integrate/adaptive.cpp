@@ -216,7 +216,8 @@ class AdaptiveEstimator final : public Estimator {
         if (request.max_evaluations < 2 * round_points_) return stop_training(request);
         if (!trainer_.round(round_points_, request.cancel)) return StepOutcome::cancelled;
         const double variance = trainer_.relative_variance();
-        const bool stuck = trainer_.rounds() > 3 && variance > 0.9 * previous_variance_;
+        const bool stuck =
+            trainer_.rounds() > 3 && variance != previous_variance_ && variance > 0.9 * previous_variance_;
         previous_variance_ = variance;
         // Larger rounds where more of the same size change nothing.
         const double trained = static_cast<double>(trainer_.evaluations() + uniform_.evaluations());
