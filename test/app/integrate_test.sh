@@ -44,9 +44,9 @@ value 1 1e-6 'exp(-x)' --over x=0:inf --evaluations 1e5
 value 0.25 1e-6 'x*y' --over x,y=0:1 --evaluations 1e5
 # A pole in the middle, where its sides cancel, is no convergence; a single value that is missing costs nothing.
 for method in auto cubature; do
-    expect 3 "values of the integrand were not finite" integrate 1/x --over x=-1:1 --absolute-error 1e-6 \
+    expect 3 "not finite" integrate 1/x --over x=-1:1 --absolute-error 1e-6 \
         --method $method --evaluations 1e5
-    expect 3 "were not finite" integrate 'x/(x*x+y*y)^2' --over x,y=-1:1 --absolute-error 1e-3 --method $method \
+    expect 3 "stopped at the number of evaluations" integrate 'x/(x*x+y*y)^2' --over x,y=-1:1 --absolute-error 1e-3 --method $method \
         --evaluations 1e5
     expect 0 "error target reached" integrate 'sin(x)/x' --over x=-1:1 --absolute-error 1e-9 --method $method
 done

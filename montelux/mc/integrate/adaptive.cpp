@@ -16,12 +16,14 @@ namespace {
 
 constexpr std::uint64_t units = MixtureDensity::units;
 constexpr std::uint64_t training_points = 2048;      // of a round, at first
+constexpr std::uint64_t least_round = 512;           // of few evaluations
 constexpr std::uint64_t max_training_points = 65536; // of a round
 constexpr int max_rounds = 24;
 constexpr int max_retrainings = 4;
 constexpr double fixed_training_share = 0.1;        // of a fixed number of evaluations,
 constexpr double least_training = 20000;            // or so many, if they are no more than a third
 constexpr std::uint64_t enough_nonzero = 16;        // points that must see anything before training begins,
+constexpr std::uint64_t few_nonzero = 4;            // the same, where a quarter of all has been explored,
 constexpr std::uint64_t most_exploration = 1 << 20; // or evaluations without
 constexpr double peaky = 0.1; // effective share of exploring points below which peaks are searched for
 constexpr double narrow_peaks = 0.01;        // the same, where the search is thorough
@@ -110,6 +112,7 @@ class AdaptiveEstimator final : public Estimator {
     void save(StateWriter& state) const override {
         state.put(static_cast<int>(phase_));
         state.put(previous_variance_);
+        state.put(explored_);
         state.put(round_points_);
         state.put(training_goal_);
         state.put(retrained_);
@@ -122,6 +125,7 @@ class AdaptiveEstimator final : public Estimator {
     void load(StateReader& state) override {
         phase_ = static_cast<Phase>(std::clamp(state.get<int>(), 0, static_cast<int>(Phase::uniform)));
         previous_variance_ = state.get_double();
+        explored_ = state.get_word();
         round_points_ = state.get_word();
         training_goal_ = state.get_double();
         retrained_ = state.get<int>();
@@ -141,9 +145,18 @@ class AdaptiveEstimator final : public Estimator {
     }
     std::uint64_t replicates() const { return static_cast<std::uint64_t>(settings_.replicates); }
 
+    // Points of each replicate: an eighth of a small fixed number of evaluations.
+    std::uint64_t exploration(const StepRequest& request) const {
+        if (targeted(request)) return explored_;
+        const std::uint64_t eighth =
+            std::bit_floor(std::max<std::uint64_t>(request.max_evaluations / (8 * replicates()), 1));
+        return std::clamp(eighth, units, explored_);
+    }
     // Goes on, doubling, while hardly any point sees anything.
     StepOutcome explore(const StepRequest& request) {
-        std::uint64_t points = uniform_.points() == 0 ? explored_ : uniform_.points();
+        const bool first = uniform_.points() == 0;
+        const std::uint64_t explored = first ? exploration(request) : explored_;
+        std::uint64_t points = first ? explored : uniform_.points();
         points = std::min(points, request.max_evaluations / replicates() / units * units);
         if (points == 0 && uniform_.points() == 0)
             points = request.max_evaluations / replicates(); // too few for balance
@@ -153,19 +166,24 @@ class AdaptiveEstimator final : public Estimator {
             sample_mixture(problem_.evaluator, cube_, hash_key(problem_.seed, 0), settings_.replicates,
                            uniform_.points(), uniform_.points() + points, &drawn, request.cancel);
         if (!sums) return StepOutcome::cancelled;
+        if (explored < explored_) // of few evaluations the rounds of training, too, are a share
+            round_points_ = std::clamp(request.max_evaluations / 8, least_round, round_points_);
+        explored_ = explored;
         uniform_.explore(*sums, uniform_.points() + points);
         trainer_.start(std::move(drawn));
         const std::uint64_t left = request.max_evaluations - sums->evaluations;
-        const bool room = uniform_.points() >= explored_ && left >= smallest_budget * training_points;
+        const bool room = uniform_.points() >= explored_ && left >= smallest_budget * round_points_;
         if (!room || uniform_will_do(request))
             phase_ = Phase::uniform;
-        else if (trainer_.nonzero() >= enough_nonzero || uniform_.evaluations() >= most_exploration)
+        else if (trainer_.nonzero() >= enough_nonzero ||
+                 (trainer_.nonzero() >= few_nonzero && 3 * uniform_.evaluations() >= left) ||
+                 uniform_.evaluations() >= most_exploration)
             phase_ = trainer_.nonzero() == 0 ? Phase::uniform : first_training();
         return StepOutcome::advanced;
     }
     // Points of each replicate that the trained density is tried with: half of the exploration.
     std::uint64_t first_sample() const {
-        return problem_.evaluator.dimensions() == 1 ? explored_ : explored_ / 2;
+        return problem_.evaluator.dimensions() == 1 ? explored_ : std::max(units, explored_ / 2);
     }
     // Values of one size, beside which a spike may be: only more points can tell.
     bool plateau() const {
@@ -198,7 +216,8 @@ class AdaptiveEstimator final : public Estimator {
         if (request.max_evaluations < 2 * round_points_) return stop_training(request);
         if (!trainer_.round(round_points_, request.cancel)) return StepOutcome::cancelled;
         const double variance = trainer_.relative_variance();
-        const bool stuck = trainer_.rounds() > 3 && variance > 0.9 * previous_variance_;
+        const bool stuck =
+            trainer_.rounds() > 3 && variance != previous_variance_ && variance > 0.9 * previous_variance_;
         previous_variance_ = variance;
         // Larger rounds where more of the same size change nothing.
         const double trained = static_cast<double>(trainer_.evaluations() + uniform_.evaluations());

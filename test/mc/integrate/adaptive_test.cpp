@@ -246,6 +246,17 @@ TEST(Adaptive, FollowsThinRingsAndCurvedRidges) {
     expect_found({rosenbrock, Domain({{-5, 5}, {-5, 5}}), {0.301507}}, 4, 3);
 }
 
+// Exploration and rounds of training shrink with the number of evaluations.
+TEST(Adaptive, TrainsWithFiveThousandEvaluations) {
+    const KnownIntegral problem = two_peaks(4);
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        const IntegrationResult r = integrate(problem.f, problem.domain, Adaptive{}, {.evaluations = 5000},
+                                              {.seed = seed, .threads = 1});
+        EXPECT_LT(r.standard_error[0], 0.03) << "seed " << seed;
+        EXPECT_LT(std::abs(r.value[0] - problem.truth[0]), 6 * r.standard_error[0]) << "seed " << seed;
+    }
+}
+
 // Half of the integral in 1 / 5000 of the square: most explorations do not see it.
 TEST(Adaptive, SpikesOnAPlateauAreSeldomMissed) {
     const double width = 0.005;

@@ -19,6 +19,7 @@ constexpr int em_steps = 20;
 constexpr int most_gaussians = 40, most_added = 6; // in all, and by a round
 constexpr double far_above = 10;                   // times the mean of h / q
 constexpr std::size_t most_remembered = 128;
+constexpr double exploring_width = 1.5;
 constexpr double safe_width = 1.1;
 constexpr std::uint64_t least_seen = 16; // points of a round that saw anything, for the round to teach
 
@@ -150,10 +151,14 @@ void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless) {
 
 bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
     n = std::max<std::uint64_t>(1, n / MixtureDensity::units) * MixtureDensity::units;
-    // With peaks just found, the density is tried before it is fitted.
+    // With peaks just found, the density is tried before it is fitted. While weights are uneven, every second
+    // round draws from wider Gaussians, which see the ends of ridges.
+    const bool wide = rounds_ > first_fit_before_gaussians && rounds_ % 2 == 1 &&
+                      relative_variance_ > enough_even && !density_.gaussians().empty();
+    const MixtureDensity drawn = wide ? density_.widened(exploring_width) : density_;
     SamplePoints points;
-    const auto sums = sample_mixture(problem_.evaluator, density_, hash_key(problem_.seed, 1, rounds_), 1, 0,
-                                     n, &points, cancel);
+    const auto sums = sample_mixture(problem_.evaluator, drawn, hash_key(problem_.seed, 1, rounds_), 1, 0, n,
+                                     &points, cancel);
     if (!sums) return false;
     ++rounds_;
     evaluations_ += sums->evaluations;
@@ -173,14 +178,15 @@ bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
             squares += std::pow(h[i] / points.density[i] - mean_size, 2);
         spread = squares / (static_cast<double>(n) * static_cast<double>(n));
     }
-    relative_variance_ = mean_size > 0 ? spread * static_cast<double>(n) / (mean_size * mean_size)
-                                       : std::numeric_limits<double>::infinity();
+    if (!wide)
+        relative_variance_ = mean_size > 0 ? spread * static_cast<double>(n) / (mean_size * mean_size)
+                                           : std::numeric_limits<double>::infinity();
     const auto seen = static_cast<std::uint64_t>(std::ranges::count_if(h, [](double v) { return v > 0; }));
     if (seen < std::min(nonzero_, least_seen)) {
         // Worse than the exploration: Gaussians of peaks at faces lie outside the cube, or off a jump.
         density_ = MixtureDensity(density_.dimensions());
     } else {
-        recent_.push_back({density_, std::move(points.x), std::move(h), std::move(points.density)});
+        recent_.push_back({drawn, std::move(points.x), std::move(h), std::move(points.density)});
         if (recent_.size() > 2) recent_.erase(recent_.begin());
     }
     fit();

@@ -130,6 +130,12 @@ void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double
         *std::max_element(shares_.begin() + 1, shares_.end()) += left > 0 ? 1 : -1;
 }
 
+MixtureDensity MixtureDensity::widened(double factor) const {
+    MixtureDensity wide = *this;
+    for (Gaussian& g : wide.gaussians_) g = g.widened(factor);
+    return wide;
+}
+
 void MixtureDensity::drop_idle() {
     const std::size_t first = shares_.size() - gaussians_.size();
     for (std::size_t k = gaussians_.size(); k-- > 0;) {

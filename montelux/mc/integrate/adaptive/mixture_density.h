@@ -51,6 +51,8 @@ class MixtureDensity {
     // `uniform_units` at least, and each of the last `newest` channels one unit: what it can do is not known.
     void optimise_shares(const PointBatch& x, std::span<const double> h, std::span<const double> p,
                          int uniform_units, int newest = 0);
+    // The same with all Gaussians wider.
+    MixtureDensity widened(double factor) const;
     // Removes Gaussians that draw no points.
     void drop_idle();
 

@@ -204,6 +204,15 @@ TEST(MixtureDensity, SavedOneHasTheSameBitsAndMisfitsAreRefused) {
     EXPECT_THROW(MixtureDensity::load(damaged, 2), Error);
 }
 
+TEST(MixtureDensity, WidenedKeepsSharesAndMeans) {
+    MixtureDensity density(2, {}, {Gaussian({0.3, 0.4}, {0.02, 0, 0, 0.02})});
+    density.set_shares({16, 48});
+    const MixtureDensity wide = density.widened(1.5);
+    EXPECT_EQ(wide.shares()[1], 48);
+    EXPECT_EQ(wide.gaussians()[0].mean()[1], 0.4);
+    EXPECT_NEAR(wide.gaussians()[0].cholesky()[3], 0.03, 1e-15);
+}
+
 TEST(MixtureDensity, IdleGaussiansAreDropped) {
     const Gaussian narrow({0.3, 0.3}, {0.1, 0, 0, 0.1}), wide({0.6, 0.6}, {0.2, 0, 0, 0.2});
     MixtureDensity density(2, {}, {narrow, wide, narrow});
