@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "montelux/mc/math/error.h"
 
@@ -14,14 +15,24 @@ double CubatureRegions::volume(std::size_t r) const {
     return volume;
 }
 
+double CubatureRegions::distance(std::size_t r, std::span<const double> x) const {
+    double distance = 0;
+    for (std::size_t d = 0; d < n_; ++d)
+        distance = std::max(distance, std::abs(x[d] - centre(r)[d]) / half_width(r)[d]);
+    return distance;
+}
+
 std::size_t CubatureRegions::containing(std::span<const double> x) const {
-    for (std::size_t r = 0; r < count(); ++r) {
-        bool inside = true;
-        for (std::size_t d = 0; d < n_ && inside; ++d)
-            inside = std::abs(x[d] - centre(r)[d]) <= half_width(r)[d];
-        if (inside) return r;
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t r = 0; r < count() && least > 1; ++r) {
+        const double here = distance(r, x);
+        if (here < least) {
+            least = here;
+            nearest = r;
+        }
     }
-    return 0;
+    return nearest;
 }
 
 void CubatureRegions::resize(std::size_t count) {

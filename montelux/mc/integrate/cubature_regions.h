@@ -48,7 +48,9 @@ class CubatureRegions {
     Marks& marks(std::size_t r) { return marks_[r]; }
     const Marks& marks(std::size_t r) const { return marks_[r]; }
     double volume(std::size_t r) const;
-    // A region that holds the point of the unit cube.
+    // Of a point from the centre, in half widths: at most 1 inside, but for rounding.
+    double distance(std::size_t r, std::span<const double> x) const;
+    // The region that holds the point of the unit cube.
     std::size_t containing(std::span<const double> x) const;
 
     void resize(std::size_t count);

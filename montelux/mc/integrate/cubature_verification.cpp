@@ -286,9 +286,7 @@ void CubatureVerification::follow(CubatureRegions& regions, std::span<const std:
     for (CubatureWitness& w : witnesses_) {
         const auto found = upper.find(w.region);
         if (found == upper.end()) continue;
-        for (std::size_t d = 0; d < w.x.size(); ++d)
-            if (std::abs(w.x[d] - regions.centre(w.region)[d]) > regions.half_width(w.region)[d])
-                w.region = found->second;
+        if (regions.distance(found->second, w.x) < regions.distance(w.region, w.x)) w.region = found->second;
     }
     add_errors(regions, touched);
 }

@@ -13,7 +13,7 @@ namespace {
 // Exponents of the largest value relative to the scale. Squares, their sums over 2^60 samples and weights f /
 // p stay finite below the upper one; relative errors of 1e-16 stay above the smallest squares above the lower
 // one.
-constexpr double lowest = -200, highest = 400;
+constexpr double lowest = -200, highest = 460;
 // Exponent of the largest value that is kept, change of volume included. Those beyond void the estimate, but
 // stay finite, since they are no mistake of the integrand.
 constexpr double largest_kept = 900;
