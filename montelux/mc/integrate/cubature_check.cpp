@@ -105,7 +105,8 @@ void fill_points(const CubatureRegions& regions, std::span<const Share> shares, 
             const std::span<const double> from = inside.view().coordinate(d);
             const std::span<double> to = u.coordinate(d).subspan(at, s.count);
             for (std::size_t i = 0; i < s.count; ++i)
-                to[i] = std::clamp(c + h * (2 * from[i] - 1), 0x1p-54, 1 - 0x1p-53);
+                to[i] =
+                    std::clamp(c + h * (2 * from[i] - 1), std::numeric_limits<double>::min(), 1 - 0x1p-53);
         }
         at += s.count;
     }
