@@ -144,8 +144,10 @@ Power fit_power(const Profile& profile, std::size_t count, double upper) {
 // That of the first bin where there is surely a singularity: one that falls faster than a straight line
 // would, or that stays near 0; else 1.
 double end_power(const Profile& profile, const Leaf& first) {
-    const Power all = fit_power(profile, first.last, first.upper),
-                near = fit_power(profile, first.last, first.upper / 8);
+    // The first bin alone has few points.
+    const std::size_t window = std::max(first.last, profile.x.size() / 16);
+    const double end = window < profile.x.size() ? std::max(first.upper, profile.x[window]) : 1;
+    const Power all = fit_power(profile, window, end), near = fit_power(profile, first.last, first.upper / 8);
     const bool strong = all.value + singularity_errors * all.error < strong_power;
     const bool weak = near.value + singularity_errors * near.error < largest_power;
     return strong || weak ? std::clamp(all.value, least_power, 1.0) : 1;
