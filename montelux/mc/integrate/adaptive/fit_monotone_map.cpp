@@ -15,7 +15,9 @@ namespace {
 // have been seen, given how many nearby are seen where weights do not vanish.
 constexpr double margin = 5;
 constexpr std::size_t nearby = 32;
-constexpr double least_gain = 0.25;    // of likelihood, in units of the noise of one effective point
+constexpr double least_gain = 0.25; // of likelihood, in units of the noise of one effective point
+constexpr double singularity_errors = 3, least_power = 0.005, largest_power = 0.9;
+constexpr double strong_power = 0.65;  // that of a density that falls to 0 along a straight line is 2/3
 constexpr std::size_t candidates = 64; // split places that are tried first
 
 // Sorted points with running sums of their weights.
@@ -122,6 +124,35 @@ std::vector<std::uint32_t> sorted_order(std::span<const double> positions) {
     return order;
 }
 
+// The power of x, plus one, that weights on [0, upper] follow (maximum likelihood), and its error.
+struct Power {
+    double value = 1, error = 1;
+};
+Power fit_power(const Profile& profile, std::size_t count, double upper) {
+    double logarithms = 0, squares = 0;
+    std::size_t i = 0;
+    for (; i < count && profile.x[i] < upper; ++i) {
+        const double w = profile.mass(i, i + 1);
+        logarithms -= w * std::log(profile.x[i] / upper);
+        squares += w * w;
+    }
+    const double mass = profile.mass(0, i);
+    if (!(mass > 0 && logarithms > 0 && squares > 0)) return {};
+    return {mass / logarithms, std::sqrt(squares) / logarithms};
+}
+
+// That of the first bin where there is surely a singularity: one that falls faster than a straight line
+// would, or that stays near 0; else 1.
+double end_power(const Profile& profile, const Leaf& first) {
+    // The first bin alone has few points.
+    const std::size_t window = std::max(first.last, profile.x.size() / 16);
+    const double end = window < profile.x.size() ? std::max(first.upper, profile.x[window]) : 1;
+    const Power all = fit_power(profile, window, end), near = fit_power(profile, first.last, first.upper / 8);
+    const bool strong = all.value + singularity_errors * all.error < strong_power;
+    const bool weak = near.value + singularity_errors * near.error < largest_power;
+    return strong || weak ? std::clamp(all.value, least_power, 1.0) : 1;
+}
+
 } // namespace
 
 MonotoneMap fit_monotone_map(std::span<const double> positions, std::span<const double> weights,
@@ -166,7 +197,7 @@ MonotoneMap fit_monotone_map(std::span<const double> positions, std::span<const 
         // The weight of one point more: a bin in which nothing was seen is not known to be empty.
         masses.push_back(profile.mass(leaf.first, leaf.last) + one);
     }
-    return {std::move(edges), std::move(masses)};
+    return {std::move(edges), std::move(masses), end_power(profile, leaves.front())};
 }
 
 } // namespace montelux

@@ -12,14 +12,16 @@ namespace {
 
 // Open at both ends, so that no coordinate is mapped to infinity.
 constexpr double smallest = 0x1p-53, largest = 1 - 0x1p-53;
+constexpr double least_position = 1e-290;
 constexpr double jump_ratio = 5; // between bins, of the slopes: above it the slope is not joined
 constexpr double end_ratio = 4;  // slopes are extrapolated to the ends within this factor
 
 } // namespace
 
-MonotoneMap::MonotoneMap(std::vector<double> edges, std::vector<double> masses)
-    : edges_(std::move(edges)), masses_(std::move(masses)) {
+MonotoneMap::MonotoneMap(std::vector<double> edges, std::vector<double> masses, double power)
+    : power_(power), edges_(std::move(edges)), masses_(std::move(masses)) {
     const std::size_t n = masses_.size();
+    if (!(power > 0 && power <= 1)) throw Error("MonotoneMap", "expected a power in (0, 1]");
     if (n == 0 || edges_.size() != n + 1 || edges_.front() != 0 || edges_.back() != 1)
         throw Error("MonotoneMap", "expected bins from 0 to 1, with one mass each");
     for (std::size_t k = 0; k < n; ++k)
@@ -73,6 +75,11 @@ const MonotoneMap::Bin& MonotoneMap::bin_of(const std::vector<double>& starts, d
 
 double MonotoneMap::quantile(double u, double& density) const {
     const Bin& b = bin_of(u_starts_, u);
+    if (power_ < 1 && &b == bins_.data()) {
+        const double y = std::max(std::pow(u / b.du, 1 / power_), least_position / b.dx);
+        density = b.du / b.dx * power_ * std::pow(y, power_ - 1);
+        return b.dx * std::min(y, 1.0);
+    }
     const double slope = b.dx / b.du, t = std::clamp((u - b.u0) / b.du, 0.0, 1.0), s = 1 - t;
     const double denominator = slope + (b.slope0 + b.slope1 - 2 * slope) * t * s;
     const double x = b.x0 + b.dx * t * (slope * t + b.slope0 * s) / denominator;
@@ -88,6 +95,8 @@ double MonotoneMap::quantile(double u) const {
 
 double MonotoneMap::pdf(double x) const {
     const Bin& b = bin_of(x_starts_, x);
+    if (power_ < 1 && &b == bins_.data())
+        return b.du / b.dx * power_ * std::pow(std::max(x, least_position) / b.dx, power_ - 1);
     const double slope = b.dx / b.du, y = std::clamp((x - b.x0) / b.dx, 0.0, 1.0);
     const double bend = b.slope0 + b.slope1 - 2 * slope;
     // t solves a t^2 + b t + c = 0, with the root in [0, 1] in the form that does not cancel.
@@ -114,11 +123,13 @@ void MonotoneMap::multiply_pdf(std::span<const double> x, std::span<double> dens
 void MonotoneMap::save(StateWriter& state) const {
     state.put(edges_);
     state.put(masses_);
+    state.put(power_);
 }
 
 MonotoneMap MonotoneMap::load(StateReader& state) {
     std::vector<double> edges = state.get_doubles();
-    return {std::move(edges), state.get_doubles()};
+    std::vector<double> masses = state.get_doubles();
+    return {std::move(edges), std::move(masses), state.get_double()};
 }
 
 } // namespace montelux

@@ -18,8 +18,9 @@ class MonotoneMap {
     // The identity.
     MonotoneMap() : MonotoneMap({0, 1}, {1}) {}
     // Bin k is [edges[k], edges[k + 1]], strictly increasing from 0 to 1; masses are positive and are
-    // normalised here.
-    MonotoneMap(std::vector<double> edges, std::vector<double> masses);
+    // normalised here. In the first bin the density is proportional to x^(power - 1): below 1, the integrand
+    // has a singularity at 0.
+    MonotoneMap(std::vector<double> edges, std::vector<double> masses, double power = 1);
 
     int bins() const { return static_cast<int>(masses_.size()); }
     // x = quantile(u) at each u, and density[i] *= p(x).
@@ -40,6 +41,7 @@ class MonotoneMap {
     double quantile(double u, double& density) const;
     const Bin& bin_of(const std::vector<double>& starts, double at) const;
 
+    double power_;
     std::vector<double> edges_, masses_, u_starts_, x_starts_;
     std::vector<Bin> bins_;
 };

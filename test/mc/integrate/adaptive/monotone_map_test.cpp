@@ -204,5 +204,33 @@ TEST(FitMonotoneMap, BinsAreNoMoreThanAskedFor) {
     EXPECT_GT(fitted(f, 20'000, {.bins = 64}).bins(), 8);
 }
 
+// x^-0.7: the power is found, and the density has no tail left at 0.
+TEST(MonotoneMap, FollowsASingularityAtZero) {
+    std::vector<double> x, weights;
+    for (int i = 0; i < 4000; ++i) {
+        x.push_back(std::pow((i + 0.5) / 4000, 2)); // drawn with the density 0.5 x^-0.5
+        weights.push_back(std::pow(x.back(), -0.2));
+    }
+    const MonotoneMap map = fit_monotone_map(x, weights);
+    for (double at : {1e-12, 1e-9, 1e-6, 1e-4}) {
+        const double ratio = map.pdf(at) / (0.3 * std::pow(at, -0.7));
+        EXPECT_GT(ratio, 0.3) << at;
+        EXPECT_LT(ratio, 3) << at;
+    }
+    for (double u : {1e-6, 0.001, 0.1, 0.5, 0.99}) {
+        std::vector<double> position(1), density{1.0};
+        map.sample(std::vector<double>{u}, position, density);
+        EXPECT_NEAR(density[0] / map.pdf(position[0]), 1, 1e-9) << u;
+        const double h = 1e-4 * u; // the density is du / dx
+        EXPECT_NEAR(2 * h / (map.quantile(u + h) - map.quantile(u - h)) / density[0], 1, 1e-3) << u;
+    }
+    std::vector<double> even;
+    for (int i = 0; i < 4000; ++i) even.push_back((i + 0.5) / 4000);
+    const MonotoneMap flat = fit_monotone_map(even, std::vector<double>(even.size(), 1.0));
+    EXPECT_NEAR(flat.pdf(1e-9), 1, 0.2);
+    EXPECT_THROW(MonotoneMap({0, 1}, {1}, 0), Error);
+    EXPECT_THROW(MonotoneMap({0, 1}, {1}, 1.5), Error);
+}
+
 } // namespace
 } // namespace montelux
