@@ -434,7 +434,9 @@ class CubatureEstimator final : public Estimator {
         std::size_t unseen = 0;
         for (char c : nonzero_) unseen += c == 0;
         if (unseen > 0 && !searching()) {
-            std::string what = m_ == 1 ? "the integrand was" : std::to_string(unseen) + " components were";
+            std::string what =
+                m_ == 1 ? "the integrand was"
+                        : std::to_string(unseen) + (unseen == 1 ? " component was" : " components were");
             tally.doubts.push_back(what + " zero at each of " + std::to_string(evaluations_) +
                                    " points; a part where it is not may have been missed");
         }

@@ -20,7 +20,10 @@ struct Budget {
     // Each component stops at whichever of the two errors is larger; zero means none. The errors are one
     // standard deviation.
     double relative_error = 0, absolute_error = 0;
-    std::uint64_t evaluations = 0; // 0: no limit where an error or a time is asked for, else one million
+    // 0: no limit where an error or a time is asked for, else one million. Steps whose values lie so far from
+    // 1 (beyond 1e-60 or 1e138) that squares lose their digits are repeated at another scale, if need be
+    // beyond the limit.
+    std::uint64_t evaluations = 0;
     // Wall time, of all parts of a run that is resumed; 0: no limit. The last steps are made to fit; a step
     // that is not done when it is over is given up.
     std::chrono::duration<double> time{0};

@@ -345,7 +345,7 @@ class MetropolisEstimator final : public Estimator {
                 text, sizeof text,
                 "one of %.0f points has %.0f %% of the sum of squares of the normalisation; the error "
                 "may be too small",
-                n, 100 * state_.largest * state_.largest / squares);
+                n, 100 * std::min(1.0, state_.largest * state_.largest / squares));
             tally.doubts.emplace_back(text);
         }
     }

@@ -213,7 +213,7 @@ Tally VegasEstimator::tally() const {
         char text[160];
         std::snprintf(text, sizeof text,
                       "one of %.0f points has %.0f %% of the sum of squares; the error may be too small",
-                      state_.points, 100 * state_.largest_square / state_.sum_of_squares);
+                      state_.points, 100 * std::min(1.0, state_.largest_square / state_.sum_of_squares));
         tally.doubts.emplace_back(text);
     }
     doubt_heavy_tail(state_.tail, state_.tail_values, state_.points, tally.standard_error[0], tally.doubts);
