@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view file_kind = "adaptive map";
 // Edges never come closer: points within an increment must differ, or its volume is lost.
-constexpr double least_width = 0x1p-44;
+constexpr double least_bin_width = 0x1p-44;
 constexpr double uniform_part = 1e-3;
 constexpr double growth = 2;
 constexpr double below_one = 1 - 0x1p-53;
@@ -64,8 +64,8 @@ std::vector<double> rebalanced(std::span<const double> edges, const std::vector<
     for (; k < n; ++k) fresh[k] = 1; // rounding of the last sums; the passes below set them apart
     fresh[0] = 0;
     fresh[n] = 1;
-    for (std::size_t i = 1; i < n; ++i) fresh[i] = std::max(fresh[i], fresh[i - 1] + least_width);
-    for (std::size_t i = n - 1; i > 0; --i) fresh[i] = std::min(fresh[i], fresh[i + 1] - least_width);
+    for (std::size_t i = 1; i < n; ++i) fresh[i] = std::max(fresh[i], fresh[i - 1] + least_bin_width);
+    for (std::size_t i = n - 1; i > 0; --i) fresh[i] = std::min(fresh[i], fresh[i + 1] - least_bin_width);
     return fresh;
 }
 
@@ -94,7 +94,7 @@ std::vector<double> graded(std::span<const double> edges) {
         }
         double at = edges[i + 1];
         for (double width : from_right) at -= width;
-        if (rest > least_width) {
+        if (rest > least_bin_width) {
             fresh.push_back(at);
             before = rest;
         }
@@ -199,7 +199,7 @@ AdaptiveMap::AdaptiveMap(const std::vector<std::vector<double>>& edges)
         if (edges[d].front() != 0 || edges[d].back() != 1)
             throw Error("AdaptiveMap", what.str() + " do not run from 0 to 1");
         for (std::size_t i = 0; i + 1 < stride(); ++i)
-            if (!(edges[d][i + 1] - edges[d][i] >= least_width / 2)) {
+            if (!(edges[d][i + 1] - edges[d][i] >= least_bin_width / 2)) {
                 what << " do not increase after the one at " << edges[d][i];
                 throw Error("AdaptiveMap", what.str());
             }
@@ -285,9 +285,9 @@ AdaptiveMap AdaptiveMap::resampled(int increments) const {
             const double t = static_cast<double>(k) * increments_ / increments;
             const auto i = static_cast<std::size_t>(t);
             to[k] = from[i] + (t - static_cast<double>(i)) * (from[i + 1] - from[i]);
-            to[k] = std::max(to[k], to[k - 1] + least_width);
+            to[k] = std::max(to[k], to[k - 1] + least_bin_width);
         }
-        for (int k = increments - 1; k > 0; --k) to[k] = std::min(to[k], to[k + 1] - least_width);
+        for (int k = increments - 1; k > 0; --k) to[k] = std::min(to[k], to[k + 1] - least_bin_width);
     }
     return fresh;
 }

@@ -11,8 +11,8 @@
 #include "montelux/mc/integrate/cubature_regions.h"
 #include "montelux/mc/integrate/cubature_rules.h"
 #include "montelux/mc/integrate/cubature_verification.h"
+#include "montelux/mc/integrate/extreme_values.h"
 #include "montelux/mc/integrate/sampling.h"
-#include "montelux/mc/integrate/unseen_share.h"
 #include "montelux/mc/math/compensated.h"
 #include "montelux/mc/math/error.h"
 
@@ -427,7 +427,8 @@ class CubatureEstimator final : public Estimator {
         if (equal_values())
             for (std::size_t c = 0; c < components(); ++c)
                 totals_.error[c] =
-                    std::max(totals_.error[c], unseen_share(evaluations_) * std::abs(totals_.value[c]));
+                    std::max(totals_.error[c],
+                             equal_values_error(totals_.value[c], static_cast<double>(evaluations_)));
     }
 
     void say_doubts(Tally& tally) const {

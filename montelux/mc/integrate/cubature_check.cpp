@@ -15,7 +15,7 @@ constexpr double error_allowance = 4; // times the claimed error density of a re
 constexpr double tolerance_part = 0.25;
 constexpr double volume_share = 0.6, spread_share = 0.3; // of the points; the rest goes equally to regions
 constexpr std::size_t blocks = 16;                       // parts whose spread is the error of the mean
-constexpr std::uint64_t points_per_task = 4096;          // unless one region has more
+constexpr std::uint64_t check_task_points = 4096;        // unless one region has more
 constexpr std::uint64_t stream = 0x6368656b;             // apart from those of the methods that sample
 
 // The points of one region.
@@ -174,9 +174,9 @@ std::optional<CubatureCheck> check_regions(const Evaluator& evaluator, const Cub
     const std::uint64_t key = hash_key(seed, stream, round);
     const std::vector<Share> shares = share_out(regions, count, key);
     std::vector<std::size_t> starts; // of the tasks
-    std::uint64_t points = points_per_task;
+    std::uint64_t points = check_task_points;
     for (std::size_t i = 0; i < shares.size(); ++i) {
-        if (points >= points_per_task) {
+        if (points >= check_task_points) {
             starts.push_back(i);
             points = 0;
         }

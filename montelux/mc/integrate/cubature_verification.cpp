@@ -14,10 +14,10 @@
 namespace montelux {
 namespace {
 
-constexpr double negligible = 0.02;      // share of the tolerance
-constexpr double least_tolerance = 1e-7; // share of the integral of the absolute value
-constexpr double suspicion = 2.5;        // standard errors beyond which the difference counts as an error
-constexpr double significance = 5;       // standard errors between rules and points
+constexpr double negligible_surprise = 0.02; // share of the tolerance
+constexpr double least_tolerance = 1e-7;     // share of the integral of the absolute value
+constexpr double suspicion = 2.5;            // standard errors beyond which the difference counts as an error
+constexpr double significance = 5;           // standard errors between rules and points
 constexpr std::uint64_t most_rounds = 12;
 constexpr std::uint64_t fewest_points = 16;
 constexpr double plateau = 0.1;             // range of the values beside their mean
@@ -247,7 +247,7 @@ double CubatureVerification::weight(const CubatureRegions& regions, const Cubatu
     const double excess =
         surprise(regions, witness.region, component, witness.value[component], tolerance_[component]);
     const double error = regions.volume(witness.region) * excess;
-    return error > negligible * tolerance_[component] ? error : 0;
+    return error > negligible_surprise * tolerance_[component] ? error : 0;
 }
 
 void CubatureVerification::add_errors(CubatureRegions& regions, std::span<const std::size_t> of_regions) {

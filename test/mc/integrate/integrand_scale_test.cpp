@@ -13,7 +13,7 @@
 namespace montelux {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 Integrand ball_of_height(double height) {
     return Integrand([height](std::span<const double> x) {
@@ -130,19 +130,19 @@ TEST(IntegrateLog, GaussiansOfAnyHeight) {
 }
 
 TEST(IntegrateLog, MinusInfinityIsZeroAndOtherInfinitiesAreMistakes) {
-    const Integrand half([](double x) { return x < 0.5 ? -infinity : -1000.0; });
+    const Integrand half([](double x) { return x < 0.5 ? -unbounded : -1000.0; });
     const LogIntegrationResult r =
         integrate_log(half, Domain::interval(0, 1), Method(), {.relative_error = 1e-3});
     EXPECT_NEAR(r.log_value, -1000 + std::log(0.5), 1e-2);
     EXPECT_EQ(r.relative.non_finite, 0U);
 
-    const Integrand pole([](double x) { return x < 0.5 ? infinity : -1000.0; });
+    const Integrand pole([](double x) { return x < 0.5 ? unbounded : -1000.0; });
     EXPECT_GT(integrate_log(pole, Domain::interval(0, 1), Method::named("quasi")).relative.non_finite, 0U);
 
-    const Integrand nothing([](double) { return -infinity; });
+    const Integrand nothing([](double) { return -unbounded; });
     const LogIntegrationResult none = integrate_log(nothing, Domain::interval(0, 1));
-    EXPECT_EQ(none.log_value, -infinity);
-    EXPECT_EQ(none.log_error, infinity);
+    EXPECT_EQ(none.log_value, -unbounded);
+    EXPECT_EQ(none.log_error, unbounded);
     EXPECT_FALSE(none.relative.doubts.empty());
 }
 

@@ -52,8 +52,15 @@ double MixtureEstimate::inflation(double standard_error, int component) const {
 double MixtureEstimate::standard_error(const CovarianceMoments& moments, int component) const {
     const double error =
         std::sqrt(moments.variance(component) / static_cast<double>(sums_.sums.replicates()));
-    return std::max(error * inflation(error, component),
-                    sums_.extremes.least_standard_error(component, all_points()));
+    return std::max(error * inflation(error, component), least_error(moments, component));
+}
+
+double MixtureEstimate::least_error(const CovarianceMoments& moments, int component) const {
+    const double least = sums_.extremes.least_standard_error(component, all_points());
+    // Replicates of an indicator agree exactly where each has the same number of points on either side of a
+    // jump; their spread then says nothing about where within a cell of the net it is.
+    if (moments.variance(component) > 0) return least;
+    return std::max(least, equal_values_error(moments.mean(component), static_cast<double>(all_points())));
 }
 
 double MixtureEstimate::error_ratio(const StepRequest& request) const {
@@ -81,15 +88,15 @@ void MixtureEstimate::tally(bool full_covariance, Tally& tally) const {
         tally.standard_error.assign(m, infinity);
         return;
     }
-    tally_mean(sums_.sums.moments(points_, full_covariance), tally);
+    const CovarianceMoments moments = sums_.sums.moments(points_, full_covariance);
+    tally_mean(moments, tally);
     std::vector<double> factor(m);
     for (std::size_t c = 0; c < m; ++c) factor[c] = inflation(tally.standard_error[c], static_cast<int>(c));
     for (std::size_t c = 0; c < m; ++c) tally.standard_error[c] *= factor[c];
     for (std::size_t i = 0; i < tally.covariance.size(); ++i)
         tally.covariance[i] *= factor[i / m] * factor[i % m];
     std::vector<double> least(m);
-    for (std::size_t c = 0; c < m; ++c)
-        least[c] = sums_.extremes.least_standard_error(static_cast<int>(c), all_points());
+    for (std::size_t c = 0; c < m; ++c) least[c] = least_error(moments, static_cast<int>(c));
     raise_standard_errors(least, tally);
 }
 

@@ -51,6 +51,8 @@ class MixtureEstimate {
 
   private:
     double standard_error(const CovarianceMoments& moments, int component) const;
+    // What the number of points justifies, whatever the spread of the replicates.
+    double least_error(const CovarianceMoments& moments, int component) const;
     double inflation(double standard_error, int component) const;
 
     MixtureSums sums_;
