@@ -165,8 +165,8 @@ TEST(Importance, MistakesAreAnsweredWithASentence) {
     auto message = [](const Integrand& f, const Domain& domain, const Method& m) -> std::string {
         try {
             integrate(f, domain, m, {.evaluations = 1000});
-        } catch (const Error& e) {
-            return e.what();
+        } catch (const Error& error) {
+            return error.what();
         }
         return "";
     };
