@@ -17,6 +17,6 @@ inline constexpr int quick_seeds = 6;
 inline constexpr double quick_targets[] = {1e-2, 1e-3};
 inline constexpr double quick_cap = 500000;
 inline constexpr double quick_seconds = 20;
-inline constexpr QuickLimit quick_limits[] = {{"auto", 20}, {"adaptive", 20}};
+inline constexpr QuickLimit quick_limits[] = {{"auto", 4}, {"adaptive", 6}};
 
 } // namespace montelux::bench
