@@ -20,10 +20,11 @@ constexpr std::uint64_t least_round = 512;           // of few evaluations
 constexpr std::uint64_t max_training_points = 65536; // of a round
 constexpr int max_rounds = 24;
 constexpr int max_retrainings = 4;
-constexpr double fixed_training_share = 0.1;        // of a fixed number of evaluations,
-constexpr double least_training = 20000;            // or so many, if they are no more than a third
-constexpr std::uint64_t enough_nonzero = 16;        // points that must see anything before training begins,
-constexpr std::uint64_t few_nonzero = 4;            // the same, where a quarter of all has been explored,
+constexpr double fixed_training_share = 0.1; // of a fixed number of evaluations,
+constexpr double least_training = 20000;     // or so many, if they are no more than a third
+constexpr double disagreement = 2e-3;        // p-value of the training rounds below which there is a warning
+constexpr std::uint64_t enough_nonzero = 16; // points that must see anything before training begins,
+constexpr std::uint64_t few_nonzero = 4;     // the same, where a quarter of all has been explored,
 constexpr std::uint64_t most_exploration = 1 << 20; // or evaluations without
 constexpr double peaky = 0.1; // effective share of exploring points below which peaks are searched for
 constexpr double narrow_peaks = 0.01;        // the same, where the search is thorough
@@ -352,7 +353,7 @@ class AdaptiveEstimator final : public Estimator {
             tally.doubts.push_back(
                 "one replicate stands far from the others; the error may be underestimated");
         if (tally.degrees_of_freedom > 0 &&
-            chi_squared_p_value(tally.chi_squared, tally.degrees_of_freedom) < 1e-4)
+            chi_squared_p_value(tally.chi_squared, tally.degrees_of_freedom) < disagreement)
             tally.doubts.push_back("the training rounds disagree with the result");
     }
 

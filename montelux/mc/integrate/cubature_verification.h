@@ -63,7 +63,7 @@ class CubatureVerification {
     void load(StateReader& state, std::size_t regions);
 
   private:
-    static constexpr double enough_in_bulk = 8;
+    static constexpr double enough_in_bulk = 24;
     std::vector<double> tolerances(const CubatureRegions& regions, std::span<const double> value,
                                    std::span<const double> error, const StepRequest& request) const;
     // Error that the witness adds to its region; 0 where it is expected or negligible.
