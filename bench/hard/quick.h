@@ -13,10 +13,10 @@ struct QuickLimit {
 };
 
 // What is run: seeds 0, ..., quick_seeds - 1 of every family at each target.
-inline constexpr int quick_seeds = 6;
+inline constexpr int quick_seeds = 4;
 inline constexpr double quick_targets[] = {1e-2, 1e-3};
 inline constexpr double quick_cap = 500000;
 inline constexpr double quick_seconds = 20;
-inline constexpr QuickLimit quick_limits[] = {{"auto", 4}, {"adaptive", 6}};
+inline constexpr QuickLimit quick_limits[] = {{"auto", 3}, {"adaptive", 5}};
 
 } // namespace montelux::bench
