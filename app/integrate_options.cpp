@@ -176,7 +176,8 @@ void declare(CLI::App& c, IntegrateOptions& o) {
     text("--absolute-error", o.absolute_error, "Stop at this standard error; with both, at the larger one",
          "E");
     text("--evaluations", o.evaluations,
-         "Evaluate at most so often, for example 50000, 50k, 1M or 1e6. Default: 1e6 where neither an error "
+         "Maximum number of evaluations, for example 50000, 50k, 1M or 1e6. Default: 1e6 where neither an "
+         "error "
          "nor a "
          "time is asked for",
          "N");

@@ -81,13 +81,16 @@ class CubatureEstimator final : public Estimator {
         NonFiniteCount non_finite;
         std::vector<char> nonzero(nonzero_);
         std::vector<SymmetricRule::FaceValue> faces(parents.empty() ? 0 : rules.size() * components());
+        std::uint64_t points = 0;
+        for (const SymmetricRule* rule : rules) points += rule->points();
         const CubatureWork work{rules,
                                 regions_,
                                 parents,
                                 fresh,
                                 faces,
                                 n_ == 1 && parents.empty() ? &nested : nullptr,
-                                nested.count() > 0 && non_finite_.count > 0};
+                                nested.count() > 0 && non_finite_.count > 0,
+                                request.max_evaluations / 2 >= points};
         std::uint64_t shifted = 0;
         if (!evaluate_regions(problem_.evaluator, work, totals_.value, non_finite, shifted, nonzero,
                               request.cancel))

@@ -128,7 +128,9 @@ void evaluate_some(const Evaluator& evaluator, const CubatureWork& work, std::sp
     NonFiniteCount first_time;
     evaluator(u, values.view().slice(known, count - known), first_time, &not_finite);
     for (std::size_t& i : not_finite) i += known;
-    if (!not_finite.empty())
+    if (!work.may_shift)
+        non_finite.merge(first_time);
+    else if (!not_finite.empty())
         shift_off_singularities(evaluator, u, known, work, begin, values, not_finite, non_finite, shifted);
     if (work.nested_not_finite) not_finite.insert(not_finite.begin(), 0);
     std::ranges::sort(not_finite);

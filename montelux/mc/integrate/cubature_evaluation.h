@@ -24,6 +24,8 @@ struct CubatureWork {
     // afterwards those at all of them; component after component.
     ValueBuffer* nested = nullptr;
     bool nested_not_finite = false; // were some of the known ones not finite?
+    // May points where the integrand is not finite be evaluated again nearby? Each costs one more evaluation.
+    bool may_shift = true;
 };
 
 // Evaluates all regions of `work.fresh` on all threads, and sets their values, errors and marks. `totals` are

@@ -42,7 +42,6 @@ class CubatureVerification {
     // witnesses tell to their errors.
     void follow(CubatureRegions& regions, std::span<const std::size_t> parents, std::size_t first_new);
 
-    bool has_witnesses() const { return !witnesses_.empty(); }
     std::uint64_t evaluations() const { return evaluations_; }
     const NonFiniteCount& non_finite() const { return non_finite_; }
     // Widens the range of a component's values by what the points met.

@@ -280,6 +280,24 @@ TEST(Cubature, NonFiniteValuesAreCounted) {
     EXPECT_NEAR(r.first_non_finite_point.at(0), 0.5, 0.01);
 }
 
+// Points that are evaluated again beside a singularity count, and do not break the limit.
+TEST(Cubature, ShiftedPointsStayWithinTheEvaluations) {
+    const Integrand inner([](std::span<const double> x) { return 1 / std::sqrt(std::abs(x[0] - x[1])); });
+    for (std::uint64_t limit : {65U, 100U, 195U, 200U, 1000U, 5000U, 20001U})
+        for (const Method& method : {Method(Cubature{}), Method(Auto{})}) {
+            std::uint64_t counted = 0;
+            const Integrand f = Integrand::batch([&](const PointBatch& x, ValueBatch y) {
+                counted += x.count();
+                inner(x, y);
+            });
+            const IntegrationResult r = integrate(
+                f, Domain::unit_cube(2), method,
+                {.relative_error = 1e-6, .absolute_error = 0, .evaluations = limit}, {.threads = 1});
+            EXPECT_LE(counted, limit) << r;
+            EXPECT_EQ(r.evaluations, counted);
+        }
+}
+
 // A single point that is not finite, as on a diagonal, is replaced by one nearby.
 TEST(Cubature, PointsShiftOffSingularities) {
     auto one = [](double x) { return x == 0.5 ? std::numeric_limits<double>::quiet_NaN() : x; };
