@@ -14,9 +14,11 @@
 namespace montelux {
 namespace {
 
-constexpr std::uint64_t units = MixtureDensity::units;
 constexpr std::uint64_t training_points = 2048;      // of a round, at first
-constexpr std::uint64_t least_round = 512;           // of few evaluations
+constexpr std::uint64_t least_round = 64;            // of few evaluations,
+constexpr std::uint64_t least_explored = 8;          // points of a replicate, of the same,
+constexpr std::uint64_t few_evaluations = 16384;     // which are fewer than these
+constexpr int share_step_of_few = 8;                 // units of shares, of the same
 constexpr std::uint64_t max_training_points = 65536; // of a round
 constexpr int max_rounds = 24;
 constexpr int max_retrainings = 4;
@@ -151,24 +153,24 @@ class AdaptiveEstimator final : public Estimator {
         if (targeted(request)) return explored_;
         const std::uint64_t eighth =
             std::bit_floor(std::max<std::uint64_t>(request.max_evaluations / (8 * replicates()), 1));
-        return std::clamp(eighth, units, explored_);
+        return std::clamp(eighth, std::min(least_explored, explored_), explored_);
     }
     // Goes on, doubling, while hardly any point sees anything.
     StepOutcome explore(const StepRequest& request) {
         const bool first = uniform_.points() == 0;
         const std::uint64_t explored = first ? exploration(request) : explored_;
         std::uint64_t points = first ? explored : uniform_.points();
-        points = std::min(points, request.max_evaluations / replicates() / units * units);
-        if (points == 0 && uniform_.points() == 0)
-            points = request.max_evaluations / replicates(); // too few for balance
+        points = std::min(points, request.max_evaluations / replicates());
         if (points == 0) return StepOutcome::exhausted;
         SamplePoints drawn;
         auto sums =
             sample_mixture(problem_.evaluator, cube_, hash_key(problem_.seed, 0), settings_.replicates,
                            uniform_.points(), uniform_.points() + points, &drawn, request.cancel);
         if (!sums) return StepOutcome::cancelled;
-        if (explored < explored_) // of few evaluations the rounds of training, too, are a share
+        if (explored < explored_) { // of few evaluations the rounds of training, too, are a share
             round_points_ = std::clamp(request.max_evaluations / 8, least_round, round_points_);
+            if (request.max_evaluations < few_evaluations) trainer_.set_share_step(share_step_of_few);
+        }
         explored_ = explored;
         uniform_.explore(*sums, uniform_.points() + points);
         trainer_.start(std::move(drawn));
@@ -184,7 +186,7 @@ class AdaptiveEstimator final : public Estimator {
     }
     // Points of each replicate that the trained density is tried with: half of the exploration.
     std::uint64_t first_sample() const {
-        return problem_.evaluator.dimensions() == 1 ? explored_ : std::max(units, explored_ / 2);
+        return problem_.evaluator.dimensions() == 1 ? explored_ : std::max(least_explored, explored_ / 2);
     }
     // Values of one size, beside which a spike may be: only more points can tell.
     bool plateau() const {
@@ -269,9 +271,10 @@ class AdaptiveEstimator final : public Estimator {
             const std::uint64_t floor = std::bit_floor(goal);
             goal = goal > floor ? floor : floor / 4 * 3;
         }
-        goal = goal / units * units;
+        const std::uint64_t balanced = density.balanced_points();
+        goal = goal / balanced * balanced;
         if (goal <= points) return StepOutcome::exhausted;
-        const std::uint64_t end = std::min(goal, (points / units + step_points / units) * units);
+        const std::uint64_t end = std::min(goal, (points + step_points) / balanced * balanced);
         // What uniform points have found since the exploration, training is to know.
         const bool keep = phase_ == Phase::uniform && trainer_.rounds() == 0 && targeted(request) &&
                           (end - points) * replicates() <= most_kept;

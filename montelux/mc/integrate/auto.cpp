@@ -11,6 +11,7 @@
 #include "montelux/mc/integrate/adaptive.h"
 #include "montelux/mc/integrate/basic_monte_carlo.h"
 #include "montelux/mc/integrate/cubature.h"
+#include "montelux/mc/integrate/cubature_rules.h"
 #include "montelux/mc/random/sobol.h"
 
 namespace montelux {
@@ -22,6 +23,8 @@ constexpr double pilot_share = 0.25;   // or this share of what sampling is expe
 // Errors that fall more slowly with the evaluations, as a power, do so at poles that have no integral: halves
 // of an interval close in on all others.
 constexpr double slowest_of_one_variable = 0.25;
+constexpr double cautious_rate = 0.5;     // the same power, where few evaluations are judged after the first
+constexpr double largest_first = 0.25;    // share of a fixed number of evaluations that one region may take
 constexpr std::uint64_t patience = 60000; // evaluations of sampling before cubature gets a second chance,
 constexpr double second_share = 0.2;      // and the share of sampling's evaluations that it then gets
 constexpr double rough_error = 0.03;      // relative, of what a localised result is compared with
@@ -31,7 +34,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // What Adaptive needs for a relative error, roughly, as measured on Genz's families in 5 and 8 dimensions
 // (docs/integration.md): 10,000 evaluations for 1e-3, 35,000 for 1e-4.
 double sampling_cost(double relative_error) { return 35000 * std::pow(1e-4 / relative_error, 0.55); }
-double sampling_error(double evaluations) { return 1e-4 * std::pow(35000 / evaluations, 1 / 0.55); }
+double sampling_error(double evaluations) {
+    return 1e-4 * std::pow(35000 / std::max(evaluations, 1.0), 1 / 0.55);
+}
 
 std::string printed(double x) {
     char text[32];
@@ -64,16 +69,27 @@ class AutoEstimator final : public Estimator {
   public:
     explicit AutoEstimator(const Problem& problem)
         : cubature_(Cubature{}.estimator(problem)), sampling_(Adaptive{}.estimator(problem)),
-          one_variable_(problem.evaluator.dimensions() == 1) {}
+          one_variable_(problem.evaluator.dimensions() == 1),
+          first_region_(one_variable_ ? 0 : genz_malik_7(problem.evaluator.dimensions()).points()) {}
 
     StepOutcome step(const StepRequest& request) override {
         if (switched_) return step_both(request);
         if (diverges_) return StepOutcome::finished;
         if (comparing_) return compare(request);
+        const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
+        if (!targeted && cubature_->tally().evaluations == 0 &&
+            static_cast<double>(first_region_) >
+                largest_first * static_cast<double>(request.max_evaluations)) {
+            give_up("cubature would take " + std::to_string(first_region_) +
+                    " evaluations for a first region");
+            rules_end_ = true;
+            return sampling_->step(request);
+        }
+        const std::uint64_t before = cubature_->tally().evaluations;
         const StepOutcome outcome = cubature_->step(request);
         if (outcome == StepOutcome::cancelled) return outcome;
         if (outcome == StepOutcome::advanced) {
-            judge(request);
+            judge(request, before);
             return outcome;
         }
         // It can do no more. Sampling takes over where there is no result yet, or where a target is still
@@ -81,7 +97,6 @@ class AutoEstimator final : public Estimator {
         // worse result than there is.
         const Tally rule = cubature_->tally();
         const std::uint64_t spent = rule.evaluations;
-        const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
         const bool open = outcome == StepOutcome::finished && (targeted || !rule.doubts.empty()) &&
                           request.max_evaluations > spent;
         if (spent > 0 && !open) return outcome;
@@ -175,7 +190,7 @@ class AutoEstimator final : public Estimator {
 
     Tally tally() const override {
         const Tally rule = cubature_->tally();
-        if (!switched_) {
+        if (!switched_ || !has_errors(sampling_->tally())) {
             Tally tally = rule;
             tally.method = Cubature::name;
             tally.reason = reason_;
@@ -239,18 +254,23 @@ class AutoEstimator final : public Estimator {
         return true;
     }
 
+    static bool has_errors(const Tally& tally) {
+        return std::ranges::all_of(tally.standard_error, [](double error) { return std::isfinite(error); });
+    }
+
     void give_up(std::string why) {
         switched_ = true;
         reason_ = std::move(why);
     }
 
     // Is cubature on its way to the target, sooner than sampling would be?
-    void judge(const StepRequest& request) {
+    void judge(const StepRequest& request, std::uint64_t before) {
         const Tally tally = cubature_->tally();
         const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
         double ratio = 0, tightest = infinity;
         for (std::size_t c = 0; c < tally.value.size(); ++c) {
             const double size = std::abs(tally.value[c]);
+            if (targeted && std::isinf(tally.standard_error[c])) continue; // a part of it is searched for
             const double tolerance =
                 targeted ? std::max(request.absolute_error, request.relative_error * size) : size;
             if (tally.standard_error[c] > 0) ratio = std::max(ratio, tally.standard_error[c] / tolerance);
@@ -274,7 +294,7 @@ class AutoEstimator final : public Estimator {
             return;
         }
         const double spent = cost - begin_;
-        const double rate = falling_rate();
+        const double rate = falling_rate(targeted ? 1 : cautious_rate);
         if (targeted) {
             // One variable is what the rules are best at.
             const double alternative = sampling_cost(std::min(1.0, tightest)) * (one_variable_ ? 10 : 1);
@@ -289,21 +309,23 @@ class AutoEstimator final : public Estimator {
                         ", sampling about " + printed(alternative));
             return;
         }
-        const double budget = cost + static_cast<double>(request.max_evaluations);
-        if (spent < std::min(least_pilot, 0.2 * budget)) return; // few evaluations are not worth a long pilot
-        const double reached = ratio * std::pow(spent / (budget - begin_), rate),
-                     alternative = sampling_error(budget);
+        const double left =
+            static_cast<double>(request.max_evaluations) - static_cast<double>(tally.evaluations - before);
+        if (spent < std::min(least_pilot, 0.25 * left)) return; // few evaluations are not worth a long pilot
+        const double reached = ratio * std::pow(spent / (spent + left), rate),
+                     alternative = sampling_error(left);
         if (reached > alternative && !(one_variable_ && reached < 10 * alternative))
             give_up("cubature seemed to reach a relative error of " + printed(reached) +
                     ", sampling one of " + printed(alternative));
     }
 
-    // Exponent p of error ~ evaluations^-p, between now and when half as many had been made.
-    double falling_rate() const {
+    // Exponent p of error ~ evaluations^-p, between now and when half as many had been made; `unknown`
+    // before.
+    double falling_rate(double unknown) const {
         std::size_t i = costs_.size() - 1;
         while (i > 0 && costs_[i] - begin_ > 0.5 * (costs_.back() - begin_)) --i;
-        if (i + 1 == costs_.size() || !(costs_[i] < costs_.back())) return 1;
-        if (!(ratios_[i] < infinity)) return 1;
+        if (i + 1 == costs_.size() || !(costs_[i] < costs_.back())) return unknown;
+        if (!(ratios_[i] < infinity)) return unknown;
         return std::clamp(std::log(ratios_[i] / ratios_.back()) /
                               std::log((costs_.back() - begin_) / std::max(1.0, costs_[i] - begin_)),
                           0.0, 8.0);
@@ -311,6 +333,7 @@ class AutoEstimator final : public Estimator {
 
     std::unique_ptr<Estimator> cubature_, sampling_;
     bool one_variable_;
+    std::uint64_t first_region_; // evaluations
     bool switched_ = false;
     bool comparing_ = false, agreed_ = false; // cubature with sampling
     bool rules_end_ = false;                  // cubature can do no more

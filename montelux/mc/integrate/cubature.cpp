@@ -128,6 +128,8 @@ class CubatureEstimator final : public Estimator {
         }
         tally.value = totals_.value;
         tally.standard_error = totals_.error;
+        for (std::size_t c = 0; c < components() && searching(); ++c)
+            if (nonzero_[c] == 0) tally.standard_error[c] = std::numeric_limits<double>::infinity();
         tally.ready = !searching() && verification_.verified(totals_.value);
         tally.at_limit = at_limit_;
         // Of one variable halving alone finds all that has a width.
@@ -437,7 +439,7 @@ class CubatureEstimator final : public Estimator {
     void say_doubts(Tally& tally) const {
         std::size_t unseen = 0;
         for (char c : nonzero_) unseen += c == 0;
-        if (unseen > 0 && !searching()) {
+        if (unseen > 0) {
             std::string what =
                 m_ == 1 ? "the integrand was"
                         : std::to_string(unseen) + (unseen == 1 ? " component was" : " components were");

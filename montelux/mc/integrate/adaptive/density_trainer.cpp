@@ -143,19 +143,21 @@ void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless) {
     if (modes.empty()) return;
     for (Gaussian& g : modes) g = g.widened(1.2);
     density_ = MixtureDensity(density_.dimensions(), {}, std::move(modes));
+    const int even = (MixtureDensity::units - uniform_units_) / (density_.channels() - 1);
     std::vector<int> shares(static_cast<std::size_t>(density_.channels()),
-                            (MixtureDensity::units - uniform_units_) / (density_.channels() - 1));
+                            even >= share_step_ ? even / share_step_ * share_step_ : even);
     shares[0] = MixtureDensity::units - shares.back() * (density_.channels() - 1);
     density_.set_shares(std::move(shares));
 }
 
 bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
-    n = std::max<std::uint64_t>(1, n / MixtureDensity::units) * MixtureDensity::units;
     // With peaks just found, the density is tried before it is fitted. While weights are uneven, every second
     // round draws from wider Gaussians, which see the ends of ridges.
     const bool wide = rounds_ > first_fit_before_gaussians && rounds_ % 2 == 1 &&
                       relative_variance_ > enough_even && !density_.gaussians().empty();
     const MixtureDensity drawn = wide ? density_.widened(exploring_width) : density_;
+    const std::uint64_t balanced = drawn.balanced_points();
+    n = std::max<std::uint64_t>(1, n / balanced) * balanced;
     SamplePoints points;
     const auto sums = sample_mixture(problem_.evaluator, drawn, hash_key(problem_.seed, 1, rounds_), 1, 0, n,
                                      &points, cancel);
@@ -257,7 +259,7 @@ void DensityTrainer::fit() {
     for (Gaussian& g : gaussians) g = g.widened(safe_width); // tails cost little, and their absence much
     MixtureDensity density_before = std::move(density_);
     density_ = MixtureDensity(dimensions, maps, gaussians);
-    density_.optimise_shares(all.x, all.h, all.p, uniform_units_);
+    density_.optimise_shares(all.x, all.h, all.p, uniform_units_, share_step_);
     std::vector<double> ratios(all.h.size());
     auto compare = [&] {
         density_.pdf(all.x, ratios);
@@ -287,7 +289,7 @@ void DensityTrainer::fit() {
             gaussians.assign(density_.gaussians().begin(), density_.gaussians().end());
             gaussians.insert(gaussians.end(), added.begin(), added.end());
             density_ = MixtureDensity(dimensions, std::move(maps), std::move(gaussians));
-            density_.optimise_shares(all.x, all.h, all.p, uniform_units_, newest);
+            density_.optimise_shares(all.x, all.h, all.p, uniform_units_, share_step_, newest);
             compare();
         }
     }
@@ -339,6 +341,7 @@ void DensityTrainer::save(StateWriter& state) const {
     }
     state.put(rounds_);
     state.put(enriched_);
+    state.put(share_step_);
     state.put(relative_variance_);
     state.put(effective_share_);
     state.put(uncovered_share_);
@@ -376,6 +379,7 @@ void DensityTrainer::load(StateReader& state) {
     }
     rounds_ = state.get<int>();
     enriched_ = state.get<int>() != 0;
+    share_step_ = std::clamp(state.get<int>(), 1, MixtureDensity::units);
     relative_variance_ = state.get_double();
     effective_share_ = state.get_double();
     uncovered_share_ = state.get_double();

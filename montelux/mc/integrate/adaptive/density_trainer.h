@@ -17,6 +17,8 @@ class DensityTrainer {
   public:
     DensityTrainer(const Problem& problem, int uniform_units);
 
+    // Shares of channels are multiples of so many units from now on: fewer points divide exactly.
+    void set_share_step(int step) { share_step_ = step; }
     // Takes the points of the exploration, which were uniform; once more if it went on.
     void start(SamplePoints&& points);
     // Of |g| over the points last taken: number of points with any, and effective number, (sum h)^2 / sum
@@ -27,8 +29,8 @@ class DensityTrainer {
     // Looks for peaks, until so many searches in a row have led to known ones; evaluations are counted in
     // evaluations().
     void find_peaks(std::uint64_t max_evaluations, int fruitless = ModeSearch().fruitless);
-    // One round of n points, about (a multiple of MixtureDensity::units). False when cancelled: nothing
-    // changed.
+    // One round of n points, about (a multiple of what the density divides exactly). False when cancelled:
+    // nothing changed.
     bool round(std::uint64_t n, const CancelFlag* cancel);
 
     const MixtureDensity& density() const { return density_; }
@@ -67,7 +69,7 @@ class DensityTrainer {
     void remember(const Pool& all, std::span<const double> ratios);
 
     Problem problem_;
-    int uniform_units_;
+    int uniform_units_, share_step_ = 1;
     MixtureDensity density_;
     std::vector<double> scale_; // one a component
     std::vector<Round> recent_; // two at most

@@ -21,6 +21,12 @@ MixtureDensity::MixtureDensity(int dimensions, std::vector<MonotoneMap> maps, st
     shares_[0] += units - std::accumulate(shares_.begin(), shares_.end(), 0);
 }
 
+std::uint64_t MixtureDensity::balanced_points() const {
+    int common = units;
+    for (int share : shares_) common = std::gcd(common, share);
+    return static_cast<std::uint64_t>(units / common);
+}
+
 void MixtureDensity::sample(int channel, const PointBatch& u, PointBuffer& x,
                             std::vector<double>& density) const {
     const std::size_t count = u.count();
@@ -86,7 +92,7 @@ void MixtureDensity::pdf(const PointBatch& x, std::span<double> density) const {
 }
 
 void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double> h,
-                                     std::span<const double> p, int uniform_units, int newest) {
+                                     std::span<const double> p, int uniform_units, int step, int newest) {
     const auto n = static_cast<std::size_t>(channels());
     if (n == 1) return;
     std::vector<std::vector<double>> q(n, std::vector<double>(x.count()));
@@ -101,7 +107,7 @@ void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double
         const double sum = std::accumulate(a.begin(), a.end(), 0.0);
         for (double& v : a) v /= sum;
     };
-    for (int step = 0; step < 40; ++step) {
+    for (int iteration = 0; iteration < 40; ++iteration) {
         for (std::size_t i = 0; i < x.count(); ++i) {
             double mixture = 0;
             for (std::size_t k = 0; k < n; ++k) mixture += a[k] * q[k][i];
@@ -120,14 +126,14 @@ void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double
     }
     int left = units;
     for (std::size_t k = 0; k < n; ++k) {
-        shares_[k] = static_cast<int>(std::lround(a[k] * units));
-        if (k == 0) shares_[k] = std::max(shares_[k], uniform_units);
-        if (k + static_cast<std::size_t>(newest) >= n) shares_[k] = std::max(shares_[k], 1);
+        shares_[k] = static_cast<int>(std::lround(a[k] * units / step)) * step;
+        if (k == 0) shares_[k] = std::max(shares_[k], (uniform_units + step - 1) / step * step);
+        if (k + static_cast<std::size_t>(newest) >= n) shares_[k] = std::max(shares_[k], step);
         left -= shares_[k];
     }
-    // One by one: no share falls below zero, and that of the uniform channel stays.
-    for (; left != 0; left -= left > 0 ? 1 : -1)
-        *std::max_element(shares_.begin() + 1, shares_.end()) += left > 0 ? 1 : -1;
+    // Step by step: no share falls below zero, and that of the uniform channel stays.
+    for (; left != 0; left -= left > 0 ? step : -step)
+        *std::max_element(shares_.begin() + 1, shares_.end()) += left > 0 ? step : -step;
 }
 
 MixtureDensity MixtureDensity::widened(double factor) const {

@@ -35,6 +35,9 @@ class MixtureDensity {
     std::span<const MonotoneMap> maps() const { return maps_; }
     std::span<const Gaussian> gaussians() const { return gaussians_; }
 
+    // Multiples of so many points are divided exactly: `units`, or fewer where the shares have a common
+    // factor.
+    std::uint64_t balanced_points() const;
     // Number of points of a channel among the first n of the mixture.
     std::uint64_t channel_points(int channel, std::uint64_t n) const {
         return n * static_cast<std::uint64_t>(shares_[static_cast<std::size_t>(channel)]) / units;
@@ -48,9 +51,10 @@ class MixtureDensity {
 
     // Shares that make the second moment of h / q small, given points x drawn with density p and h there
     // (Kleiss and Pittau 1994, "Weight optimization in multichannel Monte Carlo"). The uniform channel keeps
-    // `uniform_units` at least, and each of the last `newest` channels one unit: what it can do is not known.
+    // `uniform_units` at least, and each of the last `newest` channels one step: what it can do is not known.
+    // Shares are multiples of `step` units, a power of two.
     void optimise_shares(const PointBatch& x, std::span<const double> h, std::span<const double> p,
-                         int uniform_units, int newest = 0);
+                         int uniform_units, int step = 1, int newest = 0);
     // The same with all Gaussians wider.
     MixtureDensity widened(double factor) const;
     // Removes Gaussians that draw no points.

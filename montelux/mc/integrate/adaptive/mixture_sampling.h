@@ -42,7 +42,7 @@ struct MixtureSums {
 };
 
 // Evaluates, for each replicate r in [0, replicates), points [begin, end) of the mixture (multiples of
-// MixtureDensity::units), which are scrambled Sobol' points of their own for each (key, channel, replicate).
+// its balanced_points()), which are scrambled Sobol' points of their own for each (key, channel, replicate).
 // If `points` is given it receives all points in order. Empty when cancelled.
 std::optional<MixtureSums> sample_mixture(const Evaluator& evaluator, const MixtureDensity& mixture,
                                           std::uint64_t key, int replicates, std::uint64_t begin,

@@ -10,7 +10,8 @@ namespace montelux {
 namespace {
 
 constexpr double nowhere = -std::numeric_limits<double>::max();
-constexpr double least_excess = 3; // of log h above what known modes explain, for another search
+constexpr double least_excess = 3;        // of log h above what known modes explain, for another search
+constexpr double least_difference = 1e-8; // of coordinates, in widths of the cube
 
 class Climber {
   public:
@@ -52,6 +53,12 @@ class Climber {
                 }
             }
             const std::vector<double> f = log_at(around);
+            if (std::ranges::find(f, nowhere) != f.end()) {
+                // Zero there, for a jump or an underflow: differences are taken closer by.
+                width *= 0.3;
+                if (width < least_difference) break;
+                continue;
+            }
             std::vector<double> direction(n_);
             double expected = 0;
             for (std::size_t d = 0; d < n_; ++d) {
@@ -81,7 +88,7 @@ class Climber {
                 if (top - before < 1e-3) break;
             } else {
                 width *= 0.3;
-                if (width < 1e-8) break;
+                if (width < least_difference) break;
             }
         }
         return top;
@@ -137,11 +144,11 @@ class Climber {
         }
         for (double v : precision)
             if (!std::isfinite(v) || std::abs(v) > 1e100) return std::nullopt;
-        // Flat and rising directions (ridges) get the greatest width allowed.
         const Eigensystem axes = symmetric_eigensystem(precision, static_cast<int>(n_));
+        const std::vector<double> flat = widths_of_flat_axes(x, top, axes, widest);
         std::vector<double> covariance(n_ * n_, 0.0);
         for (std::size_t k = 0; k < n_; ++k) {
-            const double variance = 1 / std::max(axes.values[k], 1 / (widest * widest));
+            const double variance = flat[k] > 0 ? flat[k] * flat[k] : 1 / axes.values[k];
             for (std::size_t i = 0; i < n_; ++i)
                 for (std::size_t j = 0; j < n_; ++j)
                     covariance[i * n_ + j] += variance * axes.vectors[i * n_ + k] * axes.vectors[j * n_ + k];
@@ -152,6 +159,41 @@ class Climber {
     }
 
   private:
+    // Along axes where log h is flat or rises, as on ridges and shells: how far one can go before h falls, at
+    // most `widest`; zero for other axes. A Gaussian as wide as a curved ridge is long would seem to explain
+    // what lies beside it.
+    std::vector<double> widths_of_flat_axes(const std::vector<double>& x, double top, const Eigensystem& axes,
+                                            double widest) {
+        constexpr int halvings = 6;
+        constexpr double fallen = 0.5; // of the logarithm of a Gaussian at its width
+        std::vector<double> widths(n_, 0.0);
+        std::vector<std::size_t> open;
+        for (std::size_t k = 0; k < n_; ++k)
+            if (!(axes.values[k] > 1 / (widest * widest))) {
+                widths[k] = widest;
+                open.push_back(k);
+            }
+        for (int i = 0; i < halvings && !open.empty() && budget_ >= 2 * open.size(); ++i) {
+            std::vector<std::vector<double>> ends;
+            for (std::size_t k : open)
+                for (double sign : {1.0, -1.0}) {
+                    ends.push_back(x);
+                    for (std::size_t d = 0; d < n_; ++d)
+                        ends.back()[d] =
+                            std::clamp(x[d] + sign * widths[k] * axes.vectors[d * n_ + k], 1e-6, 1 - 1e-6);
+                }
+            const std::vector<double> f = log_at(ends);
+            std::vector<std::size_t> shorter;
+            for (std::size_t j = 0; j < open.size(); ++j)
+                if (top - std::max(f[2 * j], f[2 * j + 1]) > fallen) {
+                    widths[open[j]] /= 2;
+                    shorter.push_back(open[j]);
+                }
+            open = std::move(shorter);
+        }
+        return widths;
+    }
+
     const DensityFunction& h_;
     std::size_t n_;
     std::uint64_t budget_;
