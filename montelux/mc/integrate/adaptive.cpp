@@ -38,7 +38,6 @@ constexpr double uniform_reach = 32768; // evaluations within which uniform poin
 constexpr std::uint64_t plateau_evaluations = 16384;
 constexpr double even_values = 0.7;          // effective share of exploring points of a plateau
 constexpr std::uint64_t most_kept = 1 << 18; // uniform points of a step that are kept for training
-constexpr double uncovered_matters = 2e-3;   // of the integral, for training to go on
 constexpr double surprise_matters = 2;       // error over target, from which heavy weights are acted on
 constexpr double much_sooner = 0.5; // share of the expected rest at which uniform points are gone back to
 constexpr std::uint64_t step_points = 65536; // of each replicate in one step
@@ -234,7 +233,7 @@ class AdaptiveEstimator final : public Estimator {
             allowed = std::min(allowed, settings_.training_share *
                                             std::pow(std::sqrt(variance) / request.relative_error, 1.4));
         allowed = std::max(allowed, training_goal_);
-        if (targeted(request) && trainer_.uncovered_share() > uncovered_matters)
+        if (targeted(request) && trainer_.uncovered_share() > DensityTrainer::uncovered_matters)
             allowed = std::max(allowed, 0.25 * all);
         if (trainer_.rounds() >= 2 &&
             (trained + static_cast<double>(round_points_) > allowed || trainer_.rounds() >= max_rounds))

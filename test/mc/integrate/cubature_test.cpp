@@ -1,4 +1,4 @@
-#include "bench/integrate/integrands.h"
+#include "test/mc/integrate/bench_integrand.h"
 #include <cmath>
 #include <filesystem>
 #include <gtest/gtest.h>
@@ -13,19 +13,6 @@
 namespace montelux {
 namespace {
 
-using bench::BenchIntegrand;
-using bench::Family;
-
-Integrand as_integrand(const BenchIntegrand& f) {
-    return Integrand::batch([&f](const PointBatch& x, ValueBatch y) {
-        std::vector<const double*> coordinates;
-        for (int d = 0; d < x.dimensions(); ++d) coordinates.push_back(x.coordinate(d).data());
-        f.evaluate(coordinates.data(), x.count(), y.component(0).data());
-    });
-}
-Domain domain_of(const BenchIntegrand& f) {
-    return Domain(std::vector<Range>(static_cast<std::size_t>(f.dimensions()), {f.lower(), f.upper()}));
-}
 IntegrationResult run(const BenchIntegrand& f, double error, std::uint64_t evaluations,
                       const IntegrationOptions& options = {.threads = 1}) {
     return integrate(as_integrand(f), domain_of(f), Cubature{},
@@ -235,6 +222,17 @@ TEST(Cubature, DoubtsThatAnIntegrandIsZeroEverywhere) {
     };
     const IntegrationResult r = integrate(needle, Domain::unit_cube(2), Cubature{}, {.relative_error = 1e-3});
     EXPECT_FALSE(r.converged());
+    ASSERT_EQ(r.doubts.size(), 1u);
+    EXPECT_NE(r.doubts[0].find("was zero at each of"), std::string::npos);
+}
+
+TEST(Cubature, KnowsNoErrorBeforeAnyValueWasSeen) {
+    auto needle = [](std::span<const double> x) {
+        return std::abs(x[0] - 0.123) < 1e-4 && std::abs(x[1] - 0.456) < 1e-4 ? 1.0 : 0.0;
+    };
+    const IntegrationResult r = integrate(needle, Domain::unit_cube(2), Cubature{}, {.evaluations = 1000});
+    EXPECT_EQ(r.value[0], 0);
+    EXPECT_EQ(r.standard_error[0], std::numeric_limits<double>::infinity());
     ASSERT_EQ(r.doubts.size(), 1u);
     EXPECT_NE(r.doubts[0].find("was zero at each of"), std::string::npos);
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -154,7 +156,8 @@ bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
     // With peaks just found, the density is tried before it is fitted. While weights are uneven, every second
     // round draws from wider Gaussians, which see the ends of ridges.
     const bool wide = rounds_ > first_fit_before_gaussians && rounds_ % 2 == 1 &&
-                      relative_variance_ > enough_even && !density_.gaussians().empty();
+                      (relative_variance_ > enough_even || uncovered_share_ > uncovered_matters) &&
+                      !density_.gaussians().empty();
     const MixtureDensity drawn = wide ? density_.widened(exploring_width) : density_;
     const std::uint64_t balanced = drawn.balanced_points();
     n = std::max<std::uint64_t>(1, n / balanced) * balanced;
@@ -281,7 +284,18 @@ void DensityTrainer::fit() {
     }
     density_.drop_idle();
     const int room = most_gaussians - static_cast<int>(density_.gaussians().size());
-    if (uneven && room > 0) {
+    auto uncovered = [&] {
+        double sum = 0;
+        for (std::size_t i = 0; i < ratios.size(); ++i)
+            if (ratios[i] > far_above * total / static_cast<double>(ratios.size()))
+                sum += all.h[i] / all.p[i] / total;
+        return sum;
+    };
+    uncovered_share_ = uncovered();
+    const bool lacking =
+        uneven || (uncovered_share_ > uncovered_matters && rounds_ > first_fit_before_gaussians &&
+                   dimensions <= max_gaussian_dimensions);
+    if (lacking && room > 0) {
         std::vector<Gaussian> added =
             gaussians_at_surprises(all.x, weights, ratios, {.most = std::min(room, most_added)});
         if (!added.empty()) {
@@ -291,13 +305,13 @@ void DensityTrainer::fit() {
             density_ = MixtureDensity(dimensions, std::move(maps), std::move(gaussians));
             density_.optimise_shares(all.x, all.h, all.p, uniform_units_, share_step_, newest);
             compare();
+            uncovered_share_ = uncovered();
         }
     }
-    double uncovered = 0;
-    for (std::size_t i = 0; i < ratios.size(); ++i)
-        if (ratios[i] > far_above * total / static_cast<double>(ratios.size()))
-            uncovered += all.h[i] / all.p[i] / total;
-    uncovered_share_ = uncovered;
+    if (getenv("DBG"))
+        fprintf(stderr, "round %d n %zu relvar %g uncovered %g gaussians %zu value %g evals %g\n", rounds_,
+                last.h.size(), relative_variance_, uncovered_share_, density_.gaussians().size(),
+                checks_.back().value, double(evaluations_));
     remember(all, ratios);
 }
 

@@ -42,6 +42,7 @@ class DensityTrainer {
     // Share of the integral at points of the last rounds where h is far above its mean under the density
     // fitted to them: places that it does not cover.
     double uncovered_share() const { return uncovered_share_; }
+    static constexpr double uncovered_matters = 2e-3; // from which it is acted on
     // The last two rounds' estimates of the first component, with variances as of independent points.
     struct Check {
         double value = 0, variance = 0;

@@ -145,10 +145,10 @@ class Climber {
         for (double v : precision)
             if (!std::isfinite(v) || std::abs(v) > 1e100) return std::nullopt;
         const Eigensystem axes = symmetric_eigensystem(precision, static_cast<int>(n_));
-        const std::vector<double> flat = widths_of_flat_axes(x, top, axes, widest);
+        const std::vector<double> widths = axis_widths(x, top, axes, widest);
         std::vector<double> covariance(n_ * n_, 0.0);
         for (std::size_t k = 0; k < n_; ++k) {
-            const double variance = flat[k] > 0 ? flat[k] * flat[k] : 1 / axes.values[k];
+            const double variance = widths[k] * widths[k];
             for (std::size_t i = 0; i < n_; ++i)
                 for (std::size_t j = 0; j < n_; ++j)
                     covariance[i * n_ + j] += variance * axes.vectors[i * n_ + k] * axes.vectors[j * n_ + k];
@@ -159,20 +159,19 @@ class Climber {
     }
 
   private:
-    // Along axes where log h is flat or rises, as on ridges and shells: how far one can go before h falls, at
-    // most `widest`; zero for other axes. A Gaussian as wide as a curved ridge is long would seem to explain
-    // what lies beside it.
-    std::vector<double> widths_of_flat_axes(const std::vector<double>& x, double top, const Eigensystem& axes,
-                                            double widest) {
+    // Standard deviations along the axes of log h's curvature, at most `widest`. A Gaussian as wide as a
+    // curved ridge or shell seems straight would seem to explain what lies beside it: where h falls sooner,
+    // they are shorter.
+    std::vector<double> axis_widths(const std::vector<double>& x, double top, const Eigensystem& axes,
+                                    double widest) {
         constexpr int halvings = 6;
-        constexpr double fallen = 0.5; // of the logarithm of a Gaussian at its width
-        std::vector<double> widths(n_, 0.0);
+        constexpr double fallen = 1; // twice as far, in logarithm, as a Gaussian at its width
+        std::vector<double> widths(n_);
         std::vector<std::size_t> open;
-        for (std::size_t k = 0; k < n_; ++k)
-            if (!(axes.values[k] > 1 / (widest * widest))) {
-                widths[k] = widest;
-                open.push_back(k);
-            }
+        for (std::size_t k = 0; k < n_; ++k) {
+            widths[k] = 1 / std::sqrt(std::max(axes.values[k], 1 / (widest * widest)));
+            open.push_back(k);
+        }
         for (int i = 0; i < halvings && !open.empty() && budget_ >= 2 * open.size(); ++i) {
             std::vector<std::vector<double>> ends;
             for (std::size_t k : open)
@@ -199,6 +198,19 @@ class Climber {
     std::uint64_t budget_;
 };
 
+// The point farthest from all known modes, among those where h was seen.
+std::vector<double>::const_iterator least_explained(const std::vector<double>& log_h,
+                                                    const std::vector<double>& explained) {
+    auto least = log_h.begin();
+    for (auto i = log_h.begin(); i != log_h.end(); ++i) {
+        const auto at = [&](auto place) {
+            return explained[static_cast<std::size_t>(place - log_h.begin())];
+        };
+        if (*i != nowhere && (*least == nowhere || at(i) < at(least))) least = i;
+    }
+    return least;
+}
+
 } // namespace
 
 std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
@@ -211,12 +223,16 @@ std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
     for (std::size_t i = 0; i < n; ++i) excess[i] = h_at_x[i] > 0 ? std::log(h_at_x[i]) : nowhere;
     std::vector<double> explained(n, nowhere), log_h = excess;
     std::vector<double> log_pdf(n), point(static_cast<std::size_t>(x.dimensions()));
-    int fruitless = 0;
+    int fruitless = 0, remote = 0;
     while (climber.left() > 0 && fruitless < settings.fruitless &&
            static_cast<int>(modes.size()) < settings.most_modes) {
-        const auto best = std::max_element(excess.begin(), excess.end());
-        if (best == excess.end() || *best == nowhere || (!modes.empty() && *best < least_excess)) break;
-        const auto index = static_cast<std::size_t>(best - excess.begin());
+        auto start = std::max_element(excess.begin(), excess.end());
+        if (start == excess.end() || *start == nowhere) break;
+        if (!modes.empty() && *start < least_excess) {
+            if (remote++ == settings.remote) break;
+            start = excess.begin() + (least_explained(log_h, explained) - log_h.begin());
+        }
+        const auto index = static_cast<std::size_t>(start - excess.begin());
         x.gather(index, point.data());
         excess[index] = log_h[index] = nowhere; // each start once
         const double top = climber.climb(point);

@@ -13,7 +13,8 @@ namespace montelux {
 
 struct ModeSearch {
     int most_modes = 24;
-    int fruitless = 5;                 // searches in a row that lead to a known mode, before giving up
+    int fruitless = 5; // searches in a row that lead to a known mode, before giving up
+    int remote = 3;    // searches from points far from all modes, whose h is small for all that
     std::uint64_t max_evaluations = 0; // in all
     double widest = 0.3;               // largest standard deviation of a Gaussian, of the cube's width
 };

@@ -204,6 +204,42 @@ TEST(MixtureDensity, SavedOneHasTheSameBitsAndMisfitsAreRefused) {
     EXPECT_THROW(MixtureDensity::load(damaged, 2), Error);
 }
 
+TEST(MixtureDensity, BalancedPointsAreWhatTheSharesDivide) {
+    MixtureDensity density(2, {}, {Gaussian({0.3, 0.4}, {0.02, 0, 0, 0.02})});
+    const auto balanced = [&](std::vector<int> shares) {
+        density.set_shares(std::move(shares));
+        return density.balanced_points();
+    };
+    EXPECT_EQ(MixtureDensity(2).balanced_points(), 1u);
+    EXPECT_EQ(balanced({64, 0}), 1u);
+    EXPECT_EQ(balanced({32, 32}), 2u);
+    EXPECT_EQ(balanced({16, 48}), 4u);
+    EXPECT_EQ(balanced({8, 56}), 8u);
+    EXPECT_EQ(balanced({7, 57}), 64u);
+}
+
+TEST(MixtureDensity, SharesAreMultiplesOfTheStep) {
+    const Gaussian g({0.3, 0.4}, {0.1, 0, 0, 0.1});
+    const PointBuffer x = uniform_points(500, 2, 1);
+    const std::vector<double> p(x.count(), 1.0);
+    std::vector<double> h(x.count());
+    g.log_pdf(x, h);
+    for (double& v : h) v = 0.1 + std::exp(v);
+    for (int step : {1, 2, 8, 16}) {
+        MixtureDensity density(2, {}, {g, g.widened(2), g.widened(3)});
+        density.optimise_shares(x, h, p, 3, step, 1);
+        int sum = 0;
+        for (int share : density.shares()) {
+            EXPECT_EQ(share % step, 0);
+            EXPECT_GE(share, 0);
+            sum += share;
+        }
+        EXPECT_EQ(sum, MixtureDensity::units);
+        EXPECT_GE(density.shares().front(), 3);
+        EXPECT_GE(density.shares().back(), step);
+    }
+}
+
 TEST(MixtureDensity, WidenedKeepsSharesAndMeans) {
     MixtureDensity density(2, {}, {Gaussian({0.3, 0.4}, {0.02, 0, 0, 0.02})});
     density.set_shares({16, 48});

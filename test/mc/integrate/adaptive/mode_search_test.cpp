@@ -124,6 +124,44 @@ TEST(FindModes, PlateausGetTheGreatestWidth) {
         for (std::size_t d = 0; d < 3; ++d) EXPECT_NEAR(g.cholesky()[4 * d], 0.25, 1e-12);
 }
 
+// Centres and distances in widths of the cube.
+auto shells(std::vector<double> centres, double radius, double width) {
+    return [=](const std::vector<double>& x) {
+        double sum = 0;
+        for (double centre : centres) {
+            double squares = 0;
+            for (std::size_t d = 0; d < x.size(); ++d) squares += std::pow(x[d] - (d == 0 ? centre : 0.5), 2);
+            sum += std::exp(-std::pow((std::sqrt(squares) - radius) / width, 2) / 2);
+        }
+        return sum;
+    };
+}
+
+// Most of what the search starts from is so far away that differences of h underflow there.
+TEST(FindModes, BothShellsInTenDimensions) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        const Search s =
+            search(shells({0.25, 0.75}, 0.14, 0.007), 10, 65536, {.max_evaluations = 28'800}, seed);
+        const auto low = std::ranges::count_if(s.modes, [](const Gaussian& g) { return g.mean()[0] < 0.5; });
+        EXPECT_GE(low, 1) << "seed " << seed;
+        EXPECT_LT(low, std::ssize(s.modes)) << "seed " << seed;
+    }
+}
+
+TEST(FindModes, CurvedRidgesGetNoGaussianWiderThanTheyAreStraight) {
+    const double radius = 0.3, width = 0.01;
+    const Search s = search(shells({0.5}, radius, width), 2, 2048, {.max_evaluations = 20'000});
+    ASSERT_GE(s.modes.size(), 1u);
+    // Along the tangent h falls to exp(-1/2) after this distance.
+    const double straight = std::sqrt(2 * radius * width);
+    for (const Gaussian& g : s.modes) {
+        const auto l = g.cholesky();
+        const double longest = std::sqrt(l[0] * l[0] + l[2] * l[2] + l[3] * l[3]);
+        EXPECT_LT(longest, 1.1 * straight);
+        EXPECT_GT(longest, 0.3 * straight);
+    }
+}
+
 TEST(FindModes, NothingWhereNothingWasSeen) {
     auto zero = [](const std::vector<double>&) { return 0.0; };
     const Search s = search(zero, 3, 500, {.max_evaluations = 1000});
