@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <numeric>
 #include <utility>
 
+#include "montelux/mc/integrate/adaptive/difference_walk.h"
 #include "montelux/mc/integrate/adaptive/surprises.h"
 #include "montelux/mc/random/hash.h"
 
@@ -20,9 +19,11 @@ constexpr int first_fit_before_gaussians = 2; // rounds that maps alone are give
 constexpr int em_steps = 20;
 constexpr int most_gaussians = 40, most_added = 6; // in all, and by a round
 constexpr double far_above = 10;                   // times the mean of h / q
+constexpr double out_of_reach = 100;               // the same, where only new Gaussians help
 constexpr std::size_t most_remembered = 128;
 constexpr double exploring_width = 1.5;
 constexpr double safe_width = 1.1;
+constexpr std::size_t least_walked = 4, most_walked = 128; // steps of walkers after a round
 constexpr std::uint64_t least_seen = 16; // points of a round that saw anything, for the round to teach
 
 // Components split along their longest axis, or several where there were few.
@@ -131,12 +132,7 @@ void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless) {
     // Taken over at the end, so that an exception of the integrand leaves everything as it was.
     std::uint64_t evaluations = 0;
     NonFiniteCount non_finite;
-    const DensityFunction h = [&](const PointBatch& x, std::span<double> values) {
-        ValueBuffer g(x.count(), problem_.evaluator.components());
-        problem_.evaluator(x, g, non_finite);
-        evaluations += x.count();
-        std::ranges::copy(steering(g), values.begin());
-    };
+    const DensityFunction h = counted_steering(evaluations, non_finite);
     const Round& seen = recent_.back();
     std::vector<Gaussian> modes =
         find_modes(h, seen.x, seen.h, {.fruitless = fruitless, .max_evaluations = max_evaluations});
@@ -155,9 +151,7 @@ void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless) {
 bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
     // With peaks just found, the density is tried before it is fitted. While weights are uneven, every second
     // round draws from wider Gaussians, which see the ends of ridges.
-    const bool wide = rounds_ > first_fit_before_gaussians && rounds_ % 2 == 1 &&
-                      (relative_variance_ > enough_even || uncovered_share_ > uncovered_matters) &&
-                      !density_.gaussians().empty();
+    const bool wide = rounds_ % 2 == 1 && lacking() && !density_.gaussians().empty();
     const MixtureDensity drawn = wide ? density_.widened(exploring_width) : density_;
     const std::uint64_t balanced = drawn.balanced_points();
     n = std::max<std::uint64_t>(1, n / balanced) * balanced;
@@ -194,29 +188,78 @@ bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
         recent_.push_back({drawn, std::move(points.x), std::move(h), std::move(points.density)});
         if (recent_.size() > 2) recent_.erase(recent_.begin());
     }
+    if (lacking() && !density_.gaussians().empty()) walk(n / 4);
     fit();
     return true;
 }
 
+bool DensityTrainer::lacking() const {
+    return rounds_ > first_fit_before_gaussians && density_.dimensions() <= max_gaussian_dimensions &&
+           (relative_variance_ > enough_even || uncovered_share_ > uncovered_matters);
+}
+
+DensityFunction DensityTrainer::counted_steering(std::uint64_t& evaluations,
+                                                 NonFiniteCount& non_finite) const {
+    return [this, &evaluations, &non_finite](const PointBatch& x, std::span<double> values) {
+        ValueBuffer g(x.count(), problem_.evaluator.components());
+        problem_.evaluator(x, g, non_finite);
+        evaluations += x.count();
+        std::ranges::copy(steering(g), values.begin());
+    };
+}
+
+// Walkers go on from where they were, or begin at points of the last round.
+void DensityTrainer::walk(std::uint64_t max_evaluations) {
+    DifferenceWalk settings;
+    settings.key = hash_key(problem_.seed, 5, rounds_);
+    settings.steps = std::min<std::uint64_t>(most_walked, max_evaluations / settings.walkers);
+    if (settings.steps < least_walked) return;
+    std::uint64_t evaluations = 0;
+    NonFiniteCount non_finite;
+    const DensityFunction h = counted_steering(evaluations, non_finite);
+    const Round& last = recent_.back();
+    WalkedPoints walked;
+    if (walked_.h.empty()) {
+        std::vector<double> weights(last.h.size());
+        for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = last.h[i] / last.p[i];
+        walked = walk_by_differences(h, last.x, last.h, weights, settings);
+    } else {
+        const std::size_t first = walked_.h.size() - settings.walkers;
+        walked = walk_by_differences(h, walked_.x.view().slice(first, settings.walkers),
+                                     std::span(walked_.h).subspan(first),
+                                     std::vector<double>(settings.walkers, 1.0), settings);
+    }
+    walked_ = std::move(walked);
+    evaluations_ += evaluations;
+    non_finite_.merge(non_finite);
+}
+
 DensityTrainer::Pool DensityTrainer::pool() const {
     const int dimensions = density_.dimensions();
-    std::size_t count = 0;
-    for (const Round& r : recent_) count += r.h.size();
-    const std::size_t drawn = count;
-    count += remembered_h_.size();
+    std::size_t drawn = walked_.h.size(); // points that have a density
+    double mean_size = 0;                 // of h, by the last round
+    for (const Round& r : recent_) drawn += r.h.size();
+    const Round& last = recent_.back();
+    for (std::size_t i = 0; i < last.h.size(); ++i)
+        mean_size += last.h[i] / last.p[i] / static_cast<double>(last.h.size());
+    const std::size_t count = drawn + remembered_h_.size();
     Pool pool;
     pool.x.resize(count, dimensions);
-    pool.p.assign(count, 0.0);
-    for (const Round& r : recent_) {
+    auto add = [&](const PointBatch& x, std::span<const double> h) {
         const auto at = static_cast<std::ptrdiff_t>(pool.h.size());
         for (int d = 0; d < dimensions; ++d)
-            std::ranges::copy(r.x.view().coordinate(d), pool.x.coordinate(d).begin() + at);
-        pool.h.insert(pool.h.end(), r.h.begin(), r.h.end());
-    }
-    for (int d = 0; d < dimensions && drawn < count; ++d)
-        std::ranges::copy(remembered_.view().coordinate(d),
-                          pool.x.coordinate(d).begin() + static_cast<std::ptrdiff_t>(drawn));
-    pool.h.insert(pool.h.end(), remembered_h_.begin(), remembered_h_.end());
+            std::ranges::copy(x.coordinate(d), pool.x.coordinate(d).begin() + at);
+        pool.h.insert(pool.h.end(), h.begin(), h.end());
+    };
+    for (const Round& r : recent_) add(r.x, r.h);
+    if (!walked_.h.empty()) add(walked_.x, walked_.h);
+    if (!remembered_h_.empty()) add(remembered_, remembered_h_);
+    // The density of walkers is h over its integral.
+    pool.p.assign(count, 0.0);
+    if (mean_size > 0)
+        for (std::size_t i = 0; i < count; ++i)
+            pool.p[i] =
+                pool.h[i] / mean_size * static_cast<double>(walked_.h.size()) / static_cast<double>(drawn);
     std::vector<double> part(count);
     for (const Round& r : recent_) {
         r.density.pdf(pool.x, part);
@@ -269,8 +312,9 @@ void DensityTrainer::fit() {
         for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] = all.h[i] / ratios[i];
     };
     auto second_moment = [&] {
+        const double most = out_of_reach * total / static_cast<double>(ratios.size());
         double sum = 0;
-        for (std::size_t i = 0; i < ratios.size(); ++i) sum += weights[i] * ratios[i];
+        for (std::size_t i = 0; i < ratios.size(); ++i) sum += weights[i] * std::min(ratios[i], most);
         return sum;
     };
     density_before.pdf(all.x, ratios);
@@ -292,10 +336,7 @@ void DensityTrainer::fit() {
         return sum;
     };
     uncovered_share_ = uncovered();
-    const bool lacking =
-        uneven || (uncovered_share_ > uncovered_matters && rounds_ > first_fit_before_gaussians &&
-                   dimensions <= max_gaussian_dimensions);
-    if (lacking && room > 0) {
+    if (lacking() && room > 0) {
         std::vector<Gaussian> added =
             gaussians_at_surprises(all.x, weights, ratios, {.most = std::min(room, most_added)});
         if (!added.empty()) {
@@ -308,10 +349,6 @@ void DensityTrainer::fit() {
             uncovered_share_ = uncovered();
         }
     }
-    if (getenv("DBG"))
-        fprintf(stderr, "round %d n %zu relvar %g uncovered %g gaussians %zu value %g evals %g\n", rounds_,
-                last.h.size(), relative_variance_, uncovered_share_, density_.gaussians().size(),
-                checks_.back().value, double(evaluations_));
     remember(all, ratios);
 }
 
@@ -348,6 +385,9 @@ void DensityTrainer::save(StateWriter& state) const {
     state.put(remembered_h_);
     for (int d = 0; d < remembered_.dimensions(); ++d)
         for (double v : remembered_.view().coordinate(d)) state.put(v);
+    state.put(walked_.h);
+    for (int d = 0; d < density_.dimensions(); ++d)
+        for (double v : walked_.x.view().coordinate(d)) state.put(v);
     state.put(static_cast<std::uint64_t>(checks_.size()));
     for (const Check& c : checks_) {
         state.put(c.value);
@@ -386,6 +426,10 @@ void DensityTrainer::load(StateReader& state) {
     remembered_.resize(remembered_h_.size(), dimensions);
     for (int d = 0; d < dimensions; ++d)
         for (double& v : remembered_.coordinate(d)) v = state.get_double();
+    walked_.h = state.get_doubles();
+    walked_.x.resize(walked_.h.size(), dimensions);
+    for (int d = 0; d < dimensions; ++d)
+        for (double& v : walked_.x.coordinate(d)) v = state.get_double();
     checks_.clear();
     for (std::uint64_t n = state.get_word(); n > 0; --n) {
         const double value = state.get_double();

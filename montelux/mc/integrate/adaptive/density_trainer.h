@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "montelux/mc/integrate/adaptive/difference_walk.h"
 #include "montelux/mc/integrate/adaptive/mixture_sampling.h"
 #include "montelux/mc/integrate/adaptive/mode_search.h"
 
@@ -65,6 +66,11 @@ class DensityTrainer {
     };
     // One number for all components: the root of the sum of squares, each relative to its mean size.
     std::vector<double> steering(const ValueBuffer& g) const;
+    // The same at points, counted.
+    DensityFunction counted_steering(std::uint64_t& evaluations, NonFiniteCount& non_finite) const;
+    // Are weights so uneven, or is so much not covered, that Gaussians are to learn more?
+    bool lacking() const;
+    void walk(std::uint64_t max_evaluations);
     void fit();
     Pool pool() const;
     void remember(const Pool& all, std::span<const double> ratios);
@@ -78,6 +84,7 @@ class DensityTrainer {
     // forgotten.
     PointBuffer remembered_;
     std::vector<double> remembered_h_;
+    WalkedPoints walked_; // of the last walk
     std::vector<Check> checks_;
     int rounds_ = 0;
     bool enriched_ = false;

@@ -11,6 +11,8 @@ namespace montelux {
 namespace {
 
 constexpr double most_weight = 10; // times the mean, of a point that shares are fitted to
+// The same of h / q: what lies beyond no share can mend, but a channel that is not there yet.
+constexpr double beyond_reach = 100;
 
 } // namespace
 
@@ -101,7 +103,7 @@ void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double
     // One point with a weight far above all others must not decide over the shares.
     double total = 0;
     for (std::size_t i = 0; i < x.count(); ++i) total += h[i] / p[i];
-    const double largest = most_weight * total / static_cast<double>(x.count());
+    const double mean = total / static_cast<double>(x.count()), largest = most_weight * mean;
     std::vector<double> a(n, 1 / static_cast<double>(n)), moment(n), scale(x.count());
     auto normalise = [&] {
         const double sum = std::accumulate(a.begin(), a.end(), 0.0);
@@ -111,8 +113,8 @@ void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double
         for (std::size_t i = 0; i < x.count(); ++i) {
             double mixture = 0;
             for (std::size_t k = 0; k < n; ++k) mixture += a[k] * q[k][i];
-            const double weight = std::min(h[i] / p[i], largest);
-            scale[i] = h[i] > 0 ? weight * weight * (p[i] / mixture) / mixture : 0;
+            const double weight = std::min(h[i] / p[i], largest), ratio = h[i] / mixture;
+            scale[i] = h[i] > 0 && ratio < beyond_reach * mean ? weight * ratio / mixture : 0;
         }
         for (std::size_t k = 0; k < n; ++k)
             moment[k] = std::inner_product(scale.begin(), scale.end(), q[k].begin(), 0.0);

@@ -1,0 +1,33 @@
+// Random walkers that follow a function into places where importance sampling has not been.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "montelux/mc/integrate/adaptive/mode_search.h"
+#include "montelux/mc/integrate/points.h"
+
+namespace montelux {
+
+struct DifferenceWalk {
+    std::uint64_t key = 0; // of the random numbers
+    std::size_t walkers = 64;
+    std::size_t steps = 32;
+};
+
+// Points on the unit cube, with h at each; the last `walkers` of them are where the walkers are.
+struct WalkedPoints {
+    PointBuffer x;
+    std::vector<double> h;
+};
+
+// Metropolis walkers with density h, whose proposals are differences of two others of them (ter Braak 2006,
+// "A Markov Chain Monte Carlo version of the genetic algorithm Differential Evolution"): they have the shape
+// of a ridge without anything being fitted to it. They begin at points drawn by weight, and make walkers *
+// steps evaluations.
+WalkedPoints walk_by_differences(const DensityFunction& h, const PointBatch& x,
+                                 std::span<const double> h_at_x, std::span<const double> weights,
+                                 const DifferenceWalk& settings);
+
+} // namespace montelux
