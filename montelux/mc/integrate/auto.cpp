@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "montelux/mc/integrate/basic_monte_carlo.h"
 #include "montelux/mc/integrate/cubature.h"
 #include "montelux/mc/integrate/cubature_rules.h"
+#include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/random/sobol.h"
 
 namespace montelux {
@@ -27,9 +27,11 @@ constexpr double cautious_rate = 0.5;     // the same power, where few evaluatio
 constexpr double largest_first = 0.25;    // share of a fixed number of evaluations that one region may take
 constexpr std::uint64_t patience = 60000; // evaluations of sampling before cubature gets a second chance,
 constexpr double second_share = 0.2;      // and the share of sampling's evaluations that it then gets
-constexpr double rough_error = 0.03;      // relative, of what a localised result is compared with
-constexpr double surprising = 4;          // growth of the error that makes a new problem
-constexpr double infinity = std::numeric_limits<double>::infinity();
+// Relative errors of sampling with which a localised result is compared: twice the target, within these.
+constexpr double finest_comparison = 1e-3, coarsest_comparison = 0.03;
+constexpr double comparable = 1.5;  // errors of cubature that sampling's may be when both are compared
+constexpr double disagreeing = 2.5; // standard errors; a false alarm costs evaluations only
+constexpr double surprising = 4;    // growth of the error that makes a new problem
 
 // What Adaptive needs for a relative error, roughly, as measured on Genz's families in 5 and 8 dimensions
 // (docs/integration.md): 10,000 evaluations for 1e-3, 35,000 for 1e-4.
@@ -130,40 +132,53 @@ class AutoEstimator final : public Estimator {
     }
 
     StepOutcome step_rules(const StepRequest& request) {
-        const StepOutcome outcome = cubature_->step(request);
-        if (outcome == StepOutcome::cancelled) return outcome;
-        if (outcome != StepOutcome::advanced) {
+        if (!rules_arrived(request)) {
+            const StepOutcome outcome = cubature_->step(request);
+            if (outcome == StepOutcome::cancelled) return outcome;
+            if (outcome != StepOutcome::advanced) {
+                rules_end_ = true;
+                return sampling_->step(request);
+            }
+            if (!rules_arrived(request)) return outcome;
+        }
+        // Regions that close in on a singularity may fool both the rules and their check: sampling has to be
+        // nearly as far.
+        const Agreement found =
+            agreement(comparable * request.relative_error, comparable * request.absolute_error);
+        if (found == Agreement::unknown) return sampling_->step(request);
+        if (found == Agreement::disagree) {
             rules_end_ = true;
             return sampling_->step(request);
         }
+        switched_ = false;
+        agreed_ = true;
+        reason_ = "cubature and sampling in turns: cubature arrived first";
+        return StepOutcome::advanced;
+    }
+
+    bool rules_arrived(const StepRequest& request) const {
         const Tally rule = cubature_->tally();
-        bool reached = rule.ready && rule.doubts.empty();
+        bool arrived = rule.ready && rule.doubts.empty();
         for (std::size_t c = 0; c < rule.value.size(); ++c)
-            reached = reached &&
+            arrived = arrived &&
                       rule.standard_error[c] <=
                           std::max(request.absolute_error, request.relative_error * std::abs(rule.value[c]));
-        if (!reached) return outcome;
-        const Agreement found = agreement(0);
-        if (found == Agreement::disagree) rules_end_ = true;
-        if (found == Agreement::agree || (found == Agreement::unknown && !rule.localised)) {
-            switched_ = false;
-            agreed_ = true;
-            reason_ = "cubature and sampling in turns: cubature arrived first";
-        }
-        return outcome;
+        return arrived;
     }
 
     enum class Agreement : std::uint8_t { unknown, agree, disagree };
-    // Of the values of both methods; unknown while sampling's relative error is above `most`, and above three
-    // times that of cubature.
-    Agreement agreement(double most) const {
+    // Of the values of both methods; unknown while sampling's error is above all of these: relative and
+    // absolute ones, and the like of cubature's.
+    Agreement agreement(double relative, double absolute) const {
         const Tally rule = cubature_->tally(), sampled = sampling_->tally();
         bool agree = true;
         for (std::size_t c = 0; c < rule.value.size(); ++c) {
             const double error = sampled.standard_error[c];
-            if (!(error <= std::max(most * std::abs(rule.value[c]), 3 * rule.standard_error[c])))
+            if (!(error <= std::max({relative * std::abs(rule.value[c]), absolute,
+                                     comparable * rule.standard_error[c]})))
                 return Agreement::unknown;
-            agree = agree && std::abs(rule.value[c] - sampled.value[c]) <= 4 * error + rule.standard_error[c];
+            agree = agree && std::abs(rule.value[c] - sampled.value[c]) <=
+                                 disagreeing * std::hypot(error, rule.standard_error[c]);
         }
         return agree ? Agreement::agree : Agreement::disagree;
     }
@@ -172,12 +187,14 @@ class AutoEstimator final : public Estimator {
     // searches for peaks.
     StepOutcome compare(const StepRequest& request) {
         StepRequest rough = request;
-        rough.relative_error = std::max(request.relative_error, rough_error);
+        const double twice = request.relative_error > 0 ? 2 * request.relative_error : coarsest_comparison;
+        rough.relative_error =
+            std::max(request.relative_error, std::clamp(twice, finest_comparison, coarsest_comparison));
         const StepOutcome outcome = sampling_->step(rough);
         if (outcome == StepOutcome::cancelled) return outcome;
         const bool over = outcome != StepOutcome::advanced;
         if (!over && !sampling_->tally().ready) return outcome;
-        const Agreement found = agreement(2 * rough_error);
+        const Agreement found = agreement(2 * rough.relative_error, 0);
         agreed_ = found == Agreement::agree;
         if (agreed_) reason_ = "cubature converges, and sampling agrees";
         if (found == Agreement::disagree) {

@@ -59,7 +59,7 @@ std::vector<Share> share_out(const CubatureRegions& regions, std::uint64_t count
     return shares;
 }
 
-struct Part {
+struct CheckedPart {
     std::vector<CubatureWitness> surprises;
     CovarianceMoments residual;
     std::vector<double> block_sums; // blocks x components
@@ -68,13 +68,13 @@ struct Part {
     std::vector<double> differences; // of each, components side by side
     NonFiniteCount non_finite;
 
-    Part() = default;
-    Part(int components, bool full)
+    CheckedPart() = default;
+    CheckedPart(int components, bool full)
         : residual(components, full), block_sums(blocks * static_cast<std::size_t>(components)),
           lowest(static_cast<std::size_t>(components), std::numeric_limits<double>::infinity()),
           highest(static_cast<std::size_t>(components), -std::numeric_limits<double>::infinity()) {}
 
-    void merge(const Part& later) {
+    void merge(const CheckedPart& later) {
         surprises.insert(surprises.end(), later.surprises.begin(), later.surprises.end());
         residual.merge(later.residual);
         regions.insert(regions.end(), later.regions.begin(), later.regions.end());
@@ -112,10 +112,11 @@ void fill_points(const CubatureRegions& regions, std::span<const Share> shares, 
     }
 }
 
-Part check_some(const Evaluator& evaluator, const CubatureRegions& regions, std::span<const Share> shares,
-                std::uint64_t key, std::span<const double> tolerance, bool full_covariance) {
+CheckedPart check_some(const Evaluator& evaluator, const CubatureRegions& regions,
+                       std::span<const Share> shares, std::uint64_t key, std::span<const double> tolerance,
+                       bool full_covariance) {
     const auto m = static_cast<std::size_t>(evaluator.components());
-    Part part(evaluator.components(), full_covariance);
+    CheckedPart part(evaluator.components(), full_covariance);
     std::uint64_t count = 0;
     for (const Share& s : shares) count += s.count;
     PointBuffer u(count, evaluator.dimensions());
@@ -189,11 +190,11 @@ std::optional<CubatureCheck> check_regions(const Evaluator& evaluator, const Cub
         return check_some(evaluator, regions, std::span(shares).subspan(starts[t], starts[t + 1] - starts[t]),
                           key, tolerance, full_covariance);
     };
-    auto combine = [](Part a, const Part& b) {
+    auto combine = [](CheckedPart a, const CheckedPart& b) {
         a.merge(b);
         return a;
     };
-    std::optional<Part> all = parallel_reduce_ordered(tasks, run, combine, cancel);
+    std::optional<CheckedPart> all = parallel_reduce_ordered(tasks, run, combine, cancel);
     if (!all) return std::nullopt;
 
     CubatureCheck check;

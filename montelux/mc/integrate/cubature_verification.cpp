@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <unordered_map>
 #include <utility>
 
 #include "montelux/mc/integrate/adaptive/mode_search.h"
+#include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/sampling.h"
 
 namespace montelux {
@@ -23,7 +23,6 @@ constexpr std::uint64_t fewest_points = 16;
 constexpr double plateau = 0.1;             // range of the values beside their mean
 constexpr std::uint64_t plateau_points = 4; // times as many points where nothing but a plateau was seen
 constexpr std::size_t most_climbs = 8;      // of a check
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool targeted(const StepRequest& request) { return request.relative_error > 0 || request.absolute_error > 0; }
 

@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <utility>
 
+#include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/lane_sum.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double few = 16, few_of_all = 1 / 16.; // values that make up a variance
 constexpr double all_equal = 1e-13;              // deviation over mean: rounding
 constexpr double infinite_variance = 0.5;        // shape from which there is none

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/sampling.h"
 #include "montelux/mc/integrate/unit_points.h"
 
 namespace montelux {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // What the strata of one task add.
 struct PartialSum {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "montelux/mc/integrate/hypercubes.h"
+#include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/sampling.h"
 #include "montelux/mc/integrate/unit_points.h"
 #include "montelux/mc/integrate/vegas_base.h"
@@ -11,7 +11,6 @@
 namespace montelux {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t most_boxes = 1 << 18;
 constexpr std::uint64_t points_per_box = 8; // at least two of them are each box's own
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
@@ -17,7 +17,6 @@ constexpr double heavy_influence = 0.5; // and times the standard error, of what
 // Of normal replicates one alone hardly ever makes up so much of the spread.
 constexpr double outstanding = 0.8;
 constexpr int enough_replicates = 8;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 } // namespace
 

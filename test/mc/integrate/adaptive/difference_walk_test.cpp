@@ -46,7 +46,8 @@ TEST(DifferenceWalk, HasTheMomentsOfTheFunction) {
     EXPECT_EQ(counted.evaluations, 64'000u);
     double sum_variance = 0, difference_variance = 0, third = 0;
     for (std::size_t i = 0; i < walked.h.size(); ++i) {
-        const double a = walked.x.view()(i, 0) - 0.5, b = walked.x.view()(i, 1) - 0.5, c = walked.x.view()(i, 2) - 0.5;
+        const double a = walked.x.view()(i, 0) - 0.5, b = walked.x.view()(i, 1) - 0.5,
+                     c = walked.x.view()(i, 2) - 0.5;
         sum_variance += (a + b) * (a + b) / 64e3;
         difference_variance += (a - b) * (a - b) / 64e3;
         third += c * c / 64e3;
