@@ -1,10 +1,10 @@
+#include "test/mc/integrate/adaptive_problems.h"
 #include "test/mc/integrate/coverage.h"
 #include "test/mc/integrate/estimator_checks.h"
 #include <atomic>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
-#include <set>
 #include <vector>
 
 #include "montelux/mc/integrate/adaptive.h"
@@ -14,43 +14,6 @@
 
 namespace montelux {
 namespace {
-
-// prod exp(-c_d x_d).
-KnownIntegral smooth() {
-    auto f = [](std::span<const double> x) { return std::exp(-x[0] - 2 * x[1] - 3 * x[2]); };
-    double truth = 1;
-    for (double c : {1.0, 2.0, 3.0}) truth *= -std::expm1(-c) / c;
-    return {f, Domain::unit_cube(3), {truth}};
-}
-// Hardly varies: what uniform points are best at.
-KnownIntegral flat() {
-    auto f = [](std::span<const double> x) { return 1 + x[0] * x[1] * x[2]; };
-    return {f, Domain::unit_cube(3), {1.125}};
-}
-// A box that is cut off.
-KnownIntegral discontinuous() {
-    auto f = [](std::span<const double> x) {
-        return x[0] < 0.37 && x[1] < 0.61 ? std::exp(x[0] + x[1] + x[2]) : 0.0;
-    };
-    return {f, Domain::unit_cube(3), {std::expm1(0.37) * std::expm1(0.61) * std::expm1(1.0)}};
-}
-// Gaussians of standard deviation 0.07 at 0.3 and 0.7 of the diagonal, each with an integral of about 1.
-double two_peaks_at(std::span<const double> x, double narrowness) {
-    double sum = 0;
-    for (double p : {0.3, 0.7}) {
-        double squares = 0;
-        for (double v : x) squares += (v - p) * (v - p);
-        sum += std::exp(-narrowness * squares);
-    }
-    return sum * std::pow(narrowness / pi, 0.5 * static_cast<double>(x.size()));
-}
-KnownIntegral two_peaks(int dimensions, double narrowness = 100) {
-    const double root = std::sqrt(narrowness);
-    const double one = 0.5 * (std::erf(0.3 * root) + std::erf(0.7 * root)); // of one coordinate
-    return {[narrowness](std::span<const double> x) { return two_peaks_at(x, narrowness); },
-            Domain::unit_cube(dimensions),
-            {2 * std::pow(one, dimensions)}};
-}
 
 // Doubted runs are left out of the shares, but not of the mean.
 void expect_unbiased_and_honest(const KnownIntegral& problem, int most_doubted) {
@@ -80,84 +43,6 @@ TEST(AdaptiveSlowTest, UnbiasedWithHonestErrorsForSmoothIntegrands) {
 }
 TEST(AdaptiveSlowTest, UnbiasedWithHonestErrorsForJumps) { expect_unbiased_and_honest(discontinuous(), 30); }
 TEST(AdaptiveSlowTest, UnbiasedWithHonestErrorsForTwoPeaks) { expect_unbiased_and_honest(two_peaks(4), 30); }
-
-// Steps with targets, which decide between the phases.
-struct Steps {
-    std::uint64_t evaluations; // in all
-    double relative_error = 0;
-};
-StepOutcome step(Estimator& estimator, const Steps& steps, const CancelFlag* cancel = nullptr) {
-    const std::uint64_t done = estimator.tally().evaluations;
-    if (done >= steps.evaluations) return StepOutcome::exhausted;
-    const StepOutcome outcome = estimator.step({.max_evaluations = steps.evaluations - done,
-                                                .relative_error = steps.relative_error,
-                                                .cancel = cancel});
-    EXPECT_LE(estimator.tally().evaluations, steps.evaluations);
-    return outcome;
-}
-std::vector<std::uint64_t> words_of(const Estimator& estimator) {
-    StateWriter state;
-    estimator.save(state);
-    return {state.words().begin(), state.words().end()};
-}
-
-struct Stop {};
-
-// Between any two steps: saved and loaded it goes on with the same bits, and a step that is cancelled, or in
-// which the integrand throws, changes nothing. Returns the phases it went through, which is the first word of
-// the state.
-std::set<std::uint64_t> check_every_step(const KnownIntegral& problem, const Steps& steps) {
-    std::atomic<bool> stop = false;
-    const Integrand f = problem.f.with_function([&](const PointBatch& x, ValueBatch y) {
-        if (stop) throw Stop();
-        problem.f(x, y);
-    });
-    const Evaluator evaluator(f, problem.domain);
-    auto estimator = Adaptive{}.estimator({evaluator, 11});
-    std::set<std::uint64_t> phases;
-    std::vector<std::vector<std::uint64_t>> states{words_of(*estimator)};
-    while (true) {
-        const std::vector<std::uint64_t>& before = states.back();
-        phases.insert(before.front());
-        CancelFlag cancel;
-        cancel.request();
-        EXPECT_NE(step(*estimator, steps, &cancel), StepOutcome::finished);
-        if (before.front() != 1) { // the search for peaks is too short to be cancelled
-            EXPECT_EQ(words_of(*estimator), before);
-        } else {
-            StateReader again(before);
-            estimator->load(again);
-        }
-        stop = true;
-        try {
-            step(*estimator, steps);
-        } catch (const Stop&) {
-        }
-        EXPECT_EQ(words_of(*estimator), before) << "phase " << before.front();
-        stop = false;
-        if (step(*estimator, steps) != StepOutcome::advanced) break;
-        states.push_back(words_of(*estimator));
-    }
-    EXPECT_EQ(words_of(*estimator), states.back());
-    for (std::size_t cut = 0; cut + 1 < states.size(); ++cut) {
-        StateReader reader(states[cut]);
-        auto loaded = Adaptive{}.estimator({evaluator, 11});
-        loaded->load(reader);
-        EXPECT_TRUE(reader.at_end());
-        EXPECT_EQ(words_of(*loaded), states[cut]);
-        EXPECT_EQ(step(*loaded, steps), StepOutcome::advanced);
-        EXPECT_EQ(words_of(*loaded), states[cut + 1]) << "phase " << states[cut].front();
-    }
-    return phases;
-}
-
-TEST(Adaptive, EveryPhaseResumesWithTheSameBitsAndCanBeBrokenOff) {
-    // explore 0, search 1, train 2, weighted 3, uniform 4
-    EXPECT_EQ(check_every_step(two_peaks(6, 300), {60'000}), (std::set<std::uint64_t>{0, 1, 2, 3}));
-    EXPECT_EQ(check_every_step(discontinuous(), {60'000, 1e-4}), (std::set<std::uint64_t>{0, 2, 3}));
-    EXPECT_EQ(check_every_step(flat(), {60'000, 1e-5}), (std::set<std::uint64_t>{0, 4}));
-    check_every_step(two_components(), {30'000});
-}
 
 TEST(Adaptive, SameBitsForAnyThreads) {
     for (const KnownIntegral& problem : {smooth(), discontinuous(), two_peaks(5, 300), two_components()})
@@ -384,19 +269,6 @@ TEST(Adaptive, SettingsAreUsed) {
                             much = integrate(problem.f, problem.domain, Adaptive{.training_share = 0.9},
                                              target, {.threads = 1});
     EXPECT_NE(little.evaluations, much.evaluations);
-}
-
-TEST(Adaptive, DamagedStatesAreRefused) {
-    const KnownIntegral problem = discontinuous();
-    const Evaluator evaluator(problem.f, problem.domain);
-    auto estimator = Adaptive{}.estimator({evaluator, 1});
-    advance(*estimator, 20'000);
-    std::vector<std::uint64_t> words = words_of(*estimator);
-    words.pop_back();
-    StateReader cut(words);
-    EXPECT_THROW(Adaptive{}.estimator({evaluator, 1})->load(cut), Error);
-    StateReader other(words_of(*estimator));
-    EXPECT_THROW((Adaptive{.replicates = 8}.estimator({evaluator, 1})->load(other)), Error);
 }
 
 } // namespace

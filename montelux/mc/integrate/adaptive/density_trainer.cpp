@@ -20,7 +20,6 @@ constexpr int first_fit_before_gaussians = 2; // rounds that maps alone are give
 constexpr int em_steps = 20;
 constexpr int most_gaussians = 40, most_added = 6; // in all, and by a round
 constexpr double far_above = 10;                   // times the mean of h / q
-constexpr double out_of_reach = 100;               // the same, where only new Gaussians help
 constexpr std::size_t most_remembered = 128;
 constexpr double exploring_width = 1.5;
 constexpr double safe_width = 1.1;
@@ -89,7 +88,8 @@ void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless) {
 bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
     // With peaks just found, the density is tried before it is fitted. While weights are uneven, every second
     // round draws from wider Gaussians, which see the ends of ridges.
-    const bool wide = rounds_ % 2 == 1 && lacking() && !density_.gaussians().empty();
+    const bool wide =
+        rounds_ % 2 == 1 && lacking(rounds_, relative_variance_) && !density_.gaussians().empty();
     const MixtureDensity drawn = wide ? density_.widened(exploring_width) : density_;
     const std::uint64_t balanced = drawn.balanced_points();
     n = std::max<std::uint64_t>(1, n / balanced) * balanced;
@@ -97,13 +97,8 @@ bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
     const auto sums = sample_mixture(problem_.evaluator, drawn, hash_key(problem_.seed, 1, rounds_), 1, 0, n,
                                      &points, cancel);
     if (!sums) return false;
-    ++rounds_;
-    evaluations_ += sums->evaluations;
-    non_finite_.merge(sums->non_finite);
     const double mean = sums->sums.sum(0, 0) / static_cast<double>(n),
                  variance = sums->independent_variance(n);
-    checks_.push_back({mean, variance});
-    if (checks_.size() > 2) checks_.erase(checks_.begin());
     std::vector<double> h = steering(points.g);
     double total = 0;
     for (std::size_t i = 0; i < h.size(); ++i) total += h[i] / points.density[i];
@@ -115,25 +110,40 @@ bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
             squares += std::pow(h[i] / points.density[i] - mean_size, 2);
         spread = squares / (static_cast<double>(n) * static_cast<double>(n));
     }
-    if (!wide)
-        relative_variance_ = mean_size > 0 ? spread * static_cast<double>(n) / (mean_size * mean_size)
-                                           : std::numeric_limits<double>::infinity();
+    const double relative_variance = wide ? relative_variance_
+                                     : mean_size > 0
+                                         ? spread * static_cast<double>(n) / (mean_size * mean_size)
+                                         : std::numeric_limits<double>::infinity();
     const auto seen = static_cast<std::uint64_t>(std::ranges::count_if(h, [](double v) { return v > 0; }));
-    if (seen < std::min(nonzero_, least_seen)) {
-        // Worse than the exploration: Gaussians of peaks at faces lie outside the cube, or off a jump.
+    // Worse than the exploration: Gaussians of peaks at faces lie outside the cube, or off a jump.
+    const bool useless = seen < std::min(nonzero_, least_seen);
+    Round drawn_round{drawn, std::move(points.x), std::move(h), std::move(points.density)};
+    Walk walked;
+    if (!useless && lacking(rounds_ + 1, relative_variance) && !density_.gaussians().empty())
+        walked = walk(drawn_round, n / 4);
+
+    // An exception of the integrand leaves everything as it was: nothing is changed before this line.
+    ++rounds_;
+    evaluations_ += sums->evaluations + walked.evaluations;
+    non_finite_.merge(sums->non_finite);
+    non_finite_.merge(walked.non_finite);
+    checks_.push_back({mean, variance});
+    if (checks_.size() > 2) checks_.erase(checks_.begin());
+    relative_variance_ = relative_variance;
+    if (useless) {
         density_ = MixtureDensity(density_.dimensions());
     } else {
-        recent_.push_back({drawn, std::move(points.x), std::move(h), std::move(points.density)});
+        recent_.push_back(std::move(drawn_round));
         if (recent_.size() > 2) recent_.erase(recent_.begin());
     }
-    if (lacking() && !density_.gaussians().empty()) walk(n / 4);
+    if (!walked.points.h.empty()) walked_ = std::move(walked.points);
     fit();
     return true;
 }
 
-bool DensityTrainer::lacking() const {
-    return rounds_ > first_fit_before_gaussians && density_.dimensions() <= max_gaussian_dimensions &&
-           (relative_variance_ > enough_even || uncovered_share_ > uncovered_matters);
+bool DensityTrainer::lacking(int rounds, double relative_variance) const {
+    return rounds > first_fit_before_gaussians && density_.dimensions() <= max_gaussian_dimensions &&
+           (relative_variance > enough_even || uncovered_share_ > uncovered_matters);
 }
 
 DensityFunction DensityTrainer::counted_steering(std::uint64_t& evaluations,
@@ -146,30 +156,24 @@ DensityFunction DensityTrainer::counted_steering(std::uint64_t& evaluations,
     };
 }
 
-// Walkers go on from where they were, or begin at points of the last round.
-void DensityTrainer::walk(std::uint64_t max_evaluations) {
+DensityTrainer::Walk DensityTrainer::walk(const Round& last, std::uint64_t max_evaluations) const {
     DifferenceWalk settings;
-    settings.key = hash_key(problem_.seed, 5, rounds_);
+    settings.key = hash_key(problem_.seed, 5, rounds_ + 1);
     settings.steps = std::min<std::uint64_t>(most_walked, max_evaluations / settings.walkers);
-    if (settings.steps < least_walked) return;
-    std::uint64_t evaluations = 0;
-    NonFiniteCount non_finite;
-    const DensityFunction h = counted_steering(evaluations, non_finite);
-    const Round& last = recent_.back();
-    WalkedPoints walked;
+    Walk walk;
+    if (settings.steps < least_walked) return walk;
+    const DensityFunction h = counted_steering(walk.evaluations, walk.non_finite);
     if (walked_.h.empty()) {
         std::vector<double> weights(last.h.size());
         for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = last.h[i] / last.p[i];
-        walked = walk_by_differences(h, last.x, last.h, weights, settings);
+        walk.points = walk_by_differences(h, last.x, last.h, weights, settings);
     } else {
         const std::size_t first = walked_.h.size() - settings.walkers;
-        walked = walk_by_differences(h, walked_.x.view().slice(first, settings.walkers),
-                                     std::span(walked_.h).subspan(first),
-                                     std::vector<double>(settings.walkers, 1.0), settings);
+        walk.points = walk_by_differences(h, walked_.x.view().slice(first, settings.walkers),
+                                          std::span(walked_.h).subspan(first),
+                                          std::vector<double>(settings.walkers, 1.0), settings);
     }
-    walked_ = std::move(walked);
-    evaluations_ += evaluations;
-    non_finite_.merge(non_finite);
+    return walk;
 }
 
 DensityTrainer::Pool DensityTrainer::pool() const {
@@ -250,7 +254,7 @@ void DensityTrainer::fit() {
         for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] = all.h[i] / ratios[i];
     };
     auto second_moment = [&] {
-        const double most = out_of_reach * total / static_cast<double>(ratios.size());
+        const double most = MixtureDensity::beyond_reach * total / static_cast<double>(ratios.size());
         double sum = 0;
         for (std::size_t i = 0; i < ratios.size(); ++i) sum += weights[i] * std::min(ratios[i], most);
         return sum;
@@ -274,7 +278,7 @@ void DensityTrainer::fit() {
         return sum;
     };
     uncovered_share_ = uncovered();
-    if (lacking() && room > 0) {
+    if (lacking(rounds_, relative_variance_) && room > 0) {
         std::vector<Gaussian> added =
             gaussians_at_surprises(all.x, weights, ratios, {.most = std::min(room, most_added)});
         if (!added.empty()) {

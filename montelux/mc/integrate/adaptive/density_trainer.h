@@ -69,8 +69,14 @@ class DensityTrainer {
     // The same at points, counted.
     DensityFunction counted_steering(std::uint64_t& evaluations, NonFiniteCount& non_finite) const;
     // Are weights so uneven, or is so much not covered, that Gaussians are to learn more?
-    bool lacking() const;
-    void walk(std::uint64_t max_evaluations);
+    bool lacking(int rounds, double relative_variance) const;
+    struct Walk {
+        WalkedPoints points;
+        std::uint64_t evaluations = 0;
+        NonFiniteCount non_finite;
+    };
+    // Continues the last walk, or starts at points of the round just drawn.
+    Walk walk(const Round& last, std::uint64_t max_evaluations) const;
     void fit();
     Pool pool() const;
     void remember(const Pool& all, std::span<const double> ratios);

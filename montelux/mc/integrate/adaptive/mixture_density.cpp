@@ -11,8 +11,6 @@ namespace montelux {
 namespace {
 
 constexpr double most_weight = 10; // times the mean, of a point that shares are fitted to
-// The same of h / q: what lies beyond no share can mend, but a channel that is not there yet.
-constexpr double beyond_reach = 100;
 
 } // namespace
 

@@ -22,6 +22,9 @@ class MixtureDensity {
     // Shares are multiples of 1 / units, so that every multiple of `units` points is divided exactly.
     static constexpr int units = 64;
 
+    // Times the mean of h / q: above it the shares cannot help, only a channel that is not there yet.
+    static constexpr double beyond_reach = 100;
+
     // Uniform.
     explicit MixtureDensity(int dimensions) : dimensions_(dimensions), shares_{units} {}
     // Shares are equal until set.
