@@ -71,21 +71,19 @@ class AutoEstimator final : public Estimator {
   public:
     explicit AutoEstimator(const Problem& problem)
         : cubature_(Cubature{}.estimator(problem)), sampling_(Adaptive{}.estimator(problem)),
-          one_variable_(problem.evaluator.dimensions() == 1),
-          first_region_(one_variable_ ? 0 : genz_malik_7(problem.evaluator.dimensions()).points()) {}
+          dimensions_(problem.evaluator.dimensions()) {}
 
     StepOutcome step(const StepRequest& request) override {
         if (switched_) return step_both(request);
         if (diverges_) return StepOutcome::finished;
         if (comparing_) return compare(request);
         const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
-        if (!targeted && cubature_->tally().evaluations == 0 &&
-            static_cast<double>(first_region_) >
-                largest_first * static_cast<double>(request.max_evaluations)) {
-            give_up("cubature would take " + std::to_string(first_region_) +
-                    " evaluations for a first region");
+        if (!targeted && cubature_->tally().evaluations == 0 && region_is_too_dear(request.max_evaluations)) {
+            const StepOutcome outcome = sampling_->step(request);
+            if (outcome != StepOutcome::advanced) return outcome;
+            give_up("too few evaluations for a first region of cubature");
             rules_end_ = true;
-            return sampling_->step(request);
+            return outcome;
         }
         const std::uint64_t before = cubature_->tally().evaluations;
         const StepOutcome outcome = cubature_->step(request);
@@ -275,6 +273,13 @@ class AutoEstimator final : public Estimator {
         return std::ranges::all_of(tally.standard_error, [](double error) { return std::isfinite(error); });
     }
 
+    // With fewer than four variables even few evaluations pay for a region.
+    bool region_is_too_dear(std::uint64_t max_evaluations) const {
+        return dimensions_ >= 4 && static_cast<double>(genz_malik_7(dimensions_).points()) >
+                                       largest_first * static_cast<double>(max_evaluations);
+    }
+    bool one_variable() const { return dimensions_ == 1; }
+
     void give_up(std::string why) {
         switched_ = true;
         reason_ = std::move(why);
@@ -314,10 +319,10 @@ class AutoEstimator final : public Estimator {
         const double rate = falling_rate(targeted ? 1 : cautious_rate);
         if (targeted) {
             // One variable is what the rules are best at.
-            const double alternative = sampling_cost(std::min(1.0, tightest)) * (one_variable_ ? 10 : 1);
+            const double alternative = sampling_cost(std::min(1.0, tightest)) * (one_variable() ? 10 : 1);
             if (spent < std::max(least_pilot, pilot_share * alternative)) return;
             const double needed = spent * std::pow(ratio, 1 / std::max(rate, 0.05));
-            if (needed > alternative && one_variable_ && tally.non_finite.count + tally.singular > 0 &&
+            if (needed > alternative && one_variable() && tally.non_finite.count + tally.singular > 0 &&
                 rate < slowest_of_one_variable) {
                 diverges_ = true;
                 reason_ = "cubature does not converge";
@@ -331,7 +336,9 @@ class AutoEstimator final : public Estimator {
         if (spent < std::min(least_pilot, 0.25 * left)) return; // few evaluations are not worth a long pilot
         const double reached = ratio * std::pow(spent / (spent + left), rate),
                      alternative = sampling_error(left);
-        if (reached > alternative && !(one_variable_ && reached < 10 * alternative))
+        if (std::isinf(reached))
+            give_up("cubature's value is still zero");
+        else if (reached > alternative && !(one_variable() && reached < 10 * alternative))
             give_up("cubature seemed to reach a relative error of " + printed(reached) +
                     ", sampling one of " + printed(alternative));
     }
@@ -349,8 +356,7 @@ class AutoEstimator final : public Estimator {
     }
 
     std::unique_ptr<Estimator> cubature_, sampling_;
-    bool one_variable_;
-    std::uint64_t first_region_; // evaluations
+    int dimensions_;
     bool switched_ = false;
     bool comparing_ = false, agreed_ = false; // cubature with sampling
     bool rules_end_ = false;                  // cubature can do no more

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "montelux/mc/integrate/cubature_evaluation.h"
+#include "montelux/mc/integrate/cubature_halving.h"
 #include "montelux/mc/integrate/cubature_regions.h"
 #include "montelux/mc/integrate/cubature_rules.h"
 #include "montelux/mc/integrate/cubature_verification.h"
@@ -19,16 +20,12 @@
 namespace montelux {
 namespace {
 
-constexpr std::uint64_t points_per_step = 1'000'000;
-// While all values were zero, so many evaluations in so many regions are made before that is believed.
+// While all values were zero, so many evaluations in so many regions are made before that is believed; until
+// then the error is infinite.
 constexpr std::uint64_t search_evaluations = 4096;
 constexpr std::size_t search_regions = 16;
-// Errors are as many times larger while there is one region alone.
-constexpr double lone_caution = 9;
 // Points after which an integrand that was the same at all of them is examined no further.
 constexpr std::uint64_t most_equal_values = 1 << 21;
-// One variable's seven points are believed only where they see far more smoothness than was asked for.
-constexpr double caution_with_few_points = 16;
 
 class CubatureEstimator final : public Estimator {
   public:
@@ -67,7 +64,9 @@ class CubatureEstimator final : public Estimator {
             fresh.add_cube();
             rules.push_back(regions_.empty() && started_coarse() ? &*coarse_ : &*fine_);
         } else {
-            parents = choose(request);
+            // What equal values leave open is no matter of regions.
+            if (searching() || reached(request) || !reaches(totals_.rule_error, request))
+                parents = regions_to_halve(regions_, scales(request), searching());
             if (regions_.count() + parents.size() > max_regions_)
                 parents.resize(max_regions_ - regions_.count());
             if (parents.empty()) return end(request);
@@ -75,7 +74,7 @@ class CubatureEstimator final : public Estimator {
         }
         ValueBuffer nested;
         if (parents.empty()) nested = nested_;
-        fit(rules, parents, request.max_evaluations + nested.count());
+        fit_evaluations(rules, parents, request.max_evaluations + nested.count());
         if (rules.empty()) return StepOutcome::exhausted;
         for (std::size_t p : parents) fresh.add_halves(regions_, p);
         NonFiniteCount non_finite;
@@ -105,10 +104,10 @@ class CubatureEstimator final : public Estimator {
         nonzero_ = std::move(nonzero);
         if (parents.empty()) {
             refined_ = !regions_.empty();
-            correct_cube(fresh);
+            correct_cube(regions_, fresh);
             regions_ = std::move(fresh);
         } else {
-            look_at_shared_faces(work);
+            add_face_errors(work);
             replace(parents, fresh);
         }
         add_up();
@@ -128,8 +127,9 @@ class CubatureEstimator final : public Estimator {
         }
         tally.value = totals_.value;
         tally.standard_error = totals_.error;
-        for (std::size_t c = 0; c < components() && searching(); ++c)
-            if (nonzero_[c] == 0) tally.standard_error[c] = std::numeric_limits<double>::infinity();
+        if (searching())
+            for (std::size_t c = 0; c < components(); ++c)
+                if (nonzero_[c] == 0) tally.standard_error[c] = std::numeric_limits<double>::infinity();
         tally.ready = !searching() && verification_.verified(totals_.value);
         tally.at_limit = at_limit_;
         // Of one variable halving alone finds all that has a width.
@@ -254,38 +254,6 @@ class CubatureEstimator final : public Estimator {
         return n_ > 1 && regions_.marks(parent).rough ? &*coarse_ : &*fine_;
     }
 
-    // The regions to halve next, those of the largest errors first: at most a sixteenth of all, and of these
-    // the ones within a factor of four of the worst, but no fewer than a 64th, so that the time it takes to
-    // choose is small beside the evaluations.
-    std::vector<std::size_t> choose(const StepRequest& request) const {
-        const std::size_t count = regions_.count();
-        const bool search = searching();
-        // What equal values leave open is no matter of regions.
-        if (!search && !reached(request) && reaches(totals_.rule_error, request)) return {};
-        const std::vector<double> scale = scales(request);
-        std::vector<double> key(count, 0.0);
-        std::vector<std::size_t> order;
-        for (std::size_t r = 0; r < count; ++r) {
-            const CubatureRegions::Marks& marks = regions_.marks(r);
-            if (marks.indivisible) continue;
-            if (search) {
-                key[r] = regions_.volume(r);
-            } else if (!marks.exhausted) {
-                for (std::size_t c = 0; c < components(); ++c)
-                    if (scale[c] > 0) key[r] = std::max(key[r], regions_.error(r)[c] / scale[c]);
-            }
-            if (key[r] > 0) order.push_back(r);
-        }
-        const std::size_t most = std::min(order.size(), std::max<std::size_t>(1, count / 16));
-        const std::size_t least = std::max<std::size_t>(1, count / 64);
-        auto worse = [&](std::size_t a, std::size_t b) { return key[a] != key[b] ? key[a] > key[b] : a < b; };
-        std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(most), order.end(),
-                          worse);
-        order.resize(most);
-        while (order.size() > least && key[order.back()] < key[order.front()] / 4) order.pop_back();
-        return order;
-    }
-
     // What errors of the components are measured by: their targets, or their values where there is none.
     // Zero for components that need no further work while others do.
     std::vector<double> scales(const StepRequest& request) const {
@@ -302,77 +270,6 @@ class CubatureEstimator final : public Estimator {
             for (std::size_t c = 0; c < scale.size(); ++c)
                 if (totals_.error[c] <= scale[c]) scale[c] = 0;
         return scale;
-    }
-
-    // Leaves out what does not fit into the step or the evaluations allowed.
-    static void fit(std::vector<const SymmetricRule*>& rules, std::vector<std::size_t>& parents,
-                    std::uint64_t max_evaluations) {
-        const std::size_t group = parents.empty() ? 1 : 2;
-        std::uint64_t sum = 0;
-        std::size_t kept = 0;
-        for (; kept < rules.size(); kept += group) {
-            sum += group * rules[kept]->points();
-            if (sum > max_evaluations || (kept > 0 && sum > points_per_step)) break;
-        }
-        rules.resize(kept);
-        if (!parents.empty()) parents.resize(kept / 2);
-    }
-
-    // The errors of the cube alone, beyond what null rules say of it.
-    void correct_cube(CubatureRegions& fresh) const {
-        for (std::size_t c = 0; c < components(); ++c) {
-            double& error = fresh.error(0)[c];
-            if (!refined_) {
-                if (n_ == 1) error *= caution_with_few_points;
-                continue;
-            }
-            // What two rules differ by is known better than what null rules say of one box.
-            const double difference = std::abs(regions_.value(0)[c] - fresh.value(0)[c]);
-            const double coarse = regions_.error(0)[c] / caution_with_few_points;
-            if (n_ > 1)
-                error += difference / 32;
-            else if (coarse > 0)
-                error *= std::clamp(2 * difference / coarse, 0.125, lone_caution) / lone_caution;
-        }
-    }
-
-    // A jump close beyond the face that two halves share is seen by neither, but they disagree about the
-    // face. As long as halving does not show it, half of that error goes to each half that still has the
-    // face.
-    void look_at_shared_faces(const CubatureWork& work) const {
-        for (std::size_t r = 0; r < work.fresh.count(); ++r) {
-            const std::size_t parent = work.parents[r / 2];
-            const CubatureRegions::Marks& from = regions_.marks(parent);
-            CubatureRegions::Marks& marks = work.fresh.marks(r);
-            const bool upper_half = r % 2 == 1;
-            const bool keeps_face = from.face_axis != from.axis || from.face_upper == upper_half;
-            const double volume = work.fresh.volume(r);
-            double largest_inherited = 0, largest_new = 0;
-            bool decides = false;
-            for (std::size_t c = 0; c < components(); ++c) {
-                const SymmetricRule::FaceValue &own = work.faces[r * components() + c],
-                                               &other = work.faces[(r ^ 1) * components() + c];
-                // Slopes and curvature are no jump.
-                const double expected = 2 * (own.slack + other.slack) +
-                                        0.25 * std::max(std::abs(own.value), std::abs(other.value));
-                const double jump = std::max(0.0, std::abs(own.value - other.value) - expected);
-                const double inherited = keeps_face ? regions_.face_error(parent)[c] / 2 : 0;
-                const double added = volume * own.unseen * jump;
-                double& error = work.fresh.error(r)[c];
-                decides = decides || inherited + added > error;
-                work.fresh.face_error(r)[c] = inherited + added;
-                error += inherited + added;
-                largest_inherited = std::max(largest_inherited, inherited);
-                largest_new = std::max(largest_new, added);
-            }
-            const bool shared = largest_new >= largest_inherited;
-            marks.face_axis = shared ? from.axis : from.face_axis;
-            marks.face_upper = shared ? !upper_half : from.face_upper;
-            if (decides) {
-                marks.axis = marks.face_axis;
-                marks.exhausted = false;
-            }
-        }
     }
 
     // Puts the halves in the place of the regions that were halved.
@@ -424,7 +321,7 @@ class CubatureEstimator final : public Estimator {
             totals_.inflation[c] =
                 expected_[c] > 0 ? std::max(1.0, std::sqrt(disagreement_[c] / expected_[c])) : 1;
             totals_.error[c] = error.value() * totals_.inflation[c] *
-                               (1 + (lone_caution - 1) / static_cast<double>(regions_.count()));
+                               (1 + (caution_of_one_region - 1) / static_cast<double>(regions_.count()));
             totals_.error[c] += verification_.slack(c);
             totals_.rule_error[c] = totals_.error[c];
             totals_.equal[c] = lowest == highest && lowest != 0;
