@@ -171,7 +171,7 @@ TEST(Auto, SmallBudgetsOfAGaussianInEightVariables) {
     const double side = 0.15 * std::sqrt(pi / 2) *
                         (std::erf(0.4 / (0.15 * std::sqrt(2.0))) + std::erf(0.6 / (0.15 * std::sqrt(2.0))));
     const double exact = std::pow(side, 8);
-    // Some three halves of what 20 seeds were off.
+    // Root mean squares of 20 seeds.
     for (auto [evaluations, most] :
          {std::pair{1000u, 0.6}, std::pair{2000u, 0.15}, std::pair{10'000u, 0.05}}) {
         double squares = 0;
