@@ -1,8 +1,8 @@
 // Finding the library, and telling what is wrong where it is not found.
 #include "test/denoise/denoise_testing.h"
+#include "test/temporary_folder.h"
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
 #include "montelux/denoise/oidn_api.h"
 
@@ -43,11 +43,10 @@ TEST(OidnLibrary, AFileThatIsNotThereIsNamedAndNoOtherIsTaken) {
 }
 
 TEST(OidnLibrary, AFileThatIsNoLibraryIsRefused) {
-    auto file = std::filesystem::path(::testing::TempDir()) / "not_a_library.so";
-    std::ofstream(file) << "this is text\n";
+    const TemporaryFolder folder;
+    const auto file = folder.write("not_a_library.so", "this is text\n");
     std::string message = error_with(file.string());
     EXPECT_NE(message.find("cannot be loaded from"), std::string::npos) << message;
-    std::filesystem::remove(file);
 }
 
 TEST(OidnLibrary, ALibraryWithoutTheFunctionsIsRefused) {

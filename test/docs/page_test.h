@@ -2,6 +2,7 @@
 // text.
 #pragma once
 
+#include "test/temporary_folder.h"
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -13,7 +14,6 @@
 #include <sstream>
 #include <streambuf>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 #include "montelux/mc/dist/distribution.h"
@@ -59,19 +59,12 @@ class Printed {
 // Programs write files: into a folder of their own, which is removed.
 class PageExamples : public testing::Test {
   protected:
-    void SetUp() override {
-        std::filesystem::create_directories(folder_);
-        std::filesystem::current_path(folder_);
-    }
-    void TearDown() override {
-        std::filesystem::current_path(before_);
-        std::filesystem::remove_all(folder_);
-    }
+    void SetUp() override { std::filesystem::current_path(folder_.path()); }
+    void TearDown() override { std::filesystem::current_path(before_); }
 
   private:
     std::filesystem::path before_ = std::filesystem::current_path();
-    std::filesystem::path folder_ =
-        std::filesystem::temp_directory_path() / ("montelux_page_" + std::to_string(getpid()));
+    TemporaryFolder folder_;
 };
 
 // Names that programs use and the page leaves to the reader: an integrand, one that resembles it, a family, a

@@ -1,8 +1,7 @@
 // A scene that was read once can be read again from what was kept.
+#include "test/temporary_folder.h"
 #include <filesystem>
-#include <fstream>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "montelux/formats/file_source.h"
 #include "montelux/formats/pbrt/load_pbrt.h"
@@ -14,20 +13,16 @@ namespace {
 class FileSources : public ::testing::Test {
   protected:
     FileSources() {
-        folder_ = std::filesystem::temp_directory_path() / ("montelux-sources-" + std::to_string(getpid()));
-        std::filesystem::create_directories(folder_ / "parts");
-        write("main.pbrt",
-              "LookAt 0 0 4 0 0 0 0 1 0 Camera \"perspective\"\nWorldBegin\n"
-              "LightSource \"infinite\" \"spectrum L\" \"light.spd\"\nInclude \"parts/ball.pbrt\"\n");
-        write("parts/ball.pbrt",
-              "Shape \"sphere\"\nMaterial \"diffuse\" \"spectrum reflectance\" \"grey.spd\"\n");
-        write("parts/grey.spd", "400 0.5 700 0.5\n"); // found beside the file that names it
-        write("light.spd", "400 1 700 2\n");
+        folder_.write("main.pbrt",
+                      "LookAt 0 0 4 0 0 0 0 1 0 Camera \"perspective\"\nWorldBegin\n"
+                      "LightSource \"infinite\" \"spectrum L\" \"light.spd\"\nInclude \"parts/ball.pbrt\"\n");
+        folder_.write("parts/ball.pbrt",
+                      "Shape \"sphere\"\nMaterial \"diffuse\" \"spectrum reflectance\" \"grey.spd\"\n");
+        folder_.write("parts/grey.spd", "400 0.5 700 0.5\n"); // found beside the file that names it
+        folder_.write("light.spd", "400 1 700 2\n");
     }
-    ~FileSources() override { std::filesystem::remove_all(folder_); }
-    void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
 
-    std::filesystem::path folder_;
+    TemporaryFolder folder_;
 };
 
 TEST_F(FileSources, BundlesStandInForTheDisk) {
@@ -37,7 +32,7 @@ TEST_F(FileSources, BundlesStandInForTheDisk) {
     const SceneDescription first = load_pbrt(folder_ / "main.pbrt", warnings, &read, &recorded);
     EXPECT_EQ(read.size(), 4u);
     const std::vector<std::uint8_t> bytes = recorded.bundle().to_bytes();
-    std::filesystem::remove_all(folder_);
+    std::filesystem::remove_all(folder_.path());
 
     BundledFiles bundled(FileBundle::from_bytes(bytes));
     const SceneDescription second = load_pbrt(folder_ / "main.pbrt", warnings, &read_again, &bundled);

@@ -1,4 +1,4 @@
-// Helpers of the image tests: a folder that goes away, pictures with known contents, expected sentences.
+// Helpers of the image tests: pictures with known contents, expected sentences.
 #pragma once
 
 #include <cmath>
@@ -12,33 +12,9 @@
 #include "montelux/image/cube_map.h"
 #include "montelux/image/image.h"
 #include "montelux/mc/math/error.h"
+#include "test/temporary_folder.h"
 
 namespace montelux {
-
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        std::string pattern = (std::filesystem::temp_directory_path() / "montelux-test-XXXXXX").string();
-        if (!::mkdtemp(pattern.data())) throw Error("no temporary folder");
-        path_ = pattern;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-    const std::filesystem::path& path() const { return path_; }
-    int file_count() const {
-        int n = 0;
-        for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(path_)) ++n;
-        return n;
-    }
-
-  private:
-    std::filesystem::path path_;
-};
 
 inline void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
     std::ofstream(path, std::ios::binary) << bytes;

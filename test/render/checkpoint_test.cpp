@@ -1,9 +1,8 @@
 // Renders that are stopped, saved and continued end with the bits of one that never was.
 #include "test/render/mixed_scene.h"
+#include "test/temporary_folder.h"
 #include <filesystem>
-#include <fstream>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/random/hash.h"
@@ -14,15 +13,8 @@ namespace {
 
 class Checkpoint : public ::testing::Test {
   protected:
-    Checkpoint() {
-        folder_ =
-            std::filesystem::temp_directory_path() / ("montelux-checkpoint-" + std::to_string(getpid()));
-        std::filesystem::create_directories(folder_);
-        path_ = folder_ / "render.state";
-    }
-    ~Checkpoint() override { std::filesystem::remove_all(folder_); }
-
-    std::filesystem::path folder_, path_;
+    TemporaryFolder folder_;
+    std::filesystem::path path_ = folder_ / "render.state";
 };
 
 void expect_same(const Film& a, const Film& b) {

@@ -1,7 +1,7 @@
 // What a broken scene file is told: the place and the sentence.
 #include "test/formats/pbrt/parse.h"
+#include "test/temporary_folder.h"
 #include <filesystem>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <string>
 
@@ -289,24 +289,6 @@ TEST(PbrtErrors, BinaryGarbageAndNulBytes) {
     EXPECT_EQ(error_of("\xef\xbb\xbfWorldBegin"), ""); // a byte order mark of UTF-8 does no harm
 }
 
-// A folder of its own for each test that needs files.
-class Folder {
-  public:
-    explicit Folder(const std::string& name) : path_(std::filesystem::temp_directory_path() / name) {
-        std::filesystem::remove_all(path_);
-        std::filesystem::create_directories(path_);
-    }
-    ~Folder() { std::filesystem::remove_all(path_); }
-    std::filesystem::path write(const std::string& name, const std::string& text) const {
-        std::filesystem::create_directories((path_ / name).parent_path());
-        std::ofstream(path_ / name, std::ios::binary) << text;
-        return path_ / name;
-    }
-
-  private:
-    std::filesystem::path path_;
-};
-
 std::string load_error(const std::filesystem::path& path) {
     Warnings warnings;
     try {
@@ -318,14 +300,14 @@ std::string load_error(const std::filesystem::path& path) {
 }
 
 TEST(PbrtErrors, PlacesInIncludedFiles) {
-    Folder folder("montelux_pbrt_places");
+    TemporaryFolder folder;
     auto main = folder.write("main.pbrt", "WorldBegin\nInclude \"part.pbrt\"\n");
     auto part = folder.write("part.pbrt", "Shape \"sphere\"\n  Shape \"cube\"\n");
     EXPECT_EQ(load_error(main), part.string() + ":2:3: unknown shape 'cube' (did you mean 'curve'?)");
 }
 
 TEST(PbrtErrors, FilesThatIncludeThemselves) {
-    Folder folder("montelux_pbrt_cycles");
+    TemporaryFolder folder;
     auto main = folder.write("main.pbrt", "WorldBegin\nInclude \"a.pbrt\"\n");
     auto a = folder.write("a.pbrt", "\nImport \"b.pbrt\"");
     auto b = folder.write("b.pbrt", "Include \"./main.pbrt\"");
@@ -338,7 +320,7 @@ TEST(PbrtErrors, FilesThatIncludeThemselves) {
 }
 
 TEST(PbrtErrors, BlocksAcrossImports) {
-    Folder folder("montelux_pbrt_imports");
+    TemporaryFolder folder;
     auto open = folder.write("open.pbrt", "AttributeBegin");
     folder.write("close.pbrt", "AttributeEnd");
     EXPECT_EQ(load_error(folder.write("a.pbrt", "WorldBegin Import \"open.pbrt\"")),
@@ -351,7 +333,7 @@ TEST(PbrtErrors, BlocksAcrossImports) {
 }
 
 TEST(PbrtErrors, DamagedMeshesAndFoldersAsFiles) {
-    Folder folder("montelux_pbrt_meshes");
+    TemporaryFolder folder;
     auto mesh = folder.write("mesh.ply", "ply\nformat ascii 1.0\nend_header\n");
     auto main = folder.write("main.pbrt", "WorldBegin\nShape \"plymesh\" \"string filename\" \"mesh.ply\"");
     EXPECT_EQ(load_error(main),

@@ -2,11 +2,10 @@
 #include "test/formats/gzip.h"
 #include "test/formats/pbrt/parse.h"
 #include "test/near.h"
+#include "test/temporary_folder.h"
 #include <filesystem>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <string>
-#include <unistd.h>
 
 #include "montelux/image/image_write.h"
 
@@ -15,16 +14,8 @@ namespace {
 
 class PbrtFolder : public ::testing::Test {
   protected:
-    PbrtFolder() {
-        folder_ =
-            std::filesystem::temp_directory_path() / ("montelux-pbrt-files-" + std::to_string(getpid()));
-        std::filesystem::create_directories(folder_);
-    }
-    ~PbrtFolder() override { std::filesystem::remove_all(folder_); }
-
     std::filesystem::path write(const std::string& name, const std::string& bytes) const {
-        std::ofstream(folder_ / name, std::ios::binary) << bytes;
-        return folder_ / name;
+        return folder_.write(name, bytes);
     }
     static SceneDescription load(const std::filesystem::path& path) {
         Warnings warnings;
@@ -39,7 +30,7 @@ class PbrtFolder : public ::testing::Test {
         return {};
     }
 
-    std::filesystem::path folder_;
+    TemporaryFolder folder_;
 };
 
 std::string text_of(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }

@@ -1,7 +1,7 @@
 // Materials, textures and lights with pbrt-v4's defaults and units.
 #include "test/formats/pbrt/parse.h"
+#include "test/temporary_folder.h"
 #include <cmath>
-#include <filesystem>
 #include <gtest/gtest.h>
 #include <numbers>
 #include <string>
@@ -133,8 +133,7 @@ TEST(PbrtTextures, NodesAndDefaults) {
 }
 
 TEST(PbrtTextures, PicturesAreReadOnceForEachEncoding) {
-    auto folder = std::filesystem::temp_directory_path() / "montelux_pbrt_pictures";
-    std::filesystem::create_directories(folder);
+    TemporaryFolder folder;
     Image picture(4, 4, {"R", "G", "B"}, PixelFormat::u8, ColorEncoding::srgb());
     write_image(folder / "a.png", picture);
     Warnings told;
@@ -148,8 +147,7 @@ TEST(PbrtTextures, PicturesAreReadOnceForEachEncoding) {
         Texture "unused" "float" "imagemap" "string filename" "none.png"
         Material "coateddiffuse" "texture reflectance" "a" "texture roughness" "b" "texture thickness" "c"
         Shape "sphere" "texture alpha" "d")",
-                                    "scene", folder, told);
-    std::filesystem::remove_all(folder);
+                                    "scene", folder.path(), told);
     ASSERT_EQ(d.scene.images.size(), 3u);
     const auto& m = std::get<CoatedDiffuseMaterial>(d.scene.materials[d.scene.shapes[0].material]);
     const auto& a = std::get<ImageTexture>(d.scene.spectrum_textures[m.reflectance.texture]);
@@ -176,8 +174,7 @@ TEST(PbrtTextures, PicturesAreReadOnceForEachEncoding) {
 
 // As pbrt-v4: a number is the alpha of a picture in colour that has holes, and else the mean of its colours.
 TEST(PbrtTextures, NumbersFromPicturesWithAlpha) {
-    auto folder = std::filesystem::temp_directory_path() / "montelux_pbrt_alpha";
-    std::filesystem::create_directories(folder);
+    TemporaryFolder folder;
     Image opaque(2, 2, {"R", "G", "B", "A"}, PixelFormat::u8, ColorEncoding::srgb());
     for (std::uint8_t& v : opaque.u8()) v = 255;
     Image leaf = opaque;
@@ -192,8 +189,7 @@ TEST(PbrtTextures, NumbersFromPicturesWithAlpha) {
         Material "diffuse" "texture reflectance" "leaf"
         Shape "sphere" "texture alpha" "leaf"
         Shape "sphere" "texture alpha" "opaque")",
-                                    "scene", folder, told);
-    std::filesystem::remove_all(folder);
+                                    "scene", folder.path(), told);
     auto channels = [&](std::size_t shape) {
         return std::get<ImageTexture>(d.scene.float_textures[d.scene.shapes[shape].alpha.texture]).channels;
     };
@@ -275,8 +271,7 @@ TEST(PbrtLights, AreaLightsOfEachTriangle) {
 }
 
 TEST(PbrtLights, EnvironmentMaps) {
-    auto folder = std::filesystem::temp_directory_path() / "montelux_pbrt_environment";
-    std::filesystem::create_directories(folder);
+    TemporaryFolder folder;
     Image map(64, 64, {"R", "G", "B"});
     for (float& v : map.f32()) v = 1;
     map.set(0, 0, 0, -1); // counts as 0
@@ -286,7 +281,7 @@ TEST(PbrtLights, EnvironmentMaps) {
     for (float& v : wide.f32()) v = 1;
     write_image(folder / "wide.exr", wide);
     auto load = [&](const std::string& text, Warnings& told) {
-        return parse_pbrt("WorldBegin\n" + text, "scene", folder, told);
+        return parse_pbrt("WorldBegin\n" + text, "scene", folder.path(), told);
     };
     Warnings told;
     SceneDescription d =
@@ -333,7 +328,6 @@ TEST(PbrtLights, EnvironmentMaps) {
                       " has 16 x 9 pixels; an environment map must be square (equal-area "
                       "octahedral), or twice as wide as high (latitude-longitude)");
     }
-    std::filesystem::remove_all(folder);
 }
 
 } // namespace

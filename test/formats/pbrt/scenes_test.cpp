@@ -1,4 +1,5 @@
 // Whole scenes of pbrt-v4 users.
+#include "test/temporary_folder.h"
 #include <filesystem>
 #include <gtest/gtest.h>
 
@@ -83,8 +84,8 @@ TEST(PbrtScenes, WhatComesLaterIsNamed) {
 // Of the bytes of all files, not of where they lie.
 TEST(PbrtScenes, CopiesHaveTheSameHash) {
     if (!std::filesystem::exists(folder())) GTEST_SKIP() << "no shared files";
-    auto copy = std::filesystem::temp_directory_path() / "montelux_pbrt_hash";
-    std::filesystem::remove_all(copy);
+    const TemporaryFolder temporary;
+    const std::filesystem::path copy = temporary / "killeroo-gold";
     std::filesystem::copy(folder() / "killeroo-gold", copy, std::filesystem::copy_options::recursive);
     auto hash = [](const std::filesystem::path& path) {
         Warnings warnings;
@@ -94,7 +95,6 @@ TEST(PbrtScenes, CopiesHaveTheSameHash) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(copy))
         std::filesystem::permissions(entry, std::filesystem::perms::owner_all,
                                      std::filesystem::perm_options::add);
-    std::filesystem::remove_all(copy);
 }
 
 } // namespace

@@ -1,8 +1,8 @@
+#include "test/temporary_folder.h"
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "montelux/mc/integrate/adaptive_map.h"
 #include "montelux/mc/integrate/hypercubes.h"
@@ -91,8 +91,8 @@ TEST(AdaptiveMap, WidthsSurviveADeltaFunction) {
 TEST(AdaptiveMap, FileBringsTheMapBack) {
     AdaptiveMap map(3, 50);
     map.refine(train(map, [](double x) { return x * x; }), 0.7);
-    const std::string path =
-        (std::filesystem::temp_directory_path() / ("montelux_map_" + std::to_string(getpid()))).string();
+    const TemporaryFolder folder;
+    const std::string path = (folder / "map").string();
     map.save(path);
     EXPECT_EQ(AdaptiveMap::load(path), map);
     std::filesystem::resize_file(path, std::filesystem::file_size(path) - 8);

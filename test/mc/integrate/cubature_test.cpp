@@ -1,6 +1,6 @@
 #include "test/mc/integrate/bench_integrand.h"
+#include "test/temporary_folder.h"
 #include <cmath>
-#include <filesystem>
 #include <gtest/gtest.h>
 #include <numbers>
 #include <vector>
@@ -131,14 +131,9 @@ TEST(Cubature, ThreadsDoNotMatter) {
 
 // Stopped by cancellation after some evaluations, since a limit of evaluations shapes the last step.
 void expect_same_bits_when_stopped(const BenchIntegrand& f, std::uint64_t evaluations, std::uint64_t stop) {
-    const std::string path = testing::TempDir() + "cubature_resume";
-    // The generation before, too: another build's would go on to other bits.
-    auto remove = [&] {
-        for (const std::string& file : {path, path + ".previous"}) std::filesystem::remove(file);
-    };
-    remove();
+    const TemporaryFolder folder;
     const IntegrationResult whole = run(f, 0, evaluations);
-    IntegrationOptions options{.threads = 1, .checkpoint = path, .resume = true};
+    IntegrationOptions options{.threads = 1, .checkpoint = (folder / "state").string(), .resume = true};
     CancelFlag cancel;
     options.cancel = &cancel;
     options.progress = [&](const IntegrationResult& r) {
@@ -153,7 +148,6 @@ void expect_same_bits_when_stopped(const BenchIntegrand& f, std::uint64_t evalua
     EXPECT_EQ(rest.value, whole.value);
     EXPECT_EQ(rest.standard_error, whole.standard_error);
     EXPECT_EQ(rest.evaluations, whole.evaluations);
-    remove();
 }
 TEST(Cubature, AResumedRunEndsWithTheSameBits) {
     expect_same_bits_when_stopped(BenchIntegrand({Family::discontinuous, 2}, 4), 20'000, 7000);

@@ -1,8 +1,8 @@
 // Results do not depend on the unit of the integrand; logarithms of integrands beyond the range of doubles.
 #include "test/mc/integrate/integrate_testing.h"
+#include "test/temporary_folder.h"
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <gtest/gtest.h>
 #include <limits>
 #include <numbers>
@@ -97,22 +97,20 @@ TEST(Scale, TinyDomainsAreNoTinyIntegrands) {
 }
 
 TEST(Scale, AMovedScaleSurvivesACheckpoint) {
-    const std::string path = testing::TempDir() + "montelux_scale.state";
-    for (const std::string& name : {path, path + ".previous"}) std::filesystem::remove(name);
+    const TemporaryFolder folder;
     const Integrand f = ball_of_height(1e-200);
     const Domain cube = Domain::unit_cube(3);
     const Budget half{.relative_error = 0, .absolute_error = 0, .evaluations = 50000};
     const Budget all{.relative_error = 0, .absolute_error = 0, .evaluations = 100000};
     IntegrationOptions options;
     const IntegrationResult whole = integrate(f, cube, Method::named("vegas"), all);
-    options.checkpoint = path;
+    options.checkpoint = (folder / "state").string();
     integrate(f, cube, Method::named("vegas"), half, options);
     options.resume = true;
     const IntegrationResult resumed = integrate(f, cube, Method::named("vegas"), all, options);
     EXPECT_NEAR(resumed.value[0] / whole.value[0], 1, 0.02);
     EXPECT_GT(resumed.evaluations, 50000U);
     EXPECT_LE(resumed.evaluations, 110000U);
-    for (const std::string& name : {path, path + ".previous"}) std::filesystem::remove(name);
 }
 
 TEST(IntegrateLog, GaussiansOfAnyHeight) {

@@ -1,5 +1,6 @@
 // Checkpoints of integrations: resumed runs have the bits of unbroken ones, wrong files are refused.
 #include "test/mc/integrate/integrate_testing.h"
+#include "test/temporary_folder.h"
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -16,30 +17,17 @@ namespace {
 
 using std::chrono::duration;
 
-// A file name in the folder for temporary files; the file and the one before it are removed before and after.
-class TemporaryFile {
+class CheckpointFile {
   public:
-    explicit TemporaryFile(const std::string& name) : path_(testing::TempDir() + "montelux_" + name) {
-        remove();
-    }
-    ~TemporaryFile() { remove(); }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-    const std::string& path() const { return path_; }
-
+    std::string path() const { return (folder_ / "state").string(); }
     std::string bytes() const {
-        std::ifstream in(path_, std::ios::binary);
+        std::ifstream in(path(), std::ios::binary);
         return {std::istreambuf_iterator<char>(in), {}};
     }
-    void replace(const std::string& bytes) const { std::ofstream(path_, std::ios::binary) << bytes; }
+    void replace(const std::string& bytes) const { folder_.write("state", bytes); }
 
   private:
-    void remove() const {
-        std::filesystem::remove(path_);
-        std::filesystem::remove(path_ + ".previous");
-    }
-
-    std::string path_;
+    TemporaryFolder folder_;
 };
 
 TEST(IntegrateCheckpoint, ResumedRunHasTheBitsOfAnUnbrokenOne) {
@@ -50,7 +38,7 @@ TEST(IntegrateCheckpoint, ResumedRunHasTheBitsOfAnUnbrokenOne) {
     });
     const IntegrationResult unbroken = integrate(f, Domain::unit_cube(2), basic, budget, {.seed = 3});
     for (std::uint64_t stop_at : {1u, 10'000u, 100'000u, 250'000u}) {
-        const TemporaryFile file("resume");
+        const CheckpointFile file;
         CancelFlag cancel;
         IntegrationOptions options{.seed = 3, .cancel = &cancel, .checkpoint = file.path()};
         options.progress = [&](const IntegrationResult& r) {
@@ -84,7 +72,7 @@ TEST(IntegrateCheckpoint, EveryMethodResumesToTheSameBits) {
         const IntegrationResult unbroken = integrate(peak, Domain::unit_cube(2), method, budget, {.seed = 4});
         EXPECT_LE(unbroken.evaluations, budget.evaluations) << name;
         for (int stop_at : {500, 5000, 20'000, 45'000}) {
-            const TemporaryFile file("every_method");
+            const CheckpointFile file;
             CancelFlag cancel;
             std::atomic<int> calls{0};
             auto f = [&](std::span<const double> x) {
@@ -102,7 +90,7 @@ TEST(IntegrateCheckpoint, EveryMethodResumesToTheSameBits) {
     }
 }
 TEST(IntegrateCheckpoint, IsWrittenWhileTheRunGoesOn) {
-    const TemporaryFile file("periodic");
+    const CheckpointFile file;
     std::size_t times = 0;
     IntegrationOptions options{.checkpoint = file.path(), .checkpoint_every = duration<double>(0)};
     options.progress = [&](const IntegrationResult&) { times += std::filesystem::exists(file.path()); };
@@ -110,14 +98,14 @@ TEST(IntegrateCheckpoint, IsWrittenWhileTheRunGoesOn) {
     EXPECT_GE(times, 2u);
 }
 TEST(IntegrateCheckpoint, ResumeWithoutAFileBeginsAnew) {
-    const TemporaryFile file("fresh");
+    const CheckpointFile file;
     const IntegrationResult r = integrate(product, Domain::unit_cube(2), basic, {.evaluations = 10'000},
                                           {.checkpoint = file.path(), .resume = true});
     EXPECT_EQ(r.evaluations, 10'000u);
     EXPECT_TRUE(std::filesystem::exists(file.path()));
 }
 TEST(IntegrateCheckpoint, OfAnotherProblemIsRefused) {
-    const TemporaryFile file("other");
+    const CheckpointFile file;
     const Domain square = Domain::unit_cube(2);
     integrate(product, square, basic, {.evaluations = 5000}, {.seed = 1, .checkpoint = file.path()});
     const IntegrationOptions resume{.seed = 1, .checkpoint = file.path(), .resume = true};
@@ -134,7 +122,7 @@ TEST(IntegrateCheckpoint, OfAnotherProblemIsRefused) {
     EXPECT_EQ(integrate(product, square, basic, budget, resume).evaluations, 9000u);
 }
 TEST(IntegrateCheckpoint, DamagedFilesAreRefused) {
-    const TemporaryFile file("damaged");
+    const CheckpointFile file;
     const IntegrationOptions resume{.checkpoint = file.path(), .resume = true};
     auto run = [&] { integrate(product, Domain::unit_cube(2), basic, {.evaluations = 9000}, resume); };
     integrate(product, Domain::unit_cube(2), basic, {.evaluations = 5000}, {.checkpoint = file.path()});
@@ -159,7 +147,7 @@ TEST(IntegrateCheckpoint, DamagedFilesAreRefused) {
     EXPECT_NO_THROW(run());
 }
 TEST(IntegrateCheckpoint, ADamagedFileIsToldAndTheOneBeforeServes) {
-    const TemporaryFile file("previous");
+    const CheckpointFile file;
     const IntegrationOptions begin{.checkpoint = file.path()};
     const IntegrationOptions resume{.checkpoint = file.path(), .resume = true};
     const Domain square = Domain::unit_cube(2);

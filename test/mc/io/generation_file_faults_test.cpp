@@ -1,6 +1,7 @@
 // Generation files under faults: whichever call fails or is the last one before the process is killed, a
 // whole generation is there.
 #include "test/fault/fault_injection.h"
+#include "test/temporary_folder.h"
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -22,13 +23,6 @@ enum class End { written, refused, killed, other };
 
 class GenerationFileFaults : public testing::TestWithParam<const char*> {
   protected:
-    GenerationFileFaults() {
-        std::string name = (fs::temp_directory_path() / "montelux-faults-XXXXXX").string();
-        folder_ = ::mkdtemp(name.data());
-        path_ = folder_ / "state";
-    }
-    ~GenerationFileFaults() override { fs::remove_all(folder_); }
-
     // Large enough for more than one call of writing.
     static Bytes payload(std::uint8_t generation) { return Bytes(600'000, generation); }
 
@@ -38,7 +32,7 @@ class GenerationFileFaults : public testing::TestWithParam<const char*> {
         if (::pipe(ends) != 0) return End::other;
         const pid_t child = ::fork();
         if (child == 0) {
-            ::setenv("MONTELUX_FAULT_FOLDER", folder_.c_str(), 1);
+            ::setenv("MONTELUX_FAULT_FOLDER", folder_.path().c_str(), 1);
             ::setenv("MONTELUX_FAULT_CALL", std::to_string(n).c_str(), 1);
             ::setenv("MONTELUX_FAULT_KIND", GetParam(), 1);
             fault::restart();
@@ -62,7 +56,8 @@ class GenerationFileFaults : public testing::TestWithParam<const char*> {
         return WEXITSTATUS(status) == 0 ? End::written : WEXITSTATUS(status) == 1 ? End::refused : End::other;
     }
 
-    fs::path folder_, path_;
+    TemporaryFolder folder_;
+    fs::path path_ = folder_ / "state";
 };
 
 TEST_P(GenerationFileFaults, LeaveAWholeGeneration) {
@@ -72,7 +67,7 @@ TEST_P(GenerationFileFaults, LeaveAWholeGeneration) {
     int ends[4] = {};
     for (bool met = true; met; ++n) {
         ASSERT_LT(n, 100) << "the end is never reached";
-        for (const auto& entry : fs::directory_iterator(folder_)) fs::remove(entry);
+        for (const auto& entry : fs::directory_iterator(folder_.path())) fs::remove(entry);
         write_generation(path_, "test", payload(1));
         write_generation(path_, "test", payload(2));
         const End end = write_with_fault(3, n, met);
@@ -102,8 +97,8 @@ TEST_P(GenerationFileFaults, LeaveAWholeGeneration) {
         }
         if (!kills) {
             fs::remove(path_.string() + ".previous");
-            ASSERT_TRUE(fs::is_empty(folder_))
-                << "call " << n << " left " << fs::directory_iterator(folder_)->path();
+            ASSERT_TRUE(fs::is_empty(folder_.path()))
+                << "call " << n << " left " << fs::directory_iterator(folder_.path())->path();
         }
 
         // What was left behind stops nobody.

@@ -1,10 +1,10 @@
 // Generation files: what is written comes back, what is damaged is told and the generation before is used.
+#include "test/temporary_folder.h"
 #include <algorithm>
 #include <fstream>
 #include <functional>
 #include <gtest/gtest.h>
 #include <random>
-#include <unistd.h>
 
 #include "montelux/mc/io/file.h"
 #include "montelux/mc/io/generation_file.h"
@@ -19,13 +19,6 @@ constexpr std::size_t header_size = 72, limit = 1 << 20;
 
 class GenerationFile : public testing::Test {
   protected:
-    GenerationFile() {
-        std::string name = (fs::temp_directory_path() / "montelux-generation-XXXXXX").string();
-        folder_ = ::mkdtemp(name.data());
-        path_ = folder_ / "state";
-    }
-    ~GenerationFile() override { fs::remove_all(folder_); }
-
     static Bytes payload(std::size_t size, unsigned seed) {
         std::mt19937 random(seed);
         Bytes bytes(size);
@@ -37,10 +30,6 @@ class GenerationFile : public testing::Test {
         std::ofstream(path, std::ios::binary)
             .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     }
-    std::size_t files() const {
-        return static_cast<std::size_t>(
-            std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-    }
     std::string refusal(std::string_view kind = "test") const {
         try {
             read_generation(path_, kind, limit);
@@ -50,14 +39,15 @@ class GenerationFile : public testing::Test {
         return "";
     }
 
-    fs::path folder_, path_;
+    TemporaryFolder folder_;
+    fs::path path_ = folder_ / "state";
 };
 
 // The generation before has a longer name than the newest.
 TEST_F(GenerationFile, SaysNowWhatWouldFailLater) {
     check_generation_writable(path_);
-    EXPECT_EQ(files(), 0u);
-    EXPECT_THROW(check_generation_writable(folder_), Error);
+    EXPECT_EQ(folder_.file_count(), 0);
+    EXPECT_THROW(check_generation_writable(folder_.path()), Error);
     EXPECT_THROW(check_generation_writable(folder_ / "none" / "state"), Error);
     const fs::path longest = folder_ / std::string(255 - std::string(".previous.tmp").size(), 'x');
     check_generation_writable(longest);
@@ -73,9 +63,9 @@ TEST_F(GenerationFile, HoldsWhatWasWrittenAndTheOneBefore) {
         fs::remove(previous_generation(path_));
         write_generation(path_, "test", first);
         EXPECT_TRUE(generation_exists(path_));
-        EXPECT_EQ(files(), 1U);
+        EXPECT_EQ(folder_.file_count(), 1);
         write_generation(path_, "test", second);
-        EXPECT_EQ(files(), 2U);
+        EXPECT_EQ(folder_.file_count(), 2);
         Generation newest = read_generation(path_, "test", 4 << 20);
         EXPECT_EQ(newest.payload, second);
         EXPECT_FALSE(newest.previous);
@@ -112,7 +102,7 @@ TEST_F(GenerationFile, GoesOnAfterAnEndBetweenTheTwoRenamings) {
     overwrite(previous_generation(path_).string() + ".tmp", payload(10, 1)); // or before the first
     write_generation(path_, "test", payload(100, 2));
     write_generation(path_, "test", payload(100, 3));
-    EXPECT_EQ(files(), 2U);
+    EXPECT_EQ(folder_.file_count(), 2);
     fs::remove(path_);
     EXPECT_EQ(read_generation(path_, "test", limit).payload, payload(100, 2));
 }
