@@ -3,7 +3,9 @@
 
 #include "test/mc/integrate/estimator_checks.h"
 #include <cmath>
+#include <limits>
 #include <span>
+#include <vector>
 
 #include "montelux/mc/math/constants.h"
 
@@ -53,6 +55,18 @@ inline double rosenbrock_ridge(std::span<const double> x) {
         exponent += (1 - x[d]) * (1 - x[d]) + 100 * off * off;
     }
     return std::exp(-exponent);
+}
+// The massless two-loop propagator at p^2 = 1 over four Feynman parameters, the fifth being 1: singular at
+// corners where several of them vanish together.
+inline KnownIntegral two_loop_propagator() {
+    auto f = [](std::span<const double> y) {
+        const double u = (y[0] + y[1]) * (y[2] + 1) + y[3] * (y[0] + y[1] + y[2] + 1);
+        const double v =
+            y[0] * y[1] * (y[2] + 1 + y[3]) + y[2] * (y[0] + y[1] + y[3]) + y[0] * y[3] + y[1] * y[2] * y[3];
+        return 1 / (u * v);
+    };
+    const double infinity = std::numeric_limits<double>::infinity();
+    return {f, Domain(std::vector<Range>(4, {0, infinity})), {6 * 1.2020569031595942}}; // 6 zeta(3)
 }
 
 } // namespace montelux

@@ -180,6 +180,17 @@ TEST(Adaptive, HeavyTailsAreDoubted) {
     EXPECT_LE(wrong, seeds / 4);
 }
 
+TEST(Adaptive, CornersWhereSeveralCoordinatesVanishHaveFiniteVariance) {
+    const KnownIntegral problem = two_loop_propagator();
+    for (std::uint64_t seed : {1u, 2u}) {
+        const IntegrationResult r =
+            integrate(problem.f, problem.domain, Method::named("adaptive"),
+                      {.relative_error = 5e-3, .evaluations = 300'000}, {.seed = seed});
+        EXPECT_TRUE(r.converged()) << seed;
+        EXPECT_LT(std::abs(r.value[0] - problem.truth[0]), 4.5 * r.standard_error[0]) << seed;
+    }
+}
+
 TEST(Adaptive, ComponentsOfVeryDifferentSizeEachGetTheirError) {
     const Integrand f = Integrand::vector_valued(3, [](std::span<const double> x, std::span<double> y) {
         auto peak = [&](double centre) {

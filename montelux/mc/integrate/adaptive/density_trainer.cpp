@@ -246,7 +246,7 @@ void DensityTrainer::fit() {
     if (!gaussians.empty()) fit_gaussians(gaussians, all.x, weights, em_steps);
     for (Gaussian& g : gaussians) g = g.widened(safe_width); // tails cost little, and their absence much
     MixtureDensity density_before = std::move(density_);
-    density_ = MixtureDensity(dimensions, maps, gaussians);
+    density_ = MixtureDensity(dimensions, maps, gaussians, density_before.has_boundary() || uneven);
     density_.optimise_shares(all.x, all.h, all.p, uniform_units_, share_step_);
     std::vector<double> ratios(all.h.size());
     auto compare = [&] {
@@ -285,7 +285,8 @@ void DensityTrainer::fit() {
             const int newest = static_cast<int>(added.size());
             gaussians.assign(density_.gaussians().begin(), density_.gaussians().end());
             gaussians.insert(gaussians.end(), added.begin(), added.end());
-            density_ = MixtureDensity(dimensions, std::move(maps), std::move(gaussians));
+            density_ =
+                MixtureDensity(dimensions, std::move(maps), std::move(gaussians), density_.has_boundary());
             density_.optimise_shares(all.x, all.h, all.p, uniform_units_, share_step_, newest);
             compare();
             uncovered_share_ = uncovered();

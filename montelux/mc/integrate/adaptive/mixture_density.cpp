@@ -5,18 +5,22 @@
 #include <numeric>
 #include <utility>
 
+#include "montelux/mc/integrate/adaptive/boundary_density.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
 namespace {
 
+// Too few points near a corner show how heavy its weights are, so that this share is not left to the fit.
+constexpr int boundary_units = 1;
 constexpr double most_weight = 10; // times the mean, of a point that shares are fitted to
 
 } // namespace
 
-MixtureDensity::MixtureDensity(int dimensions, std::vector<MonotoneMap> maps, std::vector<Gaussian> gaussians)
-    : dimensions_(dimensions), maps_(std::move(maps)), gaussians_(std::move(gaussians)) {
-    const std::size_t n = 1 + (maps_.empty() ? 0 : 1) + gaussians_.size();
+MixtureDensity::MixtureDensity(int dimensions, std::vector<MonotoneMap> maps, std::vector<Gaussian> gaussians,
+                               bool boundary)
+    : dimensions_(dimensions), boundary_(boundary), maps_(std::move(maps)), gaussians_(std::move(gaussians)) {
+    const std::size_t n = static_cast<std::size_t>(first_gaussian()) + gaussians_.size();
     shares_.assign(n, units / static_cast<int>(n));
     shares_[0] += units - std::accumulate(shares_.begin(), shares_.end(), 0);
 }
@@ -30,12 +34,14 @@ std::uint64_t MixtureDensity::balanced_points() const {
 void MixtureDensity::sample(int channel, const PointBatch& u, PointBuffer& x,
                             std::vector<double>& density) const {
     const std::size_t count = u.count();
-    if (channel == 0 || (channel == 1 && !maps_.empty())) {
+    if (channel < first_gaussian()) {
         x.resize(count, dimensions_);
         density.assign(count, 1.0);
         for (int d = 0; d < dimensions_; ++d) {
             if (channel == 0)
                 std::copy_n(u.coordinate(d).data(), count, x.coordinate(d).data());
+            else if (channel < map_channel())
+                sample_boundary(u.coordinate(d), x.coordinate(d), density);
             else
                 maps_[static_cast<std::size_t>(d)].sample(u.coordinate(d), x.coordinate(d), density);
         }
@@ -61,7 +67,7 @@ void MixtureDensity::sample(int channel, const PointBatch& u, PointBuffer& x,
 }
 
 void MixtureDensity::channel_pdf(int channel, const PointBatch& x, std::span<double> density) const {
-    if (channel >= 1 + (maps_.empty() ? 0 : 1)) {
+    if (channel >= first_gaussian()) {
         gaussian(channel).log_pdf(x, density);
         for (std::size_t i = 0; i < x.count(); ++i) density[i] = std::exp(density[i]);
         return;
@@ -69,7 +75,10 @@ void MixtureDensity::channel_pdf(int channel, const PointBatch& x, std::span<dou
     std::fill_n(density.begin(), x.count(), 1.0);
     if (channel == 0) return;
     for (int d = 0; d < dimensions_; ++d)
-        maps_[static_cast<std::size_t>(d)].multiply_pdf(x.coordinate(d), density);
+        if (channel < map_channel())
+            multiply_boundary_pdf(x.coordinate(d), density);
+        else
+            maps_[static_cast<std::size_t>(d)].multiply_pdf(x.coordinate(d), density);
 }
 
 void MixtureDensity::add_pdf(const PointBatch& x, std::span<double> density, int except) const {
@@ -122,18 +131,21 @@ void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double
             return;
         normalise();
         a[0] = std::max(a[0], least);
+        if (boundary_) a[1] = std::max(a[1], static_cast<double>(boundary_units) / units);
         normalise();
     }
     int left = units;
     for (std::size_t k = 0; k < n; ++k) {
         shares_[k] = static_cast<int>(std::lround(a[k] * units / step)) * step;
         if (k == 0) shares_[k] = std::max(shares_[k], (uniform_units + step - 1) / step * step);
+        if (k == 1 && boundary_) shares_[k] = std::max(shares_[k], (boundary_units + step - 1) / step * step);
         if (k + static_cast<std::size_t>(newest) >= n) shares_[k] = std::max(shares_[k], step);
         left -= shares_[k];
     }
     // Step by step: no share falls below zero, and that of the uniform channel stays.
     for (; left != 0; left -= left > 0 ? step : -step)
-        *std::max_element(shares_.begin() + 1, shares_.end()) += left > 0 ? step : -step;
+        *std::max_element(shares_.begin() + std::min(map_channel(), channels() - 1), shares_.end()) +=
+            left > 0 ? step : -step;
 }
 
 MixtureDensity MixtureDensity::widened(double factor) const {
@@ -143,7 +155,7 @@ MixtureDensity MixtureDensity::widened(double factor) const {
 }
 
 void MixtureDensity::drop_idle() {
-    const std::size_t first = shares_.size() - gaussians_.size();
+    const auto first = static_cast<std::size_t>(first_gaussian());
     for (std::size_t k = gaussians_.size(); k-- > 0;) {
         if (shares_[first + k] > 0) continue;
         shares_.erase(shares_.begin() + static_cast<std::ptrdiff_t>(first + k));
@@ -152,6 +164,7 @@ void MixtureDensity::drop_idle() {
 }
 
 void MixtureDensity::save(StateWriter& state) const {
+    state.put(boundary_ ? 1 : 0);
     state.put(static_cast<std::uint64_t>(maps_.size()));
     for (const MonotoneMap& map : maps_) map.save(state);
     state.put(static_cast<std::uint64_t>(gaussians_.size()));
@@ -160,11 +173,12 @@ void MixtureDensity::save(StateWriter& state) const {
 }
 
 MixtureDensity MixtureDensity::load(StateReader& state, int dimensions) {
+    const bool boundary = state.get<int>() != 0;
     std::vector<MonotoneMap> maps;
     for (std::uint64_t n = state.get_word(); n > 0; --n) maps.push_back(MonotoneMap::load(state));
     std::vector<Gaussian> gaussians;
     for (std::uint64_t n = state.get_word(); n > 0; --n) gaussians.push_back(Gaussian::load(state));
-    MixtureDensity density(dimensions, std::move(maps), std::move(gaussians));
+    MixtureDensity density(dimensions, std::move(maps), std::move(gaussians), boundary);
     std::vector<int> shares = state.get_all<int>();
     if (shares.size() != density.shares_.size() ||
         std::accumulate(shares.begin(), shares.end(), 0) != units ||

@@ -1,4 +1,4 @@
-// The density that adaptive integration samples from: uniform + product of one-dimensional maps + Gaussians.
+// The density that adaptive integration samples from: uniform + boundary + product of maps + Gaussians.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@ namespace montelux {
 
 // q(x) = sum over channels k of a_k q_k(x) on the unit cube. Channel 0 is uniform, and always has a share, so
 // that no part of the cube is left out (a defensive mixture: Owen and Zhou 2000, "Safe and effective
-// importance sampling"); then the product of maps, if there is one; then the Gaussians, whose points outside
-// the cube count as zeros. Each channel draws its own share of the points, from a point set of its own, and
-// every point is weighted by the whole mixture (Veach's balance heuristic), so that channels that miss
-// something do no harm.
+// importance sampling"); then boundary_density.h and the product of maps, if they are there; then the
+// Gaussians, whose points outside the cube count as zeros. Each channel draws its own share of the points,
+// from a point set of its own, and every point is weighted by the whole mixture (Veach's balance heuristic),
+// so that channels that miss something do no harm.
 class MixtureDensity {
   public:
     // Shares are multiples of 1 / units, so that every multiple of `units` points is divided exactly.
@@ -28,13 +28,15 @@ class MixtureDensity {
     // Uniform.
     explicit MixtureDensity(int dimensions) : dimensions_(dimensions), shares_{units} {}
     // Shares are equal until set.
-    MixtureDensity(int dimensions, std::vector<MonotoneMap> maps, std::vector<Gaussian> gaussians);
+    MixtureDensity(int dimensions, std::vector<MonotoneMap> maps, std::vector<Gaussian> gaussians,
+                   bool boundary = false);
 
     int dimensions() const { return dimensions_; }
     int channels() const { return static_cast<int>(shares_.size()); }
     std::span<const int> shares() const { return shares_; }
     // One a channel, summing to `units`.
     void set_shares(std::vector<int> shares) { shares_ = std::move(shares); }
+    bool has_boundary() const { return boundary_; }
     std::span<const MonotoneMap> maps() const { return maps_; }
     std::span<const Gaussian> gaussians() const { return gaussians_; }
 
@@ -54,8 +56,8 @@ class MixtureDensity {
 
     // Shares that make the second moment of h / q small, given points x drawn with density p and h there
     // (Kleiss and Pittau 1994, "Weight optimization in multichannel Monte Carlo"). The uniform channel keeps
-    // `uniform_units` at least, and each of the last `newest` channels one step: what it can do is not known.
-    // Shares are multiples of `step` units, a power of two.
+    // `uniform_units` at least, that of the boundary one, and each of the last `newest` channels one step:
+    // what it can do is not known. Shares are multiples of `step` units, a power of two.
     void optimise_shares(const PointBatch& x, std::span<const double> h, std::span<const double> p,
                          int uniform_units, int step = 1, int newest = 0);
     // The same with all Gaussians wider.
@@ -73,10 +75,13 @@ class MixtureDensity {
         return static_cast<double>(shares_[static_cast<std::size_t>(channel)]) / units;
     }
     const Gaussian& gaussian(int channel) const {
-        return gaussians_[static_cast<std::size_t>(channel) - (maps_.empty() ? 1 : 2)];
+        return gaussians_[static_cast<std::size_t>(channel - first_gaussian())];
     }
+    int map_channel() const { return boundary_ ? 2 : 1; }
+    int first_gaussian() const { return map_channel() + (maps_.empty() ? 0 : 1); }
 
     int dimensions_;
+    bool boundary_ = false;
     std::vector<MonotoneMap> maps_; // one a dimension, or none
     std::vector<Gaussian> gaussians_;
     std::vector<int> shares_;

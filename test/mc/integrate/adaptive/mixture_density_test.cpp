@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "montelux/mc/integrate/adaptive/boundary_density.h"
 #include "montelux/mc/integrate/adaptive/mixture_density.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/stats/chi_squared.h"
@@ -21,6 +22,14 @@ MixtureDensity mixture() {
                                     Gaussian({0.95, 0.1}, {0.08, 0, -0.02, 0.05})};
     MixtureDensity density(2, std::move(maps), std::move(gaussians));
     density.set_shares({8, 24, 20, 12});
+    return density;
+}
+// The same with the channel of the boundary.
+MixtureDensity with_boundary() {
+    const MixtureDensity inner = mixture();
+    MixtureDensity density(2, {inner.maps().begin(), inner.maps().end()},
+                           {inner.gaussians().begin(), inner.gaussians().end()}, true);
+    density.set_shares({8, 10, 14, 20, 12});
     return density;
 }
 double pdf_at(const MixtureDensity& density, double x, double y) {
@@ -59,7 +68,7 @@ TEST(MixtureDensity, SharesAddUpAndDivideThePoints) {
 }
 
 TEST(MixtureDensity, IsTheSumOfItsChannels) {
-    const MixtureDensity density = mixture();
+    const MixtureDensity density = with_boundary();
     const PointBuffer x = uniform_points(500, 2, 1);
     std::vector<double> sum(500, 0.0), part(500), all(500);
     for (int k = 0; k < density.channels(); ++k) {
@@ -72,8 +81,15 @@ TEST(MixtureDensity, IsTheSumOfItsChannels) {
         EXPECT_NEAR(all[i], sum[i], 1e-13 * sum[i]);
         EXPECT_GE(all[i], 8 / 64.0); // the uniform share bounds it
         const double product = density.maps()[0].pdf(x.view()(i, 0)) * density.maps()[1].pdf(x.view()(i, 1));
-        density.channel_pdf(1, x.view().slice(i, 1), {&part[0], 1});
+        density.channel_pdf(2, x.view().slice(i, 1), {&part[0], 1});
         EXPECT_NEAR(part[0], product, 1e-13 * product);
+        double boundary = 1;
+        for (int d = 0; d < 2; ++d) {
+            const double at = x.view()(i, d);
+            multiply_boundary_pdf({&at, 1}, {&boundary, 1});
+        }
+        density.channel_pdf(1, x.view().slice(i, 1), {&part[0], 1});
+        EXPECT_NEAR(part[0], boundary, 1e-13 * boundary);
     }
 }
 
@@ -95,7 +111,7 @@ TEST(MixtureDensity, IntegratesToOneWithWhatLiesOutside) {
 }
 
 TEST(MixtureDensity, PointsComeWithTheDensityOfTheWhole) {
-    const MixtureDensity density = mixture();
+    const MixtureDensity density = with_boundary();
     for (int k = 0; k < density.channels(); ++k) {
         PointBuffer x;
         std::vector<double> at;
@@ -184,7 +200,7 @@ TEST(MixtureDensity, UniformChannelKeepsItsShare) {
 }
 
 TEST(MixtureDensity, SavedOneHasTheSameBitsAndMisfitsAreRefused) {
-    const MixtureDensity density = mixture();
+    const MixtureDensity density = with_boundary();
     StateWriter saved;
     density.save(saved);
     const std::vector<std::uint64_t> words(saved.words().begin(), saved.words().end());
@@ -237,6 +253,21 @@ TEST(MixtureDensity, SharesAreMultiplesOfTheStep) {
         EXPECT_EQ(sum, MixtureDensity::units);
         EXPECT_GE(density.shares().front(), 3);
         EXPECT_GE(density.shares().back(), step);
+    }
+}
+
+TEST(MixtureDensity, TheBoundaryKeepsAShareThatItDoesNotEarn) {
+    MixtureDensity density = with_boundary();
+    const PointBuffer x = uniform_points(500, 2, 1);
+    const std::vector<double> p(x.count(), 1.0);
+    std::vector<double> h(x.count());
+    density.gaussians()[0].log_pdf(x, h);
+    for (double& v : h) v = std::exp(v);
+    for (int step : {1, 4}) {
+        density.optimise_shares(x, h, p, 4, step);
+        EXPECT_EQ(density.shares()[1], step);
+        EXPECT_EQ(std::accumulate(density.shares().begin(), density.shares().end(), 0),
+                  MixtureDensity::units);
     }
 }
 
