@@ -2,8 +2,8 @@
 #include <cmath>
 #include <iostream>
 #include <montelux/mc/dist/families.h>
-#include <montelux/mc/integrate/importance.h>
 #include <montelux/mc/integrate/integrate.h>
+#include <montelux/mc/integrate/techniques/importance.h>
 #include <numbers>
 
 int main() {

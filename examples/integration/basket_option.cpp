@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 #include <montelux/mc/dist/families.h>
-#include <montelux/mc/integrate/control_variate.h>
 #include <montelux/mc/integrate/integrate.h>
+#include <montelux/mc/integrate/techniques/control_variate.h>
 #include <numeric>
 #include <utility>
 

@@ -2,8 +2,8 @@
 // (Q^2 > 0): over the simplex x_j >= 0, sum of x <= 1, no thresholds. Factors of i pi^2 left out.
 #include "comparison.h"
 #include <cmath>
-#include <montelux/mc/integrate/adaptive.h>
-#include <montelux/mc/integrate/cubature.h>
+#include <montelux/mc/integrate/adaptive/adaptive.h>
+#include <montelux/mc/integrate/cubature/cubature.h>
 #include <montelux/mc/integrate/integrate.h>
 
 using namespace montelux;

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 #include <iostream>
-#include <montelux/mc/integrate/adaptive.h>
+#include <montelux/mc/integrate/adaptive/adaptive.h>
 #include <montelux/mc/integrate/integrate.h>
 #include <span>
 #include <string>

@@ -7,9 +7,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <montelux/mc/integrate/cubature.h>
+#include <montelux/mc/integrate/cubature/cubature.h>
 #include <montelux/mc/integrate/integrate.h>
-#include <montelux/mc/integrate/metropolis_chain.h>
+#include <montelux/mc/integrate/metropolis/metropolis_chain.h>
 #include <span>
 #include <vector>
 

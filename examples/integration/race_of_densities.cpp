@@ -4,8 +4,8 @@
 #include <cmath>
 #include <montelux/mc/dist/families.h>
 #include <montelux/mc/integrate/basic_monte_carlo.h>
-#include <montelux/mc/integrate/importance.h>
 #include <montelux/mc/integrate/integrate.h>
+#include <montelux/mc/integrate/techniques/importance.h>
 #include <montelux/mc/math/constants.h>
 #include <numbers>
 

@@ -4,9 +4,9 @@
 #include "comparison.h"
 #include <limits>
 #include <montelux/mc/dist/family/normal.h>
-#include <montelux/mc/integrate/importance.h>
 #include <montelux/mc/integrate/integrate.h>
-#include <montelux/mc/integrate/multiple_importance.h>
+#include <montelux/mc/integrate/techniques/importance.h>
+#include <montelux/mc/integrate/techniques/multiple_importance.h>
 #include <span>
 #include <vector>
 

@@ -4,7 +4,7 @@
 #include "comparison.h"
 #include "known_warps.h"
 #include <montelux/mc/integrate/basic_monte_carlo.h>
-#include <montelux/mc/integrate/cubature.h>
+#include <montelux/mc/integrate/cubature/cubature.h>
 #include <montelux/mc/integrate/integrate.h>
 #include <span>
 #include <vector>

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "montelux/mc/integrate/metropolis_chain.h"
+#include "montelux/mc/integrate/metropolis/metropolis_chain.h"
 
 namespace montelux::python {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "montelux/mc/integrate/technique.h"
+#include "montelux/mc/integrate/techniques/technique.h"
 
 namespace montelux::python {
 namespace {

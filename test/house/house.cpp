@@ -212,6 +212,29 @@ std::vector<std::string> headers_without_purpose(const std::vector<SourceFile>& 
     return wrong;
 }
 
+std::vector<std::string> misplaced_headers(const std::vector<SourceFile>& files, const std::string& folder) {
+    auto is_top = [&](const std::string& path) {
+        return path.starts_with(folder) && path.find('/', folder.size()) == path.npos;
+    };
+    std::map<std::string, std::set<std::string>> users; // folders of a header's users in the library
+    for (const SourceFile& file : files) {
+        if (!file.path.starts_with("montelux/")) continue;
+        const std::string stem = file.path.substr(0, file.path.rfind('.'));
+        for (const Include& include : includes_of(file))
+            if (is_top(include.target) && include.target != stem + ".h")
+                users[include.target].insert(file.path.substr(0, file.path.rfind('/') + 1));
+    }
+    std::vector<std::string> wrong;
+    for (const SourceFile& file : files) {
+        const auto of = users.find(file.path);
+        if (of == users.end() || of->second.size() != 1) continue;
+        const std::string& only = *of->second.begin();
+        if (only != folder && only.starts_with(folder))
+            wrong.push_back(at(file, 1) + "is used in " + only + " alone");
+    }
+    return wrong;
+}
+
 std::vector<std::string> long_files(const std::vector<SourceFile>& files, std::size_t limit) {
     std::vector<std::string> wrong;
     for (const SourceFile& file : files)

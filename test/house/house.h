@@ -44,6 +44,8 @@ std::vector<std::string> circular_rooms(const RoomTable& rooms);
 std::vector<std::string> circular_headers(const std::vector<SourceFile>& files);
 std::vector<std::string> fenced_libraries(const std::vector<SourceFile>& files);
 std::vector<std::string> headers_without_purpose(const std::vector<SourceFile>& files);
+// Headers at the top of a folder that files of one of its subfolders alone include: they belong there.
+std::vector<std::string> misplaced_headers(const std::vector<SourceFile>& files, const std::string& folder);
 // Files of more than `limit` lines; tables of measured data (*_data.*, *_table_data.*) are left out.
 std::vector<std::string> long_files(const std::vector<SourceFile>& files, std::size_t limit);
 // What a page of documentation names in `backticks` but does not exist among these files: headers (`mc/a/b.h`

@@ -45,6 +45,9 @@ TEST(House, NoCircles) {
 }
 TEST(House, LibrariesStayBehindTheirFences) { EXPECT_EQ(joined(fenced_libraries(real_sources())), ""); }
 TEST(House, EachHeaderSaysItsPurposeFirst) { EXPECT_EQ(joined(headers_without_purpose(real_sources())), ""); }
+TEST(House, WhatOneMethodUsesLiesInItsFolder) {
+    EXPECT_EQ(joined(misplaced_headers(real_sources(), "montelux/mc/integrate/")), "");
+}
 TEST(House, FilesAreShort) {
     std::cout << "longer than they should be:\n" << joined(long_files(real_sources(), 400));
     EXPECT_EQ(joined(long_files(real_sources(), 600)), "");
@@ -110,6 +113,16 @@ TEST(HouseRules, HeaderWithoutPurposeIsFound) {
     EXPECT_TRUE(headers_without_purpose({math}).empty());
     EXPECT_EQ(headers_without_purpose({{"montelux/mc/math/x.h", {"#pragma once"}}}).size(), 1u);
     EXPECT_EQ(headers_without_purpose({{"montelux/mc/math/x.h", {}}}).size(), 1u);
+}
+TEST(HouseRules, HeaderOfOneSubfolderIsFound) {
+    const SourceFile header{"montelux/a/x.h", {}}, own{"montelux/a/x.cpp", {"#include \"montelux/a/x.h\""}};
+    const SourceFile deep{"montelux/a/b/y.cpp", {"#include \"montelux/a/x.h\""}};
+    const SourceFile beside{"montelux/a/z.cpp", deep.lines}, other{"montelux/a/c/y.cpp", deep.lines};
+    EXPECT_EQ(joined(misplaced_headers({header, own, deep}, "montelux/a/")),
+              "montelux/a/x.h:1: is used in montelux/a/b/ alone\n");
+    EXPECT_TRUE(misplaced_headers({header, own, deep, beside}, "montelux/a/").empty());
+    EXPECT_TRUE(misplaced_headers({header, own, deep, other}, "montelux/a/").empty());
+    EXPECT_TRUE(misplaced_headers({header, own}, "montelux/a/").empty());
 }
 TEST(HouseRules, LongFileIsFound) {
     const SourceFile file{"montelux/scene/x.cpp", std::vector<std::string>(11)};

@@ -16,7 +16,7 @@ namespace montelux {
 // ProductDistribution), so that chains of any length can be built; `conditional` maps the point drawn so far
 // (a double for one variable, a std::array for more) to the Distribution1D of the next. It is called for
 // every sample, so the distribution that it makes should be one of the families rather than a table.
-// Serves as a Technique of importance sampling (montelux/mc/integrate/technique.h).
+// Serves as a Technique of importance sampling (montelux/mc/integrate/techniques/technique.h).
 template <typename Marginal, typename Conditional>
 class MarginalConditional {
     static constexpr bool marginal_is_scalar = Distribution1D<Marginal>;

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "montelux/mc/integrate/adaptive.h"
+#include "montelux/mc/integrate/adaptive/adaptive.h"
 #include "montelux/mc/integrate/basic_monte_carlo.h"
-#include "montelux/mc/integrate/cubature.h"
-#include "montelux/mc/integrate/cubature_rules.h"
+#include "montelux/mc/integrate/cubature/cubature.h"
+#include "montelux/mc/integrate/cubature/cubature_rules.h"
 #include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/random/sobol.h"
 

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <array>
 
-#include "montelux/mc/integrate/adaptive.h"
+#include "montelux/mc/integrate/adaptive/adaptive.h"
 #include "montelux/mc/integrate/auto.h"
 #include "montelux/mc/integrate/basic_monte_carlo.h"
-#include "montelux/mc/integrate/cubature.h"
-#include "montelux/mc/integrate/grid.h"
-#include "montelux/mc/integrate/metropolis.h"
-#include "montelux/mc/integrate/quasi.h"
-#include "montelux/mc/integrate/recursive.h"
-#include "montelux/mc/integrate/stratified.h"
-#include "montelux/mc/integrate/vegas.h"
+#include "montelux/mc/integrate/cubature/cubature.h"
+#include "montelux/mc/integrate/grid/grid.h"
+#include "montelux/mc/integrate/metropolis/metropolis.h"
+#include "montelux/mc/integrate/quasi/quasi.h"
+#include "montelux/mc/integrate/stratified/recursive.h"
+#include "montelux/mc/integrate/stratified/stratified.h"
+#include "montelux/mc/integrate/vegas/vegas.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {

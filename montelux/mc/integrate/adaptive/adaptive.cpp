@@ -1,0 +1,391 @@
+#include "montelux/mc/integrate/adaptive/adaptive.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "montelux/mc/integrate/adaptive/density_trainer.h"
+#include "montelux/mc/integrate/adaptive/mixture_estimate.h"
+#include "montelux/mc/math/special.h"
+#include "montelux/mc/random/hash.h"
+#include "montelux/mc/random/sobol.h"
+
+namespace montelux {
+namespace {
+
+constexpr std::uint64_t training_points = 2048;      // of a round, at first
+constexpr std::uint64_t least_round = 64;            // of few evaluations,
+constexpr std::uint64_t least_explored = 8;          // points of a replicate, of the same,
+constexpr std::uint64_t few_evaluations = 16384;     // which are fewer than these
+constexpr int share_step_of_few = 8;                 // units of shares, of the same
+constexpr std::uint64_t max_training_points = 65536; // of a round
+constexpr int max_rounds = 24;
+constexpr int max_retrainings = 4;
+constexpr double fixed_training_share = 0.1; // of a fixed number of evaluations,
+constexpr double least_training = 20000;     // or so many, if they are no more than a third
+constexpr double disagreement = 2e-3;        // p-value of the training rounds below which there is a warning
+constexpr std::uint64_t enough_nonzero = 16; // points that must see anything before training begins,
+constexpr std::uint64_t few_nonzero = 4;     // the same, where a quarter of all has been explored,
+constexpr std::uint64_t most_exploration = 1 << 20; // or evaluations without
+constexpr double peaky = 0.1; // effective share of exploring points below which peaks are searched for
+constexpr double narrow_peaks = 0.01;        // the same, where the search is thorough
+constexpr double trusted_exploration = 0.05; // the same, above which the error of uniform points is believed
+constexpr double flat = 0.6; // the same, of integrands that uniform points are likely to be best for
+constexpr double uniform_reach = 32768; // evaluations within which uniform points may be expected to arrive
+// Uniform points that a claim takes in several variables: what has an integral of one 1/5000 of the cube is
+// missed by all of them in 4 % of cases.
+constexpr std::uint64_t plateau_evaluations = 16384;
+constexpr double even_values = 0.7;          // effective share of exploring points of a plateau
+constexpr std::uint64_t most_kept = 1 << 18; // uniform points of a step that are kept for training
+constexpr double surprise_matters = 2;       // error over target, from which heavy weights are acted on
+constexpr double much_sooner = 0.5; // share of the expected rest at which uniform points are gone back to
+constexpr std::uint64_t step_points = 65536; // of each replicate in one step
+constexpr std::uint64_t smallest_budget = 4; // rounds of training that must fit in for training to begin
+
+// 2^k or 3 * 2^(k - 1): numbers of Sobol' points that divide the cube evenly; the next one above n.
+std::uint64_t next_balanced(std::uint64_t n) {
+    const std::uint64_t floor = std::bit_floor(n);
+    return n < floor + floor / 2 ? floor + floor / 2 : 2 * floor;
+}
+
+bool targeted(const StepRequest& request) { return request.relative_error > 0 || request.absolute_error > 0; }
+
+class AdaptiveEstimator final : public Estimator {
+  public:
+    AdaptiveEstimator(const Problem& problem, const Adaptive& settings)
+        : problem_(problem), settings_(settings),
+          explored_(std::max<std::uint64_t>(
+              problem.evaluator.dimensions() == 1 ? 128 : 256,
+              std::bit_ceil(4 * static_cast<std::uint64_t>(problem.evaluator.dimensions())))),
+          trainer_(problem, std::max(1, static_cast<int>(
+                                            std::lround(settings.uniform_share * MixtureDensity::units)))),
+          cube_(problem.evaluator.dimensions()),
+          round_points_(std::max<std::uint64_t>(1, explored_ / 256) * training_points),
+          uniform_(settings.replicates, problem.evaluator.components()), weighted_(uniform_) {}
+
+    StepOutcome step(const StepRequest& request) override {
+        switch (phase_) {
+        case Phase::explore:
+            return explore(request);
+        case Phase::search:
+            return search(request);
+        case Phase::train:
+            return train(request);
+        case Phase::weighted:
+            return sample(request, trainer_.density(), 2, weighted_);
+        default:
+            return sample(request, cube_, 0, uniform_);
+        }
+    }
+
+    Tally tally() const override {
+        const bool weighted = phase_ == Phase::weighted && weighted_.points() > 0;
+        const MixtureEstimate& estimate = weighted ? weighted_ : uniform_;
+        Tally tally;
+        estimate.tally(problem_.full_covariance, tally);
+        tally.evaluations = evaluations();
+        tally.non_finite = trainer_.non_finite();
+        tally.non_finite.merge(uniform_.sums().non_finite);
+        tally.non_finite.merge(weighted_.sums().non_finite);
+        tally.non_finite.merge(abandoned_non_finite_);
+        tally.ready = estimate.compared() && (phase_ == Phase::uniform || weighted) &&
+                      (weighted || !plateau() || uniform_.evaluations() >= plateau_evaluations);
+        if (estimate.points() == 0) return tally;
+        if (weighted)
+            for (const DensityTrainer::Check& check : trainer_.checks()) {
+                const double variance = check.variance + tally.standard_error[0] * tally.standard_error[0];
+                if (!(variance > 0)) continue;
+                tally.chi_squared += std::pow(check.value - tally.value[0], 2) / variance;
+                ++tally.degrees_of_freedom;
+            }
+        // Of uniform points the best may weigh much, and yet be no surprise.
+        const bool heavy = weighted && estimate.heavy_tailed(tally.standard_error[0]);
+        const bool lost = weighted && estimate.lost_what_is_in(uniform_);
+        std::vector<std::string> tail;
+        doubt_heavy_tail(estimate.sums().extremes.tail(), estimate.all_points(),
+                         static_cast<double>(estimate.all_points()), tally.standard_error[0], tail);
+        if (heavy || lost || !tail.empty()) tally.ready = false;
+        tally.doubts = std::move(tail);
+        add_doubts(estimate, heavy, lost, tally);
+        return tally;
+    }
+
+    void save(StateWriter& state) const override {
+        state.put(static_cast<int>(phase_));
+        state.put(previous_variance_);
+        state.put(explored_);
+        state.put(round_points_);
+        state.put(training_goal_);
+        state.put(retrained_);
+        state.put(abandoned_evaluations_);
+        montelux::save(state, abandoned_non_finite_);
+        trainer_.save(state);
+        uniform_.save(state);
+        weighted_.save(state);
+    }
+    void load(StateReader& state) override {
+        phase_ = static_cast<Phase>(std::clamp(state.get<int>(), 0, static_cast<int>(Phase::uniform)));
+        previous_variance_ = state.get_double();
+        explored_ = state.get_word();
+        round_points_ = state.get_word();
+        training_goal_ = state.get_double();
+        retrained_ = state.get<int>();
+        abandoned_evaluations_ = state.get_word();
+        montelux::load(state, abandoned_non_finite_);
+        trainer_.load(state);
+        uniform_.load(state);
+        weighted_.load(state);
+    }
+
+  private:
+    enum class Phase { explore, search, train, weighted, uniform };
+
+    std::uint64_t evaluations() const {
+        return uniform_.evaluations() + weighted_.evaluations() + trainer_.evaluations() +
+               abandoned_evaluations_;
+    }
+    std::uint64_t replicates() const { return static_cast<std::uint64_t>(settings_.replicates); }
+
+    // Points of each replicate: an eighth of a small fixed number of evaluations.
+    std::uint64_t exploration(const StepRequest& request) const {
+        if (targeted(request)) return explored_;
+        const std::uint64_t eighth =
+            std::bit_floor(std::max<std::uint64_t>(request.max_evaluations / (8 * replicates()), 1));
+        return std::clamp(eighth, std::min(least_explored, explored_), explored_);
+    }
+    // Goes on, doubling, while hardly any point sees anything.
+    StepOutcome explore(const StepRequest& request) {
+        const bool first = uniform_.points() == 0;
+        const std::uint64_t explored = first ? exploration(request) : explored_;
+        std::uint64_t points = first ? explored : uniform_.points();
+        points = std::min(points, request.max_evaluations / replicates());
+        if (points == 0) return StepOutcome::exhausted;
+        SamplePoints drawn;
+        auto sums =
+            sample_mixture(problem_.evaluator, cube_, hash_key(problem_.seed, 0), settings_.replicates,
+                           uniform_.points(), uniform_.points() + points, &drawn, request.cancel);
+        if (!sums) return StepOutcome::cancelled;
+        if (explored < explored_) { // of few evaluations the rounds of training, too, are a share
+            round_points_ = std::clamp(request.max_evaluations / 8, least_round, round_points_);
+            if (request.max_evaluations < few_evaluations) trainer_.set_share_step(share_step_of_few);
+        }
+        explored_ = explored;
+        uniform_.explore(*sums, uniform_.points() + points);
+        trainer_.start(std::move(drawn));
+        const std::uint64_t left = request.max_evaluations - sums->evaluations;
+        const bool room = uniform_.points() >= explored_ && left >= smallest_budget * round_points_;
+        if (!room || uniform_will_do(request))
+            phase_ = Phase::uniform;
+        else if (trainer_.nonzero() >= enough_nonzero ||
+                 (trainer_.nonzero() >= few_nonzero && 3 * uniform_.evaluations() >= left) ||
+                 uniform_.evaluations() >= most_exploration)
+            phase_ = trainer_.nonzero() == 0 ? Phase::uniform : first_training();
+        return StepOutcome::advanced;
+    }
+    // Points of each replicate that the trained density is tried with: half of the exploration.
+    std::uint64_t first_sample() const {
+        return problem_.evaluator.dimensions() == 1 ? explored_ : std::max(least_explored, explored_ / 2);
+    }
+    // Values of one size, beside which a spike may be: only more points can tell.
+    bool plateau() const {
+        return problem_.evaluator.dimensions() > 1 && trainer_.effective_share() > even_values;
+    }
+    // Does training begin by a search for peaks?
+    Phase first_training() const { return trainer_.effective_share() < peaky ? Phase::search : Phase::train; }
+
+    // Are uniform points expected to arrive soon? Their error falls faster than 1 / n for what is smooth.
+    bool uniform_will_do(const StepRequest& request) const {
+        if (!targeted(request) || trainer_.effective_share() < trusted_exploration) return false;
+        const bool even = trainer_.effective_share() > flat;
+        const double expected =
+            even ? uniform_.expected_rest(request) + static_cast<double>(uniform_.evaluations())
+                 : static_cast<double>(uniform_.evaluations()) * std::max(1.0, uniform_.error_ratio(request));
+        return expected <= (even ? uniform_reach : uniform_reach / 4);
+    }
+
+    StepOutcome search(const StepRequest& request) {
+        const auto n = static_cast<std::uint64_t>(problem_.evaluator.dimensions());
+        // Where many points saw much, few searches tell whether there are peaks at all.
+        const bool narrow = trainer_.effective_share() < narrow_peaks;
+        trainer_.find_peaks(std::min(request.max_evaluations / 4, (narrow ? 32 : 8) * (60 * n + 3 * n * n)),
+                            narrow ? 5 : 2);
+        phase_ = Phase::train;
+        return StepOutcome::advanced;
+    }
+
+    StepOutcome train(const StepRequest& request) {
+        if (request.max_evaluations < 2 * round_points_) return stop_training(request);
+        if (!trainer_.round(round_points_, request.cancel)) return StepOutcome::cancelled;
+        const double variance = trainer_.relative_variance();
+        const bool stuck =
+            trainer_.rounds() > 3 && variance != previous_variance_ && variance > 0.9 * previous_variance_;
+        previous_variance_ = variance;
+        // Larger rounds where more of the same size change nothing.
+        const double trained = static_cast<double>(trainer_.evaluations() + uniform_.evaluations());
+        if (stuck || trained > 5 * static_cast<double>(round_points_))
+            round_points_ = std::min(4 * round_points_, max_training_points);
+        // A share of the evaluations there are, a greater one of few; or of what the target will cost with
+        // this density, if the Sobol' points help as they usually do.
+        const double all = static_cast<double>(request.max_evaluations) + trained;
+        double allowed = std::max(fixed_training_share * all, std::min(all / 3, least_training));
+        if (request.relative_error > 0)
+            allowed = std::min(allowed, settings_.training_share *
+                                            std::pow(std::sqrt(variance) / request.relative_error, 1.4));
+        allowed = std::max(allowed, training_goal_);
+        if (targeted(request) && trainer_.uncovered_share() > DensityTrainer::uncovered_matters)
+            allowed = std::max(allowed, 0.25 * all);
+        if (trainer_.rounds() >= 2 &&
+            (trained + static_cast<double>(round_points_) > allowed || trainer_.rounds() >= max_rounds))
+            phase_ = Phase::weighted;
+        return StepOutcome::advanced;
+    }
+
+    // The next phase's first step; if that is not made, nothing changes.
+    StepOutcome stop_training(const StepRequest& request) {
+        phase_ = trainer_.rounds() > 0 ? Phase::weighted : Phase::uniform;
+        try {
+            const StepOutcome outcome = step(request);
+            if (outcome != StepOutcome::advanced) phase_ = Phase::train;
+            return outcome;
+        } catch (...) {
+            phase_ = Phase::train;
+            throw;
+        }
+    }
+
+    StepOutcome sample(const StepRequest& request, const MixtureDensity& density, std::uint64_t stream,
+                       MixtureEstimate& estimate) {
+        const std::uint64_t points = estimate.points();
+        const std::uint64_t affordable = points + request.max_evaluations / replicates();
+        std::uint64_t goal = points == 0 ? first_sample() : next_balanced(points);
+        if (points > 0 && targeted(request)) {
+            // No further than the target is expected to need, but at most twice as far.
+            const double needed = static_cast<double>(points) * std::min(2.0, estimate.error_ratio(request));
+            while (static_cast<double>(next_balanced(goal)) <= needed) goal = next_balanced(goal);
+        } else if (points > 0) {
+            while (next_balanced(goal) <= std::min(2 * points, affordable)) goal = next_balanced(goal);
+        }
+        while (goal > affordable && goal > points) { // the largest balanced number that can be paid
+            const std::uint64_t floor = std::bit_floor(goal);
+            goal = goal > floor ? floor : floor / 4 * 3;
+        }
+        const std::uint64_t balanced = density.balanced_points();
+        goal = goal / balanced * balanced;
+        if (goal <= points) return StepOutcome::exhausted;
+        const std::uint64_t end = std::min(goal, (points + step_points) / balanced * balanced);
+        // What uniform points have found since the exploration, training is to know.
+        const bool keep = phase_ == Phase::uniform && trainer_.rounds() == 0 && targeted(request) &&
+                          (end - points) * replicates() <= most_kept;
+        SamplePoints drawn;
+        auto added =
+            sample_mixture(problem_.evaluator, density, hash_key(problem_.seed, stream), settings_.replicates,
+                           points, end, keep ? &drawn : nullptr, request.cancel);
+        if (!added) return StepOutcome::cancelled;
+        estimate.grow(*added, end);
+        if (phase_ == Phase::weighted)
+            choose_again(request, points == 0);
+        else if (trainer_.rounds() == 0 && targeted(request) && trainer_.nonzero() >= enough_nonzero &&
+                 estimate.error_ratio(request) > 1 && !uniform_will_do(request) &&
+                 request.max_evaluations >= smallest_budget * training_points) {
+            estimate.compare_anew(); // slower than expected
+            if (keep) trainer_.start(std::move(drawn));
+            phase_ = first_training();
+        }
+        return StepOutcome::advanced;
+    }
+
+    // Uniform points where they prove better; more training where the target is much farther than was
+    // expected.
+    void choose_again(const StepRequest& request, bool first) {
+        const double ratio = weighted_.error_ratio(request);
+        // Of uneven integrands uniform points know their error too little for that.
+        const bool sooner = targeted(request) && trainer_.effective_share() > flat &&
+                            uniform_.expected_rest(request) < much_sooner * weighted_.expected_rest(request);
+        const double more = static_cast<double>(uniform_.points()) / static_cast<double>(weighted_.points());
+        const bool better = first && more <= 2 &&
+                            uniform_.error_ratio(request) * (first_sample() < explored_ ? more : 1) < ratio;
+        if (trainer_.effective_share() > trusted_exploration && (sooner || better)) {
+            uniform_.compare_anew();
+            phase_ = Phase::uniform;
+            return;
+        }
+        if (!targeted(request) || weighted_.points() < 4 * first_sample() || retrained_ >= max_retrainings)
+            return;
+        const double sampled = static_cast<double>(weighted_.evaluations());
+        const double left =
+            std::min(sampled * (std::pow(ratio, 1.5) - 1), static_cast<double>(request.max_evaluations));
+        const double trained = static_cast<double>(trainer_.evaluations());
+        const bool far = settings_.training_share * left > 2 * trained && sampled < left;
+        // Weights that the density had not promised: it misses a part of the integrand.
+        const bool surprised = ratio <= surprise_matters && surprising(weighted_) &&
+                               4 * trained < static_cast<double>(request.max_evaluations);
+        if (!far && !surprised) return;
+        // These samples are given up: an estimate that joined densities chosen by what was seen would be
+        // biased.
+        ++retrained_;
+        abandoned_evaluations_ += weighted_.evaluations();
+        abandoned_non_finite_.merge(weighted_.sums().non_finite);
+        weighted_ = MixtureEstimate(settings_.replicates, problem_.evaluator.components());
+        training_goal_ = surprised ? 2 * trained : settings_.training_share * left;
+        phase_ = Phase::train;
+    }
+
+    bool surprising(const MixtureEstimate& estimate) const {
+        Tally tally;
+        estimate.tally(false, tally);
+        doubt_heavy_tail(estimate.sums().extremes.tail(), estimate.all_points(),
+                         static_cast<double>(estimate.all_points()), tally.standard_error[0], tally.doubts);
+        return !tally.doubts.empty() || estimate.heavy_tailed(tally.standard_error[0]);
+    }
+
+    void add_doubts(const MixtureEstimate& estimate, bool heavy, bool lost, Tally& tally) const {
+        if (lost) tally.doubts.push_back("the trained density lost what the exploring points had seen");
+        if (trainer_.nonzero() == 0 && tally.value[0] == 0)
+            tally.doubts.push_back(
+                "the integrand was zero at every point; a narrow peak may have been missed");
+        else if (trainer_.nonzero() < enough_nonzero)
+            tally.doubts.push_back(
+                "only " + std::to_string(trainer_.nonzero()) +
+                " of the exploring points saw anything but zero; other places may have been missed");
+        if (heavy)
+            tally.doubts.push_back(
+                "one sample makes up much of the standard error; the weights have a heavy tail");
+        if (estimate.one_replicate_stands_out())
+            tally.doubts.push_back(
+                "one replicate stands far from the others; the error may be underestimated");
+        if (tally.degrees_of_freedom > 0 &&
+            chi_squared_p_value(tally.chi_squared, tally.degrees_of_freedom) < disagreement)
+            tally.doubts.push_back("the training rounds disagree with the result");
+    }
+
+    Problem problem_;
+    Adaptive settings_;
+    std::uint64_t explored_; // points of each replicate that the exploration takes
+    DensityTrainer trainer_;
+    MixtureDensity cube_; // uniform
+    Phase phase_ = Phase::explore;
+    double previous_variance_ = std::numeric_limits<double>::infinity();
+    std::uint64_t round_points_; // of the next round of training
+    double training_goal_ = 0;   // evaluations that training may take in any case
+    int retrained_ = 0;
+    std::uint64_t abandoned_evaluations_ = 0;
+    NonFiniteCount abandoned_non_finite_;
+    MixtureEstimate uniform_, weighted_;
+};
+
+} // namespace
+
+std::unique_ptr<Estimator> Adaptive::estimator(const Problem& problem) const {
+    if (replicates < 4 || replicates > 4096) throw Error("adaptive", "expected 4 to 4096 replicates");
+    if (!(uniform_share > 0 && uniform_share < 1))
+        throw Error("adaptive", "expected a uniform share between 0 and 1");
+    if (!(training_share > 0 && training_share < 1))
+        throw Error("adaptive", "expected a training share between 0 and 1");
+    if (problem.evaluator.dimensions() > sobol_dimensions)
+        throw Error("adaptive", "expected at most " + std::to_string(sobol_dimensions) + " dimensions, got " +
+                                    std::to_string(problem.evaluator.dimensions()));
+    return std::make_unique<AdaptiveEstimator>(problem, *this);
+}
+
+} // namespace montelux

@@ -1,0 +1,397 @@
+#include "montelux/mc/integrate/cubature/cubature.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <sstream>
+
+#include "montelux/mc/integrate/cubature/cubature_evaluation.h"
+#include "montelux/mc/integrate/cubature/cubature_halving.h"
+#include "montelux/mc/integrate/cubature/cubature_regions.h"
+#include "montelux/mc/integrate/cubature/cubature_rules.h"
+#include "montelux/mc/integrate/cubature/cubature_verification.h"
+#include "montelux/mc/integrate/extreme_values.h"
+#include "montelux/mc/integrate/sampling.h"
+#include "montelux/mc/math/compensated.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+namespace {
+
+// While all values were zero, so many evaluations in so many regions are made before that is believed; until
+// then the error is infinite.
+constexpr std::uint64_t search_evaluations = 4096;
+constexpr std::size_t search_regions = 16;
+// Points after which an integrand that was the same at all of them is examined no further.
+constexpr std::uint64_t most_equal_values = 1 << 21;
+
+class CubatureEstimator final : public Estimator {
+  public:
+    CubatureEstimator(const Problem& problem, std::uint64_t max_memory, std::uint64_t check_points)
+        : problem_(problem), n_(problem.evaluator.dimensions()), m_(problem.evaluator.components()),
+          regions_(n_, m_), max_regions_(max_memory / regions_.bytes_each()), totals_(m_), nonzero_(m_, 0),
+          disagreement_(m_, 0.0), expected_(m_, 0.0), verification_(problem, check_points) {
+        if (max_regions_ < 64)
+            throw Error("cubature", "expected memory for at least 64 regions, " +
+                                        std::to_string(64 * regions_.bytes_each()) + " bytes, got " +
+                                        std::to_string(max_memory));
+        // The first rule is the one that regions start with, the second what they go on with where the
+        // integrand is smooth; the coarse one is for where it is not.
+        if (n_ == 1) {
+            coarse_.emplace(coarse_rule_of_one_dimension());
+            fine_.emplace(fine_rule_of_one_dimension());
+        } else {
+            coarse_.emplace(genz_malik_7(n_));
+            fine_.emplace(n_ == 2   ? two_dimensional_rule()
+                          : n_ == 3 ? three_dimensional_rule()
+                                    : genz_malik_9(n_));
+        }
+    }
+
+    StepOutcome step(const StepRequest& request) override {
+        CubatureRegions fresh(n_, m_);
+        std::vector<const SymmetricRule*> rules;
+        std::vector<std::size_t> parents;
+        // In one dimension, and in four and more, the cube is first tried by the cheaper rule, which may do.
+        const bool retry = regions_.count() == 1 && started_coarse() && !regions_.marks(0).rough && !refined_;
+        const bool check = !regions_.empty() && !searching();
+        if (check && verification_.due(regions_, totals_.value, totals_.error, evaluations_, request,
+                                       reached(request)))
+            return verify(request);
+        if (regions_.empty() || retry) {
+            fresh.add_cube();
+            rules.push_back(regions_.empty() && started_coarse() ? &*coarse_ : &*fine_);
+        } else {
+            // What equal values leave open is no matter of regions.
+            if (searching() || reached(request) || !reaches(totals_.rule_error, request))
+                parents = regions_to_halve(regions_, scales(request), searching());
+            if (regions_.count() + parents.size() > max_regions_)
+                parents.resize(max_regions_ - regions_.count());
+            if (parents.empty()) return end(request);
+            for (std::size_t p : parents) rules.insert(rules.end(), 2, rule_for_halves(p));
+        }
+        ValueBuffer nested;
+        if (parents.empty()) nested = nested_;
+        fit_evaluations(rules, parents, request.max_evaluations + nested.count());
+        if (rules.empty()) return StepOutcome::exhausted;
+        for (std::size_t p : parents) fresh.add_halves(regions_, p);
+        NonFiniteCount non_finite;
+        std::vector<char> nonzero(nonzero_);
+        std::vector<SymmetricRule::FaceValue> faces(parents.empty() ? 0 : rules.size() * components());
+        std::uint64_t points = 0;
+        for (const SymmetricRule* rule : rules) points += rule->points();
+        const CubatureWork work{rules,
+                                regions_,
+                                parents,
+                                fresh,
+                                faces,
+                                n_ == 1 && parents.empty() ? &nested : nullptr,
+                                nested.count() > 0 && non_finite_.count > 0,
+                                request.max_evaluations / 2 >= points};
+        std::uint64_t shifted = 0;
+        if (!evaluate_regions(problem_.evaluator, work, totals_.value, non_finite, shifted, nonzero,
+                              request.cancel))
+            return StepOutcome::cancelled;
+
+        evaluations_ += shifted;
+        singular_ += shifted;
+        for (const SymmetricRule* rule : rules) evaluations_ += rule->points();
+        if (work.nested != nullptr) evaluations_ -= nested_.count();
+        nested_ = std::move(nested);
+        non_finite_.merge(non_finite);
+        nonzero_ = std::move(nonzero);
+        if (parents.empty()) {
+            refined_ = !regions_.empty();
+            correct_cube(regions_, fresh);
+            regions_ = std::move(fresh);
+        } else {
+            add_face_errors(work);
+            replace(parents, fresh);
+        }
+        add_up();
+        return StepOutcome::advanced;
+    }
+
+    Tally tally() const override {
+        Tally tally;
+        tally.statistical = false;
+        tally.evaluations = evaluations_;
+        tally.non_finite = non_finite_;
+        tally.value.assign(m_, 0.0);
+        tally.standard_error.assign(m_, std::numeric_limits<double>::infinity());
+        if (regions_.empty()) {
+            tally.ready = false;
+            return tally;
+        }
+        tally.value = totals_.value;
+        tally.standard_error = totals_.error;
+        if (searching())
+            for (std::size_t c = 0; c < components(); ++c)
+                if (nonzero_[c] == 0) tally.standard_error[c] = std::numeric_limits<double>::infinity();
+        tally.ready = !searching() && verification_.verified(totals_.value);
+        tally.at_limit = at_limit_;
+        // Of one variable halving alone finds all that has a width.
+        tally.localised = n_ > 1 && verification_.evaluations() > 0 && verification_.blind();
+        tally.check_evaluations = verification_.evaluations();
+        tally.singular = singular_;
+        tally.non_finite.merge(verification_.non_finite());
+        if (m_ > 1 && verification_.knows_correlations())
+            for (std::size_t a = 0; a < components(); ++a)
+                for (std::size_t b = 0; b < components(); ++b)
+                    tally.covariance.push_back(verification_.correlation(a, b) * totals_.error[a] *
+                                               totals_.error[b]);
+        say_doubts(tally);
+        return tally;
+    }
+
+    void save(StateWriter& state) const override {
+        regions_.save(state);
+        state.put(evaluations_);
+        state.put(refined_);
+        for (int c = 0; n_ == 1 && c < m_; ++c) {
+            const auto values = nested_.component(c);
+            state.put(std::vector<double>(values.begin(), values.end()));
+        }
+        montelux::save(state, non_finite_);
+        state.put_all(std::vector<std::uint64_t>(nonzero_.begin(), nonzero_.end()));
+        state.put(disagreement_);
+        state.put(expected_);
+        state.put(at_limit_);
+        state.put(singular_);
+        verification_.save(state);
+    }
+    void load(StateReader& state) override {
+        regions_.load(state);
+        evaluations_ = state.get_word();
+        refined_ = state.get<bool>();
+        for (int c = 0; n_ == 1 && c < m_; ++c) {
+            const std::vector<double> values = state.get_doubles();
+            if (c == 0) nested_.resize(values.size(), m_);
+            if (values.size() != nested_.count() || values.size() > fine_->points())
+                throw Error("the saved values do not fit the components");
+            std::ranges::copy(values, nested_.component(c).begin());
+        }
+        montelux::load(state, non_finite_);
+        const auto nonzero = state.get_all<std::uint64_t>();
+        nonzero_.assign(nonzero.begin(), nonzero.end());
+        disagreement_ = state.get_doubles();
+        expected_ = state.get_doubles();
+        const auto components = static_cast<std::size_t>(m_);
+        if (nonzero_.size() != components || disagreement_.size() != components ||
+            expected_.size() != components)
+            throw Error("the saved state has another number of components");
+        at_limit_ = state.get<int>() != 0;
+        singular_ = state.get_word();
+        verification_.load(state, regions_.count());
+        if (!regions_.empty()) add_up();
+    }
+
+  private:
+    struct Totals {
+        explicit Totals(int components)
+            : value(static_cast<std::size_t>(components)), error(value.size()), rule_error(value.size()),
+              inflation(value.size(), 1.0), equal(value.size(), 0) {}
+        std::vector<double> value, error, rule_error, inflation;
+        std::vector<char> equal; // were all values the same, other than zero?
+    };
+
+    std::size_t components() const { return static_cast<std::size_t>(m_); }
+    bool started_coarse() const { return n_ == 1 || n_ >= 4; }
+
+    bool reached(const StepRequest& request) const { return reaches(totals_.error, request); }
+    bool reaches(const std::vector<double>& error, const StepRequest& request) const {
+        if (!(request.relative_error > 0 || request.absolute_error > 0)) return false;
+        for (std::size_t c = 0; c < components(); ++c)
+            if (!(error[c] <=
+                  std::max(request.absolute_error, request.relative_error * std::abs(totals_.value[c]))))
+                return false;
+        return true;
+    }
+
+    StepOutcome verify(const StepRequest& request) {
+        const std::uint64_t points = verification_.points(regions_, totals_.value, evaluations_, request);
+        if (points == 0) {
+            verification_.skip(totals_.value, totals_.error);
+            return request.max_evaluations > 0 ? StepOutcome::advanced : StepOutcome::exhausted;
+        }
+        const std::uint64_t made = verification_.run(regions_, totals_.value, totals_.error, points, request);
+        if (made == 0) return StepOutcome::cancelled;
+        evaluations_ += made;
+        add_up();
+        return StepOutcome::advanced;
+    }
+
+    // No region is left to halve. Equal values everywhere are known the better the more points were met.
+    StepOutcome end(const StepRequest& request) {
+        if (verification_.due(regions_, totals_.value, totals_.error, evaluations_, request, true))
+            return verify(request);
+        if (equal_values() && evaluations_ < most_equal_values && !reached(request) &&
+            verification_.points(regions_, totals_.value, evaluations_, request) > 0) {
+            verification_.renew();
+            return verify(request);
+        }
+        at_limit_ = true;
+        for (std::size_t r = 0; r < regions_.count(); ++r)
+            at_limit_ = at_limit_ && regions_.marks(r).exhausted;
+        return StepOutcome::finished;
+    }
+
+    // Was the integrand the same at all points, and not zero? A constant beside other components, as for a
+    // normalisation, is no sign of a part that was not met.
+    bool equal_values() const {
+        return std::ranges::all_of(totals_.equal, [](char equal) { return equal != 0; });
+    }
+
+    // All values of a component were zero so far: its part may not have been found.
+    bool searching() const {
+        const bool all_seen = std::ranges::all_of(nonzero_, [](char c) { return c != 0; });
+        return !all_seen && (evaluations_ < search_evaluations || regions_.count() < search_regions);
+    }
+
+    const SymmetricRule* rule_for_halves(std::size_t parent) const {
+        return n_ > 1 && regions_.marks(parent).rough ? &*coarse_ : &*fine_;
+    }
+
+    // What errors of the components are measured by: their targets, or their values where there is none.
+    // Zero for components that need no further work while others do.
+    std::vector<double> scales(const StepRequest& request) const {
+        std::vector<double> scale(components());
+        bool all_reached = true;
+        const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
+        for (std::size_t c = 0; c < scale.size(); ++c) {
+            const double size = std::abs(totals_.value[c]);
+            scale[c] = targeted ? std::max(request.absolute_error, request.relative_error * size) : size;
+            if (scale[c] == 0) scale[c] = totals_.error[c];
+            all_reached = all_reached && totals_.error[c] <= scale[c];
+        }
+        if (targeted && !all_reached)
+            for (std::size_t c = 0; c < scale.size(); ++c)
+                if (totals_.error[c] <= scale[c]) scale[c] = 0;
+        return scale;
+    }
+
+    // Puts the halves in the place of the regions that were halved.
+    void replace(const std::vector<std::size_t>& parents, CubatureRegions& halves) {
+        constexpr double memory = 0.9; // of a step, in the comparison of regions with their halves
+        for (double& x : disagreement_) x *= memory;
+        for (double& x : expected_) x *= memory;
+        for (std::size_t p = 0; p < parents.size(); ++p) {
+            const std::size_t parent = parents[p], a = 2 * p, b = a + 1;
+            for (std::size_t c = 0; c < components(); ++c) {
+                const double expected = regions_.error(parent)[c];
+                const double difference =
+                    std::abs(regions_.value(parent)[c] - halves.value(a)[c] - halves.value(b)[c]);
+                disagreement_[c] += difference * difference;
+                expected_[c] += expected * expected;
+                double &of_a = halves.error(a)[c], &of_b = halves.error(b)[c];
+                if (const double sum = of_a + of_b; sum > 0) {
+                    const double factor = 1 + difference / 4 / sum;
+                    of_a *= factor;
+                    of_b *= factor;
+                    if (factor > 2) halves.marks(a).exhausted = halves.marks(b).exhausted = false;
+                } else { // what the region saw, its halves did not
+                    of_a = of_b = difference / 2;
+                    halves.marks(a).exhausted = halves.marks(b).exhausted = false;
+                }
+            }
+        }
+        std::size_t next = regions_.count();
+        regions_.resize(next + parents.size());
+        for (std::size_t p = 0; p < parents.size(); ++p, ++next) {
+            regions_.copy(parents[p], halves, 2 * p);
+            regions_.copy(next, halves, 2 * p + 1);
+        }
+        verification_.follow(regions_, parents, regions_.count() - parents.size());
+    }
+
+    void add_up() {
+        for (std::size_t c = 0; c < components(); ++c) {
+            CompensatedSum value, error;
+            double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+            for (std::size_t r = 0; r < regions_.count(); ++r) {
+                value.add(regions_.value(r)[c]);
+                error.add(regions_.error(r)[c]);
+                lowest = std::min(lowest, regions_.lowest(r)[c]);
+                highest = std::max(highest, regions_.highest(r)[c]);
+            }
+            verification_.widen(c, lowest, highest);
+            totals_.value[c] = value.value();
+            totals_.inflation[c] =
+                expected_[c] > 0 ? std::max(1.0, std::sqrt(disagreement_[c] / expected_[c])) : 1;
+            totals_.error[c] = error.value() * totals_.inflation[c] *
+                               (1 + (caution_of_one_region - 1) / static_cast<double>(regions_.count()));
+            totals_.error[c] += verification_.slack(c);
+            totals_.rule_error[c] = totals_.error[c];
+            totals_.equal[c] = lowest == highest && lowest != 0;
+        }
+        if (equal_values())
+            for (std::size_t c = 0; c < components(); ++c)
+                totals_.error[c] =
+                    std::max(totals_.error[c],
+                             equal_values_error(totals_.value[c], static_cast<double>(evaluations_)));
+    }
+
+    void say_doubts(Tally& tally) const {
+        std::size_t unseen = 0;
+        for (char c : nonzero_) unseen += c == 0;
+        if (unseen > 0) {
+            std::string what =
+                m_ == 1 ? "the integrand was"
+                        : std::to_string(unseen) + (unseen == 1 ? " component was" : " components were");
+            tally.doubts.push_back(what + " zero at each of " + std::to_string(evaluations_) +
+                                   " points; a part where it is not may have been missed");
+        }
+        if (regions_.count() >= max_regions_)
+            tally.doubts.push_back("the memory for regions is used up at " + std::to_string(max_regions_) +
+                                   " regions; raise max_memory, or take a method that samples");
+        if (!verification_.warning().empty()) tally.doubts.push_back(verification_.warning());
+        if (equal_values() && evaluations_ >= most_equal_values)
+            tally.doubts.push_back("the integrand was the same at each of " + std::to_string(evaluations_) +
+                                   " points; the error is a bound on what they did not meet");
+        for (std::size_t c = 0; c < components(); ++c) {
+            if (totals_.inflation[c] < 4) continue;
+            std::ostringstream text;
+            text.precision(2);
+            text << "the errors of regions halved of late were " << totals_.inflation[c]
+                 << " times too small, and were enlarged by as much; the integrand is rougher than the rules "
+                    "can tell";
+            tally.doubts.push_back(text.str());
+            break;
+        }
+    }
+
+    Problem problem_;
+    int n_, m_;
+    std::optional<SymmetricRule> coarse_, fine_;
+    CubatureRegions regions_;
+    std::size_t max_regions_;
+    Totals totals_;
+    std::uint64_t evaluations_ = 0;
+    ValueBuffer nested_;   // in one dimension: those of the cube, as long as it is the only region
+    bool refined_ = false; // the cube was evaluated again by the fine rule
+    NonFiniteCount non_finite_;
+    std::vector<char> nonzero_; // a component: was it ever seen to be other than zero?
+    // Squared differences of regions from their halves, and what their errors expected, of late.
+    std::vector<double> disagreement_, expected_;
+    bool at_limit_ = false;      // no region is left whose error is more than rounding
+    std::uint64_t singular_ = 0; // evaluations repeated beside singularities
+    CubatureVerification verification_;
+};
+
+std::uint64_t default_check_points(int dimensions) { return dimensions == 1 ? 128 : 4096; }
+
+} // namespace
+
+std::unique_ptr<Estimator> Cubature::estimator(const Problem& problem) const {
+    if (problem.evaluator.dimensions() > max_dimensions)
+        throw Error("cubature", "takes at most " + std::to_string(max_dimensions) +
+                                    " variables, since a region costs 2^n evaluations; the domain has " +
+                                    std::to_string(problem.evaluator.dimensions()) +
+                                    ". Take a method that samples");
+    return std::make_unique<CubatureEstimator>(
+        problem, max_memory, check_points.value_or(default_check_points(problem.evaluator.dimensions())));
+}
+
+} // namespace montelux

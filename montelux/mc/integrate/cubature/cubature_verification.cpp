@@ -1,0 +1,362 @@
+#include "montelux/mc/integrate/cubature/cubature_verification.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+
+#include "montelux/mc/integrate/adaptive/mode_search.h"
+#include "montelux/mc/integrate/infinity.h"
+#include "montelux/mc/integrate/sampling.h"
+
+namespace montelux {
+namespace {
+
+constexpr double negligible_surprise = 0.02; // share of the tolerance
+constexpr double least_tolerance = 1e-7;     // share of the integral of the absolute value
+constexpr double suspicion = 2.5;            // standard errors beyond which the difference counts as an error
+constexpr double significance = 5;           // standard errors between rules and points
+constexpr std::uint64_t most_rounds = 12;
+constexpr std::uint64_t fewest_points = 16;
+constexpr double plateau = 0.1;             // range of the values beside their mean
+constexpr std::uint64_t plateau_points = 4; // times as many points where nothing but a plateau was seen
+constexpr std::size_t most_climbs = 8;      // of a check
+
+bool targeted(const StepRequest& request) { return request.relative_error > 0 || request.absolute_error > 0; }
+
+// The least volume that holds half of the integral of |g|, of the component that is most concentrated.
+double volume_of_half(const CubatureRegions& regions) {
+    double least = 1;
+    std::vector<std::size_t> order(regions.count());
+    for (std::size_t c = 0; c < regions.value(0).size(); ++c) {
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        auto density = [&](std::size_t r) { return std::abs(regions.value(r)[c]) / regions.volume(r); };
+        std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return density(a) > density(b); });
+        double all = 0, found = 0, volume = 0;
+        for (std::size_t r : order) all += std::abs(regions.value(r)[c]);
+        for (std::size_t r : order) {
+            if (found >= 0.5 * all) break;
+            found += std::abs(regions.value(r)[c]);
+            volume += regions.volume(r);
+        }
+        if (all > 0) least = std::min(least, volume);
+    }
+    return least;
+}
+
+// Surprises often lie in the tails of peaks whose tops are in other regions. The greatest ones climb, and the
+// tops become witnesses as well. The evaluations made.
+std::uint64_t climb(const Evaluator& evaluator, const CubatureRegions& regions,
+                    std::span<const double> tolerance, std::uint64_t most, CubatureCheck& check) {
+    const int n = evaluator.dimensions(), m = evaluator.components();
+    std::vector<CubatureWitness>& witnesses = check.surprises;
+    std::vector<std::pair<double, std::size_t>> order; // greatest surprise, relative to the tolerance
+    for (std::size_t i = 0; i < witnesses.size(); ++i) {
+        double size = 0;
+        for (std::size_t c = 0; c < tolerance.size(); ++c)
+            if (tolerance[c] > 0)
+                size = std::max(
+                    size, surprise(regions, witnesses[i].region, c, witnesses[i].value[c], tolerance[c]) /
+                              tolerance[c]);
+        order.emplace_back(-size, i);
+    }
+    std::ranges::sort(order);
+    const auto d = static_cast<std::uint64_t>(n);
+    const std::uint64_t of_each = 80 * d + 4 * d * d;
+    std::uint64_t evaluations = 0;
+    for (std::size_t k = 0; k < std::min(order.size(), most_climbs); ++k) {
+        if (evaluations + of_each + 1 > most) break;
+        const CubatureWitness from = witnesses[order[k].second];
+        ValueBuffer g;
+        // Distance of the components from what the region of the surprise has on average.
+        const DensityFunction h = [&](const PointBatch& x, std::span<double> values) {
+            g.resize(x.count(), m);
+            evaluator(x, g, check.non_finite);
+            evaluations += x.count();
+            for (std::size_t i = 0; i < x.count(); ++i) {
+                values[i] = 0;
+                for (int c = 0; c < m; ++c) {
+                    const auto component = static_cast<std::size_t>(c);
+                    const double mean = regions.value(from.region)[component] / regions.volume(from.region);
+                    if (tolerance[component] > 0)
+                        values[i] += std::abs(std::as_const(g)(i, c) - mean) / tolerance[component];
+                }
+            }
+        };
+        PointBuffer start(1, n);
+        for (int j = 0; j < n; ++j) start(0, j) = from.x[static_cast<std::size_t>(j)];
+        std::array<double, 1> at_start{-order[k].first};
+        ModeSearch settings;
+        settings.most_modes = 1;
+        settings.fruitless = 1;
+        settings.max_evaluations = of_each;
+        for (const Gaussian& mode : find_modes(h, start, at_start, settings)) {
+            CubatureWitness top{
+                regions.containing(mode.mean()), {mode.mean().begin(), mode.mean().end()}, {}};
+            for (int j = 0; j < n; ++j) start(0, j) = top.x[static_cast<std::size_t>(j)];
+            std::array<double, 1> ignored{};
+            h(start, ignored);
+            for (int c = 0; c < m; ++c) top.value.push_back(std::as_const(g)(0, c));
+            witnesses.push_back(std::move(top));
+        }
+    }
+    return evaluations;
+}
+
+} // namespace
+
+CubatureVerification::CubatureVerification(const Problem& problem, std::uint64_t points)
+    : problem_(problem), points_(points), residual_(problem.evaluator.components(), problem.full_covariance),
+      lowest_(static_cast<std::size_t>(problem.evaluator.components()), infinity),
+      highest_(lowest_.size(), -infinity), next_(4 * points) {}
+
+bool CubatureVerification::verified(std::span<const double> value) const {
+    if (points_ == 0) return true;
+    if (checked_value_.empty() || !witnesses_.empty()) return false;
+    if (!warning_.empty()) return true; // no further check would help
+    if (disagrees_) return false;
+    for (std::size_t c = 0; c < value.size(); ++c)
+        if (!(std::abs(value[c] - checked_value_[c]) <= checked_error_[c])) return false;
+    return true;
+}
+
+bool CubatureVerification::due(const CubatureRegions& regions, std::span<const double> value,
+                               std::span<const double> error, std::uint64_t evaluations,
+                               const StepRequest& request, bool claimed) const {
+    if (points_ == 0 || !warning_.empty() || !witnesses_.empty()) return false;
+    bool fresh = !verified(value);
+    if (!fresh) { // a tighter target sees smaller surprises
+        const std::vector<double> now = tolerances(regions, value, error, request);
+        for (std::size_t c = 0; c < now.size(); ++c) fresh = fresh || now[c] < 0.5 * tolerance_[c];
+    }
+    if (!fresh) return false;
+    if (claimed) return true;
+    if (targeted(request)) return false;
+    const std::uint64_t all = evaluations + request.max_evaluations;
+    return evaluations >= next_ || request.max_evaluations <= std::min(points_, all / 8) * 5 / 4;
+}
+
+std::uint64_t CubatureVerification::points(const CubatureRegions& regions, std::span<const double> value,
+                                           std::uint64_t evaluations, const StepRequest& request) const {
+    bool flat = true;
+    for (std::size_t c = 0; c < value.size(); ++c) {
+        double low = infinity, high = -infinity;
+        for (std::size_t r = 0; r < regions.count(); ++r) {
+            low = std::min(low, regions.lowest(r)[c]);
+            high = std::max(high, regions.highest(r)[c]);
+        }
+        flat = flat && high - low <= plateau * std::abs(value[c]);
+    }
+    const std::uint64_t wanted = flat ? plateau_points * points_ : points_;
+    const std::uint64_t all = evaluations + request.max_evaluations;
+    const std::uint64_t points =
+        std::min({wanted, all / (targeted(request) ? 2 : 8), request.max_evaluations});
+    return points < fewest_points ? 0 : points;
+}
+
+std::vector<double> CubatureVerification::tolerances(const CubatureRegions& regions,
+                                                     std::span<const double> value,
+                                                     std::span<const double> error,
+                                                     const StepRequest& request) const {
+    std::vector<double> tolerance(value.size());
+    for (std::size_t c = 0; c < value.size(); ++c) {
+        double size = 0;
+        for (std::size_t r = 0; r < regions.count(); ++r)
+            size +=
+                regions.volume(r) * std::max(std::abs(regions.lowest(r)[c]), std::abs(regions.highest(r)[c]));
+        // No error relative to a value that vanishes can be asked for.
+        tolerance[c] = std::max(error[c], least_tolerance * size);
+        if (targeted(request))
+            tolerance[c] =
+                std::max({tolerance[c], request.absolute_error, request.relative_error * std::abs(value[c])});
+    }
+    return tolerance;
+}
+
+std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<const double> value,
+                                        std::span<const double> error, std::uint64_t points,
+                                        const StepRequest& request) {
+    std::vector<double> tolerance = tolerances(regions, value, error, request);
+    auto check = check_regions(problem_.evaluator, regions, points, problem_.seed, rounds_, tolerance,
+                               problem_.full_covariance, request.cancel);
+    if (!check) return 0;
+    const std::uint64_t climbed =
+        climb(problem_.evaluator, regions, tolerance, (request.max_evaluations - points) / 4, *check);
+    ++rounds_;
+    evaluations_ += points + climbed;
+    non_finite_.merge(check->non_finite);
+    next_ = 8 * std::max(next_, points);
+    tolerance_ = std::move(tolerance);
+    residual_ = std::move(check->residual);
+    checked_value_.assign(value.begin(), value.end());
+    checked_error_.assign(error.begin(), error.end());
+    slack_.resize(lowest_.size(), 0.0);
+    for (std::size_t c = 0; c < lowest_.size(); ++c) {
+        lowest_[c] = std::min(lowest_[c], check->lowest[c]);
+        highest_[c] = std::max(highest_[c], check->highest[c]);
+        const double difference = std::abs(check->difference[c]), noise = check->standard_error[c];
+        const bool doubtful = difference > error[c] + suspicion * noise;
+        surprised_ = surprised_ || doubtful || !check->surprises.empty();
+        // Rules that were wrong once know no error that is smaller than what the points can tell.
+        slack_[c] = surprised_ ? std::min(std::max(difference, noise), tolerance_[c] / 2) : 0;
+    }
+    points_in_bulk_ = static_cast<double>(points) * volume_of_half(regions);
+    witnesses_ = std::move(check->surprises);
+    disagrees_ = false;
+    for (std::size_t c = 0; c < value.size(); ++c) {
+        const double difference = check->difference[c], noise = check->standard_error[c];
+        if (std::abs(difference) <= error[c] + significance * noise) continue;
+        disagrees_ = true;
+        if (rounds_ < most_rounds) add_differences(regions, *check, c);
+    }
+    if ((disagrees_ || !witnesses_.empty()) && rounds_ >= most_rounds) {
+        witnesses_.clear();
+        warning_ = "random points keep disagreeing with the rules (" + std::to_string(rounds_) + " checks)";
+        return points + climbed;
+    }
+    std::vector<std::size_t> of_regions;
+    for (const CubatureWitness& w : witnesses_) of_regions.push_back(w.region);
+    add_errors(regions, of_regions);
+    return points + climbed;
+}
+
+void CubatureVerification::add_differences(CubatureRegions& regions, const CubatureCheck& check,
+                                           std::size_t component) {
+    const std::size_t m = lowest_.size();
+    for (std::size_t i = 0; i < check.regions.size(); ++i) {
+        double& error = regions.error(check.regions[i])[component];
+        const double difference = std::abs(check.differences[i * m + component]);
+        if (difference <= error || regions.marks(check.regions[i]).indivisible) continue;
+        error = difference;
+        regions.marks(check.regions[i]).exhausted = false;
+    }
+}
+
+void CubatureVerification::skip(std::span<const double> value, std::span<const double> error) {
+    checked_value_.assign(value.begin(), value.end());
+    checked_error_.assign(error.begin(), error.end());
+    tolerance_.assign(error.begin(), error.end());
+    warning_ = "too few evaluations are left to check the rules by random points";
+}
+
+double CubatureVerification::weight(const CubatureRegions& regions, const CubatureWitness& witness,
+                                    std::size_t component) const {
+    const double excess =
+        surprise(regions, witness.region, component, witness.value[component], tolerance_[component]);
+    const double error = regions.volume(witness.region) * excess;
+    return error > negligible_surprise * tolerance_[component] ? error : 0;
+}
+
+void CubatureVerification::add_errors(CubatureRegions& regions, std::span<const std::size_t> of_regions) {
+    std::vector<std::size_t> touched(of_regions.begin(), of_regions.end());
+    std::ranges::sort(touched);
+    const std::size_t m = lowest_.size();
+    std::unordered_map<std::size_t, std::vector<double>> added;
+    std::erase_if(witnesses_, [&](const CubatureWitness& w) {
+        if (!std::ranges::binary_search(touched, w.region)) return false;
+        if (regions.marks(w.region).indivisible) return true;
+        bool open = false;
+        std::vector<double>& sum = added.try_emplace(w.region, m, 0.0).first->second;
+        for (std::size_t c = 0; c < m; ++c) {
+            const double error = weight(regions, w, c);
+            open = open || error > 0;
+            sum[c] = std::max(sum[c], error);
+        }
+        return !open;
+    });
+    for (const auto& [region, errors] : added)
+        for (std::size_t c = 0; c < m; ++c) {
+            regions.error(region)[c] += errors[c];
+            if (errors[c] > 0) regions.marks(region).exhausted = false;
+        }
+}
+
+void CubatureVerification::follow(CubatureRegions& regions, std::span<const std::size_t> parents,
+                                  std::size_t first_new) {
+    if (witnesses_.empty()) return;
+    std::unordered_map<std::size_t, std::size_t> upper;
+    std::vector<std::size_t> touched;
+    for (std::size_t p = 0; p < parents.size(); ++p) {
+        upper.emplace(parents[p], first_new + p);
+        touched.insert(touched.end(), {parents[p], first_new + p});
+    }
+    for (CubatureWitness& w : witnesses_) {
+        const auto found = upper.find(w.region);
+        if (found == upper.end()) continue;
+        if (regions.distance(found->second, w.x) < regions.distance(w.region, w.x)) w.region = found->second;
+    }
+    add_errors(regions, touched);
+}
+
+void CubatureVerification::widen(std::size_t component, double& lowest, double& highest) const {
+    lowest = std::min(lowest, lowest_[component]);
+    highest = std::max(highest, highest_[component]);
+}
+
+double CubatureVerification::correlation(std::size_t a, std::size_t b) const {
+    if (a == b) return 1;
+    if (residual_.count() < 2) return 0;
+    const auto i = static_cast<int>(a), j = static_cast<int>(b);
+    const double product = residual_.variance(i) * residual_.variance(j);
+    return product > 0 ? std::clamp(residual_.covariance(i, j) / std::sqrt(product), -1.0, 1.0) : 0;
+}
+
+void CubatureVerification::save(StateWriter& state) const {
+    state.put(static_cast<std::uint64_t>(witnesses_.size()));
+    for (const CubatureWitness& w : witnesses_) {
+        state.put(static_cast<std::uint64_t>(w.region));
+        state.put(w.x);
+        state.put(w.value);
+    }
+    for (const auto* numbers : {&checked_value_, &checked_error_, &tolerance_, &lowest_, &highest_})
+        state.put(*numbers);
+    montelux::save(state, residual_);
+    state.put(rounds_);
+    state.put(evaluations_);
+    state.put(next_);
+    state.put(points_in_bulk_);
+    state.put(slack_);
+    state.put(surprised_);
+    state.put(disagrees_);
+    montelux::save(state, non_finite_);
+    state.put(std::string_view(warning_));
+}
+
+void CubatureVerification::load(StateReader& state, std::size_t regions) {
+    const std::size_t m = lowest_.size();
+    auto fits = [](const std::vector<double>& numbers, std::size_t size) {
+        if (numbers.size() != size) throw Error("the saved state has another number of components");
+    };
+    witnesses_.clear();
+    for (std::uint64_t n = state.get_word(); n > 0; --n) {
+        CubatureWitness w;
+        w.region = state.get_word();
+        w.x = state.get_doubles();
+        w.value = state.get_doubles();
+        fits(w.x, static_cast<std::size_t>(problem_.evaluator.dimensions()));
+        fits(w.value, m);
+        if (w.region >= regions) throw Error("the saved state is damaged");
+        witnesses_.push_back(std::move(w));
+    }
+    for (auto* numbers : {&checked_value_, &checked_error_, &tolerance_, &lowest_, &highest_})
+        *numbers = state.get_doubles();
+    for (const auto* numbers : {&checked_value_, &checked_error_, &tolerance_})
+        if (!numbers->empty()) fits(*numbers, m);
+    fits(lowest_, m);
+    fits(highest_, m);
+    montelux::load(state, residual_);
+    rounds_ = state.get_word();
+    evaluations_ = state.get_word();
+    next_ = state.get_word();
+    points_in_bulk_ = state.get_double();
+    slack_ = state.get_doubles();
+    surprised_ = state.get<int>() != 0;
+    if (!slack_.empty()) fits(slack_, m);
+    disagrees_ = state.get<int>() != 0;
+    montelux::load(state, non_finite_);
+    warning_ = state.get_text();
+}
+
+} // namespace montelux

@@ -1,0 +1,163 @@
+// No rule is believed on its own word: what random points find, and what is claimed where all values are
+// equal.
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <string>
+
+#include "montelux/mc/integrate/auto.h"
+#include "montelux/mc/integrate/cubature/cubature.h"
+#include "montelux/mc/integrate/integrate.h"
+#include "montelux/mc/random/hash.h"
+
+namespace montelux {
+namespace {
+
+double uniform(std::uint64_t seed, std::uint64_t index) {
+    return static_cast<double>(hash_key(seed, index) >> 11) * 0x1p-53;
+}
+
+struct Hidden {
+    const char* name;
+    Integrand f;
+    Domain domain;
+    double exact;
+};
+
+// Integrals of which the first regions see a part that looks smooth.
+std::vector<Hidden> hidden() {
+    constexpr double pi = std::numbers::pi;
+    return {
+        {"eggbox", Integrand([](std::span<const double> x) {
+             return std::exp(std::pow(2 + std::cos(x[0] / 2) * std::cos(x[1] / 2), 5));
+         }),
+         Domain({{0, 10 * pi}, {0, 10 * pi}}), 2.6624297e105},
+        {"rosenbrock", Integrand([](std::span<const double> x) {
+             return std::exp(-std::pow(1 - x[0], 2) - 100 * std::pow(x[1] - x[0] * x[0], 2));
+         }),
+         Domain({{-5, 5}, {-5, 5}}), 0.3015070},
+        {"ring", Integrand([](std::span<const double> x) {
+             return std::exp(-std::pow((std::hypot(x[0], x[1]) - 0.7) / 0.005, 2) / 2);
+         }),
+         Domain({{-1.3, 1.3}, {-1.3, 1.3}}), 2 * pi * 0.7 * 0.005 * std::sqrt(2 * pi)},
+    };
+}
+
+TEST(CubatureVerification, PartsOfAnIntegralAreNotTakenForIt) {
+    for (const Hidden& h : hidden())
+        for (const Method& method : {Method(Auto{})})
+            for (double target : {1e-2, 1e-3})
+                for (std::uint64_t seed : {0, 1}) {
+                    const IntegrationResult r =
+                        integrate(h.f, h.domain, method,
+                                  {.relative_error = target, .absolute_error = 0, .evaluations = 400'000},
+                                  {.seed = seed, .threads = 1});
+                    if (!r.converged()) continue;
+                    EXPECT_LE(std::abs(r.value[0] - h.exact), 6 * r.standard_error[0] + 1e-5 * h.exact)
+                        << h.name << " " << target << " seed " << seed << "\n"
+                        << r;
+                }
+}
+
+// A spike of half of the integral on a plateau; without a check its regions are as smooth as can be.
+TEST(CubatureVerification, FindsSpikesOnPlateaus) {
+    constexpr double width = 0.004;
+    int missed = 0;
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+        const double cx = 0.1 + 0.8 * uniform(seed, 0), cy = 0.1 + 0.8 * uniform(seed, 1);
+        const double height = 1 / (2 * std::numbers::pi * width * width);
+        const Integrand f([=](std::span<const double> x) {
+            return 1 + height *
+                           std::exp(-(std::pow(x[0] - cx, 2) + std::pow(x[1] - cy, 2)) / (2 * width * width));
+        });
+        const IntegrationResult r = integrate(f, Domain::unit_cube(2), Cubature{}, {.relative_error = 1e-3},
+                                              {.seed = seed, .threads = 1});
+        if (r.converged() && std::abs(r.value[0] - 2) > 4 * r.standard_error[0]) {
+            ++missed;
+            ADD_FAILURE() << r;
+        }
+        if (seed > 0) continue;
+        Cubature believed;
+        believed.check_points = 0;
+        EXPECT_NEAR(integrate(f, Domain::unit_cube(2), believed, {.relative_error = 1e-3}).value[0], 1, 1e-3);
+    }
+    // exp(-16384 * 0.8 pi (4.5 width)^2) is 2e-6; the seeds are fixed.
+    EXPECT_EQ(missed, 0);
+}
+
+TEST(CubatureVerification, EqualValuesHaveAnError) {
+    // 1.2e-4 of the square is missing, which 65 points do not see.
+    const Integrand f([](std::span<const double> x) { return x[0] * x[1] < 1.3e-5 ? 0.0 : 1.0; });
+    const double exact = 1 - 1.3e-5 * (1 - std::log(1.3e-5));
+    for (const Method& method : {Method(Auto{}), Method(Cubature{})})
+        for (std::uint64_t seed = 0; seed < 8; ++seed) {
+            const IntegrationResult r = integrate(f, Domain::unit_cube(2), method, {.relative_error = 1e-3},
+                                                  {.seed = seed, .threads = 1});
+            EXPECT_TRUE(r.converged()) << r;
+            EXPECT_GT(r.standard_error[0], 1e-6);
+            EXPECT_LE(std::abs(r.value[0] - exact), 4 * r.standard_error[0]) << r;
+        }
+    // A constant costs what its error takes, and no more than two million evaluations.
+    const Integrand one([](std::span<const double>) { return 3.0; });
+    const IntegrationResult rough = integrate(one, Domain::unit_cube(3), Method(), {.relative_error = 1e-4});
+    EXPECT_TRUE(rough.converged());
+    EXPECT_LT(rough.evaluations, 40'000U);
+    const IntegrationResult fine = integrate(one, Domain::unit_cube(3), Method(), {.relative_error = 1e-9});
+    EXPECT_FALSE(fine.converged());
+    EXPECT_LT(fine.evaluations, 2'200'000U);
+    EXPECT_EQ(fine.value[0], 3);
+    EXPECT_FALSE(fine.doubts.empty());
+}
+
+TEST(CubatureVerification, TargetsBelowRoundingEndWithTheBestThereIs) {
+    for (double target : {1e-16, 1e-20}) {
+        const IntegrationResult r = integrate([](double x) { return std::sin(x); }, Domain::interval(0, 1),
+                                              Method(), {.relative_error = target});
+        EXPECT_EQ(r.stop, StopReason::finished);
+        EXPECT_LT(r.evaluations, 1000U);
+        EXPECT_NEAR(r.value[0], 1 - std::cos(1), 1e-15);
+        ASSERT_EQ(r.doubts.size(), 1U);
+        EXPECT_NE(r.doubts[0].find("rounding"), std::string::npos);
+    }
+}
+
+TEST(CubatureVerification, VectorsHaveACovariance) {
+    const Integrand f = Integrand::vector_valued(3, [](std::span<const double> x, std::span<double> y) {
+        y[0] = std::exp(x[0] - x[1]);
+        y[1] = 2 * y[0];
+        y[2] = x[0] * x[0] * x[1];
+    });
+    const IntegrationResult r = integrate(f, Domain::unit_cube(2), Method(), {.relative_error = 1e-6});
+    EXPECT_EQ(r.method, "cubature");
+    ASSERT_EQ(r.covariance.size(), 9U);
+    auto correlation = [&](std::size_t a, std::size_t b) {
+        return r.covariance[3 * a + b] / (r.standard_error[a] * r.standard_error[b]);
+    };
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(correlation(a, a), 1, 1e-9);
+    EXPECT_NEAR(correlation(0, 1), 1, 1e-9);
+    EXPECT_LT(std::abs(correlation(0, 2)), 1);
+    IntegrationOptions without;
+    without.full_covariance = false;
+    EXPECT_TRUE(
+        integrate(f, Domain::unit_cube(2), Method(), {.relative_error = 1e-6}, without).covariance.empty());
+}
+
+// What lies in too small a part of the domain for random points is said, or compared with sampling.
+TEST(CubatureVerification, ConcentratedIntegrandsAreComparedWithSampling) {
+    const Integrand f([](std::span<const double> x) {
+        double r = 0;
+        for (double v : x) r += std::pow((v - 0.4) / 0.01, 2);
+        return std::exp(-r / 2);
+    });
+    const double exact = std::pow(0.01 * std::sqrt(2 * std::numbers::pi), 3);
+    const IntegrationResult rule =
+        integrate(f, Domain::unit_cube(3), Cubature{}, {.relative_error = 1e-3}, {.threads = 1});
+    EXPECT_FALSE(rule.doubts.empty());
+    const IntegrationResult both =
+        integrate(f, Domain::unit_cube(3), Auto{}, {.relative_error = 1e-3}, {.threads = 1});
+    EXPECT_TRUE(both.converged()) << both;
+    EXPECT_NEAR(both.value[0], exact, 4 * both.standard_error[0]);
+}
+
+} // namespace
+} // namespace montelux
