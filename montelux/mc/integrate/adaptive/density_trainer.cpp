@@ -10,6 +10,7 @@
 #include "montelux/mc/integrate/adaptive/more_gaussians.h"
 #include "montelux/mc/integrate/adaptive/surprises.h"
 #include "montelux/mc/random/hash.h"
+#include "montelux/mc/stats/pareto_tail.h"
 
 namespace montelux {
 namespace {
@@ -24,7 +25,15 @@ constexpr std::size_t most_remembered = 128;
 constexpr double exploring_width = 1.5;
 constexpr double safe_width = 1.1;
 constexpr std::size_t least_walked = 4, most_walked = 128; // steps of walkers after a round
+constexpr double heavy_shape = 0.4; // of the tail of a round's weights; from 0.5 the variance is infinite
 constexpr std::uint64_t least_seen = 16; // points of a round that saw anything, for the round to teach
+
+bool is_heavy_tailed(std::span<const double> weights) {
+    ParetoTail tail;
+    tail.add(weights);
+    const auto fit = tail.fit(weights.size());
+    return fit && fit->shape > heavy_shape;
+}
 
 } // namespace
 
@@ -229,6 +238,7 @@ void DensityTrainer::fit() {
     const bool uneven = rounds_ > first_fit_before_gaussians && relative_variance_ > enough_even &&
                         dimensions <= max_gaussian_dimensions;
     const bool more = !enriched_ && uneven;
+    const bool boundary = density_.has_boundary() || (uneven && is_heavy_tailed(weights));
     // Gaussians have more to learn: all recent points, weighted by the mixture of the densities that drew
     // them.
     const Pool all = pool();
@@ -246,7 +256,7 @@ void DensityTrainer::fit() {
     if (!gaussians.empty()) fit_gaussians(gaussians, all.x, weights, em_steps);
     for (Gaussian& g : gaussians) g = g.widened(safe_width); // tails cost little, and their absence much
     MixtureDensity density_before = std::move(density_);
-    density_ = MixtureDensity(dimensions, maps, gaussians, density_before.has_boundary() || uneven);
+    density_ = MixtureDensity(dimensions, maps, gaussians, boundary);
     density_.optimise_shares(all.x, all.h, all.p, uniform_units_, share_step_);
     std::vector<double> ratios(all.h.size());
     auto compare = [&] {
