@@ -280,6 +280,7 @@ class Run {
 
     IntegrationResult result(StopReason stop) const {
         Tally tally = estimator_->tally();
+        const bool unchecked = targeted_ && !tally.statistical && !tally.ready && tally.doubts.empty();
         const bool rounding = (tally.at_limit && tally.doubts.empty()) || is_rounding(tally);
         IntegrationResult r;
         r.value = std::move(tally.value);
@@ -312,6 +313,8 @@ class Run {
                 "a narrow peak would not have been seen");
         if (targeted_ && stop == StopReason::finished && rounding)
             r.doubts.push_back("the error asked for is below the rounding error of double precision");
+        if (unchecked && stop != StopReason::error_target)
+            r.doubts.push_back("random points had not confirmed the rules when the run ended");
         if (tally.localised)
             r.doubts.push_back(
                 "the integrand is concentrated in a part of the domain that is too small for a check by "

@@ -159,5 +159,21 @@ TEST(CubatureVerification, ConcentratedIntegrandsAreComparedWithSampling) {
     EXPECT_NEAR(both.value[0], exact, 4 * both.standard_error[0]);
 }
 
+// A run that ends before its check says so, whatever the rules claim.
+TEST(CubatureVerification, RulesThatWereNotCheckedSaySo) {
+    const Integrand f([](std::span<const double> x) { return std::exp(x[0] + x[1]); });
+    auto run = [&](std::uint64_t evaluations) {
+        return integrate(f, Domain::unit_cube(2), Cubature{},
+                         {.relative_error = 1e-12, .absolute_error = 0, .evaluations = evaluations});
+    };
+    const IntegrationResult ended = run(300);
+    EXPECT_EQ(ended.stop, StopReason::evaluations);
+    ASSERT_EQ(ended.doubts.size(), 1U);
+    EXPECT_NE(ended.doubts[0].find("confirmed"), std::string::npos) << ended.doubts[0];
+    const IntegrationResult whole = run(100'000);
+    EXPECT_TRUE(whole.converged());
+    EXPECT_TRUE(whole.doubts.empty());
+}
+
 } // namespace
 } // namespace montelux
