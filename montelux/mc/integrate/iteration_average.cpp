@@ -12,7 +12,7 @@
 namespace montelux {
 namespace {
 
-constexpr double few_of_all = 1 / 16.; // points that make up the variance, where these count as few
+constexpr double few_points = 1 / 16.; // points that make up the variance, where these count as few
 constexpr double significance = 1e-3;
 // Of a value, relative: constants would else disagree with themselves.
 constexpr double rounding_error = 1e-13;
@@ -94,7 +94,7 @@ void IterationAverage::tally(Tally& tally) const {
     for (std::size_t c = 0; c < m; ++c) {
         const double error = tally.standard_error[c], largest = largest_[c] / (weight_ * weight_);
         const double k = largest > 0 ? error * error / largest : points_;
-        least[c] = k < few_of_all * points_ ? error * few_values_factor(k) : 0;
+        least[c] = k < few_points * points_ ? error * few_values_factor(k) : 0;
         if (points_ > 0 && !(error > rounding_error * std::abs(value_[c])))
             least[c] = equal_values_error(value_[c], points_);
     }

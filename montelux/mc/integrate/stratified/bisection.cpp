@@ -11,8 +11,8 @@
 namespace montelux {
 namespace {
 
-constexpr double least_share = 0.1;                                  // of a half
-constexpr std::uint64_t most_pilot_numbers = std::uint64_t{1} << 24; // kept in memory
+constexpr double least_share = 0.1; // of a half
+constexpr std::uint64_t most_numbers_kept = std::uint64_t{1} << 24;
 
 // A box, its pilot points (point by point: coordinates, then values), and the samples that it may spend.
 struct Node {
@@ -206,7 +206,7 @@ std::optional<Bisection> bisect(const Problem& problem, std::uint64_t samples, d
     level[0].samples = samples;
     Split root;
     const auto pilot = std::min(static_cast<std::uint64_t>(pilot_part * static_cast<double>(samples)),
-                                std::max<std::uint64_t>(1, most_pilot_numbers / (d + m)));
+                                std::max<std::uint64_t>(1, most_numbers_kept / (d + m)));
     if (pilot >= bisector.least_pilot()) {
         if (!bisector.explore(level[0], pilot, root, cancel)) return std::nullopt;
         level[0].samples -= pilot;

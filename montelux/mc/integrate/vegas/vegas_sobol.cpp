@@ -11,8 +11,8 @@
 namespace montelux {
 namespace {
 
-constexpr std::uint64_t first_points = 256; // of a replicate
-constexpr std::uint64_t growth = 16;        // of iterations
+constexpr std::uint64_t first_points = 256;    // of a replicate
+constexpr std::uint64_t iteration_growth = 16; // of iterations
 constexpr std::uint64_t longest = std::uint64_t{1} << 31;
 
 struct ReplicatePass {
@@ -70,7 +70,7 @@ class SobolVegas final : public VegasEstimator {
         if (iteration.points >= iteration.length) {
             next.average.add(weight(iteration), estimate(iteration));
             refine(next.map, iteration.training, iteration.points * replicates());
-            iteration.length *= growth;
+            iteration.length *= iteration_growth;
             iteration.points = 0;
         }
         state_ = std::move(next);
@@ -103,7 +103,7 @@ class SobolVegas final : public VegasEstimator {
 
     // A fresh iteration: new scrambles, and a map that stays as it is.
     void begin(Iteration& iteration, VegasState& next) const {
-        if (iteration.length == 0) iteration.length = growth * first_points;
+        if (iteration.length == 0) iteration.length = iteration_growth * first_points;
         iteration.length = std::min(iteration.length, longest);
         iteration.stream = next.stream++;
         iteration.sums = ReplicateSums(settings_.replicates, problem_.evaluator.components());
@@ -117,7 +117,7 @@ class SobolVegas final : public VegasEstimator {
         const auto most = static_cast<std::uint64_t>(room / static_cast<double>(replicates()));
         const std::uint64_t large =
             std::bit_floor(std::max({large_step / replicates(), iteration.points / 8, std::uint64_t{1}}));
-        const std::uint64_t start = std::max(first_points, iteration.length / growth);
+        const std::uint64_t start = std::max(first_points, iteration.length / iteration_growth);
         const std::uint64_t wanted = std::min(iteration.points == 0 ? start : iteration.points, large);
         // At the end of the budget the largest power of two that fits; a little remainder is not worth it.
         if (wanted <= most) return wanted;
