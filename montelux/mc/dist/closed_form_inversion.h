@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "montelux/mc/dist/distribution_1d.h"
-#include "montelux/mc/dist/increasing_root.h"
 #include "montelux/mc/dist/inversion.h"
 #include "montelux/mc/dist/inversion_checks.h"
 #include "montelux/mc/dist/search.h"
+#include "montelux/mc/math/increasing_root.h"
 
 namespace montelux {
 

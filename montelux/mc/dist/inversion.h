@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "montelux/mc/dist/distribution_1d.h"
-#include "montelux/mc/dist/increasing_root.h"
 #include "montelux/mc/dist/inversion_pieces.h"
 #include "montelux/mc/dist/search.h"
 #include "montelux/mc/math/compensated.h"
+#include "montelux/mc/math/increasing_root.h"
 
 namespace montelux {
 

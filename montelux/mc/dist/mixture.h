@@ -13,8 +13,8 @@
 #include "montelux/mc/dist/discrete.h"
 #include "montelux/mc/dist/distribution.h"
 #include "montelux/mc/dist/distribution_1d.h"
-#include "montelux/mc/dist/increasing_root.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/math/increasing_root.h"
 
 namespace montelux {
 

@@ -8,22 +8,18 @@ namespace montelux {
 // Euler's constant.
 inline constexpr double euler_gamma = 0.57721566490153286060651209008240243;
 
-// P(X <= x) of the standard normal distribution; accurate in the lower tail.
+// Distribution functions for tests and error bars, as accurate as incomplete_functions.h. They return NaN
+// outside their domains and never throw.
+// P(X <= x) of the standard normal distribution.
 double normal_cdf(double x);
-// The x with normal_cdf(x) = p; p in (0, 1), the ends give +-infinity, anything else NaN.
-// Relative error below 1e-14.
+// The x with normal_cdf(x) = p; p in (0, 1), the ends give +-infinity.
 double normal_quantile(double p);
-
-// Regularised incomplete gamma functions P(a, x) and Q(a, x) = 1 - P, a > 0, x >= 0; NaN otherwise.
-double gamma_p(double a, double x);
-double gamma_q(double a, double x);
 // P(X >= statistic) of the chi-squared distribution.
 double chi_squared_p_value(double statistic, double degrees_of_freedom);
-
-// Regularised incomplete beta function I_x(a, b), a, b > 0, x in [0, 1]; NaN otherwise.
+// Regularised incomplete beta function I_x(a, b), a, b > 0, x in [0, 1].
 double incomplete_beta(double a, double b, double x);
 double student_t_cdf(double t, double degrees_of_freedom);
-// The t with student_t_cdf(t, dof) = p; p in (0, 1).
+// The t with student_t_cdf(t, dof) = p; p in (0, 1), the ends give +-infinity.
 double student_t_quantile(double p, double degrees_of_freedom);
 // P(X <= k) and P(X >= k) for a binomial variable of n trials.
 double binomial_cdf(std::int64_t k, std::int64_t n, double p);

@@ -1,5 +1,8 @@
 #include <cmath>
+#include <cstddef>
 #include <gtest/gtest.h>
+#include <iterator>
+#include <limits>
 
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/special.h"
@@ -18,22 +21,20 @@ TEST(Special, NormalCdfAndQuantileInvertEachOther) {
     EXPECT_TRUE(std::isnan(normal_quantile(-0.1)));
 }
 
-TEST(Special, IncompleteGammaAgainstClosedForms) {
-    // Q(n, x) = e^-x sum_{k<n} x^k / k!, P(1/2, x) = erf(sqrt x), on both sides of the switch of method.
+TEST(Special, ChiSquaredAgainstClosedForms) {
+    // Q(n, x) = e^-x sum_{k<n} x^k / k!, Q(1/2, x) = erfc(sqrt x).
     for (double x : {0.1, 1.0, 4.0, 6.5, 30.0}) {
         double sum = 0, term = 1;
         for (int k = 0; k < 5; ++k) {
             sum += term;
             term *= x / (k + 1);
         }
-        EXPECT_NEAR(gamma_q(5, x) / (std::exp(-x) * sum), 1, 1e-12) << x;
-        EXPECT_NEAR(gamma_p(0.5, x), std::erf(std::sqrt(x)), 1e-14) << x;
-        EXPECT_NEAR(gamma_p(5, x) + gamma_q(5, x), 1, 1e-15);
+        EXPECT_NEAR(chi_squared_p_value(2 * x, 10) / (std::exp(-x) * sum), 1, 1e-13) << x;
+        EXPECT_NEAR(chi_squared_p_value(2 * x, 1) / std::erfc(std::sqrt(x)), 1, 1e-13) << x;
     }
     // Upper 5% points of the chi-squared table.
     EXPECT_NEAR(chi_squared_p_value(3.841458820694124, 1), 0.05, 1e-14);
     EXPECT_NEAR(chi_squared_p_value(124.34211340400407, 100), 0.05, 1e-12);
-    EXPECT_TRUE(std::isnan(gamma_p(-1, 1)));
 }
 
 TEST(Special, StudentTKnownPointsAndLimits) {
@@ -42,6 +43,59 @@ TEST(Special, StudentTKnownPointsAndLimits) {
     EXPECT_NEAR(student_t_cdf(1, 1), 0.75, 1e-14);
     EXPECT_NEAR(student_t_quantile(0.9, 1), std::tan(0.4 * pi), 1e-11);
     EXPECT_NEAR(student_t_quantile(0.975, 1e8), 1.959963984540054, 1e-7);
+}
+
+TEST(Special, FarTailsKeepTheirDigits) {
+    // Computed with 60 digits by mpmath.
+    EXPECT_NEAR(normal_cdf(-37) / 5.72557122252457682e-300, 1, 1e-13);
+    EXPECT_NEAR(normal_quantile(1e-300) / -37.0470962993611992, 1, 1e-15);
+    EXPECT_NEAR(chi_squared_p_value(1300, 3) / 1.47174371069801034e-281, 1, 1e-13);
+    EXPECT_NEAR(student_t_cdf(-1e30, 9) / 2.54589703710701741e-267, 1, 1e-13);
+    EXPECT_NEAR(student_t_cdf(-20, 300) / 1.93159812815803978e-57, 1, 1e-13);
+    EXPECT_NEAR(student_t_quantile(1e-300, 2) / -7.07106781186547516e+149, 1, 1e-13);
+    EXPECT_NEAR(incomplete_beta(300, 1.5, 0.1) / 1.85677526758934455e-299, 1, 1e-13);
+    EXPECT_NEAR(binomial_cdf(3, 1000, 0.5) / 1.55544715070148851e-293, 1, 1e-13);
+    EXPECT_NEAR(binomial_upper(990, 1000, 0.5) / 2.48333879148963533e-278, 1, 1e-13);
+}
+
+TEST(Special, EndsAndArgumentsOutsideTheDomain) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(normal_cdf(-infinity), 0);
+    EXPECT_EQ(normal_cdf(infinity), 1);
+    EXPECT_EQ(normal_quantile(1), infinity);
+    EXPECT_EQ(chi_squared_p_value(0, 3), 1);
+    EXPECT_EQ(chi_squared_p_value(infinity, 3), 0);
+    EXPECT_EQ(student_t_cdf(-infinity, 3), 0);
+    EXPECT_EQ(student_t_cdf(infinity, 3), 1);
+    EXPECT_NEAR(student_t_cdf(-1, infinity), normal_cdf(-1), 1e-15);
+    EXPECT_EQ(student_t_quantile(0.1, infinity), normal_quantile(0.1));
+    EXPECT_EQ(student_t_quantile(0, 3), -infinity);
+    EXPECT_EQ(incomplete_beta(2, 3, 0), 0);
+    EXPECT_EQ(incomplete_beta(2, 3, 1), 1);
+    EXPECT_EQ(binomial_cdf(3, 10, 0), 1);
+    EXPECT_EQ(binomial_cdf(3, 10, 1), 0);
+    const double outside[] = {normal_cdf(nan),
+                              normal_quantile(nan),
+                              normal_quantile(1.5),
+                              chi_squared_p_value(-1, 3),
+                              chi_squared_p_value(nan, 3),
+                              chi_squared_p_value(1, 0),
+                              chi_squared_p_value(1, nan),
+                              student_t_cdf(1, 0),
+                              student_t_cdf(1, -2),
+                              student_t_cdf(1, nan),
+                              student_t_cdf(nan, 3),
+                              student_t_quantile(0.5, 0),
+                              student_t_quantile(nan, 3),
+                              student_t_quantile(1.5, 3),
+                              incomplete_beta(0, 1, 0.5),
+                              incomplete_beta(1, -1, 0.5),
+                              incomplete_beta(1, 1, 1.5),
+                              incomplete_beta(1, 1, nan),
+                              binomial_cdf(3, 10, -0.5),
+                              binomial_upper(3, 10, nan)};
+    for (std::size_t i = 0; i < std::size(outside); ++i) EXPECT_TRUE(std::isnan(outside[i])) << i;
 }
 
 TEST(Special, BinomialTailsByDirectSummation) {

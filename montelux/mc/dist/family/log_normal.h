@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "montelux/mc/dist/distribution_1d.h"
-#include "montelux/mc/dist/incomplete_functions.h"
 #include "montelux/mc/dist/parameters.h"
 #include "montelux/mc/math/constants.h"
+#include "montelux/mc/math/incomplete_functions.h"
 
 namespace montelux {
 

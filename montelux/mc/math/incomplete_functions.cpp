@@ -1,4 +1,4 @@
-#include "montelux/mc/dist/incomplete_functions.h"
+#include "montelux/mc/math/incomplete_functions.h"
 
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-#include "montelux/mc/dist/increasing_root.h"
+#include "montelux/mc/math/increasing_root.h"
 
 namespace montelux::incomplete {
 namespace {
@@ -166,6 +166,7 @@ double student_t_cdf(double dof, double t) {
 double student_t_quantile(double dof, double p) {
     if (!is_probability(p)) return nan;
     if (p == 0 || p == 1) return p == 0 ? -infinity : infinity;
+    if (std::isinf(dof)) return normal_quantile(p);
     double tail = p <= 0.5 ? p : 1 - p, sign = p <= 0.5 ? -1 : 1, half = 0.5 * dof;
     if (tail == 0.5) return 0;
     double far = std::sqrt(dof) * std::exp(-std::log(tail * dof * bm::beta(half, 0.5, policy)) / dof);
