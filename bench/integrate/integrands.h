@@ -17,8 +17,7 @@ namespace montelux::bench {
 // c_j uniform in (0, 1), then scaled so that their sum is the difficulty given here (Hahn 2005, "Cuba - a
 // library for multidimensional numerical integration"); on the unit cube:
 //   oscillatory    cos(phase + sum c_j x_j), 6.0; the phase is such that the mean is cos of an angle uniform
-//   in
-//                  +-pi/4 times prod sinc(c_j / 2), hence never near 0
+//                  in +-pi/4 times prod sinc(c_j / 2), hence never near 0
 //   product_peak   prod 1 / (c_j^-2 + (x_j - w_j)^2), 18.0
 //   corner_peak    (1 + sum c_j x_j)^-(d + 1), 2.2
 //   gaussian       exp(-sum c_j^2 (x_j - w_j)^2), 15.2
@@ -77,8 +76,7 @@ std::optional<Line> line_named(std::string_view name);
 Group line_group(Line line);
 
 // One integrand: the parameters that a seed draws for a line, its integral known to at least 12 digits. The
-// numbers are those of Philox, keyed by
-// family, dimensions and seed: first all w, then all c, then the rest.
+// numbers are those of Philox, keyed by family, dimensions and seed: first all w, then all c, then the rest.
 class BenchIntegrand final : public BenchProblem {
   public:
     static constexpr int max_dimensions = 8;

@@ -16,12 +16,12 @@ namespace montelux {
 // n_p is proportional to sqrt(v_p) (Neyman 1934, "On the Two Different Aspects of the Representative
 // Method"). Two things keep the picture unbiased and rare bright paths from being starved:
 // - v_p is estimated from the pixels around p, without p itself. A pixel's own samples have then no part in
-// how many
-//   it gets, which would end pixels early that happen to look dark and smooth (Kirk, Arvo 1991, "Unbiased
-//   Sampling Techniques for Image Synthesis"); through its neighbours they have one in the round after next,
-//   too small to be found (docs/render-to-an-error.md).
+//   how many it gets, which would end pixels early that happen to look dark and smooth (Kirk, Arvo 1991,
+//   "Unbiased Sampling Techniques for Image Synthesis"); through its neighbours they have one in the round
+//   after next, too small to be found (docs/render-to-an-error.md).
 // - No weight is below a third of the mean weight, so that no pixel gets less than a quarter of the mean
-// number. A round at most doubles the samples; with a target it goes as far as the target seems to need.
+//   number.
+// A round at most doubles the samples; with a target it goes as far as the target seems to need.
 std::vector<std::uint32_t> allocate(const Film& film, const SampleOrder& order, const RenderTarget& target);
 
 } // namespace montelux

@@ -15,8 +15,7 @@ namespace montelux {
 // which component is largest, then the value of that component, then the ratios of the other two to it
 // (Jakob and Hanika 2019, section 4.2). Three things keep the interpolation error below 1e-3 in RGB:
 // - The coefficients are stored times sqrt(Y (1 - Y)), Y the luminance. They grow like 1/sqrt(Y) towards
-// black
-//   and like 1/sqrt(1 - Y) towards white; the products stay bounded.
+//   black and like 1/sqrt(1 - Y) towards white; the products stay bounded.
 // - Nodes are denser towards 0 and 1 on all three axes (smoothstep).
 // - Every node is solved to about 1e-6, without a bound on the coefficients.
 class RgbUpliftTable {

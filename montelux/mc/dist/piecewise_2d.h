@@ -25,12 +25,11 @@ struct PiecewiseSample2D {
 // to values[row * columns + column]. u.y picks the row, u.x the column.
 //
 // Cumulative sums are kept as 32-bit fixed-point fractions, four bytes a cell (and half a byte
-// for the search), and the density that is
-// reported is the one that these fractions sample: the two agree exactly, however large the table. A cell
-// whose value is not zero keeps at least 2^-32 of its row, and its row as much of the whole, so nothing
-// that contributes is left out; a value of zero is never drawn. Values that are all zero give the uniform
-// density, with integral() 0. Throws Error when the number of values is not columns * rows or exceeds
-// 2^31, when one is negative or not finite, or when the domain is empty.
+// for the search), and the density that is reported is the one that these fractions sample: the two agree
+// exactly, however large the table. A cell whose value is not zero keeps at least 2^-32 of its row, and its
+// row as much of the whole, so nothing that contributes is left out; a value of zero is never drawn. Values
+// that are all zero give the uniform density, with integral() 0. Throws Error when the number of values is
+// not columns * rows or exceeds 2^31, when one is negative or not finite, or when the domain is empty.
 class PiecewiseConstant2D {
   public:
     PiecewiseConstant2D(std::span<const float> values, std::uint32_t columns, std::uint32_t rows,

@@ -20,8 +20,7 @@ struct LogIntegrationResult {
 // moves while larger values are met.
 //
 //     auto result = integrate_log([](double x) { return -5000 - x * x / 2; }, Domain({{-inf, inf}}),
-//     Method(),
-//                                 {.relative_error = 1e-6}); // log_value = -5000 + log(2 pi) / 2
+//                                 Method(), {.relative_error = 1e-6}); // log_value = -5000 + log(2 pi) / 2
 LogIntegrationResult integrate_log(const Integrand& log_f, const Domain& domain, const Method& method = {},
                                    const Budget& budget = {}, const IntegrationOptions& options = {});
 

@@ -35,11 +35,9 @@ namespace montelux {
 //   halton            Halton points of bases 2 to 719 with nested digit scrambling, then shuffled repetitions
 //   hammersley        the same after a first number that is equidistant over the replicate
 //   sobol             Owen-scrambled Sobol' points of 16 dimensions, then shuffled scrambled sets of 4
-//   (Burley 2020,
-//                     "Practical Hash-based Owen Scrambling")
+//                     (Burley 2020, "Practical Hash-based Owen Scrambling")
 //   sobol_blue_noise  shuffled scrambled planar Sobol' sets whose points the pixels take along a randomised Z
-//   curve
-//                     (Ahmed, Wonka 2020), in tiles of 4096 x 4096 pixels
+//                     curve (Ahmed, Wonka 2020), in tiles of 4096 x 4096 pixels
 class SampleStream {
   public:
     SampleStream(const SamplerSettings& settings, std::uint32_t pixel_x, std::uint32_t pixel_y,
