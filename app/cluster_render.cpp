@@ -23,7 +23,7 @@ namespace {
 
 // What the leader tells the others in the beginning, beside the files of the scene.
 struct Opening {
-    std::uint64_t content_hash = 0;
+    ContentDigest content_hash;
     SamplerSettings sampler;
     std::int32_t tile_size = 0;
 };

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view kind = "render";
 // Of the layout below.
-constexpr std::uint32_t layout_version = 1;
+constexpr std::uint32_t layout_version = 2;
 static_assert(std::is_trivially_copyable_v<Pixel> && std::endian::native == std::endian::little);
 
 template <typename... T>
@@ -60,9 +60,11 @@ std::uint64_t hash_of_text(std::string_view text) {
 // Another version of the program may take other samples.
 std::uint64_t version() { return hash_of(layout_version, hash_of_text(MONTELUX_VERSION)); }
 
-std::array<Fingerprint, 6> fingerprints(const SceneDescription& d, const RenderTarget& target) {
+std::array<Fingerprint, 7> fingerprints(const SceneDescription& d, const RenderTarget& target) {
     const FilmSettings& f = d.film;
-    return {{{"scene (its files changed)", d.content_hash},
+    constexpr const char* scene = "scene (its files changed)";
+    return {{{scene, d.content_hash.high},
+             {scene, d.content_hash.low},
              {"film",
               hash_of(f.width, f.height, f.crop.x0, f.crop.y0, f.crop.x1, f.crop.y1, hash_of_filter(f.filter),
                       f.iso, f.exposure_time, f.white_balance, f.max_component_value)},

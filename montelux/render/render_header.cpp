@@ -32,7 +32,7 @@ void add_render_header(Image& image, const std::string& scene_name, const SceneD
     auto& a = image.attributes();
     a["software"] = std::string("Montelux " MONTELUX_VERSION);
     a["scene"] = scene_name;
-    a["sceneHash"] = hexadecimal(description.content_hash);
+    a["sceneHash"] = hexadecimal(description.content_hash.high) + hexadecimal(description.content_hash.low);
     a["renderHash"] = hexadecimal(render_fingerprint(description, renderer.sampler()));
     a["samplesPerPixel"] = static_cast<int>(description.sampler.samples_per_pixel);
     a["stoppedBy"] = std::string(to_string(report.stop));

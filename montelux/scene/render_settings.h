@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "montelux/mc/random/sampler_settings.h"
+#include "montelux/scene/content_digest.h"
 #include "montelux/scene/film/film_settings.h"
 #include "montelux/scene/light/environment/environment_settings.h"
 #include "montelux/scene/scene.h"
@@ -47,8 +48,8 @@ struct SceneDescription {
     SamplerSettings sampler;
     IntegratorSettings integrator;
     std::string output_file; // the file's own wish; may be empty
-    // Fingerprint of all files that the scene was read from: text, meshes, pictures, spectra.
-    std::uint64_t content_hash = 0;
+    // Of all files that the scene was read from: text, meshes, pictures, spectra.
+    ContentDigest content_hash;
 };
 
 } // namespace montelux

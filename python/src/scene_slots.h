@@ -33,7 +33,7 @@ struct SceneHolder {
     // Takes a change into the fingerprint by which checkpoints know their scene.
     void note(const void* bytes, std::size_t size) {
         ContentHash hash;
-        const std::uint64_t before = description->content_hash;
+        const ContentDigest before = description->content_hash;
         hash.add(&before, sizeof before);
         hash.add(bytes, size);
         edit().content_hash = hash.value();

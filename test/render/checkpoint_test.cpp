@@ -109,7 +109,7 @@ TEST_F(Checkpoint, OtherRendersAreRefusedWithTheReason) {
         change(d);
         return d;
     };
-    refused(changed([](SceneDescription& d) { ++d.content_hash; }), {}, "scene");
+    refused(changed([](SceneDescription& d) { ++d.content_hash.low; }), {}, "scene");
     refused(changed([](SceneDescription& d) { d.film.iso *= 2; }), {}, "film");
     refused(changed([](SceneDescription& d) {
                 d.film.filter = GaussianFilter{{1.5f, 1.5f}, 0.4f};

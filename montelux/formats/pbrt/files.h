@@ -31,7 +31,7 @@ class Files {
     const std::vector<std::filesystem::path>& files_read() const { return files_read_; }
     void count_as_read(const std::filesystem::path& path) { files_read_.push_back(path); }
 
-    std::uint64_t content_hash() const { return hash_.value(); }
+    ContentDigest content_hash() const { return hash_.value(); }
     ContentHash& hash() { return hash_; }
 
   private:

@@ -67,7 +67,7 @@ TEST_F(PbrtFolder, FingerprintCoversEveryKindOfFile) {
                           {"part.pbrt", part, part.size() - 1},   {"part.pbrt.gz", packed_part, time_of_gzip},
                           {"grey.spd", spd, spd.size() - 1}};
     for (const File& f : files) write(f.name, f.bytes);
-    const std::uint64_t before = load(main).content_hash;
+    const ContentDigest before = load(main).content_hash;
     for (const File& f : files) {
         std::string changed = f.bytes;
         changed[f.change] = f.name == "part.pbrt" ? '\n' : static_cast<char>(changed[f.change] ^ 1);
