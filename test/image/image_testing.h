@@ -1,6 +1,7 @@
 // Helpers of the image tests: pictures with known contents, expected sentences.
 #pragma once
 
+#include "test/temporary_folder.h"
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -12,7 +13,6 @@
 #include "montelux/image/cube_map.h"
 #include "montelux/image/image.h"
 #include "montelux/mc/math/error.h"
-#include "test/temporary_folder.h"
 
 namespace montelux {
 
