@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "montelux/render/render_control.h"
+#include "montelux/render/render_target.h"
 #include "montelux/scene/render_settings.h"
 
 namespace CLI {

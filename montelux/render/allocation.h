@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "montelux/film/film.h"
-#include "montelux/render/render_control.h"
+#include "montelux/render/render_target.h"
 #include "montelux/render/sample_order.h"
 
 namespace montelux {

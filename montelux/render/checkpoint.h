@@ -6,7 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "montelux/render/render_control.h"
+#include "montelux/render/render_state.h"
+#include "montelux/render/render_target.h"
 #include "montelux/scene/render_settings.h"
 
 namespace montelux {

@@ -8,6 +8,8 @@
 #include "montelux/accel/accelerator.h"
 #include "montelux/film/film.h"
 #include "montelux/render/render_control.h"
+#include "montelux/render/render_state.h"
+#include "montelux/render/render_target.h"
 #include "montelux/scene/camera/camera.h"
 #include "montelux/scene/render_settings.h"
 #include "montelux/scene/scene_tables.h"

@@ -6,7 +6,8 @@
 #include <optional>
 
 #include "montelux/film/film_error.h"
-#include "montelux/render/render_control.h"
+#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/render/render_state.h"
 
 namespace montelux {
 

@@ -6,7 +6,7 @@
 
 #include "montelux/film/film.h"
 #include "montelux/film/pixel_filter.h"
-#include "montelux/render/render_control.h"
+#include "montelux/render/render_target.h"
 #include "montelux/scene/render_settings.h"
 #include "montelux/spectrum/wavelengths.h"
 #include "montelux/transport/path_record.h"

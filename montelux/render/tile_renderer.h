@@ -10,7 +10,7 @@
 #include "montelux/accel/accelerator.h"
 #include "montelux/film/film.h"
 #include "montelux/render/bad_sample_report.h"
-#include "montelux/render/render_control.h"
+#include "montelux/render/render_state.h"
 #include "montelux/render/sample_context.h"
 #include "montelux/render/sample_order.h"
 

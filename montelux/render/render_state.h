@@ -1,0 +1,46 @@
+// RenderState: the film and the report of a render so far, which a checkpoint holds.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "montelux/film/film.h"
+#include "montelux/render/bad_sample_report.h"
+#include "montelux/transport/ray_tracer.h"
+
+namespace montelux {
+
+enum class RenderStop : std::uint8_t {
+    samples,   // all samples were taken
+    error,     // the error was reached
+    time,      // the time was used up
+    cancelled, // on request
+};
+std::string_view to_string(RenderStop reason);
+
+struct RenderReport {
+    std::uint64_t samples = 0;
+    double seconds = 0;     // of the loop, wall clock
+    double cpu_seconds = 0; // of the loop, CPU time summed over threads
+    double ray_seconds = 0; // of those, spent in Embree (extrapolated from timed rays)
+    RayStatistics rays;
+    BadSampleReport bad;
+    std::uint64_t clamped_samples = 0; // by the film's limit
+    RenderStop stop = RenderStop::samples;
+
+    bool cancelled() const { return stop == RenderStop::cancelled; }
+};
+
+// A render between two samples of any of its pixels. A render resumed from it ends with the same bits as one
+// that was not interrupted.
+struct RenderState {
+    Film film;
+    // Samples that each pixel shall have at the end of the present round; empty before the first.
+    std::vector<std::uint32_t> goals;
+    RenderReport report; // so far
+
+    explicit RenderState(const FilmSettings& settings) : film(settings) {}
+};
+
+} // namespace montelux
