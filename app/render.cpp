@@ -201,9 +201,9 @@ RenderState initial_state(const RenderOptions& options, SceneDescription& descri
                      restored.newest_refused_because.c_str());
     description.sampler.replicate_points = restored.replicate_points;
     if (const double there = restored.state.film.error().mean_samples;
-        !options.quiet && target.slice.count == 1 && there > description.sampler.samples_per_pixel)
+        !options.quiet && target.slice.count == 1 && there > description.sampler.spp)
         std::fprintf(stderr, "montelux: %s has %.7g samples a pixel already, more than the %u asked for\n",
-                     options.checkpoint.c_str(), there, description.sampler.samples_per_pixel);
+                     options.checkpoint.c_str(), there, description.sampler.spp);
     return std::move(restored.state);
 }
 
@@ -239,8 +239,7 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     Renderer renderer(description, target);
     const PixelBounds& crop = description.film.crop;
     ProgressPrinter printer(options.quiet, target.quantile > 0 ? 0 : target.error,
-                            static_cast<double>(crop.width()) * crop.height() *
-                                description.sampler.samples_per_pixel);
+                            static_cast<double>(crop.width()) * crop.height() * description.sampler.spp);
     RenderControl control;
     control.progress = [&](const RenderProgress& p) { printer.update(p); };
     control.cancel = &cancel_on_signals();

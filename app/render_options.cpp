@@ -133,7 +133,7 @@ void declare(CLI::App& c, RenderOptions& o) {
         ->type_name("FILE")
         ->allow_extra_args(false); // the scene may stand behind it
     add_whole_number(c, "--spp", o.spp, 1, 1u << 30, "Samples a pixel, in place of the scene's");
-    add_whole_number(c, "--spp-max", o.spp_max, 1, 1u << 30,
+    add_whole_number(c, "--max-spp", o.max_spp, 1, 1u << 30,
                      "Samples a pixel at most, where an error or a time is asked for");
     add_parsed(c, "--target-error", "ERROR", o.target_error, parse_share,
                "Stop when the picture's relative error is this, for example 0.01 or 1%");
@@ -217,16 +217,13 @@ void apply(const RenderOptions& o, SceneDescription& d) {
         d.film.height = h;
     }
     if (o.crop) d.film.crop = crop_of(*o.crop, d.film.width, d.film.height);
-    const bool open_ended = (o.target_error || o.time) && !o.spp && !o.spp_max;
-    if (open_ended) d.sampler.samples_per_pixel = most_samples;
-    if (o.spp_max)
-        d.sampler.samples_per_pixel =
-            o.target_error || o.time
-                ? static_cast<std::uint32_t>(*o.spp_max)
-                : std::min(d.sampler.samples_per_pixel, static_cast<std::uint32_t>(*o.spp_max));
-    if (o.spp)
-        d.sampler.samples_per_pixel =
-            static_cast<std::uint32_t>(std::min(*o.spp, o.spp_max.value_or(*o.spp)));
+    const bool open_ended = (o.target_error || o.time) && !o.spp && !o.max_spp;
+    if (open_ended) d.sampler.spp = most_samples;
+    if (o.max_spp)
+        d.sampler.spp = o.target_error || o.time
+                            ? static_cast<std::uint32_t>(*o.max_spp)
+                            : std::min(d.sampler.spp, static_cast<std::uint32_t>(*o.max_spp));
+    if (o.spp) d.sampler.spp = static_cast<std::uint32_t>(std::min(*o.spp, o.max_spp.value_or(*o.spp)));
     if (o.seed) d.sampler.seed = *o.seed;
     if (o.sampler) d.sampler.kind = *o.sampler;
     if (o.strategy) d.integrator.strategy = *o.strategy;
@@ -247,7 +244,7 @@ RenderTarget target_of(const RenderOptions& o) {
     RenderTarget target;
     target.error = o.target_error.value_or(0);
     target.quantile = o.target_quantile.value_or(0);
-    target.seconds = o.time.value_or(0);
+    target.time = o.time.value_or(0);
     target.adaptive = o.adaptive.value_or(o.target_error.has_value());
     target.slice = o.slice;
     if (target.slice.count > 1 && (target.error > 0 || target.adaptive))

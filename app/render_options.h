@@ -27,7 +27,7 @@ struct SampleAddress {
 struct RenderOptions {
     std::string scene;
     std::vector<std::string> outputs;
-    std::optional<std::uint64_t> spp, spp_max, seed, max_depth;
+    std::optional<std::uint64_t> spp, max_spp, seed, max_depth;
     std::optional<double> target_error, target_quantile, clamp;
     std::optional<double> time; // seconds
     std::optional<bool> adaptive;

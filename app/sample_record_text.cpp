@@ -303,9 +303,8 @@ void add_result(Text& t, const SampleRecord& r) {
 std::string sample_record_text(const SampleRecord& r, const SceneDescription& d) {
     Text t;
     t.add("sample %llu of %u of pixel %d,%d, sampler %s, seed %llu, strategy %s",
-          static_cast<unsigned long long>(r.index), d.sampler.samples_per_pixel, r.x, r.y,
-          name_of(d.sampler.kind).data(), static_cast<unsigned long long>(d.sampler.seed),
-          name_of(d.integrator.strategy).data());
+          static_cast<unsigned long long>(r.index), d.sampler.spp, r.x, r.y, name_of(d.sampler.kind).data(),
+          static_cast<unsigned long long>(d.sampler.seed), name_of(d.integrator.strategy).data());
     if (d.integrator.strategy >= Strategy::mis)
         t.add(" with the %s heuristic", name_of(d.integrator.heuristic).data());
     t.end();

@@ -13,9 +13,8 @@ void sample_stream(benchmark::State& state) {
                                              static_cast<std::uint32_t>(state.range(1)), 4};
     std::uint64_t sample = 0;
     for (auto _ : state) {
-        const auto pixel = static_cast<std::uint32_t>(sample / settings.samples_per_pixel);
-        montelux::SampleStream stream(settings, pixel % 1024, pixel / 1024,
-                                      sample % settings.samples_per_pixel);
+        const auto pixel = static_cast<std::uint32_t>(sample / settings.spp);
+        montelux::SampleStream stream(settings, pixel % 1024, pixel / 1024, sample % settings.spp);
         float sum = 0;
         for (int k = 0; k < 8; ++k) {
             const montelux::Vec2f pair = stream.next_2d();

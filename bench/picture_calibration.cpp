@@ -31,7 +31,7 @@ struct Options {
     std::vector<bool> adaptive{false, true};
     std::uint32_t spp = 256;
     std::vector<double> targets;
-    double seconds = 0; // at most, for a target
+    double time = 0; // seconds at most, for a target
     std::uint64_t seed = 1;
     int renders = 0; // of each target, beside one another instead of the reference
     int width = 160; // of those, in pixels
@@ -147,8 +147,8 @@ void print_targets(const Options& o, const std::string& name, const SceneDescrip
     for (double target : o.targets)
         for (const std::string& sampler : o.samplers)
             for (bool adaptive : o.adaptive) {
-                const Figures f = render(d, r, sampler, adaptive, {.error = target, .seconds = o.seconds},
-                                         1u << 30, o.seed);
+                const Figures f =
+                    render(d, r, sampler, adaptive, {.error = target, .time = o.time}, 1u << 30, o.seed);
                 std::printf("| %s | %g %% | %s | %s | %.1f | %.2f %% | %.2f %% | %.2f | %.2f %% | %s |\n",
                             name.c_str(), 100 * target, sampler.c_str(), adaptive ? "on" : "off",
                             f.claimed.mean_samples, 100 * f.claimed.relative, 100 * f.true_error,
@@ -171,8 +171,7 @@ void print_spread(const Options& o, const std::string& name, SceneDescription d)
                     d.sampler = sampler_settings(sampler, o.seed + static_cast<std::uint64_t>(k), 1u << 24);
                     Film film(d.film);
                     const RenderReport report =
-                        Renderer(d, {.error = target, .seconds = o.seconds, .adaptive = adaptive})
-                            .render(film);
+                        Renderer(d, {.error = target, .time = o.time, .adaptive = adaptive}).render(film);
                     claimed.add(film.error().relative);
                     samples.add(film.error().mean_samples);
                     reached.add(report.stop == RenderStop::error);
@@ -304,7 +303,7 @@ Options parse(const std::vector<std::string>& arguments) {
         else if (option == "--target")
             for (const std::string& x : items_of(value)) o.targets.push_back(number_of<double>(option, x));
         else if (option == "--time")
-            o.seconds = number_of<double>(option, value);
+            o.time = number_of<double>(option, value);
         else if (option == "--renders")
             o.renders = number_of<int>(option, value);
         else if (option == "--width")

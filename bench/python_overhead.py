@@ -48,7 +48,7 @@ def renders(program: str) -> None:
             ).stdout
             line = next(line for line in text.splitlines() if line.startswith("render "))
             there = float(line.split(",")[1].split()[0])
-            render = scene.render(samples=samples, threads=1, progress=lambda p: None).wait()
+            render = scene.render(spp=samples, threads=1, progress=lambda p: None).wait()
             here = render._look().cpu_seconds
             times.append((there, here))
             print(f"  render loop: {there:.3f} s of CPU in the program, {here:.3f} s here", flush=True)

@@ -73,7 +73,7 @@ print(scene)
 # the picture by itself.
 
 # %%
-render = scene.render(samples=32)
+render = scene.render(spp=32)
 render
 
 # %% [markdown]
@@ -107,7 +107,7 @@ plt.show()
 
 # %%
 scene.film.resolution = 72, 54
-renders = {samples: scene.render(samples=samples, seed=samples) for samples in (8, 32, 128)}
+renders = {samples: scene.render(spp=samples, seed=samples) for samples in (8, 32, 128)}
 for samples, r in renders.items():
     print(f"{samples:4} samples a pixel: relative error {100 * r.relative_error:.2f} %")
 
@@ -129,7 +129,7 @@ montelux.compare(short, long)
 
 # %%
 scene.sampler.kind = "independent"
-short_independent, long_independent = scene.render(samples=32), scene.render(samples=64, seed=1)
+short_independent, long_independent = scene.render(spp=32), scene.render(spp=64, seed=1)
 for name, a, b in (("sobol", short, long), ("independent", short_independent, long_independent)):
     z = montelux.compare(a, b).z
     shares = ", ".join(f"{100 * share:.1f}" for share in z.within)
@@ -163,9 +163,7 @@ plt.show()
 # %%
 aimed = scene.render(target_error=0.1)
 for name, r in (("to an error", aimed), ("equally", renders[128])):
-    print(
-        f"{name:12} {r.samples_per_pixel:5.1f} samples a pixel, relative error {100 * r.relative_error:.1f} %, by {r.stopped_by}"
-    )
+    print(f"{name:12} {r.spp:5.1f} samples a pixel, relative error {100 * r.relative_error:.1f} %, by {r.stopped_by}")
 print(f"samples of a pixel: from {aimed.layers['samples'].min():.0f} to {aimed.layers['samples'].max():.0f}")
 
 # %%
@@ -184,7 +182,7 @@ plt.show()
 # on your machine; looking changes no bit of the result. `render.stop()` and Ctrl-C end it with what there is.
 
 # %% tags=["varies"]
-for picture in scene.render(samples=32, every=0.2):
+for picture in scene.render(spp=32, every=0.2):
     print(picture)
 
 # %% [markdown]
@@ -198,7 +196,7 @@ ring.material = montelux.CoatedDiffuse(reflectance=(0.15, 0.5, 0.3), roughness=0
 lamp.light.scale *= 1.5
 scene.camera.fov = 27
 scene.film.resolution = 144, 108
-scene.render(samples=32)
+scene.render(spp=32)
 
 # %% [markdown]
 # Names that do not exist are answered with the nearest one that does:

@@ -1,6 +1,7 @@
 #include "montelux/formats/nearest_name.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace montelux {
@@ -26,10 +27,36 @@ std::size_t edits(std::string_view a, std::string_view b) {
     return previous[b.size()];
 }
 
+struct Synonym {
+    std::string_view other, ours;
+};
+
+// Names that earlier versions and other programs have for settings of renders and integrals.
+constexpr std::array<Synonym, 9> synonyms{{{"samples", "spp"},
+                                           {"samples-per-pixel", "spp"},
+                                           {"max-samples", "max-spp"},
+                                           {"spp-max", "max-spp"},
+                                           {"samples-max", "max-spp"},
+                                           {"seconds", "time"},
+                                           {"max-time", "time"},
+                                           {"time-limit", "time"},
+                                           {"timeout", "time"}}};
+
+// Options have two dashes before them and dashes within, arguments of functions have underscores.
+bool same_words(std::string_view a, std::string_view b) {
+    auto plain = [](char c) { return c == '_' ? '-' : c; };
+    if (a.starts_with("--")) a.remove_prefix(2);
+    return std::ranges::equal(a, b, {}, plain);
+}
+
 } // namespace
 
 std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates) {
     if (name.size() > 64) return {};
+    for (const Synonym& s : synonyms)
+        if (same_words(name, s.other))
+            for (const std::string_view candidate : candidates)
+                if (same_words(candidate, s.ours)) return candidate;
     std::string_view best;
     std::size_t best_edits = std::max<std::size_t>(2, name.size() / 3) + 1;
     for (std::string_view candidate : candidates) {

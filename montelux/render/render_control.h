@@ -12,6 +12,7 @@
 namespace montelux {
 
 struct RenderState;
+
 class RoundExecutor;
 
 struct RenderProgress {

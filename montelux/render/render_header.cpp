@@ -34,7 +34,7 @@ void add_render_header(Image& image, const std::string& scene_name, const SceneD
     a["scene"] = scene_name;
     a["sceneHash"] = hexadecimal(description.content_hash.high) + hexadecimal(description.content_hash.low);
     a["renderHash"] = hexadecimal(render_fingerprint(description, renderer.sampler()));
-    a["samplesPerPixel"] = static_cast<int>(description.sampler.samples_per_pixel);
+    a["spp"] = static_cast<int>(description.sampler.spp);
     a["stoppedBy"] = std::string(to_string(report.stop));
     const RenderTarget& target = renderer.target();
     if (target.error > 0) a["targetError"] = static_cast<float>(target.error);

@@ -12,7 +12,7 @@ struct RenderTarget {
     // within which a share `quantile` of the pixels lies. 0: none.
     double error = 0;
     double quantile = 0;
-    double seconds = 0; // wall clock, of all sessions of a resumed render; 0: no limit
+    double time = 0; // seconds of wall clock, of all sessions of a resumed render; 0: no limit
     bool adaptive = false;
     Slice slice{};
 

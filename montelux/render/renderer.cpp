@@ -67,7 +67,7 @@ class RenderLoop {
     }
     bool out_of_time() const {
         // A picture with a sample of each pixel is the least there is to show.
-        return renderer_.target().seconds > 0 && every_pixel_seen_ && seconds() >= renderer_.target().seconds;
+        return renderer_.target().time > 0 && every_pixel_seen_ && seconds() >= renderer_.target().time;
     }
     void pause_if_due() {
         if (checkpoint_is_due() || out_of_time()) pause_ = true;
@@ -248,8 +248,7 @@ std::string_view to_string(RenderStop reason) {
 Renderer::Renderer(const SceneDescription& description, const RenderTarget& target)
     : description_(description), target_(target), sampler_(with_replicates(description.sampler, target)),
       camera_(description.scene.camera, description.film.width, description.film.height) {
-    if (description.sampler.samples_per_pixel < 1)
-        throw Error("sampler", "at least 1 sample a pixel is needed");
+    if (description.sampler.spp < 1) throw Error("sampler", "at least 1 sample a pixel is needed");
     check_slice(description, target);
     auto begin = Clock::now();
     tables_ = std::make_unique<SceneTables>(description.scene, description.integrator.environments());

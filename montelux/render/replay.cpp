@@ -24,10 +24,9 @@ void check_sample(const SceneDescription& d, int x, int y, std::uint64_t index, 
                     std::string(whole ? "the film" : "the crop of the film") + " has columns " +
                         range(crop.x0, crop.x1) + " and rows " + range(crop.y0, crop.y1));
     }
-    if (!target.adaptive && index >= d.sampler.samples_per_pixel)
-        throw Error("sample " + std::to_string(index), "the pixel has " +
-                                                           std::to_string(d.sampler.samples_per_pixel) +
-                                                           " samples, counted from 0");
+    if (!target.adaptive && index >= d.sampler.spp)
+        throw Error("sample " + std::to_string(index),
+                    "the pixel has " + std::to_string(d.sampler.spp) + " samples, counted from 0");
 }
 
 SampleRecord Renderer::replay(int x, int y, std::uint64_t index) const {

@@ -27,15 +27,13 @@ SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& ta
     if (settings.kind == SamplerKind::independent || settings.replicates >= 2 ||
         settings.replicate_points != 0)
         return settings;
-    if (target.error > 0 || target.seconds > 0)
-        settings.replicate_points = std::clamp(settings.samples_per_pixel / 8, 1u, points_for_targets);
+    if (target.error > 0 || target.time > 0)
+        settings.replicate_points = std::clamp(settings.spp / 8, 1u, points_for_targets);
     else if (target.adaptive) // pixels that get a third of the samples still have twenty units
-        settings.replicate_points =
-            std::clamp(std::bit_floor(settings.samples_per_pixel / 64), 1u, points_for_targets);
+        settings.replicate_points = std::clamp(std::bit_floor(settings.spp / 64), 1u, points_for_targets);
     else
         settings.replicates =
-            std::min(std::max(settings.samples_per_pixel < many_samples ? 8u : 16u, target.slice.count),
-                     settings.samples_per_pixel);
+            std::min(std::max(settings.spp < many_samples ? 8u : 16u, target.slice.count), settings.spp);
     return settings;
 }
 
@@ -57,7 +55,7 @@ std::vector<std::uint32_t> next_goals(const RenderState& state, const SamplerSet
     if (target.adaptive && begin >= pilot) return allocate(state.film, order, target);
     if (begin >= share) return {};
     std::uint64_t end = pilot;
-    if (!target.adaptive || target.seconds > 0) { // 1, 2, 4, 8, 16, 32, 48, ... samples
+    if (!target.adaptive || target.time > 0) { // 1, 2, 4, 8, 16, 32, 48, ... samples
         end = begin + std::clamp<std::uint64_t>(std::bit_floor(begin), 1, longest_round);
         if (order.unit() > 1) end = std::min(end, (begin / order.unit() + 1) * order.unit());
         if (target.adaptive) end = std::min(end, pilot);

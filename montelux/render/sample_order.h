@@ -20,7 +20,7 @@ class SampleOrder {
   public:
     SampleOrder(const SamplerSettings& sampler, Slice slice)
         : unit_(sampler.kind == SamplerKind::independent ? 1 : points_per_replicate(sampler)),
-          samples_(sampler.samples_per_pixel), slice_(slice) {}
+          samples_(sampler.spp), slice_(slice) {}
 
     std::uint32_t unit() const { return unit_; }
     // Sample index of the i-th sample that this slice takes.
@@ -29,7 +29,7 @@ class SampleOrder {
     }
     // Is no unit open after the first n samples?
     bool closed(std::uint64_t n) const { return n % unit_ == 0; }
-    // Samples that this slice takes of samples_per_pixel; the last replicate may be shorter than the others.
+    // Samples that this slice takes of spp; the last replicate may be shorter than the others.
     std::uint64_t share() const {
         const std::uint64_t whole = samples_ / unit_, rest = samples_ % unit_;
         const std::uint64_t mine = whole / slice_.count + (slice_.index < whole % slice_.count);

@@ -111,7 +111,7 @@ def integrate(
     relative_error: float = 0.0,
     absolute_error: float = 0.0,
     evaluations: int | float | None = None,
-    seconds: float | None = None,
+    time: float | None = None,
     seed: int = 0,
     threads: int = 1,
     batch: bool = True,
@@ -140,7 +140,7 @@ def integrate(
     `Vegas(alpha=0.5)`. `montelux.METHODS` lists the names; docs/integration.md says which is for what.
 
     It stops when every component's standard error is below the larger of `absolute_error` and `relative_error`
-    times its value; after so many `evaluations`; or `seconds`. Without any of these after 1e6 evaluations.
+    times its value; after so many `evaluations`; or `time` seconds. Without any of these after 1e6 evaluations.
 
     The result depends on f, domain, method, budget and seed, and not on `threads`. Python runs one thread at a
     time, so that more than one helps only functions that release the interpreter's lock for long; 0: one a
@@ -166,7 +166,7 @@ def integrate(
         relative_error=relative_error,
         absolute_error=absolute_error,
         evaluations=evaluations,
-        seconds=seconds,
+        time=time,
         seed=seed,
         threads=threads,
         batch=batch,
@@ -189,7 +189,7 @@ def integrate_log(
     *,
     relative_error: float = 0.0,
     evaluations: int | float | None = None,
-    seconds: float | None = None,
+    time: float | None = None,
     seed: int = 0,
     threads: int = 1,
     batch: bool = True,
@@ -221,7 +221,7 @@ def integrate_log(
         relative_error=relative_error,
         absolute_error=0.0,
         evaluations=evaluations,
-        seconds=seconds,
+        time=time,
         seed=seed,
         threads=threads,
         batch=batch,
@@ -247,7 +247,7 @@ def _run(
     relative_error: float,
     absolute_error: float,
     evaluations: int | float | None,
-    seconds: float | None,
+    time: float | None,
     seed: int,
     threads: int,
     batch: bool,
@@ -274,8 +274,8 @@ def _run(
     if evaluations is not None:
         if not (is_number(evaluations) and 1 <= evaluations < 2**63 and float(evaluations).is_integer()):
             raise Error(f"evaluations: {evaluations!r} was given; expected a whole number above zero and below 2**63")
-    if seconds is not None and not (is_number(seconds) and seconds > 0):
-        raise Error(f"seconds: {seconds!r} was given; expected a time above zero")
+    if time is not None and not (is_number(time) and time > 0):
+        raise Error(f"time: {time!r} was given; expected a number of seconds above zero")
     if not (is_whole(seed) and 0 <= seed < 2**64):
         raise Error(f"seed: {seed!r} was given; expected a whole number in [0, 2**64)")
     if not (is_whole(threads) and 0 <= threads <= MOST_THREADS):
@@ -304,7 +304,7 @@ def _run(
             float(relative_error),
             float(absolute_error),
             0 if evaluations is None else int(evaluations),
-            0.0 if seconds is None else float(seconds),
+            0.0 if time is None else float(time),
             int(seed),
             int(threads),
             non_finite == "throw",

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Callable, Iterable
+from functools import wraps
+from inspect import Parameter, signature
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -28,7 +30,8 @@ _ELSEWHERE = {
     "relative_error": ("rtol", "reltol", "rel_tol", "epsrel", "eps_rel", "rel_err", "tol"),
     "absolute_error": ("atol", "abstol", "abs_tol", "epsabs", "eps_abs", "abs_err"),
     "evaluations": ("neval", "nitn", "maxeval", "max_eval", "max_nfev", "nfev", "n", "N", "n_samples", "num_samples"),
-    "seconds": ("time", "timeout", "time_limit", "max_time"),
+    "time": ("seconds", "timeout", "time_limit", "max_time"),
+    "seconds": ("time", "elapsed", "wall_time"),
     "threads": ("nproc", "workers", "n_jobs", "n_threads", "num_threads"),
     "seed": ("rng", "random_state"),
     "value": ("mean", "val", "integral", "result", "estimate"),
@@ -43,7 +46,13 @@ _ELSEWHERE = {
     "log_error": ("logzerr", "logz_err"),
 }
 _OF_LOGARITHMS = {"value": "log_value", "standard_error": "log_error"}
-_OURS = {theirs: ours for ours, names in _ELSEWHERE.items() for theirs in names}
+_OURS: dict[str, list[str]] = {}
+for _ours, _names in _ELSEWHERE.items():
+    for _theirs in _names:
+        _OURS.setdefault(_theirs, []).append(_ours)
+
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
 class UnknownAttribute(Error, AttributeError):
@@ -53,8 +62,9 @@ class UnknownAttribute(Error, AttributeError):
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """`" (did you mean 'x'?)"`, or nothing where no known name is near."""
     known = list(known)
-    ours = _OURS.get(name, name)
-    nearest = next((n for n in (ours, _OF_LOGARITHMS.get(ours)) if n in known), None) or nearest_name(name, known)
+    ours = _OURS.get(name, [name])
+    near = [*ours, *(_OF_LOGARITHMS.get(n) for n in ours)]
+    nearest = next((n for n in near if n in known), None) or nearest_name(name, known)
     return f" (did you mean '{nearest}'?)" if nearest else ""
 
 
@@ -82,6 +92,21 @@ def public_names(kind: type) -> list[str]:
 def settings_of(kind: type) -> list[str]:
     """The attributes of a class of settings that can be set, in the order of their declaration."""
     return [name for name, value in vars(kind).items() if isinstance(value, property) and value.fset is not None]
+
+
+def strict_arguments(function: _Function) -> _Function:
+    """A function that answers an argument that it does not have with the nearest name."""
+    parameters = signature(function).parameters.values()
+    known = [p.name for p in parameters if p.kind is Parameter.KEYWORD_ONLY]
+
+    @wraps(function)
+    def checked(*values: Any, **named: Any) -> Any:
+        for name in named:
+            if name not in known:
+                raise Error(f"{function.__name__}: " + unknown("argument", name, known))
+        return function(*values, **named)
+
+    return checked  # type: ignore[return-value]
 
 
 def strict(*kinds: type) -> None:

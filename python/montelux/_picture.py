@@ -76,8 +76,8 @@ class Picture:
         return self._look().relative_error
 
     @property
-    def samples_per_pixel(self) -> float:
-        """Samples that pixels have, on average."""
+    def spp(self) -> float:
+        """Samples per pixel, on average."""
         return self._look().mean_samples
 
     @property
@@ -114,7 +114,7 @@ class Picture:
         known = math.isfinite(self.relative_error)
         error = f"relative error {100 * self.relative_error:.3g} %" if known else "error not known yet"
         return (
-            f"<{type(self).__name__}: {width} x {height} pixels, {self.samples_per_pixel:.7g} samples a pixel, "
+            f"<{type(self).__name__}: {width} x {height} pixels, {self.spp:.7g} samples a pixel, "
             f"{error}, {self.seconds:.3g} s>"
         )
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from . import _core
 from ._core import Error
-from ._names import MOST_THREADS, is_number, is_whole, settings_of, strict, unknown
+from ._names import MOST_THREADS, is_number, is_whole, settings_of, strict, strict_arguments, unknown
 from ._render import Progress, Render
 
 _MOST_SAMPLES = 1 << 24  # of a pixel, where an error or a time decides
@@ -23,14 +23,15 @@ class Scene(_core.SceneBase):
     it: setting their attributes changes the scene. Renders that go on do not change with it.
     """
 
+    @strict_arguments
     def render(
         self,
         *,
-        samples: int | None = None,
+        spp: int | None = None,
+        max_spp: int | None = None,
         target_error: float | None = None,
         target_quantile: float | None = None,
-        seconds: float | None = None,
-        max_samples: int | None = None,
+        time: float | None = None,
         adaptive: bool | None = None,
         seed: int | None = None,
         threads: int = 0,
@@ -44,11 +45,11 @@ class Scene(_core.SceneBase):
     ) -> Render:
         """Starts to render, and returns the Render, which goes on by itself.
 
-        It stops after `samples` of each pixel (without it, those of `scene.sampler`); when the relative error
-        of the picture is below `target_error` (0.02: two per cent), or with `target_quantile` the error of that
-        share of the pixels; after so many `seconds`; at `max_samples` of a pixel, on average. With a target or a
-        time and no `samples` the scene's own number does not count. `adaptive`: more samples where the error is;
-        on where an error is asked for.
+        It stops after `spp` samples per pixel (default: `scene.sampler.spp`); when the relative error of the
+        picture is below `target_error` (0.02: two per cent), or with `target_quantile` the error of that share of
+        the pixels; after `time` seconds; at `max_spp` samples per pixel, on average. With a target or a time and
+        no `spp` the scene's own number does not count. `adaptive`: more samples where the error is; on where an
+        error is asked for.
 
         The picture depends on scene, seed and what is asked for, and not on `threads` (0: one a processor).
 
@@ -61,12 +62,12 @@ class Scene(_core.SceneBase):
         parts. denoise: the finished picture is denoised too, by Open Image Denoise (layer 'denoised'), unless it
         is stopped before.
         """
-        for name, value in (("samples", samples), ("max_samples", max_samples)):
+        for name, value in (("spp", spp), ("max_spp", max_spp)):
             if value is not None and not (is_whole(value) and 1 <= value <= 1 << 30):
                 raise Error(f"render: {name}={value!r} was given; expected a whole number from 1 to {1 << 30}")
         for name, number in (
             ("target_error", target_error),
-            ("seconds", seconds),
+            ("time", time),
             ("every", every),
             ("checkpoint_every", checkpoint_every),
         ):
@@ -90,23 +91,23 @@ class Scene(_core.SceneBase):
             raise Error(f"render: slice={slice!r} was given; expected (k, n) with k from 1 to n")
         if part[1] > 1 and (target_error is not None or adaptive):
             raise Error(
-                "render: slices share a number of samples a pixel; give samples, without target_error and adaptive"
+                "render: slices share a number of samples per pixel; give spp, without target_error and adaptive"
             )
-        aimed = target_error is not None or seconds is not None
-        most = samples
-        if samples is None and max_samples is not None:
-            most = max_samples if aimed else min(max_samples, self.sampler.samples_per_pixel)
-        elif samples is None and aimed:
+        aimed = target_error is not None or time is not None
+        most = spp
+        if spp is None and max_spp is not None:
+            most = max_spp if aimed else min(max_spp, self.sampler.spp)
+        elif spp is None and aimed:
             most = _MOST_SAMPLES
-        elif samples is not None and max_samples is not None:
-            most = min(samples, max_samples)
+        elif spp is not None and max_spp is not None:
+            most = min(spp, max_spp)
         job = _core.start_render(
             self,
-            samples=None if most is None else int(most),
+            spp=None if most is None else int(most),
             seed=None if seed is None else int(seed),
             target_error=float(target_error or 0),
             target_quantile=float(target_quantile or 0),
-            seconds=float(seconds or 0),
+            time=float(time or 0),
             adaptive=target_error is not None if adaptive is None else bool(adaptive),
             threads=int(threads),
             checkpoint="" if checkpoint is None else os.fspath(checkpoint),

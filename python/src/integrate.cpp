@@ -48,7 +48,7 @@ void bind_call(nb::module_& m, const char* name, const char* help, const Integra
     m.def(
         name,
         [integrate](nb::object f, int components, bool into, const Domain& domain, const Method& method,
-                    double relative_error, double absolute_error, std::uint64_t evaluations, double seconds,
+                    double relative_error, double absolute_error, std::uint64_t evaluations, double time,
                     std::uint64_t seed, int threads, bool throw_non_finite, bool covariance,
                     const nb::object& progress, const std::string& checkpoint, double checkpoint_every,
                     bool resume) {
@@ -61,12 +61,12 @@ void bind_call(nb::module_& m, const char* name, const char* help, const Integra
             options.checkpoint_every = std::chrono::duration<double>(checkpoint_every);
             options.resume = resume;
             const Budget budget{relative_error, absolute_error, evaluations,
-                                std::chrono::duration<double>(seconds)};
+                                std::chrono::duration<double>(time)};
             return run(integrate, std::move(f), components, into, domain, method, budget, std::move(options),
                        progress);
         },
         "f"_a, "components"_a, "into"_a, "domain"_a, "method"_a, "relative_error"_a, "absolute_error"_a,
-        "evaluations"_a, "seconds"_a, "seed"_a, "threads"_a, "throw_non_finite"_a, "covariance"_a,
+        "evaluations"_a, "time"_a, "seed"_a, "threads"_a, "throw_non_finite"_a, "covariance"_a,
         "progress"_a.none(), "checkpoint"_a, "checkpoint_every"_a, "resume"_a, help);
 }
 

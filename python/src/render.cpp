@@ -19,24 +19,24 @@ void check_scene(const SceneHolder& scene) {
                     "the scene has no camera; set scene.camera, for example to PerspectiveCamera(fov=40)");
 }
 
-std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::uint32_t> samples,
+std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::uint32_t> spp,
                                  std::optional<std::uint64_t> seed, double target_error, double quantile,
-                                 double seconds, bool adaptive, int threads,
+                                 double time, bool adaptive, int threads,
                                  const std::filesystem::path& checkpoint, double checkpoint_every,
                                  bool resume, std::pair<std::uint32_t, std::uint32_t> slice, bool denoise) {
     check_scene(*scene.holder);
     std::shared_ptr<const SceneDescription> description = scene.holder->description;
     const SamplerSettings& sampler = description->sampler;
-    if ((samples && *samples != sampler.samples_per_pixel) || (seed && *seed != sampler.seed)) {
+    if ((spp && *spp != sampler.spp) || (seed && *seed != sampler.seed)) {
         auto own = std::make_shared<SceneDescription>(*description);
-        if (samples) own->sampler.samples_per_pixel = *samples;
+        if (spp) own->sampler.spp = *spp;
         if (seed) own->sampler.seed = *seed;
         description = std::move(own);
     }
     RenderJobSettings settings;
     settings.target.error = target_error;
     settings.target.quantile = quantile;
-    settings.target.seconds = seconds;
+    settings.target.time = time;
     settings.target.adaptive = adaptive;
     settings.threads = threads;
     settings.checkpoint = checkpoint;
@@ -129,8 +129,8 @@ void bind_render(nb::module_& m) {
         .def_prop_ro("refused_checkpoint", &RenderJob::refused_checkpoint)
         .def_prop_ro("checkpoint_failure", &RenderJob::checkpoint_failure)
         .def_prop_ro("denoise_failure", &RenderJob::denoise_failure);
-    m.def("start_render", &start, "scene"_a, "samples"_a.none(), "seed"_a.none(), "target_error"_a,
-          "target_quantile"_a, "seconds"_a, "adaptive"_a, "threads"_a, "checkpoint"_a, "checkpoint_every"_a,
+    m.def("start_render", &start, "scene"_a, "spp"_a.none(), "seed"_a.none(), "target_error"_a,
+          "target_quantile"_a, "time"_a, "adaptive"_a, "threads"_a, "checkpoint"_a, "checkpoint_every"_a,
           "resume"_a, "slice"_a, "denoise"_a, "montelux.Scene.render, with everything decided.");
     m.def("check_writable", &check_writable, "path"_a);
 }

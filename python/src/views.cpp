@@ -218,10 +218,9 @@ void bind_views(nb::module_& m) {
         },
         "Other seeds give other noise.");
     attribute<SamplerSettings>(
-        sampler, "samples_per_pixel", "int",
-        [](const SamplerSettings& s, const auto&) { return nb::cast(s.samples_per_pixel); },
+        sampler, "spp", "int", [](const SamplerSettings& s, const auto&) { return nb::cast(s.spp); },
         [](SamplerSettings& s, nb::handle v, auto&, const std::string& what) {
-            s.samples_per_pixel = static_cast<std::uint32_t>(whole_number_of(v, 1, 1 << 30, what));
+            s.spp = static_cast<std::uint32_t>(whole_number_of(v, 1, 1 << 30, what));
         },
         "Samples of each pixel, where nothing else is asked for.");
     auto integrator = value_class<IntegratorSettings>(m, "Integrator", "How light is followed.");

@@ -301,7 +301,7 @@ def test_progress_line(capsys):
 
 def test_time_limit():
     begin = time.monotonic()
-    r = montelux.integrate(sine_times_y, BOX, "basic", seconds=0.2)
+    r = montelux.integrate(sine_times_y, BOX, "basic", time=0.2)
     assert r.stop == "time" and time.monotonic() - begin < 2
 
 
@@ -347,7 +347,7 @@ def test_other_threads_go_on_meanwhile():
     thread = threading.Thread(target=count)
     thread.start()
     before = len(counted)
-    montelux.integrate(slow, (0, 1), "basic", seconds=0.3, threads=2)
+    montelux.integrate(slow, (0, 1), "basic", time=0.3, threads=2)
     after = len(counted)
     done.set()
     thread.join()
@@ -364,7 +364,7 @@ def soon():
 threading.Thread(target=soon, daemon=True).start()
 begin = time.monotonic()
 try:
-    montelux.integrate({f}, (0, 1), "basic", seconds=30, threads={threads}, components=0)
+    montelux.integrate({f}, (0, 1), "basic", time=30, threads={threads}, components=0)
 except KeyboardInterrupt:
     print("interrupted after", time.monotonic() - begin)
     sys.exit(0 if time.monotonic() - begin < 10 else 3)

@@ -22,7 +22,7 @@ def white_furnace(reflectance=0.5):
     scene.camera = montelux.PerspectiveCamera(fov=40, look_at=((0, -4, 0), (0, 0, 0)))
     scene.film.resolution = 16, 16
     scene.sampler.kind = "independent"
-    scene.sampler.samples_per_pixel = 64
+    scene.sampler.spp = 64
     scene.lights.append(montelux.UniformInfiniteLight(spectrum=(1, 1, 1)))
     scene.add_sphere(1, montelux.Diffuse(reflectance=reflectance))
     return scene
@@ -35,7 +35,7 @@ def test_a_render_gives_arrays_with_errors(scene):
         "mean", "standard_error", "skewness", "albedo", "normal", "samples", "units", "outlier", "doubt", "depth",
     }  # fmt: skip
     assert render.layers["depth"].shape == (24, 32) and np.all(render.layers["samples"] == 16)
-    assert render.stopped_by == "samples" and render.samples_per_pixel == 16 and render.finished
+    assert render.stopped_by == "samples" and render.spp == 16 and render.finished
     assert 0 < render.relative_error < 0.2 and render.seconds > 0
     assert np.array_equal(np.asarray(render), render.mean)
     assert not render.mean.flags.writeable and render.mean.base is not None
@@ -44,7 +44,7 @@ def test_a_render_gives_arrays_with_errors(scene):
 
 
 def test_layers_are_views_of_one_picture(scene):
-    render = scene.render(samples=1)
+    render = scene.render(spp=1)
     mean, error = render.mean, render.standard_error
     address = [a.__array_interface__["data"][0] for a in (mean, error)]
     assert address[1] - address[0] == 3 * 4 and mean.strides[1] == error.strides[1] > 9 * 4
@@ -53,7 +53,7 @@ def test_layers_are_views_of_one_picture(scene):
 
 
 def test_the_mean_is_right():
-    render = white_furnace().render(samples=256)
+    render = white_furnace().render(spp=256)
     middle = render.mean[7:9, 7:9]
     assert np.all(np.abs(middle - 0.5) < 6 * render.standard_error[7:9, 7:9] + 1e-4)
     corner = render.mean[0, 0]
@@ -69,10 +69,10 @@ def test_threads_change_no_bit(scene):
 def test_targets_and_times(scene):
     render = scene.render(target_error=0.1)
     assert render.stopped_by == "error" and render.relative_error <= 0.1
-    assert scene.render(target_error=1e-6, max_samples=32).stopped_by == "samples"
+    assert scene.render(target_error=1e-6, max_spp=32).stopped_by == "samples"
     begin = time.monotonic()
-    assert scene.render(seconds=0.2).stopped_by == "time" and time.monotonic() - begin < 5
-    assert scene.render(samples=4).layers["samples"].max() == 4
+    assert scene.render(time=0.2).stopped_by == "time" and time.monotonic() - begin < 5
+    assert scene.render(spp=4).layers["samples"].max() == 4
 
 
 # Progress and interruption.
@@ -80,12 +80,12 @@ def test_targets_and_times(scene):
 
 def test_iterating_gives_pictures_meanwhile(scene):
     scene.film.resolution = 64, 48
-    pictures = list(scene.render(samples=1024, every=0.02))
+    pictures = list(scene.render(spp=1024, every=0.02))
     assert len(pictures) >= 3 and isinstance(pictures[-1], montelux.Render)
-    taken = [p.samples_per_pixel for p in pictures]
+    taken = [p.spp for p in pictures]
     assert taken == sorted(taken) and taken[0] < taken[-1] == 1024
     assert all(p.mean.shape == (48, 64, 3) for p in pictures)
-    whole = scene.render(samples=1024).mean
+    whole = scene.render(spp=1024).mean
     assert np.array_equal(pictures[-1].mean, whole)  # looking changes no bit
     seen = pictures[-2]
     assert np.median(np.abs(seen.mean - whole)) < 0.1 and not np.array_equal(seen.mean, whole)
@@ -94,9 +94,9 @@ def test_iterating_gives_pictures_meanwhile(scene):
 def test_progress_is_told(scene, capsys):
     scene.film.resolution = 64, 48
     seen = []
-    scene.render(samples=256, progress=seen.append).wait()
+    scene.render(spp=256, progress=seen.append).wait()
     assert seen and all(0 <= p.share <= 1 for p in seen)
-    scene.render(samples=16, progress=True).wait()
+    scene.render(spp=16, progress=True).wait()
     assert capsys.readouterr().out == ""
 
 
@@ -111,7 +111,7 @@ def test_other_threads_go_on_meanwhile(scene):
 
     thread = threading.Thread(target=count)
     thread.start()
-    render = scene.render(seconds=0.3, threads=1)
+    render = scene.render(time=0.3, threads=1)
     before = len(counted)
     render.wait()
     after = len(counted)
@@ -122,11 +122,11 @@ def test_other_threads_go_on_meanwhile(scene):
 
 def test_stop_gives_what_there_is(scene):
     scene.film.resolution = 160, 120
-    render = scene.render(samples=1 << 20)
+    render = scene.render(spp=1 << 20)
     assert not render.finished and "going on" in repr(render)
     time.sleep(0.1)
     render.stop()
-    assert render.stopped_by == "cancelled" and 0 < render.samples_per_pixel < 1 << 20
+    assert render.stopped_by == "cancelled" and 0 < render.spp < 1 << 20
     assert "stopped by cancelled" in repr(render)
 
 
@@ -141,9 +141,9 @@ def soon():
     os.kill(os.getpid(), signal.SIGINT)
 threading.Thread(target=soon, daemon=True).start()
 begin = time.monotonic()
-render = scene.render(samples=1 << 24)
+render = scene.render(spp=1 << 24)
 mean = {what}
-print(render.stopped_by, mean.shape, render.samples_per_pixel > 0)
+print(render.stopped_by, mean.shape, render.spp > 0)
 sys.exit(0 if time.monotonic() - begin < 10 else 3)
 """
 
@@ -157,23 +157,23 @@ def test_ctrl_c_ends_a_render_with_what_it_has(what):
 
 
 def test_a_program_may_end_in_the_middle_of_a_render():
-    code = "import sys, montelux; r = montelux.parse(sys.argv[1]).render(samples=1 << 24); print('end')"
+    code = "import sys, montelux; r = montelux.parse(sys.argv[1]).render(spp=1 << 24); print('end')"
     done = subprocess.run([sys.executable, "-c", code, TEXT], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0 and done.stdout == "end\n" and done.stderr == ""
 
 
 def test_checkpoints_go_on_to_the_same_bits(scene, tmp_path):
-    whole = scene.render(samples=64).mean
+    whole = scene.render(spp=64).mean
     state = tmp_path / "render.state"
-    assert scene.render(samples=32, checkpoint=state).stopped_by == "samples"
+    assert scene.render(spp=32, checkpoint=state).stopped_by == "samples"
     with pytest.raises(montelux.Error, match="the file is there already; resume=True"):
-        scene.render(samples=64, checkpoint=state)
+        scene.render(spp=64, checkpoint=state)
     scene.materials[0].reflectance = 0.3
     with pytest.raises(montelux.Error, match="scene"):
-        scene.render(samples=64, checkpoint=state, resume=True)
+        scene.render(spp=64, checkpoint=state, resume=True)
     again = montelux.parse(TEXT)
-    resumed = again.render(samples=64, checkpoint=state, resume=True)
-    assert resumed.samples_per_pixel == 64
+    resumed = again.render(spp=64, checkpoint=state, resume=True)
+    assert resumed.spp == 64
     assert np.abs(resumed.mean - whole).mean() < 0.05
 
 
@@ -219,7 +219,7 @@ def test_the_program_gives_the_same_bits(scene, tmp_path):
     if not os.access(program, os.X_OK):
         pytest.skip("MONTELUX_PROGRAM names no program")
     (tmp_path / "scene.pbrt").write_text(TEXT)
-    for arguments, settings in ((["--spp", "32"], {"samples": 32}), (["--target-error", "10%"], {"target_error": 0.1})):
+    for arguments, settings in ((["--spp", "32"], {"spp": 32}), (["--target-error", "10%"], {"target_error": 0.1})):
         subprocess.run(
             [program, "render", "scene.pbrt", "-o", "out.exr", "--quiet", *arguments], cwd=tmp_path, check=True
         )

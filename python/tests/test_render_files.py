@@ -37,14 +37,14 @@ def folder(tmp_path):
 def test_the_header_is_that_of_the_program(folder):
     run(folder, "render", "scene.pbrt", "--quiet", "--spp", 24, "--seed", 9, "--slice", "2/3", "-o", "program.exr")
     scene = montelux.load(folder / "scene.pbrt")
-    scene.render(samples=24, seed=9, slice=(2, 3)).save(folder / "python.exr")
+    scene.render(spp=24, seed=9, slice=(2, 3)).save(folder / "python.exr")
     program, python = header(folder, "program.exr"), header(folder, "python.exr")
     assert len(program) > 20 and python["slice"] == '"2/3"' and python["seed"] == '"9"'
     assert {k: v for k, v in program.items() if k != "renderSeconds"} == {
         k: v for k, v in python.items() if k != "renderSeconds"
     }
     scene.materials[0].reflectance = 0.1
-    scene.render(samples=24, target_error=0.9).save(folder / "other.exr")
+    scene.render(spp=24, target_error=0.9).save(folder / "other.exr")
     other = header(folder, "other.exr")
     assert other["renderHash"] != python["renderHash"] and other["sceneHash"] != python["sceneHash"]
     assert float(other["targetError"]) == pytest.approx(0.9) and other["stoppedBy"] == '"error"'
@@ -54,10 +54,10 @@ def test_the_header_is_that_of_the_program(folder):
 def test_slices_are_joined_with_those_of_the_program(folder):
     scene = montelux.load(folder / "scene.pbrt")
     for k in (1, 3):
-        scene.render(samples=24, slice=(k, 3)).save(folder / f"part{k}.exr")
+        scene.render(spp=24, slice=(k, 3)).save(folder / f"part{k}.exr")
     run(folder, "render", "scene.pbrt", "--quiet", "--spp", 24, "--slice", "2/3", "-o", "part2.exr")
     run(folder, "merge", "part1.exr", "part2.exr", "part3.exr", "-o", "joined.exr", "--quiet")
-    joined, whole = montelux.read_channels(folder / "joined.exr"), scene.render(samples=24)
+    joined, whole = montelux.read_channels(folder / "joined.exr"), scene.render(spp=24)
     for i, channel in enumerate("RGB"):
         assert joined[channel] == pytest.approx(whole.mean[:, :, i], rel=1e-5, abs=1e-6)
         assert joined[f"stderr.{channel}"] == pytest.approx(whole.standard_error[:, :, i], rel=1e-3, abs=1e-6)
@@ -89,20 +89,20 @@ def test_a_denoiser_that_is_missing_is_told_before_the_render(monkeypatch, tmp_p
 def test_denoised_layers(tmp_path):
     scene = montelux.parse(TEXT)
     try:
-        render = scene.render(samples=2, denoise=True).wait()
+        render = scene.render(spp=2, denoise=True).wait()
     except montelux.Error as error:
         assert "Open Image Denoise" in str(error)
         pytest.skip("there is no Open Image Denoise")
-    plain = scene.render(samples=2)
+    plain = scene.render(spp=2)
     assert "denoised" not in plain.layers and np.array_equal(plain.mean, render.mean)
     smooth = render.layers["denoised"]
     assert smooth.shape == render.mean.shape and not np.array_equal(smooth, render.mean)
-    truth = scene.render(samples=256).mean
+    truth = scene.render(spp=256).mean
     assert np.abs(smooth - truth).mean() < np.abs(render.mean - truth).mean()
     render.save(tmp_path / "both.exr")
     render.save(tmp_path / "shown.pfm")
     both, shown = montelux.read_channels(tmp_path / "both.exr"), montelux.read_channels(tmp_path / "shown.pfm")
     assert np.array_equal(both["R"], render.mean[:, :, 0]) and np.array_equal(both["denoised.R"], shown["R"])
     assert not np.array_equal(render.to_srgb(0), plain.to_srgb(0))
-    stopped = scene.render(samples=1 << 24, denoise=True).stop()
+    stopped = scene.render(spp=1 << 24, denoise=True).stop()
     assert stopped.stopped_by == "cancelled" and "denoised" not in stopped.layers

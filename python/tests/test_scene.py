@@ -71,26 +71,26 @@ def test_light_comes_through_a_portal(kind):
         scene.add_environment(np.ones((4, 4, 3)))
     light = scene.lights[0]
     assert light.portal is None
-    assert scene.render(samples=64).mean.mean() == pytest.approx(1, rel=1e-2)  # wavelengths are drawn
+    assert scene.render(spp=64).mean.mean() == pytest.approx(1, rel=1e-2)  # wavelengths are drawn
     corners = np.array([[-0.5, -0.5, 1], [-0.5, 0.5, 1], [0.5, 0.5, 1], [0.5, -0.5, 1]])
     light.portal = corners
     assert np.array_equal(light.portal, corners)
-    assert scene.render(samples=4).mean.mean() < 0.5
+    assert scene.render(spp=4).mean.mean() < 0.5
     with pytest.raises(montelux.Error, match="portal: the portal is no rectangle: edges are not perpendicular"):
         light.portal = corners + [[0, 0, 0], [0.2, 0, 0], [0.2, 0, 0], [0, 0, 0]]
     with pytest.raises(montelux.Error, match=r"corners of a rectangle, shape \(4, 3\)"):
         light.portal = corners[:3]
     light.portal = None
-    assert scene.render(samples=64).mean.mean() == pytest.approx(1, rel=1e-2)  # wavelengths are drawn
+    assert scene.render(spp=64).mean.mean() == pytest.approx(1, rel=1e-2)  # wavelengths are drawn
 
 
 def test_numbers_of_numpy_are_numbers(scene):
-    render = scene.render(samples=np.int64(4), seed=np.uint8(3), threads=np.int32(1))
-    assert np.array_equal(render.mean, scene.render(samples=4).mean)
+    render = scene.render(spp=np.int64(4), seed=np.uint8(3), threads=np.int32(1))
+    assert np.array_equal(render.mean, scene.render(spp=4).mean)
 
 
 def test_an_unknown_error_is_told(scene):
-    assert "error not known yet" in repr(scene.render(samples=1).wait())
+    assert "error not known yet" in repr(scene.render(spp=1).wait())
     with pytest.raises(montelux.Error, match=r"look_at=5 was given; expected \(eye, target\)"):
         montelux.PerspectiveCamera(look_at=5)
 
@@ -117,8 +117,8 @@ def test_lights_can_be_taken_away_and_added(scene):
 
 
 def test_a_running_render_does_not_change_with_the_scene(scene):
-    alone = scene.render(samples=64).mean
-    render = scene.render(samples=64)
+    alone = scene.render(spp=64).mean
+    render = scene.render(spp=64)
     scene.materials[0].reflectance = 0.0
     assert np.array_equal(render.mean, alone)
 
@@ -143,7 +143,7 @@ def test_a_scene_built_in_python_equals_the_file_s():
     built.add_sphere(1, montelux.Diffuse(reflectance=(0.5, 0.5, 0.5)))
     loaded = montelux.parse(TEXT)
     assert loaded.sampler.kind == "sobol-blue-noise"
-    assert np.array_equal(built.render(samples=16).mean, loaded.render(samples=16).mean)
+    assert np.array_equal(built.render(spp=16).mean, loaded.render(spp=16).mean)
 
 
 def test_meshes_textures_and_environments():
@@ -156,14 +156,14 @@ def test_meshes_textures_and_environments():
     material = montelux.Diffuse(reflectance=scene.image_texture(picture, filter="point"))
     corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], float)
     shape = scene.add_mesh(corners, [[0, 1, 2], [0, 2, 3]], material, uvs=[[0, 0], [1, 0], [1, 1], [0, 1]])
-    albedo = scene.render(samples=16).layers["albedo"]
+    albedo = scene.render(spp=16).layers["albedo"]
     right, left = albedo[8, 12, 0], albedo[8, 3, 0]
     assert sorted([right, left]) == pytest.approx([0, 0.8], abs=0.05)
     assert shape.positions == pytest.approx(corners) and shape.kind == "mesh"
     shape.material = montelux.Diffuse(reflectance=scene.checkerboard_texture(0.1, 0.9, 2, 2))
-    assert 0.1 < scene.render(samples=16).layers["albedo"].mean() < 0.9
+    assert 0.1 < scene.render(spp=16).layers["albedo"].mean() < 0.9
     scene.add_disk(0.5, montelux.Conductor(), height=1)
-    assert scene.render(samples=4).layers["depth"][8, 8] == pytest.approx(3, abs=1e-3)
+    assert scene.render(spp=4).layers["depth"][8, 8] == pytest.approx(3, abs=1e-3)
     other = montelux.Scene()
     with pytest.raises(montelux.Error, match="another scene"):
         other.add_sphere(1, material)
@@ -222,7 +222,7 @@ def test_wrong_attributes_are_answered(scene, path, value, sentence):
 @pytest.mark.parametrize(
     "arguments, sentence",
     [
-        ({"samples": 0}, "expected a whole number from 1"),
+        ({"spp": 0}, "expected a whole number from 1"),
         ({"target_error": -1}, "expected a number above zero"),
         ({"target_error": "1%"}, "'1%' was given; expected a number above zero"),
         ({"checkpoint_every": -1}, "expected a number above zero"),

@@ -36,7 +36,7 @@ expect 1 "GiB of memory; this machine has" render ok.pbrt --resolution 65536x655
 expect 0 "32 x 12 pixels, 2 samples a pixel" render -o a.exr -o a.png -o a.hdr -o a.pfm ok.pbrt \
     --resolution 64x48 --spp 2 --seed 18446744073709551615 --sampler halton --crop 0,0.5,0.5,0.75 --max-depth 3
 expect 0 "32 x 12 pixels, 20 channels" info a.exr
-for entry in '"samplesPerPixel" = 2' '"seed" = "18446744073709551615"' '"sampler" = "halton"' '"maxDepth" = 3' \
+for entry in '"spp" = 2' '"seed" = "18446744073709551615"' '"sampler" = "halton"' '"maxDepth" = 3' \
     '"cropPixels" = [0.0,24.0,32.0,36.0]' '"fullResolution" = [64.0,48.0]' '"scene" = "ok.pbrt"' \
     '"sceneHash" = "' '"software" = "Montelux ' '"renderSeconds" = ' '"worldToCamera" = [[' '"interrupted" = 0'; do
     expect 0 "$entry" info a.exr

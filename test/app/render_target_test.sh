@@ -6,7 +6,7 @@ expect 0 "target reached" render ball.pbrt --target-error 2% -o x.exr
 expect 0 "stoppedBy" info x.exr
 expect 0 "target reached" render ball.pbrt --target-error 0.02 --adaptive off --sampler sobol -o x.exr
 expect 0 "target reached" render ball.pbrt --target-error 0.05 --target-quantile 95% -o x.exr
-expect 3 "samples are used up before the target was reached" render ball.pbrt --target-error 1e-5 --spp-max 16 -o x.exr
+expect 3 "samples are used up before the target was reached" render ball.pbrt --target-error 1e-5 --max-spp 16 -o x.exr
 expect 3 "time is up before the target was reached" render ball.pbrt --target-error 1e-7 --time 0.2 -o x.exr
 expect 0 "time is up" render ball.pbrt --time 0.2s -o x.exr
 expect 0 "16 samples a pixel" render ball.pbrt --time 1h --spp 16 -o x.exr

@@ -22,7 +22,7 @@ int differing(const Film& a, const Film& b) {
 SceneBuilder scene(SamplerKind kind, std::uint32_t spp) {
     SceneBuilder b = mixed_scene(1, 22, 18);
     b.description.sampler.kind = kind;
-    b.description.sampler.samples_per_pixel = spp;
+    b.description.sampler.spp = spp;
     return b;
 }
 

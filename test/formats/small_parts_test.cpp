@@ -20,6 +20,13 @@ TEST(NearestName, FindsMisspeltNames) {
     EXPECT_EQ(nearest_name("fvo", names), "fov");
     EXPECT_EQ(nearest_name("illuminance", names), "");
     EXPECT_EQ(nearest_name("", names), "");
+    const std::string_view options[] = {"--spp", "--max-spp", "--time", "--sampler"},
+                           arguments[] = {"spp", "max_spp"};
+    EXPECT_EQ(nearest_name("--samples", options), "--spp");
+    EXPECT_EQ(nearest_name("--spp-max", options), "--max-spp");
+    EXPECT_EQ(nearest_name("--seconds", options), "--time");
+    EXPECT_EQ(nearest_name("max_samples", arguments), "max_spp");
+    EXPECT_EQ(nearest_name("seconds", arguments), ""); // ours is not among them
     EXPECT_EQ(did_you_mean("roughnes", names), " (did you mean 'roughness'?)");
     EXPECT_EQ(did_you_mean("zzz", names), "");
 }

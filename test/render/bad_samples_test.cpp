@@ -19,7 +19,7 @@ SceneBuilder half_bad(float emission) {
         if (auto* area = std::get_if<AreaLight>(&light))
             *area = {Spectrum(emission), 1, true, area->shape, area->primitive};
     b.look({0, -3, 0}, {0, 0, 0}, 30);
-    b.description.sampler.samples_per_pixel = 16;
+    b.description.sampler.spp = 16;
     return b;
 }
 
@@ -105,7 +105,7 @@ TEST(Cancel, LeavesAValidFilm) {
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol})
         for (std::uint64_t after : {std::uint64_t{1}, std::uint64_t{2000}}) {
             SceneBuilder b = mixed_scene(1, 24, 24);
-            b.description.sampler.samples_per_pixel = 64;
+            b.description.sampler.spp = 64;
             b.description.sampler.kind = kind;
             Renderer renderer(b.description);
             Film film(b.description.film);
@@ -179,7 +179,7 @@ TEST(Progress, CountsUpToTheTotal) {
 // With one sample a pixel the picture is the samples: none may exceed the limit, and hues stay.
 TEST(MaxComponentValue, ClampsSamples) {
     SceneBuilder b = mixed_scene(1, 24, 24);
-    b.description.sampler.samples_per_pixel = 1;
+    b.description.sampler.spp = 1;
     Film free = render(b.description);
     const float limit = 0.5f;
     b.description.film.max_component_value = limit;
@@ -199,7 +199,7 @@ TEST(MaxComponentValue, ClampsSamples) {
 
 TEST(Renderer, RefusesNoSamples) {
     SceneBuilder b = half_bad(1);
-    b.description.sampler.samples_per_pixel = 0;
+    b.description.sampler.spp = 0;
     EXPECT_THROW(Renderer{b.description}, Error);
 }
 

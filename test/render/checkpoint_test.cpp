@@ -30,7 +30,7 @@ TEST_F(Checkpoint, BrokenRendersEndWithTheSameBits) {
         for (bool adaptive : {false, true}) {
             SceneBuilder b = mixed_scene(1, 16, 12);
             b.description.sampler.kind = kind;
-            b.description.sampler.samples_per_pixel = 100;
+            b.description.sampler.spp = 100;
             const RenderTarget target{.adaptive = adaptive};
             RenderState whole(b.description.film);
             Renderer(b.description, target).render(whole);
@@ -72,7 +72,7 @@ TEST_F(Checkpoint, FinishedRendersCanBeRaised) {
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
         SceneBuilder b = mixed_scene(1, 16, 16);
         b.description.sampler.kind = kind;
-        b.description.sampler.samples_per_pixel = 36;
+        b.description.sampler.spp = 36;
         RenderState first(b.description.film);
         Renderer renderer(b.description);
         RenderControl control;
@@ -80,7 +80,7 @@ TEST_F(Checkpoint, FinishedRendersCanBeRaised) {
             save_checkpoint(path_, b.description, renderer.sampler(), {}, s);
         };
         renderer.render(first, control);
-        b.description.sampler.samples_per_pixel = 90;
+        b.description.sampler.spp = 90;
         RestoredRender restored = load_checkpoint(path_, b.description, {});
         b.description.sampler.replicate_points = restored.replicate_points;
         Renderer(b.description).render(restored.state);

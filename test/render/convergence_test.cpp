@@ -57,7 +57,7 @@ TEST(Calibration, OfEverySampler) {
             b.description.sampler.kind = kind;
             b.description.integrator.strategy = strategy;
             // Enough for the means of eight replicates to be nearly Gaussian.
-            b.description.sampler.samples_per_pixel = 512;
+            b.description.sampler.spp = 512;
             TestResult r = calibration_test(scores(b, 0.6, 20));
             EXPECT_TRUE(r.passes(1e-7)) << "sampler " << int(kind) << ": " << r.description;
         }
@@ -73,7 +73,7 @@ TEST(Calibration, OfLongPaths) {
         b.description.sampler.kind = kind;
         // Russian roulette makes samples skewed: at 64 of them the truth lies within 3 standard errors
         // in 98.5 %.
-        b.description.sampler.samples_per_pixel = 1024;
+        b.description.sampler.spp = 1024;
         TestResult r = calibration_test(scores(b, 2.5, 10));
         EXPECT_TRUE(r.passes(1e-7)) << "sampler " << int(kind) << ": " << r.description;
     }
@@ -83,7 +83,7 @@ TEST(Calibration, OfLongPaths) {
 double relative_mse(SceneBuilder& b, SamplerKind kind, std::uint32_t samples, std::uint32_t replicates,
                     int seeds) {
     b.description.sampler.kind = kind;
-    b.description.sampler.samples_per_pixel = samples;
+    b.description.sampler.spp = samples;
     b.description.sampler.replicates = replicates;
     const PixelBounds c = b.description.film.crop;
     std::vector<RunningMoments> pixels(static_cast<std::size_t>(c.width() * c.height()));
@@ -174,7 +174,7 @@ TEST(Strategies, AgreeWithEachOther) {
             b.description.integrator.heuristic = h;
             b.description.sampler.seed = all.size();
             // Those that find the lamps by chance are the noisy ones.
-            b.description.sampler.samples_per_pixel = s == Strategy::mis || s == Strategy::light ? 800 : 3000;
+            b.description.sampler.spp = s == Strategy::mis || s == Strategy::light ? 800 : 3000;
             all.push_back(quarters(render(b.description)));
             names.push_back(std::to_string(int(s)) + '/' + std::to_string(int(h)));
         }

@@ -17,7 +17,7 @@ SceneBuilder floor_below(const Quadric& light, FloatParameter alpha) {
     const Index shape = b.add_quadric(light, b.add(DiffuseMaterial{gray(0)}), 4, true);
     b.scene.shapes[shape].alpha = alpha;
     b.description.integrator.max_depth = 1;
-    b.description.sampler.samples_per_pixel = 1024;
+    b.description.sampler.spp = 1024;
     b.look({0, -0.5, 1}, {0, 0, 0}, 0.05f);
     return b;
 }
@@ -86,7 +86,7 @@ TEST(CutOutLights, SpheresShineFromBothSides) {
             b.scene.shapes.back().flip_normal = false;
             std::get<AreaLight>(b.scene.lights[0]).two_sided = two_sided;
             b.description.integrator.strategy = s;
-            b.description.sampler.samples_per_pixel = 4096;
+            b.description.sampler.spp = 4096;
             means.push_back(picture_mean(render(b.description)));
         }
         // Of the light behind it the near side lets 0.6 through.

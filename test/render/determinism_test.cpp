@@ -17,7 +17,7 @@ int differing_pixels(const Film& a, const Film& b, const PixelBounds& within) {
 TEST(Determinism, AnyNumberOfThreads) {
     SceneBuilder b = mixed_scene(1, 40, 24);
     b.description.film.filter = GaussianFilter{};
-    b.description.sampler.samples_per_pixel = 16;
+    b.description.sampler.spp = 16;
     for (SamplerKind kind : samplers) {
         b.description.sampler.kind = kind;
         std::vector<Film> films;
@@ -32,7 +32,7 @@ TEST(Determinism, AnyNumberOfThreads) {
 // A window of the picture, whose tiles and their order are others, has the same pixels.
 TEST(Determinism, AnyCropAndOrderOfTiles) {
     SceneBuilder b = mixed_scene(1, 40, 24);
-    b.description.sampler.samples_per_pixel = 8;
+    b.description.sampler.spp = 8;
     for (SamplerKind kind : samplers) {
         b.description.sampler.kind = kind;
         b.description.film.crop = {0, 0, 40, 24};
@@ -47,7 +47,7 @@ TEST(Determinism, AnyCropAndOrderOfTiles) {
 
 TEST(Determinism, SeedsDifferAndRepeat) {
     SceneBuilder b = mixed_scene(1, 8, 8);
-    b.description.sampler.samples_per_pixel = 8;
+    b.description.sampler.spp = 8;
     for (SamplerKind kind : samplers) {
         b.description.sampler.kind = kind;
         b.description.sampler.seed = 1;
@@ -63,11 +63,11 @@ TEST(Determinism, SeedsDifferAndRepeat) {
 // sends around an edge. Wrong offsets would speckle the picture at one of the scales.
 TEST(Determinism, AnyUnitOfLength) {
     SceneBuilder unit = mixed_scene(1, 24, 24);
-    unit.description.sampler.samples_per_pixel = 64;
+    unit.description.sampler.spp = 64;
     Film reference = render(unit.description);
     for (double scale : {1e-3, 1e4}) {
         SceneBuilder b = mixed_scene(scale, 24, 24);
-        b.description.sampler.samples_per_pixel = 64;
+        b.description.sampler.spp = 64;
         Film film = render(b.description);
         double mean = 0, reference_mean = 0, worst = 0;
         int differing = 0;

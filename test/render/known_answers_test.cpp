@@ -151,7 +151,7 @@ TEST(KnownAnswers, AreaLightsByFormFactor) {
         disc.add_quadric(Disk{.radius = 2, .world_from_object = Transform::translate({0, 0, 10})}, black, 4,
                          true);
         disc.description.integrator.strategy = s;
-        disc.description.sampler.samples_per_pixel = 1024;
+        disc.description.sampler.spp = 1024;
         disc.look({0, -0.5, 5}, {0, 0, 0}, 0.05f);
         expect_picture(disc.description, rho * 4 * 4.0 / 104, "disc");
         // A sphere of radius r at distance d straight above: r^2 / d^2.
@@ -159,7 +159,7 @@ TEST(KnownAnswers, AreaLightsByFormFactor) {
         black = sphere.add(DiffuseMaterial{gray(0)});
         sphere.add_quadric(Sphere{.world_from_object = Transform::translate({0, 0, 10})}, black, 4);
         sphere.description.integrator.strategy = s;
-        sphere.description.sampler.samples_per_pixel = 1024;
+        sphere.description.sampler.spp = 1024;
         sphere.look({0, -0.5, 5}, {0, 0, 0}, 0.05f);
         expect_picture(sphere.description, rho * 4 / 100, "sphere");
         // A square of half side a over the centre at height h: four corners of a/h in closed form.
@@ -169,7 +169,7 @@ TEST(KnownAnswers, AreaLightsByFormFactor) {
                                   Transform::scale({3, 3, 1})),
                            black, 4);
         rectangle.description.integrator.strategy = s;
-        rectangle.description.sampler.samples_per_pixel = 1024;
+        rectangle.description.sampler.spp = 1024;
         rectangle.look({0, -0.5, 5}, {0, 0, 0}, 0.05f);
         double x = 3.0 / 8, q = x / std::sqrt(1 + x * x);
         double corner = 2 * q * std::atan(q) / (2 * pi);
@@ -193,7 +193,7 @@ TEST(KnownAnswers, StrategiesAgreeOnScaledAndPartialLights) {
             b.add_quadric(q, black, 4);
             b.look({0, -0.5, 1}, {0, 0, 0}, 0.05f);
             b.description.integrator.strategy = s;
-            b.description.sampler.samples_per_pixel = 2048;
+            b.description.sampler.spp = 2048;
             means.push_back(picture_mean(render(b.description)));
         }
         for (const PictureMean& m : means)
@@ -242,7 +242,7 @@ TEST(KnownAnswers, EnvironmentMapStrategiesAgree) {
             b.description.integrator.environment_sampling = c.sampling;
             b.description.integrator.environment_compensation = c.compensation;
             b.description.integrator.environment_lookup = m.lookup;
-            b.description.sampler.samples_per_pixel = 512;
+            b.description.sampler.spp = 512;
             means.push_back(picture_mean(render(b.description)));
         }
         for (std::size_t i = 0; i < means.size(); ++i)

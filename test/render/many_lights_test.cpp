@@ -21,7 +21,7 @@ TEST(ManyLights, OneAmongThemIsAsBrightAsAlone) {
     b.scene.lights.push_back(
         PointLight{white_light(), static_cast<float>(intensity) * white_scale(), {0, 0, 10}});
     b.description.integrator.max_depth = 1;
-    b.description.sampler.samples_per_pixel = 4096;
+    b.description.sampler.spp = 4096;
     b.look({0, -0.1, 5}, {0, 0, 0}, 0.05f);
     const double truth = 0.6 / pi * intensity / 100;
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {

@@ -11,7 +11,7 @@ namespace {
 SceneBuilder small_mixed_scene(Strategy strategy, SamplerKind sampler, Heuristic heuristic) {
     SceneBuilder b = mixed_scene(1, 16, 16);
     b.description.sampler.kind = sampler;
-    b.description.sampler.samples_per_pixel = 16;
+    b.description.sampler.spp = 16;
     b.description.sampler.seed = 3;
     b.description.integrator = {.max_depth = 6, .strategy = strategy, .heuristic = heuristic};
     return b;

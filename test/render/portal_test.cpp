@@ -81,7 +81,7 @@ TEST(Portals, RoomIsTheSameWithEachStrategyAndWithoutThem) {
                     .portal = portal});
             }
             b.description.integrator.strategy = c.strategy;
-            b.description.sampler.samples_per_pixel = c.portal && c.strategy != Strategy::bsdf ? 128 : 512;
+            b.description.sampler.spp = c.portal && c.strategy != Strategy::bsdf ? 128 : 512;
             means.push_back(picture_mean(render(b.description)));
         }
         for (std::size_t i = 1; i < means.size(); ++i)
@@ -109,7 +109,7 @@ TEST(Portals, FloorUnderAnOpeningIsKnown) {
             UniformInfiniteLight{white_light(), static_cast<float>(radiance) * white_scale(),
                                  Portal({Point3f{0, 0, fh}, {0, fy, fh}, {fx, fy, fh}, {fx, 0, fh}})});
         b.description.integrator.strategy = strategy;
-        b.description.sampler.samples_per_pixel = 512;
+        b.description.sampler.spp = 512;
         const PictureMean m = picture_mean(render(b.description));
         const double truth = rho * form_factor * radiance;
         EXPECT_NEAR(m.mean, truth, 5 * m.standard_error + 2e-3 * truth) << int(strategy);
@@ -124,7 +124,7 @@ TEST(Portals, CameraSeesTheLightThroughThem) {
         SceneBuilder b;
         b.look({0, 0, eye}, {0, 0, eye < 1 ? 9. : -9.}, 90);
         b.scene.lights.push_back(UniformInfiniteLight{white_light(), white_scale(), Portal(corners)});
-        b.description.sampler.samples_per_pixel = 16;
+        b.description.sampler.spp = 16;
         const PictureMean m = picture_mean(render(b.description));
         EXPECT_NEAR(m.mean, share, 5 * m.standard_error + 2e-4) << eye;
     }

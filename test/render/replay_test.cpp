@@ -20,11 +20,11 @@ constexpr Strategy all_strategies[] = {Strategy::uniform, Strategy::bsdf,     St
 Pixel replayed_pixel(const Renderer& renderer, int x, int y) {
     const SamplerSettings& sampler = renderer.sampler();
     Pixel pixel;
-    for (std::uint32_t i = 0; i < sampler.samples_per_pixel; ++i) {
+    for (std::uint32_t i = 0; i < sampler.spp; ++i) {
         const SampleRecord r = renderer.replay(x, y, i);
         EXPECT_EQ(r.bad.has_value(), false);
         pixel.add_sample(r.contribution);
-        const bool last = i + 1 == sampler.samples_per_pixel;
+        const bool last = i + 1 == sampler.spp;
         if (sampler.kind == SamplerKind::independent || last ||
             replicate_of(sampler, i + 1) != replicate_of(sampler, i))
             pixel.end_unit();
@@ -47,7 +47,7 @@ TEST(Replay, IsTheSampleOfTheRender) {
         SCOPED_TRACE(static_cast<int>(sampler));
         SceneBuilder b = mixed_scene(1, 16, 16);
         b.description.sampler.kind = sampler;
-        b.description.sampler.samples_per_pixel = 12;
+        b.description.sampler.spp = 12;
         b.description.sampler.seed = 7;
         b.description.film.filter = MitchellFilter{};
         expect_same_pixels(b.description);
@@ -59,7 +59,7 @@ TEST(Replay, IsTheSampleOfEveryStrategy) {
         for (Heuristic heuristic : {Heuristic::balance, Heuristic::power}) {
             SCOPED_TRACE(static_cast<int>(strategy));
             SceneBuilder b = mixed_scene(1, 24, 24);
-            b.description.sampler.samples_per_pixel = 8;
+            b.description.sampler.spp = 8;
             b.description.integrator = {.max_depth = 9, .strategy = strategy, .heuristic = heuristic};
             b.description.film.crop = {3, 5, 21, 24};
             b.description.film.max_component_value = 2;
@@ -75,7 +75,7 @@ TEST(Replay, TheRecordAddsUp) {
     for (Strategy strategy : all_strategies) {
         SceneBuilder b = mixed_scene(1, 24, 24);
         b.description.integrator = {.max_depth = 6, .strategy = strategy};
-        b.description.sampler.samples_per_pixel = 4;
+        b.description.sampler.spp = 4;
         const Renderer renderer(b.description);
         int ends[7] = {}, survived = 0, shared = 0, occluded = 0;
         for (int y = 0; y < 24; ++y)
@@ -149,7 +149,7 @@ struct TwoWalls {
         b.add_mesh(square(Transform::translate({0, -6, 0}) * Transform::scale({9, 9, 9}) * to_camera),
                    b.add(back));
         b.look({0, -3, 0}, {0, 0, 0}, 20);
-        b.description.sampler.samples_per_pixel = 4;
+        b.description.sampler.spp = 4;
     }
     TwoWalls& light(const Light& light) {
         b.scene.lights[0] = light;
@@ -211,7 +211,7 @@ TEST(Replay, NamesTheLightThatIsBad) {
 TEST(Replay, RefusesSamplesThatTheRenderDoesNotTake) {
     SceneBuilder b = mixed_scene(1, 16, 12);
     b.description.film.crop = {2, 3, 9, 8};
-    b.description.sampler.samples_per_pixel = 4;
+    b.description.sampler.spp = 4;
     const Renderer renderer(b.description);
     EXPECT_NO_THROW(renderer.replay(2, 3, 0));
     EXPECT_NO_THROW(renderer.replay(8, 7, 3));

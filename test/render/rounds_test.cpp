@@ -130,9 +130,9 @@ TEST(Allocation, GoesAsFarAsTheTargetNeedsInWholeUnits) {
     // At most twice as many, at least a tenth more, and never more than there are.
     EXPECT_LE(sum(allocate(film, SampleOrder(s, {}), {.error = 1e-4})), 128.01 * width * width);
     EXPECT_GT(sum(allocate(film, SampleOrder(s, {}), {.error = 0.5})), 64.0 * width * width);
-    s.samples_per_pixel = 80;
+    s.spp = 80;
     EXPECT_LE(sum(allocate(film, SampleOrder(s, {}), {.error = 1e-4})), 80.0 * width * width);
-    s.samples_per_pixel = 64;
+    s.spp = 64;
     EXPECT_TRUE(allocate(film, SampleOrder(s, {}), {.error = 1e-4}).empty());
 }
 

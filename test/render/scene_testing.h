@@ -36,7 +36,7 @@ class SceneBuilder {
         description.film.crop = {0, 0, 8, 8};
         description.film.filter = BoxFilter{};
         description.sampler.kind = SamplerKind::independent;
-        description.sampler.samples_per_pixel = 64;
+        description.sampler.spp = 64;
         description.integrator.max_depth = 5;
     }
     // `scene` of a copy refers into the copy.

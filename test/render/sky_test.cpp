@@ -37,7 +37,7 @@ SceneBuilder ball_in_the_sun() {
 TEST(SkyPictures, StrategiesAgree) {
     SceneBuilder b = ball_in_the_sun();
     b.description.integrator.max_depth = 3;
-    b.description.sampler.samples_per_pixel = 256;
+    b.description.sampler.spp = 256;
     b.description.integrator.strategy = Strategy::mis;
     const PictureMean mis = picture_mean(render(b.description));
     EXPECT_GT(mis.mean, 10);

@@ -20,7 +20,7 @@ TEST(Target, ErrorIsReachedAndNotOvershot) {
         for (bool adaptive : {false, true}) {
             SceneBuilder b = mixed_scene(1, 32, 32);
             b.description.sampler.kind = kind;
-            b.description.sampler.samples_per_pixel = 1u << 16;
+            b.description.sampler.spp = 1u << 16;
             const RenderState state = run(b.description, {.error = 0.03, .adaptive = adaptive});
             EXPECT_EQ(state.report.stop, RenderStop::error);
             const FilmError e = state.film.error();
@@ -69,7 +69,7 @@ TEST(Target, FewUnitsAreNotBelieved) {
 
 TEST(Target, SamplesThatRunOutAreSaid) {
     SceneBuilder b = mixed_scene(1, 16, 16);
-    b.description.sampler.samples_per_pixel = 32;
+    b.description.sampler.spp = 32;
     for (bool adaptive : {false, true}) {
         const RenderState state = run(b.description, {.error = 1e-4, .adaptive = adaptive});
         EXPECT_EQ(state.report.stop, RenderStop::samples);
@@ -80,8 +80,8 @@ TEST(Target, SamplesThatRunOutAreSaid) {
 
 TEST(Target, TimeEndsTheRenderWithAValidFilm) {
     SceneBuilder b = mixed_scene(1, 16, 16);
-    b.description.sampler.samples_per_pixel = 1u << 24;
-    const RenderState state = run(b.description, {.seconds = 0.3});
+    b.description.sampler.spp = 1u << 24;
+    const RenderState state = run(b.description, {.time = 0.3});
     EXPECT_EQ(state.report.stop, RenderStop::time);
     EXPECT_GE(state.report.seconds, 0.3);
     EXPECT_TRUE(std::isfinite(state.film.error().relative));
@@ -90,7 +90,7 @@ TEST(Target, TimeEndsTheRenderWithAValidFilm) {
 TEST(Target, QuantileOfThePixels) {
     SceneBuilder b = mixed_scene(1, 24, 24);
     b.description.sampler.kind = SamplerKind::independent;
-    b.description.sampler.samples_per_pixel = 1u << 16;
+    b.description.sampler.spp = 1u << 16;
     const RenderState state = run(b.description, {.error = 0.04, .quantile = 0.9});
     EXPECT_EQ(state.report.stop, RenderStop::error);
     int within = 0;
@@ -106,10 +106,10 @@ TEST(Target, BlackPicturesAreNotDoneAtOnce) {
     b.description.film.width = b.description.film.height = 4;
     b.description.film.crop = {0, 0, 4, 4};
     for (bool adaptive : {false, true}) {
-        b.description.sampler.samples_per_pixel = 256;
+        b.description.sampler.spp = 256;
         const RenderState few = run(b.description, {.error = 0.05, .adaptive = adaptive});
         EXPECT_EQ(few.report.stop, RenderStop::samples);
-        b.description.sampler.samples_per_pixel = 1u << 20;
+        b.description.sampler.spp = 1u << 20;
         const RenderState many = run(b.description, {.error = 0.05, .adaptive = adaptive});
         EXPECT_EQ(many.report.stop, RenderStop::error);
     }
@@ -118,7 +118,7 @@ TEST(Target, BlackPicturesAreNotDoneAtOnce) {
 // Intervals too short for anything to be done between two checkpoints; times too short for a first look.
 TEST(Target, ShortIntervalsAndTimesDoNotStopTheWork) {
     SceneBuilder b = mixed_scene(1, 40, 40);
-    b.description.sampler.samples_per_pixel = 2;
+    b.description.sampler.spp = 2;
     RenderState state(b.description.film);
     RenderControl control;
     int checkpoints = 0;
@@ -127,18 +127,18 @@ TEST(Target, ShortIntervalsAndTimesDoNotStopTheWork) {
     Renderer(b.description).render(state, control);
     EXPECT_EQ(state.report.samples, 2u * 1600);
     EXPECT_GT(checkpoints, 1);
-    const RenderState hasty = run(b.description, {.seconds = 1e-6});
+    const RenderState hasty = run(b.description, {.time = 1e-6});
     for (const Pixel& p : hasty.film.pixels()) EXPECT_GT(p.samples(), 0u);
 }
 
 // One sample of each pixel is the least, whether or not an adaptive render would like more for its pilot.
 TEST(Target, TimeIsHeldFromTheFirstSampleOn) {
     SceneBuilder b = mixed_scene(1, 40, 40);
-    b.description.sampler.samples_per_pixel = 1u << 20;
+    b.description.sampler.spp = 1u << 20;
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol})
-        for (const RenderTarget& target : {RenderTarget{.seconds = 1e-6},
-                                           {.seconds = 1e-6, .adaptive = true},
-                                           {.error = 0.01, .seconds = 1e-6, .adaptive = true}}) {
+        for (const RenderTarget& target : {RenderTarget{.time = 1e-6},
+                                           {.time = 1e-6, .adaptive = true},
+                                           {.error = 0.01, .time = 1e-6, .adaptive = true}}) {
             b.description.sampler.kind = kind;
             const RenderState state = run(b.description, target);
             EXPECT_EQ(state.report.stop, RenderStop::time);
@@ -149,10 +149,10 @@ TEST(Target, TimeIsHeldFromTheFirstSampleOn) {
 // Nobody sees from the picture whether a time was given that was not used up.
 TEST(Target, ATimeThatIsNotUsedUpChangesNothing) {
     SceneBuilder b = mixed_scene(1, 12, 12);
-    b.description.sampler.samples_per_pixel = 100;
+    b.description.sampler.spp = 100;
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
         b.description.sampler.kind = kind;
-        const RenderState with = run(b.description, {.error = 1e-4, .seconds = 1e6, .adaptive = true});
+        const RenderState with = run(b.description, {.error = 1e-4, .time = 1e6, .adaptive = true});
         const RenderState without = run(b.description, {.error = 1e-4, .adaptive = true});
         EXPECT_EQ(with.report.samples, without.report.samples);
         for (std::size_t i = 0; i < with.film.pixels().size(); ++i) {
@@ -197,7 +197,7 @@ TEST(TargetSlowTest, AdaptiveIsUnbiasedWithBlueNoise) {
 
 TEST(Target, SlicesAddUpToTheWhole) {
     SceneBuilder b = mixed_scene(1, 16, 16);
-    b.description.sampler.samples_per_pixel = 48;
+    b.description.sampler.spp = 48;
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
         b.description.sampler.kind = kind;
         const Film whole = render(b.description);

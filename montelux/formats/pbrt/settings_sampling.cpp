@@ -31,7 +31,7 @@ SamplerSettings read_sampler(const Plugin& plugin, Diagnostics& diagnostics, std
         s.kind = SamplerKind::stratified;
         std::uint64_t count = std::uint64_t{read_count(r, "xsamples", 4)} * read_count(r, "ysamples", 4);
         if (count > INT32_MAX) r.error("xsamples", "more than 2147483647 samples");
-        s.samples_per_pixel = static_cast<std::uint32_t>(count);
+        s.spp = static_cast<std::uint32_t>(count);
         if (!r.boolean("jitter", true))
             diagnostics.warn(r.at("jitter"), "samples are always jittered within their strata");
         r.finish();
@@ -39,7 +39,7 @@ SamplerSettings read_sampler(const Plugin& plugin, Diagnostics& diagnostics, std
     }
     if (plugin.name == "independent") {
         s.kind = SamplerKind::independent;
-        s.samples_per_pixel = read_count(r, "pixelsamples", 4);
+        s.spp = read_count(r, "pixelsamples", 4);
         r.finish();
         return s;
     }
@@ -52,7 +52,7 @@ SamplerSettings read_sampler(const Plugin& plugin, Diagnostics& diagnostics, std
     } else {
         r.error("unknown sampler " + in_quotes(plugin.name) + did_you_mean(plugin.name, sampler_names));
     }
-    s.samples_per_pixel = read_count(r, "pixelsamples", 16);
+    s.spp = read_count(r, "pixelsamples", 16);
     if (plugin.name == "pmj02bn") {
         diagnostics.warn(plugin.at, "sampler 'pmj02bn' is rendered with Sobol' points of blue-noise error");
     } else {

@@ -17,21 +17,21 @@ enum class SamplerKind : std::uint8_t {
 struct SamplerSettings {
     SamplerKind kind = SamplerKind::sobol;
     std::uint64_t seed = 0;
-    std::uint32_t samples_per_pixel = 16;
+    std::uint32_t spp = 16;
     std::uint32_t replicates = 1; // independent randomisations that the samples of a pixel are split into
     std::uint32_t replicate_points = 0; // if not 0: points of each, however many replicates that makes
 };
 
-// Points of one randomisation: samples_per_pixel / replicates, rounded up, and at least 1, unless they are
+// Points of one randomisation: spp / replicates, rounded up, and at least 1, unless they are
 // given. Powers of two suit the Sobol' kinds best, squares the stratified one.
 constexpr std::uint32_t points_per_replicate(const SamplerSettings& s) {
     if (s.replicate_points != 0) return s.replicate_points;
     const std::uint32_t replicates = s.replicates == 0 ? 1 : s.replicates;
-    const std::uint32_t points = s.samples_per_pixel / replicates + (s.samples_per_pixel % replicates != 0);
+    const std::uint32_t points = s.spp / replicates + (s.spp % replicates != 0);
     return points == 0 ? 1 : points;
 }
 
-// A replicate is a run of consecutive samples. It goes on beyond samples_per_pixel: a picture that is
+// A replicate is a run of consecutive samples. It goes on beyond spp: a picture that is
 // rendered further starts new replicates of the same length.
 constexpr std::uint64_t replicate_of(const SamplerSettings& s, std::uint64_t sample_index) {
     return sample_index / points_per_replicate(s);

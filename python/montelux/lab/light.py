@@ -22,7 +22,7 @@ def rendered(which: Any, samples: int, seed: int, strategy: str = "mis", heurist
     """A render of a scene, by its name or as it is, which has ended."""
     s = scene(which) if isinstance(which, str) else which
     s.integrator.strategy, s.integrator.heuristic = strategy, heuristic
-    return s.render(samples=samples, seed=seed).wait()
+    return s.render(spp=samples, seed=seed).wait()
 
 
 def displayed(linear: Any, exposure: float = 1.0) -> Any:

@@ -36,7 +36,7 @@ TEST(PbrtDefaults, OfAnEmptyScene) {
     EXPECT_EQ(camera.lens_radius, 0);
     EXPECT_EQ(camera.focal_distance, 1e6f);
     EXPECT_FALSE(camera.screen_window || camera.frame_aspect_ratio);
-    EXPECT_EQ(d.sampler.samples_per_pixel, 16u);
+    EXPECT_EQ(d.sampler.spp, 16u);
     EXPECT_EQ(d.sampler.kind, SamplerKind::sobol_blue_noise);
     EXPECT_EQ(d.integrator.max_depth, 5);
     EXPECT_EQ(d.integrator.strategy, Strategy::mis);
@@ -67,7 +67,7 @@ TEST(PbrtOptions, FilmCameraSamplerIntegratorFilter) {
     EXPECT_EQ(camera.focal_distance, 3);
     EXPECT_EQ(camera.screen_window->x_min, -2);
     EXPECT_EQ(d.sampler.kind, SamplerKind::stratified);
-    EXPECT_EQ(d.sampler.samples_per_pixel, 15u);
+    EXPECT_EQ(d.sampler.spp, 15u);
     EXPECT_EQ(d.sampler.seed, 7u);
     EXPECT_EQ(d.integrator.max_depth, 12);
     EXPECT_EQ(d.integrator.strategy, Strategy::bsdf);

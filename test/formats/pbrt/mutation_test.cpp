@@ -41,7 +41,7 @@ void expect_sound(const std::string& text) {
         return;
     }
     ASSERT_GT(d.film.width, 0);
-    ASSERT_GT(d.sampler.samples_per_pixel, 0u);
+    ASSERT_GT(d.sampler.spp, 0u);
     for (const Shape& s : d.scene.shapes) {
         ASSERT_LT(s.material, d.scene.materials.size());
         ASSERT_NE(s.mesh == no_index, s.quadric == no_index);

@@ -50,7 +50,7 @@ TEST(PbrtScenes, Counts) {
         EXPECT_EQ(d.film.width, c.width);
         EXPECT_EQ(d.film.height, c.height);
         EXPECT_EQ(d.integrator.max_depth, c.max_depth);
-        EXPECT_EQ(d.sampler.samples_per_pixel, c.samples);
+        EXPECT_EQ(d.sampler.spp, c.samples);
         for (const Shape& s : d.scene.shapes) EXPECT_LT(s.material, d.scene.materials.size());
         std::size_t expected_warnings = std::string(c.name) == "cornell-box" ? 1 : 0; // its Accelerator
         EXPECT_EQ(warnings.messages().size(), expected_warnings);

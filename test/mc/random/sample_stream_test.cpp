@@ -132,7 +132,7 @@ TEST_P(SampleStreamOf, IsAPureFunctionOfItsKey) {
     EXPECT_EQ(forward, backward);
     EXPECT_NE(forward[0], draw(SampleStream(settings, 2, 4, 0), 300));
     EXPECT_NE(forward[0], draw(SampleStream({GetParam(), 100, 64, 4}, 4, 2, 0), 300));
-    // Samples past samples_per_pixel are new ones.
+    // Samples past spp are new ones.
     EXPECT_NE(forward[0], forward[64]);
     EXPECT_NE(forward[0], forward[128]);
     EXPECT_NE(forward[1], draw(SampleStream(settings, 4, 2, 1 + (std::uint64_t{1} << 40)), 300));
@@ -309,7 +309,7 @@ TEST(SamplerSettings, ReplicatesAreConsecutiveRuns) {
     EXPECT_EQ(replicate_of(s, 2), 0u);
     EXPECT_EQ(replicate_of(s, 3), 1u);
     EXPECT_EQ(replicate_of(s, 9), 3u);
-    EXPECT_EQ(replicate_of(s, 12), 4u); // past samples_per_pixel
+    EXPECT_EQ(replicate_of(s, 12), 4u); // past spp
     EXPECT_EQ(index_in_replicate(s, 11), 2u);
     EXPECT_EQ(points_per_replicate({SamplerKind::sobol, 0, 0, 0}), 1u);
     EXPECT_EQ(points_per_replicate({SamplerKind::sobol, 0, 4'294'967'295u, 1}), 4'294'967'295u);
