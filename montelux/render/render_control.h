@@ -31,9 +31,10 @@ struct RenderControl {
     // at the end, before the film is closed.
     std::function<void(const RenderState&)> checkpoint;
     double checkpoint_seconds = 60;
-    // Set by whoever wants to see the state: `checkpoint`, which resets it, is then called as soon as no
-    // sample is being taken.
-    const std::atomic<bool>* look = nullptr;
+    // Setting `snapshot_wanted` asks for one call of `snapshot`, as soon as no sample is being taken and
+    // unless the render ends then; the render resets it. Checkpoints keep their times.
+    std::function<void(const RenderState&)> snapshot;
+    std::atomic<bool>* snapshot_wanted = nullptr;
     const CancelFlag* cancel = nullptr;
     // Who takes the samples; the threads of this process where there is none. The result is the same.
     RoundExecutor* executor = nullptr;

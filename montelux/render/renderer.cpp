@@ -49,6 +49,7 @@ class RenderLoop {
                 state_.goals = std::move(goals);
                 join_rounds();
             }
+            if (snapshot_is_due() && state_.report.samples > 0) take_snapshot();
             take_samples();
             state_.report.seconds = seconds();
             if (cancelled() || (control_.executor != nullptr && control_.executor->failed()))
@@ -61,16 +62,19 @@ class RenderLoop {
     double seconds() const { return seconds_before_ + seconds_since(begin_); }
     bool cancelled() const { return control_.cancel != nullptr && control_.cancel->requested(); }
     bool checkpoint_is_due() const {
-        if (!control_.checkpoint) return false;
-        return seconds_since(last_checkpoint_) >= control_.checkpoint_seconds ||
-               (control_.look != nullptr && control_.look->load(std::memory_order_relaxed));
+        return control_.checkpoint && seconds_since(last_checkpoint_) >= control_.checkpoint_seconds;
+    }
+    bool snapshot_is_due() const {
+        return control_.snapshot_wanted != nullptr &&
+               control_.snapshot_wanted->load(std::memory_order_relaxed);
     }
     bool out_of_time() const {
         // A picture with a sample of each pixel is the least there is to show.
         return renderer_.target().time > 0 && every_pixel_seen_ && seconds() >= renderer_.target().time;
     }
+    bool pause_is_due() const { return checkpoint_is_due() || snapshot_is_due() || out_of_time(); }
     void pause_if_due() {
-        if (checkpoint_is_due() || out_of_time()) pause_ = true;
+        if (pause_is_due()) pause_ = true;
     }
     // With an executor, ends of rounds are expensive. Where nothing is decided by the error, one round takes
     // all samples that are left, after the first one; so does a pilot.
@@ -125,15 +129,13 @@ class RenderLoop {
 
     void take_samples() {
         if (control_.executor != nullptr) {
-            const RoundWatch watch{[this](bool something_done) {
-                                       return cancelled() ||
-                                              (something_done && (checkpoint_is_due() || out_of_time()));
-                                   },
-                                   [this](std::uint64_t samples, const std::optional<FilmError>& error) {
-                                       samples_beyond_ = samples;
-                                       report_progress(error);
-                                   },
-                                   control_.cancel};
+            const RoundWatch watch{
+                [this](bool something_done) { return cancelled() || (something_done && pause_is_due()); },
+                [this](std::uint64_t samples, const std::optional<FilmError>& error) {
+                    samples_beyond_ = samples;
+                    report_progress(error);
+                },
+                control_.cancel};
             control_.executor->run(tile_renderer_, state_, watch);
             samples_beyond_ = 0;
             return;
@@ -190,6 +192,10 @@ class RenderLoop {
         return std::max(progress_.samples_done, static_cast<std::uint64_t>(expected));
     }
 
+    void take_snapshot() {
+        control_.snapshot_wanted->store(false, std::memory_order_relaxed);
+        control_.snapshot(state_);
+    }
     void save_checkpoint() {
         control_.checkpoint(state_);
         last_checkpoint_ = Clock::now();

@@ -42,9 +42,10 @@ RenderJob::~RenderJob() {
 void RenderJob::run() {
     RenderControl control;
     control.cancel = &cancel_;
-    control.look = &look_wanted_;
-    control.checkpoint_seconds = settings_.checkpoint.empty() ? 1e9 : settings_.checkpoint_every;
-    control.checkpoint = [this](const RenderState& state) { checkpoint(state); };
+    control.snapshot = [this](const RenderState& state) { take_snapshot(state); };
+    control.snapshot_wanted = &snapshot_wanted_;
+    control.checkpoint_seconds = settings_.checkpoint_every;
+    if (!settings_.checkpoint.empty()) control.checkpoint = [this](const RenderState& state) { save(state); };
     control.progress = [this](const RenderProgress& p) {
         std::lock_guard lock(mutex_);
         progress_ = p;
@@ -68,15 +69,14 @@ void RenderJob::run() {
     changed_.notify_all();
 }
 
-// While no sample is being taken, and at the end.
-void RenderJob::checkpoint(const RenderState& state) {
-    if (look_wanted_.exchange(false)) {
-        std::lock_guard lock(mutex_);
-        seen_.emplace(state.film);
-        seen_report_ = state.report;
-        changed_.notify_all();
-    }
-    if (settings_.checkpoint.empty()) return;
+void RenderJob::take_snapshot(const RenderState& state) {
+    std::lock_guard lock(mutex_);
+    seen_.emplace(state.film);
+    seen_report_ = state.report;
+    changed_.notify_all();
+}
+
+void RenderJob::save(const RenderState& state) {
     // A full disk must not cost the render.
     std::string failure;
     try {
@@ -106,7 +106,7 @@ RenderProgress RenderJob::progress() const {
 std::optional<RenderLook> RenderJob::look(double seconds) {
     std::unique_lock lock(mutex_);
     if (ended_) return std::nullopt;
-    look_wanted_ = true;
+    snapshot_wanted_ = true;
     changed_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return ended_ || seen_; });
     if (!seen_) return std::nullopt;
     Film film = std::move(*seen_);

@@ -62,7 +62,8 @@ class RenderJob {
 
   private:
     void run();
-    void checkpoint(const RenderState& state);
+    void take_snapshot(const RenderState& state);
+    void save(const RenderState& state);
     std::shared_ptr<Image> developed(const Film& film, const RenderReport& report) const;
     void denoise(Image& image);
 
@@ -74,7 +75,7 @@ class RenderJob {
     std::string refused_checkpoint_;
     std::uint32_t unit_ = 1;
     CancelFlag cancel_;
-    std::atomic<bool> look_wanted_{false};
+    std::atomic<bool> snapshot_wanted_{false};
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;

@@ -177,6 +177,15 @@ def test_checkpoints_go_on_to_the_same_bits(scene, tmp_path):
     assert np.abs(resumed.mean - whole).mean() < 0.05
 
 
+def test_snapshots_write_no_checkpoint(scene, tmp_path):
+    state = tmp_path / "render.state"
+    render = scene.render(time=1, checkpoint=state, checkpoint_every=1000, every=0.02)
+    written = [state.exists() for _ in render]
+    assert len(written) > 5 and not any(written[:-1]) and state.exists()  # written at the end alone
+    often = tmp_path / "often.state"  # snapshots do not delay checkpoints
+    assert any([often.exists() for _ in scene.render(time=1, checkpoint=often, checkpoint_every=0.1, every=0.02)][:-1])
+
+
 # Pictures.
 
 
