@@ -9,11 +9,13 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "montelux/image/difference_picture.h"
 #include "montelux/image/image_read.h"
 #include "montelux/image/image_write.h"
 #include "montelux/image/metrics.h"
+#include "montelux/image/placement.h"
 
 namespace montelux::app {
 
@@ -58,6 +60,19 @@ void load(Side& side, const std::string& file, const std::string& error_option) 
     side.error_source = error_file;
 }
 
+// Leaves of a picture and its errors the pixels of `window`.
+void cut(Side& side, const std::string& file, const PixelWindow& window) {
+    const Placement place = placement_of(side.image);
+    const bool own_file = !side.error.empty();
+    if (own_file) {
+        set_placement(side.error, place.data.x0, place.data.y0, place.display);
+        side.error = cut_out(side.error, window);
+    }
+    side.image = cut_out(side.image, window);
+    side.picture = own_file ? measured_picture(file, side.image, side.error_source, side.error)
+                            : measured_picture(file, side.image);
+}
+
 Json json_of(const ZScores& z) {
     Json out;
     out["count"] = z.count;
@@ -86,6 +101,8 @@ void print_json(const CompareSettings& s, const Side& a, const Side& b, const Co
     out["b"] = json_side(s.b, b);
     out["width"] = a.image.width();
     out["height"] = a.image.height();
+    const PixelWindow window = placement_of(a.image).data;
+    out["window"] = {window.x0, window.y0, window.x1, window.y1};
     out["pixels"] = r.pixels;
     out["set_aside"] = r.set_aside;
     out["not_finite"] = r.not_finite;
@@ -154,13 +171,15 @@ std::string percent(double fraction) {
 }
 
 void print_text(const CompareSettings& s, const Side& a, const Side& b, const Comparison& r,
-                double full_scale) {
+                double full_scale, bool in_common) {
     auto errors = [](const Side& side) {
         return side.error_source.empty() ? std::string("no standard errors")
                                          : "standard errors from " + side.error_source;
     };
     std::printf("A  %s  (%s)\nB  %s  (%s)\n", s.a.c_str(), errors(a).c_str(), s.b.c_str(), errors(b).c_str());
-    std::printf("%d x %d pixels, %llu compared", a.image.width(), a.image.height(), count(r.pixels));
+    std::printf("%d x %d pixels", a.image.width(), a.image.height());
+    if (in_common) std::printf(" that both pictures have (%s)", text_of(placement_of(a.image).data).c_str());
+    std::printf(", %llu compared", count(r.pixels));
     if (r.set_aside)
         std::printf(", %llu set aside (the noisiest %g%% of %s)", count(r.set_aside),
                     s.options.set_aside_percent, r.b_has_error ? "B" : "A");
@@ -191,6 +210,11 @@ void run_compare(const CompareSettings& s) {
     Side a, b;
     load(a, s.a, s.error_a);
     load(b, s.b, s.error_b);
+    const std::optional<PixelWindow> common = common_pixels(s.a, a.image, s.b, b.image);
+    if (common) {
+        cut(a, s.a, *common);
+        cut(b, s.b, *common);
+    }
     Comparison result = compare_pictures(a.picture, b.picture, s.options);
     double full_scale = 0;
     if (!s.difference.empty()) {
@@ -202,7 +226,7 @@ void run_compare(const CompareSettings& s) {
     if (s.json)
         print_json(s, a, b, result, full_scale);
     else
-        print_text(s, a, b, result, full_scale);
+        print_text(s, a, b, result, full_scale, common.has_value());
 }
 
 } // namespace
@@ -232,11 +256,14 @@ void add_compare(CLI::App& app, int& exit_code) {
                "Difference of the fullest colour; else the 99th percentile")
         ->needs(difference);
     command->add_flag("--json", s->json, "Print JSON");
-    command->footer("Examples:\n"
-                    "  montelux compare out.exr ref/mean.exr\n"
-                    "  montelux compare out.exr other.exr --difference d.png --difference-of z\n"
-                    "\n"
-                    "The exit code is 0 however far apart the pictures are.");
+    command->footer(
+        "Examples:\n"
+        "  montelux compare out.exr ref/mean.exr\n"
+        "  montelux compare out.exr other.exr --difference d.png --difference-of z\n"
+        "\n"
+        "Crops are compared with the whole, and with one another, where both have pixels (EXR alone "
+        "keeps a crop's place).\n"
+        "The exit code is 0 however far apart the pictures are.");
     command->callback([s, &exit_code] {
         run_compare(*s);
         exit_code = exit_done;

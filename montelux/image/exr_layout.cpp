@@ -165,6 +165,9 @@ ExrLayout parse_exr(std::span<std::uint8_t> bytes, const std::string& name, cons
     layout.min_y = static_cast<int>(first.data_window->min_y);
     layout.width = static_cast<int>(first.width());
     layout.height = static_cast<int>(first.height());
+    const ExrBox& display = *first.display_window;
+    layout.display = {static_cast<int>(display.min_x), static_cast<int>(display.min_y),
+                      static_cast<int>(display.max_x + 1), static_cast<int>(display.max_y + 1)};
     layout.channels = std::move(first.channels);
     layout.attributes = std::move(first.attributes);
     return layout;

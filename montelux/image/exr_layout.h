@@ -7,13 +7,15 @@
 #include <vector>
 
 #include "montelux/image/exr_header.h"
+#include "montelux/image/placement.h"
 
 namespace montelux {
 
 // What parse_exr learns of the first part.
 struct ExrLayout {
-    int min_x = 0, min_y = 0;
+    int min_x = 0, min_y = 0; // of the data window
     int width = 0, height = 0;
+    PixelWindow display;
     std::vector<ExrChannel> channels;
     Attributes attributes;
 };

@@ -53,8 +53,7 @@ Image decode_exr(const EncodedImage& file) {
     check_image_size(file, layout.width, layout.height, names.size(), bytes_per_sample(format));
     Image image(layout.width, layout.height, names, format);
     image.attributes() = std::move(layout.attributes);
-    if (layout.min_x != 0) image.attributes()["dataWindow.x"] = layout.min_x;
-    if (layout.min_y != 0) image.attributes()["dataWindow.y"] = layout.min_y;
+    set_placement(image, layout.min_x, layout.min_y, layout.display);
 
     try {
         MemoryStream stream(bytes, file.name.c_str());

@@ -16,6 +16,7 @@
 #include <type_traits>
 
 #include "montelux/image/encoders.h"
+#include "montelux/image/placement.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
@@ -33,6 +34,9 @@ class FileStream final : public Imf::OStream {
   private:
     AtomicFile& file_;
 };
+
+// Its last column and row are inside.
+Imath::Box2i box_of(const PixelWindow& w) { return {{w.x0, w.y0}, {w.x1 - 1, w.y1 - 1}}; }
 
 Imf::Compression compression_of(ExrCompression c) {
     switch (c) {
@@ -96,16 +100,12 @@ void encode_exr(AtomicFile& file, const std::string& name, const Image& image, c
     const Image& source = converted.empty() ? image : converted;
 
     try {
-        Imath::V2i origin(0, 0);
-        for (const auto& [key, value] : image.attributes()) {
-            if (const int* v = std::get_if<int>(&value); v && key == "dataWindow.x") origin.x = *v;
-            if (const int* v = std::get_if<int>(&value); v && key == "dataWindow.y") origin.y = *v;
-        }
-        Imath::Box2i window(origin, origin + Imath::V2i(image.width() - 1, image.height() - 1));
-        Imf::Header header(window, window);
+        const Placement placement = placement_of(image);
+        const Imath::Box2i window = box_of(placement.data);
+        Imf::Header header(box_of(placement.display), window);
         header.compression() = compression_of(options.exr_compression);
         for (const auto& [key, value] : image.attributes())
-            if (key != "dataWindow.x" && key != "dataWindow.y") insert(header, key, value);
+            if (!is_of_placement(key)) insert(header, key, value);
         Imf::PixelType type = half ? Imf::HALF : Imf::FLOAT;
         std::size_t sample = half ? 2 : 4, pixel = sample * source.channels(), row = pixel * source.width();
         // The library only reads from the buffer, but its slices are not const.

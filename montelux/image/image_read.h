@@ -20,8 +20,8 @@ struct ReadOptions {
 // Integer formats come as u8 or u16 with the sRGB encoding (a PNG's own gamma is kept as the attribute
 // "png.gamma" and not applied); float formats as f16 or f32, linear. Channels: "R", "G", "B", "A", or "Y" for
 // grey; an EXR file gives all channels of its first part, R, G, B and A first. Row 0 is the top one.
-// EXR: the image is the data window; attributes "dataWindow.x" and "dataWindow.y" tell where it begins when
-// that is not (0, 0). Throws Error, with the path and what is wrong, on anything that cannot be read whole.
+// EXR: the image is the data window; attributes tell where it lies (placement.h). Throws Error, with the path
+// and what is wrong, on anything that cannot be read whole.
 Image read_image(const std::filesystem::path& path, const ReadOptions& options = {});
 
 // The same for a picture in memory (embedded in another file); `name` is used in messages, and its extension.

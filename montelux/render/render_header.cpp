@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "montelux/image/placement.h"
 #include "montelux/render/checkpoint.h"
 #include "montelux/render/sample_order.h"
 #include "montelux/scene/setting_names.h"
@@ -61,6 +62,7 @@ void add_render_header(Image& image, const std::string& scene_name, const SceneD
     a["badSamples"] = static_cast<int>(std::min<std::uint64_t>(report.bad.count(), 1u << 30));
     a["worldToCamera"] = renderer.camera().world_from_camera().inverse_matrix();
     const FilmSettings& film = description.film;
+    set_placement(image, film.crop.x0, film.crop.y0, {0, 0, film.width, film.height});
     a["fullResolution"] = numbers({film.width, film.height});
     a["cropPixels"] = numbers({film.crop.x0, film.crop.y0, film.crop.x1, film.crop.y1});
 }

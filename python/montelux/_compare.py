@@ -54,6 +54,8 @@ class Comparison:
     rmse: float
     #: Mean of (a - b)^2 / (b^2 + epsilon).
     rel_mse: float
+    #: What both pictures have, x0, y0, x1, y1 (ends exclusive): of crops less than the whole.
+    window: tuple[int, int, int, int]
     #: Compared, and left out as the noisiest or as not finite.
     pixels: int
     set_aside: int
@@ -96,7 +98,8 @@ def _picture(source: Any, name: str) -> tuple[_core.Picture, str]:
 
 def compare(a: Source, b: Source, *, epsilon: float = 0.01, set_aside: float = 0.0) -> Comparison:
     """Compares picture a with the reference b: renders, files, arrays of shape (h, w, 3) or (h, w), or pairs of
-    arrays (mean, standard error).
+    arrays (mean, standard error). A crop is compared with the whole, and with other crops, where both have pixels:
+    renders and .exr files know their place.
 
     epsilon: of the relative mean squared error, in squared units of the picture. set_aside: per cent of the
     pixels, those whose reference is the noisiest, that are left out.

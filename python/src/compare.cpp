@@ -4,10 +4,12 @@
 #include "python/src/render_job.h"
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "montelux/image/image_read.h"
 #include "montelux/image/metrics.h"
+#include "montelux/image/placement.h"
 
 namespace montelux::python {
 namespace {
@@ -36,12 +38,26 @@ nb::dict dict_of(const ZScores& z) {
     return d;
 }
 
+// Of crops, the pixels that both have.
+Comparison compare_common(const Image& a, const std::string& a_name, const Image& b,
+                          const std::string& b_name, const ComparisonOptions& options, PixelWindow& window) {
+    const std::optional<PixelWindow> common = common_pixels(a_name, a, b_name, b);
+    if (!common) {
+        window = placement_of(a).data;
+        return compare_pictures(measured_picture(a_name, a), measured_picture(b_name, b), options);
+    }
+    window = *common;
+    const Image part_a = cut_out(a, window), part_b = cut_out(b, window);
+    return compare_pictures(measured_picture(a_name, part_a), measured_picture(b_name, part_b), options);
+}
+
 nb::dict compare(const Image& a, const std::string& a_name, const Image& b, const std::string& b_name,
                  double epsilon, double set_aside) {
     Comparison c;
+    PixelWindow window;
     {
         nb::gil_scoped_release unlocked;
-        c = compare_pictures(measured_picture(a_name, a), measured_picture(b_name, b), {epsilon, set_aside});
+        c = compare_common(a, a_name, b, b_name, {epsilon, set_aside}, window);
     }
     nb::list channels;
     for (const ChannelComparison& k : c.channels) {
@@ -59,6 +75,7 @@ nb::dict compare(const Image& a, const std::string& a_name, const Image& b, cons
     d["channels"] = channels;
     d["rmse"] = c.rmse;
     d["rel_mse"] = c.rel_mse;
+    d["window"] = nb::make_tuple(window.x0, window.y0, window.x1, window.y1);
     d["pixels"] = c.pixels;
     d["set_aside"] = c.set_aside;
     d["not_finite"] = c.not_finite;

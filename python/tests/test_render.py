@@ -220,6 +220,21 @@ def test_compare(scene, tmp_path):
         montelux.compare(a.mean, b.mean[:-1])
 
 
+def test_a_crop_is_compared_with_the_whole(scene, tmp_path):
+    scene.sampler.kind = "independent"
+    whole = scene.render()
+    scene.film.crop = 8, 6, 20, 24
+    crop = scene.render()
+    crop.save(tmp_path / "crop.exr")
+    for part in (crop, tmp_path / "crop.exr"):
+        found = montelux.compare(part, whole)
+        assert found.window == (8, 6, 20, 24) and found.pixels == 12 * 18 and found.rmse == 0 and found.z is not None
+    assert montelux.compare(whole, whole).window == (0, 0, 32, 24)
+    scene.film.crop = 0, 0, 8, 6
+    with pytest.raises(montelux.Error, match="no pixel in common"):
+        montelux.compare(crop, scene.render())
+
+
 # The program.
 
 
