@@ -64,9 +64,12 @@ void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& fil
     ParameterReader r(plugin.parameters, "film " + in_quotes(plugin.name), plugin.at, diagnostics);
     if (plugin.name == "spectral") r.error("film 'spectral' is not supported yet; expected 'rgb'");
     if (plugin.name == "gbuffer") {
-        diagnostics.warn(plugin.at, "film 'gbuffer' is rendered as 'rgb'; its other layers are chosen by the "
-                                    "renderer's own options");
-        r.ignored("coordinatesystem");
+        diagnostics.warn(plugin.at,
+                         "film 'gbuffer' is rendered as 'rgb': of its layers the EXR file has albedo, "
+                         "normal and depth, as every render");
+        if (r.choice("coordinatesystem", {"camera", "world"}, "world") == "camera")
+            diagnostics.warn(r.at("coordinatesystem"),
+                             "'coordinatesystem' is ignored: normals are in world space");
     }
     film.width = read_resolution(r, "xresolution", 1280);
     film.height = read_resolution(r, "yresolution", 720);
@@ -79,9 +82,9 @@ void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& fil
     // Far below the 4000 K where the CIE's daylight series begins its chromaticities leave the plane of
     // colours.
     if (film.white_balance != 0 && !(film.white_balance >= 2000))
-        r.error("whitebalance",
-                "parameter 'whitebalance' is below 2000; expected 0 (no_index) or a temperature "
-                "of 2000 K or more");
+        r.error(
+            "whitebalance",
+            "parameter 'whitebalance' is below 2000; expected 0 (none) or a temperature of 2000 K or more");
     film.max_component_value = r.number("maxcomponentvalue", std::numeric_limits<float>::infinity());
     if (!(film.max_component_value > 0))
         r.error("maxcomponentvalue", "parameter 'maxcomponentvalue' must be positive");
@@ -90,7 +93,7 @@ void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& fil
         r.error("sensor", "sensor " + in_quotes(sensor) + " is not supported yet; expected 'cie1931'");
     if (r.boolean("savefp16") == true)
         diagnostics.warn_once("savefp16", r.at("savefp16"),
-                              "'savefp16' is ignored: the output's precision is an option of the renderer");
+                              "'savefp16' is ignored: EXR files hold 32-bit floats");
     film.exposure_time = r.number("exposuretime", 1);
     if (!(film.exposure_time > 0)) r.error("exposuretime", "parameter 'exposuretime' must be positive");
     r.finish();

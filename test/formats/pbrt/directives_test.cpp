@@ -117,7 +117,7 @@ TEST(PbrtOptions, SpellingsOfOptions) {
 TEST(PbrtOptions, WhatIsLeftOutIsTold) {
     Warnings told;
     parse(R"(ColorSpace "rec2020"
-Film "gbuffer" "bool savefp16" true
+Film "gbuffer" "bool savefp16" true "string coordinatesystem" "camera"
 Accelerator "bvh" "integer maxnodeprims" 4
 Integrator "volpath" "bool regularize" true "string lightsampler" "power"
 Sampler "sobol" "string randomization" "none"
@@ -130,8 +130,11 @@ WorldEnd)",
         "scene:2:1: the film's colour space is sRGB",
         "scene:3:1: 'Accelerator' is ignored",
         "scene:6:8: option 'disablepixeljitter' is not supported; it is ignored",
-        "scene:2:1: film 'gbuffer' is rendered as 'rgb'",
-        "scene:2:16: 'savefp16' is ignored",
+        "scene:2:1: film 'gbuffer' is rendered as 'rgb': of its layers the EXR file has albedo, normal and "
+        "depth, as "
+        "every render",
+        "scene:2:37: 'coordinatesystem' is ignored: normals are in world space",
+        "scene:2:16: 'savefp16' is ignored: EXR files hold 32-bit floats",
         "scene:4:22: 'regularize' is not supported",
         "scene:4:45: 'lightsampler' is ignored",
         "scene:5:17: the points are randomised all the same",
