@@ -10,11 +10,8 @@ target_compile_options(montelux_flags INTERFACE
 if(MONTELUX_WERROR)
     target_compile_options(montelux_flags INTERFACE -Werror)
 endif()
-if(MONTELUX_NATIVE)
-    target_compile_options(montelux_flags INTERFACE -march=native)
-else()
-    target_compile_options(montelux_flags INTERFACE -march=x86-64-v3)
-endif()
+include(MonteluxProcessor)
+target_compile_options(montelux_flags INTERFACE ${MONTELUX_PROCESSOR_FLAGS})
 if(MONTELUX_SANITIZE)
     target_compile_options(montelux_flags INTERFACE
         -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)

@@ -8,7 +8,8 @@ add_executable(rgb_uplift_generator ${PROJECT_SOURCE_DIR}/cmake/generators/rgb_u
 target_compile_features(rgb_uplift_generator PRIVATE cxx_std_20)
 target_include_directories(rgb_uplift_generator PRIVATE ${PROJECT_SOURCE_DIR})
 # Always optimised and never instrumented: it would take minutes otherwise.
-target_compile_options(rgb_uplift_generator PRIVATE -O3 -fno-math-errno -fno-trapping-math -march=x86-64-v3 -Wno-psabi)
+target_compile_options(rgb_uplift_generator PRIVATE -O3 -fno-math-errno -fno-trapping-math
+    ${MONTELUX_PROCESSOR_FLAGS} -Wno-psabi)
 find_package(Threads REQUIRED)
 target_link_libraries(rgb_uplift_generator PRIVATE Threads::Threads)
 add_custom_command(OUTPUT ${tables} COMMAND rgb_uplift_generator ${tables} DEPENDS rgb_uplift_generator

@@ -1,12 +1,12 @@
 #include "montelux/accel/accelerator.h"
 
 #include <algorithm>
-#include <embree3/rtcore.h>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "montelux/accel/alpha.h"
+#include "montelux/accel/embree.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/scene/shape/alpha.h"
 
@@ -244,13 +244,11 @@ Accelerator& Accelerator::operator=(Accelerator&&) noexcept = default;
 const Bounds3& Accelerator::bounds() const { return impl_->bounds; }
 
 bool Accelerator::intersect(const Ray& ray, Hit& hit) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRayHit r;
     r.ray = embree_ray(ray);
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(impl_->world, &context, &r);
+    closest_hit(impl_->world, r);
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     hit.t = r.ray.tfar;
     hit.b1 = r.hit.u;
@@ -268,10 +266,8 @@ bool Accelerator::intersect(const Ray& ray, Hit& hit) const {
 }
 
 bool Accelerator::occluded(const Ray& ray) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRay r = embree_ray(ray);
-    rtcOccluded1(impl_->world, &context, &r);
+    any_hit(impl_->world, r);
     return r.tfar < 0;
 }
 
