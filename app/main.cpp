@@ -1,5 +1,5 @@
 #include "app/commands.h"
-#include "app/integrate_options.h"
+#include "app/integrate/integrate_options.h"
 #include "app/joined.h"
 #include "app/usage_error.h"
 #include <CLI/CLI.hpp>

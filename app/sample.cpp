@@ -1,6 +1,6 @@
 // montelux sample: points of a set, or samples of a density.
 #include "app/commands.h"
-#include "app/integrate_options.h"
+#include "app/integrate/integrate_options.h"
 #include "app/joined.h"
 #include "app/table_file.h"
 #include "app/usage_error.h"

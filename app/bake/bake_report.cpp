@@ -1,7 +1,7 @@
 // montelux bake report: the split sum beside the integral that it stands for.
-#include "app/bake.h"
-#include "app/bake_map.h"
-#include "app/bake_run.h"
+#include "app/bake/bake.h"
+#include "app/bake/bake_map.h"
+#include "app/bake/bake_run.h"
 #include "app/commands.h"
 #include "app/json_number.h"
 #include "app/option_values.h"

@@ -1,4 +1,4 @@
-#include "app/sample_record_text.h"
+#include "app/render/sample_record_text.h"
 
 #include <cmath>
 #include <cstdarg>

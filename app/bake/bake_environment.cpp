@@ -1,8 +1,8 @@
 // montelux bake environment: a map as a prefiltered cube map, an irradiance cube map and spherical harmonics.
-#include "app/bake.h"
-#include "app/bake_files.h"
-#include "app/bake_map.h"
-#include "app/bake_run.h"
+#include "app/bake/bake.h"
+#include "app/bake/bake_files.h"
+#include "app/bake/bake_map.h"
+#include "app/bake/bake_run.h"
 #include "app/commands.h"
 #include "app/json_number.h"
 #include "app/option_values.h"

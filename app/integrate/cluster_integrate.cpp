@@ -1,4 +1,4 @@
-#include "app/cluster_integrate.h"
+#include "app/integrate/cluster_integrate.h"
 
 #include "app/cluster_job.h"
 #include "app/commands.h"

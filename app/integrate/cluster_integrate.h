@@ -1,7 +1,7 @@
 // An integration whose evaluations the ranks of an MPI job share; in one process where there is no job.
 #pragma once
 
-#include "app/integrate_options.h"
+#include "app/integrate/integrate_options.h"
 #include <functional>
 #include <memory>
 

@@ -1,7 +1,7 @@
 // The result of an integration for people and for programs.
 #pragma once
 
-#include "app/integrate_options.h"
+#include "app/integrate/integrate_options.h"
 #include <nlohmann/json.hpp>
 #include <string>
 

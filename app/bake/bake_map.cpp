@@ -1,4 +1,4 @@
-#include "app/bake_map.h"
+#include "app/bake/bake_map.h"
 
 #include "app/option_values.h"
 #include <CLI/CLI.hpp>

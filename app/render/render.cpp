@@ -1,14 +1,14 @@
 // montelux render: from a scene file to a picture with error bars.
 #include "app/cluster_job.h"
-#include "app/cluster_render.h"
 #include "app/commands.h"
 #include "app/denoised_output.h"
 #include "app/interrupt.h"
 #include "app/output_files.h"
 #include "app/picture_notices.h"
-#include "app/progress.h"
-#include "app/render_options.h"
-#include "app/sample_record_text.h"
+#include "app/render/cluster_render.h"
+#include "app/render/progress.h"
+#include "app/render/render_options.h"
+#include "app/render/sample_record_text.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "app/point_recorder.h"
+#include "app/integrate/point_recorder.h"
 
 #include "app/table_file.h"
 

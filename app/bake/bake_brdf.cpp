@@ -1,6 +1,6 @@
 // montelux bake brdf: the split sum's table of scale and bias.
-#include "app/bake.h"
-#include "app/bake_run.h"
+#include "app/bake/bake.h"
+#include "app/bake/bake_run.h"
 #include "app/commands.h"
 #include "app/json_number.h"
 #include "app/output_files.h"

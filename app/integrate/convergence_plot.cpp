@@ -1,4 +1,4 @@
-#include "app/convergence_plot.h"
+#include "app/integrate/convergence_plot.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "app/bake_run.h"
+#include "app/bake/bake_run.h"
 
 #include "app/commands.h"
 #include "app/interrupt.h"

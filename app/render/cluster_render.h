@@ -1,7 +1,7 @@
 // A render that the ranks of an MPI job share: rank 0 reads, decides, speaks and writes; the others help.
 #pragma once
 
-#include "app/render_options.h"
+#include "app/render/render_options.h"
 #include <memory>
 
 #include "montelux/cluster/communicator.h"

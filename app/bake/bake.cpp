@@ -1,5 +1,5 @@
 // montelux bake: tables and prefiltered maps for real-time engines.
-#include "app/bake.h"
+#include "app/bake/bake.h"
 
 #include "app/commands.h"
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-#include "app/progress.h"
+#include "app/render/progress.h"
 
 #include <algorithm>
 #include <cmath>

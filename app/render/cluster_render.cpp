@@ -1,4 +1,4 @@
-#include "app/cluster_render.h"
+#include "app/render/cluster_render.h"
 
 #include "app/cluster_job.h"
 #include "app/commands.h"

@@ -1,4 +1,4 @@
-#include "app/bake_files.h"
+#include "app/bake/bake_files.h"
 
 #include "app/option_values.h"
 #include "app/output_files.h"

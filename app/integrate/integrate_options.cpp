@@ -1,4 +1,4 @@
-#include "app/integrate_options.h"
+#include "app/integrate/integrate_options.h"
 
 #include "app/joined.h"
 #include "app/option_values.h"

@@ -1,6 +1,6 @@
 // montelux bake sky: the clear sky as an environment map.
-#include "app/bake.h"
-#include "app/bake_run.h"
+#include "app/bake/bake.h"
+#include "app/bake/bake_run.h"
 #include "app/commands.h"
 #include "app/json_number.h"
 #include "app/option_values.h"

@@ -1,4 +1,4 @@
-#include "app/integration_report.h"
+#include "app/integrate/integration_report.h"
 
 #include <cmath>
 

@@ -1,11 +1,11 @@
 // montelux integrate: from a formula to a value, or log Z, with its error.
 #include "app/commands.h"
-#include "app/convergence_plot.h"
-#include "app/integrate_options.h"
-#include "app/integration_report.h"
+#include "app/integrate/convergence_plot.h"
+#include "app/integrate/integrate_options.h"
+#include "app/integrate/integration_report.h"
+#include "app/integrate/point_recorder.h"
 #include "app/interrupt.h"
 #include "app/output_files.h"
-#include "app/point_recorder.h"
 #include "app/progress_line.h"
 #include "app/table_file.h"
 #include "app/usage_error.h"
@@ -19,7 +19,7 @@
 
 #include "montelux/mc/io/generation_file.h"
 #ifdef MONTELUX_WITH_RENDER
-#include "app/cluster_integrate.h"
+#include "app/integrate/cluster_integrate.h"
 #endif
 
 namespace montelux::app {

@@ -1,7 +1,7 @@
 // How a value and its error came down with the number of evaluations: a picture in SVG.
 #pragma once
 
-#include "app/integrate_options.h"
+#include "app/integrate/integrate_options.h"
 #include <string>
 
 #include "montelux/mc/integrate/result.h"
