@@ -24,13 +24,13 @@ Json matrix(const std::vector<double>& values, std::size_t columns) {
 
 // What follows the values, in the library's own words.
 std::string report_rest(const IntegrationResult& r) {
-    IntegrationResult without_doubts = r;
-    without_doubts.doubts.clear();
-    const std::string all = to_string(without_doubts);
+    IntegrationResult without_warnings = r;
+    without_warnings.warnings.clear();
+    const std::string all = to_string(without_warnings);
     std::size_t rest = 0;
     for (std::size_t c = 0; c < r.value.size(); ++c) rest = all.find('\n', rest) + 1;
     std::string text = all.substr(rest) + "\n";
-    for (const std::string& doubt : r.doubts) text += "warning: " + doubt + "\n";
+    for (const std::string& warning : r.warnings) text += "warning: " + warning + "\n";
     if (!r.statistical)
         text += "the error is an estimate by a deterministic rule, not a standard deviation\n";
     return text;
@@ -76,7 +76,7 @@ Json report_json(const IntegrationTask& task, const IntegrationResult& r) {
     out["p_value"] = compared ? number(r.p_value) : Json(nullptr);
     out["converged"] = r.converged();
     out["stop"] = to_string(r.stop);
-    out["doubts"] = r.doubts;
+    out["warnings"] = r.warnings;
     out["non_finite"] = r.non_finite;
     out["first_non_finite_point"] =
         r.first_non_finite_point.empty() ? Json(nullptr) : numbers(r.first_non_finite_point);

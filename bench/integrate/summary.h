@@ -21,7 +21,7 @@ struct Cell {
     int answered = 0; // claimed the target without a doubt
     int doubted = 0;
     int silent = 0;          // answered, with a true error above 3 targets
-    int silent_unheeded = 0; // the same, had the doubts not been heeded
+    int silent_unheeded = 0; // the same, had the warnings not been heeded
     std::optional<double>
         median_evaluations; // runs that did not answer count as infinite; none if most did not
     double median_cpu_seconds = 0;

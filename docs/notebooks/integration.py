@@ -38,7 +38,7 @@ r = montelux.integrate(lambda x: np.sin(x), (0, np.pi), relative_error=1e-10)
 print("value          ", r.value)
 print("standard_error ", r.standard_error)
 print("converged      ", r.converged, "- the target was met, and nothing speaks against the value")
-print("doubts         ", r.doubts)
+print("warnings       ", r.warnings)
 print("statistical    ", r.statistical, "- a deterministic rule: its error is an estimate, no standard deviation")
 
 # %% [markdown]
@@ -178,7 +178,7 @@ plt.show()
 # ## When the error cannot be trusted
 #
 # $\int_0^1 x^{-0.6}\,dx = 2.5$ exists, but the variance of $x^{-0.6}$ does not: no sample can tell the error of its mean.
-# The library says what it can see. **Read the doubts**:
+# The library says what it can see. **Read the warnings**:
 
 # %%
 montelux.integrate(lambda x: x**-0.6, (0, 1), "quasi", evaluations=100_000)
@@ -337,5 +337,5 @@ print(sorted(more.to_dict())[:6], "...")
 #
 # - [sampling.ipynb](sampling.ipynb): random variables, point sets, importance sampling with several densities, Metropolis
 # - [rendering.ipynb](rendering.ipynb): pictures are a million integrals, each with its error
-# - [docs/integration.md](../integration.md): every method, what its error means, what each doubt says
+# - [docs/integration.md](../integration.md): every method, what its error means, what each warning says
 # - [docs/integration-bench.md](../integration-bench.md): the methods beside GSL, cubature and vegas

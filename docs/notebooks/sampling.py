@@ -235,12 +235,12 @@ methods = {
 }
 for name, method in methods.items():
     r = montelux.integrate(f, line_, method, evaluations=20_000, seed=1)
-    print(f"{name:24} {r.value:.5f} +- {r.standard_error:.5f}, doubts: {len(r.doubts)}")
+    print(f"{name:24} {r.value:.5f} +- {r.standard_error:.5f}, warnings: {len(r.warnings)}")
 print(f"{'exactly':24} {exact:.5f}")
 
 # %% [markdown]
 # The peak's density alone has an error that looks small and is wrong: most of the hill lies where it never samples, and the
-# doubts say so. `mis_weights` gives the weights themselves; at each point they sum to one.
+# warnings say so. `mis_weights` gives the weights themselves; at each point they sum to one.
 
 # %%
 x = np.linspace(0.2, 0.4, 400)
@@ -276,12 +276,12 @@ for name, mean, error, rhat, size, truth in zip(
     print(
         f"E[{name}] {mean:6.3f} +- {error:.3f}, exactly {truth}; R-hat {rhat:.4f}, worth {size:.0f} independent states"
     )
-print(f"{chains.states.shape} states, {100 * chains.acceptance_rate:.0f} % accepted; doubts: {list(chains.doubts)}")
+print(f"{chains.states.shape} states, {100 * chains.acceptance_rate:.0f} % accepted; warnings: {list(chains.warnings)}")
 
 # %% [markdown]
 # The 20 000 states are worth far fewer independent ones: that is what the walk costs. R-hat compares the four
 # chains, which began far apart; near 1 they have forgotten
-# where. Above 1.01 there would be a doubt.
+# where. Above 1.01 there would be a warning.
 
 # %%
 figure, axes = plt.subplots(1, 2, figsize=(7.4, 3.2), width_ratios=(1, 1.4))

@@ -71,6 +71,6 @@ int main() {
     for (std::size_t i = 0; i < 3; ++i)
         comparison.add(names[i], {chains.observables[i].mean, chains.observables[i].standard_error},
                        q.value[i] / q.value[3], 2e-7 * q.value[i] / q.value[3]);
-    for (const std::string& doubt : chains.doubts) std::cout << "doubt: " << doubt << "\n";
-    return comparison.exit_code() | !chains.doubts.empty();
+    for (const std::string& warning : chains.warnings) std::cout << "warning: " << warning << "\n";
+    return comparison.exit_code() | !chains.warnings.empty();
 }

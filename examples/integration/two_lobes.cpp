@@ -38,7 +38,7 @@ int main() {
     const auto compare = [&](const char* what, const Method& method) {
         const IntegrationResult r = integrate(f, plane, method, budget);
         comparison.add(what, r.estimate(), exact);
-        for (const std::string& doubt : r.doubts) std::cout << "  doubt: " << doubt << "\n";
+        for (const std::string& warning : r.warnings) std::cout << "  warning: " << warning << "\n";
     };
 
     compare("the wide density alone", Importance{wide.density()});

@@ -38,7 +38,7 @@ class Chains:
     #: Densities that were NaN or +infinity, and were rejected.
     non_finite: int
     #: Reasons to doubt the means, as sentences.
-    doubts: tuple[str, ...]
+    warnings: tuple[str, ...]
     #: Every `thin`-th state after the burn-in, shape (chains, states, d).
     states: Array
 
@@ -46,7 +46,7 @@ class Chains:
         lines = [f"{m:.6g} +- {e:.2g}, R-hat {r:.4f}" for m, e, r in zip(self.mean, self.standard_error, self.r_hat)]
         chains, states, _ = self.states.shape
         lines.append(f"{chains} chains of {states} states, {100 * self.acceptance_rate:.0f} % accepted")
-        return "\n".join([*lines, *(f"warning: {doubt}" for doubt in self.doubts)])
+        return "\n".join([*lines, *(f"warning: {warning}" for warning in self.warnings)])
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
@@ -112,5 +112,5 @@ def metropolis(
         thin,
         seed,
     )
-    d["doubts"] = tuple(d["doubts"])
+    d["warnings"] = tuple(d["warnings"])
     return Chains(**d)

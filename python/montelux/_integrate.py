@@ -150,7 +150,7 @@ def integrate(
     eight points, to see.
 
     covariance: False leaves out covariances, for thousands of components. non_finite: 'skip' leaves out NaN and
-    infinite values, counted and reported as a warning (`doubts`); 'throw' ends with an Error that names the point.
+    infinite values, counted and reported in `warnings`; 'throw' ends with an Error that names the point.
 
     progress: True shows a line on standard error; a function is called with the Result so far, between steps.
 

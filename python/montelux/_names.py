@@ -40,7 +40,7 @@ _ELSEWHERE = {
     "chi_squared": ("chi2", "chisq"),
     "degrees_of_freedom": ("dof",),
     "p_value": ("Q", "pvalue"),
-    "doubts": ("warnings",),
+    "warnings": ("warnings",),
     "converged": ("success",),
     "log_value": ("logz", "logZ", "log_z"),
     "log_error": ("logzerr", "logz_err"),

@@ -54,7 +54,7 @@ class Result:
     #: 'error_target', 'evaluations', 'time', 'cancelled' or 'finished'.
     stop: str
     #: Reasons to doubt the value or its error, as sentences. Empty is the normal case.
-    doubts: tuple[str, ...]
+    warnings: tuple[str, ...]
     #: Do independent parts of the run agree? No degrees of freedom where there is nothing to compare.
     chi_squared: float
     degrees_of_freedom: int
@@ -69,7 +69,7 @@ class Result:
     @property
     def converged(self) -> bool:
         """The targets were met, and nothing speaks against the result."""
-        return self.stop == "error_target" and not self.doubts
+        return self.stop == "error_target" and not self.warnings
 
     @property
     def relative_error(self) -> float | Array:
@@ -139,9 +139,9 @@ class LogResult:
         return self.relative.converged
 
     @property
-    def doubts(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[str, ...]:
         """Reasons to doubt the value or its error, as sentences. Empty is the normal case."""
-        return self.relative.doubts
+        return self.relative.warnings
 
     @property
     def evaluations(self) -> int:
@@ -225,7 +225,7 @@ def from_core(r: _core.IntegrationResult, vector: bool) -> Result:
         method=r.method,
         reason=r.reason,
         stop=r.stop,
-        doubts=tuple(r.doubts),
+        warnings=tuple(r.warnings),
         chi_squared=r.chi_squared,
         degrees_of_freedom=r.degrees_of_freedom,
         p_value=r.p_value,

@@ -95,7 +95,7 @@ void bind_integrate(nb::module_& m) {
         .def_ro("method", &IntegrationResult::method)
         .def_ro("reason", &IntegrationResult::reason)
         .def_prop_ro("stop", [](const IntegrationResult& r) { return to_string(r.stop); })
-        .def_ro("doubts", &IntegrationResult::doubts)
+        .def_ro("warnings", &IntegrationResult::warnings)
         .def_ro("checkpoint_refused_because", &IntegrationResult::checkpoint_refused_because)
         .def_ro("seconds", &IntegrationResult::seconds)
         .def(

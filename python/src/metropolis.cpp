@@ -81,7 +81,7 @@ nb::dict run(nb::object log_density, const std::vector<std::vector<double>>& sta
     d["acceptance_rate"] = result.acceptance_rate;
     d["evaluations"] = result.evaluations;
     d["non_finite"] = result.non_finite;
-    d["doubts"] = result.doubts;
+    d["warnings"] = result.warnings;
     d["states"] = states.array;
     return d;
 }

@@ -142,7 +142,7 @@ def test_values_that_are_not_finite_are_counted_and_doubted():
     with np.errstate(all="ignore"):
         r = montelux.integrate(lambda x: np.where(x < 0.01, np.nan, 1.0), (0, 1), "basic", evaluations=10_000, seed=1)
         assert 0 < r.non_finite < 300 and r.first_non_finite_point[0] < 0.01
-        assert "were not finite" in r.doubts[0] and not r.converged
+        assert "were not finite" in r.warnings[0] and not r.converged
         with pytest.raises(montelux.Error, match=r"the integrand is nan at \(0\.00"):
             montelux.integrate(
                 lambda x: np.where(x < 0.01, np.nan, 1.0), (0, 1), "basic", evaluations=10_000, non_finite="throw"

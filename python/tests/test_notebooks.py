@@ -127,7 +127,7 @@ def test_links_lead_somewhere(name: str) -> None:
         ("0.61 s, by samples", "12 s, by samples", 0),
         ("0.61 s, by samples", "0.61 s, by error", 1),
         ("1.5 errors", "-1.5 errors", 1),
-        ("no doubt", "no doubt\ndoubt: 3", 1),
+        ("no warning", "no warning\nwarning: 3", 1),
     ],
 )
 def test_texts_are_compared(expected: str, found: str, count: int) -> None:

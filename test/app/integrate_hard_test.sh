@@ -20,7 +20,7 @@ honest() {
         return
         ;;
     esac
-    grep -q '"doubts": \[\]' json || return
+    grep -q '"warnings": \[\]' json || return
     # Where the error is unknown (null) nothing is claimed.
     awk -v v="$(field value)" -v e="$(field standard_error)" -v t="$truth" \
         'BEGIN { d = v - t; if (d < 0) d = -d; exit !(e == "null" || d <= 4 * e) }' || fail "$told"

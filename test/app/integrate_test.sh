@@ -86,7 +86,7 @@ def read(name):
     def refuse(text): raise ValueError(text)
     return json.load(open(name), parse_constant=refuse)
 v, one, nan = read("vector.json"), read("one.json"), read("nan.json")
-keys = "value standard_error covariance evaluations method reason chi_squared degrees_of_freedom chi_squared_per_degree p_value converged stop doubts non_finite history"
+keys = "value standard_error covariance evaluations method reason chi_squared degrees_of_freedom chi_squared_per_degree p_value converged stop warnings non_finite history"
 assert all(k in v for k in keys.split()) and not any("chi2" in k for k in v)
 assert len(v["value"]) == 2 and len(v["standard_error"]) == 2
 assert len(v["covariance"]) == 2 and len(v["covariance"][0]) == 2
@@ -94,7 +94,7 @@ assert v["covariance"][0][1] == v["covariance"][1][0]
 assert v["stop"] == "evaluations" and v["converged"] is False and v["evaluations"] == 5000
 assert v["history"][-1]["evaluations"] == 5000
 assert isinstance(one["value"], float) and one["standard_error"] is None and one["covariance"] is None
-assert 0.4 < nan["value"] < 0.6 and nan["non_finite"] > 2000 and len(nan["doubts"]) == 1
+assert 0.4 < nan["value"] < 0.6 and nan["non_finite"] > 2000 and len(nan["warnings"]) == 1
 assert nan["first_non_finite_point"][0] > 0.5
 END
 fi

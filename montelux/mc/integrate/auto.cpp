@@ -93,11 +93,11 @@ class AutoEstimator final : public Estimator {
             return outcome;
         }
         // It can do no more. Sampling takes over where there is no result yet, or where a target is still
-        // open or the result is doubted and much is left; a remainder that no region fits into would give a
+        // open or the result has a warning and much is left; a remainder that no region fits into would give a
         // worse result than there is.
         const Tally rule = cubature_->tally();
         const std::uint64_t spent = rule.evaluations;
-        const bool open = outcome == StepOutcome::finished && (targeted || !rule.doubts.empty()) &&
+        const bool open = outcome == StepOutcome::finished && (targeted || !rule.warnings.empty()) &&
                           request.max_evaluations > spent;
         if (spent > 0 && !open) return outcome;
         if (outcome == StepOutcome::finished && targeted && is_indistinct_from_zero(rule, request)) {
@@ -156,7 +156,7 @@ class AutoEstimator final : public Estimator {
 
     bool rules_arrived(const StepRequest& request) const {
         const Tally rule = cubature_->tally();
-        bool arrived = rule.ready && rule.doubts.empty();
+        bool arrived = rule.ready && rule.warnings.empty();
         for (std::size_t c = 0; c < rule.value.size(); ++c)
             arrived = arrived &&
                       rule.standard_error[c] <=
@@ -213,10 +213,10 @@ class AutoEstimator final : public Estimator {
             tally.evaluations += sampled.evaluations;
             tally.non_finite.merge(sampled.non_finite);
             if (diverges_)
-                tally.doubts.push_back(
+                tally.warnings.push_back(
                     "the error does not fall where values are not finite; the integral may not exist");
-            // A rule that doubts itself is replaced rather than believed.
-            tally.ready = tally.ready && tally.doubts.empty() && (agreed_ || !tally.localised);
+            // A rule with a warning is replaced rather than believed.
+            tally.ready = tally.ready && tally.warnings.empty() && (agreed_ || !tally.localised);
             tally.localised = tally.localised && !agreed_;
             return tally;
         }
@@ -261,7 +261,7 @@ class AutoEstimator final : public Estimator {
     // within its error of zero: no smaller error would be small beside it. An absolute error can be met by
     // sampling.
     static bool is_indistinct_from_zero(const Tally& rule, const StepRequest& request) {
-        if (request.absolute_error > 0 || !rule.ready || !rule.doubts.empty()) return false;
+        if (request.absolute_error > 0 || !rule.ready || !rule.warnings.empty()) return false;
         for (std::size_t c = 0; c < rule.value.size(); ++c) {
             const double size = std::abs(rule.value[c]), error = rule.standard_error[c];
             if (error > request.relative_error * size && size > error) return false;
@@ -310,8 +310,8 @@ class AutoEstimator final : public Estimator {
         costs_.push_back(cost);
         reason_ = "cubature converges";
         if (targeted && ratio <= 1) {
-            // A target that is reached with doubts is not reached.
-            if (!tally.doubts.empty()) give_up("cubature doubts itself: " + tally.doubts.front());
+            // A target that is reached with warnings is not reached.
+            if (!tally.warnings.empty()) give_up("cubature warns: " + tally.warnings.front());
             comparing_ = !switched_ && tally.ready && tally.localised && !agreed_;
             return;
         }

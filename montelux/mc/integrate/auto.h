@@ -10,7 +10,7 @@ namespace montelux {
 
 // Up to eight variables begin with deterministic cubature, whose first regions cost less than any sampling
 // method needs to say anything. As long as its error falls so fast that it should reach the target (or,
-// without a target, the smaller error) before sampling would, it goes on; else, or when it doubts itself,
+// without a target, the smaller error) before sampling would, it goes on; else, or when it warns,
 // Adaptive takes over from the start. One variable more often stays with cubature, more than eight begin with
 // Adaptive, more than 1024 take BasicMonteCarlo. The result's `method` and `reason` say what was picked;
 // naming a method overrules it.

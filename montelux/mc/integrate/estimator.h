@@ -55,7 +55,7 @@ struct Tally {
     bool at_limit = false;
     // A rule found so little of the domain to matter that random points cannot check it.
     bool localised = false;
-    std::vector<std::string> doubts;
+    std::vector<std::string> warnings;
     std::string method, reason; // filled by estimators that choose among others
 };
 

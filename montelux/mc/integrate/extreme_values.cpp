@@ -23,8 +23,8 @@ constexpr double tail_share = 0.2;               // of the tail in the squared e
 
 double few_values_factor(double k) { return 1 + 1.32 * std::pow(std::max(k, 1.0), -1.5); }
 
-void doubt_heavy_tail(const ParetoTail& tail, std::uint64_t values, double n, double standard_error,
-                      std::vector<std::string>& doubts) {
+void warn_of_heavy_tail(const ParetoTail& tail, std::uint64_t values, double n, double standard_error,
+                        std::vector<std::string>& warnings) {
     const std::optional<ParetoFit> fit = tail.fit(values);
     if (!fit || fit->points < least_tail ||
         !(fit->shape - shape_errors * fit->shape_error() > infinite_variance))
@@ -39,7 +39,7 @@ void doubt_heavy_tail(const ParetoTail& tail, std::uint64_t values, double n, do
                   "the largest weights have a Pareto tail with k = %.2f: the variance may be infinite and "
                   "the error too small",
                   fit->shape);
-    doubts.emplace_back(text);
+    warnings.emplace_back(text);
 }
 
 ExtremeValues::ExtremeValues(int components)

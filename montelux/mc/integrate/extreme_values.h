@@ -22,8 +22,8 @@ inline double equal_values_error(double value, double n) { return 1.5 * (value <
 
 // Adds a sentence where the largest of `values` values follow a tail whose variance is probably infinite, and
 // where these matter for the standard error of a mean to which each adds 1 / n of itself.
-void doubt_heavy_tail(const ParetoTail& tail, std::uint64_t values, double n, double standard_error,
-                      std::vector<std::string>& doubts);
+void warn_of_heavy_tail(const ParetoTail& tail, std::uint64_t values, double n, double standard_error,
+                        std::vector<std::string>& warnings);
 
 // Sums and extremes of the values of each component; of the first component the tail of the magnitudes too.
 class ExtremeValues {

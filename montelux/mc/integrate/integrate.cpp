@@ -280,8 +280,8 @@ class Run {
 
     IntegrationResult result(StopReason stop) const {
         Tally tally = estimator_->tally();
-        const bool unchecked = targeted_ && !tally.statistical && !tally.ready && tally.doubts.empty();
-        const bool rounding = (tally.at_limit && tally.doubts.empty()) || is_rounding(tally);
+        const bool unchecked = targeted_ && !tally.statistical && !tally.ready && tally.warnings.empty();
+        const bool rounding = (tally.at_limit && tally.warnings.empty()) || is_rounding(tally);
         IntegrationResult r;
         r.value = std::move(tally.value);
         r.standard_error = std::move(tally.standard_error);
@@ -306,23 +306,23 @@ class Run {
         r.method = tally.method.empty() ? method_ : tally.method;
         r.reason = std::move(tally.reason);
         r.stop = stop;
-        r.doubts = std::move(tally.doubts);
-        if (r.doubts.empty() && nothing_found(estimator_->tally()))
-            r.doubts.push_back(
+        r.warnings = std::move(tally.warnings);
+        if (r.warnings.empty() && nothing_found(estimator_->tally()))
+            r.warnings.push_back(
                 "a value is zero with an error of zero: no point has met anything but zeros, and "
                 "a narrow peak would not have been seen");
         if (targeted_ && stop == StopReason::finished && rounding)
-            r.doubts.push_back("the error asked for is below the rounding error of double precision");
+            r.warnings.push_back("the error asked for is below the rounding error of double precision");
         if (unchecked && stop != StopReason::error_target)
-            r.doubts.push_back("random points had not confirmed the rules when the run ended");
+            r.warnings.push_back("random points had not confirmed the rules when the run ended");
         if (tally.localised)
-            r.doubts.push_back(
+            r.warnings.push_back(
                 "the integrand is concentrated in a part of the domain that is too small for a check by "
                 "random points; other such parts may have been missed");
         if (r.non_finite > 0)
-            r.doubts.push_back(std::to_string(r.non_finite) + " of " + std::to_string(r.evaluations) +
-                               " values of the integrand were not finite and were left out, the first at " +
-                               point_text(r.first_non_finite_point));
+            r.warnings.push_back(std::to_string(r.non_finite) + " of " + std::to_string(r.evaluations) +
+                                 " values of the integrand were not finite and were left out, the first at " +
+                                 point_text(r.first_non_finite_point));
         r.checkpoint_refused_because = checkpoint_refused_because_;
         r.seconds = elapsed();
         return r;

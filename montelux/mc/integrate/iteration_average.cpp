@@ -108,7 +108,7 @@ void IterationAverage::tally(Tally& tally) const {
     std::snprintf(text, sizeof text,
                   "the iterations disagree: chi-squared %.3g for %d degrees of freedom, p = %.2g",
                   tally.chi_squared, degrees_of_freedom_, p);
-    tally.doubts.emplace_back(text);
+    tally.warnings.emplace_back(text);
 }
 
 void IterationAverage::save(StateWriter& state) const {

@@ -38,7 +38,7 @@ class IterationAverage {
 
     int iterations() const { return iterations_; }
     // Fills values, errors, covariance, and chi-squared of the component whose iterations agree worst;
-    // doubts when the probability of such disagreement, with so many components, is below 1e-3.
+    // warns when the probability of such disagreement, with so many components, is below 1e-3.
     void tally(Tally& tally) const;
 
     void save(StateWriter& state) const;

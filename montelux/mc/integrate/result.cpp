@@ -49,7 +49,7 @@ std::string to_string(const IntegrationResult& result) {
                       result.chi_squared_per_degree(), result.p_value);
         text += buffer.data();
     }
-    for (const std::string& doubt : result.doubts) text += "\ndoubt: " + doubt;
+    for (const std::string& warning : result.warnings) text += "\nwarning: " + warning;
     return text;
 }
 

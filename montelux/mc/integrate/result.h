@@ -52,13 +52,13 @@ struct IntegrationResult {
     std::string reason; // of Auto's choice; else empty
     StopReason stop = StopReason::finished;
     // Reasons to doubt the value or its error, as sentences. Empty is the normal case.
-    std::vector<std::string> doubts;
+    std::vector<std::string> warnings;
     // Not empty where the newest checkpoint could not be gone on from, and the one before it was: why.
     std::string checkpoint_refused_because;
     double seconds = 0; // wall time
 
     // The targets were met, and nothing speaks against the result.
-    bool converged() const { return stop == StopReason::error_target && doubts.empty(); }
+    bool converged() const { return stop == StopReason::error_target && warnings.empty(); }
     // One component as a value with its error.
     Estimate estimate(int component = 0) const;
     double chi_squared_per_degree() const {
@@ -66,7 +66,7 @@ struct IntegrationResult {
     }
 };
 
-// One line a component, as 1.2345(67); then evaluations, method, what stopped it, and each doubt.
+// One line a component, as 1.2345(67); then evaluations, method, what stopped it, and each warning.
 std::string to_string(const IntegrationResult& result);
 std::ostream& operator<<(std::ostream& out, const IntegrationResult& result);
 

@@ -56,7 +56,7 @@ void judge_extremes(const ExtremeValues& extremes, std::uint64_t n, Tally& tally
     std::vector<double> least;
     for (int c = 0; c < extremes.components(); ++c) least.push_back(extremes.least_standard_error(c, n));
     raise_standard_errors(least, tally);
-    doubt_heavy_tail(extremes.tail(), n, static_cast<double>(n), tally.standard_error[0], tally.doubts);
+    warn_of_heavy_tail(extremes.tail(), n, static_cast<double>(n), tally.standard_error[0], tally.warnings);
 }
 
 void raise_standard_errors(std::span<const double> least, Tally& tally) {

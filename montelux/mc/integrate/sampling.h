@@ -65,7 +65,7 @@ struct SampleMoments {
 // covariance, divided by `count`, is that of the mean.
 void tally_mean(const CovarianceMoments& moments, Tally& tally);
 void tally_mean(const SampleMoments& samples, Tally& tally);
-// Raises errors of means of n values where too few of the values made them, and doubts heavy tails.
+// Raises errors of means of n values where too few of the values made them, and warns of heavy tails.
 void judge_extremes(const ExtremeValues& extremes, std::uint64_t n, Tally& tally);
 // Standard errors of at least `least`, one a component; covariances grow in proportion.
 void raise_standard_errors(std::span<const double> least, Tally& tally);

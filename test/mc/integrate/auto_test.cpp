@@ -204,7 +204,7 @@ TEST(Auto, ZeroIntegrandIsDoubted) {
                       {.relative_error = 1e-3, .evaluations = 50'000}, {.threads = 1});
         EXPECT_EQ(r.value[0], 0);
         EXPECT_FALSE(r.converged()) << dimensions;
-        EXPECT_FALSE(r.doubts.empty()) << dimensions;
+        EXPECT_FALSE(r.warnings.empty()) << dimensions;
     }
 }
 
@@ -313,7 +313,7 @@ TEST(AutoSlowTest, UnbiasedWithHonestErrors) {
                 continue;
             }
             values.add(r.value[0]);
-            if (!r.doubts.empty()) continue;
+            if (!r.warnings.empty()) continue;
             const double deviation = std::abs(r.value[0] - problem.truth[0]);
             ++judged;
             one += deviation <= r.standard_error[0];

@@ -57,7 +57,7 @@ Coverage measure(const Method& method, Line line, std::uint64_t evaluations, int
             continue;
         }
         EXPECT_LE(r.evaluations, evaluations);
-        if (!r.doubts.empty()) {
+        if (!r.warnings.empty()) {
             ++coverage.doubted;
             continue;
         }

@@ -66,7 +66,7 @@ inline void expect_equal_bits(const Tally& a, const Tally& b) {
     EXPECT_EQ(a.chi_squared, b.chi_squared);
     EXPECT_EQ(a.degrees_of_freedom, b.degrees_of_freedom);
     EXPECT_EQ(a.ready, b.ready);
-    EXPECT_EQ(a.doubts, b.doubts);
+    EXPECT_EQ(a.warnings, b.warnings);
 }
 
 // Steps until nothing advances or `steps` are done.
@@ -138,7 +138,7 @@ inline void expect_non_finite_counted(const Domain& domain, const Method& method
     ASSERT_FALSE(r.first_non_finite_point.empty());
     EXPECT_LT(r.first_non_finite_point[0], 0.1);
     EXPECT_TRUE(std::isfinite(r.value[0]));
-    EXPECT_FALSE(r.doubts.empty());
+    EXPECT_FALSE(r.warnings.empty());
     EXPECT_THROW(integrate(f, domain, method, {.evaluations = evaluations},
                            {.non_finite = NonFinitePolicy::throw_error}),
                  Error);

@@ -14,8 +14,8 @@ ExtremeValues of(const std::vector<double>& values) {
     extremes.add(0, values);
     return extremes;
 }
-bool doubts_tail(const IntegrationResult& r) {
-    for (const std::string& doubt : r.doubts)
+bool warns_of_tail(const IntegrationResult& r) {
+    for (const std::string& doubt : r.warnings)
         if (doubt.find("Pareto tail") != std::string::npos) return true;
     return false;
 }
@@ -101,8 +101,9 @@ TEST(ExtremeValues, InfiniteVarianceIsDoubted) {
         for (std::uint64_t seed = 1; seed <= 10; ++seed) {
             const Budget budget{.evaluations = 60'000};
             const IntegrationOptions options{.seed = seed, .threads = 1};
-            infinite += doubts_tail(integrate(f, Domain::unit_cube(3), Method::named(name), budget, options));
-            finite += doubts_tail(integrate(g, Domain::unit_cube(3), Method::named(name), budget, options));
+            infinite +=
+                warns_of_tail(integrate(f, Domain::unit_cube(3), Method::named(name), budget, options));
+            finite += warns_of_tail(integrate(g, Domain::unit_cube(3), Method::named(name), budget, options));
         }
         // Few strata tell less.
         const bool strata = std::string(name) == "stratified" || std::string(name) == "recursive";

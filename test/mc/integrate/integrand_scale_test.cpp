@@ -141,7 +141,7 @@ TEST(IntegrateLog, MinusInfinityIsZeroAndOtherInfinitiesAreMistakes) {
     const LogIntegrationResult none = integrate_log(nothing, Domain::interval(0, 1));
     EXPECT_EQ(none.log_value, -unbounded);
     EXPECT_EQ(none.log_error, unbounded);
-    EXPECT_FALSE(none.relative.doubts.empty());
+    EXPECT_FALSE(none.relative.warnings.empty());
 }
 
 TEST(IntegrateLog, RefusesWhatHasNoMeaning) {

@@ -180,8 +180,8 @@ TEST(IntegrateStop, ZerosAreNoReasonToBelieveInZero) {
     EXPECT_GE(zero.evaluations, 1'000'000u);
     EXPECT_EQ(zero.value[0], 0);
     EXPECT_FALSE(zero.converged());
-    ASSERT_EQ(zero.doubts.size(), 1u);
-    EXPECT_NE(zero.doubts[0].find("narrow peak"), std::string::npos);
+    ASSERT_EQ(zero.warnings.size(), 1u);
+    EXPECT_NE(zero.warnings[0].find("narrow peak"), std::string::npos);
 }
 
 } // namespace

@@ -72,8 +72,8 @@ TEST(IntegrateNonFinite, SkippedCountedAndTold) {
     EXPECT_LT(std::abs(r.estimate().z_score(0.75)), 5.5);
     ASSERT_EQ(r.first_non_finite_point.size(), 2u);
     EXPECT_TRUE(std::isnan(f(r.first_non_finite_point)));
-    ASSERT_EQ(r.doubts.size(), 1u);
-    EXPECT_NE(r.doubts[0].find(std::to_string(r.non_finite) + " of 100000 values"), std::string::npos);
+    ASSERT_EQ(r.warnings.size(), 1u);
+    EXPECT_NE(r.warnings[0].find(std::to_string(r.non_finite) + " of 100000 values"), std::string::npos);
     EXPECT_FALSE(r.converged());
     const IntegrationResult again =
         integrate(f, Domain::unit_cube(2), basic, {.evaluations = 100'000}, {.threads = 1});

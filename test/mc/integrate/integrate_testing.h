@@ -38,7 +38,8 @@ inline bool same_but_for_time(const IntegrationResult& a, const IntegrationResul
             return false;
     return a.value == b.value && a.standard_error == b.standard_error && a.covariance == b.covariance &&
            a.evaluations == b.evaluations && a.non_finite == b.non_finite &&
-           a.first_non_finite_point == b.first_non_finite_point && a.stop == b.stop && a.doubts == b.doubts;
+           a.first_non_finite_point == b.first_non_finite_point && a.stop == b.stop &&
+           a.warnings == b.warnings;
 }
 
 // An estimator of ten steps, all of a given size.

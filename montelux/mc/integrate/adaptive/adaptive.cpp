@@ -103,11 +103,11 @@ class AdaptiveEstimator final : public Estimator {
         const bool heavy = weighted && estimate.heavy_tailed(tally.standard_error[0]);
         const bool lost = weighted && estimate.lost_what_is_in(uniform_);
         std::vector<std::string> tail;
-        doubt_heavy_tail(estimate.sums().extremes.tail(), estimate.all_points(),
-                         static_cast<double>(estimate.all_points()), tally.standard_error[0], tail);
+        warn_of_heavy_tail(estimate.sums().extremes.tail(), estimate.all_points(),
+                           static_cast<double>(estimate.all_points()), tally.standard_error[0], tail);
         if (heavy || lost || !tail.empty()) tally.ready = false;
-        tally.doubts = std::move(tail);
-        add_doubts(estimate, heavy, lost, tally);
+        tally.warnings = std::move(tail);
+        add_warnings(estimate, heavy, lost, tally);
         return tally;
     }
 
@@ -334,29 +334,30 @@ class AdaptiveEstimator final : public Estimator {
     bool surprising(const MixtureEstimate& estimate) const {
         Tally tally;
         estimate.tally(false, tally);
-        doubt_heavy_tail(estimate.sums().extremes.tail(), estimate.all_points(),
-                         static_cast<double>(estimate.all_points()), tally.standard_error[0], tally.doubts);
-        return !tally.doubts.empty() || estimate.heavy_tailed(tally.standard_error[0]);
+        warn_of_heavy_tail(estimate.sums().extremes.tail(), estimate.all_points(),
+                           static_cast<double>(estimate.all_points()), tally.standard_error[0],
+                           tally.warnings);
+        return !tally.warnings.empty() || estimate.heavy_tailed(tally.standard_error[0]);
     }
 
-    void add_doubts(const MixtureEstimate& estimate, bool heavy, bool lost, Tally& tally) const {
-        if (lost) tally.doubts.push_back("the trained density lost what the exploring points had seen");
+    void add_warnings(const MixtureEstimate& estimate, bool heavy, bool lost, Tally& tally) const {
+        if (lost) tally.warnings.push_back("the trained density lost what the exploring points had seen");
         if (trainer_.nonzero() == 0 && tally.value[0] == 0)
-            tally.doubts.push_back(
+            tally.warnings.push_back(
                 "the integrand was zero at every point; a narrow peak may have been missed");
         else if (trainer_.nonzero() < enough_nonzero)
-            tally.doubts.push_back(
+            tally.warnings.push_back(
                 "only " + std::to_string(trainer_.nonzero()) +
                 " of the exploring points saw anything but zero; other places may have been missed");
         if (heavy)
-            tally.doubts.push_back(
+            tally.warnings.push_back(
                 "one sample makes up much of the standard error; the weights have a heavy tail");
         if (estimate.one_replicate_stands_out())
-            tally.doubts.push_back(
+            tally.warnings.push_back(
                 "one replicate stands far from the others; the error may be underestimated");
         if (tally.degrees_of_freedom > 0 &&
             chi_squared_p_value(tally.chi_squared, tally.degrees_of_freedom) < disagreement)
-            tally.doubts.push_back("the training rounds disagree with the result");
+            tally.warnings.push_back("the training rounds disagree with the result");
     }
 
     Problem problem_;

@@ -22,7 +22,7 @@ namespace montelux {
 //    appear that the density did not promise, the samples are given up and the training continues. Where
 //    uniform points prove to have the smaller error, they continue instead.
 // A share of all points stays uniform, so that the weights are bounded by f times its inverse.
-// Doubts: weights with a heavy tail, training rounds that disagree with the result, too few points that saw
+// Warnings: weights with a heavy tail, training rounds that disagree with the result, too few points that saw
 // anything.
 struct Adaptive {
     static constexpr std::string_view name = "adaptive";

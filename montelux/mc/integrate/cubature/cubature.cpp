@@ -142,7 +142,7 @@ class CubatureEstimator final : public Estimator {
                 for (std::size_t b = 0; b < components(); ++b)
                     tally.covariance.push_back(verification_.correlation(a, b) * totals_.error[a] *
                                                totals_.error[b]);
-        say_doubts(tally);
+        add_warnings(tally);
         return tally;
     }
 
@@ -333,23 +333,23 @@ class CubatureEstimator final : public Estimator {
                              equal_values_error(totals_.value[c], static_cast<double>(evaluations_)));
     }
 
-    void say_doubts(Tally& tally) const {
+    void add_warnings(Tally& tally) const {
         std::size_t unseen = 0;
         for (char c : nonzero_) unseen += c == 0;
         if (unseen > 0) {
             std::string what =
                 m_ == 1 ? "the integrand was"
                         : std::to_string(unseen) + (unseen == 1 ? " component was" : " components were");
-            tally.doubts.push_back(what + " zero at each of " + std::to_string(evaluations_) +
-                                   " points; a part where it is not may have been missed");
+            tally.warnings.push_back(what + " zero at each of " + std::to_string(evaluations_) +
+                                     " points; a part where it is not may have been missed");
         }
         if (regions_.count() >= max_regions_)
-            tally.doubts.push_back("the memory for regions is used up at " + std::to_string(max_regions_) +
-                                   " regions; raise max_memory, or take a method that samples");
-        if (!verification_.warning().empty()) tally.doubts.push_back(verification_.warning());
+            tally.warnings.push_back("the memory for regions is used up at " + std::to_string(max_regions_) +
+                                     " regions; raise max_memory, or take a method that samples");
+        if (!verification_.warning().empty()) tally.warnings.push_back(verification_.warning());
         if (equal_values() && evaluations_ >= most_equal_values)
-            tally.doubts.push_back("the integrand was the same at each of " + std::to_string(evaluations_) +
-                                   " points; the error is a bound on what they did not meet");
+            tally.warnings.push_back("the integrand was the same at each of " + std::to_string(evaluations_) +
+                                     " points; the error is a bound on what they did not meet");
         for (std::size_t c = 0; c < components(); ++c) {
             if (totals_.inflation[c] < 4) continue;
             std::ostringstream text;
@@ -357,7 +357,7 @@ class CubatureEstimator final : public Estimator {
             text << "the errors of regions halved of late were " << totals_.inflation[c]
                  << " times too small, and were enlarged by as much; the integrand is rougher than the rules "
                     "can tell";
-            tally.doubts.push_back(text.str());
+            tally.warnings.push_back(text.str());
             break;
         }
     }

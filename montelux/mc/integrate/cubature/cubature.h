@@ -35,7 +35,7 @@ struct Cubature {
     static constexpr std::string_view name = "cubature";
     static constexpr int max_dimensions = 15;
 
-    // Bytes that the regions may take; the integration ends with a doubt when they are used up.
+    // Bytes that the regions may take; the integration ends with a warning when they are used up.
     std::uint64_t max_memory = std::uint64_t{1} << 28;
     // Random points of each check; four times as many where all values seen are much the same. 0: the rules
     // are believed. Default: 128 in one variable, 4096 in more.

@@ -74,7 +74,7 @@ class GridEstimator final : public Estimator {
         tally.non_finite = completed_.non_finite;
         tally.non_finite.merge(running_.non_finite);
         tally.ready = levels_ >= 3;
-        if (levels_ == 0) tally.doubts.push_back("no grid was completed within the evaluations allowed");
+        if (levels_ == 0) tally.warnings.push_back("no grid was completed within the evaluations allowed");
         return tally;
     }
 

@@ -107,7 +107,7 @@ class MetropolisEstimator final : public Estimator {
         tally.ready = state_.normalisation.count() > 1;
         if (!tally.ready) {
             if (state_.evaluations > 0 && state_.walkers.chains.empty())
-                tally.doubts.emplace_back("no point of the pilot found the integrand different from zero");
+                tally.warnings.emplace_back("no point of the pilot found the integrand different from zero");
             return tally;
         }
         const std::vector<ChainTrace>& traces = state_.walkers.traces;
@@ -132,7 +132,7 @@ class MetropolisEstimator final : public Estimator {
                         means[a].mean * means[b].mean * z_variance;
                 }
         }
-        add_doubts(tally);
+        add_warnings(tally);
         return tally;
     }
 
@@ -325,7 +325,7 @@ class MetropolisEstimator final : public Estimator {
             cancel);
     }
 
-    void add_doubts(Tally& tally) const {
+    void add_warnings(Tally& tally) const {
         char text[192];
         double worst = 0;
         for (int k = 0; k < observables(); ++k)
@@ -335,7 +335,7 @@ class MetropolisEstimator final : public Estimator {
                 text, sizeof text,
                 "the chains have not converged to one density: split R-hat %.3f, expected at most 1.01",
                 worst);
-            tally.doubts.emplace_back(text);
+            tally.warnings.emplace_back(text);
         }
         const double n = static_cast<double>(state_.normalisation.count());
         const double squares = state_.normalisation.squared_deviations()[0] +
@@ -346,7 +346,7 @@ class MetropolisEstimator final : public Estimator {
                 "one of %.0f points has %.0f %% of the sum of squares of the normalisation; the error "
                 "may be too small",
                 n, 100 * std::min(1.0, state_.largest * state_.largest / squares));
-            tally.doubts.emplace_back(text);
+            tally.warnings.emplace_back(text);
         }
     }
 

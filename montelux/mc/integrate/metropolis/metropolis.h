@@ -21,7 +21,7 @@ namespace montelux {
 // Where g never changes sign the mean is 1 or -1 exactly, and the chains serve the importance density alone.
 //
 // Starts are drawn in proportion to s from a uniform pilot. The split R-hat over chains (of the means, of
-// log s and of coordinates) above 1.01 is told as a doubt: the weights of separate peaks are then not known.
+// log s and of coordinates) above 1.01 gives a warning: the weights of separate peaks are then not known.
 // For expectations under a density of one's own, see metropolis() in metropolis_chain.h.
 struct Metropolis {
     static constexpr std::string_view name = "metropolis";

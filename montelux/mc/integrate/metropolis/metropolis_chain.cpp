@@ -86,22 +86,22 @@ MetropolisResult gather(const std::vector<ChainTrace>& traces, const std::vector
                 "the chains have not converged to one density: split R-hat of observable %d is %.3f, "
                 "expected at most 1.01",
                 k, s.r_hat);
-            result.doubts.emplace_back(text);
+            result.warnings.emplace_back(text);
         }
         if (s.effective_sample_size < few * options.chains) {
             std::snprintf(text, sizeof text,
                           "observable %d has only %.0f effective samples; its error is uncertain", k,
                           s.effective_sample_size);
-            result.doubts.emplace_back(text);
+            result.warnings.emplace_back(text);
         }
     }
     if (result.non_finite > 0) {
         std::snprintf(text, sizeof text, "%llu of %llu densities were not finite and were rejected",
                       static_cast<unsigned long long>(result.non_finite),
                       static_cast<unsigned long long>(result.evaluations));
-        result.doubts.emplace_back(text);
+        result.warnings.emplace_back(text);
     }
-    if (cancelled) result.doubts.emplace_back("the chains were cancelled before their end");
+    if (cancelled) result.warnings.emplace_back("the chains were cancelled before their end");
     return result;
 }
 

@@ -70,7 +70,7 @@ struct MetropolisResult {
     std::uint64_t evaluations = 0; // of the density
     std::uint64_t non_finite = 0;  // densities that were NaN or +infinity, and were rejected
     bool cancelled = false;
-    std::vector<std::string> doubts;
+    std::vector<std::string> warnings;
 };
 
 namespace detail {
@@ -181,7 +181,7 @@ ChainOutcome run_chain(const Density& log_density, const Propose& propose, const
 // for options and starts that make no sense.
 //
 // After the burn-in the density of a state is p up to what the start still shows; standard errors know the
-// autocorrelation, and a split R-hat above 1.01 is told as a doubt.
+// autocorrelation, and a split R-hat above 1.01 gives a warning.
 template <LogDensity Density, typename Propose, typename Observe, typename Visit>
 requires(ProposalFunction<Propose> || std::same_as<Propose, GaussianWalk>) //
     MetropolisResult

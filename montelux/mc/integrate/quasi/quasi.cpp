@@ -93,7 +93,7 @@ class QuasiEstimator final : public Estimator {
         }
         judge_extremes(completed_extremes_, points_ * static_cast<std::uint64_t>(replicates_), tally);
         tally.ready = trusted(tally);
-        doubt(tally);
+        warn(tally);
         return tally;
     }
 
@@ -268,14 +268,14 @@ class QuasiEstimator final : public Estimator {
     }
 
     // Few replicates that see something which the others miss, and integrands that show nothing at all.
-    void doubt(Tally& tally) const {
+    void warn(Tally& tally) const {
         const CovarianceMoments moments = completed_.moments(points_, false);
         for (int c = 0; c < moments.components(); ++c) {
             const std::string which =
                 moments.components() > 1 ? " of component " + std::to_string(c + 1) : std::string();
             const double squares = moments.variance(c) * (replicates_ - 1);
             if (squares == 0 && moments.mean(c) == 0)
-                tally.doubts.push_back("every value" + which + " was zero");
+                tally.warnings.push_back("every value" + which + " was zero");
             if (replicates_ < 8 || !(squares > 0)) continue;
             double largest = 0;
             for (int r = 0; r < replicates_; ++r) {
@@ -288,7 +288,7 @@ class QuasiEstimator final : public Estimator {
             const double p =
                 replicates_ * (1 - incomplete_beta(0.5, 0.5 * (replicates_ - 2), std::min(share, 1.0)));
             if (p < 1e-4)
-                tally.doubts.push_back(
+                tally.warnings.push_back(
                     "one of the " + std::to_string(replicates_) + " replicates" + which +
                     " lies far from all others: a part of the integral may be seen seldom");
         }

@@ -25,7 +25,7 @@ namespace montelux {
 // The error is honest where the replicates' law is near the normal one. It is not for integrands of infinite
 // variance, nor for a jump in one dimension, which all replicates may have on the same side of the same
 // point: their replicates mostly agree, and seldom differ much. Where one of them stands alone the result is
-// doubted.
+// warned of.
 //
 // The plain sets (Randomisation::none, but for independent points) give one deterministic value; its error is
 // unknown, infinite.

@@ -22,7 +22,8 @@ Tally PassEstimator::tally() const {
     average_.tally(tally);
     tally.evaluations = evaluations_;
     tally.non_finite = non_finite_;
-    if (tally.ready) doubt_heavy_tail(tail_, tail_values_, points_, tally.standard_error[0], tally.doubts);
+    if (tally.ready)
+        warn_of_heavy_tail(tail_, tail_values_, points_, tally.standard_error[0], tally.warnings);
     return tally;
 }
 

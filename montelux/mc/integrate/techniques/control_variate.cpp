@@ -78,7 +78,7 @@ class ControlVariateEstimator final : public Estimator {
         average_.tally(tally);
         tally.evaluations = joint_.count();
         tally.non_finite = non_finite_;
-        doubt(tally.doubts);
+        warn(tally.warnings);
         return tally;
     }
     void save(StateWriter& state) const override {
@@ -152,7 +152,7 @@ class ControlVariateEstimator final : public Estimator {
         beta_ = solve_semidefinite(matrix, right, m);
     }
 
-    void doubt(std::vector<std::string>& doubts) const {
+    void warn(std::vector<std::string>& warnings) const {
         constexpr double far = 6; // standard errors
         if (joint_.count() < 1000) return;
         for (int j = 0; j < controls(); ++j) {
@@ -166,7 +166,7 @@ class ControlVariateEstimator final : public Estimator {
             text << "the integral of control " << j + 1 << " was given as " << known
                  << ", but its samples say " << joint_.mean(c) << " +- " << error
                  << ": the value is off by what that is";
-            doubts.push_back(text.str());
+            warnings.push_back(text.str());
         }
     }
 

@@ -14,7 +14,7 @@ namespace montelux {
 // samples of all steps before the one that it is used in: so each step is unbiased whatever beta is, steps
 // are uncorrelated, and they are averaged by their numbers of samples (Owen 2013, "Monte Carlo theory,
 // methods and examples", section 8.9). The first step is a pilot and gives beta only. Controls that depend on
-// others linearly are left out. Where the samples contradict a known integral by far, the result is doubted.
+// others linearly are left out. Where the samples contradict a known integral by far, there is a warning.
 struct ControlVariate {
     static constexpr std::string_view name = "control_variate";
 

@@ -87,7 +87,7 @@ bool CoverageProbe::run(const Problem& problem, std::uint64_t points, const Canc
     return true;
 }
 
-void CoverageProbe::doubt(Tally& tally) const {
+void CoverageProbe::warn(Tally& tally) const {
     if (uncovered_ == 0) return;
     const double n = static_cast<double>(evaluations_), mean = missing_[0] / n;
     bool matters = false;
@@ -105,7 +105,7 @@ void CoverageProbe::doubt(Tally& tally) const {
     text.precision(3);
     text << mean << " +- " << std::sqrt(variance / n) << " in absolute value (by " << uncovered_ << " of "
          << evaluations_ << " probes)";
-    tally.doubts.push_back(text.str());
+    tally.warnings.push_back(text.str());
 }
 
 void CoverageProbe::save(StateWriter& state) const {

@@ -22,7 +22,7 @@ class CoverageProbe {
     // Evaluates further points; false, and nothing changed, when cancelled.
     bool run(const Problem& problem, std::uint64_t points, const CancelFlag* cancel);
     // Adds a sentence that names a point, if one was found and what is missing matters beside the errors.
-    void doubt(Tally& tally) const;
+    void warn(Tally& tally) const;
 
     void save(StateWriter& state) const;
     void load(StateReader& state);

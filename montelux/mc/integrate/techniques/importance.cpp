@@ -54,7 +54,7 @@ class ImportanceEstimator final : public Estimator {
     Tally tally() const override {
         Tally tally = samples_->tally();
         tally.evaluations += probe_.evaluations();
-        probe_.doubt(tally);
+        probe_.warn(tally);
         return tally;
     }
     void save(StateWriter& state) const override {

@@ -17,7 +17,7 @@ enum class ImportancePoints : std::uint8_t {
 
 // The estimator 1/N * sum of f(X_i) / p(X_i), X_i ~ p; unbiased if p > 0 wherever f is not zero. A small part
 // of the evaluations, 1 to 32, probes uniform points of the domain for places where that does not hold, and
-// doubts the result with the point and the size of what is missing. A density below zero or NaN ends the
+// warns with the point and the size of what is missing. A density below zero or NaN ends the
 // integration with an Error; a point drawn where the technique's own density is zero counts as not finite.
 // Points outside a box contribute zero, and the integrand is not called there.
 struct Importance {

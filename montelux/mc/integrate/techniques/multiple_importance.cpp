@@ -73,7 +73,7 @@ class RoundsEstimator : public Estimator {
         fill(tally);
         tally.evaluations = rounds_ * sampler_.samples_in_round() + probe_.evaluations();
         tally.non_finite = non_finite_;
-        probe_.doubt(tally);
+        probe_.warn(tally);
         return tally;
     }
     void save(StateWriter& state) const override {

@@ -71,8 +71,8 @@ bool UniformCheck::run(const Problem& problem, const AdaptiveMap& map, const Map
     return true;
 }
 
-void UniformCheck::doubt(const std::vector<double>& value, const std::vector<double>& standard_error,
-                         std::span<const double> inverse_scale, std::vector<std::string>& doubts) const {
+void UniformCheck::warn(const std::vector<double>& value, const std::vector<double>& standard_error,
+                        std::span<const double> inverse_scale, std::vector<std::string>& warnings) const {
     if (moments_.count() < 2) return;
     const double n = static_cast<double>(moments_.count());
     double worst = 0, error_square = 0;
@@ -96,7 +96,7 @@ void UniformCheck::doubt(const std::vector<double>& value, const std::vector<dou
                       "uniform points that took no part in the estimate have a mean of %.6g for component "
                       "%zu, %.1f standard errors from its value",
                       moments_.mean(static_cast<int>(where)), where, worst);
-        doubts.emplace_back(text);
+        warnings.emplace_back(text);
     }
     const double hidden = hidden_ / n;
     // What the map may miss by chance: a region that a few of its points might have met, none of which did.
@@ -106,7 +106,7 @@ void UniformCheck::doubt(const std::vector<double>& value, const std::vector<dou
                       "uniform points found values where the adapted density hardly samples; they may be "
                       "%.2g %% of the integral of the absolute value",
                       100 * hidden / size_);
-        doubts.emplace_back(text);
+        warnings.emplace_back(text);
     }
 }
 

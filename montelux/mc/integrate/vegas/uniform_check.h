@@ -28,8 +28,8 @@ class UniformCheck {
              NonFiniteCount& non_finite, const CancelFlag* cancel);
 
     // Sentences, for the result and its errors.
-    void doubt(const std::vector<double>& value, const std::vector<double>& standard_error,
-               std::span<const double> inverse_scale, std::vector<std::string>& doubts) const;
+    void warn(const std::vector<double>& value, const std::vector<double>& standard_error,
+              std::span<const double> inverse_scale, std::vector<std::string>& warnings) const;
 
     void save(StateWriter& state) const;
     void load(StateReader& state);

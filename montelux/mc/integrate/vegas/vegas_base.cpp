@@ -208,15 +208,16 @@ Tally VegasEstimator::tally() const {
     tally.evaluations = state_.evaluations;
     tally.non_finite = state_.non_finite;
     if (!tally.ready) return tally;
-    state_.check.doubt(tally.value, tally.standard_error, state_.inverse_scale, tally.doubts);
+    state_.check.warn(tally.value, tally.standard_error, state_.inverse_scale, tally.warnings);
     if (state_.points >= few_points && state_.largest_square > concentrated * state_.sum_of_squares) {
         char text[160];
         std::snprintf(text, sizeof text,
                       "one of %.0f points has %.0f %% of the sum of squares; the error may be too small",
                       state_.points, 100 * std::min(1.0, state_.largest_square / state_.sum_of_squares));
-        tally.doubts.emplace_back(text);
+        tally.warnings.emplace_back(text);
     }
-    doubt_heavy_tail(state_.tail, state_.tail_values, state_.points, tally.standard_error[0], tally.doubts);
+    warn_of_heavy_tail(state_.tail, state_.tail_values, state_.points, tally.standard_error[0],
+                       tally.warnings);
     return tally;
 }
 

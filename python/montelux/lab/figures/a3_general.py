@@ -33,9 +33,9 @@ def general() -> Outcome:
     # A density that is zero where the function is not: the estimate misses that part, and says so.
     half = montelux.Distribution.uniform(0, np.pi / 4)
     r = montelux.integrate(np.sin, (0, np.pi / 2), "importance", technique=half, evaluations=200_000, seed=5)
-    numbers.append(of("uniform on [0, π/4) alone (doubted)", r, 1 - np.sqrt(0.5), "1 − √½"))
+    numbers.append(of("uniform on [0, π/4) alone (with a warning)", r, 1 - np.sqrt(0.5), "1 − √½"))
     points = DENSITIES["falling"].draw(16, seed=2)
-    return Outcome(numbers, {"points": points, "doubt": r.doubts[0] if r.doubts else ""})
+    return Outcome(numbers, {"points": points, "doubt": r.warnings[0] if r.warnings else ""})
 
 
 def draw_general(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]) -> None:

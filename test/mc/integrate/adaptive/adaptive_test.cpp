@@ -26,7 +26,7 @@ void expect_unbiased_and_honest(const KnownIntegral& problem, int most_doubted) 
         ASSERT_LE(r.evaluations, 20'000u);
         ASSERT_GT(r.evaluations, 10'000u);
         values.add(r.value[0]);
-        if (!r.doubts.empty()) continue;
+        if (!r.warnings.empty()) continue;
         const double deviation = std::abs(r.value[0] - problem.truth[0]);
         ++judged;
         one += deviation <= r.standard_error[0];
@@ -76,7 +76,7 @@ TEST(Adaptive, ReachesItsTargets) {
             const IntegrationResult r =
                 integrate(problem.f, problem.domain, Adaptive{},
                           {.relative_error = error, .evaluations = 1'000'000}, {.seed = 2, .threads = 1});
-            EXPECT_TRUE(r.converged()) << (r.doubts.empty() ? "" : r.doubts[0]);
+            EXPECT_TRUE(r.converged()) << (r.warnings.empty() ? "" : r.warnings[0]);
             EXPECT_LE(r.standard_error[0], error * r.value[0]);
             EXPECT_LT(std::abs(r.value[0] - problem.truth[0]), 5 * error * problem.truth[0]);
             EXPECT_TRUE(r.statistical);
@@ -90,7 +90,7 @@ TEST(Adaptive, FindsNarrowPeaksInEightDimensions) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         const IntegrationResult r = integrate(problem.f, problem.domain, Adaptive{}, {.evaluations = 60'000},
                                               {.seed = seed, .threads = 1});
-        EXPECT_TRUE(r.doubts.empty()) << r.doubts[0];
+        EXPECT_TRUE(r.warnings.empty()) << r.warnings[0];
         EXPECT_LT(r.standard_error[0], 0.01);
         EXPECT_LT(std::abs(r.value[0] - 2), 5 * r.standard_error[0]);
     }
@@ -104,7 +104,7 @@ void expect_found(const KnownIntegral& problem, int seeds, int least_converged) 
             integrate(problem.f, problem.domain, Adaptive{}, {.relative_error = 1e-2, .evaluations = 400'000},
                       {.seed = static_cast<std::uint64_t>(seed), .threads = 1});
         converged += r.converged();
-        if (!r.doubts.empty()) continue;
+        if (!r.warnings.empty()) continue;
         EXPECT_LT(std::abs(r.value[0] - problem.truth[0]), 5 * r.standard_error[0]) << "seed " << seed;
     }
     EXPECT_GE(converged, least_converged);
@@ -158,8 +158,8 @@ TEST(Adaptive, ZeroIntegrandIsDoubted) {
                                           {.relative_error = 1e-3, .evaluations = 50'000}, {.threads = 1});
     EXPECT_EQ(r.value[0], 0);
     EXPECT_FALSE(r.converged());
-    ASSERT_FALSE(r.doubts.empty());
-    EXPECT_NE(r.doubts[0].find("zero at every point"), std::string::npos) << r.doubts[0];
+    ASSERT_FALSE(r.warnings.empty());
+    EXPECT_NE(r.warnings[0].find("zero at every point"), std::string::npos) << r.warnings[0];
 }
 
 // (x_1 + x_2 + x_3 mod 1)^-0.8 has mean 5 and no variance; it follows no coordinate, so that no map helps.
@@ -173,8 +173,8 @@ TEST(Adaptive, HeavyTailsAreDoubted) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         const IntegrationResult r = integrate(f, Domain::unit_cube(3), Adaptive{}, {.evaluations = 50'000},
                                               {.seed = seed, .threads = 1});
-        doubted += !r.doubts.empty();
-        wrong += r.doubts.empty() && std::abs(r.value[0] - 5) > 4 * r.standard_error[0];
+        doubted += !r.warnings.empty();
+        wrong += r.warnings.empty() && std::abs(r.value[0] - 5) > 4 * r.standard_error[0];
     }
     EXPECT_GE(doubted, seeds / 2);
     EXPECT_LE(wrong, seeds / 4);

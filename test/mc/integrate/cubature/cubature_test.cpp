@@ -216,8 +216,8 @@ TEST(Cubature, DoubtsThatAnIntegrandIsZeroEverywhere) {
     };
     const IntegrationResult r = integrate(needle, Domain::unit_cube(2), Cubature{}, {.relative_error = 1e-3});
     EXPECT_FALSE(r.converged());
-    ASSERT_EQ(r.doubts.size(), 1u);
-    EXPECT_NE(r.doubts[0].find("was zero at each of"), std::string::npos);
+    ASSERT_EQ(r.warnings.size(), 1u);
+    EXPECT_NE(r.warnings[0].find("was zero at each of"), std::string::npos);
 }
 
 TEST(Cubature, KnowsNoErrorBeforeAnyValueWasSeen) {
@@ -227,8 +227,8 @@ TEST(Cubature, KnowsNoErrorBeforeAnyValueWasSeen) {
     const IntegrationResult r = integrate(needle, Domain::unit_cube(2), Cubature{}, {.evaluations = 1000});
     EXPECT_EQ(r.value[0], 0);
     EXPECT_EQ(r.standard_error[0], std::numeric_limits<double>::infinity());
-    ASSERT_EQ(r.doubts.size(), 1u);
-    EXPECT_NE(r.doubts[0].find("was zero at each of"), std::string::npos);
+    ASSERT_EQ(r.warnings.size(), 1u);
+    EXPECT_NE(r.warnings[0].find("was zero at each of"), std::string::npos);
 }
 
 TEST(Cubature, FindsAJumpCloseBeyondAHalvingPlane) {
@@ -248,8 +248,8 @@ TEST(Cubature, MemoryIsBounded) {
     settings.max_memory = 100'000;
     const IntegrationResult r = integrate(as_integrand(f), domain_of(f), settings, {.relative_error = 1e-9});
     EXPECT_EQ(r.stop, StopReason::finished);
-    ASSERT_FALSE(r.doubts.empty());
-    EXPECT_NE(r.doubts[0].find("memory"), std::string::npos);
+    ASSERT_FALSE(r.warnings.empty());
+    EXPECT_NE(r.warnings[0].find("memory"), std::string::npos);
     settings.max_memory = 100;
     EXPECT_THROW(settings.estimator({evaluator}), Error);
 }
@@ -346,7 +346,7 @@ TEST(Cubature, FindsAPeakThatItSawTheFaintestTailOf) {
     const IntegrationResult r = integrate(peak, Domain(std::vector<Range>(4, {0, 1})), Cubature{},
                                           {.relative_error = 1e-3, .evaluations = 200'000}, {.threads = 1});
     EXPECT_EQ(r.stop, StopReason::error_target);
-    EXPECT_FALSE(r.doubts.empty()); // too narrow for a check by random points
+    EXPECT_FALSE(r.warnings.empty()); // too narrow for a check by random points
     EXPECT_NEAR(r.value[0] / std::pow(2 * std::numbers::pi * width * width, 2), 1, 3e-3);
 }
 

@@ -106,7 +106,7 @@ TEST(CubatureVerification, EqualValuesHaveAnError) {
     EXPECT_FALSE(fine.converged());
     EXPECT_LT(fine.evaluations, 2'200'000U);
     EXPECT_EQ(fine.value[0], 3);
-    EXPECT_FALSE(fine.doubts.empty());
+    EXPECT_FALSE(fine.warnings.empty());
 }
 
 TEST(CubatureVerification, TargetsBelowRoundingEndWithTheBestThereIs) {
@@ -116,8 +116,8 @@ TEST(CubatureVerification, TargetsBelowRoundingEndWithTheBestThereIs) {
         EXPECT_EQ(r.stop, StopReason::finished);
         EXPECT_LT(r.evaluations, 1000U);
         EXPECT_NEAR(r.value[0], 1 - std::cos(1), 1e-15);
-        ASSERT_EQ(r.doubts.size(), 1U);
-        EXPECT_NE(r.doubts[0].find("rounding"), std::string::npos);
+        ASSERT_EQ(r.warnings.size(), 1U);
+        EXPECT_NE(r.warnings[0].find("rounding"), std::string::npos);
     }
 }
 
@@ -152,7 +152,7 @@ TEST(CubatureVerification, ConcentratedIntegrandsAreComparedWithSampling) {
     const double exact = std::pow(0.01 * std::sqrt(2 * std::numbers::pi), 3);
     const IntegrationResult rule =
         integrate(f, Domain::unit_cube(3), Cubature{}, {.relative_error = 1e-3}, {.threads = 1});
-    EXPECT_FALSE(rule.doubts.empty());
+    EXPECT_FALSE(rule.warnings.empty());
     const IntegrationResult both =
         integrate(f, Domain::unit_cube(3), Auto{}, {.relative_error = 1e-3}, {.threads = 1});
     EXPECT_TRUE(both.converged()) << both;
@@ -168,11 +168,11 @@ TEST(CubatureVerification, RulesThatWereNotCheckedSaySo) {
     };
     const IntegrationResult ended = run(300);
     EXPECT_EQ(ended.stop, StopReason::evaluations);
-    ASSERT_EQ(ended.doubts.size(), 1U);
-    EXPECT_NE(ended.doubts[0].find("confirmed"), std::string::npos) << ended.doubts[0];
+    ASSERT_EQ(ended.warnings.size(), 1U);
+    EXPECT_NE(ended.warnings[0].find("confirmed"), std::string::npos) << ended.warnings[0];
     const IntegrationResult whole = run(100'000);
     EXPECT_TRUE(whole.converged());
-    EXPECT_TRUE(whole.doubts.empty());
+    EXPECT_TRUE(whole.warnings.empty());
 }
 
 } // namespace

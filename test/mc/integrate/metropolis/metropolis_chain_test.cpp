@@ -88,7 +88,7 @@ TEST(MetropolisChain, AutocorrelationTimeOfAnAutoregressiveChainIsExact) {
         EXPECT_NEAR(r.observables[0].effective_sample_size * exact / 6e5, 1, 0.2) << rho;
         EXPECT_NEAR(r.observables[0].variance, 1, 0.08) << rho;
         EXPECT_LT(r.observables[0].r_hat, 1.01);
-        EXPECT_TRUE(r.doubts.empty());
+        EXPECT_TRUE(r.warnings.empty());
     }
 }
 
@@ -144,7 +144,7 @@ TEST(MetropolisChain, ChainsThatDisagreeAreDoubted) {
     const auto apart =
         metropolis(two, GaussianWalk{}, {{-20.0}, {20.0}, {-20.0}, {20.0}}, 1, first_coordinate);
     EXPECT_GT(apart.observables[0].r_hat, 2);
-    EXPECT_FALSE(apart.doubts.empty());
+    EXPECT_FALSE(apart.warnings.empty());
     // Chains that disagree do not claim to know.
     EXPECT_GT(apart.observables[0].standard_error, 5);
 }
@@ -168,7 +168,7 @@ TEST(MetropolisChain, DensityItselfServesAndWhatIsNotFiniteIsCounted) {
     });
     const auto r = metropolis(density, GaussianWalk{}, {{0.0}}, 1, first_coordinate);
     EXPECT_GT(r.non_finite, 0u);
-    EXPECT_FALSE(r.doubts.empty());
+    EXPECT_FALSE(r.warnings.empty());
     EXPECT_NEAR(r.observables[0].mean, 0, 0.1);
 }
 

@@ -54,7 +54,7 @@ TEST(Metropolis, ErrorFallsWithTheRootOfTheEvaluations) {
     const auto many = integrate(f, Domain::unit_cube(2), Metropolis{}, {.evaluations = 1600000});
     EXPECT_NEAR(many.value[0], f.integral(), 5 * many.standard_error[0]);
     EXPECT_NEAR(few.standard_error[0] / many.standard_error[0], 4, 1.2);
-    EXPECT_TRUE(many.doubts.empty()) << many;
+    EXPECT_TRUE(many.warnings.empty()) << many;
     EXPECT_LT(many.standard_error[0], 0.02 * f.integral());
 }
 
@@ -86,7 +86,7 @@ TEST(Metropolis, PeaksThatChainsDoNotConnectAreDoubted) {
         return std::exp(-8000 * (x[0] - 0.1) * (x[0] - 0.1)) - std::exp(-8000 * (x[0] - 0.9) * (x[0] - 0.9));
     };
     const auto r = integrate(f, Domain::unit_cube(1), Metropolis{}, {.evaluations = 60000});
-    EXPECT_FALSE(r.doubts.empty()) << r;
+    EXPECT_FALSE(r.warnings.empty()) << r;
 }
 
 TEST(Metropolis, BitsDoNotDependOnThreads) {
@@ -124,7 +124,7 @@ TEST(Metropolis, SavedAndRestoredRunEndsWithTheSameBits) {
 TEST(Metropolis, NothingToWalkOnIsSaid) {
     const auto r =
         integrate([](Point) { return 0.0; }, Domain::unit_cube(2), Metropolis{}, {.evaluations = 100000});
-    EXPECT_FALSE(r.doubts.empty());
+    EXPECT_FALSE(r.warnings.empty());
     EXPECT_FALSE(std::isfinite(r.standard_error[0]));
     const auto endless =
         integrate([](Point) { return 0.0; }, Domain::unit_cube(2), Metropolis{}, {.relative_error = 0.01});

@@ -79,10 +79,10 @@ TEST(ControlVariate, AnyDomain) {
 TEST(ControlVariate, WrongIntegralsAreDoubtedAndMistakesAnswered) {
     const IntegrationResult wrong =
         integrate(exponential.f, unit, ControlVariate{identity, {0.6}}, {.evaluations = 20000});
-    ASSERT_EQ(wrong.doubts.size(), 1u);
-    EXPECT_NE(wrong.doubts[0].find("control 1 was given as 0.6"), std::string::npos) << wrong.doubts[0];
+    ASSERT_EQ(wrong.warnings.size(), 1u);
+    EXPECT_NE(wrong.warnings[0].find("control 1 was given as 0.6"), std::string::npos) << wrong.warnings[0];
     EXPECT_TRUE(integrate(exponential.f, unit, ControlVariate{identity, {0.5}}, {.evaluations = 20000})
-                    .doubts.empty());
+                    .warnings.empty());
     EXPECT_THROW(integrate(exponential.f, unit, ControlVariate{identity, {}}), Error);
     EXPECT_THROW(integrate(exponential.f, unit, ControlVariate{identity, {INFINITY}}), Error);
     auto one = [](std::span<const double>) { return 1.0; };

@@ -72,7 +72,7 @@ TEST(Importance, AllFormsOfATechniqueAgree) {
         const TestResult test = unbiasedness_test(r.estimate(), 2 / 3.0);
         EXPECT_TRUE(test.passes(significance)) << test.description;
         EXPECT_LT(r.standard_error[0], 0.002);
-        EXPECT_TRUE(r.doubts.empty());
+        EXPECT_TRUE(r.warnings.empty());
         values.push_back(r.value[0]);
     }
     for (double v : values) EXPECT_NEAR(v, values[0], 1e-13);
@@ -89,7 +89,7 @@ TEST(Importance, MarginalConditionalDrawsDependentVariables) {
     const TestResult test = unbiasedness_test(r.estimate(), 2 / std::exp(1.0) - 0.5);
     EXPECT_TRUE(test.passes(significance)) << test.description;
     EXPECT_LT(r.standard_error[0], 0.001);
-    EXPECT_TRUE(r.doubts.empty());
+    EXPECT_TRUE(r.warnings.empty());
 
     // Three variables: the same with z uniform on [0, x + y) behind them; the volume of where it can be.
     const MarginalConditional chain(
@@ -124,22 +124,23 @@ TEST(Importance, InfiniteDomainsAndUniformTechniques) {
 TEST(Importance, DensityThatMissesTheIntegrandIsFoundByProbes) {
     const IntegrationResult good =
         integrate(sine, quarter, Importance{LinearDistribution(0, pi / 2)}, {.evaluations = 20000});
-    EXPECT_TRUE(good.doubts.empty());
+    EXPECT_TRUE(good.warnings.empty());
     const IntegrationResult r =
         integrate(sine, quarter, Importance{LinearDistribution(0, 1)}, {.evaluations = 20000});
-    ASSERT_EQ(r.doubts.size(), 1u);
+    ASSERT_EQ(r.warnings.size(), 1u);
     EXPECT_FALSE(r.converged());
-    EXPECT_NE(r.doubts[0].find("density is zero at (1."), std::string::npos) << r.doubts[0];
-    EXPECT_NE(r.doubts[0].find("missing, about 0.5"), std::string::npos) << "cos 1 = 0.54: " << r.doubts[0];
+    EXPECT_NE(r.warnings[0].find("density is zero at (1."), std::string::npos) << r.warnings[0];
+    EXPECT_NE(r.warnings[0].find("missing, about 0.5"), std::string::npos)
+        << "cos 1 = 0.54: " << r.warnings[0];
     EXPECT_NEAR(r.value[0], 1 - std::cos(1), 5 * r.standard_error[0]) << "what the density can see";
     const Method blind = Importance{LinearDistribution(0, 1), ImportancePoints::random, false};
-    EXPECT_TRUE(integrate(sine, quarter, blind, {.evaluations = 20000}).doubts.empty());
+    EXPECT_TRUE(integrate(sine, quarter, blind, {.evaluations = 20000}).warnings.empty());
     // Where only the tails of the density underflow, nothing that could be seen is missing.
     const auto wide = [](std::span<const double> x) { return std::exp(-x[0] * x[0] / 3); };
     const Domain line = Domain::interval(-INFINITY, INFINITY);
     const IntegrationResult tails =
         integrate(wide, line, Importance{NormalDistribution()}, {.evaluations = 50000});
-    EXPECT_TRUE(tails.doubts.empty()) << tails;
+    EXPECT_TRUE(tails.warnings.empty()) << tails;
     EXPECT_NEAR(tails.value[0], std::sqrt(3 * pi), 5 * tails.standard_error[0]);
     // One of two components that is not covered is enough.
     const auto two = Integrand::vector_valued(2, [](std::span<const double> x, std::span<double> y) {
@@ -147,7 +148,7 @@ TEST(Importance, DensityThatMissesTheIntegrandIsFoundByProbes) {
         y[1] = std::sin(x[0]);
     });
     EXPECT_EQ(
-        integrate(two, quarter, Importance{LinearDistribution(0, 1)}, {.evaluations = 20000}).doubts.size(),
+        integrate(two, quarter, Importance{LinearDistribution(0, 1)}, {.evaluations = 20000}).warnings.size(),
         1u);
     // A sampler that contradicts its density is counted.
     const Technique wrong =

@@ -144,12 +144,12 @@ TEST(MultipleImportance, PlacesThatNoTechniqueReachesAreDoubted) {
     for (const Method& m :
          all_weights({{UniformDistribution(0, 0.4), 1}, {UniformDistribution(0.5, 1), 1}})) {
         const IntegrationResult r = integrate([](double) { return 1.0; }, unit, m, {.evaluations = 20000});
-        ASSERT_EQ(r.doubts.size(), 1u);
-        EXPECT_NE(r.doubts[0].find("density is zero at (0.4"), std::string::npos) << r.doubts[0];
+        ASSERT_EQ(r.warnings.size(), 1u);
+        EXPECT_NE(r.warnings[0].find("density is zero at (0.4"), std::string::npos) << r.warnings[0];
         EXPECT_NEAR(r.value[0], 0.9, 0.05);
     }
     EXPECT_TRUE(integrate(two_ends().f, unit, MultipleImportance{three_techniques}, {.evaluations = 20000})
-                    .doubts.empty());
+                    .warnings.empty());
 }
 
 TEST(MultipleImportance, MistakesAreAnsweredWithASentence) {

@@ -91,7 +91,7 @@ TEST(Vegas, AdaptationReducesTheErrorOfAPeakManyTimes) {
         EXPECT_LT(adapted.standard_error[0], 0.05 * basic.standard_error[0]) << form.name;
         EXPECT_NEAR(adapted.value[0], truth, 5 * adapted.standard_error[0]) << form.name;
         EXPECT_LT(adapted.standard_error[0], 0.01 * truth) << form.name;
-        EXPECT_TRUE(adapted.doubts.empty()) << adapted;
+        EXPECT_TRUE(adapted.warnings.empty()) << adapted;
         EXPECT_GT(adapted.degrees_of_freedom, 0);
     }
 }
@@ -208,9 +208,9 @@ TEST(Vegas, LostPeakIsDoubted) {
         reuse.alpha = 0;
         reuse.map = map;
         const auto good = integrate(left, Domain::unit_cube(4), reuse, {.evaluations = 100000});
-        EXPECT_TRUE(good.doubts.empty()) << good;
+        EXPECT_TRUE(good.warnings.empty()) << good;
         const auto bad = integrate(both, Domain::unit_cube(4), reuse, {.evaluations = 100000});
-        EXPECT_FALSE(bad.doubts.empty()) << form.name << bad;
+        EXPECT_FALSE(bad.warnings.empty()) << form.name << bad;
     }
 }
 
@@ -218,7 +218,7 @@ TEST(Vegas, HeavyTailIsDoubted) {
     // Infinite variance along the diagonal, where no map of single coordinates helps.
     const Integrand f = [](Point x) { return std::pow(std::abs(x[0] - x[1]) + 1e-15, -0.95); };
     const auto r = integrate(f, Domain::unit_cube(2), Vegas{}, {.evaluations = 100000});
-    EXPECT_FALSE(r.doubts.empty()) << r;
+    EXPECT_FALSE(r.warnings.empty()) << r;
 }
 
 TEST(Vegas, ConstantsAndZeroAreExact) {
@@ -229,7 +229,7 @@ TEST(Vegas, ConstantsAndZeroAreExact) {
         const auto three =
             integrate([](Point) { return 3.0; }, Domain::unit_cube(2), form.settings, {.evaluations = 50000});
         EXPECT_NEAR(three.value[0], 3, 5e-4) << form.name;
-        EXPECT_TRUE(three.doubts.empty()) << three;
+        EXPECT_TRUE(three.warnings.empty()) << three;
     }
 }
 
