@@ -78,13 +78,14 @@ def test_json_has_the_same_names(scene, tmp_path):
 def test_cpp_has_the_same_names():
     """Fields of the settings that the options are copied to."""
 
-    def fields(header, struct):
-        body = re.search(rf"struct {struct} {{\n(.*?)\n}};", (ROOT / header).read_text(), re.S)[1]
+    def fields(folder, struct):
+        texts = (path.read_text(encoding="utf-8") for path in (ROOT / folder).rglob("*.h"))
+        (body,) = (m[1] for text in texts for m in re.finditer(rf"struct {struct} {{\n(.*?)\n}};", text, re.S))
         return set(re.findall(r"^    [\w:<> ]+? (\w+)(?: = [^;]*|{[^}]*})?;", body, re.M))
 
-    assert {"spp", "seed"} <= fields("montelux/mc/random/sampler_settings.h", "SamplerSettings")
-    assert {"time", "adaptive", "slice"} <= fields("montelux/render/render_control.h", "RenderTarget")
-    assert {"time", "evaluations"} <= fields("montelux/mc/integrate/integrate.h", "Budget")
+    assert {"spp", "seed"} <= fields("montelux/mc/random", "SamplerSettings")
+    assert {"time", "adaptive", "slice"} <= fields("montelux/render", "RenderTarget")
+    assert {"time", "evaluations"} <= fields("montelux/mc/integrate", "Budget")
 
 
 def test_no_text_has_an_old_name():
@@ -140,7 +141,7 @@ def test_texts_promise_no_option_that_does_not_exist():
     commands += ["bake brdf", "bake environment", "bake report", "bake sky"]
     known = {"help", "version", "mpi"}.union(*(options(*command.split()) for command in commands))  # srun has --mpi
     found = set()
-    for path in [*(ROOT / "app").glob("*.cpp"), *(ROOT / "montelux").rglob("*.cpp")]:
+    for path in [path for folder in ("app", "montelux") for path in (ROOT / folder).rglob("*.cpp")]:
         for text in re.findall(r'"((?:[^"\\\n]|\\.)*)"', path.read_text(encoding="utf-8")):
             for name in re.findall(r"(?<![\w-])--([a-z][a-z-]+)", text):
                 if name.replace("-", "_") not in known:
