@@ -12,15 +12,16 @@
 namespace montelux {
 namespace {
 
-const auto sine = [](double x) { return std::sin(x); };
-const Domain quarter = Domain::interval(0, pi / 2);
+const auto sin_x = [](double x) { return std::sin(x); };
+const Domain quarter_wave = Domain::interval(0, pi / 2);
 
 TEST(Importance, AnyDensityGivesTheSameIntegral) {
     for (const Technique& p :
          {Technique(UniformDistribution(0, pi / 2)), Technique(LinearDistribution(0, pi / 2)),
           // Wider than the domain: what falls outside counts as zero.
           Technique(ExponentialDistribution(0.5)), Technique(UniformDistribution(-1, 3))})
-        expect_unbiased_and_calibrated({sine, quarter, {1}}, Importance{p}, {.evaluations = 4000}, 1000);
+        expect_unbiased_and_calibrated({sin_x, quarter_wave, {1}}, Importance{p}, {.evaluations = 4000},
+                                       1000);
     // x = 2 arcsin(u) / pi and its arcsine density, which is infinite at an end.
     const Technique arcsine = Technique::functions([](double u) { return std::sin(pi / 2 * u); },
                                                    [](double x) { return 2 / pi / std::sqrt(1 - x * x); });
@@ -29,12 +30,13 @@ TEST(Importance, AnyDensityGivesTheSameIntegral) {
 }
 
 TEST(Importance, SobolPointsAreUnbiasedCalibratedAndMuchBetter) {
-    const KnownIntegral problem{sine, quarter, {1}};
+    const KnownIntegral problem{sin_x, quarter_wave, {1}};
     const Technique p = LinearDistribution(0, pi / 2);
     expect_unbiased_and_calibrated(problem, Importance{p, ImportancePoints::sobol}, {.evaluations = 4000},
                                    1000, 14);
     auto error = [&](ImportancePoints points) {
-        return integrate(sine, quarter, Importance{p, points}, {.evaluations = 20000}).standard_error[0];
+        return integrate(sin_x, quarter_wave, Importance{p, points}, {.evaluations = 20000})
+            .standard_error[0];
     };
     EXPECT_LT(error(ImportancePoints::sobol), 0.01 * error(ImportancePoints::random));
 }
@@ -102,7 +104,7 @@ TEST(Importance, MarginalConditionalDrawsDependentVariables) {
 }
 
 TEST(Importance, PerfectDensityHasNoVariance) {
-    const IntegrationResult r = integrate([](double x) { return 3 * std::cos(x); }, quarter,
+    const IntegrationResult r = integrate([](double x) { return 3 * std::cos(x); }, quarter_wave,
                                           Importance{CosineDistribution()}, {.evaluations = 1000});
     EXPECT_NEAR(r.value[0], 3, 1e-13);
     // Half of the rule of three: all values equal.
@@ -123,10 +125,10 @@ TEST(Importance, InfiniteDomainsAndUniformTechniques) {
 
 TEST(Importance, DensityThatMissesTheIntegrandIsFoundByProbes) {
     const IntegrationResult good =
-        integrate(sine, quarter, Importance{LinearDistribution(0, pi / 2)}, {.evaluations = 20000});
+        integrate(sin_x, quarter_wave, Importance{LinearDistribution(0, pi / 2)}, {.evaluations = 20000});
     EXPECT_TRUE(good.warnings.empty());
     const IntegrationResult r =
-        integrate(sine, quarter, Importance{LinearDistribution(0, 1)}, {.evaluations = 20000});
+        integrate(sin_x, quarter_wave, Importance{LinearDistribution(0, 1)}, {.evaluations = 20000});
     ASSERT_EQ(r.warnings.size(), 1u);
     EXPECT_FALSE(r.converged());
     EXPECT_NE(r.warnings[0].find("density is zero at (1."), std::string::npos) << r.warnings[0];
@@ -134,7 +136,7 @@ TEST(Importance, DensityThatMissesTheIntegrandIsFoundByProbes) {
         << "cos 1 = 0.54: " << r.warnings[0];
     EXPECT_NEAR(r.value[0], 1 - std::cos(1), 5 * r.standard_error[0]) << "what the density can see";
     const Method blind = Importance{LinearDistribution(0, 1), ImportancePoints::random, false};
-    EXPECT_TRUE(integrate(sine, quarter, blind, {.evaluations = 20000}).warnings.empty());
+    EXPECT_TRUE(integrate(sin_x, quarter_wave, blind, {.evaluations = 20000}).warnings.empty());
     // Where only the tails of the density underflow, nothing that could be seen is missing.
     const auto wide = [](std::span<const double> x) { return std::exp(-x[0] * x[0] / 3); };
     const Domain line = Domain::interval(-INFINITY, INFINITY);
@@ -147,9 +149,9 @@ TEST(Importance, DensityThatMissesTheIntegrandIsFoundByProbes) {
         y[0] = x[0] < 1 ? std::sin(x[0]) : 0;
         y[1] = std::sin(x[0]);
     });
-    EXPECT_EQ(
-        integrate(two, quarter, Importance{LinearDistribution(0, 1)}, {.evaluations = 20000}).warnings.size(),
-        1u);
+    EXPECT_EQ(integrate(two, quarter_wave, Importance{LinearDistribution(0, 1)}, {.evaluations = 20000})
+                  .warnings.size(),
+              1u);
     // A sampler that contradicts its density is counted.
     const Technique wrong =
         Technique::functions([](double u) { return u; }, [](double x) { return x < 0.5 ? 2.0 : 0.0; });
@@ -171,9 +173,9 @@ TEST(Importance, MistakesAreAnsweredWithASentence) {
         }
         return "";
     };
-    const Domain unit = Domain::unit_cube(1);
-    EXPECT_NE(message(sine, unit, density(-1)).find("density is -1 at (0."), std::string::npos);
-    EXPECT_NE(message(sine, unit, density(std::nan(""))).find("nan at (0."), std::string::npos);
+    const Domain line = Domain::unit_cube(1);
+    EXPECT_NE(message(sin_x, line, density(-1)).find("density is -1 at (0."), std::string::npos);
+    EXPECT_NE(message(sin_x, line, density(std::nan(""))).find("nan at (0."), std::string::npos);
     EXPECT_NE(message([](std::span<const double>) { return 1.0; }, Domain::unit_cube(3),
                       Importance{UniformDistribution()})
                   .find("1 dimensions, but the domain has 3"),
@@ -226,7 +228,7 @@ TEST(Importance, TheRaceHasTheVariancesOfTheClosedForm) {
         relative_square += std::pow(squares.standard_error() / variances[k], 2);
         // The estimator draws these very numbers.
         const IntegrationResult r =
-            integrate(sine, quarter, Importance{techniques[k], ImportancePoints::random, false},
+            integrate(sin_x, quarter_wave, Importance{techniques[k], ImportancePoints::random, false},
                       {.evaluations = n}, {.seed = 4});
         EXPECT_NEAR(r.value[0], values.mean(), 1e-12);
         measured[k] = r.standard_error[0] * r.standard_error[0] * n;

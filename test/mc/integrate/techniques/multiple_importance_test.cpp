@@ -12,7 +12,7 @@
 namespace montelux {
 namespace {
 
-const Domain unit = Domain::unit_cube(1);
+const Domain unit_interval = Domain::unit_cube(1);
 const Technique root =
     Technique::functions([](double u) { return u * u; }, [](double x) { return 0.5 / std::sqrt(x); });
 const Technique linear = LinearDistribution(); // 2x
@@ -21,8 +21,9 @@ const Technique end = UniformDistribution(0.9, 1); // zero over most of the doma
 
 // None of the techniques covers it well alone.
 KnownIntegral two_ends() {
-    return {
-        [](double x) { return 1 / std::sqrt(x) + (x > 0.9 ? 40 * (x - 0.9) : 0); }, unit, {2 + 20 * 0.01}};
+    return {[](double x) { return 1 / std::sqrt(x) + (x > 0.9 ? 40 * (x - 0.9) : 0); },
+            unit_interval,
+            {2 + 20 * 0.01}};
 }
 const std::vector<WeightedTechnique> three_techniques{{root, 7}, {linear, 2}, {end, 4}};
 
@@ -37,8 +38,8 @@ std::vector<Method> all_weights(const std::vector<WeightedTechnique>& techniques
 double mean_variance(const Integrand& f, const Method& m, std::uint64_t evaluations, int seeds = 6) {
     RunningMoments squares;
     for (int seed = 0; seed < seeds; ++seed) {
-        const IntegrationResult r =
-            integrate(f, unit, m, {.evaluations = evaluations}, {.seed = static_cast<std::uint64_t>(seed)});
+        const IntegrationResult r = integrate(f, unit_interval, m, {.evaluations = evaluations},
+                                              {.seed = static_cast<std::uint64_t>(seed)});
         squares.add(r.standard_error[0] * r.standard_error[0]);
     }
     return squares.mean();
@@ -70,7 +71,8 @@ TEST(MultipleImportance, OneTechniqueIsImportanceSampling) {
 // density is exact for any counts.
 TEST(MultipleImportance, DivisorsAreTheTechniquesOwnCounts) {
     for (const Method& m : all_weights({{uniform, 1}, {uniform, 5}, {uniform, 10}})) {
-        const IntegrationResult r = integrate([](double) { return 3.0; }, unit, m, {.evaluations = 3000});
+        const IntegrationResult r =
+            integrate([](double) { return 3.0; }, unit_interval, m, {.evaluations = 3000});
         EXPECT_NEAR(r.value[0], 3, 1e-12);
     }
 }
@@ -81,7 +83,8 @@ TEST(MultipleImportance, PointsOutsideTheDomainCountAsZeros) {
         return std::exp(x);
     };
     for (const Method& m : all_weights({{UniformDistribution(-1, 1), 1}, {ExponentialDistribution(1), 1}}))
-        expect_unbiased_and_calibrated({inside, unit, {std::numbers::e - 1}}, m, {.evaluations = 2000}, 200);
+        expect_unbiased_and_calibrated({inside, unit_interval, {std::numbers::e - 1}}, m,
+                                       {.evaluations = 2000}, 200);
 }
 
 // Theory: no variance for integrands that are combinations of the densities, whatever the counts.
@@ -89,7 +92,7 @@ TEST(MultipleImportance, OptimalWeightsSpanTheDensities) {
     auto f = [](double x) { return 3 * 2 * x - 1 + 0.5 / std::sqrt(x); }; // 3 p1 - p2 + p3
     const std::vector<WeightedTechnique> techniques{{linear, 1}, {uniform, 3}, {root, 2}};
     const IntegrationResult r =
-        integrate(f, unit, MultipleImportance{techniques, OptimalWeights{}}, {.evaluations = 10000});
+        integrate(f, unit_interval, MultipleImportance{techniques, OptimalWeights{}}, {.evaluations = 10000});
     EXPECT_NEAR(r.value[0], 3, 1e-10);
     EXPECT_LT(r.standard_error[0], 1e-10);
     EXPECT_GT(mean_variance(f, MultipleImportance{techniques}, 10000), 1e-6) << "the balance heuristic";
@@ -143,31 +146,36 @@ TEST(MultipleImportance, VectorValuedWithCovariance) {
 TEST(MultipleImportance, PlacesThatNoTechniqueReachesAreDoubted) {
     for (const Method& m :
          all_weights({{UniformDistribution(0, 0.4), 1}, {UniformDistribution(0.5, 1), 1}})) {
-        const IntegrationResult r = integrate([](double) { return 1.0; }, unit, m, {.evaluations = 20000});
+        const IntegrationResult r =
+            integrate([](double) { return 1.0; }, unit_interval, m, {.evaluations = 20000});
         ASSERT_EQ(r.warnings.size(), 1u);
         EXPECT_NE(r.warnings[0].find("density is zero at (0.4"), std::string::npos) << r.warnings[0];
         EXPECT_NEAR(r.value[0], 0.9, 0.05);
     }
-    EXPECT_TRUE(integrate(two_ends().f, unit, MultipleImportance{three_techniques}, {.evaluations = 20000})
-                    .warnings.empty());
+    EXPECT_TRUE(
+        integrate(two_ends().f, unit_interval, MultipleImportance{three_techniques}, {.evaluations = 20000})
+            .warnings.empty());
 }
 
 TEST(MultipleImportance, MistakesAreAnsweredWithASentence) {
     auto one = [](std::span<const double>) { return 1.0; };
-    EXPECT_THROW(integrate(one, unit, MultipleImportance{}), Error);
-    EXPECT_THROW(integrate(one, unit, MultipleImportance{{{uniform, 0}}}), Error);
+    EXPECT_THROW(integrate(one, unit_interval, MultipleImportance{}), Error);
+    EXPECT_THROW(integrate(one, unit_interval, MultipleImportance{{{uniform, 0}}}), Error);
     EXPECT_THROW(integrate(one, Domain::unit_cube(2), MultipleImportance{{{uniform, 1}}}), Error);
-    EXPECT_THROW(integrate(one, unit, MultipleImportance{{{uniform, 1}}, MisHeuristic::power(0)}), Error);
-    EXPECT_THROW(integrate(one, unit, MultipleImportance{{{uniform, 1}}, MisHeuristic::cutoff(2)}), Error);
+    EXPECT_THROW(integrate(one, unit_interval, MultipleImportance{{{uniform, 1}}, MisHeuristic::power(0)}),
+                 Error);
+    EXPECT_THROW(integrate(one, unit_interval, MultipleImportance{{{uniform, 1}}, MisHeuristic::cutoff(2)}),
+                 Error);
     const Technique negative =
         Technique::functions([](double u) { return u; }, [](double x) { return 0.5 - x; });
-    EXPECT_THROW(integrate(one, unit, MultipleImportance{{{uniform, 1}, {negative, 1}}}), Error);
+    EXPECT_THROW(integrate(one, unit_interval, MultipleImportance{{{uniform, 1}, {negative, 1}}}), Error);
     // One that contradicts its own density.
     const Technique wrong =
         Technique::functions([](double u) { return u; }, [](double x) { return x < 0.5 ? 2.0 : 0.0; });
-    EXPECT_GT(integrate(one, unit, MultipleImportance{{{wrong, 1}, {uniform, 1}}}, {.evaluations = 1000})
-                  .non_finite,
-              100u);
+    EXPECT_GT(
+        integrate(one, unit_interval, MultipleImportance{{{wrong, 1}, {uniform, 1}}}, {.evaluations = 1000})
+            .non_finite,
+        100u);
 }
 
 TEST(SolveSemidefinite, RegularAndSingularEquations) {
