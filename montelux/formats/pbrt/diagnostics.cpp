@@ -16,7 +16,9 @@ std::string Diagnostics::describe(Location at) const {
     return files_[at.file] + ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
 }
 
-void Diagnostics::error(Location at, std::string_view sentence) const { throw Error(describe(at), sentence); }
+void Diagnostics::error(Location at, std::string_view sentence) const {
+    throw LocatedError(describe(at), sentence);
+}
 
 void Diagnostics::warn(Location at, std::string_view sentence) { warnings_.add(describe(at), sentence); }
 

@@ -8,12 +8,20 @@
 #include <vector>
 
 #include "montelux/formats/warnings.h"
+#include "montelux/mc/math/error.h"
 
 namespace montelux::pbrt {
 
 // Lines and columns count from 1; columns count bytes.
 struct Location {
     std::uint32_t file = 0, line = 1, column = 1;
+};
+
+// An error that says where in the scene file it is. Readers of other files throw plain ones, which become
+// located ones where the scene file names the file.
+class LocatedError : public Error {
+  public:
+    using Error::Error;
 };
 
 class Diagnostics {
@@ -25,7 +33,7 @@ class Diagnostics {
     // "file:line:column"
     std::string describe(Location at) const;
 
-    // Throws montelux::Error "file:line:column: sentence".
+    // Throws LocatedError "file:line:column: sentence".
     [[noreturn]] void error(Location at, std::string_view sentence) const;
     void warn(Location at, std::string_view sentence);
     // Tells only the first of all warnings with the same key.

@@ -230,11 +230,10 @@ Index LightReader::environment(const std::string& file, Location at) {
         if (black) diagnostics_.warn(at, path.string() + " is black; the light gives nothing");
         if (negative) diagnostics_.warn(at, path.string() + " has negative pixels; they count as 0");
         scene_.environments.push_back(std::move(map));
+    } catch (const LocatedError&) {
+        throw;
     } catch (const Error& e) {
-        // Errors that already tell where in the scene file pass through.
-        std::string_view what = e.what();
-        if (what.starts_with(diagnostics_.describe(at))) throw;
-        diagnostics_.error(at, what);
+        diagnostics_.error(at, e.what());
     }
     return environments_[path.string()] = static_cast<Index>(scene_.environments.size() - 1);
 }

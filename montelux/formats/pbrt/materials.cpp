@@ -47,10 +47,13 @@ class MaterialMaker {
         if (type == "thindielectric") return ThinDielectricMaterial{eta("eta")};
         if (type == "coateddiffuse")
             return CoatedDiffuseMaterial{reflectance("reflectance", 0.5f), coating("")};
-        CoatedConductorMaterial coated;
-        coated.coating = coating("interface.");
-        coated.conductor = conductor("conductor.");
-        return coated;
+        if (type == "coatedconductor") {
+            CoatedConductorMaterial coated;
+            coated.coating = coating("interface.");
+            coated.conductor = conductor("conductor.");
+            return coated;
+        }
+        r_.error("material " + in_quotes(type) + " is not supported yet");
     }
 
     void warn_of_bumps(std::string_view name) {
