@@ -53,26 +53,11 @@ class Text {
     std::string text_;
 };
 
-const char* name_of(const Light& light) {
-    struct Names {
-        const char* operator()(const AreaLight&) const { return "area light"; }
-        const char* operator()(const PointLight&) const { return "point light"; }
-        const char* operator()(const SpotLight&) const { return "spot light"; }
-        const char* operator()(const DistantLight&) const { return "distant light"; }
-        const char* operator()(const UniformInfiniteLight&) const { return "uniform sky"; }
-        const char* operator()(const ImageInfiniteLight&) const { return "environment map"; }
-        const char* operator()(const SkyLight&) const { return "sky"; }
-        const char* operator()(const SunLight&) const { return "sun"; }
-    };
-    return std::visit(Names{}, light);
-}
-
-void add_light(Text& t, const char* how, Index index, const Scene& scene) {
+void add_light(Text& t, const char* how, Index index, Index part, const Scene& scene) {
     const Light& light = scene.lights[index];
-    t.add("  %s light %u, %s", how, static_cast<unsigned>(index), name_of(light));
+    t.add("  %s light %u, %s", how, static_cast<unsigned>(index), name_of(light).data());
     if (const auto* area = std::get_if<AreaLight>(&light))
-        t.add(" of shape %u, primitive %u", static_cast<unsigned>(area->shape),
-              static_cast<unsigned>(area->primitive));
+        t.add(" of shape %u, primitive %u", static_cast<unsigned>(area->shape), static_cast<unsigned>(part));
 }
 
 void add_alpha(Text& t, const char* name, const Ggx& ggx) {
@@ -126,7 +111,7 @@ void add_densities(Text& t, float light_pdf, float bsdf_pdf, float weight) {
 }
 
 void add_found(Text& t, const FoundLight& found, const Scene& scene) {
-    add_light(t, "met", found.light, scene);
+    add_light(t, "met", found.light, found.part, scene);
     t.end();
     t.columns(2, "radiance", found.radiance);
     if (found.shared)
@@ -141,7 +126,7 @@ void add_found(Text& t, const FoundLight& found, const Scene& scene) {
 
 void add_direct(Text& t, const DirectLight& direct, const Scene& scene) {
     using Outcome = DirectLight::Outcome;
-    add_light(t, "sampled", direct.light, scene);
+    add_light(t, "sampled", direct.light, direct.part, scene);
     t.add(", chosen with probability ").number(direct.choice);
     switch (direct.outcome) {
     case Outcome::counted:

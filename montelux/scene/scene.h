@@ -39,7 +39,7 @@ struct Scene {
     std::vector<Image> environments; // maps of infinite lights, R, G, B linear
     std::vector<SkyModel> skies;
 
-    std::vector<Light> lights; // the area lights of one mesh stand side by side, one a triangle
+    std::vector<Light> lights;
     CameraSettings camera;
 };
 

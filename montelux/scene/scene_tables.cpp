@@ -1,10 +1,13 @@
 #include "montelux/scene/scene_tables.h"
 
+#include <cmath>
 #include <map>
 #include <optional>
+#include <span>
 #include <tuple>
 
 #include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/scene/light/light_sampling.h"
 #include "montelux/scene/material/make_bsdf.h"
 
 namespace montelux {
@@ -49,9 +52,24 @@ bool has_texture(const CoatedConductorMaterial& m) {
     return has_texture(m.conductor) || has_texture(m.coating);
 }
 
+LightSampler make_light_sampler(const Scene& scene, const SceneTables& tables, LightSampling sampling) {
+    std::vector<Index> counts;
+    for (Index i = 0; i < scene.lights.size(); ++i) counts.push_back(part_count({scene, tables, i}));
+    LightParts parts(counts);
+    if (sampling == LightSampling::uniform) return LightSampler(UniformLightSampler(std::move(parts)));
+    std::vector<double> all(parts.size());
+    for (Index i = 0; i < scene.lights.size(); ++i)
+        if (counts[i] > 0)
+            light_powers({scene, tables, i}, std::span(all).subspan(parts.row(i, 0), counts[i]));
+    for (double& power : all)
+        if (!std::isfinite(power) || !(power > 0)) power = 0;
+    return LightSampler(PowerLightSampler(std::move(parts), all));
+}
+
 } // namespace
 
-SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environments)
+SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environments,
+                         LightSampling light_sampling)
     : lights_(scene, environments) {
     std::vector<std::optional<MipMap>> mipmaps(scene.images.size());
     parallel_for(static_cast<std::int64_t>(scene.images.size()), [&](std::int64_t i) {
@@ -86,6 +104,7 @@ SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environm
     });
     for (std::size_t table : table_of_material)
         coating_of_material_.push_back(table == SIZE_MAX ? nullptr : coatings_[table].get());
+    light_sampler_ = make_light_sampler(scene, *this, light_sampling);
 }
 
 } // namespace montelux

@@ -104,15 +104,20 @@ struct Path {
         return mis_weight(ps.settings.heuristic, bsdf_pdf, light_pdf);
     }
 
-    // `light_pdf` is called where light sampling could have found the light as well.
-    template <typename Pdf>
-    void add_found_light(Index light, SampledSpectrum le, const Pdf& light_pdf) {
+    // The light that the current ray met.
+    void add_met_light(Index light, const LightHit& hit) {
+        const LightContext context{ps.scene, ps.tables, light};
+        const SampledSpectrum le = incident_radiance(context, previous, hit, lambda);
         if (is_black(le)) return;
-        const float pdf = sees_lights ? 0 : light_pdf();
+        // Where light sampling could have found it as well.
+        const float pdf = sees_lights ? 0
+                                      : ps.tables.light_sampler().probability(previous, light, hit.part) *
+                                            pdf_li(context, previous, hit);
         const float weight = sees_lights ? 1 : hit_weight(pdf);
         const bool counted = ps.settings.strategy != Strategy::mis_light;
         if (recorder)
             recorder.found_light({.light = light,
+                                  .part = hit.part,
                                   .radiance = le,
                                   .shared = !sees_lights,
                                   .bsdf_pdf = sees_lights ? 0 : bsdf_pdf,
@@ -124,20 +129,12 @@ struct Path {
 
     void add_infinite_lights(Vec3f w) {
         const LightTables& lights = ps.tables.lights();
-        for (Index light : lights.infinite_lights())
-            add_found_light(light, infinite_radiance(ps.scene, lights, light, previous.p, w, lambda), [&] {
-                return lights.probability(light) * infinite_light_pdf(ps.scene, lights, light, previous.p, w);
-            });
+        for (Index light : lights.infinite_lights()) add_met_light(light, {.wi = w});
     }
 
     void add_emission(const SurfacePoint& s, Vec3f w) {
-        if (s.shape->first_light == no_index) return;
-        const LightTables& lights = ps.tables.lights();
-        const Index index = s.shape->first_light + s.primitive;
-        const auto& light = std::get<AreaLight>(ps.scene.lights[index]);
-        add_found_light(index, emitted_radiance(light, s.ng, -w, lambda), [&] {
-            return lights.probability(index) * area_light_pdf(ps.scene, lights, index, previous, s.p, s.ng);
-        });
+        if (s.shape->light == no_index) return;
+        add_met_light(s.shape->light, {.wi = w, .part = s.primitive, .p = s.p, .n = s.ng});
     }
 
     // Next-event estimation: one light, one point on it. Lights that scattering cannot find are sampled
@@ -145,20 +142,21 @@ struct Path {
     template <typename B>
     void add_direct_light(const B& bsdf, const Frame& frame, Vec3f wo, const ReferencePoint& here) {
         using Outcome = DirectLight::Outcome;
-        const LightTables& lights = ps.tables.lights();
+        const LightSampler& lights = ps.tables.light_sampler();
         if (lights.empty()) return;
         // Among few lights the choice takes the first number's leading digits and leaves the others for the
         // point: one dimension less keeps point sets better stratified.
-        const bool few = lights.by_power().size() <= 64;
+        const bool few = lights.size() <= 64;
         Vec2f u = stream.next_2d();
-        const auto chosen = lights.by_power().sample(stream.refined(few ? u.x : stream.next_1d()));
-        const auto choice = static_cast<float>(chosen.probability);
+        const LightChoice chosen = lights.sample(here, stream.refined(few ? u.x : stream.next_1d()));
+        const float choice = chosen.probability;
         if (few) u.x = std::min(static_cast<float>(chosen.remapped), largest_below_one<float>);
-        auto light = sample_light(ps.scene, ps.tables, chosen.index, here, u, lambda);
+        auto light = sample_li({ps.scene, ps.tables, chosen.light}, chosen.part, here, u, lambda);
         if (!light || (!light->invisible && !samples_lights())) {
             if (recorder)
                 recorder.sampled_light({.outcome = light ? Outcome::left_to_scattering : Outcome::dark,
-                                        .light = chosen.index,
+                                        .light = chosen.light,
+                                        .part = chosen.part,
                                         .choice = choice});
             return;
         }
@@ -167,7 +165,8 @@ struct Path {
         auto record = [&](Outcome outcome, float weight) {
             if (recorder)
                 recorder.sampled_light({.outcome = outcome,
-                                        .light = chosen.index,
+                                        .light = chosen.light,
+                                        .part = chosen.part,
                                         .choice = choice,
                                         .delta = light->delta,
                                         .wi = light->wi,
@@ -237,7 +236,7 @@ SampledSpectrum path_radiance(const PathScene& ps, RayTracer& tracer, Ray ray, S
         const bool tangents = textured || ps.tables.is_anisotropic(shape.material);
         SurfacePoint s = surface_point(ps.scene, ray, hit, tangents);
         if (path.recorder) path.recorder.hit_surface(ray, hit, s, path.throughput);
-        path.add_emission(s, ray.d);
+        if (hit.instance == no_index) path.add_emission(s, ray.d);
         if (depth++ == ps.settings.max_depth) {
             if (path.recorder) path.recorder.ended(PathEnd::max_depth);
             break;

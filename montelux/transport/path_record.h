@@ -14,6 +14,7 @@ namespace montelux {
 // Light that the path met by following its ray: on the surface that it hit, or from beyond the scene.
 struct FoundLight {
     Index light = no_index;
+    Index part = 0;             // the triangle of an emissive mesh
     SampledSpectrum radiance{}; // along the ray
     // Light sampling at the vertex before could have found it too. Where it could not (the camera's ray, a
     // delta lobe), the weight is 1 and there are no densities.
@@ -41,6 +42,7 @@ struct DirectLight {
     };
     Outcome outcome = Outcome::dark;
     Index light = no_index;
+    Index part = 0;             // the triangle of an emissive mesh
     float choice = 0;           // probability of choosing this light
     bool delta = false;         // a light of a point or one direction
     Vec3f wi{};                 // world space, towards the light

@@ -31,34 +31,31 @@ std::size_t checked(std::int64_t i, std::size_t count, const char* what) {
     return static_cast<std::size_t>(at);
 }
 
-struct Run {
-    Index first, count;
-};
-std::vector<Run> light_runs(const Scene& scene) {
-    std::vector<Run> runs;
-    for (Index i = 0; i < scene.lights.size(); ++i) {
-        const auto* area = std::get_if<AreaLight>(&scene.lights[i]);
-        const auto* before = i > 0 ? std::get_if<AreaLight>(&scene.lights[i - 1]) : nullptr;
-        if (area && before && area->shape == before->shape && area->primitive == before->primitive + 1)
-            ++runs.back().count;
-        else
-            runs.push_back({i, 1});
-    }
-    return runs;
-}
-
 Light plain_light(const nb::object& o) {
     const Slot<Light>* given = light_slot(o);
     if (!given)
         throw Error("lights", "an object of type '" + std::string(nb::type_name(o.type()).c_str()) +
                                   "' was given; expected a light, such as PointLight()");
-    if (std::holds_alternative<AreaLight>(given->read()))
-        throw Error("lights", "an AreaLight belongs to a shape; set the light of that shape");
-    if (std::holds_alternative<ImageInfiniteLight>(given->read()))
-        throw Error("lights",
-                    "an EnvironmentLight refers to a map of its scene; make one by add_environment()");
-    if (std::holds_alternative<SkyLight>(given->read()) || std::holds_alternative<SunLight>(given->read()))
-        throw Error("lights", "a SkyLight or SunLight belongs to the sky of its scene file");
+    struct Check {
+        void operator()(const AreaLight&) const {
+            throw Error("lights", "an AreaLight belongs to a shape; set the light of that shape");
+        }
+        void operator()(const ImageInfiniteLight&) const {
+            throw Error("lights",
+                        "an EnvironmentLight refers to a map of its scene; make one by add_environment()");
+        }
+        void operator()(const SkyLight&) const { refuse_sky(); }
+        void operator()(const SunLight&) const { refuse_sky(); }
+        void operator()(const PointLight&) const {}
+        void operator()(const SpotLight&) const {}
+        void operator()(const DistantLight&) const {}
+        void operator()(const UniformInfiniteLight&) const {}
+
+        [[noreturn]] static void refuse_sky() {
+            throw Error("lights", "a SkyLight or SunLight belongs to the sky of its scene file");
+        }
+    };
+    std::visit(Check{}, given->read());
     return given->read();
 }
 
@@ -87,30 +84,26 @@ void bind_lists(nb::module_& m) {
             },
             "material"_a, "Adds a material, and returns the place it has in the scene.");
     nb::class_<LightList>(m, "Lights", "The lights of a scene; those of one shape are one AreaLight.")
-        .def("__len__", [](const LightList& l) { return light_runs(l.scene->read().scene).size(); })
+        .def("__len__", [](const LightList& l) { return l.scene->read().scene.lights.size(); })
         .def("__getitem__",
              [](const LightList& l, std::int64_t i) {
-                 const std::vector<Run> runs = light_runs(l.scene->read().scene);
-                 const Run run = runs[checked(i, runs.size(), "light")];
-                 return as_python(Slot<Light>(l.scene, run.first, run.count));
+                 const std::size_t at = checked(i, l.scene->read().scene.lights.size(), "light");
+                 return as_python(Slot<Light>(l.scene, static_cast<Index>(at)));
              })
         .def("__setitem__",
              [](const LightList& l, std::int64_t i, const nb::object& o) {
-                 const std::vector<Run> runs = light_runs(l.scene->read().scene);
-                 const Run run = runs[checked(i, runs.size(), "light")];
-                 if (std::holds_alternative<AreaLight>(l.scene->read().scene.lights[run.first]))
+                 const std::size_t at = checked(i, l.scene->read().scene.lights.size(), "light");
+                 if (std::holds_alternative<AreaLight>(l.scene->read().scene.lights[at]))
                      throw Error("lights", "this light belongs to a shape; set the light of that shape");
                  const Light light = plain_light(o);
-                 l.scene->edit().scene.lights[run.first] = light;
-                 l.scene->note("light at " + std::to_string(run.first) + " " +
-                               nb::cast<std::string>(nb::repr(o)));
+                 l.scene->edit().scene.lights[at] = light;
+                 l.scene->note("light at " + std::to_string(at) + " " + nb::cast<std::string>(nb::repr(o)));
              })
         .def("__delitem__",
              [](const LightList& l, std::int64_t i) {
-                 const std::vector<Run> runs = light_runs(l.scene->read().scene);
-                 const Run run = runs[checked(i, runs.size(), "light")];
-                 erase_lights(l.scene->edit(), run.first, run.count);
-                 l.scene->note("no light " + std::to_string(run.first));
+                 const std::size_t at = checked(i, l.scene->read().scene.lights.size(), "light");
+                 erase_light(l.scene->edit(), static_cast<Index>(at));
+                 l.scene->note("no light " + std::to_string(at));
              })
         .def(
             "append",

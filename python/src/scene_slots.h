@@ -65,13 +65,13 @@ inline IntegratorSettings& element(SceneDescription& d, Index, std::type_identit
     return d.integrator;
 }
 
-// `count` equal values side by side (the area lights of a mesh), or one by itself.
+// A value in a scene, or one by itself.
 template <typename V>
 class Slot {
   public:
     explicit Slot(V own) : own_(std::make_shared<V>(std::move(own))) {}
-    explicit Slot(std::shared_ptr<SceneHolder> scene, Index first = 0, Index count = 1)
-        : scene_(std::move(scene)), first_(first), count_(count) {}
+    explicit Slot(std::shared_ptr<SceneHolder> scene, Index first = 0)
+        : scene_(std::move(scene)), first_(first) {}
 
     const V& read() const {
         return own_ ? *own_ : element(*scene_->description, first_, std::type_identity<V>());
@@ -79,12 +79,10 @@ class Slot {
     template <typename Change>
     void edit(const Change& change) {
         if (own_) return change(*own_);
-        SceneDescription& d = scene_->edit();
-        for (Index i = first_; i < first_ + count_; ++i) change(element(d, i, std::type_identity<V>()));
+        change(element(scene_->edit(), first_, std::type_identity<V>()));
     }
     const std::shared_ptr<SceneHolder>& scene() const { return scene_; }
     Index first() const { return first_; }
-    Index count() const { return count_; }
     bool same_place(const Slot& other) const {
         return scene_ ? scene_ == other.scene_ && first_ == other.first_ : own_ == other.own_;
     }
@@ -93,7 +91,7 @@ class Slot {
 
   private:
     std::shared_ptr<SceneHolder> scene_;
-    Index first_ = 0, count_ = 1;
+    Index first_ = 0;
     std::shared_ptr<V> own_;
 };
 

@@ -8,10 +8,6 @@ namespace {
 
 using ShapeRef = Ref<Shape>;
 
-std::size_t primitives(const Scene& scene, const Shape& s) {
-    return s.mesh != no_index ? scene.meshes[s.mesh].triangle_count() : 1;
-}
-
 std::string kind_of(const ShapeRef& r) {
     const Shape& s = r.value();
     if (s.mesh != no_index) return "mesh";
@@ -20,12 +16,11 @@ std::string kind_of(const ShapeRef& r) {
 
 nb::object light_of(const ShapeRef& r) {
     const Shape& s = r.value();
-    if (s.first_light == no_index) return nb::none();
-    return as_python(
-        Slot<Light>(r.scene(), s.first_light, static_cast<Index>(primitives(r.scene()->read().scene, s))));
+    if (s.light == no_index) return nb::none();
+    return as_python(Slot<Light>(r.scene(), s.light));
 }
 
-// None takes the light away; an AreaLight or a spectrum gives one to each primitive.
+// None takes the light away; an AreaLight or a spectrum gives one.
 void set_light(const SceneRef& holder, Index shape, const nb::object& emission) {
     AreaLight light = default_value<AreaLight>();
     if (nb::isinstance<Ref<AreaLight>>(emission)) {
@@ -36,15 +31,11 @@ void set_light(const SceneRef& holder, Index shape, const nb::object& emission) 
     }
     SceneDescription& d = holder->edit();
     Shape& s = d.scene.shapes[shape];
-    const std::size_t count = primitives(d.scene, s);
-    if (s.first_light != no_index) erase_lights(d, s.first_light, static_cast<Index>(count));
+    if (s.light != no_index) erase_light(d, s.light);
     if (emission.is_none()) return;
-    s.first_light = static_cast<Index>(d.scene.lights.size());
+    s.light = static_cast<Index>(d.scene.lights.size());
     light.shape = shape;
-    for (std::size_t i = 0; i < count; ++i) {
-        light.primitive = static_cast<Index>(i);
-        d.scene.lights.emplace_back(light);
-    }
+    d.scene.lights.emplace_back(light);
     holder->note("light of shape " + std::to_string(shape) + " " + std::to_string(light.scale) + " " +
                  nb::cast<std::string>(nb::repr(nb::cast(light.spectrum))));
 }
@@ -80,12 +71,11 @@ nb::object positions_of(const ShapeRef& r) {
 
 } // namespace
 
-void erase_lights(SceneDescription& d, Index first, Index count) {
-    const auto begin = d.scene.lights.begin() + first;
-    d.scene.lights.erase(begin, begin + count);
+void erase_light(SceneDescription& d, Index light) {
+    d.scene.lights.erase(d.scene.lights.begin() + light);
     for (Shape& s : d.scene.shapes) {
-        if (s.first_light == no_index || s.first_light < first) continue;
-        s.first_light = s.first_light < first + count ? no_index : s.first_light - count;
+        if (s.light == no_index || s.light < light) continue;
+        s.light = s.light == light ? no_index : s.light - 1;
     }
 }
 

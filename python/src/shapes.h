@@ -20,6 +20,6 @@ nb::object add_disk(const SceneRef& scene, double radius, double inner_radius, d
 // The place of a material in a scene, which is added to it where it is a value by itself.
 Index material_index(const SceneRef& scene, const nb::object& material, const std::string& what);
 // Lights come and go: indices of other lights are kept right.
-void erase_lights(SceneDescription& d, Index first, Index count);
+void erase_light(SceneDescription& d, Index light);
 
 } // namespace montelux::python

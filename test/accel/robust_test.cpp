@@ -278,8 +278,8 @@ TEST(Robust, ShadowRaysReachTheirLights) {
                     lamp.indices = {0, 1, 2};
                     light = add_shape(scene, std::move(lamp));
                 }
-                scene.shapes[light].first_light = 0;
-                scene.lights.push_back(AreaLight{Spectrum(1.0f), 1, false, light, 0});
+                scene.shapes[light].light = 0;
+                scene.lights.push_back(AreaLight{Spectrum(1.0f), 1, false, light});
                 World world(std::move(scene));
                 SampledWavelengths lambda = SampledWavelengths::sample_visible(0.3f);
                 int blocked = 0, sampled = 0;
@@ -292,7 +292,8 @@ TEST(Robust, ShadowRaysReachTheirLights) {
                     if (hit.shape != 0) continue; // from within the lamp
                     SurfacePoint s = surface_point(world.scene, ray, hit, false);
                     Vec2f u = draws.uniform_2d();
-                    auto sample = sample_light(world.scene, world.tables, 0, {s.p, s.ng, s.error}, u, lambda);
+                    auto sample =
+                        sample_li({world.scene, world.tables, 0}, 0, {s.p, s.ng, s.error}, u, lambda);
                     if (!sample) continue;
                     // A partial sphere hides some of its own points, and what lies under the floor is hidden.
                     if (dot(sample->wi, s.ng) < 1e-3f) continue;

@@ -106,8 +106,8 @@ SceneBuilder cornell_box() {
     SceneBuilder b = mixed_scene(1, 12, 12);
     for (Material& m : b.scene.materials)
         if (!std::holds_alternative<DiffuseMaterial>(m)) m = DiffuseMaterial{gray(0.7f)};
-    b.scene.lights.resize(2);
-    b.scene.shapes.back().first_light = no_index;
+    b.scene.lights.resize(1);
+    b.scene.shapes.back().light = no_index;
     b.scene.world_shapes.pop_back();
     b.description.integrator.max_depth = 2;
     return b;

@@ -54,9 +54,8 @@ class SceneBuilder {
         Shape shape;
         shape.mesh = static_cast<Index>(scene.meshes.size());
         shape.material = material;
-        std::size_t n = mesh.triangle_count();
         scene.meshes.push_back(std::move(mesh));
-        return add_shape(shape, n, emission);
+        return add_shape(shape, emission);
     }
     Index add_quadric(const Quadric& quadric, Index material, float emission = 0, bool flip = false) {
         Shape shape;
@@ -64,7 +63,7 @@ class SceneBuilder {
         shape.material = material;
         shape.flip_normal = flip;
         scene.quadrics.push_back(quadric);
-        return add_shape(shape, 1, emission);
+        return add_shape(shape, emission);
     }
     void add_uniform_light(float radiance) {
         scene.lights.push_back(UniformInfiniteLight{white_light(), white_scale() * radiance});
@@ -76,13 +75,11 @@ class SceneBuilder {
     }
 
   private:
-    Index add_shape(Shape shape, std::size_t primitives, float emission) {
+    Index add_shape(Shape shape, float emission) {
         auto index = static_cast<Index>(scene.shapes.size());
         if (emission > 0) {
-            shape.first_light = static_cast<Index>(scene.lights.size());
-            for (std::size_t i = 0; i < primitives; ++i)
-                scene.lights.push_back(
-                    AreaLight{white_light(), emission * white_scale(), false, index, static_cast<Index>(i)});
+            shape.light = static_cast<Index>(scene.lights.size());
+            scene.lights.push_back(AreaLight{white_light(), emission * white_scale(), false, index});
         }
         scene.shapes.push_back(shape);
         scene.world_shapes.push_back(index);

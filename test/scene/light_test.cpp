@@ -17,12 +17,12 @@ namespace {
 const SampledWavelengths wavelengths = SampledWavelengths::sample_visible(0.37f);
 
 Index add_light(Scene& scene, Shape shape, bool two_sided, float radiance = 2) {
-    shape.first_light = static_cast<Index>(scene.lights.size());
+    shape.light = static_cast<Index>(scene.lights.size());
     auto index = static_cast<Index>(scene.shapes.size());
-    scene.lights.push_back(AreaLight{Spectrum(1.0f), radiance, two_sided, index, 0});
+    scene.lights.push_back(AreaLight{Spectrum(1.0f), radiance, two_sided, index});
     scene.shapes.push_back(shape);
     scene.world_shapes.push_back(index);
-    return shape.first_light;
+    return shape.light;
 }
 Index add_light(Scene& scene, const Quadric& quadric, bool flip = false, bool two_sided = false) {
     Shape shape;
@@ -118,7 +118,7 @@ TEST(AreaLights, DirectionsFollowTheirDensity) {
         SceneTables tables(c.scene);
         const auto& light = std::get<AreaLight>(c.scene.lights[0]);
         auto sample = [&](Vec2f u) -> std::optional<Vec3f> {
-            auto s = sample_light(c.scene, tables, 0, origin, u, wavelengths);
+            auto s = sample_li({c.scene, tables, 0}, 0, origin, u, wavelengths);
             if (!s) return std::nullopt;
             return s->wi;
         };
@@ -126,7 +126,7 @@ TEST(AreaLights, DirectionsFollowTheirDensity) {
             float sum = 0;
             for (const SurfacePoint& s : points_along(c.scene, light, {origin.p, w}))
                 if (light.two_sided || dot(s.ng, w) < 0)
-                    sum += area_light_pdf(c.scene, tables.lights(), 0, origin, s.p, s.ng);
+                    sum += pdf_li({c.scene, tables, 0}, origin, {.wi = w, .p = s.p, .n = s.ng});
             // A whole sphere's visible half stands for all of it.
             if (light.two_sided && tables.lights().sphere(0)) sum *= 0.5f;
             return sum;
@@ -149,7 +149,7 @@ TEST(AreaLights, SamplesAgreeWithHits) {
         int found = 0, samples = 0;
         for (int i = 0; i < 5000; ++i) {
             Vec2f u = uniforms.next_2f();
-            auto s = sample_light(c.scene, tables, 0, origin, u, wavelengths);
+            auto s = sample_li({c.scene, tables, 0}, 0, origin, u, wavelengths);
             if (!s) continue;
             ++samples;
             ASSERT_NEAR(length(s->wi), 1, 1e-5) << c.name;
@@ -164,9 +164,10 @@ TEST(AreaLights, SamplesAgreeWithHits) {
             if (nearest == nullptr) continue; // rounding at a rim
             ++found;
             ASSERT_LT(length(nearest->p - end), 2e-3f) << c.name;
-            SampledSpectrum le = emitted_radiance(light, nearest->ng, -s->wi, wavelengths);
+            const LightHit hit{.wi = s->wi, .p = nearest->p, .n = nearest->ng};
+            SampledSpectrum le = incident_radiance({c.scene, tables, 0}, origin, hit, wavelengths);
             ASSERT_EQ(le[0], s->radiance[0]) << c.name;
-            float pdf = area_light_pdf(c.scene, tables.lights(), 0, origin, nearest->p, nearest->ng);
+            float pdf = pdf_li({c.scene, tables, 0}, origin, hit);
             if (std::abs(dot(nearest->ng, s->wi)) > 0.05f) {
                 ASSERT_NEAR(pdf / s->pdf, 1, 2e-3) << c.name;
             }
@@ -186,11 +187,13 @@ TEST(AreaLights, OneSidedLightsAreDarkBehind) {
     for (int i = 0; i < 100; ++i)
         for (Index light : {0u, 1u, 2u}) {
             Vec2f u = uniforms.next_2f();
-            EXPECT_FALSE(sample_light(scene, tables, light, origin, u, wavelengths)) << light;
+            EXPECT_FALSE(sample_li({scene, tables, light}, 0, origin, u, wavelengths)) << light;
         }
-    const auto& light = std::get<AreaLight>(scene.lights[0]);
-    EXPECT_EQ(emitted_radiance(light, {0, 0, 1}, {0, 0, -1}, wavelengths)[0], 0);
-    EXPECT_EQ(emitted_radiance(light, {0, 0, 1}, {0, 0, 1}, wavelengths)[0], 2);
+    auto seen_from = [&](Vec3f w) {
+        return incident_radiance({scene, tables, 0}, origin, {.wi = -w, .n = {0, 0, 1}}, wavelengths)[0];
+    };
+    EXPECT_EQ(seen_from({0, 0, -1}), 0);
+    EXPECT_EQ(seen_from({0, 0, 1}), 2);
 }
 
 TEST(InfiniteLights, DirectionsFollowTheirDensity) {
@@ -214,11 +217,11 @@ TEST(InfiniteLights, DirectionsFollowTheirDensity) {
         }
         SceneTables tables(scene);
         auto sample = [&](Vec2f u) -> std::optional<Vec3f> {
-            auto s = sample_light(scene, tables, 0, origin, u, wavelengths);
+            auto s = sample_li({scene, tables, 0}, 0, origin, u, wavelengths);
             if (!s) return std::nullopt;
             return s->wi;
         };
-        auto pdf = [&](Vec3f w) { return infinite_light_pdf(scene, tables.lights(), 0, origin.p, w); };
+        auto pdf = [&](Vec3f w) { return pdf_li({scene, tables, 0}, {.p = origin.p}, {.wi = w}); };
         ChiSquaredOptions options;
         options.samples = 200000;
         options.cells_x = options.cells_y = 16;
@@ -229,16 +232,16 @@ TEST(InfiniteLights, DirectionsFollowTheirDensity) {
         int differing = 0;
         for (int i = 0; i < 5000; ++i) {
             Vec2f u = uniforms.next_2f();
-            auto s = sample_light(scene, tables, 0, origin, u, wavelengths);
+            auto s = sample_li({scene, tables, 0}, 0, origin, u, wavelengths);
             ASSERT_TRUE(s);
             ASSERT_FALSE(s->delta);
             ASSERT_TRUE(std::isinf(s->shadow.t_max));
             // Rounding may send the direction of a point on a texel's edge back into its neighbour.
             bool same =
-                std::abs(infinite_light_pdf(scene, tables.lights(), 0, origin.p, s->wi) / s->pdf - 1) <
-                    1e-3f &&
-                std::abs(infinite_radiance(scene, tables.lights(), 0, origin.p, s->wi, wavelengths)[1] -
-                         s->radiance[1]) < 1e-3f * s->radiance[1];
+                std::abs(pdf_li({scene, tables, 0}, {.p = origin.p}, {.wi = s->wi}) / s->pdf - 1) < 1e-3f &&
+                std::abs(
+                    incident_radiance({scene, tables, 0}, {.p = origin.p}, {.wi = s->wi}, wavelengths)[1] -
+                    s->radiance[1]) < 1e-3f * s->radiance[1];
             differing += !same;
         }
         EXPECT_LE(differing, 5) << which;
@@ -263,7 +266,7 @@ TEST(InfiniteLights, MapsIntegrateToTheirMean) {
     TestUniforms uniforms(3);
     RunningMoments m;
     for (int i = 0; i < 20000; ++i) {
-        auto s = sample_light(scene, tables, 0, origin, uniforms.next_2f(), wavelengths);
+        auto s = sample_li({scene, tables, 0}, 0, origin, uniforms.next_2f(), wavelengths);
         if (s) m.add(double(s->radiance[0] / white[0] / s->pdf));
     }
     // Grey texels: density and radiance rise together, and the estimate has hardly any noise.
@@ -278,7 +281,7 @@ TEST(PointLights, InverseSquareAndFalloff) {
     scene.lights.push_back(DistantLight{Spectrum(1.0f), 5, normalize(Vec3f{1, 2, 2})});
     SceneTables tables(scene);
     auto at = [&](Index light, Point3f p) {
-        return sample_light(scene, tables, light, {p, {0, 0, 1}, 0}, {0.3f, 0.8f}, wavelengths);
+        return sample_li({scene, tables, light}, 0, {p, {0, 0, 1}, 0}, {0.3f, 0.8f}, wavelengths);
     };
     auto point = at(0, {0, 0, 0});
     ASSERT_TRUE(point && point->delta);
@@ -315,8 +318,8 @@ TEST(LightTables, ProbabilitiesArePowers) {
     scene.lights.push_back(UniformInfiniteLight{Spectrum(1.0f), 0.25f});
     scene.lights.push_back(PointLight{Spectrum(0.0f), 3, {0, 0, 0}});
     SceneTables tables(scene);
-    const LightTables& lights = tables.lights();
-    double r = lights.scene_bounds().radius(), cross_section = pi * r * r;
+    const LightSampler& lights = tables.light_sampler();
+    double r = tables.lights().scene_bounds().radius(), cross_section = pi * r * r;
     EXPECT_GE(r, 1);
     // The smoothstep of a spot has mean 1/2 over the rim.
     const double powers[] = {pi * 4 * pi * 2,
@@ -330,18 +333,18 @@ TEST(LightTables, ProbabilitiesArePowers) {
     double total = 0, sum = 0;
     for (double p : powers) total += p;
     for (Index i = 0; i < 8; ++i) {
-        EXPECT_NEAR(double(lights.probability(i)), powers[i] / total, 1e-5) << i;
-        sum += double(lights.probability(i));
+        EXPECT_NEAR(double(lights.probability(origin, i, 0)), powers[i] / total, 1e-5) << i;
+        sum += double(lights.probability(origin, i, 0));
     }
     EXPECT_NEAR(sum, 1, 1e-6);
-    EXPECT_EQ(lights.infinite_lights(), std::vector<Index>{6});
+    EXPECT_EQ(tables.lights().infinite_lights(), std::vector<Index>{6});
     TestUniforms uniforms(2);
     std::vector<double> counts(8), expected;
     for (double p : powers) expected.push_back(p / total * 100000);
     for (int i = 0; i < 100000; ++i) {
-        auto chosen = lights.by_power().sample(uniforms.next_float());
-        counts[chosen.index] += 1;
-        ASSERT_EQ(chosen.probability, lights.probability(chosen.index));
+        auto chosen = lights.sample(origin, uniforms.next());
+        counts[chosen.light] += 1;
+        ASSERT_EQ(chosen.probability, lights.probability(origin, chosen.light, chosen.part));
     }
     TestResult result = chi_squared_test(counts, expected);
     EXPECT_TRUE(result.passes(1e-8)) << result.description;
@@ -358,7 +361,8 @@ TEST(LightTables, AMapHasThePowerOfItsMean) {
     scene.lights.push_back(
         UniformInfiniteLight{Spectrum(RgbIlluminantSpectrum(RgbColorSpace::srgb(), {1, 1, 1})), 1.5f});
     SceneTables tables(scene);
-    EXPECT_NEAR(double(tables.lights().probability(1)), double(tables.lights().probability(2)), 1e-4);
+    EXPECT_NEAR(double(tables.light_sampler().probability({}, 1, 0)),
+                double(tables.light_sampler().probability({}, 2, 0)), 1e-4);
 }
 
 } // namespace

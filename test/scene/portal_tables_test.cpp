@@ -42,12 +42,13 @@ TEST(Portals, NoCornerOfATexelIsLeftOut) {
                     const Vec3f w(normalize(light.world_from_light.vector(
                         Vec3d(grid.direction({static_cast<float>(texel % width) + u.x,
                                               static_cast<float>(texel / width) + u.y})))));
-                    const auto radiance = infinite_radiance(scene, tables.lights(), 0, p, w, wavelengths);
+                    const auto radiance =
+                        incident_radiance({scene, tables, 0}, {.p = p}, {.wi = w}, wavelengths);
                     if (is_black(radiance)) continue;
                     ++seen;
                     // 1 / (solid angle of the texel) if it alone were drawn.
                     const double share =
-                        static_cast<double>(infinite_light_pdf(scene, tables.lights(), 0, p, w)) *
+                        static_cast<double>(pdf_li({scene, tables, 0}, {.p = p}, {.wi = w})) *
                         grid.solid_angle(texel / width);
                     ASSERT_GT(share, 0.005) << width << " " << texel << " " << towards.z;
                 }
@@ -76,12 +77,12 @@ TEST(Portals, PowerIsTheFluxThroughThem) {
     map.portal = Portal(corners_of(0, 0, 2, 3));
     scene.lights.push_back(map);
     const SceneTables tables(scene);
-    const LightTables& lights = tables.lights();
-    const double r = lights.scene_bounds().radius(), cross_section = pi * r * r;
-    const double point = static_cast<double>(lights.probability(2)) / (4 * pi);
-    EXPECT_NEAR(static_cast<double>(lights.probability(0)) / point, pi * 6 * 3, 1e-2);
-    EXPECT_NEAR(static_cast<double>(lights.probability(1)) / point, 2 * pi * cross_section * 3, 1e-1);
-    EXPECT_NEAR(static_cast<double>(lights.probability(4) / lights.probability(3)),
+    const LightSampler& lights = tables.light_sampler();
+    const double r = tables.lights().scene_bounds().radius(), cross_section = pi * r * r;
+    const double point = static_cast<double>(lights.probability({}, 2, 0)) / (4 * pi);
+    EXPECT_NEAR(static_cast<double>(lights.probability({}, 0, 0)) / point, pi * 6 * 3, 1e-2);
+    EXPECT_NEAR(static_cast<double>(lights.probability({}, 1, 0)) / point, 2 * pi * cross_section * 3, 1e-1);
+    EXPECT_NEAR(static_cast<double>(lights.probability({}, 4, 0) / lights.probability({}, 3, 0)),
                 pi * 6 / (4 * pi * cross_section), 1e-5);
 }
 

@@ -70,9 +70,14 @@ Image rgb_map(const Image& picture) {
 
 } // namespace
 
-AreaLight Emission::light(Index shape, Index primitive, float area) const {
-    AreaLight light{spectrum, scale, two_sided, shape, primitive};
-    if (power > 0 && area > 0) light.scale *= power / ((two_sided ? 2.0f : 1.0f) * area * pi_f);
+AreaLight Emission::light(Index shape, const Geometry& geometry) const {
+    AreaLight light{spectrum, scale, two_sided, shape};
+    if (!(power > 0)) return light;
+    const auto* quadric = std::get_if<Quadric>(&geometry.shape);
+    if (quadric == nullptr)
+        light.triangle_flux = power;
+    else if (const float area = object_area(*quadric); area > 0)
+        light.scale *= power / ((two_sided ? 2.0f : 1.0f) * area * pi_f);
     return light;
 }
 

@@ -7,6 +7,7 @@
 
 #include "montelux/formats/pbrt/parameter_reader.h"
 #include "montelux/formats/pbrt/settings.h"
+#include "montelux/formats/pbrt/shapes.h"
 #include "montelux/formats/pbrt/spectrum_parameter.h"
 #include "montelux/scene/scene.h"
 
@@ -19,8 +20,8 @@ struct Emission {
     bool two_sided = false;
     float power = 0; // lm of each primitive, if positive: then scale is multiplied by power / emitted power
 
-    // The light of a primitive of that area (square scene units).
-    AreaLight light(Index shape, Index primitive, float area) const;
+    // The light of a shape.
+    AreaLight light(Index shape, const Geometry& geometry) const;
 };
 
 // Lights are scaled so that an RGB colour of (1, 1, 1), or any other spectrum, stands for a luminance,

@@ -141,6 +141,7 @@ class SceneBuilder {
 
     std::map<std::string, Index> objects_;
     Index open_object_ = no_index;
+    std::size_t emissive_primitives_ = 0;
     std::vector<InstanceUse> instances_;
 };
 

@@ -96,11 +96,13 @@ void SceneBuilder::add_lights(Shape& shape, Index index, const Geometry& geometr
         return;
     }
     std::vector<Light>& lights = result_.scene.lights;
-    std::size_t count = geometry.primitive_count();
-    if (lights.size() + count >= no_index) diagnostics_.error(at, "more than 2^32 lights");
-    if (count > 0) shape.first_light = static_cast<Index>(lights.size());
-    for (std::size_t i = 0; i < count; ++i)
-        lights.push_back(state_.emission->light(index, static_cast<Index>(i), geometry.area(i)));
+    const std::size_t count = geometry.primitive_count();
+    if (count == 0) return;
+    emissive_primitives_ += count;
+    if (lights.size() >= no_index || emissive_primitives_ >= no_index)
+        diagnostics_.error(at, "more than 2^32 emissive triangles");
+    shape.light = static_cast<Index>(lights.size());
+    lights.push_back(state_.emission->light(index, geometry));
 }
 
 void SceneBuilder::finish_options() {

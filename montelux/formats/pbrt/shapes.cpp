@@ -182,15 +182,14 @@ std::size_t Geometry::primitive_count() const {
     return mesh ? mesh->triangle_count() : 1;
 }
 
-float Geometry::area(std::size_t primitive) const {
-    if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) {
-        auto corner = [&](std::size_t k) { return Vec3d(mesh->positions[mesh->indices[3 * primitive + k]]); };
-        return static_cast<float>(0.5 * length(cross(corner(1) - corner(0), corner(2) - corner(0))));
-    }
-    const Quadric& quadric = std::get<Quadric>(shape);
-    if (const auto* s = std::get_if<Sphere>(&quadric)) return s->phi_max * s->radius * (s->z_max - s->z_min);
-    const Disk& d = std::get<Disk>(quadric);
-    return 0.5f * d.phi_max * (d.radius * d.radius - d.inner_radius * d.inner_radius);
+float object_area(const Quadric& quadric) {
+    struct Area {
+        float operator()(const Sphere& s) const { return s.phi_max * s.radius * (s.z_max - s.z_min); }
+        float operator()(const Disk& d) const {
+            return 0.5f * d.phi_max * (d.radius * d.radius - d.inner_radius * d.inner_radius);
+        }
+    };
+    return std::visit(Area{}, quadric);
 }
 
 Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transform& world_from_object,

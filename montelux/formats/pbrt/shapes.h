@@ -11,14 +11,14 @@
 
 namespace montelux::pbrt {
 
-// The geometry of one Shape directive, and the area of each of its primitives as lights need it.
+// The geometry of one Shape directive.
 struct Geometry {
     std::variant<TriangleMesh, Quadric> shape;
 
     std::size_t primitive_count() const;
-    // As pbrt computes it: triangles in world space, quadrics in their own space.
-    float area(std::size_t primitive) const;
 };
+// In the space of the object: what pbrt-v4 takes for the area of a light that has a power.
+float object_area(const Quadric& quadric);
 
 // Vertices of meshes are transformed by `world_from_object`; vertex normals too, and turned around with
 // `reverse_orientation`. A quadric keeps the transform. `subdivided` counts the triangles of all 'loopsubdiv'

@@ -1,48 +1,25 @@
-// Next-event estimation: points on lights and directions to them, with their densities.
+// The functions of LightModel for a light of any kind in a scene.
 #pragma once
 
-#include <optional>
-
-#include "montelux/scene/scene.h"
-#include "montelux/scene/scene_tables.h"
-#include "montelux/scene/shape/ray.h"
+#include "montelux/scene/light/light_context.h"
 
 namespace montelux {
 
-// Where light is asked for.
-struct ReferencePoint {
-    Point3f p;
-    Normal3f n;      // geometric normal
-    float error = 0; // as SurfacePoint::error
-};
+// Incident light, for next-event estimation.
+std::optional<LightSample> sample_li(const LightContext& context, Index part, const ReferencePoint& from,
+                                     Vec2f u, const SampledWavelengths& lambda);
+float pdf_li(const LightContext& context, const ReferencePoint& from, const LightHit& hit);
+SampledSpectrum incident_radiance(const LightContext& context, const ReferencePoint& from,
+                                  const LightHit& hit, const SampledWavelengths& lambda);
 
-struct LightSample {
-    SampledSpectrum radiance; // for a delta light: irradiance on a plane facing it
-    Vec3f wi;                 // unit, towards the light
-    float pdf = 0;            // per solid angle, given the light; 1 for a delta light
-    bool delta = false;       // of a point or one direction
-    bool invisible = false;   // BSDF sampling cannot find this light: a delta light, or one of alpha 0
-    Ray shadow;               // unoccluded when the light is seen
-};
+// Emission, for methods that follow light from its sources.
+std::optional<EmissionSample> sample_le(const LightContext& context, Index part, Vec2f u_position,
+                                        Vec2f u_direction, const SampledWavelengths& lambda);
+EmissionPdf pdf_le(const LightContext& context, const LightHit& hit, Vec3f w);
 
-// Empty where the light cannot shine on the point. An area light shines with the share of its points that is
-// there (Shape::alpha), but one of alpha 0 everywhere shines whole and is not seen, as in pbrt-v4.
-std::optional<LightSample> sample_light(const Scene& scene, const SceneTables& tables, Index light,
-                                        const ReferencePoint& reference, Vec2f u,
-                                        const SampledWavelengths& lambda);
-
-// Density, per solid angle at the reference, with which sample_light finds the point `p` (normal n) of an
-// area light.
-float area_light_pdf(const Scene& scene, const LightTables& tables, Index light,
-                     const ReferencePoint& reference, Point3f p, Normal3f n);
-// The same for a direction to an infinite light, at `p`.
-float infinite_light_pdf(const Scene& scene, const LightTables& tables, Index light, Point3f p, Vec3f wi);
-
-// Radiance that leaves an area light along w at a point with geometric normal n.
-SampledSpectrum emitted_radiance(const AreaLight& light, Normal3f n, Vec3f w,
-                                 const SampledWavelengths& lambda);
-// Radiance of an infinite light that comes to `p` from direction wi; black for other lights.
-SampledSpectrum infinite_radiance(const Scene& scene, const LightTables& tables, Index light, Point3f p,
-                                  Vec3f wi, const SampledWavelengths& lambda);
+// What lights are chosen by.
+std::optional<LightBounds> light_bounds(const LightContext& context, Index part);
+Index part_count(const LightContext& context);
+void light_powers(const LightContext& context, std::span<double> parts);
 
 } // namespace montelux

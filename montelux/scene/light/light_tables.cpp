@@ -1,10 +1,7 @@
 #include "montelux/scene/light/light_tables.h"
 
-#include <algorithm>
-#include <cmath>
-#include <map>
+#include <numeric>
 
-#include "montelux/mc/math/constants.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/scene/shape/alpha.h"
 #include "montelux/scene/shape/surface_point.h"
@@ -13,42 +10,26 @@ namespace montelux {
 
 namespace {
 
-LightTriangle light_triangle(const Scene& scene, const AreaLight& light) {
-    const Shape& shape = scene.shapes[light.shape];
-    const TriangleMesh& mesh = scene.meshes[shape.mesh];
-    const Index* v = &mesh.indices[3 * std::size_t{light.primitive}];
+LightTriangle light_triangle(const TriangleMesh& mesh, const Shape& shape, std::size_t primitive) {
+    const Index* v = &mesh.indices[3 * primitive];
+    const Point3f p1 = mesh.positions[v[1]], p2 = mesh.positions[v[2]];
     LightTriangle t;
     t.p0 = mesh.positions[v[0]];
-    t.e1 = mesh.positions[v[1]] - t.p0;
-    t.e2 = mesh.positions[v[2]] - t.p0;
-    Vec3f c = cross(t.e1, t.e2);
-    float len = length(c);
+    t.e1 = p1 - t.p0;
+    t.e2 = p2 - t.p0;
+    const Vec3f c = cross(t.e1, t.e2);
+    const float len = length(c);
     t.area = 0.5f * len;
-    if (len > 0) {
-        // The same side as a hit at the centroid would report.
-        Hit hit{.b1 = 1.0f / 3, .b2 = 1.0f / 3, .shape = light.shape, .primitive = light.primitive};
-        SurfacePoint s = surface_point(scene, Ray{}, hit, false);
-        t.n = s.ng;
-        t.error = s.error;
-    }
+    if (!(len > 0)) return t;
+    t.n = shape.flip_normal ? -normalize(c) : normalize(c);
+    t.error = coordinate_error(t.n, max(abs(t.p0), max(abs(p1), abs(p2))));
     return t;
 }
-
-// Mean over the visible range.
-double mean(const Spectrum& s) {
-    double sum = 0;
-    int n = 0;
-    for (float lambda = lambda_min; lambda <= lambda_max; lambda += 5, ++n) sum += double(s(lambda));
-    return sum / n;
-}
-
-// That of every environment map, as of ImageInfiniteLight.
-const RgbColorSpace& map_color_space() { return RgbColorSpace::srgb(); }
 
 RgbUnboundedSpectrum texel_spectrum(const Image& map, std::size_t texel) {
     const std::size_t i = texel * static_cast<std::size_t>(map.channels());
     Vec3f rgb{map.value_at(i), map.value_at(i + 1), map.value_at(i + 2)};
-    return {map_color_space(), max(rgb, Vec3f{0, 0, 0})};
+    return {LightTables::map_color_space(), max(rgb, Vec3f{0, 0, 0})};
 }
 
 // Above this size (64 MiB of spectra) texels are uplifted when they are looked up.
@@ -107,94 +88,83 @@ Bounds3 bounds_of(const Scene& scene) {
 }
 
 LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings)
-    : lookup_(settings.lookup), triangle_of_light_(scene.lights.size(), no_index),
-      spheres_(scene.lights.size()), disks_(scene.lights.size()),
-      environment_of_light_(scene.lights.size(), no_index), bounds_(bounds_of(scene)) {
-    std::map<std::pair<Index, EnvironmentLayout>, Index> known_environments;
-    auto environment_of = [&](std::size_t light, Index map, EnvironmentLayout layout) -> const auto& {
-        auto [known, is_new] =
-            known_environments.try_emplace({map, layout}, static_cast<Index>(environments_.size()));
-        if (is_new) environments_.emplace_back(scene.environments[map], layout, settings);
-        environment_of_light_[light] = known->second;
-        return environments_[known->second];
-    };
-    map_spectra_.resize(scene.environments.size());
+    : lookup_(settings.lookup), first_triangle_(scene.lights.size() + 1), spheres_(scene.lights.size()),
+      disks_(scene.lights.size()), environment_of_light_(scene.lights.size(), no_index),
+      map_spectra_(scene.environments.size()), in_world_(scene.shapes.size()), bounds_(bounds_of(scene)) {
+    for (const Index shape : scene.world_shapes) in_world_[shape] = 1;
+    for (Index i = 0; i < scene.lights.size(); ++i) {
+        if (kind_of(scene.lights[i]) == LightKind::infinite) infinite_lights_.push_back(i);
+        struct Tabulate {
+            LightTables& tables;
+            const Scene& scene;
+            const EnvironmentSettings& settings;
+            Index light;
 
-    double radius = std::max(bounds_.radius(), 1e-30);
-    double cross_section = pi * radius * radius;
-    std::vector<double> powers;
-    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        double power = std::visit(
-            [&](const auto& light) -> double {
-                using L = std::decay_t<decltype(light)>;
-                if constexpr (std::is_same_v<L, AreaLight>) {
-                    const Shape& shape = scene.shapes[light.shape];
-                    double area;
-                    if (shape.mesh != no_index) {
-                        triangle_of_light_[i] = static_cast<Index>(triangles_.size());
-                        triangles_.push_back(light_triangle(scene, light));
-                        area = double(triangles_.back().area);
-                    } else {
-                        const Quadric& quadric = scene.quadrics[shape.quadric];
-                        area = world_area(quadric);
-                        // Through its holes the far side is seen, too, which the cone does not sample.
-                        if (!is_cut_out(shape)) spheres_[i] = whole_sphere(quadric);
-                        disks_[i] = whole_disk(quadric);
-                    }
-                    const float alpha = constant_alpha(scene, shape).value_or(1);
-                    if (alpha > 0 && alpha < 1) area *= double(alpha);
-                    return pi * area * (light.two_sided ? 2 : 1) * double(light.scale) * mean(light.spectrum);
-                } else if constexpr (std::is_same_v<L, ImageInfiniteLight>) {
-                    infinite_lights_.push_back(static_cast<Index>(i));
-                    const Image& map = scene.environments[light.environment];
-                    auto& spectra = map_spectra_[light.environment];
-                    if (spectra.empty()) spectra = map_spectra(map);
-                    // The photometric normalisation is in `scale`; so is the mean of the white illuminant.
-                    Spectrum white(RgbIlluminantSpectrum(map_color_space(), {1, 1, 1}));
-                    const double scale = double(light.scale) * mean(white);
-                    if (light.portal) {
-                        environment_of_light_[i] = static_cast<Index>(portals_.size());
-                        const PortalSampler& portal = portals_.emplace_back(
-                            map, light.layout, light.world_from_light, *light.portal, settings.lookup);
-                        return scale * std::min(light.portal->area() * portal.irradiance(),
-                                                cross_section * portal.fluence());
-                    }
-                    return 4 * pi * cross_section * scale *
-                           environment_of(i, light.environment, light.layout).mean_radiance();
-                } else if constexpr (std::is_same_v<L, SkyLight>) {
-                    infinite_lights_.push_back(static_cast<Index>(i));
-                    return 4 * pi * cross_section * double(light.scale) *
-                           environment_of(i, light.environment, EnvironmentLayout::equirectangular)
-                               .mean_radiance();
-                } else if constexpr (std::is_same_v<L, SunLight>) {
-                    infinite_lights_.push_back(static_cast<Index>(i));
-                    const double above =
-                        std::asin(std::clamp(double(dot(light.disc.centre, light.up)), -1.0, 1.0));
-                    return cross_section * double(light.scale) * mean(light.spectrum) *
-                           light.disc.solid_angle() *
-                           part_above_horizon(above, std::sqrt(2 * double(light.disc.versine)));
-                } else {
-                    double flux = double(light.scale) * mean(light.spectrum);
-                    if constexpr (std::is_same_v<L, UniformInfiniteLight>) {
-                        infinite_lights_.push_back(static_cast<Index>(i));
-                        if (light.portal)
-                            return flux * std::min(pi * light.portal->area(), 2 * pi * cross_section);
-                        return 4 * pi * cross_section * flux;
-                    } else if constexpr (std::is_same_v<L, DistantLight>) {
-                        return cross_section * flux;
-                    } else if constexpr (std::is_same_v<L, SpotLight>) {
-                        return 2 * pi * flux *
-                               ((1 - double(light.cos_falloff_start)) +
-                                0.5 * (double(light.cos_falloff_start) - double(light.cos_total_width)));
-                    } else {
-                        return 4 * pi * flux;
-                    }
-                }
-            },
-            scene.lights[i]);
-        powers.push_back(std::isfinite(power) && power > 0 ? power : 0);
+            void operator()(const AreaLight& l) const { tables.add_shape(scene, light, l); }
+            void operator()(const ImageInfiniteLight& l) const { tables.add_map(scene, light, l, settings); }
+            void operator()(const SkyLight& l) const {
+                tables.add_environment(scene, light, l.environment, EnvironmentLayout::equirectangular,
+                                       settings);
+            }
+            // Sampled in closed form.
+            void operator()(const PointLight&) const {}
+            void operator()(const SpotLight&) const {}
+            void operator()(const DistantLight&) const {}
+            void operator()(const UniformInfiniteLight&) const {}
+            void operator()(const SunLight&) const {}
+        };
+        std::visit(Tabulate{*this, scene, settings, i}, scene.lights[i]);
     }
-    if (!powers.empty()) by_power_.emplace(std::span<const double>(powers));
+    add_triangles(scene);
+}
+
+void LightTables::add_shape(const Scene& scene, Index light, const AreaLight& area) {
+    const Shape& shape = scene.shapes[area.shape];
+    if (shape.mesh != no_index) {
+        // The number of its triangles, for the time being.
+        if (is_in_world(area.shape)) first_triangle_[light + 1] = scene.meshes[shape.mesh].triangle_count();
+        return;
+    }
+    const Quadric& quadric = scene.quadrics[shape.quadric];
+    // Through its holes the far side is seen, too, which the cone does not sample.
+    if (!is_cut_out(shape)) spheres_[light] = whole_sphere(quadric);
+    disks_[light] = whole_disk(quadric);
+}
+
+void LightTables::add_triangles(const Scene& scene) {
+    std::partial_sum(first_triangle_.begin(), first_triangle_.end(), first_triangle_.begin());
+    triangles_.resize(first_triangle_.back());
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        const std::size_t first = first_triangle_[i], count = first_triangle_[i + 1] - first;
+        if (count == 0) continue;
+        const Shape& shape = scene.shapes[std::get<AreaLight>(scene.lights[i]).shape];
+        parallel_for(static_cast<std::int64_t>(count), [&](std::int64_t k) {
+            triangles_[first + static_cast<std::size_t>(k)] =
+                light_triangle(scene.meshes[shape.mesh], shape, static_cast<std::size_t>(k));
+        });
+    }
+}
+
+void LightTables::add_map(const Scene& scene, Index light, const ImageInfiniteLight& infinite,
+                          const EnvironmentSettings& settings) {
+    const Image& map = scene.environments[infinite.environment];
+    auto& spectra = map_spectra_[infinite.environment];
+    if (spectra.empty()) spectra = map_spectra(map);
+    if (infinite.portal) {
+        environment_of_light_[light] = static_cast<Index>(portals_.size());
+        portals_.emplace_back(map, infinite.layout, infinite.world_from_light, *infinite.portal,
+                              settings.lookup);
+    } else {
+        add_environment(scene, light, infinite.environment, infinite.layout, settings);
+    }
+}
+
+void LightTables::add_environment(const Scene& scene, Index light, Index map, EnvironmentLayout layout,
+                                  const EnvironmentSettings& settings) {
+    const auto [known, is_new] =
+        known_environments_.try_emplace({map, layout}, static_cast<Index>(environments_.size()));
+    if (is_new) environments_.emplace_back(scene.environments[map], layout, settings);
+    environment_of_light_[light] = known->second;
 }
 
 } // namespace montelux

@@ -24,6 +24,8 @@ class Portal {
 
     const std::array<Point3f, 4>& corners() const { return corners_; }
     double area() const { return width_ * height_; }
+    // Of coordinates in [0, 1]^2 along the edges.
+    Vec3d point(Vec2d at) const { return corner_ + x_ * (width_ * at.x) + y_ * (height_ * at.y); }
     // Points to where the light comes from.
     Vec3d normal() const { return z_; }
 

@@ -164,6 +164,16 @@ Bounds3 world_bounds(const Quadric& quadric) {
         quadric);
 }
 
+std::optional<Vec3d> constant_normal(const Quadric& quadric) {
+    struct Normal {
+        std::optional<Vec3d> operator()(const Sphere&) const { return std::nullopt; }
+        std::optional<Vec3d> operator()(const Disk& d) const {
+            return normalize(d.world_from_object.normal(Vec3d{0, 0, 1}));
+        }
+    };
+    return std::visit(Normal{}, quadric);
+}
+
 double world_area(const Quadric& quadric) {
     return std::visit(
         [](const auto& s) {

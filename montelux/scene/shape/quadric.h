@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "montelux/scene/shape/bounds.h"
 #include "montelux/scene/shape/ray.h"
 #include "montelux/scene/shape/shape.h"
 
@@ -14,24 +15,9 @@ struct QuadricPoint {
     Vec3d dpdu, dpdv; // likewise; the first is never zero, though it should be at a pole or a disc's centre
 };
 
-struct Bounds3 {
-    Vec3d lower{1e300, 1e300, 1e300}, upper{-1e300, -1e300, -1e300};
-
-    void add(Vec3d p) {
-        lower = min(lower, p);
-        upper = max(upper, p);
-    }
-    bool empty() const { return !(lower.x <= upper.x); }
-    // i from 0 to 7.
-    Vec3d corner(int i) const {
-        return {(i & 1) != 0 ? upper.x : lower.x, (i & 2) != 0 ? upper.y : lower.y,
-                (i & 4) != 0 ? upper.z : lower.z};
-    }
-    Vec3d center() const { return 0.5 * (lower + upper); }
-    double radius() const { return empty() ? 0 : 0.5 * length(upper - lower); }
-};
-
 Bounds3 world_bounds(const Quadric& quadric);
+// The normal of flat quadrics, unit, in world space.
+std::optional<Vec3d> constant_normal(const Quadric& quadric);
 // World-space area, by quadrature where the transform scales axes differently.
 double world_area(const Quadric& quadric);
 

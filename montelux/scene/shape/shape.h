@@ -41,8 +41,8 @@ struct Shape {
     Index mesh = no_index;    // into Scene::meshes
     Index quadric = no_index; // into Scene::quadrics
     Index material = no_index;
-    Index first_light = no_index; // the area light of primitive 0; primitive i has first_light + i
-    FloatParameter alpha{1};      // cut-out: a point is there with this probability
+    Index light = no_index;  // its area light, into Scene::lights
+    FloatParameter alpha{1}; // cut-out: a point is there with this probability
     // The geometric normal of the primitive is turned around. Set when the file asks for it xor its transform
     // swaps handedness; where a mesh has vertex normals these decide the side instead (file's wish alone
     // applied).

@@ -35,12 +35,10 @@ SurfacePoint triangle_point(const TriangleMesh& mesh, const Shape& shape, const 
     if (shape.flip_normal) s.ng = -s.ng;
     s.ns = s.ng;
     if (!mesh.normals.empty()) {
-        Vec3f n = b0 * mesh.normals[v[0]] + hit.b1 * mesh.normals[v[1]] + hit.b2 * mesh.normals[v[2]];
-        float len2 = length_squared(n);
-        if (len2 > 0) {
-            s.ns = n / std::sqrt(len2);
-            if (dot(s.ns, s.ng) < 0) s.ng = -s.ng;
-        }
+        const Vec3f n = interpolated_normal(mesh, v, hit.b1, hit.b2);
+        const float len2 = length_squared(n);
+        if (len2 > 0) s.ns = n / std::sqrt(len2);
+        if (turns_normal(n, s.ng)) s.ng = -s.ng;
     }
     s.error = coordinate_error(s.ng, max(abs(p0), max(abs(p1), abs(p2))));
     if (!coordinates) return s;

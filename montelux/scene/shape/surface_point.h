@@ -22,6 +22,18 @@ struct SurfacePoint {
 // textures and anisotropic BSDFs need them.
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, bool coordinates);
 
+// Of the vertices `v` of a triangle with vertex normals, at the weights b1 and b2 of the second and third
+// one; not of unit length.
+inline Vec3f interpolated_normal(const TriangleMesh& mesh, const Index* v, float b1, float b2) {
+    const float b0 = 1 - b1 - b2;
+    return b0 * mesh.normals[v[0]] + b1 * mesh.normals[v[1]] + b2 * mesh.normals[v[2]];
+}
+// Whether the geometric normal of the triangle is -n and not n there. This decides which side of an emitter
+// shines, for hits and for light samples alike.
+inline bool turns_normal(Vec3f interpolated, Normal3f n) {
+    return length_squared(interpolated) > 0 && dot(interpolated, n) < 0;
+}
+
 // Bound of the rounding error of coordinates of that size, for offset_origin.
 inline float coordinate_error(float largest) { return 0x1p-20f * largest; }
 // The same along the normal n, where the coordinates differ in size: a floor at height 0 has next to none,

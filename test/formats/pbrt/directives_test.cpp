@@ -263,7 +263,7 @@ TEST(PbrtObjects, DefinitionsAndInstances) {
     expect_near(d.scene.instances[0].world_from_object.point(Vec3f(1, 1, 1)), {1, 1, 1});
     expect_near(d.scene.instances[1].world_from_object.point(Vec3f(1, 1, 1)), {3, 2, 2});
     EXPECT_TRUE(d.scene.lights.empty());
-    EXPECT_EQ(d.scene.shapes[0].first_light, no_index);
+    EXPECT_EQ(d.scene.shapes[0].light, no_index);
     EXPECT_EQ(told.messages().size(), 2u); // area light in an object, no light at all
 }
 

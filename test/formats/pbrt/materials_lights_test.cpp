@@ -7,6 +7,7 @@
 #include <string>
 
 #include "montelux/image/image_write.h"
+#include "montelux/scene/light/light_sampling.h"
 #include "montelux/spectrum/named_spectra.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
@@ -246,7 +247,7 @@ TEST(PbrtLights, UnitsOfEveryKind) {
                 1e-5);
 }
 
-TEST(PbrtLights, AreaLightsOfEachTriangle) {
+TEST(PbrtLights, AreaLightsOfShapes) {
     SceneDescription d = parse_world(R"(
         LightSource "point"
         AttributeBegin
@@ -256,17 +257,23 @@ TEST(PbrtLights, AreaLightsOfEachTriangle) {
         Shape "sphere" "float radius" 3
         AttributeEnd
         Shape "disk")");
-    ASSERT_EQ(d.scene.lights.size(), 4u);
-    EXPECT_EQ(d.scene.shapes[0].first_light, 1u);
-    EXPECT_EQ(d.scene.shapes[1].first_light, 3u);
-    EXPECT_EQ(d.scene.shapes[2].first_light, no_index);
-    double areas[] = {2, 8, 4 * pi * 9};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const auto& l = std::get<AreaLight>(d.scene.lights[1 + i]);
+    ASSERT_EQ(d.scene.lights.size(), 3u);
+    EXPECT_EQ(d.scene.shapes[0].light, 1u);
+    EXPECT_EQ(d.scene.shapes[1].light, 2u);
+    EXPECT_EQ(d.scene.shapes[2].light, no_index);
+    const SceneTables tables(d.scene);
+    const SampledWavelengths lambda = SampledWavelengths::sample_visible(0.3f);
+    const double areas[] = {2, 8, 4 * pi * 9};
+    for (Index i = 0; i < 3; ++i) {
+        const Index index = 1 + i / 2;
+        const auto& l = std::get<AreaLight>(d.scene.lights[index]);
         EXPECT_TRUE(l.two_sided);
         EXPECT_EQ(l.shape, i / 2);
-        EXPECT_EQ(l.primitive, i % 2);
-        EXPECT_NEAR(photometric(l), 12 / (2 * areas[i] * pi), 1e-5);
+        EXPECT_EQ(part_count({d.scene, tables, index}), index == 1 ? 2u : 1u);
+        const LightHit hit{.wi = {0, 0, -1}, .part = i % 2, .n = {0, 0, 1}};
+        const float radiance = incident_radiance({d.scene, tables, index}, {}, hit, lambda)[0];
+        EXPECT_NEAR(radiance / l.spectrum.sample(lambda)[0] * to_photometric(l.spectrum),
+                    12 / (2 * areas[i] * pi), 1e-5);
     }
 }
 

@@ -23,11 +23,11 @@ TEST(PbrtScenes, Counts) {
     // killeroo: 8,316 triangles, refined once and three times. The others by their PLY headers and index
     // lists.
     const Counts all[] = {
-        {"cornell-box", 36, 0, 8, 2, 0, 0, 400, 400, 65, 1},
+        {"cornell-box", 36, 0, 8, 1, 0, 0, 400, 400, 65, 1},
         {"veach-mis", 52, 3, 9, 3, 0, 0, 400, 225, 3, 1},
         {"killeroo-simple", 2 * 8316 * 4 + 4, 1, 5, 1, 0, 0, 400, 400, 5, 256},
         {"killeroo-gold", 8316 * 64 + 6, 1, 5, 2, 1, 0, 400, 300, 5, 512},
-        {"coffee", 235271, 0, 23, 6, 0, 0, 400, 500, 17, 64},
+        {"coffee", 235271, 0, 23, 3, 0, 0, 400, 500, 17, 64},
         {"material-testball", 67456, 0, 2, 1, 0, 1, 400, 225, 65, 8},
     };
     for (const Counts& c : all) {

@@ -114,10 +114,8 @@ WindowedPiecewise2D PortalSampler::tabulate(const Image& map, const Transform& w
     return WindowedPiecewise2D(light, n, n, Portal::hemisphere());
 }
 
-std::optional<PortalSampler::Sample> PortalSampler::sample(Point3f p, Vec2f u) const {
-    const auto window = portal_.window(p);
-    if (!window) return std::nullopt;
-    const auto s = table_.sample(Vec2d(u), *window);
+std::optional<PortalSampler::Sample> PortalSampler::sample(const Window2D& window, Vec2f u) const {
+    const auto s = table_.sample(Vec2d(u), window);
     if (!s) return std::nullopt;
     const Vec3d local = Portal::local_direction(s->p);
     if (!(local.z > 0)) return std::nullopt;
@@ -125,12 +123,22 @@ std::optional<PortalSampler::Sample> PortalSampler::sample(Point3f p, Vec2f u) c
                   static_cast<float>(s->pdf / Portal::solid_angle_density(local))};
 }
 
+std::optional<PortalSampler::Sample> PortalSampler::sample(Point3f p, Vec2f u) const {
+    const auto window = portal_.window(p);
+    if (!window) return std::nullopt;
+    return sample(*window, u);
+}
+
+float PortalSampler::pdf(const Window2D& window, Vec3f wi) const {
+    const auto at = portal_.angles(Vec3d(wi));
+    if (!at) return 0;
+    return static_cast<float>(table_.pdf(*at, window) /
+                              Portal::solid_angle_density(portal_.to_local(Vec3d(wi))));
+}
+
 float PortalSampler::pdf(Point3f p, Vec3f wi) const {
     const auto window = portal_.window(p);
-    const auto at = portal_.angles(Vec3d(wi));
-    if (!window || !at) return 0;
-    return static_cast<float>(table_.pdf(*at, *window) /
-                              Portal::solid_angle_density(portal_.to_local(Vec3d(wi))));
+    return window ? pdf(*window, wi) : 0;
 }
 
 std::string PortalSampler::description() const {

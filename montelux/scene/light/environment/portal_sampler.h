@@ -33,6 +33,10 @@ class PortalSampler {
     std::optional<Sample> sample(Point3f p, Vec2f u) const;
     // Over solid angle at `p`.
     float pdf(Point3f p, Vec3f wi) const;
+    // A direction to the light, whatever point of the portal it is seen through, and its density over solid
+    // angle.
+    std::optional<Sample> sample_direction(Vec2f u) const { return sample(Portal::hemisphere(), u); }
+    float direction_pdf(Vec3f wi) const { return pdf(Portal::hemisphere(), wi); }
 
     const EnvironmentGrid& grid() const { return grid_; }
     // Mean of R, G and B that falls on each unit of the portal's area, and that without the cosine.
@@ -42,6 +46,8 @@ class PortalSampler {
     std::string description() const;
 
   private:
+    std::optional<Sample> sample(const Window2D& window, Vec2f u) const;
+    float pdf(const Window2D& window, Vec3f wi) const;
     WindowedPiecewise2D tabulate(const Image& map, const Transform& world_from_light,
                                  EnvironmentLookup lookup);
 

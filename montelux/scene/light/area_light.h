@@ -1,0 +1,28 @@
+// A shape that emits: all triangles of a mesh, or a quadric.
+#pragma once
+
+#include "montelux/scene/light/light_model.h"
+#include "montelux/spectrum/spectrum.h"
+
+namespace montelux {
+
+// Radiance scale * spectrum, W/(m^2 sr nm), from the front (or both sides) of a shape; the front is where
+// SurfacePoint::ng points. The parts are the triangles of a mesh. A shape with holes shines with the share of
+// its points that is there (Shape::alpha); one of alpha 0 everywhere shines whole and is not seen, as in
+// pbrt-v4. Shapes inside object definitions do not shine.
+struct AreaLight {
+    static constexpr LightKind kind = LightKind::surface;
+    static constexpr std::string_view name = "area light";
+
+    Spectrum spectrum;
+    float scale = 1;
+    bool two_sided = false;
+    Index shape = no_index;
+    // If positive, each triangle of a mesh emits this flux times scale * spectrum, whatever its area.
+    float triangle_flux = 0;
+
+    MONTELUX_LIGHT_MODEL;
+};
+static_assert(LightModel<AreaLight>);
+
+} // namespace montelux

@@ -1,0 +1,22 @@
+// Parallel light from infinitely far away.
+#pragma once
+
+#include "montelux/scene/light/light_model.h"
+#include "montelux/spectrum/spectrum.h"
+
+namespace montelux {
+
+// Irradiance scale * spectrum, W/(m^2 nm), on a plane across the beam; light travels along -to_light.
+struct DistantLight {
+    static constexpr LightKind kind = LightKind::direction;
+    static constexpr std::string_view name = "distant light";
+
+    Spectrum spectrum;
+    float scale = 1;
+    Vec3f to_light{0, 0, 1};
+
+    MONTELUX_LIGHT_MODEL;
+};
+static_assert(LightModel<DistantLight>);
+
+} // namespace montelux

@@ -1,0 +1,121 @@
+// A light to the renderer: the concept LightModel, and the values that its functions exchange.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "montelux/scene/index.h"
+#include "montelux/scene/shape/bounds.h"
+#include "montelux/scene/shape/ray.h"
+#include "montelux/spectrum/sampled_spectrum.h"
+#include "montelux/spectrum/wavelengths.h"
+
+namespace montelux {
+
+// Scene, tables and index of a light (light_context.h).
+struct LightContext;
+
+// Where rays can meet a light. An exhaustive list: what a path does with a light follows from it.
+enum class LightKind : std::uint8_t {
+    surface,   // points of shapes
+    infinite,  // directions that leave the scene
+    position,  // a single point, which no ray meets
+    direction, // a single direction, which no ray meets
+};
+
+// A point that light is asked for at.
+struct ReferencePoint {
+    Point3f p{};
+    Normal3f n{};    // geometric normal
+    float error = 0; // as SurfacePoint::error
+};
+
+// A direction to a light, with the light that comes from there.
+struct LightSample {
+    SampledSpectrum radiance; // of kinds position and direction: irradiance on a plane facing the light
+    Vec3f wi;                 // unit, towards the light
+    float pdf = 0;            // per solid angle, given light and part; 1 of kinds position and direction
+    bool delta = false;       // kinds position and direction
+    bool invisible = false;   // BSDF sampling cannot find this light: delta, or a surface of alpha 0
+    Ray shadow;               // unoccluded if the light is visible
+};
+
+// Where a ray meets a light.
+struct LightHit {
+    Vec3f wi{};     // unit, towards the light
+    Index part = 0; // this and the next ones of surfaces alone
+    Point3f p{};    // on the surface
+    Normal3f n{};   // geometric normal, on the side that shines
+};
+
+// A ray that leaves a light. The flux of the light is the mean of radiance * cosine / (pdf_position *
+// pdf_direction), in W/nm for radiance in W/(m^2 sr nm); of infinite lights and kind direction, the flux
+// through the disk around the scene, or through the portal.
+struct EmissionSample {
+    SampledSpectrum radiance; // kind position: intensity; kind direction: irradiance across the beam
+    Ray ray;                  // unit direction; starts off the surface, or outside the scene
+    Normal3f n{};             // of the side of the surface that shines; zero for other kinds
+    float cosine = 1;         // between n and the ray; 1 for kinds without a surface
+    float pdf_position = 0;   // per area of the surface, or of a plane across the ray; 1 for kind position
+    float pdf_direction = 0;  // per solid angle; 1 for kind direction
+};
+// Densities of EmissionSample; 0 where a position or direction is a delta.
+struct EmissionPdf {
+    float position = 0, direction = 0;
+};
+
+// What light trees ask of a part of a light (Conty Estevez and Kulla 2018, "Importance Sampling of Many
+// Lights with Adaptive Tree Splitting", section 4.1): all light leaves the box within the angle theta_e of a
+// normal that lies within the angle theta_o of the axis.
+struct LightBounds {
+    Bounds3 box;
+    Vec3f axis{0, 0, 1}; // unit
+    float cos_theta_o = -1, cos_theta_e = -1;
+    bool two_sided = false; // the same about -axis
+};
+
+// A light consists of parts, which are chosen one by one: the triangles of an emissive mesh; others have one.
+// Functions take random numbers in [0, 1)^2, allocate nothing and do not throw, but for `powers`.
+template <typename L>
+concept LightModel = requires(const L& light, const LightContext& context, Index part,
+                              const ReferencePoint& from, const LightHit& hit, Vec3f w, Vec2f u,
+                              const SampledWavelengths& lambda, std::span<double> powers) {
+    { L::kind } -> std::convertible_to<LightKind>;
+    { L::name } -> std::convertible_to<std::string_view>; // for people
+    { light.part_count(context) } -> std::same_as<Index>;
+    // Incident light. Empty where the part cannot shine on the point.
+    { light.sample_li(context, part, from, u, lambda) } -> std::same_as<std::optional<LightSample>>;
+    // Density of sample_li, given hit.part, per solid angle at `from`; 0 of kinds position and direction.
+    { light.pdf_li(context, from, hit) } -> std::same_as<float>;
+    // That comes to `from` from the hit; black for kinds position and direction.
+    { light.radiance(context, from, hit, lambda) } -> std::same_as<SampledSpectrum>;
+    // Emission. Empty where nothing leaves, which counts as a value of 0. u is of the position, then of the
+    // direction.
+    { light.sample_le(context, part, u, u, lambda) } -> std::same_as<std::optional<EmissionSample>>;
+    // Densities of sample_le at hit.p (surfaces alone) along w, which points away from the light.
+    { light.pdf_le(context, hit, w) } -> std::same_as<EmissionPdf>;
+    // Estimate of the flux into the scene of each part, W/nm in the mean over the visible wavelengths.
+    { light.powers(context, powers) } -> std::same_as<void>;
+    // Empty for lights without a place.
+    { light.bounds(context, part) } -> std::same_as<std::optional<LightBounds>>;
+};
+
+// Declares the functions of LightModel in the struct of a light.
+#define MONTELUX_LIGHT_MODEL                                                                                 \
+    Index part_count(const LightContext& context) const;                                                     \
+    std::optional<LightSample> sample_li(const LightContext& context, Index part,                            \
+                                         const ReferencePoint& from, Vec2f u,                                \
+                                         const SampledWavelengths& lambda) const;                            \
+    float pdf_li(const LightContext& context, const ReferencePoint& from, const LightHit& hit) const;        \
+    SampledSpectrum radiance(const LightContext& context, const ReferencePoint& from, const LightHit& hit,   \
+                             const SampledWavelengths& lambda) const;                                        \
+    std::optional<EmissionSample> sample_le(const LightContext& context, Index part, Vec2f u_position,       \
+                                            Vec2f u_direction, const SampledWavelengths& lambda) const;      \
+    EmissionPdf pdf_le(const LightContext& context, const LightHit& hit, Vec3f w) const;                     \
+    void powers(const LightContext& context, std::span<double> parts) const;                                 \
+    std::optional<LightBounds> bounds(const LightContext& context, Index part) const
+
+} // namespace montelux

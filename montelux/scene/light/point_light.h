@@ -1,0 +1,26 @@
+// A light at a point that shines alike in all directions.
+#pragma once
+
+#include "montelux/scene/light/light_model.h"
+#include "montelux/spectrum/spectrum.h"
+
+namespace montelux {
+
+// Radiant intensity scale * spectrum, W/(sr nm).
+struct PointLight {
+    static constexpr LightKind kind = LightKind::position;
+    static constexpr std::string_view name = "point light";
+
+    Spectrum spectrum;
+    float scale = 1;
+    Point3f position;
+
+    MONTELUX_LIGHT_MODEL;
+};
+static_assert(LightModel<PointLight>);
+
+// The sample of a light at a point with that intensity towards the reference. Empty at the light itself.
+std::optional<LightSample> sample_position(Point3f position, SampledSpectrum intensity,
+                                           const ReferencePoint& from);
+
+} // namespace montelux

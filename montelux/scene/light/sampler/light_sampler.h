@@ -1,0 +1,49 @@
+// Choosing one light among many: the concept, its models, and the one that a scene uses.
+#pragma once
+
+#include <concepts>
+#include <variant>
+
+#include "montelux/scene/light/sampler/power_light_sampler.h"
+#include "montelux/scene/light/sampler/uniform_light_sampler.h"
+
+namespace montelux {
+
+// Chooses a part of a light for a point that asks for light. `probability` is that with which `sample`
+// chooses it for the same point; the probabilities of all parts add up to 1. `sample` must not be called
+// without parts. It takes a number in [0, 1), as finely resolved as SampleStream::refined where there are
+// many.
+template <typename S>
+concept LightSamplerModel = requires(const S& sampler, const ReferencePoint& from, double u, Index light,
+                                     Index part) {
+    { sampler.size() } -> std::same_as<Index>; // parts of all lights
+    { sampler.sample(from, u) } -> std::same_as<LightChoice>;
+    { sampler.probability(from, light, part) } -> std::same_as<float>;
+};
+static_assert(LightSamplerModel<PowerLightSampler>);
+static_assert(LightSamplerModel<UniformLightSampler>);
+
+class LightSampler {
+  public:
+    using Model = std::variant<UniformLightSampler, PowerLightSampler>;
+
+    LightSampler() = default;
+    explicit LightSampler(Model model) : model_(std::move(model)) {}
+
+    Index size() const {
+        return std::visit([](const auto& m) { return m.size(); }, model_);
+    }
+    bool empty() const { return size() == 0; }
+    LightChoice sample(const ReferencePoint& from, double u) const {
+        return std::visit([&](const auto& m) { return m.sample(from, u); }, model_);
+    }
+    float probability(const ReferencePoint& from, Index light, Index part) const {
+        return std::visit([&](const auto& m) { return m.probability(from, light, part); }, model_);
+    }
+
+  private:
+    Model model_;
+};
+static_assert(LightSamplerModel<LightSampler>);
+
+} // namespace montelux

@@ -1,0 +1,71 @@
+#include "montelux/scene/light/spot_light.h"
+
+#include "montelux/mc/math/frame.h"
+#include "montelux/mc/warp/cone.h"
+#include "montelux/scene/light/light_context.h"
+#include "montelux/scene/light/point_light.h"
+#include "montelux/scene/light/visible_mean.h"
+
+namespace montelux {
+
+float SpotLight::falloff(Vec3f w) const {
+    float c = dot(w, axis);
+    if (c >= cos_falloff_start) return 1;
+    if (c <= cos_total_width) return 0;
+    float t = (c - cos_total_width) / (cos_falloff_start - cos_total_width);
+    return t * t * (3 - 2 * t);
+}
+
+Index SpotLight::part_count(const LightContext&) const { return 1; }
+
+std::optional<LightSample> SpotLight::sample_li(const LightContext&, Index, const ReferencePoint& from, Vec2f,
+                                                const SampledWavelengths& lambda) const {
+    const float share = falloff(normalize(from.p - position));
+    if (share == 0) return std::nullopt;
+    return sample_position(position, spectrum.sample(lambda) * (scale * share), from);
+}
+
+float SpotLight::pdf_li(const LightContext&, const ReferencePoint&, const LightHit&) const { return 0; }
+
+SampledSpectrum SpotLight::radiance(const LightContext&, const ReferencePoint&, const LightHit&,
+                                    const SampledWavelengths&) const {
+    return {};
+}
+
+// Uniform over the cone: at least half of the flux is where the density would have to be highest.
+std::optional<EmissionSample> SpotLight::sample_le(const LightContext&, Index, Vec2f, Vec2f u,
+                                                   const SampledWavelengths& lambda) const {
+    const float versine = 1 - cos_total_width;
+    if (!(versine > 0)) return std::nullopt;
+    const Vec3f w =
+        normalize(Frame::from_normal(normalize(axis)).to_world(sample_uniform_cone_from_versine(u, versine)));
+    EmissionSample s;
+    s.radiance = spectrum.sample(lambda) * (scale * falloff(w));
+    s.ray = {position, w};
+    s.pdf_position = 1;
+    s.pdf_direction = uniform_cone_pdf_from_versine(versine);
+    return s;
+}
+
+EmissionPdf SpotLight::pdf_le(const LightContext&, const LightHit&, Vec3f w) const {
+    if (!(dot(w, axis) > cos_total_width)) return {};
+    return {0, uniform_cone_pdf_from_versine(1 - cos_total_width)};
+}
+
+void SpotLight::powers(const LightContext&, std::span<double> parts) const {
+    const double flux = double(scale) * visible_mean(spectrum);
+    parts[0] =
+        2 * pi * flux *
+        ((1 - double(cos_falloff_start)) + 0.5 * (double(cos_falloff_start) - double(cos_total_width)));
+}
+
+std::optional<LightBounds> SpotLight::bounds(const LightContext&, Index) const {
+    LightBounds b;
+    b.box.add(Vec3d(position));
+    b.axis = normalize(axis);
+    b.cos_theta_o = 1;
+    b.cos_theta_e = cos_total_width;
+    return b;
+}
+
+} // namespace montelux

@@ -1,0 +1,28 @@
+// A light at a point that shines into a cone.
+#pragma once
+
+#include "montelux/scene/light/light_model.h"
+#include "montelux/spectrum/spectrum.h"
+
+namespace montelux {
+
+// Intensity scale * spectrum, W/(sr nm), within cos_falloff_start of the axis; smoothstep to zero at
+// cos_total_width.
+struct SpotLight {
+    static constexpr LightKind kind = LightKind::position;
+    static constexpr std::string_view name = "spot light";
+
+    Spectrum spectrum;
+    float scale = 1;
+    Point3f position;
+    Vec3f axis{0, 0, 1};
+    float cos_falloff_start = 1, cos_total_width = 1;
+
+    // Share of the intensity along the unit vector w.
+    float falloff(Vec3f w) const;
+
+    MONTELUX_LIGHT_MODEL;
+};
+static_assert(LightModel<SpotLight>);
+
+} // namespace montelux

@@ -1,0 +1,26 @@
+// The disc of the sun.
+#pragma once
+
+#include "montelux/scene/light/light_model.h"
+#include "montelux/scene/light/sky/sun_disc.h"
+#include "montelux/spectrum/spectrum.h"
+
+namespace montelux {
+
+// Radiance scale * spectrum from all over the disc.
+struct SunLight {
+    static constexpr LightKind kind = LightKind::infinite;
+    static constexpr std::string_view name = "sun";
+
+    Spectrum spectrum;
+    float scale = 1;
+    SunDisc disc;
+    Vec3f up{0, 0, 1}; // the part of the disc that is not on this side is hidden
+
+    bool hides(Vec3f wi) const { return dot(wi, up) < 0; }
+
+    MONTELUX_LIGHT_MODEL;
+};
+static_assert(LightModel<SunLight>);
+
+} // namespace montelux
