@@ -267,6 +267,23 @@ bool has_test(const std::string& text, const std::string& prefix, const std::str
 
 } // namespace
 
+std::vector<std::string> missing_paths(const SourceFile& page, const std::filesystem::path& root) {
+    static const std::regex path("`([\\w.-]+(?:/[\\w.-]+)*/[\\w-]+\\.(?:h|cpp|py|sh|txt|cmake)|[\\w./-]+/)`");
+    std::vector<std::string> wrong;
+    for (std::size_t i = 0; i < page.lines.size(); ++i) {
+        const std::string& line = page.lines[i];
+        for (std::sregex_iterator q(line.begin(), line.end(), path), end; q != end; ++q) {
+            const std::string name = (*q)[1];
+            if (name.find("NAME") != name.npos || std::filesystem::exists(root / name) ||
+                std::filesystem::exists(root / "montelux" / name) ||
+                std::filesystem::exists(root / "montelux/mc/integrate" / name))
+                continue;
+            wrong.push_back(at(page, i + 1) + "there is no " + name);
+        }
+    }
+    return wrong;
+}
+
 std::vector<std::string> missing_names(const SourceFile& page, const std::vector<SourceFile>& files) {
     static const std::regex quoted("`([^`]+)`");
     static const std::regex file_name(R"([\w./]+\.(h|cpp))");

@@ -48,6 +48,9 @@ std::vector<std::string> headers_without_purpose(const std::vector<SourceFile>& 
 std::vector<std::string> misplaced_headers(const std::vector<SourceFile>& files, const std::string& folder);
 // Files of more than `limit` lines; tables of measured data (*_data.*, *_table_data.*) are left out.
 std::vector<std::string> long_files(const std::vector<SourceFile>& files, std::size_t limit);
+// Paths of files in `backticks` on a page, from the root or below montelux/, of which there is no file; a path
+// with NAME in it is a pattern.
+std::vector<std::string> missing_paths(const SourceFile& page, const std::filesystem::path& root);
 // What a page of documentation names in `backticks` but does not exist among these files: headers (`mc/a/b.h`
 // below montelux/), test files (`mc/a/b_test.cpp` below test/), and behind such a file, until the end of the
 // line, its tests: `Suite.Name`, `Suite.*`, `.Name` of the suite before, `Prefix/Suite.Name/...`.

@@ -52,10 +52,19 @@ TEST(House, FilesAreShort) {
     std::cout << "longer than they should be:\n" << joined(long_files(real_sources(), 400));
     EXPECT_EQ(joined(long_files(real_sources(), 600)), "");
 }
-TEST(House, TheMissionNamesTestsThatExist) {
-    SourceFile page{"docs/mission.md", {}};
+SourceFile real_page(const std::string& path) {
+    SourceFile page{path, {}};
     std::ifstream in(root / page.path);
     for (std::string line; std::getline(in, line);) page.lines.push_back(line);
+    return page;
+}
+TEST(House, TheArchitectureNamesFilesThatExist) {
+    const SourceFile page = real_page("docs/architecture.md");
+    EXPECT_GE(page.lines.size(), 80u);
+    EXPECT_EQ(joined(missing_paths(page, root)), "");
+}
+TEST(House, TheMissionNamesTestsThatExist) {
+    const SourceFile page = real_page("docs/mission.md");
     EXPECT_GE(page.lines.size(), 30u);
     EXPECT_EQ(joined(missing_names(page, real_sources())), "");
 }
@@ -129,6 +138,15 @@ TEST(HouseRules, LongFileIsFound) {
     EXPECT_EQ(long_files({file}, 10).size(), 1u);
     EXPECT_TRUE(long_files({file}, 11).empty());
     EXPECT_TRUE(long_files({{"montelux/spectrum/cie_data.cpp", file.lines}}, 10).empty());
+}
+TEST(HouseRules, MissingPathsAreFound) {
+    auto wrong = [&](const std::string& line) { return joined(missing_paths({"docs/a.md", {line}}, root)); };
+    EXPECT_EQ(
+        wrong("`montelux/mc/math/vec.h`, `mc/math/vec.h`, `test/house/`, `montelux/scene/NAME.h`, `a / b`"),
+        "");
+    EXPECT_EQ(wrong("`test/house/`, `montelux/mc/math/none.h`"),
+              "docs/a.md:1: there is no montelux/mc/math/none.h\n");
+    EXPECT_EQ(wrong("`test/attic/`"), "docs/a.md:1: there is no test/attic/\n");
 }
 TEST(HouseRules, MissingTestsAndFilesAreFound) {
     const SourceFile tests{"test/mc/math/vec_test.cpp",
