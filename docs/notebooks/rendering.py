@@ -109,7 +109,7 @@ plt.show()
 scene.film.resolution = 72, 54
 renders = {samples: scene.render(spp=samples, seed=samples) for samples in (8, 32, 128)}
 for samples, r in renders.items():
-    print(f"{samples:4} samples a pixel: relative error {100 * r.relative_error:.2f} %")
+    print(f"{samples:4} samples per pixel: relative error {100 * r.relative_error:.2f} %")
 
 # %% [markdown]
 # ## Is the error of a pixel honest?
@@ -163,7 +163,7 @@ plt.show()
 # %%
 aimed = scene.render(target_error=0.1)
 for name, r in (("to an error", aimed), ("equally", renders[128])):
-    print(f"{name:12} {r.spp:5.1f} samples a pixel, relative error {100 * r.relative_error:.1f} %, by {r.stopped_by}")
+    print(f"{name:12} {r.spp:5.1f} samples per pixel, relative error {100 * r.relative_error:.1f} %, by {r.stopped_by}")
 print(f"samples of a pixel: from {aimed.layers['samples'].min():.0f} to {aimed.layers['samples'].max():.0f}")
 
 # %%

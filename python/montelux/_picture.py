@@ -114,7 +114,7 @@ class Picture:
         known = math.isfinite(self.relative_error)
         error = f"relative error {100 * self.relative_error:.3g} %" if known else "error not known yet"
         return (
-            f"<{type(self).__name__}: {width} x {height} pixels, {self.spp:.7g} samples a pixel, "
+            f"<{type(self).__name__}: {width} x {height} pixels, {self.spp:.7g} samples per pixel, "
             f"{error}, {self.seconds:.3g} s>"
         )
 

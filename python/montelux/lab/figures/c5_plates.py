@@ -17,14 +17,14 @@ STRATEGIES = {
 
 
 def plates() -> Outcome:
-    """The plates by each strategy at 4 samples a pixel, and by both strategies at 64."""
+    """The plates by each strategy at 4 samples per pixel, and by both strategies at 64."""
     many = rendered("plates", 64, seed=9)
     pictures, numbers = [], []
     for name, (caption, heuristic) in STRATEGIES.items():
         r = rendered("plates", 4, 1, "mis" if heuristic else name, heuristic or "power")
-        pictures.append(Picture(f"{caption}, 4 samples a pixel", displayed(r.mean)))
+        pictures.append(Picture(f"{caption}, 4 samples per pixel", displayed(r.mean)))
         numbers.append(same_mean(f"{caption}: picture's mean against 64 samples", r, many))
-    pictures.append(Picture("both, power heuristic, 64 samples a pixel", displayed(many.mean)))
+    pictures.append(Picture("both, power heuristic, 64 samples per pixel", displayed(many.mean)))
     return Outcome(numbers, {}, pictures)
 
 
@@ -33,7 +33,7 @@ RED, GREEN = np.array([0.67, 0.11, 0.0]), np.array([0.0, 0.34, 0.17])  # linear
 
 
 def weights() -> Outcome:
-    """The two terms whose sum is the picture, 16 samples a pixel with one seed, as red and green."""
+    """The two terms whose sum is the picture, 16 samples per pixel with one seed, as red and green."""
     both, bsdf, light = (rendered("plates", 16, 2, name) for name in ("mis", "mis-bsdf", "mis-light"))
     sums = np.asarray(bsdf.mean, dtype=float) + np.asarray(light.mean, dtype=float)
     apart = np.abs(sums - np.asarray(both.mean, dtype=float)).max() / np.asarray(both.mean).max()

@@ -14,22 +14,22 @@ FIVE = {
 
 
 def five() -> Outcome:
-    """A room at five samples a pixel, by directions that know nothing and by samples that know the lamp and the material."""
+    """A room at five samples per pixel, by directions that know nothing and by samples that know the lamp and the material."""
     many = rendered("room", 64, seed=9)
     pictures, numbers = [], []
     for name, caption in FIVE.items():
         r = rendered("room", 5, 2, name)
-        pictures.append(Picture(f"{caption}, 5 samples a pixel", displayed(r.mean)))
+        pictures.append(Picture(f"{caption}, 5 samples per pixel", displayed(r.mean)))
         numbers.append(same_mean(f"{caption}: picture's mean against 64 samples", r, many))
     return Outcome(numbers, {}, pictures)
 
 
 def spheres() -> Outcome:
-    """Gold spheres at 64 samples a pixel: uniform directions, and directions of the GGX law."""
+    """Gold spheres at 64 samples per pixel: uniform directions, and directions of the GGX law."""
     pictures, renders = [], []
     for name, caption in (("uniform", "uniform directions"), ("bsdf", "directions of the GGX law")):
         renders.append(rendered("spheres", 64, 3, name))
-        pictures.append(Picture(f"{caption}, 64 samples a pixel", displayed(renders[-1].mean)))
+        pictures.append(Picture(f"{caption}, 64 samples per pixel", displayed(renders[-1].mean)))
     return Outcome([same_mean("means of the pictures, apart", *renders)], {}, pictures)
 
 
@@ -37,7 +37,7 @@ FIGURES = (
     Figure(
         "C9",
         "five",
-        "Five samples a pixel",
+        "Five samples per pixel",
         "The same room with the same number of samples: what differs is where they look. Uniform directions hardly ever"
         " find the lamp; points on the lamp light the walls smoothly and leave the glossy ball noisy; together they do"
         " both.",
