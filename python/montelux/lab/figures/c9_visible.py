@@ -14,7 +14,7 @@ FIVE = {
 
 
 def five() -> Outcome:
-    """A room at five samples per pixel, by directions that know nothing and by samples that know the lamp and the material."""
+    """A room at five samples per pixel, by uniform directions and by samples that know the lamp and the material."""
     many = rendered("room", 64, seed=9)
     pictures, numbers = [], []
     for name, caption in FIVE.items():
