@@ -53,7 +53,7 @@ void run(const MergeSettings& settings) {
     }
     print_clamped(merged.clamped_samples, merged.clamped_luminance, merged.mean_luminance);
     for (const std::string& output : settings.outputs)
-        std::printf("%s: %d x %d pixels of %zu slice%s, %.7g samples a pixel, relative error %s\n",
+        std::printf("%s: %d x %d pixels of %zu slice%s, %.7g samples per pixel, relative error %s\n",
                     output.c_str(), merged.image.width(), merged.image.height(), settings.inputs.size(),
                     settings.inputs.size() > 1 ? "s" : "", merged.mean_samples,
                     percent_text(merged.relative_error).c_str());

@@ -1,4 +1,4 @@
-// What is told of a picture beside its error: light that was taken away, and errors that are rough.
+// Notices about a picture besides its error: clamped light, and unreliable error bars.
 #pragma once
 
 #include "montelux/film/film_error.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "montelux/film/doubtful_pixels.h"
+#include "montelux/film/pixel_warnings.h"
 #include "montelux/formats/pbrt/load_pbrt.h"
 #include "montelux/image/image_read.h"
 #include "montelux/image/metrics.h"
@@ -42,7 +42,7 @@ struct Reference {
 };
 
 // Of scores z of pixels and channels, errors of both pictures taken together; and what to expect of them
-// where errors are estimated, from few units: Student's law with the degrees of freedom of Welch 1947, "The
+// where errors are estimated, from few replicates: Student's law with the degrees of freedom of Welch 1947, "The
 // Generalization of 'Student's' Problem when Several Different Population Variances are Involved".
 struct Coverage {
     double count = 0, one = 0, two = 0, expected_one = 0, expected_two = 0;
@@ -67,8 +67,8 @@ struct Figures {
     FilmError claimed;
     double true_error = 0;      // root mean square of the luminance's, over the reference's mean
     double reference_error = 0; // the same of the reference's own error, which true_error is free of
-    double doubtful_share = 0;  // of the pixels, in the layer `doubt`
-    Coverage all, sure;         // all pixels, and those that are not doubtful
+    double warned_share = 0;    // of the pixels, in the layer `warning`
+    Coverage all, sure;         // all pixels, and those that are not warned
     RenderReport report;
 };
 
@@ -95,12 +95,12 @@ Figures render(SceneDescription d, const Reference& reference, const std::string
     const MeasuredPicture a = measured_picture("picture", picture);
     const MeasuredPicture b = measured_picture("reference", reference.mean, "its errors", reference.error);
     CompensatedSum square, own, mean;
-    const std::vector<Doubt> doubts = doubtful_pixels(film);
-    std::size_t i = 0, doubtful = 0;
+    const std::vector<PixelWarning> warnings = pixel_warnings(film);
+    std::size_t i = 0, warned = 0;
     for (int y = 0; y < picture.height(); ++y)
         for (int x = 0; x < picture.width(); ++x, ++i) {
-            const bool doubt = speaks_against(doubts[i]);
-            const auto units = static_cast<double>(film.pixels()[i].units().count());
+            const bool warned_pixel = marks_unreliable_error(warnings[i]);
+            const auto replicates = static_cast<double>(film.pixels()[i].replicates().count());
             double luminance = 0, difference = 0, error = 0;
             for (int c = 0; c < 3; ++c) {
                 const double w = luminance_weight[c], distance = a.value(x, y, c) - b.value(x, y, c);
@@ -111,19 +111,19 @@ Figures render(SceneDescription d, const Reference& reference, const std::string
                              vb = std::pow(b.standard_error(x, y, c), 2);
                 if (!(va + vb > 0)) continue;
                 const double z = distance / std::sqrt(va + vb),
-                             freedom = welch(va, units - 1, vb, reference_freedom);
+                             freedom = welch(va, replicates - 1, vb, reference_freedom);
                 f.all.add(z, freedom);
-                if (!doubt) f.sure.add(z, freedom);
+                if (!warned_pixel) f.sure.add(z, freedom);
             }
             mean.add(luminance);
             square.add(difference * difference - error * error);
             own.add(error * error);
-            doubtful += doubt;
+            warned += warned_pixel;
         }
     const auto n = static_cast<double>(i);
     f.true_error = std::sqrt(std::max(0.0, square.value() / n)) / (mean.value() / n);
     f.reference_error = std::sqrt(own.value() / n) / (mean.value() / n);
-    f.doubtful_share = static_cast<double>(doubtful) / n;
+    f.warned_share = static_cast<double>(warned) / n;
     return f;
 }
 
@@ -136,7 +136,7 @@ void print_coverage(const Options& o, const std::string& name, const SceneDescri
                         "(%.1f) | %.2f | %.2f |\n",
                         name.c_str(), sampler.c_str(), adaptive ? "on" : "off", f.claimed.mean_samples,
                         f.all.percent(f.all.one), f.all.percent(f.all.expected_one), f.all.percent(f.all.two),
-                        f.all.percent(f.all.expected_two), 100 * f.doubtful_share, f.sure.percent(f.sure.one),
+                        f.all.percent(f.all.expected_two), 100 * f.warned_share, f.sure.percent(f.sure.one),
                         f.sure.percent(f.sure.expected_one), f.sure.percent(f.sure.two),
                         f.sure.percent(f.sure.expected_two), 100 * f.claimed.relative, 100 * f.true_error);
             std::fflush(stdout);
@@ -176,7 +176,7 @@ void print_spread(const Options& o, const std::string& name, SceneDescription d)
                     samples.add(film.error().mean_samples);
                     reached.add(report.stop == RenderStop::error);
                     for (std::size_t i = 0; i < pixels.size(); ++i) {
-                        const auto& u = film.pixels()[i].units();
+                        const auto& u = film.pixels()[i].replicates();
                         pixels[i].add(luminance_weight.x * u.mean(0) + luminance_weight.y * u.mean(1) +
                                       luminance_weight.z * u.mean(2));
                     }
@@ -204,8 +204,8 @@ void print_own_coverage(const Options& o, const std::string& name, SceneDescript
         for (bool adaptive : o.adaptive) {
             const std::size_t pixels = pixel_count(d.film.crop);
             struct Channel {
-                float mean, error, units;
-                bool doubt;
+                float mean, error, replicates;
+                bool warned_pixel;
             };
             std::vector<Channel> renders;
             std::vector<RunningMoments> truth(3 * pixels);
@@ -213,32 +213,32 @@ void print_own_coverage(const Options& o, const std::string& name, SceneDescript
                 d.sampler = sampler_settings(sampler, o.seed + static_cast<std::uint64_t>(k), o.spp);
                 Film film(d.film);
                 Renderer(d, {.adaptive = adaptive}).render(film);
-                const std::vector<Doubt> doubts = doubtful_pixels(film);
+                const std::vector<PixelWarning> warnings = pixel_warnings(film);
                 for (std::size_t i = 0; i < pixels; ++i)
                     for (std::size_t c = 0; c < 3; ++c) {
-                        const auto& u = film.pixels()[i].units();
+                        const auto& u = film.pixels()[i].replicates();
                         const double n = static_cast<double>(u.count());
                         renders.push_back({static_cast<float>(u.mean(c)),
                                            static_cast<float>(std::sqrt(u.variance(c) / n)),
-                                           static_cast<float>(n), speaks_against(doubts[i])});
+                                           static_cast<float>(n), marks_unreliable_error(warnings[i])});
                         truth[3 * i + c].add(u.mean(c));
                     }
             }
             const double others = o.renders - 1;
             Coverage all, sure;
-            std::size_t doubtful = 0;
+            std::size_t warned = 0;
             CompensatedSum claimed, spread;
             for (std::size_t j = 0; j < renders.size(); ++j) {
                 const Channel& r = renders[j];
                 const RunningMoments& t = truth[j % truth.size()];
                 const double mean = (t.mean() * o.renders - r.mean) / others;
                 const double va = static_cast<double>(r.error) * r.error, vb = t.variance() / others;
-                doubtful += r.doubt;
+                warned += r.warned_pixel;
                 if (va + vb > 0) {
                     const double z = (r.mean - mean) / std::sqrt(va + vb),
-                                 freedom = welch(va, r.units - 1, vb, others - 1);
+                                 freedom = welch(va, r.replicates - 1, vb, others - 1);
                     all.add(z, freedom);
-                    if (!r.doubt) sure.add(z, freedom);
+                    if (!r.warned_pixel) sure.add(z, freedom);
                 }
                 claimed.add(va);
                 spread.add(t.variance());
@@ -247,7 +247,7 @@ void print_own_coverage(const Options& o, const std::string& name, SceneDescript
                         "| %.3f |\n",
                         name.c_str(), sampler.c_str(), adaptive ? "on" : "off", o.spp, all.percent(all.one),
                         all.percent(all.expected_one), all.percent(all.two), all.percent(all.expected_two),
-                        100.0 * static_cast<double>(doubtful) / static_cast<double>(renders.size()),
+                        100.0 * static_cast<double>(warned) / static_cast<double>(renders.size()),
                         sure.percent(sure.one), sure.percent(sure.expected_one), sure.percent(sure.two),
                         sure.percent(sure.expected_two), claimed.value() / spread.value());
             std::fflush(stdout);
@@ -260,7 +260,7 @@ constexpr const char* usage =
     "  --scene A,B    some of the scenes\n"
     "  --sampler A,B  independent, sobol\n"
     "  --adaptive A,B on, off\n"
-    "  --spp N        samples a pixel, for the shares of pixels within their errors [256]\n"
+    "  --spp N        samples per pixel, for the shares of pixels within their errors [256]\n"
     "  --target X,Y   errors to be asked for, instead of these shares\n"
     "  --time S       seconds for each of these at most\n"
     "  --renders N    measure by the spread of N renders, not by the reference\n"
@@ -324,11 +324,11 @@ Options parse(const std::vector<std::string>& arguments) {
 int main(int argc, char** argv) try {
     const Options o = parse({argv + 1, argv + argc});
     if (o.targets.empty() && o.renders > 0)
-        std::printf("| scene | sampler | adaptive | spp | within 1 | within 2 | doubtful | others within "
+        std::printf("| scene | sampler | adaptive | spp | within 1 | within 2 | warned | others within "
                     "1 | within 2 | variance claimed / true |\n"
                     "|---|---|---|--:|--:|--:|--:|--:|--:|--:|\n");
     else if (o.targets.empty())
-        std::printf("| scene | sampler | adaptive | spp | within 1 | within 2 | doubtful | others within 1 | "
+        std::printf("| scene | sampler | adaptive | spp | within 1 | within 2 | warned | others within 1 | "
                     "within 2 | error claimed | true |\n|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|\n");
     else if (o.renders > 0)
         std::printf("| scene | asked | sampler | adaptive | spp | claimed | true | true / asked | reached |\n"

@@ -28,7 +28,7 @@
 #include "montelux/render/checkpoint.h"
 #include "montelux/render/render_header.h"
 #include "montelux/render/renderer.h"
-#include "montelux/render/rounds.h"
+#include "montelux/render/sample_allocation.h"
 #include "montelux/render/sample_order.h"
 
 namespace montelux::app {
@@ -121,12 +121,13 @@ void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed) {
 // A render that was stopped may be without errors, which nothing in its picture would explain.
 void print_missing_error(const FilmError& error, const SamplerSettings& sampler, const RenderTarget& target) {
     if (target.slice.count > 1) return; // the joined slices will have them
-    const std::uint64_t points = SampleOrder(sampler, target.slice).unit();
+    const std::uint64_t points = SampleOrder(sampler, target.slice).replicate_size();
     if (std::isfinite(error.relative) || error.mean_samples < 2 || points < 2) return;
-    std::fprintf(stderr,
-                 "montelux: warning: the errors are not known: they come from how sets of %llu samples a "
-                 "pixel differ, and no two were finished; with --time or --target-error the sets are short\n",
-                 static_cast<unsigned long long>(points));
+    std::fprintf(
+        stderr,
+        "montelux: warning: the errors are unknown: fewer than two replicates of %llu samples per pixel are "
+        "complete; --time and --target-error use short replicates\n",
+        static_cast<unsigned long long>(points));
 }
 
 // What ended the render, where that is not the number of samples.
@@ -202,7 +203,7 @@ RenderState initial_state(const RenderOptions& options, SceneDescription& descri
     description.sampler.replicate_points = restored.replicate_points;
     if (const double there = restored.state.film.error().mean_samples;
         !options.quiet && target.slice.count == 1 && there > description.sampler.spp)
-        std::fprintf(stderr, "montelux: %s has %.7g samples a pixel already, more than the %u asked for\n",
+        std::fprintf(stderr, "montelux: %s has %.7g samples per pixel already, more than the %u asked for\n",
                      options.checkpoint.c_str(), there, description.sampler.spp);
     return std::move(restored.state);
 }
@@ -276,7 +277,7 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
         print_clamped(static_cast<double>(report.clamped_samples), clamped_luminance(state.film),
                       error.mean_luminance);
         for (const std::string& output : files.written())
-            std::printf("%s: %d x %d pixels, %.7g samples a pixel, relative error %s, %s%s%s\n",
+            std::printf("%s: %d x %d pixels, %.7g samples per pixel, relative error %s, %s%s%s\n",
                         output.c_str(), image.width(), image.height(), error.mean_samples,
                         percent_text(error.relative).c_str(), duration_text(report.seconds).c_str(),
                         ending_text(report, target).c_str(), denoised.note.c_str());

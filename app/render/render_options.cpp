@@ -132,9 +132,9 @@ void declare(CLI::App& c, RenderOptions& o) {
          "the scene asks for, in this folder, as .exr")
         ->type_name("FILE")
         ->allow_extra_args(false); // the scene may stand behind it
-    add_whole_number(c, "--spp", o.spp, 1, 1u << 30, "Samples a pixel, in place of the scene's");
+    add_whole_number(c, "--spp", o.spp, 1, 1u << 30, "Samples per pixel, in place of the scene's");
     add_whole_number(c, "--max-spp", o.max_spp, 1, 1u << 30,
-                     "Samples a pixel at most, where an error or a time is asked for");
+                     "Samples per pixel at most, where an error or a time is asked for");
     add_parsed(c, "--target-error", "ERROR", o.target_error, parse_share,
                "Stop when the picture's relative error is this, for example 0.01 or 1%");
     add_parsed(c, "--target-quantile", "SHARE", o.target_quantile, parse_share,
@@ -188,7 +188,7 @@ void declare(CLI::App& c, RenderOptions& o) {
     c.add_flag("--denoise", o.denoise,
                "Also denoise the picture by Open Image Denoise ('montelux denoise --help'): .exr keeps the "
                "picture and gets the layers denoised.R, G, B; other formats show those");
-    c.add_flag("--stats", o.stats, "Print times, rays a second, memory");
+    c.add_flag("--stats", o.stats, "Print times, rays per second, memory");
     c.add_flag("--quiet", o.quiet, "Print nothing but errors");
     c.footer("Examples:\n"
              "  montelux render scene.pbrt --spp 64 -o out.exr -o out.png\n"
@@ -249,7 +249,7 @@ RenderTarget target_of(const RenderOptions& o) {
     target.slice = o.slice;
     if (target.slice.count > 1 && (target.error > 0 || target.adaptive))
         throw UsageError("--slice",
-                         "slices share a number of samples a pixel; give --spp, without --target-error "
+                         "slices share a number of samples per pixel; give --spp, without --target-error "
                          "and --adaptive");
     return target;
 }

@@ -123,7 +123,7 @@ montelux.compare(short, long)
 
 # %% [markdown]
 # The scores spread a little too widely, and lean to one side, for two reasons. First, the error of Sobol's points is made of
-# a few randomised replicates and is itself uncertain (`layers["units"]` counts them); independent samples have more. Second,
+# a few randomised replicates and is itself uncertain (`layers["replicates"]` counts them); independent samples have more. Second,
 # pixels that have not met their rare bright paths yet are too dark *and* too sure of it. Pooled over 3 x 3 pixels most of both goes
 # away. Once more with independent samples:
 
@@ -134,7 +134,7 @@ for name, a, b in (("sobol", short, long), ("independent", short_independent, lo
     z = montelux.compare(a, b).z
     shares = ", ".join(f"{100 * share:.1f}" for share in z.within)
     print(
-        f"{name:12} {a.layers['units'][0, 0]:.0f} units; within 1, 2, 3 errors: {shares} % (normal: 68.3, 95.4, 99.7 %)"
+        f"{name:12} {a.layers['replicates'][0, 0]:.0f} replicates; within 1, 2, 3 errors: {shares} % (normal: 68.3, 95.4, 99.7 %)"
     )
 scene.sampler.kind = "sobol"
 

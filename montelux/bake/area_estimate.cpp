@@ -176,20 +176,20 @@ TexelEstimate AreaEstimator::sample(std::uint64_t key, std::uint32_t round) cons
     return estimate;
 }
 
-TexelEstimate AreaEstimator::estimate(const CubeTexel& texel, int size, const TexelGoal& goal,
+TexelEstimate AreaEstimator::estimate(const CubeTexel& texel, int size, const TexelTarget& target,
                                       std::uint64_t key) {
     texel_ = texel;
     size_ = size;
     const auto most =
-        static_cast<std::size_t>(std::clamp<std::uint64_t>(goal.samples / samples_per_part, 1, most_parts));
+        static_cast<std::size_t>(std::clamp<std::uint64_t>(target.samples / samples_per_part, 1, most_parts));
     const auto most_along = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(most)));
-    if (goal.target_error <= 0) {
+    if (target.target_error <= 0) {
         cut_evenly(most_along);
         return sample(key, 0);
     }
     cut_evenly(std::min(first_cut(map_, size), most_along));
     double aim =
-        0.9 * goal.target_error; // of the error that ranges tell, so that the samples seldom tell more
+        0.9 * target.target_error; // of the error that ranges tell, so that the samples seldom tell more
     std::uint64_t samples = 0;
     bool room = true;
     for (std::uint32_t round = 0;; ++round) {
@@ -206,7 +206,7 @@ TexelEstimate AreaEstimator::estimate(const CubeTexel& texel, int size, const Te
                 known &= p.is_known;
             }
             const double error = std::sqrt(squares / (6 * samples_per_part));
-            const bool fine = error <= aim * std::max(mean, goal.floor);
+            const bool fine = error <= aim * std::max(mean, target.floor);
             if (fine && known) break;
             room = refine(fine ? widest : 0.5f * widest, most);
             // Nothing left to cut.
@@ -217,7 +217,7 @@ TexelEstimate AreaEstimator::estimate(const CubeTexel& texel, int size, const Te
         }
         TexelEstimate estimate = sample(key, round);
         samples += estimate.samples;
-        estimate.met = meets(estimate, goal) &&
+        estimate.met = meets(estimate, target) &&
                        std::all_of(parts_.begin(), parts_.end(), [](const Part& p) { return p.is_known; });
         if (estimate.met || !room || round == 30) {
             estimate.samples = samples;

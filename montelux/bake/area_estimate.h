@@ -26,7 +26,7 @@ class AreaEstimator {
     AreaEstimator(const EnvironmentMap& map, const CubeFrame& frame) : map_(map), frame_(frame) {}
 
     // A function of the arguments and nothing else.
-    TexelEstimate estimate(const CubeTexel& texel, int size, const TexelGoal& goal, std::uint64_t key);
+    TexelEstimate estimate(const CubeTexel& texel, int size, const TexelTarget& target, std::uint64_t key);
 
   private:
     // A place of the texel, in [0, 1]^2, and where it is on the map.

@@ -105,16 +105,16 @@ TexelEstimate CellEstimator::sample_cells(Vec3f direction, std::uint64_t key, st
     return estimate;
 }
 
-TexelEstimate CellEstimator::estimate(Vec3f direction, const TexelGoal& goal, std::uint64_t key) {
+TexelEstimate CellEstimator::estimate(Vec3f direction, const TexelTarget& target, std::uint64_t key) {
     const auto unit = static_cast<double>(map_.unit());
-    const auto most = static_cast<std::size_t>(goal.samples);
+    const auto most = static_cast<std::size_t>(target.samples);
     cut(direction, 0, std::min<std::size_t>(most, 2048));
     double guess = 0; // sum of channels
     for (const Cell& cell : cells_) guess += static_cast<double>(cell.sum) * static_cast<double>(cell.kernel);
-    const double floor = 3 * goal.floor / unit;
-    const double relative = goal.target_error > 0 ? goal.target_error : 0.01;
+    const double floor = 3 * target.floor / unit;
+    const double relative = target.target_error > 0 ? target.target_error : 0.01;
     double allowed = relative * std::max(guess, floor);
-    if (goal.target_error <= 0) {
+    if (target.target_error <= 0) {
         // The finest cut that stays below the number.
         bool too_many = false;
         for (int attempt = 0; attempt < 60; ++attempt) {
@@ -135,7 +135,7 @@ TexelEstimate CellEstimator::estimate(Vec3f direction, const TexelGoal& goal, st
         const bool exhausted = cut(direction, static_cast<float>(std::max(allowed, least_allowed)), most);
         TexelEstimate estimate = sample_cells(direction, key, round);
         samples += estimate.samples;
-        const double missed = missed_by(estimate, goal, relative);
+        const double missed = missed_by(estimate, target, relative);
         estimate.met = missed <= 1;
         if (estimate.met || exhausted || round == 30) {
             estimate.samples = samples;

@@ -23,7 +23,7 @@ class CellEstimator {
     CellEstimator(const EnvironmentMap& map, const RadialKernel& kernel) : map_(map), kernel_(kernel) {}
 
     // `direction`: unit vector in the map's frame; a function of the arguments and nothing else.
-    TexelEstimate estimate(Vec3f direction, const TexelGoal& goal, std::uint64_t key);
+    TexelEstimate estimate(Vec3f direction, const TexelTarget& target, std::uint64_t key);
 
   private:
     static constexpr std::uint32_t fewest_samples = 2, most_samples = 4; // of a cell

@@ -54,12 +54,12 @@ Vec3d LobeEstimator::sum_of_points(const Vec3f (&axes)[3], std::uint64_t key, st
     return sum;
 }
 
-TexelEstimate LobeEstimator::estimate(Vec3f direction, const TexelGoal& goal, std::uint64_t key) const {
+TexelEstimate LobeEstimator::estimate(Vec3f direction, const TexelTarget& target, std::uint64_t key) const {
     const Frame frame = Frame::from_normal(direction);
     const Vec3f axes[3] = {frame.s, frame.t, frame.n};
     const auto most = static_cast<std::uint32_t>(
-        std::clamp<std::uint64_t>(goal.samples / replicates, 1, std::uint64_t{1} << 31));
-    std::uint32_t points = goal.target_error > 0 ? std::min<std::uint32_t>(least_points, most) : most;
+        std::clamp<std::uint64_t>(target.samples / replicates, 1, std::uint64_t{1} << 31));
+    std::uint32_t points = target.target_error > 0 ? std::min<std::uint32_t>(least_points, most) : most;
     // Solid angle of a sample of the first round over that of a texel, but for 1 / D: the density is D / 4.
     // The factor 4 is one level more, as Krivanek and Colbert advise.
     const double texel = 4 * pi / (static_cast<double>(map_.grid().width()) * map_.grid().height());
@@ -78,8 +78,8 @@ TexelEstimate LobeEstimator::estimate(Vec3f direction, const TexelGoal& goal, st
         estimate.standard_error = {moments.standard_error(0), moments.standard_error(1),
                                    moments.standard_error(2)};
         estimate.samples = std::uint64_t{points} * replicates;
-        if (goal.target_error > 0) estimate.met = meets(estimate, goal);
-        if (goal.target_error <= 0 || estimate.met || points >= most) return estimate;
+        if (target.target_error > 0) estimate.met = meets(estimate, target);
+        if (target.target_error <= 0 || estimate.met || points >= most) return estimate;
         points = std::min(2 * points, most);
     }
 }

@@ -20,7 +20,7 @@ class LobeEstimator {
     // errors do not know of.
     LobeEstimator(const EnvironmentMap& map, double alpha, bool source_mips);
 
-    TexelEstimate estimate(Vec3f direction, const TexelGoal& goal, std::uint64_t key) const;
+    TexelEstimate estimate(Vec3f direction, const TexelTarget& target, std::uint64_t key) const;
 
   private:
     static constexpr int replicates = 32, least_points = 16;

@@ -61,11 +61,11 @@ Tally operator+(Tally a, const Tally& b) {
 // False when it was cancelled.
 bool bake_level(const EnvironmentMap& map, const LevelTask& task, const BakeSettings& settings,
                 BakedCubes& baked, Progress& progress) {
-    TexelGoal goal;
-    goal.target_error = settings.target_error.value_or(0);
-    goal.samples = settings.samples;
+    TexelTarget target;
+    target.target_error = settings.target_error.value_or(0);
+    target.samples = settings.samples;
     const Vec3d mean = map.mean_radiance();
-    goal.floor = settings.dark_floor * (mean.x + mean.y + mean.z) / 3;
+    target.floor = settings.dark_floor * (mean.x + mean.y + mean.z) / 3;
 
     CubeMap value = make_cube_map(task.size), error = make_cube_map(task.size);
     const double alpha = task.roughness * task.roughness;
@@ -92,12 +92,13 @@ bool bake_level(const EnvironmentMap& map, const LevelTask& task, const BakeSett
                 const std::uint64_t key = hash_key(settings.seed, task.stream, i);
                 TexelEstimate e;
                 if (task.roughness == 0) {
-                    e = areas.estimate(texel, task.size, goal, key);
+                    e = areas.estimate(texel, task.size, target, key);
                 } else {
                     const Vec3f direction(settings.frame.to_map(cube_texel_direction(texel, task.size)));
-                    e = by_lobe ? lobe.estimate(direction, goal, key) : cells.estimate(direction, goal, key);
+                    e = by_lobe ? lobe.estimate(direction, target, key)
+                                : cells.estimate(direction, target, key);
                 }
-                const double relative = missed_by(e, goal, 1);
+                const double relative = missed_by(e, target, 1);
                 if (std::isinf(relative)) e.standard_error = {relative, relative, relative};
                 set(value, texel, e.value);
                 set(error, texel, e.standard_error);

@@ -40,9 +40,9 @@ class Comparison {
   public:
     Comparison(const EnvironmentMap& map, const SplitSumSettings& settings) : map_(map) {
         const Vec3d mean = map.mean_radiance();
-        goal_.target_error = settings.target_error;
-        goal_.floor = (mean.x + mean.y + mean.z) / 3;
-        goal_.samples = settings.samples_max;
+        target_.target_error = settings.target_error;
+        target_.floor = (mean.x + mean.y + mean.z) / 3;
+        target_.samples = settings.samples_max;
     }
 
     Sides at(const Place& place, double roughness, double f0, std::uint64_t key) const {
@@ -54,7 +54,7 @@ class Comparison {
         const double n_dot_v = std::clamp(static_cast<double>(dot(place.normal, place.view)), 1e-3, 1.0);
         const SplitSumTerms terms = integrals_.ggx(n_dot_v, alpha);
         const double factor = f0 * terms.scale + terms.bias;
-        sides.split = cells.estimate(normalize(mirror), goal_, hash_key(key, 1));
+        sides.split = cells.estimate(normalize(mirror), target_, hash_key(key, 1));
         sides.split.value *= factor;
         sides.split.standard_error *= factor;
         return sides;
@@ -73,7 +73,7 @@ class Comparison {
         const bool lit = map_.energy_sum(whole) > 0;
         Moments3 moments;
         for (std::uint64_t stop = 256;; stop *= 2) {
-            while (lit && moments.count() < std::min(stop, goal_.samples)) {
+            while (lit && moments.count() < std::min(stop, target_.samples)) {
                 Vec3d sum;
                 const Vec2f u = stream.next_2d();
                 const Vec3f m = ggx.sample_visible(v, u);
@@ -90,8 +90,8 @@ class Comparison {
                                 moments.standard_error(2)};
             if (!lit) e.standard_error = {};
             e.samples = moments.count();
-            e.met = !lit || missed_by(e, goal_, goal_.target_error) <= 1;
-            if (e.met || stop >= goal_.samples) return e;
+            e.met = !lit || missed_by(e, target_, target_.target_error) <= 1;
+            if (e.met || stop >= target_.samples) return e;
         }
     }
 
@@ -109,7 +109,7 @@ class Comparison {
 
     const EnvironmentMap& map_;
     BrdfIntegrals integrals_;
-    TexelGoal goal_;
+    TexelTarget target_;
 };
 
 double mean_of(Vec3d v) { return (v.x + v.y + v.z) / 3; }

@@ -12,7 +12,7 @@
 namespace montelux {
 
 // When one texel is done.
-struct TexelGoal {
+struct TexelTarget {
     // Standard error of each channel beside the larger of the mean of the three channels and `floor`; 0:
     // none.
     double target_error = 0.01;
@@ -60,10 +60,10 @@ class StratifiedSum {
     Vec3d value_, variance_, inverse_;
 };
 
-// How many times the error that the goal allows; 0 where a black texel has none, and infinite where value or
+// How many times the error that the target allows; 0 where a black texel has none, and infinite where value or
 // error is not a finite number, of which nothing is known.
-inline double missed_by(const TexelEstimate& e, const TexelGoal& goal, double target_error) {
-    const double reference = std::max((e.value.x + e.value.y + e.value.z) / 3, goal.floor);
+inline double missed_by(const TexelEstimate& e, const TexelTarget& target, double target_error) {
+    const double reference = std::max((e.value.x + e.value.y + e.value.z) / 3, target.floor);
     double finite = 0; // or NaN
     for (int c = 0; c < 3; ++c) finite += 0 * (e.value[c] + e.standard_error[c]);
     if (finite != 0) return std::numeric_limits<double>::infinity();
@@ -71,8 +71,8 @@ inline double missed_by(const TexelEstimate& e, const TexelGoal& goal, double ta
     if (error == 0) return 0;
     return reference > 0 ? error / (target_error * reference) : 2;
 }
-inline bool meets(const TexelEstimate& e, const TexelGoal& goal) {
-    return missed_by(e, goal, goal.target_error) <= 1;
+inline bool meets(const TexelEstimate& e, const TexelTarget& target) {
+    return missed_by(e, target, target.target_error) <= 1;
 }
 
 } // namespace montelux

@@ -16,7 +16,7 @@ namespace {
 constexpr double task_seconds = 0.1, seconds_a_thread = 1e-4;
 // Tasks a thread that a rank has in hand: one in work, and one to go on with.
 constexpr int tasks_a_thread = 2;
-constexpr std::uint32_t first_step = 4; // samples a pixel, where the cost of a tile is not known
+constexpr std::uint32_t first_step = 4; // samples per pixel, where the cost of a tile is not known
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
@@ -79,16 +79,17 @@ std::uint32_t Coordinator::step_of(int tile) const {
 
 void Coordinator::begin_round() {
     const std::span<const Pixel> pixels = state_->film.pixels();
-    const std::vector<std::uint32_t>& goals = state_->goals;
-    uniform_goal_ = goals.front();
-    if (!std::ranges::all_of(goals, [&](std::uint32_t g) { return g == goals.front(); }))
-        uniform_goal_.reset();
+    const std::vector<std::uint32_t>& target_samples = state_->target_samples;
+    uniform_target_ = target_samples.front();
+    if (!std::ranges::all_of(target_samples, [&](std::uint32_t g) { return g == target_samples.front(); }))
+        uniform_target_.reset();
     std::vector<double> work(tiles_.size());
     for (std::size_t t = 0; t < tiles_.size(); ++t) {
         std::uint64_t remaining = 0;
         for_rows(state_->film.bounds(), bounds_[t], [&](std::size_t first, std::size_t count, std::size_t) {
             for (std::size_t i = first; i < first + count; ++i)
-                if (pixels[i].samples() < goals[i]) remaining += goals[i] - pixels[i].samples();
+                if (pixels[i].samples() < target_samples[i])
+                    remaining += target_samples[i] - pixels[i].samples();
         });
         work[t] = work_of(static_cast<int>(t), remaining);
         tiles_[t].goals_known = false;
@@ -153,7 +154,8 @@ void Coordinator::assign(int rank, int tile, std::vector<std::uint8_t>& message)
     // The holder keeps its copy when the film gets one.
     const bool holds = t.holder == rank;
     if (!t.goals_known || !holds)
-        a.goals = uniform_goal_ ? Assignment::Goals::uniform : Assignment::Goals::each;
+        a.target_samples =
+            uniform_target_ ? Assignment::TargetSamples::uniform : Assignment::TargetSamples::each;
     if (!holds) {
         bool fresh = true;
         for_rows(film, bounds, [&](std::size_t first, std::size_t count, std::size_t) {
@@ -167,11 +169,11 @@ void Coordinator::assign(int rank, int tile, std::vector<std::uint8_t>& message)
         for_rows(film, bounds, [&](std::size_t first, std::size_t count, std::size_t) {
             out.put_all(pixels.subspan(first, count));
         });
-    if (a.goals == Assignment::Goals::uniform) {
-        out.put(*uniform_goal_);
-    } else if (a.goals == Assignment::Goals::each) {
+    if (a.target_samples == Assignment::TargetSamples::uniform) {
+        out.put(*uniform_target_);
+    } else if (a.target_samples == Assignment::TargetSamples::each) {
         for_rows(film, bounds, [&](std::size_t first, std::size_t count, std::size_t) {
-            out.put_all(std::span<const std::uint32_t>(state_->goals).subspan(first, count));
+            out.put_all(std::span<const std::uint32_t>(state_->target_samples).subspan(first, count));
         });
     }
     t.goals_known = true;

@@ -104,7 +104,7 @@ class Coordinator final : public RoundExecutor {
     // Of the present round.
     RenderState* state_ = nullptr;
     const RoundWatch* watch_ = nullptr;
-    std::optional<std::uint32_t> uniform_goal_;
+    std::optional<std::uint32_t> uniform_target_;
     std::uint64_t samples_ = 0; // that were told of and are not in the report
     bool something_done_ = false;
     double known_seconds_ = 0; // sum over tiles whose cost is known, and their number

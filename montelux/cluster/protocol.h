@@ -22,16 +22,16 @@ enum Tag : int {
     wish,     // somebody asked this rank to end: cancel the render
 };
 
-// A tile is rendered on by at most `step` samples a pixel. What the worker does not have yet follows.
+// A tile is rendered on by at most `step` samples per pixel. What the worker does not have yet follows.
 struct Assignment {
-    enum class Goals : std::uint8_t {
+    enum class TargetSamples : std::uint8_t {
         known,
         uniform,
         each
     }; // uniform: one number follows; each: one a pixel
     enum class Pixels : std::uint8_t { known, fresh, follow }; // fresh: without a sample
     std::uint32_t tile = 0, step = 0;
-    Goals goals = Goals::known;
+    TargetSamples target_samples = TargetSamples::known;
     Pixels pixels = Pixels::known;
 };
 
@@ -39,7 +39,7 @@ struct Assignment {
 struct TaskReport {
     std::uint32_t tile = 0;
     std::uint64_t samples = 0;   // that were taken
-    std::uint64_t remaining = 0; // up to the goals of the round
+    std::uint64_t remaining = 0; // up to the target sample counts of the round
     double cpu_seconds = 0;
     // Sums over the tile's pixels: luminance, and its squared error; for the progress alone.
     double luminance = 0, squared_error = 0;

@@ -84,8 +84,8 @@ protocol::TaskReport TileWorker::perform(const Task& task) {
     renderer_.render({.bounds = bounds,
                       .pixels = tile.pixels.data(),
                       .stride = stride,
-                      .goals = tile.goals.data(),
-                      .goal_stride = stride,
+                      .target_samples = tile.target_samples.data(),
+                      .target_stride = stride,
                       .most = task.step},
                      tally, stop, stop);
     tile.tally.merge(tally);
@@ -94,8 +94,8 @@ protocol::TaskReport TileWorker::perform(const Task& task) {
         .tile = task.tile, .samples = tally.samples, .cpu_seconds = tally.cpu_seconds};
     for (std::size_t i = 0; i < tile.pixels.size(); ++i) {
         const Pixel& p = tile.pixels[i];
-        if (p.samples() < tile.goals[i]) report.remaining += tile.goals[i] - p.samples();
-        for (int c = 0; c < 3; ++c) report.luminance += luminance_weight[c] * p.units().mean(c);
+        if (p.samples() < tile.target_samples[i]) report.remaining += tile.target_samples[i] - p.samples();
+        for (int c = 0; c < 3; ++c) report.luminance += luminance_weight[c] * p.replicates().mean(c);
         report.squared_error += std::pow(luminance_error(p), 2);
     }
     return report;
@@ -142,13 +142,13 @@ void TileWorker::assign(const Message& message) {
             if (a.pixels == Assignment::Pixels::follow) in.get_all(std::span<Pixel>(tiles_[a.tile]->pixels));
         }
         Tile& tile = known(a.tile);
-        if (a.goals == Assignment::Goals::uniform) {
-            tile.goals.assign(count, in.get<std::uint32_t>());
-        } else if (a.goals == Assignment::Goals::each) {
-            tile.goals.resize(count);
-            in.get_all(std::span<std::uint32_t>(tile.goals));
+        if (a.target_samples == Assignment::TargetSamples::uniform) {
+            tile.target_samples.assign(count, in.get<std::uint32_t>());
+        } else if (a.target_samples == Assignment::TargetSamples::each) {
+            tile.target_samples.resize(count);
+            in.get_all(std::span<std::uint32_t>(tile.target_samples));
         }
-        if (tile.goals.size() != count) known(~std::uint32_t{0});
+        if (tile.target_samples.size() != count) known(~std::uint32_t{0});
         tasks.push_back({a.tile, a.step});
     }
     {

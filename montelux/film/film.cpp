@@ -2,18 +2,19 @@
 
 #include <cmath>
 
-#include "montelux/film/doubtful_pixels.h"
+#include "montelux/film/pixel_warnings.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
 
-double share_of_unit(const SkewMoments<3>& units, Vec3d unit) {
-    if (units.count() < 2) return 0;
+double share_of_replicate(const SkewMoments<3>& replicates, Vec3d replicate) {
+    if (replicates.count() < 2) return 0;
     double own = 0, all = 0;
     for (int c = 0; c < 3; ++c) {
-        const double deviation = unit[c] - units.mean(c), w = luminance_weight[c] * luminance_weight[c];
+        const double deviation = replicate[c] - replicates.mean(c),
+                     w = luminance_weight[c] * luminance_weight[c];
         own += w * deviation * deviation;
-        all += w * units.variance(c) * static_cast<double>(units.count() - 1);
+        all += w * replicates.variance(c) * static_cast<double>(replicates.count() - 1);
     }
     return all > 0 ? own / all : 0;
 }
@@ -32,10 +33,10 @@ Film::Film(const FilmSettings& settings) : settings_(settings) {
 }
 
 std::vector<std::string> film_layers(bool of_slice) {
-    std::vector<std::string> layers{"R",        "G",          "B",          "stderr.R",   "stderr.G",
-                                    "stderr.B", "skewness.R", "skewness.G", "skewness.B", "samples",
-                                    "units",    "outlier",    "doubt",      "albedo.R",   "albedo.G",
-                                    "albedo.B", "N.X",        "N.Y",        "N.Z",        "depth.Z"};
+    std::vector<std::string> layers{"R",          "G",          "B",          "stderr.R",   "stderr.G",
+                                    "stderr.B",   "skewness.R", "skewness.G", "skewness.B", "samples",
+                                    "replicates", "outlier",    "warning",    "albedo.R",   "albedo.G",
+                                    "albedo.B",   "N.X",        "N.Y",        "N.Z",        "depth.Z"};
     if (of_slice) layers.insert(layers.end(), {"brightest.R", "brightest.G", "brightest.B"});
     return layers;
 }
@@ -44,17 +45,17 @@ Image Film::develop(bool as_slice) const {
     Image image(bounds().width(), bounds().height(), film_layers(as_slice));
     auto out = image.f32().begin();
     auto put = [&](double v) { *out++ = static_cast<float>(v); };
-    const std::vector<Doubt> doubts = doubtful_pixels(*this);
+    const std::vector<PixelWarning> warnings = pixel_warnings(*this);
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
         const Pixel& p = pixels_[i];
-        const SkewMoments<3>& units = p.units();
-        for (int c = 0; c < 3; ++c) put(units.mean(c));
-        for (int c = 0; c < 3; ++c) put(units.standard_error(c));
-        for (int c = 0; c < 3; ++c) put(units.skewness_of_mean(c));
+        const SkewMoments<3>& replicates = p.replicates();
+        for (int c = 0; c < 3; ++c) put(replicates.mean(c));
+        for (int c = 0; c < 3; ++c) put(replicates.standard_error(c));
+        for (int c = 0; c < 3; ++c) put(replicates.skewness_of_mean(c));
         put(p.samples());
-        put(static_cast<double>(units.count()));
+        put(static_cast<double>(replicates.count()));
         put(p.largest_share());
-        put(static_cast<double>(doubts[i]));
+        put(static_cast<double>(warnings[i]));
         for (int c = 0; c < 3; ++c) put(double(p.albedo()[c]));
         for (int c = 0; c < 3; ++c) put(double(p.normal()[c]));
         put(double(p.depth()));

@@ -32,18 +32,18 @@ struct BadSample {
     auto operator<=>(const BadSample&) const = default;
 };
 
-// Share of the units' squared deviations from their mean that one of them alone makes up, by luminance
+// Share of the replicates' squared deviations from their mean that one of them alone makes up, by luminance
 // weights; 0 without any.
-double share_of_unit(const SkewMoments<3>& units, Vec3d unit);
+double share_of_replicate(const SkewMoments<3>& replicates, Vec3d replicate);
 
-// A pixel's value is the mean of independent, identically distributed units: single samples for the
-// independent sampler, means over one randomisation of a point set for the others. The standard error comes
-// from the spread of the units alone, so it holds for both.
+// A pixel's value is the mean of independent, identically distributed replicates: single samples for the
+// independent sampler, means over one randomisation of a point set for the others. The standard error is
+// computed from the spread of the replicates alone, so it holds for both.
 class Pixel {
   public:
     void add_sample(const FilmSample& s) {
-        unit_sum_ += Vec3d(s.radiance);
-        ++unit_samples_;
+        replicate_sum_ += Vec3d(s.radiance);
+        ++replicate_samples_;
         albedo_ += s.albedo;
         normal_ += s.normal;
         depth_ += s.depth;
@@ -52,53 +52,53 @@ class Pixel {
     // Luminance that the film's limit took away from a sample.
     void add_clamped(float luminance) { clamped_ += static_cast<double>(luminance); }
     void count_bad() {
-        ++unit_samples_;
+        ++replicate_samples_;
         ++samples_;
         ++bad_;
     }
-    // Closes the unit that the samples since the last call make up.
-    void end_unit() {
-        if (unit_samples_ == 0) return;
-        const Vec3d unit = unit_sum_ / static_cast<double>(unit_samples_);
-        units_.add(unit);
-        if (units_.count() == 1 || dot(unit, luminance_weight) > dot(brightest_, luminance_weight))
-            brightest_ = unit;
-        unit_sum_ = {};
-        unit_samples_ = 0;
+    // Closes the replicate that the samples since the last call make up.
+    void end_replicate() {
+        if (replicate_samples_ == 0) return;
+        const Vec3d replicate = replicate_sum_ / static_cast<double>(replicate_samples_);
+        replicates_.add(replicate);
+        if (replicates_.count() == 1 || dot(replicate, luminance_weight) > dot(brightest_, luminance_weight))
+            brightest_ = replicate;
+        replicate_sum_ = {};
+        replicate_samples_ = 0;
     }
 
-    // The same, but an open unit of fewer than half of `points` is left out where there are others: it would
+    // The same, but an open replicate of fewer than half of `points` is left out where there are others: it would
     // weigh as much as a whole one, and be as noisy as single samples. That depends on numbers alone, so
     // nothing is biased.
-    void end_last_unit(std::uint32_t points) {
-        if (2 * unit_samples_ < points && units_.count() >= 2) {
-            unit_sum_ = {};
-            unit_samples_ = 0;
+    void end_last_replicate(std::uint32_t points) {
+        if (2 * replicate_samples_ < points && replicates_.count() >= 2) {
+            replicate_sum_ = {};
+            replicate_samples_ = 0;
         }
-        end_unit();
+        end_replicate();
     }
 
-    // All units must have ended.
-    const SkewMoments<3>& units() const { return units_; }
-    // The unit of greatest luminance; 0 without any.
+    // All replicates must have ended.
+    const SkewMoments<3>& replicates() const { return replicates_; }
+    // The replicate of greatest luminance; 0 without any.
     Vec3d brightest() const { return brightest_; }
     std::uint32_t samples() const { return samples_; }
     std::uint32_t bad() const { return bad_; }
     // Mean luminance that clamping took away.
     double clamped() const { return samples_ > 0 ? clamped_ / samples_ : 0; }
-    double largest_share() const { return share_of_unit(units_, brightest_); }
+    double largest_share() const { return share_of_replicate(replicates_, brightest_); }
     Vec3f albedo() const { return samples_ > 0 ? albedo_ / static_cast<float>(samples_) : Vec3f{}; }
     Vec3f normal() const { return samples_ > 0 ? normal_ / static_cast<float>(samples_) : Vec3f{}; }
     float depth() const { return samples_ > 0 ? depth_ / static_cast<float>(samples_) : 0; }
 
   private:
-    SkewMoments<3> units_;
-    Vec3d unit_sum_;
+    SkewMoments<3> replicates_;
+    Vec3d replicate_sum_;
     double clamped_ = 0;
     Vec3d brightest_;
     Vec3f albedo_, normal_;
     float depth_ = 0;
-    std::uint32_t unit_samples_ = 0, samples_ = 0, bad_ = 0;
+    std::uint32_t replicate_samples_ = 0, samples_ = 0, bad_ = 0;
 };
 
 // The layers that Film::develop() makes, in order.
@@ -116,14 +116,14 @@ class Film {
     std::span<Pixel> pixels() { return pixels_; }
     std::span<const Pixel> pixels() const { return pixels_; }
 
-    // Ends the open unit of every pixel, of units that have so many points when they are whole.
-    void end_units(std::uint32_t points = 1) {
-        for (Pixel& p : pixels_) p.end_last_unit(points);
+    // Ends the open replicate of every pixel, of replicates that have so many points when they are whole.
+    void end_replicates(std::uint32_t points = 1) {
+        for (Pixel& p : pixels_) p.end_last_replicate(points);
     }
     FilmError error() const { return error_of(*this); }
-    // Layers R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples; units (of which the
-    // standard error is made); outlier (Pixel::largest_share); doubt (Doubt); albedo.R, G, B; N.X, Y, Z;
-    // depth.Z, of the cropped pixels. The standard error is infinite where fewer than two units have been
+    // Layers R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples; replicates (of which the
+    // standard error is made); outlier (Pixel::largest_share); warning (PixelWarning); albedo.R, G, B; N.X, Y, Z;
+    // depth.Z, of the cropped pixels. The standard error is infinite where fewer than two replicates have been
     // taken. A slice of a render has the layers brightest.R, G, B beside (Pixel::brightest), for the outlier
     // of the whole cannot be told from those of its slices.
     Image develop(bool as_slice = false) const;

@@ -17,7 +17,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 double mean_luminance(const Film& film) {
     CompensatedSum luminance;
     for (const Pixel& p : film.pixels())
-        for (int c = 0; c < 3; ++c) luminance.add(luminance_weight[c] * p.units().mean(c));
+        for (int c = 0; c < 3; ++c) luminance.add(luminance_weight[c] * p.replicates().mean(c));
     return luminance.value() / static_cast<double>(film.pixels().size());
 }
 // In place of a quotient by a luminance that may be zero.
@@ -30,7 +30,7 @@ double relative_to(double luminance, double error) {
 
 double luminance_error(const Pixel& pixel) {
     double error = 0;
-    for (int c = 0; c < 3; ++c) error += luminance_weight[c] * pixel.units().standard_error(c);
+    for (int c = 0; c < 3; ++c) error += luminance_weight[c] * pixel.replicates().standard_error(c);
     return error;
 }
 
@@ -42,7 +42,7 @@ FilmError error_of(const Film& film) {
         samples.add(p.samples());
     }
     const auto n = static_cast<double>(film.pixels().size());
-    // The compensation of a sum with infinite terms, the errors of single units, is not a number.
+    // The compensation of a sum with infinite terms, the errors of single replicates, is not a number.
     const double total = std::isnan(variance.value()) ? infinity : variance.value();
     FilmError e;
     e.mean_luminance = mean_luminance(film);
@@ -60,7 +60,7 @@ double error_freedom(const Film& film) {
         if (!std::isfinite(variance)) return 0;
         if (!(variance > 0)) continue;
         variances.add(variance);
-        squares.add(variance * variance / (static_cast<double>(p.units().count()) - 1));
+        squares.add(variance * variance / (static_cast<double>(p.replicates().count()) - 1));
     }
     return squares.value() > 0 ? variances.value() * variances.value() / squares.value() : infinity;
 }
@@ -86,22 +86,22 @@ OutlierReport outliers_of(const Film& film) {
     std::vector<double> errors;
     errors.reserve(film.pixels().size());
     for (const Pixel& p : film.pixels()) errors.push_back(luminance_error(p));
-    return outliers_of(errors, doubtful_pixels(film));
+    return outliers_of(errors, pixel_warnings(film));
 }
 
-OutlierReport outliers_of(std::span<const double> errors, std::span<const Doubt> doubts) {
+OutlierReport outliers_of(std::span<const double> errors, std::span<const PixelWarning> warnings) {
     OutlierReport report;
-    report.pixels = doubts.size();
+    report.pixels = warnings.size();
     std::vector<double> squares;
     double total = 0, heavy = 0;
-    for (std::size_t i = 0; i < doubts.size(); ++i) {
+    for (std::size_t i = 0; i < warnings.size(); ++i) {
         const double error = errors[i];
-        report.unknown += doubts[i] == Doubt::unknown;
+        report.unknown += warnings[i] == PixelWarning::unknown;
         if (!std::isfinite(error)) continue;
         squares.push_back(error * error);
         total += error * error;
-        report.outshone += doubts[i] == Doubt::neighbours;
-        if (doubts[i] != Doubt::bright_unit) continue;
+        report.outshone += warnings[i] == PixelWarning::neighbours;
+        if (warnings[i] != PixelWarning::bright_replicate) continue;
         ++report.heavy_tailed;
         heavy += error * error;
     }

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "montelux/film/doubtful_pixels.h"
+#include "montelux/film/pixel_warnings.h"
 #include "montelux/mc/math/vec.h"
 
 namespace montelux {
@@ -24,11 +24,11 @@ FilmError error_of(const Film& film);
 // Of linear sRGB (IEC 61966-2-1).
 inline constexpr Vec3d luminance_weight{0.2126, 0.7152, 0.0722};
 // Standard error of a pixel's luminance: channels rise and fall together, so that the bound by the triangle
-// inequality is close. Infinite below two units.
+// inequality is close. Infinite below two replicates.
 double luminance_error(const Pixel& pixel);
 
 // Degrees of freedom of the picture's error: those of the pixels that carry it, added up. Small where few
-// pixels do, of few units each. Infinite without any spread, 0 where a pixel has fewer than two units.
+// pixels do, of few replicates each. Infinite without any spread, 0 where a pixel has fewer than two replicates.
 double error_freedom(const Film& film);
 
 // The error, relative to the mean luminance of the picture, within which a share `quantile` of the pixels
@@ -43,14 +43,14 @@ struct OutlierReport {
     // Pixels with the greatest errors that carry half of the squared error, and their share of all.
     std::uint64_t pixels_of_half = 0;
     double share_of_half = 0;
-    std::uint64_t heavy_tailed = 0; // pixels (Doubt::bright_unit)
+    std::uint64_t heavy_tailed = 0; // pixels (PixelWarning::bright_replicate)
     double heavy_error_share = 0;   // of the squared error, that those pixels carry
-    std::uint64_t outshone = 0;     // pixels (Doubt::neighbours)
-    std::uint64_t unknown = 0;      // pixels (Doubt::unknown)
+    std::uint64_t outshone = 0;     // pixels (PixelWarning::neighbours)
+    std::uint64_t unknown = 0;      // pixels (PixelWarning::unknown)
     std::uint64_t pixels = 0;       // all
 };
 OutlierReport outliers_of(const Film& film);
 // Of the standard errors of the pixels' luminances.
-OutlierReport outliers_of(std::span<const double> errors, std::span<const Doubt> doubts);
+OutlierReport outliers_of(std::span<const double> errors, std::span<const PixelWarning> warnings);
 
 } // namespace montelux

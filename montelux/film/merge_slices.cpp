@@ -6,9 +6,9 @@
 #include <cmath>
 #include <optional>
 
-#include "montelux/film/doubtful_pixels.h"
 #include "montelux/film/film.h"
 #include "montelux/film/film_error.h"
+#include "montelux/film/pixel_warnings.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/stats/skew_moments.h"
 
@@ -42,7 +42,7 @@ SliceNumber slice_of(const Image& image, const std::string& name) {
 // The layers of one picture, by what they are.
 struct Layers {
     std::array<int, 3> mean{}, error{}, skewness{}, albedo{}, normal{};
-    int samples = 0, units = 0, outlier = 0, depth = 0;
+    int samples = 0, replicates = 0, outlier = 0, depth = 0;
     std::optional<std::array<int, 3>> brightest; // of slices alone
 
     Layers(const Image& image, const std::string& name) {
@@ -61,7 +61,7 @@ struct Layers {
             normal[c] = find(std::string("N.") + xyz[c]);
         }
         samples = find("samples");
-        units = find("units");
+        replicates = find("replicates");
         outlier = find("outlier");
         depth = find("depth.Z");
         if (image.find_channel("brightest.R"))
@@ -69,9 +69,9 @@ struct Layers {
     }
 };
 
-// Moments of the units of a pixel, from what its layers say of their mean.
+// Moments of the replicates of a pixel, from what its layers say of their mean.
 SkewMoments<3> moments_of(const Image& image, const Layers& at, int x, int y) {
-    const double n = std::clamp(std::round(static_cast<double>(image.value(x, y, at.units))), 0.0, 1e15);
+    const double n = std::clamp(std::round(static_cast<double>(image.value(x, y, at.replicates))), 0.0, 1e15);
     if (!(n >= 1)) return {};
     std::array<double, 3> mean{}, squares{}, cubes{};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -85,22 +85,23 @@ SkewMoments<3> moments_of(const Image& image, const Layers& at, int x, int y) {
     }
     return SkewMoments<3>(static_cast<std::uint64_t>(n), mean, squares, cubes);
 }
-// The brightest unit of a pixel. A picture without its layers is taken to have one that stands out by the
+// The brightest replicate of a pixel. A picture without its layers is taken to have one that stands out by the
 // same share of the variance in each channel, which is exact where nothing is joined with it.
-Vec3d brightest_of(const Image& image, const Layers& at, int x, int y, const SkewMoments<3>& units) {
-    Vec3d unit;
+Vec3d brightest_of(const Image& image, const Layers& at, int x, int y, const SkewMoments<3>& replicates) {
+    Vec3d replicate;
     for (std::size_t c = 0; c < 3; ++c) {
         const int channel = static_cast<int>(c);
         if (at.brightest) {
-            unit[channel] = static_cast<double>(image.value(x, y, (*at.brightest)[c]));
+            replicate[channel] = static_cast<double>(image.value(x, y, (*at.brightest)[c]));
             continue;
         }
-        unit[channel] = units.mean(channel);
-        if (units.count() >= 2)
-            unit[channel] += std::sqrt(static_cast<double>(image.value(x, y, at.outlier)) *
-                                       units.variance(channel) * static_cast<double>(units.count() - 1));
+        replicate[channel] = replicates.mean(channel);
+        if (replicates.count() >= 2)
+            replicate[channel] +=
+                std::sqrt(static_cast<double>(image.value(x, y, at.outlier)) * replicates.variance(channel) *
+                          static_cast<double>(replicates.count() - 1));
     }
-    return unit;
+    return replicate;
 }
 
 double number_attribute(const Image& image, const char* key) {
@@ -152,10 +153,11 @@ void SliceMerger::add(const Image& slice, const std::string& name) {
             PixelSums& sums = pixels_[i];
             const SkewMoments<3> part = moments_of(slice, at, x, y);
             const Vec3d brightest = brightest_of(slice, at, x, y, part);
-            if (part.count() > 0 && (sums.units.count() == 0 || dot(brightest, luminance_weight) >
-                                                                    dot(sums.brightest, luminance_weight)))
+            if (part.count() > 0 &&
+                (sums.replicates.count() == 0 ||
+                 dot(brightest, luminance_weight) > dot(sums.brightest, luminance_weight)))
                 sums.brightest = brightest;
-            sums.units.merge(part);
+            sums.replicates.merge(part);
             auto value = [&](int channel) { return static_cast<double>(slice.value(x, y, channel)); };
             const double n = value(at.samples);
             sums.samples += n;
@@ -184,36 +186,37 @@ MergedSlices SliceMerger::finish() const {
     for (int y = 0; y < height_; ++y)
         for (int x = 0; x < width_; ++x, ++i) {
             const PixelSums& sums = pixels_[i];
-            const SkewMoments<3>& units = sums.units;
+            const SkewMoments<3>& replicates = sums.replicates;
             auto put = [&](int channel, double v) { out.set(x, y, channel, static_cast<float>(v)); };
             const double inverse = sums.samples > 0 ? 1 / sums.samples : 0;
             double error = 0;
             for (int c = 0; c < 3; ++c) {
                 const auto k = static_cast<std::size_t>(c);
-                put(to.mean[k], units.mean(c));
-                put(to.error[k], units.standard_error(c));
-                put(to.skewness[k], units.skewness_of_mean(c));
+                put(to.mean[k], replicates.mean(c));
+                put(to.error[k], replicates.standard_error(c));
+                put(to.skewness[k], replicates.skewness_of_mean(c));
                 put(to.albedo[k], sums.albedo[k] * inverse);
                 put(to.normal[k], sums.normal[k] * inverse);
-                error += luminance_weight[c] * units.standard_error(c);
-                luminance += luminance_weight[c] * units.mean(c);
+                error += luminance_weight[c] * replicates.standard_error(c);
+                luminance += luminance_weight[c] * replicates.mean(c);
             }
             put(to.samples, sums.samples);
-            put(to.units, static_cast<double>(units.count()));
-            const double largest = std::min(1.0, share_of_unit(units, sums.brightest));
+            put(to.replicates, static_cast<double>(replicates.count()));
+            const double largest = std::min(1.0, share_of_replicate(replicates, sums.brightest));
             put(to.outlier, largest);
-            spreads.push_back(pixel_spread(error, sums.samples, static_cast<double>(units.count()), largest));
+            spreads.push_back(
+                pixel_spread(error, sums.samples, static_cast<double>(replicates.count()), largest));
             errors.push_back(error);
             put(to.depth, sums.depth * inverse);
             squares += error * error;
             all_samples += sums.samples;
         }
-    const std::vector<Doubt> doubts = doubtful_pixels(spreads, width_);
-    result.outliers = outliers_of(errors, doubts);
-    const int layer = *out.find_channel("doubt");
+    const std::vector<PixelWarning> warnings = pixel_warnings(spreads, width_);
+    result.outliers = outliers_of(errors, warnings);
+    const int layer = *out.find_channel("warning");
     i = 0;
     for (int y = 0; y < height_; ++y)
-        for (int x = 0; x < width_; ++x, ++i) out.set(x, y, layer, static_cast<float>(doubts[i]));
+        for (int x = 0; x < width_; ++x, ++i) out.set(x, y, layer, static_cast<float>(warnings[i]));
     const double pixels = static_cast<double>(out.pixel_count());
     result.mean_samples = all_samples / pixels;
     result.mean_luminance = luminance / pixels;

@@ -24,8 +24,8 @@ struct MergedSlices {
 };
 
 // Joins what Film::develop() wrote for slices k/n of one render, one picture after the other in any order, so
-// that no two need be in memory. All layers are those of all units together, as far as 32-bit layers tell
-// (relative differences of about 1e-7). The standard error is infinite where there are fewer than two units.
+// that no two need be in memory. All layers are those of all replicates together, as far as 32-bit layers tell
+// (relative differences of about 1e-7). The standard error is infinite where there are fewer than two replicates.
 // Pictures say what they are of in the attributes `renderHash` and `slice`.
 class SliceMerger {
   public:
@@ -37,8 +37,8 @@ class SliceMerger {
 
   private:
     struct PixelSums {
-        SkewMoments<3> units;
-        Vec3d brightest; // unit
+        SkewMoments<3> replicates;
+        Vec3d brightest; // replicate
         double samples = 0;
         double depth = 0; // these and the next are weighted by samples
         std::array<double, 3> albedo{}, normal{};

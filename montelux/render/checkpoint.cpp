@@ -84,20 +84,20 @@ void save_checkpoint(const std::filesystem::path& path, const SceneDescription& 
                      const SamplerSettings& sampler, const RenderTarget& target, const RenderState& state) {
     ByteWriter out;
     const std::span<const Pixel> pixels = state.film.pixels();
-    out.reserve(pixels.size_bytes() + state.goals.size() * sizeof(std::uint32_t) + 1024);
+    out.reserve(pixels.size_bytes() + state.target_samples.size() * sizeof(std::uint32_t) + 1024);
     out.put(version());
     for (const Fingerprint& f : fingerprints(description, target)) out.put(f.hash);
     out.put(points_per_replicate(sampler));
     out.put(state.report);
     out.put(static_cast<std::uint64_t>(pixels.size()));
-    out.put(static_cast<std::uint64_t>(state.goals.size()));
-    out.put_all(std::span<const std::uint32_t>(state.goals));
+    out.put(static_cast<std::uint64_t>(state.target_samples.size()));
+    out.put_all(std::span<const std::uint32_t>(state.target_samples));
     out.put_all(pixels);
     write_generation(path, kind, out.take());
 }
 
 std::uint64_t render_fingerprint(const SceneDescription& description, const SamplerSettings& sampler) {
-    std::uint64_t hash = hash_of(version(), SampleOrder(sampler, {}).unit());
+    std::uint64_t hash = hash_of(version(), SampleOrder(sampler, {}).replicate_size());
     for (const Fingerprint& f : fingerprints(description, {})) hash = hash_of(hash, f.hash);
     return hash;
 }
@@ -121,11 +121,11 @@ RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDes
                         std::string("the checkpoint is of another render: the ") + f.what + " differs");
     restored.replicate_points = in.get<std::uint32_t>();
     state.report = in.get<RenderReport>();
-    const auto count = in.get<std::uint64_t>(), goals = in.get<std::uint64_t>();
-    if (count != pixels.size() || (goals != 0 && goals != count))
+    const auto count = in.get<std::uint64_t>(), target_samples = in.get<std::uint64_t>();
+    if (count != pixels.size() || (target_samples != 0 && target_samples != count))
         throw Error(path.string(), "the checkpoint has another number of pixels");
-    state.goals.resize(goals);
-    in.get_all(std::span<std::uint32_t>(state.goals));
+    state.target_samples.resize(target_samples);
+    in.get_all(std::span<std::uint32_t>(state.target_samples));
     in.get_all(pixels);
     if (!in.at_end() || restored.replicate_points == 0)
         throw Error(path.string(), "the checkpoint is not what its header says");

@@ -13,7 +13,7 @@
 namespace montelux {
 
 // Writes a generation file (mc/io/generation_file.h): the state beside fingerprints of what its samples
-// depend on. How far the render shall go (samples a pixel, error, time) is not among these: a render may be
+// depend on. How far the render shall go (samples per pixel, error, time) is not among these: a render may be
 // continued further than was first asked for. `sampler` is the renderer's own. Throws Error.
 void save_checkpoint(const std::filesystem::path& path, const SceneDescription& description,
                      const SamplerSettings& sampler, const RenderTarget& target, const RenderState& state);
@@ -31,7 +31,7 @@ struct RestoredRender {
 RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDescription& description,
                                const RenderTarget& target);
 
-// Of all that the values of samples depend on, and of the units they form: equal for slices of one render.
+// Of all that the values of samples depend on, and of the replicates they form: equal for slices of one render.
 std::uint64_t render_fingerprint(const SceneDescription& description, const SamplerSettings& sampler);
 
 } // namespace montelux

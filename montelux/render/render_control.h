@@ -18,7 +18,7 @@ class RoundExecutor;
 struct RenderProgress {
     std::uint64_t samples_done = 0, samples_total = 0; // the total is a guess where a target is given
     double seconds = 0;
-    // After each round at whose end no unit is open.
+    // After each round at whose end no replicate is open.
     std::optional<FilmError> error;
 };
 

@@ -42,7 +42,8 @@ void add_render_header(Image& image, const std::string& scene_name, const SceneD
     if (target.quantile > 0) a["targetQuantile"] = static_cast<float>(target.quantile);
     a["adaptive"] = target.adaptive ? 1 : 0;
     a["slice"] = std::to_string(target.slice.index + 1) + "/" + std::to_string(target.slice.count);
-    a["pointsPerUnit"] = static_cast<int>(SampleOrder(renderer.sampler(), target.slice).unit());
+    a["pointsPerReplicate"] =
+        static_cast<int>(SampleOrder(renderer.sampler(), target.slice).replicate_size());
     if (clamped_luminance > 0) {
         a["clampedLuminance"] = static_cast<float>(clamped_luminance);
         a["clampedSamples"] = static_cast<int>(std::min<std::uint64_t>(report.clamped_samples, 1u << 30));

@@ -37,7 +37,7 @@ struct RenderReport {
 struct RenderState {
     Film film;
     // Samples that each pixel shall have at the end of the present round; empty before the first.
-    std::vector<std::uint32_t> goals;
+    std::vector<std::uint32_t> target_samples;
     RenderReport report; // so far
 
     explicit RenderState(const FilmSettings& settings) : film(settings) {}

@@ -9,7 +9,7 @@
 
 #include "montelux/mc/math/error.h"
 #include "montelux/render/round_executor.h"
-#include "montelux/render/rounds.h"
+#include "montelux/render/sample_allocation.h"
 #include "montelux/render/sample_context.h"
 #include "montelux/render/tile_renderer.h"
 
@@ -43,10 +43,10 @@ class RenderLoop {
                     std::ranges::all_of(state_.film.pixels(), [](const Pixel& p) { return p.samples() > 0; });
             if (const auto reason = stop_between_rounds()) return end(*reason);
             if (round_is_done()) {
-                std::vector<std::uint32_t> goals =
-                    next_goals(state_, renderer_.sampler(), renderer_.target());
-                if (goals.empty()) return end(RenderStop::samples);
-                state_.goals = std::move(goals);
+                std::vector<std::uint32_t> target_samples =
+                    next_target_samples(state_, renderer_.sampler(), renderer_.target());
+                if (target_samples.empty()) return end(RenderStop::samples);
+                state_.target_samples = std::move(target_samples);
                 join_rounds();
             }
             if (snapshot_is_due() && state_.report.samples > 0) take_snapshot();
@@ -82,29 +82,31 @@ class RenderLoop {
         const RenderTarget& target = renderer_.target();
         if (control_.executor == nullptr || !every_pixel_seen_) return;
         const std::uint64_t pilot = std::min(pilot_of(order_), order_.share());
-        if (target.adaptive && state_.goals.front() < pilot)
-            std::ranges::fill(state_.goals, static_cast<std::uint32_t>(pilot));
+        if (target.adaptive && state_.target_samples.front() < pilot)
+            std::ranges::fill(state_.target_samples, static_cast<std::uint32_t>(pilot));
         if (!target.adaptive && !(target.error > 0))
-            std::ranges::fill(state_.goals, static_cast<std::uint32_t>(order_.share()));
+            std::ranges::fill(state_.target_samples, static_cast<std::uint32_t>(order_.share()));
     }
     // Pixels of a restored film may lack samples of the present round, as those of a broken-off loop do.
     bool round_is_done() const {
-        if (state_.goals.empty()) return true;
+        if (state_.target_samples.empty()) return true;
         const std::span<const Pixel> pixels = state_.film.pixels();
         for (std::size_t i = 0; i < pixels.size(); ++i)
-            if (pixels[i].samples() < state_.goals[i]) return false;
+            if (pixels[i].samples() < state_.target_samples[i]) return false;
         return true;
     }
     bool all_taken() const {
-        return round_is_done() && next_goals(state_, renderer_.sampler(), renderer_.target()).empty();
+        return round_is_done() &&
+               next_target_samples(state_, renderer_.sampler(), renderer_.target()).empty();
     }
-    bool no_unit_is_open() const {
-        return std::ranges::all_of(state_.goals, [&](std::uint32_t goal) { return order_.closed(goal); });
+    bool no_replicate_is_open() const {
+        return std::ranges::all_of(state_.target_samples,
+                                   [&](std::uint32_t target) { return order_.closed(target); });
     }
 
     std::optional<RenderStop> stop_between_rounds() {
         if (out_of_time()) return RenderStop::time;
-        if (state_.goals.empty() || !round_is_done() || !no_unit_is_open()) return std::nullopt;
+        if (state_.target_samples.empty() || !round_is_done() || !no_replicate_is_open()) return std::nullopt;
         const FilmError error = state_.film.error();
         report_progress(error);
         if (target_is_reached(error)) return RenderStop::error;
@@ -115,15 +117,15 @@ class RenderLoop {
         if (!(target.error > 0)) return false;
         // Few samples may all be dark by chance; a quantile is satisfied by pixels that saw nothing yet.
         const std::uint64_t least = target.quantile > 0 ? 4 * least_samples : least_samples;
-        const std::uint64_t units = fewest_units();
-        if (units < least_units || units * order_.unit() < least) return false;
+        const std::uint64_t replicates = fewest_replicates();
+        if (replicates < least_replicates || replicates * order_.replicate_size() < least) return false;
         if (!(error.mean_luminance > 0)) return error.mean_samples >= samples_of_black;
         if (target.quantile > 0) return error_quantile(state_.film, target.quantile) <= target.error;
         return error.relative <= target.error && error_freedom(state_.film) >= least_freedom;
     }
-    std::uint64_t fewest_units() const {
-        std::uint64_t fewest = state_.film.pixels().front().units().count();
-        for (const Pixel& p : state_.film.pixels()) fewest = std::min(fewest, p.units().count());
+    std::uint64_t fewest_replicates() const {
+        std::uint64_t fewest = state_.film.pixels().front().replicates().count();
+        for (const Pixel& p : state_.film.pixels()) fewest = std::min(fewest, p.replicates().count());
         return fewest;
     }
 
@@ -157,8 +159,8 @@ class RenderLoop {
         tile_renderer_.render({.bounds = tile,
                                .pixels = &state_.film.pixels()[first],
                                .stride = stride,
-                               .goals = &state_.goals[first],
-                               .goal_stride = stride},
+                               .target_samples = &state_.target_samples[first],
+                               .target_stride = stride},
                               tally, stopped, [&] {
                                   pause_if_due();
                                   return stopped();
@@ -209,15 +211,15 @@ class RenderLoop {
                                         static_cast<double>(state_.report.rays.timed);
         if (control_.checkpoint) save_checkpoint();
         // Replicates that were cut short count where they are half of one: each is unbiased.
-        state_.film.end_units(order_.unit());
-        // Units that were open may have been all that was missing.
+        state_.film.end_replicates(order_.replicate_size());
+        // Replicates that were open may have been all that was missing.
         if (reason != RenderStop::cancelled && target_is_reached(state_.film.error()))
             state_.report.stop = RenderStop::error;
     }
 
     // Of each pixel, before its error is believed; and before a picture is taken for black.
-    static constexpr std::uint64_t least_samples = 16, least_units = 4, samples_of_black = 4096;
-    // Of the picture's error, as much as 16 units of one pixel have: who looks often and stops at the first
+    static constexpr std::uint64_t least_samples = 16, least_replicates = 4, samples_of_black = 4096;
+    // Of the picture's error, as much as 16 replicates of one pixel have: who looks often and stops at the first
     // error that is small enough stops at one that is small by chance, and the more so the less it is known.
     static constexpr double least_freedom = 15;
 
@@ -254,7 +256,7 @@ std::string_view to_string(RenderStop reason) {
 Renderer::Renderer(const SceneDescription& description, const RenderTarget& target)
     : description_(description), target_(target), sampler_(with_replicates(description.sampler, target)),
       camera_(description.scene.camera, description.film.width, description.film.height) {
-    if (description.sampler.spp < 1) throw Error("sampler", "at least 1 sample a pixel is needed");
+    if (description.sampler.spp < 1) throw Error("sampler", "at least 1 sample per pixel is needed");
     check_slice(description, target);
     auto begin = Clock::now();
     tables_ = std::make_unique<SceneTables>(description.scene, description.integrator.environments());

@@ -15,7 +15,7 @@ class TileRenderer;
 
 // The render loop as an executor sees it. Called from the thread that runs the round alone.
 struct RoundWatch {
-    // Shall the round end before its goals are reached? Something was done in it, or not yet: short intervals
+    // Shall the round end before its target sample counts are reached? Something was done in it, or not yet: short intervals
     // between checkpoints must not keep a render from going on.
     std::function<bool(bool something_done)> stop;
     // Samples taken in this round so far, beyond those in the state's report, and the error of the picture
@@ -29,7 +29,7 @@ class RoundExecutor {
   public:
     virtual ~RoundExecutor() = default;
 
-    // Takes the samples of pixels that have fewer than state.goals tells, in their order, until none lacks
+    // Takes the samples of pixels that have fewer than state.target_samples tells, in their order, until none lacks
     // any or the watch stops it. At the end film and report of the state hold everything that was taken.
     virtual void run(const TileRenderer& tiles, RenderState& state, const RoundWatch& watch) = 0;
     // Is the render to end as if it had been cancelled, because the executor cannot go on?

@@ -21,7 +21,7 @@ std::optional<BadSample::Kind> badness(Vec3f rgb, SampledSpectrum radiance) {
     return std::nullopt;
 }
 
-// Of the footprint of a pixel on a texture: what pbrt-v4 takes from 64 samples a pixel on. The pixel filter
+// Of the footprint of a pixel on a texture: what pbrt-v4 takes from 64 samples per pixel on. The pixel filter
 // does the rest; and a sample must not depend on how many others there are.
 constexpr float footprint_scale = 0.125f;
 

@@ -1,4 +1,4 @@
-// Which samples of a pixel are taken in which order, and which of them form one unit of its error estimate.
+// SampleOrder: the order in which the samples of a pixel are taken, and how they split into replicates.
 #pragma once
 
 #include <cstdint>
@@ -14,30 +14,30 @@ struct Slice {
     bool operator==(const Slice&) const = default;
 };
 
-// A unit is one sample of the independent sampler, and one replicate of the others; units are independent of
-// one another. Slice k of n takes the units k, k + n, k + 2n, ...
+// A replicate is a single sample of the independent sampler, and one randomisation of the point set of the
+// others; replicates are independent of one another. Slice k of n takes the replicates k, k + n, k + 2n, ...
 class SampleOrder {
   public:
     SampleOrder(const SamplerSettings& sampler, Slice slice)
-        : unit_(sampler.kind == SamplerKind::independent ? 1 : points_per_replicate(sampler)),
+        : replicate_size_(sampler.kind == SamplerKind::independent ? 1 : points_per_replicate(sampler)),
           samples_(sampler.spp), slice_(slice) {}
 
-    std::uint32_t unit() const { return unit_; }
+    std::uint32_t replicate_size() const { return replicate_size_; }
     // Sample index of the i-th sample that this slice takes.
     std::uint64_t index(std::uint64_t i) const {
-        return (i / unit_ * slice_.count + slice_.index) * unit_ + i % unit_;
+        return (i / replicate_size_ * slice_.count + slice_.index) * replicate_size_ + i % replicate_size_;
     }
-    // Is no unit open after the first n samples?
-    bool closed(std::uint64_t n) const { return n % unit_ == 0; }
+    // Is every replicate complete after the first n samples?
+    bool closed(std::uint64_t n) const { return n % replicate_size_ == 0; }
     // Samples that this slice takes of spp; the last replicate may be shorter than the others.
     std::uint64_t share() const {
-        const std::uint64_t whole = samples_ / unit_, rest = samples_ % unit_;
+        const std::uint64_t whole = samples_ / replicate_size_, rest = samples_ % replicate_size_;
         const std::uint64_t mine = whole / slice_.count + (slice_.index < whole % slice_.count);
-        return mine * unit_ + (whole % slice_.count == slice_.index ? rest : 0);
+        return mine * replicate_size_ + (whole % slice_.count == slice_.index ? rest : 0);
     }
 
   private:
-    std::uint32_t unit_;
+    std::uint32_t replicate_size_;
     std::uint64_t samples_;
     Slice slice_;
 };

@@ -1,4 +1,4 @@
-// The samples of the pixels of one tile, taken up to their goals.
+// The samples of the pixels of one tile, taken up to their target sample counts.
 #pragma once
 
 #include <algorithm>
@@ -33,13 +33,13 @@ struct TileTally {
     void add_to(RenderReport& report) const;
 };
 
-// Pixels in rows that are `stride` elements apart, and their goals in rows that are `goal_stride` apart.
+// Pixels in rows that are `stride` elements apart, and their target sample counts in rows that are `target_stride` apart.
 struct TileView {
     PixelBounds bounds;
     Pixel* pixels = nullptr;
     std::size_t stride = 0;
-    const std::uint32_t* goals = nullptr;
-    std::size_t goal_stride = 0;
+    const std::uint32_t* target_samples = nullptr;
+    std::size_t target_stride = 0;
     // A pixel gets no more than so many samples beyond those that it has.
     std::uint32_t most = ~std::uint32_t{0};
 };
@@ -53,10 +53,10 @@ class TileRenderer {
     const SampleOrder& order() const { return order_; }
 
     // Adds what it did to `tally`. Ends early once stop() says so, which is asked before each pixel, and
-    // look(), which is asked after so many samples: pixels are left between two samples, and what they have
+    // check(), which is asked after so many samples: pixels are left between two samples, and what they have
     // is whole at any number of them.
-    template <typename Stop, typename Look>
-    void render(const TileView& tile, TileTally& tally, const Stop& stop, const Look& look) const {
+    template <typename Stop, typename Check>
+    void render(const TileView& tile, TileTally& tally, const Stop& stop, const Check& check) const {
         const double begin = thread_cpu_seconds();
         RayTracer tracer(accelerator_);
         for (int y = tile.bounds.y0; y < tile.bounds.y1; ++y)
@@ -65,16 +65,17 @@ class TileRenderer {
                 const auto row = static_cast<std::size_t>(y - tile.bounds.y0);
                 const auto column = static_cast<std::size_t>(x - tile.bounds.x0);
                 Pixel& pixel = tile.pixels[row * tile.stride + column];
-                const std::uint64_t goal = std::min<std::uint64_t>(
-                    tile.goals[row * tile.goal_stride + column], std::uint64_t{pixel.samples()} + tile.most);
-                render_pixel(tracer, pixel, x, y, goal, tally, look);
+                const std::uint64_t target =
+                    std::min<std::uint64_t>(tile.target_samples[row * tile.target_stride + column],
+                                            std::uint64_t{pixel.samples()} + tile.most);
+                render_pixel(tracer, pixel, x, y, target, tally, check);
             }
         tally.rays.merge(tracer.statistics);
         tally.cpu_seconds += thread_cpu_seconds() - begin;
     }
 
   private:
-    static constexpr std::uint64_t samples_between_looks = 1024;
+    static constexpr std::uint64_t samples_between_checks = 1024;
 
     // CPU time of the calling thread: what other programs take away does not count.
     static double thread_cpu_seconds() {
@@ -83,11 +84,11 @@ class TileRenderer {
         return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
     }
 
-    template <typename Look>
-    void render_pixel(RayTracer& tracer, Pixel& pixel, int x, int y, std::uint64_t goal, TileTally& tally,
-                      const Look& look) const {
-        for (std::uint64_t i = pixel.samples(); i < goal; ++i) {
-            if (tally.samples % samples_between_looks == samples_between_looks - 1 && look()) return;
+    template <typename Check>
+    void render_pixel(RayTracer& tracer, Pixel& pixel, int x, int y, std::uint64_t target, TileTally& tally,
+                      const Check& check) const {
+        for (std::uint64_t i = pixel.samples(); i < target; ++i) {
+            if (tally.samples % samples_between_checks == samples_between_checks - 1 && check()) return;
             const std::uint64_t index = order_.index(i);
             const SampleContext::Result r = context_.take(tracer, x, y, index);
             if (r.bad) {
@@ -100,7 +101,7 @@ class TileRenderer {
                 ++tally.clamped_samples;
                 pixel.add_clamped(r.clamped);
             }
-            if (order_.closed(i + 1)) pixel.end_unit();
+            if (order_.closed(i + 1)) pixel.end_replicate();
             ++tally.samples;
         }
     }

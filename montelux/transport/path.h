@@ -17,7 +17,7 @@ struct PathScene {
     const SceneTables& tables;
     const Camera& camera;
     IntegratorSettings settings;
-    // Size of a texture's footprint in pixels: many samples a pixel need little filtering each.
+    // Size of a texture's footprint in pixels: many samples per pixel need little filtering each.
     float footprint_scale = 1;
 };
 

@@ -86,7 +86,7 @@ class Comparison:
 
 def _picture(source: Any, name: str) -> tuple[_core.Picture, str]:
     if isinstance(source, Picture):
-        return _core.picture_of_look(source._look()), name
+        return _core.picture_of_snapshot(source._snapshot()), name
     if isinstance(source, (str, os.PathLike)):
         return _core.picture_of_file(os.fspath(source)), os.fspath(source)
     if isinstance(source, tuple):

@@ -42,11 +42,11 @@ class Picture:
     """A render as it was at some moment. Arrays are float32, linear sRGB, row 0 at the top; they share the
     memory of the picture and cannot be written to."""
 
-    def __init__(self, look: _core.RenderLook) -> None:
-        self._held: _core.RenderLook | None = look
+    def __init__(self, snapshot: _core.RenderSnapshot) -> None:
+        self._held: _core.RenderSnapshot | None = snapshot
         self._made: Mapping[str, Pixels] | None = None
 
-    def _look(self) -> _core.RenderLook:
+    def _snapshot(self) -> _core.RenderSnapshot:
         assert self._held is not None
         return self._held
 
@@ -63,45 +63,45 @@ class Picture:
     @property
     def layers(self) -> Mapping[str, Pixels]:
         """All layers by name: 'mean', 'standard_error', 'skewness' (of the mean), 'albedo' and 'normal' of the
-        first surface, of shape (h, w, 3); 'samples', 'units' (independent parts that the error is made of),
-        'outlier', 'doubt' (0 where the error can be relied on; docs/images.md) and 'depth', of shape (h, w). Where it
+        first surface, of shape (h, w, 3); 'samples', 'replicates' (independent parts that the error is made of),
+        'outlier', 'warning' (0 where the error can be relied on; docs/images.md) and 'depth', of shape (h, w). Where it
         was asked for also 'denoised', which `standard_error` does not hold for."""
         if self._made is None:
-            self._made = MappingProxyType(self._look().layers)
+            self._made = MappingProxyType(self._snapshot().layers)
         return self._made
 
     @property
     def relative_error(self) -> float:
         """Root mean square of the standard errors of luminance, over the mean luminance of the picture."""
-        return self._look().relative_error
+        return self._snapshot().relative_error
 
     @property
     def spp(self) -> float:
         """Samples per pixel, on average."""
-        return self._look().mean_samples
+        return self._snapshot().mean_samples
 
     @property
     def seconds(self) -> float:
         """Wall time of the rendering."""
-        return self._look().seconds
+        return self._snapshot().seconds
 
     @property
     def bad_samples(self) -> int:
         """Samples that were NaN, infinite or negative: left out as zeros."""
-        return self._look().bad_samples
+        return self._snapshot().bad_samples
 
     def to_srgb(self, exposure: float | None = None) -> npt.NDArray[np.uint8]:
         """8-bit sRGB for a screen, shape (height, width, 3): light times 2**exposure, and 1 is white; of the
         denoised picture, where there is one.
         None: the exposure that suits the picture."""
-        look = self._look()
-        data, height, width, channels = look.screen(look.automatic_exposure() if exposure is None else exposure)
+        snapshot = self._snapshot()
+        data, height, width, channels = snapshot.screen(snapshot.automatic_exposure() if exposure is None else exposure)
         return np.frombuffer(data, np.uint8).reshape(height, width, channels)
 
     def save(self, path: str | os.PathLike[str], exposure: float = 0.0) -> None:
         """Writes .exr (all layers), .png, .hdr or .pfm (the denoised picture, where there is one), whole or not at
         all; exposure (stops) is for .png. Header entries of .exr are those that `montelux render` writes."""
-        self._look().save(os.fspath(path), exposure)
+        self._snapshot().save(os.fspath(path), exposure)
 
     def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
         return np.array(self.mean, dtype=dtype)

@@ -67,7 +67,7 @@ class Render(Picture):
     @property
     def stopped_by(self) -> str:
         """'samples' (all were taken), 'error' (the target was reached), 'time' or 'cancelled'."""
-        return self._look().stop
+        return self._snapshot().stop
 
     def stop(self) -> Render:
         """Ends it now, with what there is."""
@@ -76,27 +76,27 @@ class Render(Picture):
 
     def wait(self) -> Render:
         """Waits for the end."""
-        self._look()
+        self._snapshot()
         return self
 
     def __iter__(self) -> Iterator[Picture]:
-        next_look = time.monotonic() + self._every
-        while not self._wait_until(next_look):
+        next_snapshot = time.monotonic() + self._every
+        while not self._wait_until(next_snapshot):
             try:
-                look = self._job.look(0.1)
+                snapshot = self._job.snapshot(0.1)
             except KeyboardInterrupt:
                 self._job.cancel()
                 break
-            if look is None:
+            if snapshot is None:
                 continue  # the render ends, or a sample takes long
-            yield Picture(look)
-            next_look = time.monotonic() + self._every
+            yield Picture(snapshot)
+            next_snapshot = time.monotonic() + self._every
         yield self.wait()
 
     def _wait_until(self, moment: float) -> bool:
         """Waits for the end, but until a moment at most; whether it has come."""
         try:
-            # Signals are looked at between the waits.
+            # Signals are handled between the waits.
             while not self._job.wait(min(0.05, max(0.0, moment - time.monotonic()))):
                 if self._watch is not None:
                     self._watch(self.progress)
@@ -108,7 +108,7 @@ class Render(Picture):
                 pass
         return True
 
-    def _look(self) -> _core.RenderLook:
+    def _snapshot(self) -> _core.RenderSnapshot:
         if self._held is None:
             self._wait_until(float("inf"))
             if isinstance(self._watch, RenderProgress):

@@ -93,7 +93,7 @@ void bind_compare(nb::module_& m) {
     m.def(
         "picture_of_file", [](const std::filesystem::path& path) { return read_image(path); }, "path"_a);
     m.def(
-        "picture_of_look", [](const RenderLook& look) { return *look.image; }, "look"_a);
+        "picture_of_snapshot", [](const RenderSnapshot& snapshot) { return *snapshot.image; }, "snapshot"_a);
     m.def("compare", &compare, "a"_a, "a_name"_a, "b"_a, "b_name"_a, "epsilon"_a, "set_aside"_a,
           "montelux.compare, with everything decided.");
 }

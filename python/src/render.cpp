@@ -50,7 +50,7 @@ std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::ui
 }
 
 // Layers by the names that users know, as arrays on the picture's own memory.
-nb::dict layers_of(const RenderLook& look) {
+nb::dict layers_of(const RenderSnapshot& snapshot) {
     static constexpr std::pair<const char*, const char*> colors[] = {{"mean", "R"},
                                                                      {"standard_error", "stderr.R"},
                                                                      {"skewness", "skewness.R"},
@@ -58,17 +58,17 @@ nb::dict layers_of(const RenderLook& look) {
                                                                      {"albedo", "albedo.R"},
                                                                      {"normal", "N.X"}};
     static constexpr std::pair<const char*, const char*> numbers[] = {{"samples", "samples"},
-                                                                      {"units", "units"},
+                                                                      {"replicates", "replicates"},
                                                                       {"outlier", "outlier"},
-                                                                      {"doubt", "doubt"},
+                                                                      {"warning", "warning"},
                                                                       {"depth", "depth.Z"}};
     nb::dict d;
     for (const auto& [name, first] : colors)
-        if (const std::optional<int> c = look.image->find_channel(first))
-            d[name] = channels_of(look.image, *c, 3);
+        if (const std::optional<int> c = snapshot.image->find_channel(first))
+            d[name] = channels_of(snapshot.image, *c, 3);
     for (const auto& [name, channel] : numbers)
-        if (const std::optional<int> c = look.image->find_channel(channel))
-            d[name] = channels_of(look.image, *c, 1);
+        if (const std::optional<int> c = snapshot.image->find_channel(channel))
+            d[name] = channels_of(snapshot.image, *c, 1);
     return d;
 }
 
@@ -81,13 +81,13 @@ std::string bad_text(const BadSampleReport& bad) {
 }
 
 // What screens and formats without layers show: the denoised picture, where there is one.
-Image shown(const RenderLook& look) {
-    return look.image->find_channel("denoised.R") ? denoised_picture(*look.image) : *look.image;
+Image shown(const RenderSnapshot& snapshot) {
+    return snapshot.image->find_channel("denoised.R") ? denoised_picture(*snapshot.image) : *snapshot.image;
 }
 
-nb::tuple screen(const RenderLook& look, double exposure) {
-    auto tones =
-        std::make_shared<Image>(apply_tone_curve(shown(look), {.exposure = static_cast<float>(exposure)}, 8));
+nb::tuple screen(const RenderSnapshot& snapshot, double exposure) {
+    auto tones = std::make_shared<Image>(
+        apply_tone_curve(shown(snapshot), {.exposure = static_cast<float>(exposure)}, 8));
     nb::object bytes = nb::bytes(reinterpret_cast<const char*>(tones->u8().data()), tones->u8().size());
     return nb::make_tuple(bytes, tones->height(), tones->width(), tones->channels());
 }
@@ -95,22 +95,22 @@ nb::tuple screen(const RenderLook& look, double exposure) {
 } // namespace
 
 void bind_render(nb::module_& m) {
-    nb::class_<RenderLook>(m, "RenderLook", "A render at some moment.")
+    nb::class_<RenderSnapshot>(m, "RenderSnapshot", "A render at some moment.")
         .def_prop_ro("layers", &layers_of)
-        .def_prop_ro("relative_error", [](const RenderLook& l) { return l.error.relative; })
-        .def_prop_ro("mean_samples", [](const RenderLook& l) { return l.error.mean_samples; })
-        .def_prop_ro("samples", [](const RenderLook& l) { return l.report.samples; })
-        .def_prop_ro("seconds", [](const RenderLook& l) { return l.report.seconds; })
-        .def_prop_ro("cpu_seconds", [](const RenderLook& l) { return l.report.cpu_seconds; })
-        .def_prop_ro("bad_samples", [](const RenderLook& l) { return l.report.bad.count(); })
-        .def_prop_ro("bad_text", [](const RenderLook& l) { return bad_text(l.report.bad); })
-        .def_prop_ro("clamped_samples", [](const RenderLook& l) { return l.report.clamped_samples; })
-        .def_prop_ro("stop", [](const RenderLook& l) { return std::string(to_string(l.report.stop)); })
+        .def_prop_ro("relative_error", [](const RenderSnapshot& l) { return l.error.relative; })
+        .def_prop_ro("mean_samples", [](const RenderSnapshot& l) { return l.error.mean_samples; })
+        .def_prop_ro("samples", [](const RenderSnapshot& l) { return l.report.samples; })
+        .def_prop_ro("seconds", [](const RenderSnapshot& l) { return l.report.seconds; })
+        .def_prop_ro("cpu_seconds", [](const RenderSnapshot& l) { return l.report.cpu_seconds; })
+        .def_prop_ro("bad_samples", [](const RenderSnapshot& l) { return l.report.bad.count(); })
+        .def_prop_ro("bad_text", [](const RenderSnapshot& l) { return bad_text(l.report.bad); })
+        .def_prop_ro("clamped_samples", [](const RenderSnapshot& l) { return l.report.clamped_samples; })
+        .def_prop_ro("stop", [](const RenderSnapshot& l) { return std::string(to_string(l.report.stop)); })
         .def("screen", &screen, "exposure"_a, "8-bit sRGB: (bytes, height, width, channels).")
-        .def("automatic_exposure", [](const RenderLook& l) { return automatic_exposure(*l.image); })
+        .def("automatic_exposure", [](const RenderSnapshot& l) { return automatic_exposure(*l.image); })
         .def(
             "save",
-            [](const RenderLook& l, const std::filesystem::path& path, double exposure) {
+            [](const RenderSnapshot& l, const std::filesystem::path& path, double exposure) {
                 nb::gil_scoped_release unlocked;
                 write_picture(path, *l.image, {.exposure = static_cast<float>(exposure)});
             },
@@ -118,7 +118,7 @@ void bind_render(nb::module_& m) {
     nb::class_<RenderJob>(m, "RenderJob", "A render that goes on by itself.")
         .def("cancel", &RenderJob::cancel)
         .def("wait", &RenderJob::wait, "seconds"_a, nb::call_guard<nb::gil_scoped_release>())
-        .def("look", &RenderJob::look, "seconds"_a, nb::call_guard<nb::gil_scoped_release>())
+        .def("snapshot", &RenderJob::snapshot, "seconds"_a, nb::call_guard<nb::gil_scoped_release>())
         .def("result", &RenderJob::result)
         .def("progress",
              [](const RenderJob& j) {

@@ -30,7 +30,7 @@ RenderJob::RenderJob(std::shared_ptr<const SceneDescription> description, Render
     }
     with_threads(settings_.threads,
                  [&] { renderer_ = std::make_unique<Renderer>(*description_, settings_.target); });
-    unit_ = SampleOrder(renderer_->sampler(), settings_.target.slice).unit();
+    replicate_size_ = SampleOrder(renderer_->sampler(), settings_.target.slice).replicate_size();
     thread_ = std::thread([this] { run(); });
 }
 
@@ -51,13 +51,13 @@ void RenderJob::run() {
         progress_ = p;
     };
     std::exception_ptr failure;
-    std::optional<RenderLook> result;
+    std::optional<RenderSnapshot> result;
     try {
         with_threads(settings_.threads, [&] { renderer_->render(*state_, control); });
         const RenderReport report = state_->report;
         const std::shared_ptr<Image> image = developed(state_->film, report);
         if (denoiser_ && !report.cancelled()) denoise(*image);
-        result = RenderLook{image, state_->film.error(), report};
+        result = RenderSnapshot{image, state_->film.error(), report};
         state_.reset();
     } catch (...) {
         failure = std::current_exception();
@@ -103,7 +103,7 @@ RenderProgress RenderJob::progress() const {
     return progress_;
 }
 
-std::optional<RenderLook> RenderJob::look(double seconds) {
+std::optional<RenderSnapshot> RenderJob::snapshot(double seconds) {
     std::unique_lock lock(mutex_);
     if (ended_) return std::nullopt;
     snapshot_wanted_ = true;
@@ -113,8 +113,8 @@ std::optional<RenderLook> RenderJob::look(double seconds) {
     seen_.reset();
     const RenderReport report = seen_report_;
     lock.unlock();
-    film.end_units(unit_);
-    return RenderLook{developed(film, report), film.error(), report};
+    film.end_replicates(replicate_size_);
+    return RenderSnapshot{developed(film, report), film.error(), report};
 }
 
 std::shared_ptr<Image> RenderJob::developed(const Film& film, const RenderReport& report) const {
@@ -133,7 +133,7 @@ void RenderJob::denoise(Image& image) {
     }
 }
 
-RenderLook RenderJob::result() const {
+RenderSnapshot RenderJob::result() const {
     std::lock_guard lock(mutex_);
     if (failure_) std::rethrow_exception(failure_);
     if (!result_) throw Error("render", "the render has not ended yet");

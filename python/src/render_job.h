@@ -28,7 +28,7 @@ struct RenderJobSettings {
 };
 
 // What is known of a render at some moment.
-struct RenderLook {
+struct RenderSnapshot {
     std::shared_ptr<const Image> image; // the layers of Film::develop() with the header of a render
     FilmError error;
     RenderReport report;
@@ -49,9 +49,9 @@ class RenderJob {
     RenderProgress progress() const;
     // The render as it is now, waiting for a moment without open samples but so many seconds at most; none
     // where that did not do, or the render ended meanwhile.
-    std::optional<RenderLook> look(double seconds);
+    std::optional<RenderSnapshot> snapshot(double seconds);
     // After the end; rethrows what ended it.
-    RenderLook result() const;
+    RenderSnapshot result() const;
     const SceneDescription& description() const { return *description_; }
     // Why the newest checkpoint was not gone on from but the one before; empty where it was.
     const std::string& refused_checkpoint() const { return refused_checkpoint_; }
@@ -73,7 +73,7 @@ class RenderJob {
     std::optional<Denoiser> denoiser_;
     std::optional<RenderState> state_;
     std::string refused_checkpoint_;
-    std::uint32_t unit_ = 1;
+    std::uint32_t replicate_size_ = 1;
     CancelFlag cancel_;
     std::atomic<bool> snapshot_wanted_{false};
 
@@ -83,9 +83,9 @@ class RenderJob {
     std::exception_ptr failure_;
     std::string checkpoint_failure_, denoise_failure_;
     RenderProgress progress_;
-    std::optional<Film> seen_; // what a look is made of
+    std::optional<Film> seen_; // what a snapshot is made of
     RenderReport seen_report_;
-    std::optional<RenderLook> result_;
+    std::optional<RenderSnapshot> result_;
     std::thread thread_;
 };
 

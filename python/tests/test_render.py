@@ -32,7 +32,7 @@ def test_a_render_gives_arrays_with_errors(scene):
     render = scene.render()
     assert render.mean.shape == render.standard_error.shape == (24, 32, 3) and render.mean.dtype == np.float32
     assert set(render.layers) == {
-        "mean", "standard_error", "skewness", "albedo", "normal", "samples", "units", "outlier", "doubt", "depth",
+        "mean", "standard_error", "skewness", "albedo", "normal", "samples", "replicates", "outlier", "warning", "depth",
     }  # fmt: skip
     assert render.layers["depth"].shape == (24, 32) and np.all(render.layers["samples"] == 16)
     assert render.stopped_by == "samples" and render.spp == 16 and render.finished

@@ -61,7 +61,7 @@ def test_slices_are_joined_with_those_of_the_program(folder):
     for i, channel in enumerate("RGB"):
         assert joined[channel] == pytest.approx(whole.mean[:, :, i], rel=1e-5, abs=1e-6)
         assert joined[f"stderr.{channel}"] == pytest.approx(whole.standard_error[:, :, i], rel=1e-3, abs=1e-6)
-    for layer in ("outlier", "doubt"):
+    for layer in ("outlier", "warning"):
         assert joined[layer] == pytest.approx(whole.layers[layer], rel=1e-3, abs=1e-4)
 
 

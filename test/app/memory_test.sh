@@ -1,5 +1,5 @@
 #!/bin/sh
-# A render needs as much memory for many samples a pixel as for few.
+# A render needs as much memory for many samples per pixel as for few.
 . "$(dirname "$0")/common.sh"
 
 # Beside this picture the pages that are now there and now not are below the hundredth that is asked for.
@@ -30,7 +30,7 @@ for arguments in '--sampler independent' '--sampler sobol' '--adaptive on'; do
     few='' many='' runs=0
     until [ $runs -gt 0 ] && awk -v few="$few" -v many="$many" 'BEGIN { exit !(many <= 1.01 * few) }'; do
         if [ $runs -eq 4 ]; then
-            fail "$arguments: $few MiB for 16 samples a pixel, $many MiB for 16384"
+            fail "$arguments: $few MiB for 16 samples per pixel, $many MiB for 16384"
             break
         fi
         # shellcheck disable=SC2086
@@ -41,7 +41,7 @@ for arguments in '--sampler independent' '--sampler sobol' '--adaptive on'; do
         many=$(least "$mib" "$many")
         runs=$((runs + 1))
     done
-    echo "$arguments: $few MiB for 16 samples a pixel, $many MiB for 16384, the least of $runs"
+    echo "$arguments: $few MiB for 16 samples per pixel, $many MiB for 16384, the least of $runs"
     awk -v few="$few" -v many="$many" 'BEGIN { exit !(few > 96 && many > 96) }' ||
         fail "$arguments: $few and $many MiB are less than the picture of the scene alone"
 done

@@ -20,7 +20,7 @@ for option in --spp --seed --threads --max-depth; do
         expect 2 "$option: '$value' was given" render ok.pbrt $option "$value"
     done
 done
-expect 0 "20 samples a pixel" render ok.pbrt --resolution 8x6 --spp 2e1 --seed 1e3 -o twenty.pfm
+expect 0 "20 samples per pixel" render ok.pbrt --resolution 8x6 --spp 2e1 --seed 1e3 -o twenty.pfm
 expect 2 "--checkpoint-every requires --checkpoint" render ok.pbrt --checkpoint-every 5
 expect 2 "--checkpoint: the name of a file is expected" render ok.pbrt --checkpoint ''
 expect 2 "--spp: '0' was given; a whole number from 1 to" render ok.pbrt --spp 0
@@ -33,7 +33,7 @@ expect 2 "mis, mis-bsdf, mis-light is expected" render ok.pbrt --strategy mis_bs
 expect 1 "GiB of memory; this machine has" render ok.pbrt --resolution 65536x65536
 [ -e ok.exr ] && fail "a picture was written in spite of an error"
 
-expect 0 "32 x 12 pixels, 2 samples a pixel" render -o a.exr -o a.png -o a.hdr -o a.pfm ok.pbrt \
+expect 0 "32 x 12 pixels, 2 samples per pixel" render -o a.exr -o a.png -o a.hdr -o a.pfm ok.pbrt \
     --resolution 64x48 --spp 2 --seed 18446744073709551615 --sampler halton --crop 0,0.5,0.5,0.75 --max-depth 3
 expect 0 "32 x 12 pixels, 20 channels" info a.exr
 for entry in '"spp" = 2' '"seed" = "18446744073709551615"' '"sampler" = "halton"' '"maxDepth" = 3' \

@@ -31,7 +31,7 @@ expect 0 "the pixel gets" render ok.pbrt --debug-sample 0,0,0 --quiet -o picture
 grep -q warning out && fail "--quiet printed a warning"
 [ -e ok.exr ] || [ -e picture.exr ] && fail "a picture was written"
 
-# The picture of one sample a pixel is that sample.
+# The picture of one sample per pixel is that sample.
 "$montelux" render ok.pbrt --quiet --spp 1 --crop 0.5,0.51,0.5,0.51 -o one.pfm || fail "render"
 "$montelux" render ok.pbrt --quiet --spp 1 --debug-sample 32,24,0 >record || fail "replay"
 pixel=$(od -A n -t f4 -j $(($(wc -c <one.pfm) - 12)) one.pfm | awk '{ printf "%.5g %.5g %.5g", $1, $2, $3 }')

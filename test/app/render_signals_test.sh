@@ -50,7 +50,7 @@ stopped() {
 
 # Replicates of 62500 samples: no two are finished, and the errors are unknown.
 stopped "without errors" TERM 1 long.pbrt --sampler sobol -o none.exr
-grep -q "the errors are not known: they come from how sets of 62500 samples a pixel differ" out ||
+grep -q "the errors are unknown: fewer than two replicates of 62500 samples per pixel" out ||
     fail "without errors: $(cat out)"
 "$montelux" info none.exr --json | grep -q '"relativeError": null' || fail "an unknown error in JSON is not null"
 

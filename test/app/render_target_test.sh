@@ -9,8 +9,8 @@ expect 0 "target reached" render ball.pbrt --target-error 0.05 --target-quantile
 expect 3 "samples are used up before the target was reached" render ball.pbrt --target-error 1e-5 --max-spp 16 -o x.exr
 expect 3 "time is up before the target was reached" render ball.pbrt --target-error 1e-7 --time 0.2 -o x.exr
 expect 0 "time is up" render ball.pbrt --time 0.2s -o x.exr
-expect 0 "16 samples a pixel" render ball.pbrt --time 1h --spp 16 -o x.exr
-expect 0 "samples were clamped, which took" render ball.pbrt --clamp 0.5 -o x.exr
+expect 0 "16 samples per pixel" render ball.pbrt --time 1h --spp 16 -o x.exr
+expect 0 "samples were clamped, which removed" render ball.pbrt --clamp 0.5 -o x.exr
 # The bar is not full while the target is open.
 if command -v script >/dev/null; then
     scene lit "$sky LightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [0 0.9 1.2] Material \"diffuse\"
@@ -33,8 +33,8 @@ expect 2 "--clamp: '0' was given" render ball.pbrt --clamp 0 -o y.exr
 
 # A finished render goes on to more samples, and is the same as one that was never stopped.
 expect 0 "is not there yet: rendering from the start" render ball.pbrt --spp 20 --resume --checkpoint state -o a.pfm
-expect 0 "52 samples a pixel" render ball.pbrt --spp 52 --resume --checkpoint state -o a.pfm
-expect 0 "state has 52 samples a pixel already, more than the 20 asked for" render ball.pbrt --spp 20 --resume \
+expect 0 "52 samples per pixel" render ball.pbrt --spp 52 --resume --checkpoint state -o a.pfm
+expect 0 "state has 52 samples per pixel already, more than the 20 asked for" render ball.pbrt --spp 20 --resume \
     --checkpoint state -o less.pfm
 cmp -s a.pfm less.pfm || fail "a render that had more samples than asked for changed"
 expect 0 "" render ball.pbrt --spp 52 -o b.pfm
@@ -49,7 +49,7 @@ printf x >>state
 expect 1 "state" render ball.pbrt --spp 52 --resume --checkpoint state -o x.pfm
 expect 2 "the file is there already; add --resume" render ball.pbrt --checkpoint a.pfm -o x.pfm
 expect 2 "the checkpoint has this name" render ball.pbrt --checkpoint z.pfm -o z.pfm
-expect 0 "4 samples a pixel" render ball.pbrt --checkpoint often --checkpoint-every 0 --threads 1 -o often.pfm
+expect 0 "4 samples per pixel" render ball.pbrt --checkpoint often --checkpoint-every 0 --threads 1 -o often.pfm
 expect 2 "the scene is read from this file" render ball.pbrt --checkpoint ball.pbrt -o x.pfm
 expect 1 "nowhere" render ball.pbrt --checkpoint nowhere/state -o x.pfm
 [ -e x.pfm ] && fail "a refused command wrote a picture"

@@ -27,9 +27,9 @@ Vec3d mean_over(const EnvironmentMap& map, const CubeTexel& t, int size, int poi
 // has an error below 0.01.
 void expect_honest(const Image& image, int size, double target) {
     const EnvironmentMap map(image, EnvironmentLayout::equirectangular);
-    TexelGoal goal;
-    goal.target_error = target;
-    goal.floor = 0.01 * map.mean_radiance().y;
+    TexelTarget texel_target;
+    texel_target.target_error = target;
+    texel_target.floor = 0.01 * map.mean_radiance().y;
     AreaEstimator areas(map, CubeFrame{});
     int runs = 0, within_two = 0, within_four = 0;
     double squares = 0;
@@ -40,7 +40,7 @@ void expect_honest(const Image& image, int size, double target) {
                 const Vec3d truth = mean_over(map, texel, size, 300);
                 for (std::uint64_t seed = 0; seed < 6; ++seed) {
                     const TexelEstimate e = areas.estimate(
-                        texel, size, goal, hash_key(seed, static_cast<std::uint64_t>(face), x, y));
+                        texel, size, texel_target, hash_key(seed, static_cast<std::uint64_t>(face), x, y));
                     EXPECT_TRUE(e.met);
                     if (e.standard_error.y == 0) {
                         EXPECT_NEAR(e.value.y, truth.y, 1e-5 * truth.y);
@@ -96,13 +96,13 @@ TEST(AreaEstimator, LampsThatFewPartsCanMissAreNotForgotten) {
             constexpr int size = 8;
             const CubeTexel texel{at.face, static_cast<int>(at.u * size), static_cast<int>(at.v * size)};
             AreaEstimator areas(map, CubeFrame{});
-            TexelGoal goal;
-            goal.floor = 0.01 * map.mean_radiance().y;
-            goal.samples = 64;
-            EXPECT_FALSE(areas.estimate(texel, size, goal, 5).met)
+            TexelTarget target;
+            target.floor = 0.01 * map.mean_radiance().y;
+            target.samples = 64;
+            EXPECT_FALSE(areas.estimate(texel, size, target, 5).met)
                 << width << " " << place.x << " " << place.y;
-            goal.samples = 1 << 20;
-            const TexelEstimate e = areas.estimate(texel, size, goal, 5);
+            target.samples = 1 << 20;
+            const TexelEstimate e = areas.estimate(texel, size, target, 5);
             EXPECT_TRUE(e.met);
             EXPECT_GT(e.value.y, 0) << width << " " << place.x << " " << place.y;
         }

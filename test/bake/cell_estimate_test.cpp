@@ -16,16 +16,16 @@ struct Estimates {
 Estimates many_estimates(const Image& image, Vec3d n, std::uint64_t samples) {
     const EnvironmentMap map(image, EnvironmentLayout::equirectangular);
     const RadialKernel kernel = RadialKernel::ggx(0.6);
-    TexelGoal goal;
-    goal.target_error = 0;
-    goal.samples = samples;
+    TexelTarget target;
+    target.target_error = 0;
+    target.samples = samples;
     Estimates all;
     all.expected = sum_over_texels(
         image, 8, [&](Vec3d l) { return static_cast<double>(kernel(static_cast<float>(1 - dot(n, l)))); });
     CellEstimator cells(map, kernel);
     constexpr int seeds = 8000;
     for (int seed = 0; seed < seeds; ++seed) {
-        const TexelEstimate e = cells.estimate(Vec3f(CubeFrame{}.to_map(n)), goal, hash_key(seed, 3));
+        const TexelEstimate e = cells.estimate(Vec3f(CubeFrame{}.to_map(n)), target, hash_key(seed, 3));
         EXPECT_LE(e.samples, samples);
         all.values.add(e.value);
         all.mean_squared_error += multiply(e.standard_error, e.standard_error) * (1.0 / seeds);

@@ -51,9 +51,11 @@ class PlayedRank {
                 heard.push_back(in.get<Assignment>());
                 std::vector<Pixel> pixels(tile_pixels);
                 if (heard.back().pixels == Assignment::Pixels::follow) in.get_all(std::span(pixels));
-                if (heard.back().goals == Assignment::Goals::uniform) in.get<std::uint32_t>();
-                std::vector<std::uint32_t> goals(tile_pixels);
-                if (heard.back().goals == Assignment::Goals::each) in.get_all(std::span(goals));
+                if (heard.back().target_samples == Assignment::TargetSamples::uniform)
+                    in.get<std::uint32_t>();
+                std::vector<std::uint32_t> target_samples(tile_pixels);
+                if (heard.back().target_samples == Assignment::TargetSamples::each)
+                    in.get_all(std::span(target_samples));
             }
         return heard;
     }
@@ -89,7 +91,7 @@ TEST_F(CoordinatorTest, TilesInTransitAtTheEndOfARoundAreNotForgotten) {
     LocalJob job(3);
     PlayedRank first(job.mailbox(1)), second(job.mailbox(2));
     Coordinator coordinator(job.mailbox(0), crop(), settings());
-    state_.goals.assign(state_.film.pixels().size(), 8);
+    state_.target_samples.assign(state_.film.pixels().size(), 8);
     std::optional<std::uint32_t> moved;
     first.say_hello();
     run(coordinator, [&] {
@@ -117,11 +119,11 @@ TEST_F(CoordinatorTest, TilesInTransitAtTheEndOfARoundAreNotForgotten) {
     ASSERT_TRUE(moved);
 
     // Nothing else is left to do, and ranks are asked in their order.
-    state_.goals.assign(state_.film.pixels().size(), 0);
+    state_.target_samples.assign(state_.film.pixels().size(), 0);
     for (int y = 0; y < edge; ++y)
         for (int x = 0; x < edge; ++x)
-            state_.goals[static_cast<std::size_t>(y * crop().width()) + *moved * edge +
-                         static_cast<std::size_t>(x)] = 8;
+            state_.target_samples[static_cast<std::size_t>(y * crop().width()) + *moved * edge +
+                                  static_cast<std::size_t>(x)] = 8;
     std::vector<Assignment> heard;
     run(coordinator, [&] {
         heard = first.hear_assignments();
@@ -139,7 +141,7 @@ TEST_F(CoordinatorTest, TilesInTransitAtTheEndOfARoundAreNotForgotten) {
 TEST_F(CoordinatorTest, RanksThatNeverSayHelloAreGivenUp) {
     LocalJob job(2);
     Coordinator coordinator(job.mailbox(0), crop(), settings(0.1));
-    state_.goals.assign(state_.film.pixels().size(), 8);
+    state_.target_samples.assign(state_.film.pixels().size(), 8);
     int rounds = 0;
     for (; !coordinator.failed() && rounds < 100; ++rounds) {
         int calls = 0;
@@ -160,7 +162,7 @@ TEST_F(CoordinatorTest, RanksThatPrepareForLongAreWaitedFor) {
     LocalJob job(2);
     PlayedRank rank(job.mailbox(1));
     Coordinator coordinator(job.mailbox(0), crop(), settings(1.5));
-    state_.goals.assign(state_.film.pixels().size(), 8);
+    state_.target_samples.assign(state_.film.pixels().size(), 8);
     std::thread helper([&] {
         prepare_and_beat(job.mailbox(1), [] { std::this_thread::sleep_for(std::chrono::seconds(3)); });
         rank.say_hello();
@@ -185,7 +187,7 @@ TEST_F(CoordinatorTest, WhatPreparationThrowsComesThrough) {
 TEST_F(CoordinatorTest, RanksThatFailEndTheRender) {
     LocalJob job(2);
     Coordinator coordinator(job.mailbox(0), crop(), settings());
-    state_.goals.assign(state_.film.pixels().size(), 8);
+    state_.target_samples.assign(state_.film.pixels().size(), 8);
     std::thread failing([&] { serve_failure("there is not enough memory", job.mailbox(1), 60); });
     const auto begin = std::chrono::steady_clock::now();
     run(coordinator, [&] { return std::chrono::steady_clock::now() - begin > std::chrono::seconds(20); });

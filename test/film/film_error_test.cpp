@@ -10,7 +10,7 @@ Film film_of(int width) { return Film({.width = width, .height = 1, .crop = {0, 
 void add(Pixel& pixel, std::initializer_list<float> values) {
     for (float v : values) {
         pixel.add_sample({.radiance = {v, v, v}, .albedo = {}, .normal = {}});
-        pixel.end_unit();
+        pixel.end_replicate();
     }
 }
 
@@ -43,7 +43,7 @@ TEST(FilmError, FreedomIsThatOfThePixelsThatCarryTheError) {
     EXPECT_EQ(error_freedom(young), 0);
 }
 
-TEST(FilmError, ShareOfTheBrightestUnit) {
+TEST(FilmError, ShareOfTheBrightestReplicate) {
     Pixel pixel;
     EXPECT_EQ(pixel.largest_share(), 0);
     add(pixel, {0, 0, 0, 4}); // deviations -1, -1, -1, 3

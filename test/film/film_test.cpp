@@ -1,4 +1,4 @@
-// The film's bookkeeping: units, bad samples, the error of the whole picture, and its layers.
+// The film's bookkeeping: replicates, bad samples, the error of the whole picture, and its layers.
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -19,40 +19,40 @@ FilmSettings settings(int width, int height, PixelBounds crop) {
 
 FilmSample gray_sample(float v) { return {.radiance = {v, v, v}, .albedo = {}, .normal = {}}; }
 
-TEST(Pixel, EverySampleAUnit) {
+TEST(Pixel, EverySampleAReplicate) {
     Pixel p;
     for (float v : {1.0f, 2.0f, 6.0f}) {
         p.add_sample(gray_sample(v));
-        p.end_unit();
+        p.end_replicate();
     }
     EXPECT_EQ(p.samples(), 3u);
-    EXPECT_EQ(p.units().count(), 3u);
-    EXPECT_DOUBLE_EQ(p.units().mean(1), 3);
-    EXPECT_DOUBLE_EQ(p.units().standard_error(1), std::sqrt(7.0 / 3));
+    EXPECT_EQ(p.replicates().count(), 3u);
+    EXPECT_DOUBLE_EQ(p.replicates().mean(1), 3);
+    EXPECT_DOUBLE_EQ(p.replicates().standard_error(1), std::sqrt(7.0 / 3));
 }
 
 // The error of replicates comes from their means: the spread within one is not noise.
-TEST(Pixel, AReplicateIsAUnit) {
+TEST(Pixel, AReplicateOfAPointSet) {
     Pixel p;
     for (float offset : {0.0f, 0.5f}) {
         for (float v : {1.0f, 9.0f, 2.0f, 8.0f}) p.add_sample(gray_sample(v + offset));
-        p.end_unit();
+        p.end_replicate();
     }
     EXPECT_EQ(p.samples(), 8u);
-    EXPECT_EQ(p.units().count(), 2u);
-    EXPECT_DOUBLE_EQ(p.units().mean(0), 5.25);
-    EXPECT_DOUBLE_EQ(p.units().standard_error(0), 0.25);
+    EXPECT_EQ(p.replicates().count(), 2u);
+    EXPECT_DOUBLE_EQ(p.replicates().mean(0), 5.25);
+    EXPECT_DOUBLE_EQ(p.replicates().standard_error(0), 0.25);
 }
 
-TEST(Pixel, AnEmptyUnitIsNone) {
+TEST(Pixel, AnEmptyReplicateIsNone) {
     Pixel p;
-    p.end_unit();
+    p.end_replicate();
     p.add_sample(gray_sample(4));
-    p.end_unit();
-    p.end_unit();
-    EXPECT_EQ(p.units().count(), 1u);
-    EXPECT_DOUBLE_EQ(p.units().mean(), 4);
-    EXPECT_TRUE(std::isinf(p.units().standard_error()));
+    p.end_replicate();
+    p.end_replicate();
+    EXPECT_EQ(p.replicates().count(), 1u);
+    EXPECT_DOUBLE_EQ(p.replicates().mean(), 4);
+    EXPECT_TRUE(std::isinf(p.replicates().standard_error()));
 }
 
 // A bad sample is left out of the sum, not out of the count: its pixel is darker, and says why.
@@ -61,13 +61,13 @@ TEST(Pixel, BadSamplesCountAsZeros) {
     p.add_sample(gray_sample(6));
     p.count_bad();
     p.add_sample(gray_sample(6));
-    p.end_unit();
+    p.end_replicate();
     p.count_bad();
-    p.end_unit();
+    p.end_replicate();
     EXPECT_EQ(p.samples(), 4u);
     EXPECT_EQ(p.bad(), 2u);
-    EXPECT_EQ(p.units().count(), 2u);
-    EXPECT_DOUBLE_EQ(p.units().mean(), 2); // of 4 and 0
+    EXPECT_EQ(p.replicates().count(), 2u);
+    EXPECT_DOUBLE_EQ(p.replicates().mean(), 2); // of 4 and 0
 }
 
 TEST(Pixel, FirstSurfaceIsTheMeanOverSamples) {
@@ -84,25 +84,25 @@ TEST(Pixel, FirstSurfaceIsTheMeanOverSamples) {
     EXPECT_EQ(Pixel().depth(), 0);
 }
 
-// A whole unit of four samples and the beginning of one would else weigh the same.
-TEST(Pixel, ShortLastUnitsAreLeftOutWhereThereAreOthers) {
+// A whole replicate of four samples and the beginning of one would else weigh the same.
+TEST(Pixel, ShortLastReplicatesAreLeftOutWhereThereAreOthers) {
     for (int open : {1, 2, 3}) {
         Pixel p;
-        for (int unit = 0; unit < 2; ++unit) {
+        for (int replicate = 0; replicate < 2; ++replicate) {
             for (int i = 0; i < 4; ++i) p.add_sample(gray_sample(1));
-            p.end_unit();
+            p.end_replicate();
         }
         for (int i = 0; i < open; ++i) p.add_sample(gray_sample(7));
-        p.end_last_unit(4);
-        EXPECT_EQ(p.units().count(), open >= 2 ? 3u : 2u);
-        EXPECT_DOUBLE_EQ(p.units().mean(), open >= 2 ? 3 : 1);
-        p.end_unit(); // nothing is left
-        EXPECT_EQ(p.units().count(), open >= 2 ? 3u : 2u);
+        p.end_last_replicate(4);
+        EXPECT_EQ(p.replicates().count(), open >= 2 ? 3u : 2u);
+        EXPECT_DOUBLE_EQ(p.replicates().mean(), open >= 2 ? 3 : 1);
+        p.end_replicate(); // nothing is left
+        EXPECT_EQ(p.replicates().count(), open >= 2 ? 3u : 2u);
     }
     Pixel alone;
     alone.add_sample(gray_sample(5));
-    alone.end_last_unit(4);
-    EXPECT_EQ(alone.units().count(), 1u);
+    alone.end_last_replicate(4);
+    EXPECT_EQ(alone.replicates().count(), 1u);
 }
 
 TEST(Film, ErrorOfThePicture) {
@@ -110,9 +110,9 @@ TEST(Film, ErrorOfThePicture) {
     // Luminances 2 +- 0.5 and 4 +- 1.
     for (float d : {-0.5f, 0.5f}) {
         film.pixel(0, 0).add_sample(gray_sample(2 + d));
-        film.pixel(0, 0).end_unit();
+        film.pixel(0, 0).end_replicate();
         film.pixel(1, 0).add_sample(gray_sample(4 + 2 * d));
-        film.pixel(1, 0).end_unit();
+        film.pixel(1, 0).end_replicate();
     }
     FilmError e = film.error();
     EXPECT_NEAR(e.mean_luminance, 3, 1e-12);
@@ -129,7 +129,7 @@ TEST(Film, ErrorWeighsTheChannels) {
             FilmSample s = gray_sample(0);
             s.radiance[c] = v;
             film.pixel(0, 0).add_sample(s);
-            film.pixel(0, 0).end_unit();
+            film.pixel(0, 0).end_replicate();
         }
         EXPECT_NEAR(film.error().mean_luminance, 2 * weights[c], 1e-12);
         EXPECT_NEAR(film.error().relative, 0.5, 1e-12);
@@ -140,16 +140,16 @@ TEST(Film, ErrorOfBlackAndUnknown) {
     Film black(settings(1, 1, {0, 0, 1, 1}));
     for (int i = 0; i < 4; ++i) {
         black.pixel(0, 0).add_sample(gray_sample(0));
-        black.pixel(0, 0).end_unit();
+        black.pixel(0, 0).end_replicate();
     }
     EXPECT_EQ(black.error().relative, 0);
     Film once(settings(1, 1, {0, 0, 1, 1}));
     once.pixel(0, 0).add_sample(gray_sample(1));
-    once.pixel(0, 0).end_unit();
+    once.pixel(0, 0).end_replicate();
     EXPECT_TRUE(std::isinf(once.error().relative));
     Film black_once(settings(1, 1, {0, 0, 1, 1}));
     black_once.pixel(0, 0).add_sample(gray_sample(0));
-    black_once.pixel(0, 0).end_unit();
+    black_once.pixel(0, 0).end_replicate();
     EXPECT_TRUE(std::isinf(black_once.error().relative));
 }
 
@@ -163,7 +163,7 @@ TEST(Film, DevelopsTheCropWithItsLayers) {
                                              .albedo = {0.1f * fx, 0.2f, 0.3f},
                                              .normal = {0, 0.5f, 0.1f * fy},
                                              .depth = fx * fy});
-                film.pixel(x, y).end_unit();
+                film.pixel(x, y).end_replicate();
             }
     Image image = film.develop();
     ASSERT_EQ(image.width(), 3);
@@ -179,14 +179,14 @@ TEST(Film, DevelopsTheCropWithItsLayers) {
             EXPECT_EQ(value("R", x, y), static_cast<float>(x + 3));
             EXPECT_EQ(value("G", x, y), static_cast<float>(y + 2));
             EXPECT_EQ(value("B", x, y), 7);
-            // Two units at +-d have standard error d.
+            // Two replicates at +-d have standard error d.
             EXPECT_EQ(value("stderr.R", x, y), 1);
             EXPECT_EQ(value("stderr.G", x, y), 2);
             EXPECT_EQ(value("stderr.B", x, y), 3);
             EXPECT_EQ(value("samples", x, y), 2);
-            EXPECT_EQ(value("units", x, y), 2);
+            EXPECT_EQ(value("replicates", x, y), 2);
             EXPECT_FLOAT_EQ(value("outlier", x, y), 0.5f);
-            EXPECT_EQ(value("doubt", x, y), 3); // nobody can tell from two units
+            EXPECT_EQ(value("warning", x, y), 3); // nobody can tell from two replicates
             EXPECT_FLOAT_EQ(value("albedo.R", x, y), 0.1f * static_cast<float>(x + 3));
             EXPECT_FLOAT_EQ(value("albedo.B", x, y), 0.3f);
             EXPECT_FLOAT_EQ(value("N.Y", x, y), 0.5f);
@@ -201,7 +201,7 @@ TEST(Film, TellsTheSkewnessOfTheMean) {
     // 0, 0, 0, 4: deviations -1, -1, -1, 3; m2 = 3, m3 = 6.
     for (float v : {0.0f, 0.0f, 4.0f, 0.0f}) {
         film.pixel(0, 0).add_sample(gray_sample(v));
-        film.pixel(0, 0).end_unit();
+        film.pixel(0, 0).end_replicate();
     }
     Image image = film.develop();
     auto c = image.find_channel("skewness.G");
@@ -209,18 +209,18 @@ TEST(Film, TellsTheSkewnessOfTheMean) {
     EXPECT_NEAR(image.value(0, 0, *c), 6 / std::pow(3, 1.5) / 2, 1e-6);
 }
 
-TEST(Film, EndsUnitsThatWereCutShort) {
+TEST(Film, EndsReplicatesThatWereCutShort) {
     Film film(settings(2, 1, {0, 0, 2, 1}));
     film.pixel(0, 0).add_sample(gray_sample(3));
-    film.end_units();
-    EXPECT_EQ(film.pixel(0, 0).units().count(), 1u);
-    EXPECT_EQ(film.pixel(1, 0).units().count(), 0u);
+    film.end_replicates();
+    EXPECT_EQ(film.pixel(0, 0).replicates().count(), 1u);
+    EXPECT_EQ(film.pixel(1, 0).replicates().count(), 0u);
 }
 
-TEST(Film, OneUnitHasNoError) {
+TEST(Film, OneReplicateHasNoError) {
     Film film(settings(1, 1, {0, 0, 1, 1}));
     film.pixel(0, 0).add_sample(gray_sample(1));
-    film.pixel(0, 0).end_unit();
+    film.pixel(0, 0).end_replicate();
     Image image = film.develop();
     EXPECT_TRUE(std::isinf(image.value(0, 0, *image.find_channel("stderr.G"))));
 }

@@ -3,37 +3,39 @@
 #include <string>
 #include <vector>
 
-#include "montelux/film/doubtful_pixels.h"
 #include "montelux/film/film.h"
 #include "montelux/film/merge_slices.h"
+#include "montelux/film/pixel_warnings.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/random/philox_stream.h"
 
 namespace montelux {
 namespace {
 
-constexpr int width = 4, height = 3;
+constexpr int slice_width = 4, slice_height = 3;
 
-Film empty() { return Film({.width = width, .height = height, .crop = {0, 0, width, height}}); }
+Film empty() {
+    return Film({.width = slice_width, .height = slice_height, .crop = {0, 0, slice_width, slice_height}});
+}
 
-// The units k, k + n, ... of a picture of skewed samples; all of them for {0, 1}.
-Film slice_film(int k, int n, int units) {
+// The replicates k, k + n, ... of a picture of skewed samples; all of them for {0, 1}.
+Film slice_film(int k, int n, int replicates) {
     Film film = empty();
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            for (int u = k; u < units; u += n) {
-                PhiloxStream random(static_cast<std::uint64_t>(u * 100 + y * width + x));
+    for (int y = 0; y < slice_height; ++y)
+        for (int x = 0; x < slice_width; ++x)
+            for (int u = k; u < replicates; u += n) {
+                PhiloxStream random(static_cast<std::uint64_t>(u * 100 + y * slice_width + x));
                 const auto v = static_cast<float>(-std::log(1 - random.next_double()));
                 film.pixel(x, y).add_sample({.radiance = {v, v * v, 1 + v},
                                              .albedo = {v, 0.5f, 0.25f},
                                              .normal = {0, v, 1},
                                              .depth = 1 + v});
-                film.pixel(x, y).end_unit();
+                film.pixel(x, y).end_replicate();
             }
     return film;
 }
-Image picture(int k, int n, int units) {
-    Image image = slice_film(k, n, units).develop(n > 1);
+Image picture(int k, int n, int replicates) {
+    Image image = slice_film(k, n, replicates).develop(n > 1);
     image.attributes()["renderHash"] = std::string("abc");
     image.attributes()["slice"] = std::to_string(k + 1) + "/" + std::to_string(n);
     image.attributes()["badSamples"] = 2;
@@ -46,47 +48,48 @@ MergedSlices merge(const std::vector<Image>& slices, const std::vector<std::stri
     return merger.finish();
 }
 
-MergedSlices merge_all(int slices, int units) {
+MergedSlices merge_all(int slices, int replicates) {
     std::vector<Image> pictures;
     std::vector<std::string> names;
     for (int k = slices - 1; k >= 0; --k) {
-        pictures.push_back(picture(k, slices, units));
+        pictures.push_back(picture(k, slices, replicates));
         names.push_back("slice " + std::to_string(k + 1));
     }
     return merge(pictures, names);
 }
 
-// Of many units and few, of different lengths; one unit tells no spread of its own.
+// Of many replicates and few, of different lengths; one replicate tells no spread of its own.
 TEST(MergeSlices, AllLayersAreThoseOfTheWhole) {
-    const int units = 40;
-    const Film film = slice_film(0, 1, units);
+    const int replicates = 40;
+    const Film film = slice_film(0, 1, replicates);
     const Image whole = film.develop();
     int stand_out = 0;
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            stand_out += whole.value(x, y, *whole.find_channel("doubt")) == float(Doubt::bright_unit);
+    for (int y = 0; y < slice_height; ++y)
+        for (int x = 0; x < slice_width; ++x)
+            stand_out +=
+                whole.value(x, y, *whole.find_channel("warning")) == float(PixelWarning::bright_replicate);
     EXPECT_GT(stand_out, 1);
-    EXPECT_LT(stand_out, width * height - 1);
+    EXPECT_LT(stand_out, slice_width * slice_height - 1);
     for (int slices : {1, 3, 13, 20, 39, 40}) {
-        const MergedSlices merged = merge_all(slices, units);
+        const MergedSlices merged = merge_all(slices, replicates);
         EXPECT_TRUE(merged.missing.empty());
         ASSERT_EQ(merged.image.channel_names(), whole.channel_names());
         for (int c = 0; c < whole.channels(); ++c)
-            for (int y = 0; y < height; ++y)
-                for (int x = 0; x < width; ++x) {
+            for (int y = 0; y < slice_height; ++y)
+                for (int x = 0; x < slice_width; ++x) {
                     const double expected = whole.value(x, y, c);
                     EXPECT_NEAR(merged.image.value(x, y, c), expected, 2e-6 * (0.1 + std::abs(expected)))
                         << whole.channel_names()[static_cast<std::size_t>(c)] << " of " << slices;
                 }
         EXPECT_NEAR(merged.relative_error, film.error().relative, 1e-6);
-        EXPECT_EQ(merged.mean_samples, units);
+        EXPECT_EQ(merged.mean_samples, replicates);
         EXPECT_EQ(std::get<int>(merged.image.attributes().at("badSamples")), 2 * slices);
         EXPECT_EQ(std::get<std::string>(merged.image.attributes().at("slice")), "1/1");
     }
 }
 
 // One slice meets the light, and all the others are dark.
-TEST(MergeSlices, TheBrightestUnitIsHeldAgainstTheMeanOfAll) {
+TEST(MergeSlices, TheBrightestReplicateIsHeldAgainstTheMeanOfAll) {
     std::vector<Image> slices;
     std::vector<std::string> names;
     for (int k = 0; k < 16; ++k) {
@@ -94,7 +97,7 @@ TEST(MergeSlices, TheBrightestUnitIsHeldAgainstTheMeanOfAll) {
         for (Pixel& p : film.pixels()) {
             const float v = k == 5 ? 9 : 0.01f * static_cast<float>(k);
             p.add_sample({.radiance = {v, v, v}, .albedo = {}, .normal = {}});
-            p.end_unit();
+            p.end_replicate();
         }
         slices.push_back(film.develop(true));
         slices.back().attributes()["renderHash"] = std::string("abc");
@@ -103,7 +106,7 @@ TEST(MergeSlices, TheBrightestUnitIsHeldAgainstTheMeanOfAll) {
     }
     const Image joined = merge(slices, names).image;
     EXPECT_GT(joined.value(1, 1, *joined.find_channel("outlier")), 0.9);
-    EXPECT_EQ(joined.value(1, 1, *joined.find_channel("doubt")), float(Doubt::bright_unit));
+    EXPECT_EQ(joined.value(1, 1, *joined.find_channel("warning")), float(PixelWarning::bright_replicate));
 }
 
 // Too dark for all samples together, and the errors do not know of it.
@@ -126,17 +129,17 @@ TEST(MergeSlices, ClampedLightIsJoined) {
     EXPECT_EQ(std::get<int>(merged.image.attributes().at("clampedSamples")), 100);
 }
 
-// Pictures that are not slices lack the brightest units; nothing is lost where there is one alone.
+// Pictures that are not slices lack the brightest replicates; nothing is lost where there is one alone.
 TEST(MergeSlices, OneWholePictureStaysWhatItIs) {
     const Image whole = picture(0, 1, 24);
     EXPECT_FALSE(whole.find_channel("brightest.R"));
     const std::vector<Image> pictures{whole};
     const std::vector<std::string> names{"whole"};
     const Image joined = merge(pictures, names).image;
-    for (const char* layer : {"outlier", "doubt"}) {
+    for (const char* layer : {"outlier", "warning"}) {
         const int c = *whole.find_channel(layer);
-        for (int y = 0; y < height; ++y)
-            for (int x = 0; x < width; ++x)
+        for (int y = 0; y < slice_height; ++y)
+            for (int x = 0; x < slice_width; ++x)
                 EXPECT_NEAR(joined.value(x, y, c), whole.value(x, y, c), 2e-6) << layer;
     }
 }

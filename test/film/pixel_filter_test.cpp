@@ -215,9 +215,10 @@ TEST(PixelFilterSampler, PixelConvergesToTheConvolution) {
             double value = stripes(x + 0.5 + double(s.offset.x), y + 0.5 + double(s.offset.y));
             float v = static_cast<float>(value) * s.weight;
             pixel.add_sample({.radiance = {v, v, v}, .albedo = {}, .normal = {}});
-            pixel.end_unit();
+            pixel.end_replicate();
         }
-        EXPECT_NEAR(pixel.units().mean(0), truth, 5.5 * pixel.units().standard_error(0) + 2e-5) << c.name;
+        EXPECT_NEAR(pixel.replicates().mean(0), truth, 5.5 * pixel.replicates().standard_error(0) + 2e-5)
+            << c.name;
     }
 }
 

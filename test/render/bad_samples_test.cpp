@@ -48,9 +48,9 @@ TEST(BadSamples, AreCountedAndToldOfAndReplayed) {
                     EXPECT_EQ(p.samples(), 16u);
                     EXPECT_EQ(p.bad(), x < 4 ? 0u : 16u);
                     if (x < 4) {
-                        EXPECT_NEAR(p.units().mean(1), 1, 0.5);
+                        EXPECT_NEAR(p.replicates().mean(1), 1, 0.5);
                     } else {
-                        EXPECT_EQ(p.units().mean(1), 0);
+                        EXPECT_EQ(p.replicates().mean(1), 0);
                     }
                 }
             EXPECT_EQ(in_pixels, report.bad.count());
@@ -123,10 +123,10 @@ TEST(Cancel, LeavesAValidFilm) {
                     samples += p.samples();
                     EXPECT_LT(p.samples(), 64u);
                     EXPECT_GT(p.samples(), 0u);
-                    EXPECT_GT(p.units().count(), 0u);
-                    EXPECT_TRUE(std::isfinite(p.units().mean(1)));
+                    EXPECT_GT(p.replicates().count(), 0u);
+                    EXPECT_TRUE(std::isfinite(p.replicates().mean(1)));
                     if (kind == SamplerKind::independent) {
-                        EXPECT_EQ(p.units().count(), p.samples());
+                        EXPECT_EQ(p.replicates().count(), p.samples());
                     }
                 }
             EXPECT_EQ(samples, report.samples);
@@ -175,7 +175,7 @@ TEST(Progress, CountsUpToTheTotal) {
     EXPECT_EQ(last, 64u * 16);
 }
 
-// With one sample a pixel the picture is the samples: none may exceed the limit, and hues stay.
+// With one sample per pixel the picture is the samples: none may exceed the limit, and hues stay.
 TEST(MaxComponentValue, ClampsSamples) {
     SceneBuilder b = mixed_scene(1, 24, 24);
     b.description.sampler.spp = 1;
@@ -186,7 +186,7 @@ TEST(MaxComponentValue, ClampsSamples) {
     int above = 0;
     for (int y = 0; y < 24; ++y)
         for (int x = 0; x < 24; ++x) {
-            const auto &f = free.pixel(x, y).units(), &c = clamped.pixel(x, y).units();
+            const auto &f = free.pixel(x, y).replicates(), &c = clamped.pixel(x, y).replicates();
             double largest = std::max({f.mean(0), f.mean(1), f.mean(2)});
             above += largest > limit;
             double factor = largest > limit ? limit / largest : 1;

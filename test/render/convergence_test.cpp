@@ -14,10 +14,10 @@ constexpr SamplerKind samplers[] = {SamplerKind::independent, SamplerKind::strat
                                     SamplerKind::halton,      SamplerKind::hammersley,
                                     SamplerKind::sobol,       SamplerKind::sobol_blue_noise};
 
-// The normal deviate that is as unlikely as this deviation of the mean of a few units.
-double normal_score(const SkewMoments<3>& units, double truth) {
-    double t = (units.mean(1) - truth) / units.standard_error(1);
-    double p = student_t_cdf(-std::abs(t), static_cast<double>(units.count() - 1));
+// The normal deviate that is as unlikely as this deviation of the mean of a few replicates.
+double normal_score(const SkewMoments<3>& replicates, double truth) {
+    double t = (replicates.mean(1) - truth) / replicates.standard_error(1);
+    double p = student_t_cdf(-std::abs(t), static_cast<double>(replicates.count() - 1));
     return std::copysign(std::min(9.0, -normal_quantile(std::max(p, 1e-18))), t);
 }
 
@@ -45,7 +45,7 @@ std::vector<double> scores(SceneBuilder& b, double truth, int seeds) {
         Film film = render(b.description);
         const PixelBounds& c = film.bounds();
         for (int y = c.y0; y < c.y1; ++y)
-            for (int x = c.x0; x < c.x1; ++x) z.push_back(normal_score(film.pixel(x, y).units(), truth));
+            for (int x = c.x0; x < c.x1; ++x) z.push_back(normal_score(film.pixel(x, y).replicates(), truth));
     }
     return z;
 }
@@ -79,7 +79,7 @@ TEST(Calibration, OfLongPaths) {
     }
 }
 
-// Mean over pixels of the variance over seeds, in units of the squared mean.
+// Mean over pixels of the variance over seeds, in replicates of the squared mean.
 double relative_mse(SceneBuilder& b, SamplerKind kind, std::uint32_t samples, std::uint32_t replicates,
                     int seeds) {
     b.description.sampler.kind = kind;
@@ -92,7 +92,8 @@ double relative_mse(SceneBuilder& b, SamplerKind kind, std::uint32_t samples, st
         Film film = render(b.description);
         for (int y = 0; y < c.height(); ++y)
             for (int x = 0; x < c.width(); ++x)
-                pixels[static_cast<std::size_t>(y * c.width() + x)].add(film.pixel(x, y).units().mean(1));
+                pixels[static_cast<std::size_t>(y * c.width() + x)].add(
+                    film.pixel(x, y).replicates().mean(1));
     }
     double sum = 0;
     for (const RunningMoments& m : pixels) sum += m.variance() / (m.mean() * m.mean());
@@ -156,8 +157,8 @@ Quarters quarters(const Film& film) {
             for (int c = 0; c < 3; ++c) {
                 int k = 3 * (2 * (2 * y / h) + 2 * x / w) + c;
                 double n = w * h / 4.0;
-                q.mean[k] += film.pixel(x, y).units().mean(c) / n;
-                q.variance[k] += film.pixel(x, y).units().variance_of_mean(c) / (n * n);
+                q.mean[k] += film.pixel(x, y).replicates().mean(c) / n;
+                q.variance[k] += film.pixel(x, y).replicates().variance_of_mean(c) / (n * n);
             }
     return q;
 }

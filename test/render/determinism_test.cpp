@@ -1,4 +1,4 @@
-// The picture depends on the scene and the seed alone: not on threads, tiles, or the unit of length.
+// The picture depends on the scene and the seed alone: not on threads, tiles, or the replicate of length.
 #include "test/render/mixed_scene.h"
 #include <cstring>
 #include <gtest/gtest.h>
@@ -62,9 +62,9 @@ TEST(Determinism, SeedsDifferAndRepeat) {
 // Millimetres or kilometres: the same random numbers make the same paths, but for the few that rounding
 // sends around an edge. Wrong offsets would speckle the picture at one of the scales.
 TEST(Determinism, AnyUnitOfLength) {
-    SceneBuilder unit = mixed_scene(1, 24, 24);
-    unit.description.sampler.spp = 64;
-    Film reference = render(unit.description);
+    SceneBuilder replicate = mixed_scene(1, 24, 24);
+    replicate.description.sampler.spp = 64;
+    Film reference = render(replicate.description);
     for (double scale : {1e-3, 1e4}) {
         SceneBuilder b = mixed_scene(scale, 24, 24);
         b.description.sampler.spp = 64;
@@ -73,7 +73,7 @@ TEST(Determinism, AnyUnitOfLength) {
         int differing = 0;
         for (int y = 0; y < 24; ++y)
             for (int x = 0; x < 24; ++x) {
-                const auto &m = film.pixel(x, y).units(), &r = reference.pixel(x, y).units();
+                const auto &m = film.pixel(x, y).replicates(), &r = reference.pixel(x, y).replicates();
                 mean += m.mean(1);
                 reference_mean += r.mean(1);
                 double difference = std::abs(m.mean(1) - r.mean(1));

@@ -29,8 +29,9 @@ TEST(MisTerms, AddUpToThePictureOfMis) {
         for (int y = 0; y < 16; ++y)
             for (int x = 0; x < 16; ++x)
                 for (int c = 0; c < 3; ++c) {
-                    const double a = bsdf.pixel(x, y).units().mean(c), b = light.pixel(x, y).units().mean(c),
-                                 mean = both.pixel(x, y).units().mean(c);
+                    const double a = bsdf.pixel(x, y).replicates().mean(c),
+                                 b = light.pixel(x, y).replicates().mean(c),
+                                 mean = both.pixel(x, y).replicates().mean(c);
                     EXPECT_NEAR(a + b, mean, 2e-5 * std::abs(mean) + 1e-7) << x << ',' << y;
                     sums[0] += a;
                     sums[1] += b;
@@ -95,7 +96,7 @@ TEST(MisTerms, LampsThatNothingMeetsAndLightThatTheCameraSees) {
         const Film film = render(b.description);
         double sum = 0;
         for (int y = 0; y < 8; ++y)
-            for (int x = 0; x < 8; ++x) sum += film.pixel(x, y).units().mean(1);
+            for (int x = 0; x < 8; ++x) sum += film.pixel(x, y).replicates().mean(1);
         return sum / 64;
     };
     SceneBuilder lamp;

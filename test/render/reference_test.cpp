@@ -15,7 +15,7 @@ namespace {
 
 class ReferenceSlowTest : public ::testing::TestWithParam<const char*> {};
 
-// At 64 samples a pixel, without the hundredth of the pixels where the reference itself is the noisiest.
+// At 64 samples per pixel, without the hundredth of the pixels where the reference itself is the noisiest.
 // Scores have errors pooled over 3 x 3 pixels, without which those below the truth claim too small an error.
 // What is left is not the normal law: the reference's errors come from eight pictures (Student's t), and
 // errors differ between neighbours, so bounds of the shares are wide. On killeroo-simple pbrt's weights of

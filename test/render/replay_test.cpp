@@ -27,7 +27,7 @@ Pixel replayed_pixel(const Renderer& renderer, int x, int y) {
         const bool last = i + 1 == sampler.spp;
         if (sampler.kind == SamplerKind::independent || last ||
             replicate_of(sampler, i + 1) != replicate_of(sampler, i))
-            pixel.end_unit();
+            pixel.end_replicate();
     }
     return pixel;
 }

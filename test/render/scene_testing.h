@@ -96,8 +96,8 @@ inline PictureMean picture_mean(const Film& film, int channel = 1) {
     const PixelBounds& b = film.bounds();
     for (int y = b.y0; y < b.y1; ++y)
         for (int x = b.x0; x < b.x1; ++x) {
-            sum += film.pixel(x, y).units().mean(channel);
-            variance += film.pixel(x, y).units().variance_of_mean(channel);
+            sum += film.pixel(x, y).replicates().mean(channel);
+            variance += film.pixel(x, y).replicates().variance_of_mean(channel);
         }
     double n = double(b.width()) * b.height();
     return {sum / n, std::sqrt(variance) / n};
@@ -107,11 +107,13 @@ inline PictureMean picture_mean(const Film& film, int channel = 1) {
 inline bool same_pixel(const Pixel& a, const Pixel& b) {
     auto same = [](Vec3f v, Vec3f w) { return v.x == w.x && v.y == w.y && v.z == w.z; };
     for (int c = 0; c < 3; ++c)
-        if (a.units().mean(c) != b.units().mean(c) || a.units().variance(c) != b.units().variance(c) ||
-            a.units().skewness(c) != b.units().skewness(c))
+        if (a.replicates().mean(c) != b.replicates().mean(c) ||
+            a.replicates().variance(c) != b.replicates().variance(c) ||
+            a.replicates().skewness(c) != b.replicates().skewness(c))
             return false;
-    return a.units().count() == b.units().count() && a.samples() == b.samples() && a.bad() == b.bad() &&
-           same(a.albedo(), b.albedo()) && same(a.normal(), b.normal()) && a.depth() == b.depth();
+    return a.replicates().count() == b.replicates().count() && a.samples() == b.samples() &&
+           a.bad() == b.bad() && same(a.albedo(), b.albedo()) && same(a.normal(), b.normal()) &&
+           a.depth() == b.depth();
 }
 
 inline Film render(const SceneDescription& description) {

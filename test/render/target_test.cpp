@@ -32,9 +32,9 @@ TEST(Target, ErrorIsReachedAndNotOvershot) {
         }
 }
 
-// A picture so small that its error is made of few units: looked at after each, one that is small by chance
+// A picture so small that its error is made of few replicates: looked at after each, one that is small by chance
 // would end the render far too early. The targets are shares of the error that 16 samples leave.
-TEST(Target, FewUnitsAreNotBelieved) {
+TEST(Target, FewReplicatesAreNotBelieved) {
     SceneBuilder b;
     b.description.film.width = b.description.film.height = 1;
     b.description.film.crop = {0, 0, 1, 1};
@@ -44,10 +44,11 @@ TEST(Target, FewUnitsAreNotBelieved) {
     b.description.sampler = {SamplerKind::sobol, 1, 1u << 15};
     const RenderTarget endless{.error = 1e-9};
     const RenderState truth = run(b.description, endless);
-    const SkewMoments<3>& units = truth.film.pixels()[0].units();
-    ASSERT_EQ(units.count(), (1u << 15) / 8);
+    const SkewMoments<3>& replicates = truth.film.pixels()[0].replicates();
+    ASSERT_EQ(replicates.count(), (1u << 15) / 8);
     auto luminance = [](const Film& film) { return film.error().mean_luminance; };
-    const double after_16 = truth.film.error().relative * std::sqrt(static_cast<double>(units.count()) / 2);
+    const double after_16 =
+        truth.film.error().relative * std::sqrt(static_cast<double>(replicates.count()) / 2);
     for (double target : {after_16 / 3, after_16 / 6})
         for (bool adaptive : {false, true}) {
             RunningMoments squares;
@@ -158,7 +159,7 @@ TEST(Target, ATimeThatIsNotUsedUpChangesNothing) {
         for (std::size_t i = 0; i < with.film.pixels().size(); ++i) {
             const Pixel &p = with.film.pixels()[i], &q = without.film.pixels()[i];
             EXPECT_EQ(p.samples(), q.samples());
-            for (int c = 0; c < 3; ++c) EXPECT_EQ(p.units().mean(c), q.units().mean(c));
+            for (int c = 0; c < 3; ++c) EXPECT_EQ(p.replicates().mean(c), q.replicates().mean(c));
         }
     }
 }
@@ -204,10 +205,10 @@ TEST(Target, SlicesAddUpToTheWhole) {
         std::vector<SkewMoments<3>> sums(256);
         for (std::uint32_t k = 0; k < 3; ++k) {
             const RenderState part = run(b.description, {.slice = {k, 3}});
-            for (std::size_t i = 0; i < sums.size(); ++i) sums[i].merge(part.film.pixels()[i].units());
+            for (std::size_t i = 0; i < sums.size(); ++i) sums[i].merge(part.film.pixels()[i].replicates());
         }
         for (std::size_t i = 0; i < sums.size(); ++i) {
-            const SkewMoments<3>& u = whole.pixels()[i].units();
+            const SkewMoments<3>& u = whole.pixels()[i].replicates();
             ASSERT_EQ(sums[i].count(), u.count());
             for (int c = 0; c < 3; ++c) {
                 EXPECT_NEAR(sums[i].mean(c), u.mean(c), 1e-12 * (1 + u.mean(c)));

@@ -1,4 +1,4 @@
-// Which samples a pixel takes, and how many next.
+// Which samples per pixel takes, and how many next.
 #include "test/render/mixed_scene.h"
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -7,8 +7,7 @@
 
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/random/hash.h"
-#include "montelux/render/allocation.h"
-#include "montelux/render/rounds.h"
+#include "montelux/render/sample_allocation.h"
 
 namespace montelux::testing {
 namespace {
@@ -19,14 +18,14 @@ TEST(SampleOrder, SlicesShareTheSamples) {
             for (std::uint32_t slices : {1u, 3u, 16u}) {
                 const SamplerSettings s = with_replicates({kind, 0, spp}, {});
                 std::multiset<std::uint64_t> taken;
-                std::set<std::uint64_t> units;
+                std::set<std::uint64_t> replicates;
                 for (std::uint32_t k = 0; k < slices; ++k) {
                     const SampleOrder order(s, {k, slices});
                     for (std::uint64_t i = 0; i < order.share(); ++i) {
                         taken.insert(order.index(i));
-                        // A unit is whole in one slice.
-                        if (i % order.unit() == 0) {
-                            EXPECT_TRUE(units.insert(order.index(i) / order.unit()).second);
+                        // A replicate is whole in one slice.
+                        if (i % order.replicate_size() == 0) {
+                            EXPECT_TRUE(replicates.insert(order.index(i) / order.replicate_size()).second);
                         }
                     }
                 }
@@ -36,7 +35,7 @@ TEST(SampleOrder, SlicesShareTheSamples) {
             }
 }
 
-TEST(Rounds, EqualOnesCoverAllSamplesAndEndWithUnits) {
+TEST(SampleAllocation, EqualOnesCoverAllSamplesAndEndWithReplicates) {
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::stratified, SamplerKind::sobol})
         for (std::uint32_t spp : {1u, 2u, 7u, 8u, 64u, 100u, 1000u}) {
             const SamplerSettings s = with_replicates({kind, 0, spp, 1}, {});
@@ -47,16 +46,16 @@ TEST(Rounds, EqualOnesCoverAllSamplesAndEndWithUnits) {
             const SampleOrder order(s, {});
             std::uint64_t at = 0;
             for (;;) {
-                const std::vector<std::uint32_t> goals = next_goals(state, s, {});
-                if (goals.empty()) break;
-                ASSERT_GT(goals[0], at);
-                EXPECT_LE(goals[0] - at, 16u);
-                // None spans two units of several samples.
-                if (order.unit() > 1) {
-                    EXPECT_EQ(at / order.unit(), (goals[0] - 1) / order.unit());
+                const std::vector<std::uint32_t> target_samples = next_target_samples(state, s, {});
+                if (target_samples.empty()) break;
+                ASSERT_GT(target_samples[0], at);
+                EXPECT_LE(target_samples[0] - at, 16u);
+                // None spans two replicates of several samples.
+                if (order.replicate_size() > 1) {
+                    EXPECT_EQ(at / order.replicate_size(), (target_samples[0] - 1) / order.replicate_size());
                 }
-                at = goals[0];
-                state.goals = goals;
+                at = target_samples[0];
+                state.target_samples = target_samples;
             }
             EXPECT_EQ(at, spp);
         }
@@ -65,7 +64,7 @@ TEST(Rounds, EqualOnesCoverAllSamplesAndEndWithUnits) {
               8u);
 }
 
-// Pixels with n units whose values have the given standard deviation.
+// Pixels with n replicates whose values have the given standard deviation.
 Film film_with(const std::vector<double>& deviations, int width, int n, std::uint64_t seed) {
     const int height = static_cast<int>(deviations.size()) / width;
     Film film({.width = width, .height = height, .crop = {0, 0, width, height}});
@@ -75,37 +74,38 @@ Film film_with(const std::vector<double>& deviations, int width, int n, std::uin
             const std::uint64_t bits = hash_key(seed, i, k);
             const float v = static_cast<float>(10 + deviations[i] * ((bits & 1u) != 0 ? 1 : -1));
             p.add_sample({.radiance = {v, v, v}, .albedo = {}, .normal = {}});
-            p.end_unit();
+            p.end_replicate();
         }
         ++i;
     }
     return film;
 }
-double sum(const std::vector<std::uint32_t>& goals) {
-    return std::accumulate(goals.begin(), goals.end(), 0.0);
+double sum(const std::vector<std::uint32_t>& target_samples) {
+    return std::accumulate(target_samples.begin(), target_samples.end(), 0.0);
 }
 
-TEST(Allocation, FollowsTheDeviationsAndStarvesNobody) {
+TEST(NeymanAllocation, FollowsTheDeviationsAndStarvesNobody) {
     constexpr int width = 64;
     std::vector<double> deviations(width * width, 0.0);
     for (std::size_t i = 0; i < deviations.size(); ++i)
         deviations[i] = i % width < 16 ? 0 : i % width < 48 ? 1 : 2;
     const Film film = film_with(deviations, width, 64, 1);
     SamplerSettings s{SamplerKind::independent, 0, 1u << 20};
-    const std::vector<std::uint32_t> goals = allocate(film, SampleOrder(s, {}), {.error = 1e-9});
-    ASSERT_EQ(goals.size(), deviations.size());
-    EXPECT_NEAR(sum(goals), 2 * 64.0 * width * width, 0.01 * sum(goals));
-    auto at = [&](int x) { return goals[static_cast<std::size_t>(32 * width + x)]; };
+    const std::vector<std::uint32_t> target_samples =
+        neyman_allocation(film, SampleOrder(s, {}), {.error = 1e-9});
+    ASSERT_EQ(target_samples.size(), deviations.size());
+    EXPECT_NEAR(sum(target_samples), 2 * 64.0 * width * width, 0.01 * sum(target_samples));
+    auto at = [&](int x) { return target_samples[static_cast<std::size_t>(32 * width + x)]; };
     EXPECT_EQ(at(4), 64u); // has more than its third of the mean
     EXPECT_NEAR(at(56) / static_cast<double>(at(32)), 2, 0.4);
     // Further on every pixel gets its third.
     const Film later = film_with(deviations, width, 4, 1);
-    const std::vector<std::uint32_t> few = allocate(later, SampleOrder(s, {}), {});
+    const std::vector<std::uint32_t> few = neyman_allocation(later, SampleOrder(s, {}), {});
     EXPECT_GE(few[32 * width + 4], 0.2 * sum(few) / (width * width));
 }
 
 // The pixel's own samples have no part in it.
-TEST(Allocation, DoesNotDependOnThePixelItself) {
+TEST(NeymanAllocation, DoesNotDependOnThePixelItself) {
     constexpr int width = 9;
     const std::vector<double> even(width * width, 1.0);
     std::vector<double> spot = even;
@@ -113,41 +113,41 @@ TEST(Allocation, DoesNotDependOnThePixelItself) {
     SamplerSettings s{SamplerKind::independent, 0, 1u << 20};
     const SampleOrder order(s, {});
     // Scaled so that the pixels around may get more, but its own weight stays.
-    const auto a = allocate(film_with(even, width, 1024, 3), order, {.error = 1e-9});
-    const auto b = allocate(film_with(spot, width, 1024, 3), order, {.error = 1e-9});
+    const auto a = neyman_allocation(film_with(even, width, 1024, 3), order, {.error = 1e-9});
+    const auto b = neyman_allocation(film_with(spot, width, 1024, 3), order, {.error = 1e-9});
     EXPECT_LT(b[4 * width + 4], a[4 * width + 4]);
     EXPECT_GT(b[4 * width + 5], a[4 * width + 5]);
 }
 
-TEST(Allocation, GoesAsFarAsTheTargetNeedsInWholeUnits) {
+TEST(NeymanAllocation, GoesAsFarAsTheTargetNeedsInWholeReplicates) {
     constexpr int width = 32;
     const Film film = film_with(std::vector<double>(width * width, 1.0), width, 64, 5);
     SamplerSettings s{SamplerKind::sobol, 0, 1u << 20, 1, 8};
     // Relative error now: 1 / sqrt(64) / 10 = 1.25 %; for 1.05 % about 90.7 samples are needed.
-    const auto goals = allocate(film, SampleOrder(s, {}), {.error = 0.0105});
-    for (std::uint32_t g : goals) EXPECT_EQ(g % 8, 0u);
-    EXPECT_NEAR(sum(goals) / (width * width), 90.7, 8);
+    const auto target_samples = neyman_allocation(film, SampleOrder(s, {}), {.error = 0.0105});
+    for (std::uint32_t g : target_samples) EXPECT_EQ(g % 8, 0u);
+    EXPECT_NEAR(sum(target_samples) / (width * width), 90.7, 8);
     // At most twice as many, at least a tenth more, and never more than there are.
-    EXPECT_LE(sum(allocate(film, SampleOrder(s, {}), {.error = 1e-4})), 128.01 * width * width);
-    EXPECT_GT(sum(allocate(film, SampleOrder(s, {}), {.error = 0.5})), 64.0 * width * width);
+    EXPECT_LE(sum(neyman_allocation(film, SampleOrder(s, {}), {.error = 1e-4})), 128.01 * width * width);
+    EXPECT_GT(sum(neyman_allocation(film, SampleOrder(s, {}), {.error = 0.5})), 64.0 * width * width);
     s.spp = 80;
-    EXPECT_LE(sum(allocate(film, SampleOrder(s, {}), {.error = 1e-4})), 80.0 * width * width);
+    EXPECT_LE(sum(neyman_allocation(film, SampleOrder(s, {}), {.error = 1e-4})), 80.0 * width * width);
     s.spp = 64;
-    EXPECT_TRUE(allocate(film, SampleOrder(s, {}), {.error = 1e-4}).empty());
+    EXPECT_TRUE(neyman_allocation(film, SampleOrder(s, {}), {.error = 1e-4}).empty());
 }
 
-TEST(Allocation, BlackPicturesAndSinglePixelsGoOn) {
+TEST(NeymanAllocation, BlackPicturesAndSinglePixelsGoOn) {
     SamplerSettings s{SamplerKind::independent, 0, 1u << 20};
     Film black({.width = 4, .height = 4, .crop = {0, 0, 4, 4}});
     for (Pixel& p : black.pixels())
         for (int i = 0; i < 16; ++i) {
             p.add_sample({});
-            p.end_unit();
+            p.end_replicate();
         }
-    const auto goals = allocate(black, SampleOrder(s, {}), {.error = 0.01});
-    ASSERT_EQ(goals.size(), 16u);
-    EXPECT_GT(goals[0], 16u);
-    const auto one = allocate(film_with({1.0}, 1, 16, 1), SampleOrder(s, {}), {.error = 1e-3});
+    const auto target_samples = neyman_allocation(black, SampleOrder(s, {}), {.error = 0.01});
+    ASSERT_EQ(target_samples.size(), 16u);
+    EXPECT_GT(target_samples[0], 16u);
+    const auto one = neyman_allocation(film_with({1.0}, 1, 16, 1), SampleOrder(s, {}), {.error = 1e-3});
     ASSERT_EQ(one.size(), 1u);
     EXPECT_EQ(one[0], 32u);
 }

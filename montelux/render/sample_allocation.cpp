@@ -1,14 +1,23 @@
-#include "montelux/render/allocation.h"
+#include "montelux/render/sample_allocation.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
+#include <string>
 
 #include "montelux/mc/math/compensated.h"
+#include "montelux/mc/math/error.h"
 #include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux {
 namespace {
+
+constexpr std::uint64_t longest_round = 16;
+constexpr std::uint32_t points_for_targets = 8;
+constexpr std::uint32_t many_samples = 256; // so many are split into 16 replicates
+// Of adaptive renders, for the first errors: samples, and replicates.
+constexpr std::uint64_t pilot_samples = 16, pilot_replicates = 4;
 
 constexpr int radius = 3;               // of the pixels around one
 constexpr double least_share = 1.0 / 3; // of the mean number of samples
@@ -57,19 +66,66 @@ std::vector<double> deviations(const Film& film) {
 
 } // namespace
 
-std::vector<std::uint32_t> allocate(const Film& film, const SampleOrder& order, const RenderTarget& target) {
+std::uint64_t pilot_of(const SampleOrder& order) {
+    const std::uint64_t samples = std::max(pilot_samples, pilot_replicates * order.replicate_size());
+    return (samples + order.replicate_size() - 1) / order.replicate_size() * order.replicate_size();
+}
+
+SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& target) {
+    if (settings.kind == SamplerKind::independent || settings.replicates >= 2 ||
+        settings.replicate_points != 0)
+        return settings;
+    if (target.error > 0 || target.time > 0)
+        settings.replicate_points = std::clamp(settings.spp / 8, 1u, points_for_targets);
+    else if (target.adaptive) // pixels that get a third of the samples still have twenty replicates
+        settings.replicate_points = std::clamp(std::bit_floor(settings.spp / 64), 1u, points_for_targets);
+    else
+        settings.replicates =
+            std::min(std::max(settings.spp < many_samples ? 8u : 16u, target.slice.count), settings.spp);
+    return settings;
+}
+
+void check_slice(const SceneDescription& description, const RenderTarget& target) {
+    const Slice& slice = target.slice;
+    if (slice.index >= slice.count)
+        throw Error("slices are counted from 0, and there are " + std::to_string(slice.count));
+    if (SampleOrder(with_replicates(description.sampler, target), slice).share() == 0)
+        throw Error("there are fewer replicates than slices; more samples per pixel are needed");
+}
+
+std::vector<std::uint32_t> next_target_samples(const RenderState& state, const SamplerSettings& sampler,
+                                               const RenderTarget& target) {
+    const SampleOrder order(sampler, target.slice);
+    const std::uint64_t share = order.share();
+    const std::size_t pixels = state.film.pixels().size();
+    const std::uint64_t begin = state.target_samples.empty() ? 0 : state.target_samples.front();
+    const std::uint64_t pilot = target.adaptive ? pilot_of(order) : 0;
+    if (target.adaptive && begin >= pilot) return neyman_allocation(state.film, order, target);
+    if (begin >= share) return {};
+    std::uint64_t end = pilot;
+    if (!target.adaptive || target.time > 0) { // 1, 2, 4, 8, 16, 32, 48, ... samples
+        end = begin + std::clamp<std::uint64_t>(std::bit_floor(begin), 1, longest_round);
+        if (order.replicate_size() > 1)
+            end = std::min(end, (begin / order.replicate_size() + 1) * order.replicate_size());
+        if (target.adaptive) end = std::min(end, pilot);
+    }
+    return std::vector<std::uint32_t>(pixels, static_cast<std::uint32_t>(std::min(end, share)));
+}
+
+std::vector<std::uint32_t> neyman_allocation(const Film& film, const SampleOrder& order,
+                                             const RenderTarget& target) {
     const std::vector<double> weight = deviations(film);
     const std::size_t n = weight.size();
-    const double pixels = static_cast<double>(n), unit = order.unit();
+    const double pixels = static_cast<double>(n), replicate = order.replicate_size();
     CompensatedSum taken, weights;
     for (const Pixel& p : film.pixels()) taken.add(p.samples());
     for (double w : weight) weights.add(w);
     const double most = static_cast<double>(order.share()) * pixels;
-    if (taken.value() + unit > most) return {};
+    if (taken.value() + replicate > most) return {};
 
     // n_p = scale * weight_p, and no fewer than there are.
-    auto goal_of = [&](std::size_t i, double scale) {
-        const double wanted = std::min(std::ceil(scale * weight[i] / unit) * unit, 4e9);
+    auto target_of = [&](std::size_t i, double scale) {
+        const double wanted = std::min(std::ceil(scale * weight[i] / replicate) * replicate, 4e9);
         return std::max(static_cast<double>(film.pixels()[i].samples()), wanted);
     };
     // Sums of whole numbers are exact in any order.
@@ -80,7 +136,7 @@ std::vector<std::uint32_t> allocate(const Film& film, const SampleOrder& order, 
             [&](std::int64_t r) {
                 const std::size_t first = static_cast<std::size_t>(r) * run, last = std::min(n, first + run);
                 double sum = 0;
-                for (std::size_t i = first; i < last; ++i) sum += goal_of(i, scale);
+                for (std::size_t i = first; i < last; ++i) sum += target_of(i, scale);
                 return sum;
             },
             std::plus<>());
@@ -107,19 +163,20 @@ std::vector<std::uint32_t> allocate(const Film& film, const SampleOrder& order, 
         limit = std::min(limit, std::max(ratio * ratio, least_growth) * taken.value());
     }
     const double scale = scale_within(limit);
-    std::vector<std::uint32_t> goals(n);
+    std::vector<std::uint32_t> target_samples(n);
     bool more = false;
     for (std::size_t i = 0; i < n; ++i) {
-        goals[i] = static_cast<std::uint32_t>(goal_of(i, scale));
-        more = more || goals[i] > film.pixels()[i].samples();
+        target_samples[i] = static_cast<std::uint32_t>(target_of(i, scale));
+        more = more || target_samples[i] > film.pixels()[i].samples();
     }
-    // Units are too large for the limit, or nothing varies: the same for all, as far as that is allowed.
+    // Replicates are too large for the limit, or nothing varies: the same for all, as far as that is allowed.
     if (!more) {
-        const std::uint64_t room = static_cast<std::uint64_t>((most - taken.value()) / (pixels * unit));
+        const std::uint64_t room = static_cast<std::uint64_t>((most - taken.value()) / (pixels * replicate));
         if (room == 0) return {};
-        for (std::size_t i = 0; i < n; ++i) goals[i] = film.pixels()[i].samples() + order.unit();
+        for (std::size_t i = 0; i < n; ++i)
+            target_samples[i] = film.pixels()[i].samples() + order.replicate_size();
     }
-    return goals;
+    return target_samples;
 }
 
 } // namespace montelux

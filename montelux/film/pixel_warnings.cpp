@@ -1,4 +1,4 @@
-#include "montelux/film/doubtful_pixels.h"
+#include "montelux/film/pixel_warnings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace montelux {
 namespace {
 
-constexpr double enough_units = 16, heavy_share = 0.5;
+constexpr double enough_replicates = 16, heavy_share = 0.5;
 // Measured (docs/render-to-an-error.md): with a factor of 4 the pixels that are left are still too sure by a
 // little, with 2 every edge is marked.
 constexpr double far_larger = 3;
@@ -32,34 +32,34 @@ double mean_variance_around(std::span<const PixelSpread> pixels, int width, int 
 
 } // namespace
 
-std::vector<Doubt> doubtful_pixels(std::span<const PixelSpread> pixels, int width) {
-    std::vector<Doubt> doubts(pixels.size(), Doubt::none);
+std::vector<PixelWarning> pixel_warnings(std::span<const PixelSpread> pixels, int width) {
+    std::vector<PixelWarning> warnings(pixels.size(), PixelWarning::none);
     const int height = static_cast<int>(pixels.size()) / width;
     std::size_t i = 0;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x, ++i) {
             if (std::isnan(pixels[i].variance))
-                doubts[i] = Doubt::unknown;
-            else if (pixels[i].bright_unit)
-                doubts[i] = Doubt::bright_unit;
+                warnings[i] = PixelWarning::unknown;
+            else if (pixels[i].bright_replicate)
+                warnings[i] = PixelWarning::bright_replicate;
             else if (mean_variance_around(pixels, width, height, x, y) > far_larger * pixels[i].variance)
-                doubts[i] = Doubt::neighbours;
+                warnings[i] = PixelWarning::neighbours;
         }
-    return doubts;
+    return warnings;
 }
 
-PixelSpread pixel_spread(double luminance_error, double samples, double units, double largest_share) {
-    if (units < enough_units) return {std::numeric_limits<double>::quiet_NaN(), false};
+PixelSpread pixel_spread(double luminance_error, double samples, double replicates, double largest_share) {
+    if (replicates < enough_replicates) return {std::numeric_limits<double>::quiet_NaN(), false};
     return {luminance_error * luminance_error * samples, largest_share > heavy_share};
 }
 
-std::vector<Doubt> doubtful_pixels(const Film& film) {
+std::vector<PixelWarning> pixel_warnings(const Film& film) {
     std::vector<PixelSpread> spreads;
     spreads.reserve(film.pixels().size());
     for (const Pixel& p : film.pixels())
         spreads.push_back(pixel_spread(luminance_error(p), p.samples(),
-                                       static_cast<double>(p.units().count()), p.largest_share()));
-    return doubtful_pixels(spreads, film.bounds().width());
+                                       static_cast<double>(p.replicates().count()), p.largest_share()));
+    return pixel_warnings(spreads, film.bounds().width());
 }
 
 } // namespace montelux
