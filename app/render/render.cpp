@@ -285,9 +285,9 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
         print_outliers(outliers_of(state.film));
         if (options.stats) {
             print_statistics(report, load_seconds, renderer.build_seconds());
-            for (const EnvironmentSampler& map : renderer.tables().lights().environments())
+            for (const EnvironmentSampler& map : renderer.scene().light_tables.environments)
                 std::printf("environment        %s\n", map.description().c_str());
-            for (const PortalSampler& map : renderer.tables().lights().portals())
+            for (const PortalSampler& map : renderer.scene().light_tables.portals)
                 std::printf("environment        %s\n", map.description().c_str());
             shared.print_statistics();
         }

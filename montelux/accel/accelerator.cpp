@@ -16,8 +16,7 @@ namespace {
 
 // What Embree hands back to the callbacks of one geometry.
 struct GeometryData {
-    const Scene* scene = nullptr;
-    const SceneTables* tables = nullptr;
+    const SceneView* scene = nullptr;
     Index shape = no_index;
     std::optional<WorldSphere> sphere; // of a quadric that is one
     bool cut_out = false;
@@ -45,7 +44,7 @@ void fill_bounds(const RTCBoundsFunctionArguments* args) {
 Ray ray_of(const RTCRay& r) { return {{r.org_x, r.org_y, r.org_z}, {r.dir_x, r.dir_y, r.dir_z}, r.tfar}; }
 
 bool passes_cut_out(const GeometryData& data, const Ray& ray, const Hit& hit) {
-    return !data.cut_out || is_opaque(*data.scene, *data.tables, ray, hit);
+    return !data.cut_out || is_opaque(*data.scene, ray, hit);
 }
 
 RTCRay embree_ray(const Ray& ray) {
@@ -108,7 +107,7 @@ void filter_triangle(const RTCFilterFunctionNArguments* args) {
     const auto* r = reinterpret_cast<const RTCRay*>(args->ray);
     const auto* h = reinterpret_cast<const RTCHit*>(args->hit);
     Hit hit{.t = r->tfar, .b1 = h->u, .b2 = h->v, .shape = data->shape, .primitive = h->primID};
-    if (!is_opaque(*data->scene, *data->tables, ray_of(*r), hit)) args->valid[0] = 0;
+    if (!is_opaque(*data->scene, ray_of(*r), hit)) args->valid[0] = 0;
 }
 
 } // namespace
@@ -118,7 +117,7 @@ struct Accelerator::Impl {
     RTCScene world = nullptr;
     std::vector<RTCScene> objects;
     std::vector<GeometryData> data; // one a shape
-    const Scene* scene = nullptr;
+    SceneView scene;
     Bounds3 bounds;
     std::string error;
 
@@ -137,11 +136,11 @@ struct Accelerator::Impl {
     }
 
     void attach_shape(RTCScene to, unsigned id, Index shape_index) {
-        const Shape& shape = scene->shapes[shape_index];
+        const Shape& shape = scene.shapes[shape_index];
         const bool cut_out = data[shape_index].cut_out;
         RTCGeometry geometry;
         if (shape.mesh != no_index) {
-            const TriangleMesh& mesh = scene->meshes[shape.mesh];
+            const TriangleMesh& mesh = scene.meshes[shape.mesh];
             geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
             // Embree reads 16 bytes a vertex: the buffer is its own copy, so that the last one is padded.
             auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
@@ -191,9 +190,9 @@ struct Accelerator::Impl {
     }
 };
 
-Accelerator::Accelerator(const Scene& scene, const SceneTables& tables) : impl_(std::make_unique<Impl>()) {
+Accelerator::Accelerator(const SceneView& scene) : impl_(std::make_unique<Impl>()) {
     Impl& a = *impl_;
-    a.scene = &scene;
+    a.scene = scene;
     a.device = rtcNewDevice(nullptr);
     if (a.device == nullptr) throw Error("Embree", "no device could be made");
     rtcSetDeviceErrorFunction(
@@ -206,8 +205,7 @@ Accelerator::Accelerator(const Scene& scene, const SceneTables& tables) : impl_(
     a.data.resize(scene.shapes.size());
     for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
         const Shape& shape = scene.shapes[i];
-        a.data[i].scene = &scene;
-        a.data[i].tables = &tables;
+        a.data[i].scene = &a.scene;
         a.data[i].shape = static_cast<Index>(i);
         a.data[i].cut_out = is_cut_out(shape);
         if (shape.quadric != no_index) a.data[i].sphere = whole_sphere(scene.quadrics[shape.quadric]);
@@ -254,7 +252,7 @@ bool Accelerator::intersect(const Ray& ray, Hit& hit) const {
     hit.b1 = r.hit.u;
     hit.b2 = r.hit.v;
     hit.primitive = r.hit.primID;
-    const Scene& scene = *impl_->scene;
+    const SceneView& scene = impl_->scene;
     if (r.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
         hit.instance = no_index;
         hit.shape = scene.world_shapes[r.hit.geomID];

@@ -3,20 +3,17 @@
 
 #include <memory>
 
-#include "montelux/scene/scene.h"
 #include "montelux/scene/shape/quadric.h"
 #include "montelux/scene/shape/ray.h"
+#include "montelux/scene/view.h"
 
 namespace montelux {
 
-class SceneTables;
-
-// Built once from an immutable scene, which must outlive it; all members may be called from any thread.
+// Built once from an immutable scene, whose arrays must outlive it; all members may be called from any thread.
 class Accelerator {
   public:
-    // `tables` serve the textures of alpha cut-outs. Throws Error when memory runs out or a geometry is
-    // refused.
-    Accelerator(const Scene& scene, const SceneTables& tables);
+    // Alpha cut-outs look up textures. Throws Error when memory runs out or a geometry is refused.
+    explicit Accelerator(const SceneView& scene);
     ~Accelerator();
     Accelerator(Accelerator&&) noexcept;
     Accelerator& operator=(Accelerator&&) noexcept;

@@ -8,9 +8,9 @@
 
 namespace montelux {
 
-bool is_opaque(const Scene& scene, const SceneTables& tables, const Ray& ray, const Hit& hit) {
+bool is_opaque(const SceneView& scene, const Ray& ray, const Hit& hit) {
     // Instances: the ray is already in the space of the object, and so is the shape.
-    const float alpha = alpha_at(scene, tables, ray, hit);
+    const float alpha = alpha_at(scene, ray, hit);
     if (alpha >= 1) return true;
     if (!(alpha > 0)) return false;
     // Each surface along the ray decides for itself; a quadric may be hit twice.

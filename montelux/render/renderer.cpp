@@ -260,17 +260,17 @@ Renderer::Renderer(const SceneDescription& description, const RenderTarget& targ
     check_slice(description, target);
     auto begin = Clock::now();
     tables_ = std::make_unique<SceneTables>(description.scene, description.integrator.environments());
-    accelerator_ = std::make_unique<Accelerator>(description.scene, *tables_);
+    accelerator_ = std::make_unique<Accelerator>(tables_->view());
     build_seconds_ = seconds_since(begin);
 }
 
 void Renderer::serve(const std::function<void(const TileRenderer&)>& work) const {
-    const SampleContext context(description_, sampler_, *tables_, camera_);
+    const SampleContext context(description_, sampler_, tables_->view(), camera_);
     work(TileRenderer(context, *accelerator_, SampleOrder(sampler_, target_.slice)));
 }
 
 void Renderer::render(RenderState& state, const RenderControl& control) const {
-    const SampleContext context(description_, sampler_, *tables_, camera_);
+    const SampleContext context(description_, sampler_, tables_->view(), camera_);
     RenderLoop(*this, context, state, control).run();
 }
 

@@ -28,7 +28,7 @@ class Renderer {
 
     const Accelerator& accelerator() const { return *accelerator_; }
     const Camera& camera() const { return camera_; }
-    const SceneTables& tables() const { return *tables_; }
+    const SceneView& scene() const { return tables_->view(); }
     // As the description says, with the number of replicates decided.
     const SamplerSettings& sampler() const { return sampler_; }
     double build_seconds() const { return build_seconds_; }

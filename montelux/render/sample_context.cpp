@@ -28,10 +28,9 @@ constexpr float footprint_scale = 0.125f;
 } // namespace
 
 SampleContext::SampleContext(const SceneDescription& description, const SamplerSettings& sampler,
-                             const SceneTables& tables, const Camera& camera)
+                             const SceneView& scene, const Camera& camera)
     : sampler_(sampler),
-      max_component_value_(description.film.max_component_value), path_{description.scene, tables, camera,
-                                                                        description.integrator,
+      max_component_value_(description.film.max_component_value), path_{scene, camera, description.integrator,
                                                                         footprint_scale},
       filter_(description.film.filter),
       sensor_(RgbColorSpace::srgb(),

@@ -27,8 +27,8 @@ class SampleContext {
     };
 
     // All arguments must outlive the context.
-    SampleContext(const SceneDescription& description, const SamplerSettings& sampler,
-                  const SceneTables& tables, const Camera& camera);
+    SampleContext(const SceneDescription& description, const SamplerSettings& sampler, const SceneView& scene,
+                  const Camera& camera);
 
     // A pure function of the pixel and the index (the tracer counts rays).
     Result take(RayTracer& tracer, int x, int y, std::uint64_t index) const {

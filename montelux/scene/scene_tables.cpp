@@ -52,15 +52,15 @@ bool has_texture(const CoatedConductorMaterial& m) {
     return has_texture(m.conductor) || has_texture(m.coating);
 }
 
-LightSampler make_light_sampler(const Scene& scene, const SceneTables& tables, LightSampling sampling) {
+LightSampler make_light_sampler(const SceneView& scene, LightSampling sampling) {
+    const auto light_count = static_cast<Index>(scene.lights.size());
     std::vector<Index> counts;
-    for (Index i = 0; i < scene.lights.size(); ++i) counts.push_back(part_count({scene, tables, i}));
+    for (Index i = 0; i < light_count; ++i) counts.push_back(part_count({scene, i}));
     LightParts parts(counts);
     if (sampling == LightSampling::uniform) return LightSampler(UniformLightSampler(std::move(parts)));
     std::vector<double> all(parts.size());
-    for (Index i = 0; i < scene.lights.size(); ++i)
-        if (counts[i] > 0)
-            light_powers({scene, tables, i}, std::span(all).subspan(parts.row(i, 0), counts[i]));
+    for (Index i = 0; i < light_count; ++i)
+        if (counts[i] > 0) light_powers({scene, i}, std::span(all).subspan(parts.row(i, 0), counts[i]));
     for (double& power : all)
         if (!std::isfinite(power) || !(power > 0)) power = 0;
     return LightSampler(PowerLightSampler(std::move(parts), all));
@@ -71,40 +71,58 @@ LightSampler make_light_sampler(const Scene& scene, const SceneTables& tables, L
 SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environments,
                          LightSampling light_sampling)
     : lights_(scene, environments) {
+    add_mipmaps(scene);
+    add_materials(scene);
+    view_ = SceneView(scene);
+    view_.textured = textured_;
+    view_.anisotropic = anisotropic_;
+    view_.coating_of_material = coating_of_material_;
+    view_.coating_tables = coatings_;
+    view_.mipmaps = mipmaps_;
+    view_.alpha_mipmap_of_image = alpha_mipmap_of_image_;
+    view_.alpha_mipmaps = alpha_mipmaps_;
+    view_.light_tables = lights_.view(scene);
+    light_sampler_ = make_light_sampler(view_, light_sampling);
+    view_.light_sampler = &light_sampler_;
+}
+
+void SceneTables::add_mipmaps(const Scene& scene) {
     std::vector<std::optional<MipMap>> mipmaps(scene.images.size());
     parallel_for(static_cast<std::int64_t>(scene.images.size()), [&](std::int64_t i) {
         mipmaps[static_cast<std::size_t>(i)].emplace(scene.images[static_cast<std::size_t>(i)]);
     });
     mipmaps_.reserve(mipmaps.size());
     for (auto& m : mipmaps) mipmaps_.push_back(std::move(*m));
-    alpha_mipmaps_.resize(scene.images.size());
+    alpha_mipmap_of_image_.assign(scene.images.size(), no_index);
     for (const FloatTexture& texture : scene.float_textures)
         if (const auto* t = std::get_if<ImageTexture>(&texture))
-            if (t->channels == ImageChannels::alpha && !alpha_mipmaps_[t->image])
-                alpha_mipmaps_[t->image].emplace(scene.images[t->image], ImageChannels::alpha);
+            if (t->channels == ImageChannels::alpha && alpha_mipmap_of_image_[t->image] == no_index) {
+                alpha_mipmap_of_image_[t->image] = static_cast<Index>(alpha_mipmaps_.size());
+                alpha_mipmaps_.emplace_back(scene.images[t->image], ImageChannels::alpha);
+            }
+}
 
-    std::map<CoatingKey, std::size_t> index_of;
+void SceneTables::add_materials(const Scene& scene) {
+    std::map<CoatingKey, Index> index_of;
     std::vector<CoatingKey> keys;
-    std::vector<std::size_t> table_of_material(scene.materials.size(), SIZE_MAX);
-    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-        anisotropic_.push_back(montelux::is_anisotropic(scene.materials[i]) ? 1 : 0);
-        textured_.push_back(std::visit([](const auto& m) { return has_texture(m); }, scene.materials[i]) ? 1
-                                                                                                         : 0);
-        if (auto key = closed_form(scene.materials[i])) {
-            auto [found, inserted] = index_of.try_emplace(*key, keys.size());
+    for (const Material& material : scene.materials) {
+        anisotropic_.push_back(is_anisotropic(material) ? 1 : 0);
+        textured_.push_back(std::visit([](const auto& m) { return has_texture(m); }, material) ? 1 : 0);
+        Index table = no_index;
+        if (auto key = closed_form(material)) {
+            auto [found, inserted] = index_of.try_emplace(*key, static_cast<Index>(keys.size()));
             if (inserted) keys.push_back(*key);
-            table_of_material[i] = found->second;
+            table = found->second;
         }
+        coating_of_material_.push_back(table);
     }
-    coatings_.resize(keys.size());
+    std::vector<std::optional<CoatingTable>> tables(keys.size());
     parallel_for(static_cast<std::int64_t>(keys.size()), [&](std::int64_t i) {
-        auto k = static_cast<std::size_t>(i);
-        auto [eta, alpha, thickness, max_depth] = keys[k];
-        coatings_[k] = std::make_unique<CoatingTable>(eta, alpha, thickness, max_depth);
+        auto [eta, alpha, thickness, max_depth] = keys[static_cast<std::size_t>(i)];
+        tables[static_cast<std::size_t>(i)].emplace(eta, alpha, thickness, max_depth);
     });
-    for (std::size_t table : table_of_material)
-        coating_of_material_.push_back(table == SIZE_MAX ? nullptr : coatings_[table].get());
-    light_sampler_ = make_light_sampler(scene, *this, light_sampling);
+    coatings_.reserve(tables.size());
+    for (auto& table : tables) coatings_.push_back(std::move(*table));
 }
 
 } // namespace montelux

@@ -2,15 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <optional>
 #include <vector>
 
-#include "montelux/scene/bsdf/coating.h"
 #include "montelux/scene/light/light_tables.h"
-#include "montelux/scene/light/sampler/light_sampler.h"
-#include "montelux/scene/scene.h"
-#include "montelux/scene/texture/mipmap.h"
+#include "montelux/scene/view.h"
 
 namespace montelux {
 
@@ -24,27 +19,24 @@ class SceneTables {
     explicit SceneTables(const Scene& scene, const EnvironmentSettings& environments = {},
                          LightSampling light_sampling = LightSampling::power);
 
-    // Of the alpha of images that a float texture takes it from.
-    const MipMap& mipmap(Index image, ImageChannels channels = ImageChannels::color) const {
-        return channels == ImageChannels::color ? mipmaps_[image] : *alpha_mipmaps_[image];
-    }
-    // Null where the closed form of CoatingTable does not hold and the random walk is used.
-    const CoatingTable* coating(Index material) const { return coating_of_material_[material]; }
-    // The parameters of a material that look up textures want coordinates and footprints.
-    bool is_textured(Index material) const { return textured_[material] != 0; }
-    // The BSDF's lobes depend on the direction of the tangents.
-    bool is_anisotropic(Index material) const { return anisotropic_[material] != 0; }
-    const LightTables& lights() const { return lights_; }
-    const LightSampler& light_sampler() const { return light_sampler_; }
+    SceneTables(const SceneTables&) = delete;
+    SceneTables& operator=(const SceneTables&) = delete;
+
+    // Of the scene with its tables; both outlive it.
+    const SceneView& view() const { return view_; }
 
   private:
-    std::vector<MipMap> mipmaps_;
-    std::vector<std::optional<MipMap>> alpha_mipmaps_;
-    std::vector<std::unique_ptr<CoatingTable>> coatings_;
-    std::vector<const CoatingTable*> coating_of_material_;
+    void add_mipmaps(const Scene& scene);
+    void add_materials(const Scene& scene);
+
+    std::vector<MipMap> mipmaps_, alpha_mipmaps_;
+    std::vector<Index> alpha_mipmap_of_image_;
+    std::vector<CoatingTable> coatings_;
+    std::vector<Index> coating_of_material_;
     std::vector<char> textured_, anisotropic_;
     LightTables lights_;
     LightSampler light_sampler_;
+    SceneView view_;
 };
 
 } // namespace montelux

@@ -106,12 +106,12 @@ struct Path {
 
     // The light that the current ray met.
     void add_met_light(Index light, const LightHit& hit) {
-        const LightContext context{ps.scene, ps.tables, light};
+        const LightContext context{ps.scene, light};
         const SampledSpectrum le = incident_radiance(context, previous, hit, lambda);
         if (is_black(le)) return;
         // Where light sampling could have found it as well.
         const float pdf = sees_lights ? 0
-                                      : ps.tables.light_sampler().probability(previous, light, hit.part) *
+                                      : ps.scene.light_sampler->probability(previous, light, hit.part) *
                                             pdf_li(context, previous, hit);
         const float weight = sees_lights ? 1 : hit_weight(pdf);
         const bool counted = ps.settings.strategy != Strategy::mis_light;
@@ -128,8 +128,7 @@ struct Path {
     }
 
     void add_infinite_lights(Vec3f w) {
-        const LightTables& lights = ps.tables.lights();
-        for (Index light : lights.infinite_lights()) add_met_light(light, {.wi = w});
+        for (Index light : ps.scene.light_tables.infinite_lights) add_met_light(light, {.wi = w});
     }
 
     void add_emission(const SurfacePoint& s, Vec3f w) {
@@ -142,7 +141,7 @@ struct Path {
     template <typename B>
     void add_direct_light(const B& bsdf, const Frame& frame, Vec3f wo, const ReferencePoint& here) {
         using Outcome = DirectLight::Outcome;
-        const LightSampler& lights = ps.tables.light_sampler();
+        const LightSampler& lights = *ps.scene.light_sampler;
         if (lights.empty()) return;
         // Among few lights the choice takes the first number's leading digits and leaves the others for the
         // point: one dimension less keeps point sets better stratified.
@@ -151,7 +150,7 @@ struct Path {
         const LightChoice chosen = lights.sample(here, stream.refined(few ? u.x : stream.next_1d()));
         const float choice = chosen.probability;
         if (few) u.x = std::min(static_cast<float>(chosen.remapped), largest_below_one<float>);
-        auto light = sample_li({ps.scene, ps.tables, chosen.light}, chosen.part, here, u, lambda);
+        auto light = sample_li({ps.scene, chosen.light}, chosen.part, here, u, lambda);
         if (!light || (!light->invisible && !samples_lights())) {
             if (recorder)
                 recorder.sampled_light({.outcome = light ? Outcome::left_to_scattering : Outcome::dark,
@@ -232,8 +231,8 @@ SampledSpectrum path_radiance(const PathScene& ps, RayTracer& tracer, Ray ray, S
             break;
         }
         const Shape& shape = ps.scene.shapes[hit.shape];
-        const bool textured = ps.tables.is_textured(shape.material);
-        const bool tangents = textured || ps.tables.is_anisotropic(shape.material);
+        const bool textured = ps.scene.is_textured(shape.material);
+        const bool tangents = textured || ps.scene.is_anisotropic(shape.material);
         SurfacePoint s = surface_point(ps.scene, ray, hit, tangents);
         if (path.recorder) path.recorder.hit_surface(ray, hit, s, path.throughput);
         if (hit.instance == no_index) path.add_emission(s, ray.d);
@@ -244,7 +243,7 @@ SampledSpectrum path_radiance(const PathScene& ps, RayTracer& tracer, Ray ray, S
 
         TextureContext context;
         if (textured) context = texture_context(ps, s);
-        Bsdf bsdf = make_bsdf(ps.scene, ps.tables, shape.material, context, lambda);
+        Bsdf bsdf = make_bsdf(ps.scene, shape.material, context, lambda);
         Frame frame = tangents ? Frame::from_normal_and_tangent(s.ns, s.dpdu) : Frame::from_normal(s.ns);
         Vec3f wo = frame.to_local(-ray.d);
         if (path.recorder) path.recorder.made_bsdf(bsdf, wo);

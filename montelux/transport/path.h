@@ -4,7 +4,7 @@
 #include "montelux/mc/random/sample_stream.h"
 #include "montelux/scene/camera/camera.h"
 #include "montelux/scene/render_settings.h"
-#include "montelux/scene/scene_tables.h"
+#include "montelux/scene/view.h"
 #include "montelux/transport/ray_tracer.h"
 
 namespace montelux {
@@ -13,8 +13,7 @@ struct PathRecord;
 
 // All that a path reads. The members outlive every path.
 struct PathScene {
-    const Scene& scene;
-    const SceneTables& tables;
+    const SceneView& scene;
     const Camera& camera;
     IntegratorSettings settings;
     // Size of a texture's footprint in pixels: many samples per pixel need little filtering each.

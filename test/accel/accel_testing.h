@@ -14,7 +14,7 @@
 namespace montelux::testing {
 
 struct World {
-    explicit World(Scene s) : scene(std::move(s)), tables(scene), accelerator(scene, tables) {}
+    explicit World(Scene s) : scene(std::move(s)), tables(scene), accelerator(tables.view()) {}
     World(const World&) = delete;
     World& operator=(const World&) = delete;
 

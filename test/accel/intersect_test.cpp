@@ -42,7 +42,7 @@ void expect_same_hits(Scene scene, int rays, std::uint64_t seed) {
             continue;
         }
         ASSERT_EQ(hit.instance, expected->instance) << "ray " << i;
-        SurfacePoint s = surface_point(world.scene, ray, hit, true);
+        SurfacePoint s = surface_point(world.tables.view(), ray, hit, true);
         Vec3f p = ray.o + hit.t * ray.d;
         ASSERT_LT(length(s.p - p), 4e-5f) << "ray " << i;
         ASSERT_NEAR(length(s.ng), 1, 1e-5);
@@ -137,7 +137,7 @@ TEST(Intersect, BoundsHoldEverything) {
         Ray ray = random_ray(draws);
         Hit hit;
         if (!world.accelerator.intersect(ray, hit)) continue;
-        Point3f p = surface_point(world.scene, ray, hit, false).p;
+        Point3f p = surface_point(world.tables.view(), ray, hit, false).p;
         for (int c = 0; c < 3; ++c) {
             ASSERT_GE(p[c], b.lower[c] - 1e-5);
             ASSERT_LE(p[c], b.upper[c] + 1e-5);

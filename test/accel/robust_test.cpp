@@ -29,7 +29,7 @@ SelfHits count_self_hits(const World& world, Vec3f center, float radius, int ray
         Ray ray{o, normalize(center + draws.in_cube(0.8f * radius) - o)};
         Hit hit;
         if (!world.accelerator.intersect(ray, hit)) continue;
-        SurfacePoint s = surface_point(world.scene, ray, hit, false);
+        SurfacePoint s = surface_point(world.tables.view(), ray, hit, false);
         Vec3f n = dot(s.ng, ray.d) < 0 ? s.ng : -s.ng;
         for (int k = 0; k < 4; ++k) {
             Vec3f w = leaving(draws, n);
@@ -112,7 +112,7 @@ void expect_small_offsets(float flatness) {
                         const Ray ray{o, d};
                         Hit hit;
                         if (!world.accelerator.intersect(ray, hit)) continue;
-                        const SurfacePoint s = surface_point(world.scene, ray, hit, false);
+                        const SurfacePoint s = surface_point(world.tables.view(), ray, hit, false);
                         ASSERT_LE(s.error, 4e-6f * (height + flatness * size) + 1e-11f * size);
                         const Vec3f n = dot(s.ng, ray.d) < 0 ? s.ng : -s.ng;
                         for (int k = 0; k < 4; ++k, ++rays) {
@@ -230,7 +230,7 @@ TEST(Robust, RaysCrossClosedShapes) {
                 Ray ray{o, normalize(center + draws.in_cube(0.5f * size) - o)};
                 Hit hit;
                 ASSERT_TRUE(world.accelerator.intersect(ray, hit));
-                SurfacePoint s = surface_point(world.scene, ray, hit, false);
+                SurfacePoint s = surface_point(world.tables.view(), ray, hit, false);
                 Vec3f w = draws.direction();
                 if (dot(w, s.ng) > 0) w = -w;
                 if (dot(w, s.ng) > -0.05f) continue;
@@ -290,10 +290,10 @@ TEST(Robust, ShadowRaysReachTheirLights) {
                     Hit hit;
                     ASSERT_TRUE(world.accelerator.intersect(ray, hit));
                     if (hit.shape != 0) continue; // from within the lamp
-                    SurfacePoint s = surface_point(world.scene, ray, hit, false);
+                    SurfacePoint s = surface_point(world.tables.view(), ray, hit, false);
                     Vec2f u = draws.uniform_2d();
                     auto sample =
-                        sample_li({world.scene, world.tables, 0}, 0, {s.p, s.ng, s.error}, u, lambda);
+                        sample_li({world.tables.view(), 0}, 0, {s.p, s.ng, s.error}, u, lambda);
                     if (!sample) continue;
                     // A partial sphere hides some of its own points, and what lies under the floor is hidden.
                     if (dot(sample->wi, s.ng) < 1e-3f) continue;

@@ -62,7 +62,7 @@ void expect_probabilities(const LightSampler& sampler, std::span<const double> e
 TEST(LightSamplers, UniformOverAllParts) {
     const Scene scene = scene_of_lights();
     const SceneTables tables(scene, {}, LightSampling::uniform);
-    expect_probabilities(tables.light_sampler(), std::vector<double>(8, 1.0 / 8));
+    expect_probabilities(*tables.view().light_sampler, std::vector<double>(8, 1.0 / 8));
 }
 
 TEST(LightSamplers, ByPower) {
@@ -71,17 +71,17 @@ TEST(LightSamplers, ByPower) {
     std::vector<double> powers = {4 * pi * 0.1, 0.5 * pi, pi, 0, 0.5 * pi, 0, 0, 4 * pi * 0.2};
     const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
     for (double& p : powers) p /= sum;
-    expect_probabilities(tables.light_sampler(), powers);
+    expect_probabilities(*tables.view().light_sampler, powers);
 }
 
 TEST(LightSamplers, WithoutLights) {
     for (const LightSampling sampling : {LightSampling::uniform, LightSampling::power}) {
         Scene scene;
-        EXPECT_TRUE(SceneTables(scene, {}, sampling).light_sampler().empty());
+        EXPECT_TRUE(SceneTables(scene, {}, sampling).view().light_sampler->empty());
         scene.lights.push_back(PointLight{Spectrum(0.0f), 1, {0, 0, 0}});
         const SceneTables black(scene, {}, sampling);
-        EXPECT_EQ(black.light_sampler().size(), 1u);
-        EXPECT_EQ(black.light_sampler().probability({}, 0, 0), 1);
+        EXPECT_EQ(black.view().light_sampler->size(), 1u);
+        EXPECT_EQ(black.view().light_sampler->probability({}, 0, 0), 1);
     }
 }
 

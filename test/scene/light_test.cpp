@@ -8,6 +8,7 @@
 #include "montelux/mc/stats/chi_squared.h"
 #include "montelux/mc/stats/moments.h"
 #include "montelux/scene/light/light_sampling.h"
+#include "montelux/scene/scene_tables.h"
 #include "montelux/scene/shape/quadric.h"
 #include "montelux/scene/shape/surface_point.h"
 
@@ -48,8 +49,8 @@ std::vector<SurfacePoint> points_along(const Scene& scene, const AreaLight& ligh
     if (shape.quadric != no_index) {
         double t_min = 0;
         while (auto t = intersect(scene.quadrics[shape.quadric], ray, t_min)) {
-            points.push_back(
-                surface_point(scene, ray, Hit{.t = static_cast<float>(*t), .shape = light.shape}, false));
+            points.push_back(surface_point(SceneView(scene), ray,
+                                           Hit{.t = static_cast<float>(*t), .shape = light.shape}, false));
             t_min = *t * (1 + 1e-9);
         }
         return points;
@@ -60,7 +61,7 @@ std::vector<SurfacePoint> points_along(const Scene& scene, const AreaLight& ligh
     Vec3d q = Vec3d(ray.o) + t * d - Vec3d(p[0]);
     double b1 = dot(cross(q, e2), n) / dot(n, n), b2 = dot(cross(e1, q), n) / dot(n, n);
     if (t > 0 && b1 >= 0 && b2 >= 0 && b1 + b2 <= 1)
-        points.push_back(surface_point(scene, ray,
+        points.push_back(surface_point(SceneView(scene), ray,
                                        Hit{.t = static_cast<float>(t),
                                            .b1 = static_cast<float>(b1),
                                            .b2 = static_cast<float>(b2),
@@ -118,7 +119,7 @@ TEST(AreaLights, DirectionsFollowTheirDensity) {
         SceneTables tables(c.scene);
         const auto& light = std::get<AreaLight>(c.scene.lights[0]);
         auto sample = [&](Vec2f u) -> std::optional<Vec3f> {
-            auto s = sample_li({c.scene, tables, 0}, 0, origin, u, wavelengths);
+            auto s = sample_li({tables.view(), 0}, 0, origin, u, wavelengths);
             if (!s) return std::nullopt;
             return s->wi;
         };
@@ -126,9 +127,9 @@ TEST(AreaLights, DirectionsFollowTheirDensity) {
             float sum = 0;
             for (const SurfacePoint& s : points_along(c.scene, light, {origin.p, w}))
                 if (light.two_sided || dot(s.ng, w) < 0)
-                    sum += pdf_li({c.scene, tables, 0}, origin, {.wi = w, .p = s.p, .n = s.ng});
+                    sum += pdf_li({tables.view(), 0}, origin, {.wi = w, .p = s.p, .n = s.ng});
             // A whole sphere's visible half stands for all of it.
-            if (light.two_sided && tables.lights().sphere(0)) sum *= 0.5f;
+            if (light.two_sided && tables.view().light_tables.sphere(0)) sum *= 0.5f;
             return sum;
         };
         ChiSquaredOptions options;
@@ -149,7 +150,7 @@ TEST(AreaLights, SamplesAgreeWithHits) {
         int found = 0, samples = 0;
         for (int i = 0; i < 5000; ++i) {
             Vec2f u = uniforms.next_2f();
-            auto s = sample_li({c.scene, tables, 0}, 0, origin, u, wavelengths);
+            auto s = sample_li({tables.view(), 0}, 0, origin, u, wavelengths);
             if (!s) continue;
             ++samples;
             ASSERT_NEAR(length(s->wi), 1, 1e-5) << c.name;
@@ -165,9 +166,9 @@ TEST(AreaLights, SamplesAgreeWithHits) {
             ++found;
             ASSERT_LT(length(nearest->p - end), 2e-3f) << c.name;
             const LightHit hit{.wi = s->wi, .p = nearest->p, .n = nearest->ng};
-            SampledSpectrum le = incident_radiance({c.scene, tables, 0}, origin, hit, wavelengths);
+            SampledSpectrum le = incident_radiance({tables.view(), 0}, origin, hit, wavelengths);
             ASSERT_EQ(le[0], s->radiance[0]) << c.name;
-            float pdf = pdf_li({c.scene, tables, 0}, origin, hit);
+            float pdf = pdf_li({tables.view(), 0}, origin, hit);
             if (std::abs(dot(nearest->ng, s->wi)) > 0.05f) {
                 ASSERT_NEAR(pdf / s->pdf, 1, 2e-3) << c.name;
             }
@@ -187,10 +188,10 @@ TEST(AreaLights, OneSidedLightsAreDarkBehind) {
     for (int i = 0; i < 100; ++i)
         for (Index light : {0u, 1u, 2u}) {
             Vec2f u = uniforms.next_2f();
-            EXPECT_FALSE(sample_li({scene, tables, light}, 0, origin, u, wavelengths)) << light;
+            EXPECT_FALSE(sample_li({tables.view(), light}, 0, origin, u, wavelengths)) << light;
         }
     auto seen_from = [&](Vec3f w) {
-        return incident_radiance({scene, tables, 0}, origin, {.wi = -w, .n = {0, 0, 1}}, wavelengths)[0];
+        return incident_radiance({tables.view(), 0}, origin, {.wi = -w, .n = {0, 0, 1}}, wavelengths)[0];
     };
     EXPECT_EQ(seen_from({0, 0, -1}), 0);
     EXPECT_EQ(seen_from({0, 0, 1}), 2);
@@ -217,11 +218,11 @@ TEST(InfiniteLights, DirectionsFollowTheirDensity) {
         }
         SceneTables tables(scene);
         auto sample = [&](Vec2f u) -> std::optional<Vec3f> {
-            auto s = sample_li({scene, tables, 0}, 0, origin, u, wavelengths);
+            auto s = sample_li({tables.view(), 0}, 0, origin, u, wavelengths);
             if (!s) return std::nullopt;
             return s->wi;
         };
-        auto pdf = [&](Vec3f w) { return pdf_li({scene, tables, 0}, {.p = origin.p}, {.wi = w}); };
+        auto pdf = [&](Vec3f w) { return pdf_li({tables.view(), 0}, {.p = origin.p}, {.wi = w}); };
         ChiSquaredOptions options;
         options.samples = 200000;
         options.cells_x = options.cells_y = 16;
@@ -232,15 +233,15 @@ TEST(InfiniteLights, DirectionsFollowTheirDensity) {
         int differing = 0;
         for (int i = 0; i < 5000; ++i) {
             Vec2f u = uniforms.next_2f();
-            auto s = sample_li({scene, tables, 0}, 0, origin, u, wavelengths);
+            auto s = sample_li({tables.view(), 0}, 0, origin, u, wavelengths);
             ASSERT_TRUE(s);
             ASSERT_FALSE(s->delta);
             ASSERT_TRUE(std::isinf(s->shadow.t_max));
             // Rounding may send the direction of a point on a texel's edge back into its neighbour.
             bool same =
-                std::abs(pdf_li({scene, tables, 0}, {.p = origin.p}, {.wi = s->wi}) / s->pdf - 1) < 1e-3f &&
+                std::abs(pdf_li({tables.view(), 0}, {.p = origin.p}, {.wi = s->wi}) / s->pdf - 1) < 1e-3f &&
                 std::abs(
-                    incident_radiance({scene, tables, 0}, {.p = origin.p}, {.wi = s->wi}, wavelengths)[1] -
+                    incident_radiance({tables.view(), 0}, {.p = origin.p}, {.wi = s->wi}, wavelengths)[1] -
                     s->radiance[1]) < 1e-3f * s->radiance[1];
             differing += !same;
         }
@@ -266,7 +267,7 @@ TEST(InfiniteLights, MapsIntegrateToTheirMean) {
     TestUniforms uniforms(3);
     RunningMoments m;
     for (int i = 0; i < 20000; ++i) {
-        auto s = sample_li({scene, tables, 0}, 0, origin, uniforms.next_2f(), wavelengths);
+        auto s = sample_li({tables.view(), 0}, 0, origin, uniforms.next_2f(), wavelengths);
         if (s) m.add(double(s->radiance[0] / white[0] / s->pdf));
     }
     // Grey texels: density and radiance rise together, and the estimate has hardly any noise.
@@ -281,7 +282,7 @@ TEST(PointLights, InverseSquareAndFalloff) {
     scene.lights.push_back(DistantLight{Spectrum(1.0f), 5, normalize(Vec3f{1, 2, 2})});
     SceneTables tables(scene);
     auto at = [&](Index light, Point3f p) {
-        return sample_li({scene, tables, light}, 0, {p, {0, 0, 1}, 0}, {0.3f, 0.8f}, wavelengths);
+        return sample_li({tables.view(), light}, 0, {p, {0, 0, 1}, 0}, {0.3f, 0.8f}, wavelengths);
     };
     auto point = at(0, {0, 0, 0});
     ASSERT_TRUE(point && point->delta);
@@ -318,8 +319,8 @@ TEST(LightTables, ProbabilitiesArePowers) {
     scene.lights.push_back(UniformInfiniteLight{Spectrum(1.0f), 0.25f});
     scene.lights.push_back(PointLight{Spectrum(0.0f), 3, {0, 0, 0}});
     SceneTables tables(scene);
-    const LightSampler& lights = tables.light_sampler();
-    double r = tables.lights().scene_bounds().radius(), cross_section = pi * r * r;
+    const LightSampler& lights = *tables.view().light_sampler;
+    double r = tables.view().light_tables.scene_bounds.radius(), cross_section = pi * r * r;
     EXPECT_GE(r, 1);
     // The smoothstep of a spot has mean 1/2 over the rim.
     const double powers[] = {pi * 4 * pi * 2,
@@ -337,7 +338,8 @@ TEST(LightTables, ProbabilitiesArePowers) {
         sum += double(lights.probability(origin, i, 0));
     }
     EXPECT_NEAR(sum, 1, 1e-6);
-    EXPECT_EQ(tables.lights().infinite_lights(), std::vector<Index>{6});
+    ASSERT_EQ(tables.view().light_tables.infinite_lights.size(), 1u);
+    EXPECT_EQ(tables.view().light_tables.infinite_lights[0], 6u);
     TestUniforms uniforms(2);
     std::vector<double> counts(8), expected;
     for (double p : powers) expected.push_back(p / total * 100000);
@@ -361,8 +363,8 @@ TEST(LightTables, AMapHasThePowerOfItsMean) {
     scene.lights.push_back(
         UniformInfiniteLight{Spectrum(RgbIlluminantSpectrum(RgbColorSpace::srgb(), {1, 1, 1})), 1.5f});
     SceneTables tables(scene);
-    EXPECT_NEAR(double(tables.light_sampler().probability({}, 1, 0)),
-                double(tables.light_sampler().probability({}, 2, 0)), 1e-4);
+    EXPECT_NEAR(double(tables.view().light_sampler->probability({}, 1, 0)),
+                double(tables.view().light_sampler->probability({}, 2, 0)), 1e-4);
 }
 
 } // namespace

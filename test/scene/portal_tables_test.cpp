@@ -6,6 +6,7 @@
 
 #include "montelux/mc/stats/chi_squared.h"
 #include "montelux/scene/light/light_sampling.h"
+#include "montelux/scene/scene_tables.h"
 #include "montelux/scene/shape/quadric.h"
 
 namespace montelux::portals {
@@ -43,12 +44,12 @@ TEST(Portals, NoCornerOfATexelIsLeftOut) {
                         Vec3d(grid.direction({static_cast<float>(texel % width) + u.x,
                                               static_cast<float>(texel / width) + u.y})))));
                     const auto radiance =
-                        incident_radiance({scene, tables, 0}, {.p = p}, {.wi = w}, wavelengths);
+                        incident_radiance({tables.view(), 0}, {.p = p}, {.wi = w}, wavelengths);
                     if (is_black(radiance)) continue;
                     ++seen;
                     // 1 / (solid angle of the texel) if it alone were drawn.
                     const double share =
-                        static_cast<double>(pdf_li({scene, tables, 0}, {.p = p}, {.wi = w})) *
+                        static_cast<double>(pdf_li({tables.view(), 0}, {.p = p}, {.wi = w})) *
                         grid.solid_angle(texel / width);
                     ASSERT_GT(share, 0.005) << width << " " << texel << " " << towards.z;
                 }
@@ -77,8 +78,8 @@ TEST(Portals, PowerIsTheFluxThroughThem) {
     map.portal = Portal(corners_of(0, 0, 2, 3));
     scene.lights.push_back(map);
     const SceneTables tables(scene);
-    const LightSampler& lights = tables.light_sampler();
-    const double r = tables.lights().scene_bounds().radius(), cross_section = pi * r * r;
+    const LightSampler& lights = *tables.view().light_sampler;
+    const double r = tables.view().light_tables.scene_bounds.radius(), cross_section = pi * r * r;
     const double point = static_cast<double>(lights.probability({}, 2, 0)) / (4 * pi);
     EXPECT_NEAR(static_cast<double>(lights.probability({}, 0, 0)) / point, pi * 6 * 3, 1e-2);
     EXPECT_NEAR(static_cast<double>(lights.probability({}, 1, 0)) / point, 2 * pi * cross_section * 3, 1e-1);

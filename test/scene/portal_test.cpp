@@ -12,6 +12,7 @@
 #include "montelux/mc/stats/chi_squared.h"
 #include "montelux/mc/stats/moments.h"
 #include "montelux/scene/light/light_sampling.h"
+#include "montelux/scene/scene_tables.h"
 #include "montelux/scene/shape/quadric.h"
 
 namespace montelux::portals {
@@ -138,7 +139,7 @@ TEST(Portals, AnglesAndSolidAnglesAgree) {
 }
 
 TEST(Portals, DirectionsFollowTheirDensity) {
-    for_each_view([](const View& v, const Scene& scene, const SceneTables& tables, EnvironmentLookup) {
+    for_each_view([](const View& v, const Scene&, const SceneTables& tables, EnvironmentLookup) {
         const Window2D seen = *v.portal.window(v.from);
         const Vec2d extent = seen.upper - seen.lower;
         constexpr int cells = 8, samples = 40000;
@@ -155,7 +156,7 @@ TEST(Portals, DirectionsFollowTheirDensity) {
         for (std::size_t j = 1; j < ys.size(); ++j)
             for (std::size_t i = 1; i < xs.size(); ++i) {
                 const Vec2d a{(xs[i - 1] + xs[i]) / 2, (ys[j - 1] + ys[j]) / 2};
-                const double e = static_cast<double>(pdf_li({scene, tables, 0}, {.p = v.from},
+                const double e = static_cast<double>(pdf_li({tables.view(), 0}, {.p = v.from},
                                                             {.wi = Vec3f(v.portal.direction(a))})) *
                                  Portal::solid_angle_density(Portal::local_direction(a)) *
                                  (xs[i] - xs[i - 1]) * (ys[j] - ys[j - 1]);
@@ -166,7 +167,7 @@ TEST(Portals, DirectionsFollowTheirDensity) {
         for (double& e : expected) e /= all;
         TestUniforms draws(3);
         for (int i = 0; i < samples; ++i) {
-            const auto s = sample_li({scene, tables, 0}, 0, at(v.from), draws.next_2f(), wavelengths);
+            const auto s = sample_li({tables.view(), 0}, 0, at(v.from), draws.next_2f(), wavelengths);
             const auto a = s ? v.portal.angles(Vec3d(s->wi)) : std::nullopt;
             const bool inside = a && seen.contains(*a);
             counts.at(inside ? cell_of(*a) : cells * cells) += 1;
@@ -177,15 +178,15 @@ TEST(Portals, DirectionsFollowTheirDensity) {
         TestUniforms uniforms(9);
         int differing = 0;
         for (int i = 0; i < 2000; ++i) {
-            const auto s = sample_li({scene, tables, 0}, 0, at(v.from), uniforms.next_2f(), wavelengths);
+            const auto s = sample_li({tables.view(), 0}, 0, at(v.from), uniforms.next_2f(), wavelengths);
             ASSERT_TRUE(s);
             ASSERT_FALSE(s->delta);
             ASSERT_TRUE(std::isinf(s->shadow.t_max));
             ASSERT_GT(s->pdf, 0);
             // Rounding may send a direction over the edge of a cell or of the portal.
             const bool same =
-                std::abs(pdf_li({scene, tables, 0}, {.p = v.from}, {.wi = s->wi}) / s->pdf - 1) < 1e-3f &&
-                std::abs(incident_radiance({scene, tables, 0}, {.p = v.from}, {.wi = s->wi}, wavelengths)[1] -
+                std::abs(pdf_li({tables.view(), 0}, {.p = v.from}, {.wi = s->wi}) / s->pdf - 1) < 1e-3f &&
+                std::abs(incident_radiance({tables.view(), 0}, {.p = v.from}, {.wi = s->wi}, wavelengths)[1] -
                          s->radiance[1]) <= 1e-3f * s->radiance[1];
             differing += !same;
         }
@@ -195,7 +196,7 @@ TEST(Portals, DirectionsFollowTheirDensity) {
 
 // The whole density lies in the portal, and the light of other directions is black.
 TEST(Portals, NothingComesBesideThePortal) {
-    for_each_view([](const View& v, const Scene& scene, const SceneTables& tables, EnvironmentLookup) {
+    for_each_view([](const View& v, const Scene&, const SceneTables& tables, EnvironmentLookup) {
         TestUniforms uniforms(5);
         int inside = 0;
         for (int i = 0; i < 4000; ++i) {
@@ -209,14 +210,14 @@ TEST(Portals, NothingComesBesideThePortal) {
             // Corners of single precision make no rectangle to the last digit.
             if (through != meets(v.portal.corners(), v.from, Vec3d(w), 0.01)) continue;
             inside += through;
-            ASSERT_EQ(pdf_li({scene, tables, 0}, {.p = v.from}, {.wi = w}) > 0, through);
+            ASSERT_EQ(pdf_li({tables.view(), 0}, {.p = v.from}, {.wi = w}) > 0, through);
             if (!through) {
                 ASSERT_TRUE(
-                    is_black(incident_radiance({scene, tables, 0}, {.p = v.from}, {.wi = w}, wavelengths)));
+                    is_black(incident_radiance({tables.view(), 0}, {.p = v.from}, {.wi = w}, wavelengths)));
             }
-            ASSERT_EQ(pdf_li({scene, tables, 0}, {.p = v.from}, {.wi = -w}), 0);
+            ASSERT_EQ(pdf_li({tables.view(), 0}, {.p = v.from}, {.wi = -w}), 0);
             ASSERT_TRUE(
-                is_black(incident_radiance({scene, tables, 0}, {.p = v.from}, {.wi = -w}, wavelengths)));
+                is_black(incident_radiance({tables.view(), 0}, {.p = v.from}, {.wi = -w}, wavelengths)));
         }
         EXPECT_GT(inside, 200);
     });
@@ -231,15 +232,15 @@ TEST(Portals, OtherSideAndPlaneAreDark) {
         for (Point3f p : {Point3f{0, 0, 0.5f}, {0, 0, 0}, {3, 0.5f, 0}, {9, 9, 20}})
             for (int i = 0; i < 100; ++i) {
                 const Vec2f u = uniforms.next_2f();
-                EXPECT_FALSE(sample_li({scene, tables, 0}, 0, at(p), u, wavelengths));
+                EXPECT_FALSE(sample_li({tables.view(), 0}, 0, at(p), u, wavelengths));
                 const Vec3f w = normalize(Vec3f{u.x - 0.5f, u.y - 0.5f, i % 2 == 0 ? 0.3f : -0.3f});
-                EXPECT_EQ(pdf_li({scene, tables, 0}, {.p = p}, {.wi = w}), 0);
+                EXPECT_EQ(pdf_li({tables.view(), 0}, {.p = p}, {.wi = w}), 0);
                 EXPECT_TRUE(
-                    is_black(incident_radiance({scene, tables, 0}, {.p = p}, {.wi = w}, wavelengths)));
+                    is_black(incident_radiance({tables.view(), 0}, {.p = p}, {.wi = w}, wavelengths)));
             }
         // In front of it light comes along +z.
         EXPECT_FALSE(is_black(
-            incident_radiance({scene, tables, 0}, {.p = {0.1f, 0.3f, -2}}, {.wi = {0, 0, 1}}, wavelengths)));
+            incident_radiance({tables.view(), 0}, {.p = {0.1f, 0.3f, -2}}, {.wi = {0, 0, 1}}, wavelengths)));
     }
 }
 
@@ -313,7 +314,7 @@ TEST(Portals, IrradianceIsThatOfTheMapSeenThroughIt) {
             TestUniforms uniforms(100 + seed);
             double sum = 0;
             for (int i = 0; i < 256; ++i) {
-                const auto s = sample_li({scene, tables, 0}, 0, at(v.from), uniforms.next_2f(), wavelengths);
+                const auto s = sample_li({tables.view(), 0}, 0, at(v.from), uniforms.next_2f(), wavelengths);
                 if (s)
                     sum += std::max(0.0, dot(Vec3d(s->wi), n)) *
                            static_cast<double>(s->radiance[0] / s->pdf) / unit;

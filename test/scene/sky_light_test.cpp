@@ -8,6 +8,7 @@
 #include "montelux/mc/stats/moments.h"
 #include "montelux/scene/light/light_sampling.h"
 #include "montelux/scene/light/sky/sky_map.h"
+#include "montelux/scene/scene_tables.h"
 
 namespace montelux {
 namespace {
@@ -42,14 +43,14 @@ void expect_directions_by_their_density(Scene scene) {
     for (Index light : {0u, 1u}) {
         int none = 0;
         auto sample = [&](Vec2f u) -> std::optional<Vec3f> {
-            auto s = sample_li({scene, tables, light}, 0, eye, u, some_wavelengths);
+            auto s = sample_li({tables.view(), light}, 0, eye, u, some_wavelengths);
             none += !s;
             if (!s) return std::nullopt;
             return s->wi;
         };
         auto pdf = [&](Vec3f w) -> float {
             if (light == 0 && dot(w, std::get<SunLight>(scene.lights[0]).up) < 0) return 0;
-            return pdf_li({scene, tables, light}, {.p = eye.p}, {.wi = w});
+            return pdf_li({tables.view(), light}, {.p = eye.p}, {.wi = w});
         };
         ChiSquaredOptions options;
         options.samples = 100000;
@@ -71,14 +72,14 @@ TEST(SkyLights, SamplesAreWhatRaysFind) {
     for (double elevation : {30.0, 0.05}) {
         const Scene scene = sky_scene(elevation, tilted);
         SceneTables tables(scene);
-        EXPECT_EQ(tables.lights().infinite_lights().size(), 2u);
+        EXPECT_EQ(tables.view().light_tables.infinite_lights.size(), 2u);
         TestUniforms uniforms(9);
         for (Index light : {0u, 1u}) {
             int differing = 0, hidden = 0;
             constexpr int samples = 5000;
             for (int i = 0; i < samples; ++i) {
                 const Vec2f u = uniforms.next_2f();
-                const auto s = sample_li({scene, tables, light}, 0, eye, u, some_wavelengths);
+                const auto s = sample_li({tables.view(), light}, 0, eye, u, some_wavelengths);
                 if (!s) {
                     ++hidden;
                     continue;
@@ -89,9 +90,9 @@ TEST(SkyLights, SamplesAreWhatRaysFind) {
                 ASSERT_GT(s->radiance[1], 0);
                 // Rounding may send a direction across an edge.
                 const bool same =
-                    std::abs(pdf_li({scene, tables, light}, {.p = eye.p}, {.wi = s->wi}) / s->pdf - 1) <
+                    std::abs(pdf_li({tables.view(), light}, {.p = eye.p}, {.wi = s->wi}) / s->pdf - 1) <
                         1e-3f &&
-                    std::abs(incident_radiance({scene, tables, light}, {.p = eye.p}, {.wi = s->wi},
+                    std::abs(incident_radiance({tables.view(), light}, {.p = eye.p}, {.wi = s->wi},
                                                some_wavelengths)[1] /
                                  s->radiance[1] -
                              1) < 1e-3f;
@@ -121,7 +122,7 @@ TEST(SkyLights, GiveTheGroundTheIrradianceOfTheModel) {
             RunningMoments m;
             for (int i = 0; i < 40000; ++i) {
                 const Vec2f u = uniforms.next_2f();
-                const auto s = sample_li({scene, tables, light}, 0, eye, u, some_wavelengths);
+                const auto s = sample_li({tables.view(), light}, 0, eye, u, some_wavelengths);
                 m.add(s ? double(s->radiance[0] / s->pdf) * std::max(0.0, double(dot(s->wi, up))) / 3 : 0.0);
             }
             // The nearest nanometre against the wavelength.
@@ -151,7 +152,7 @@ TEST(SkyLights, AreChosenByTheirPower) {
     }
     const double disc =
         mean(sky.sun_radiance()) * SunDisc::of_radius({0, 0, 1}, sun_angular_radius).solid_angle();
-    EXPECT_NEAR(double(tables.light_sampler().probability({}, 0, 0)), disc / (disc + dome), 0.01);
+    EXPECT_NEAR(double(tables.view().light_sampler->probability({}, 0, 0)), disc / (disc + dome), 0.01);
 }
 
 // A picture of the sky holds the light of dome and disc, wherever the disc meets the texels' edges.

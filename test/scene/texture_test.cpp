@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "montelux/mc/stats/chi_squared.h"
+#include "montelux/scene/scene_tables.h"
 #include "montelux/scene/texture/evaluate.h"
 
 namespace montelux {
@@ -219,7 +220,7 @@ class FloatTextures : public ::testing::Test {
     }
     float value(const FloatParameter& p, const TextureContext& c) {
         SceneTables tables(scene_);
-        return evaluate(scene_, tables, p, c);
+        return evaluate(tables.view(), p, c);
     }
     FloatParameter checks(int dimension = 2) {
         CheckerboardTexture<FloatParameter> t;
@@ -367,9 +368,9 @@ TEST(SpectrumTextures, AreReadAsTheyAreMeant) {
                                        ? RgbUnboundedSpectrum(srgb, rgb).sample(lambda)
                                        : RgbIlluminantSpectrum(srgb, rgb).sample(lambda);
         SampledSpectrum v =
-            evaluate(scene, tables, SpectrumParameter{Spectrum(), 0}, at({0.5f, 0.5f}), lambda);
+            evaluate(tables.view(), SpectrumParameter{Spectrum(), 0}, at({0.5f, 0.5f}), lambda);
         SampledSpectrum twice =
-            evaluate(scene, tables, SpectrumParameter{Spectrum(), 1}, at({0.5f, 0.5f}), lambda);
+            evaluate(tables.view(), SpectrumParameter{Spectrum(), 1}, at({0.5f, 0.5f}), lambda);
         for (int i = 0; i < 4; ++i) {
             EXPECT_NEAR(v[i], expected[i], 1e-5f * (1 + expected[i]));
             EXPECT_NEAR(twice[i], 2 * expected[i], 2e-5f * (1 + expected[i]));

@@ -22,7 +22,7 @@ float radiance_scale(const AreaLight& light, const LightContext& context, Index 
     if (!(light.triangle_flux > 0)) return light.scale;
     const Shape& shape = context.scene.shapes[light.shape];
     if (shape.mesh == no_index) return light.scale;
-    const float area = context.lights().triangle(context.light, part).area;
+    const float area = context.tables().triangle(context.light, part).area;
     return area > 0 ? light.scale * (light.triangle_flux / (sides(light) * area * pi_f)) : 0;
 }
 
@@ -74,7 +74,7 @@ std::optional<LightSample> sample_sphere(const AreaLight& light, const WorldSphe
 }
 
 std::optional<SphereCone> cone_of(const LightContext& context, Point3f from) {
-    const auto& sphere = context.lights().sphere(context.light);
+    const auto& sphere = context.tables().sphere(context.light);
     return sphere ? SphereCone::seen_from(from, *sphere) : std::nullopt;
 }
 
@@ -82,7 +82,7 @@ std::optional<SphereCone> cone_of(const LightContext& context, Point3f from) {
 // alpha 0.
 float share_there(const LightContext& context, const Shape& shape, const EmissivePoint& point, Vec3f w) {
     if (!is_cut_out(shape) || constant_alpha(context.scene, shape).value_or(1) <= 0) return 1;
-    return std::clamp(alpha_at(context.scene, context.tables, {point.p, w}, point.hit), 0.0f, 1.0f);
+    return std::clamp(alpha_at(context.scene, {point.p, w}, point.hit), 0.0f, 1.0f);
 }
 
 bool is_invisible(const LightContext& context, const Shape& shape) {
@@ -92,7 +92,7 @@ bool is_invisible(const LightContext& context, const Shape& shape) {
 } // namespace
 
 Index AreaLight::part_count(const LightContext& context) const {
-    if (!context.lights().is_in_world(shape)) return 0;
+    if (!context.tables().is_in_world(shape)) return 0;
     const Shape& s = context.scene.shapes[shape];
     return s.mesh == no_index ? 1 : static_cast<Index>(context.scene.meshes[s.mesh].triangle_count());
 }
@@ -102,7 +102,7 @@ std::optional<LightSample> AreaLight::sample_li(const LightContext& context, Ind
                                                 const SampledWavelengths& lambda) const {
     const Shape& s = context.scene.shapes[shape];
     if (const auto cone = cone_of(context, from.p))
-        return sample_sphere(*this, *context.lights().sphere(context.light), *cone, s.flip_normal, from, u,
+        return sample_sphere(*this, *context.tables().sphere(context.light), *cone, s.flip_normal, from, u,
                              lambda);
     const auto point = sample_area(context, shape, part, u);
     if (!point) return std::nullopt;
@@ -175,7 +175,7 @@ void AreaLight::powers(const LightContext& context, std::span<double> parts) con
         return;
     }
     for (Index part = 0; part < parts.size(); ++part)
-        parts[part] = power(double(context.lights().triangle(context.light, part).area),
+        parts[part] = power(double(context.tables().triangle(context.light, part).area),
                             radiance_scale(*this, context, part));
 }
 
@@ -185,7 +185,7 @@ std::optional<LightBounds> AreaLight::bounds(const LightContext& context, Index 
     b.cos_theta_e = 0;
     b.two_sided = two_sided;
     if (s.mesh != no_index) {
-        const LightTriangle& t = context.lights().triangle(context.light, part);
+        const LightTriangle& t = context.tables().triangle(context.light, part);
         for (const Vec3d p : {Vec3d(t.p0), Vec3d(t.p0) + Vec3d(t.e1), Vec3d(t.p0) + Vec3d(t.e2)})
             b.box.add(p);
         if (!(t.area > 0)) return b;

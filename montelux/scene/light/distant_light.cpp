@@ -28,7 +28,7 @@ SampledSpectrum DistantLight::radiance(const LightContext&, const ReferencePoint
 
 std::optional<EmissionSample> DistantLight::sample_le(const LightContext& context, Index, Vec2f u, Vec2f,
                                                       const SampledWavelengths& lambda) const {
-    const SceneDisk disk(context.lights().scene_bounds());
+    const SceneDisk disk(context.tables().scene_bounds);
     EmissionSample s;
     s.radiance = spectrum.sample(lambda) * scale;
     s.ray = disk.sample(-to_light, u);
@@ -38,11 +38,11 @@ std::optional<EmissionSample> DistantLight::sample_le(const LightContext& contex
 }
 
 EmissionPdf DistantLight::pdf_le(const LightContext& context, const LightHit&, Vec3f) const {
-    return {SceneDisk(context.lights().scene_bounds()).pdf(), 0};
+    return {SceneDisk(context.tables().scene_bounds).pdf(), 0};
 }
 
 void DistantLight::powers(const LightContext& context, std::span<double> parts) const {
-    parts[0] = SceneDisk(context.lights().scene_bounds()).area() * (double(scale) * visible_mean(spectrum));
+    parts[0] = SceneDisk(context.tables().scene_bounds).area() * (double(scale) * visible_mean(spectrum));
 }
 
 std::optional<LightBounds> DistantLight::bounds(const LightContext&, Index) const { return std::nullopt; }

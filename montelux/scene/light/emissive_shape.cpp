@@ -10,7 +10,7 @@ std::optional<EmissivePoint> sample_area(const LightContext& context, Index inde
     EmissivePoint s;
     s.hit = {.t = 0, .shape = index, .primitive = part};
     if (shape.mesh != no_index) {
-        const LightTriangle& t = context.lights().triangle(context.light, part);
+        const LightTriangle& t = context.tables().triangle(context.light, part);
         if (!(t.area > 0)) return std::nullopt;
         const Vec3f b = sample_uniform_triangle(u);
         s.hit.b1 = b.y;
@@ -24,7 +24,7 @@ std::optional<EmissivePoint> sample_area(const LightContext& context, Index inde
         }
         s.error = t.error;
         s.area_density = 1 / t.area;
-    } else if (const auto& disk = context.lights().disk(context.light)) {
+    } else if (const auto& disk = context.tables().disk(context.light)) {
         const Vec2f d = sample_uniform_disk_concentric(u);
         s.p = disk->center + d.x * disk->s + d.y * disk->t;
         s.n = shape.flip_normal ? -disk->n : disk->n;
@@ -44,10 +44,10 @@ std::optional<EmissivePoint> sample_area(const LightContext& context, Index inde
 float area_density(const LightContext& context, Index index, Index part, Point3f p) {
     const Shape& shape = context.scene.shapes[index];
     if (shape.mesh != no_index) {
-        const float area = context.lights().triangle(context.light, part).area;
+        const float area = context.tables().triangle(context.light, part).area;
         return area > 0 ? 1 / area : 0;
     }
-    if (const auto& disk = context.lights().disk(context.light)) return 1 / disk->area;
+    if (const auto& disk = context.tables().disk(context.light)) return 1 / disk->area;
     return static_cast<float>(area_pdf(context.scene.quadrics[shape.quadric], Vec3d(p)));
 }
 

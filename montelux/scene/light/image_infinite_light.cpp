@@ -13,7 +13,7 @@ namespace montelux {
 namespace {
 
 TurnedMap turned_map(const LightContext& context, const ImageInfiniteLight& light) {
-    return {context.lights().environment(context.light), light.world_from_light};
+    return {context.tables().environment(context.light), light.world_from_light};
 }
 
 Vec2f place(const EnvironmentGrid& grid, const ImageInfiniteLight& light, Vec3f wi) {
@@ -22,7 +22,7 @@ Vec2f place(const EnvironmentGrid& grid, const ImageInfiniteLight& light, Vec3f 
 
 SampledSpectrum radiance_at(const LightContext& context, const ImageInfiniteLight& light,
                             const EnvironmentGrid& grid, Vec2f place, const SampledWavelengths& lambda) {
-    return context.lights().map_radiance(context.scene, light, grid, place, lambda) * light.scale;
+    return context.tables().map_radiance(light, grid, place, lambda) * light.scale;
 }
 
 } // namespace
@@ -33,7 +33,7 @@ std::optional<LightSample> ImageInfiniteLight::sample_li(const LightContext& con
                                                          const ReferencePoint& from, Vec2f u,
                                                          const SampledWavelengths& lambda) const {
     if (portal) {
-        const PortalSampler& through = context.lights().portal(context.light);
+        const PortalSampler& through = context.tables().portal(context.light);
         const auto s = through.sample(from.p, u);
         if (!s) return std::nullopt;
         const Vec2f at = place(through.grid(), *this, s->wi);
@@ -53,14 +53,14 @@ std::optional<LightSample> ImageInfiniteLight::sample_li(const LightContext& con
 
 float ImageInfiniteLight::pdf_li(const LightContext& context, const ReferencePoint& from,
                                  const LightHit& hit) const {
-    if (portal) return context.lights().portal(context.light).pdf(from.p, hit.wi);
+    if (portal) return context.tables().portal(context.light).pdf(from.p, hit.wi);
     return turned_map(context, *this).pdf(hit.wi);
 }
 
 SampledSpectrum ImageInfiniteLight::radiance(const LightContext& context, const ReferencePoint& from,
                                              const LightHit& hit, const SampledWavelengths& lambda) const {
     if (portal && !portal->lets_through(from.p, hit.wi)) return {};
-    const LightTables& tables = context.lights();
+    const LightTablesView& tables = context.tables();
     const EnvironmentGrid& grid =
         portal ? tables.portal(context.light).grid() : tables.environment(context.light).grid();
     return radiance_at(context, *this, grid, place(grid, *this, hit.wi), lambda);
@@ -69,10 +69,10 @@ SampledSpectrum ImageInfiniteLight::radiance(const LightContext& context, const 
 std::optional<EmissionSample> ImageInfiniteLight::sample_le(const LightContext& context, Index,
                                                             Vec2f u_position, Vec2f u_direction,
                                                             const SampledWavelengths& lambda) const {
-    const SceneDisk disk(context.lights().scene_bounds());
+    const SceneDisk disk(context.tables().scene_bounds);
     EmissionSample s;
     if (portal) {
-        const PortalSampler& through = context.lights().portal(context.light);
+        const PortalSampler& through = context.tables().portal(context.light);
         const auto d = through.sample_direction(u_direction);
         if (!d) return std::nullopt;
         const double cosine = portal->to_local(Vec3d(d->wi)).z;
@@ -95,26 +95,26 @@ std::optional<EmissionSample> ImageInfiniteLight::sample_le(const LightContext& 
 
 EmissionPdf ImageInfiniteLight::pdf_le(const LightContext& context, const LightHit&, Vec3f w) const {
     if (!portal)
-        return {SceneDisk(context.lights().scene_bounds()).pdf(),
+        return {SceneDisk(context.tables().scene_bounds).pdf(),
                 turned_map(context, *this).pdf_everywhere(-w)};
     const double cosine = portal->to_local(-Vec3d(w)).z;
     if (!(cosine > 0)) return {};
     return {static_cast<float>(1 / (portal->area() * cosine)),
-            context.lights().portal(context.light).direction_pdf(-w)};
+            context.tables().portal(context.light).direction_pdf(-w)};
 }
 
 void ImageInfiniteLight::powers(const LightContext& context, std::span<double> parts) const {
-    const double cross_section = SceneDisk(context.lights().scene_bounds()).area();
+    const double cross_section = SceneDisk(context.tables().scene_bounds).area();
     // The photometric normalisation is in `scale`; so is the mean of the white illuminant.
-    const Spectrum white(RgbIlluminantSpectrum(LightTables::map_color_space(), {1, 1, 1}));
+    const Spectrum white(RgbIlluminantSpectrum(LightTablesView::map_color_space(), {1, 1, 1}));
     const double white_scale = double(scale) * visible_mean(white);
     if (portal) {
-        const PortalSampler& through = context.lights().portal(context.light);
+        const PortalSampler& through = context.tables().portal(context.light);
         parts[0] =
             white_scale * std::min(portal->area() * through.irradiance(), cross_section * through.fluence());
     } else {
         parts[0] = 4 * pi * cross_section * white_scale *
-                   context.lights().environment(context.light).mean_radiance();
+                   context.tables().environment(context.light).mean_radiance();
     }
 }
 

@@ -1,17 +1,15 @@
-// What the functions of a light read: the scene, its tables, and the place of the light in both.
+// What the functions of a light read: the scene, and the place of the light in it.
 #pragma once
 
-#include "montelux/scene/scene.h"
-#include "montelux/scene/scene_tables.h"
+#include "montelux/scene/view.h"
 
 namespace montelux {
 
 struct LightContext {
-    const Scene& scene;
-    const SceneTables& tables;
-    Index light; // into Scene::lights
+    const SceneView& scene;
+    Index light; // into SceneView::lights
 
-    const LightTables& lights() const { return tables.lights(); }
+    const LightTablesView& tables() const { return scene.light_tables; }
 };
 
 } // namespace montelux

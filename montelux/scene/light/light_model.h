@@ -15,7 +15,7 @@
 
 namespace montelux {
 
-// Scene, tables and index of a light (light_context.h).
+// Scene and index of a light (light_context.h).
 struct LightContext;
 
 // Where rays can meet a light. An exhaustive list: what a path does with a light follows from it.

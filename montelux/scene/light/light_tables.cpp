@@ -26,12 +26,6 @@ LightTriangle light_triangle(const TriangleMesh& mesh, const Shape& shape, std::
     return t;
 }
 
-RgbUnboundedSpectrum texel_spectrum(const Image& map, std::size_t texel) {
-    const std::size_t i = texel * static_cast<std::size_t>(map.channels());
-    Vec3f rgb{map.value_at(i), map.value_at(i + 1), map.value_at(i + 2)};
-    return {LightTables::map_color_space(), max(rgb, Vec3f{0, 0, 0})};
-}
-
 // Above this size (64 MiB of spectra) texels are uplifted when they are looked up.
 constexpr std::size_t max_precomputed_texels = std::size_t{1} << 22;
 
@@ -41,32 +35,12 @@ std::vector<RgbUnboundedSpectrum> map_spectra(const Image& map) {
     parallel_for(map.height(), [&](std::int64_t y) {
         for (std::size_t x = 0, i = static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width());
              x < static_cast<std::size_t>(map.width()); ++x, ++i)
-            spectra[i] = texel_spectrum(map, i);
+            spectra[i] = LightTablesView::texel_spectrum(map, i);
     });
     return spectra;
 }
 
 } // namespace
-
-SampledSpectrum LightTables::texel_factor(const Scene& scene, const ImageInfiniteLight& light,
-                                          std::size_t texel, const SampledWavelengths& lambda) const {
-    const auto& spectra = map_spectra_[light.environment];
-    if (!spectra.empty()) return spectra[texel].sample(lambda);
-    return texel_spectrum(scene.environments[light.environment], texel).sample(lambda);
-}
-
-SampledSpectrum LightTables::map_radiance(const Scene& scene, const ImageInfiniteLight& light,
-                                          const EnvironmentGrid& grid, Vec2f place,
-                                          const SampledWavelengths& lambda) const {
-    SampledSpectrum white = map_color_space().illuminant().sample(lambda);
-    if (lookup_ == EnvironmentLookup::nearest)
-        return texel_factor(scene, light, grid.texel(place), lambda) * white;
-    const EnvironmentGrid::Blend blend = grid.blend(place);
-    SampledSpectrum sum;
-    for (std::size_t k = 0; k < 4; ++k)
-        sum += texel_factor(scene, light, blend.texel[k], lambda) * blend.share[k];
-    return sum * white;
-}
 
 Bounds3 bounds_of(const Scene& scene) {
     Bounds3 bounds;
@@ -122,7 +96,8 @@ void LightTables::add_shape(const Scene& scene, Index light, const AreaLight& ar
     const Shape& shape = scene.shapes[area.shape];
     if (shape.mesh != no_index) {
         // The number of its triangles, for the time being.
-        if (is_in_world(area.shape)) first_triangle_[light + 1] = scene.meshes[shape.mesh].triangle_count();
+        if (in_world_[area.shape] != 0)
+            first_triangle_[light + 1] = scene.meshes[shape.mesh].triangle_count();
         return;
     }
     const Quadric& quadric = scene.quadrics[shape.quadric];
@@ -165,6 +140,24 @@ void LightTables::add_environment(const Scene& scene, Index light, Index map, En
         known_environments_.try_emplace({map, layout}, static_cast<Index>(environments_.size()));
     if (is_new) environments_.emplace_back(scene.environments[map], layout, settings);
     environment_of_light_[light] = known->second;
+}
+
+LightTablesView LightTables::view(const Scene& scene) const {
+    LightTablesView view;
+    view.lookup = lookup_;
+    view.triangles = triangles_;
+    view.first_triangle = first_triangle_;
+    view.spheres = spheres_;
+    view.disks = disks_;
+    view.maps = scene.environments;
+    view.environments = environments_;
+    view.portals = portals_;
+    view.environment_of_light = environment_of_light_;
+    view.map_spectra = map_spectra_;
+    view.infinite_lights = infinite_lights_;
+    view.in_world = in_world_;
+    view.scene_bounds = bounds_;
+    return view;
 }
 
 } // namespace montelux

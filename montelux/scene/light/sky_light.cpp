@@ -10,7 +10,7 @@ namespace montelux {
 namespace {
 
 TurnedMap turned_map(const LightContext& context, const SkyLight& light) {
-    return {context.lights().environment(context.light), light.world_from_light};
+    return {context.tables().environment(context.light), light.world_from_light};
 }
 
 // Of a place on the map, or of a direction in the light's space.
@@ -48,7 +48,7 @@ std::optional<EmissionSample> SkyLight::sample_le(const LightContext& context, I
     const TurnedMap map = turned_map(context, *this);
     const auto d = map.sample_everywhere(u_direction);
     if (!d) return std::nullopt;
-    const SceneDisk disk(context.lights().scene_bounds());
+    const SceneDisk disk(context.tables().scene_bounds);
     EmissionSample s;
     s.radiance = radiance_at(context, *this, map.map.grid().direction(d->grid), lambda);
     s.ray = disk.sample(-d->wi, u_position);
@@ -58,12 +58,12 @@ std::optional<EmissionSample> SkyLight::sample_le(const LightContext& context, I
 }
 
 EmissionPdf SkyLight::pdf_le(const LightContext& context, const LightHit&, Vec3f w) const {
-    return {SceneDisk(context.lights().scene_bounds()).pdf(), turned_map(context, *this).pdf_everywhere(-w)};
+    return {SceneDisk(context.tables().scene_bounds).pdf(), turned_map(context, *this).pdf_everywhere(-w)};
 }
 
 void SkyLight::powers(const LightContext& context, std::span<double> parts) const {
-    parts[0] = 4 * pi * SceneDisk(context.lights().scene_bounds()).area() * double(scale) *
-               context.lights().environment(context.light).mean_radiance();
+    parts[0] = 4 * pi * SceneDisk(context.tables().scene_bounds).area() * double(scale) *
+               context.tables().environment(context.light).mean_radiance();
 }
 
 std::optional<LightBounds> SkyLight::bounds(const LightContext&, Index) const { return std::nullopt; }

@@ -36,7 +36,7 @@ std::optional<EmissionSample> SunLight::sample_le(const LightContext& context, I
                                                   Vec2f u_direction, const SampledWavelengths& lambda) const {
     const Vec3f wi = disc.sample(u_direction);
     if (hides(wi)) return std::nullopt;
-    const SceneDisk disk(context.lights().scene_bounds());
+    const SceneDisk disk(context.tables().scene_bounds);
     EmissionSample s;
     s.radiance = spectrum.sample(lambda) * scale;
     s.ray = disk.sample(-wi, u_position);
@@ -47,12 +47,12 @@ std::optional<EmissionSample> SunLight::sample_le(const LightContext& context, I
 
 EmissionPdf SunLight::pdf_le(const LightContext& context, const LightHit&, Vec3f w) const {
     if (!disc.contains(-w) || hides(-w)) return {};
-    return {SceneDisk(context.lights().scene_bounds()).pdf(), disc.pdf()};
+    return {SceneDisk(context.tables().scene_bounds).pdf(), disc.pdf()};
 }
 
 void SunLight::powers(const LightContext& context, std::span<double> parts) const {
     const double above = std::asin(std::clamp(double(dot(disc.centre, up)), -1.0, 1.0));
-    parts[0] = SceneDisk(context.lights().scene_bounds()).area() * double(scale) * visible_mean(spectrum) *
+    parts[0] = SceneDisk(context.tables().scene_bounds).area() * double(scale) * visible_mean(spectrum) *
                disc.solid_angle() * part_above_horizon(above, std::sqrt(2 * double(disc.versine)));
 }
 

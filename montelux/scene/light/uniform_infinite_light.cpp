@@ -49,7 +49,7 @@ SampledSpectrum UniformInfiniteLight::radiance(const LightContext&, const Refere
 std::optional<EmissionSample> UniformInfiniteLight::sample_le(const LightContext& context, Index,
                                                               Vec2f u_position, Vec2f u_direction,
                                                               const SampledWavelengths& lambda) const {
-    const SceneDisk disk(context.lights().scene_bounds());
+    const SceneDisk disk(context.tables().scene_bounds);
     EmissionSample s;
     if (portal) {
         // Uniform over the portal, directions by the cosine: the flux of every sample is the same.
@@ -69,7 +69,7 @@ std::optional<EmissionSample> UniformInfiniteLight::sample_le(const LightContext
 }
 
 EmissionPdf UniformInfiniteLight::pdf_le(const LightContext& context, const LightHit&, Vec3f w) const {
-    if (!portal) return {SceneDisk(context.lights().scene_bounds()).pdf(), inv_four_pi_f};
+    if (!portal) return {SceneDisk(context.tables().scene_bounds).pdf(), inv_four_pi_f};
     const double cosine = portal->to_local(-Vec3d(w)).z;
     if (!(cosine > 0)) return {};
     return {static_cast<float>(1 / (portal->area() * cosine)),
@@ -77,7 +77,7 @@ EmissionPdf UniformInfiniteLight::pdf_le(const LightContext& context, const Ligh
 }
 
 void UniformInfiniteLight::powers(const LightContext& context, std::span<double> parts) const {
-    const double cross_section = SceneDisk(context.lights().scene_bounds()).area();
+    const double cross_section = SceneDisk(context.tables().scene_bounds).area();
     const double flux = double(scale) * visible_mean(spectrum);
     parts[0] =
         portal ? flux * std::min(pi * portal->area(), 2 * pi * cross_section) : 4 * pi * cross_section * flux;

@@ -7,14 +7,13 @@ namespace montelux {
 namespace {
 
 struct Evaluator {
-    const Scene& scene;
-    const SceneTables& tables;
+    const SceneView& scene;
     const TextureContext& context;
     SampledWavelengths& lambda;
 
-    float operator()(const FloatParameter& p) const { return evaluate(scene, tables, p, context); }
+    float operator()(const FloatParameter& p) const { return evaluate(scene, p, context); }
     SampledSpectrum operator()(const SpectrumParameter& p) const {
-        return evaluate(scene, tables, p, context, lambda);
+        return evaluate(scene, p, context, lambda);
     }
     SampledSpectrum reflectance(const SpectrumParameter& p) const { return clamp((*this)(p), 0, 1); }
 
@@ -91,9 +90,9 @@ bool is_anisotropic(const Material& material) {
         material);
 }
 
-Bsdf make_bsdf(const Scene& scene, const SceneTables& tables, Index index, const TextureContext& context,
+Bsdf make_bsdf(const SceneView& scene, Index index, const TextureContext& context,
                SampledWavelengths& lambda) {
-    Evaluator at{scene, tables, context, lambda};
+    Evaluator at{scene, context, lambda};
     return std::visit(
         [&](const auto& m) -> Bsdf {
             using M = std::decay_t<decltype(m)>;
@@ -108,7 +107,7 @@ Bsdf make_bsdf(const Scene& scene, const SceneTables& tables, Index index, const
                 return ThinDielectricBsdf{at.refractive_index(m.eta)};
             } else if constexpr (std::is_same_v<M, CoatedDiffuseMaterial>) {
                 SampledSpectrum rho = at.reflectance(m.reflectance);
-                if (const CoatingTable* table = tables.coating(index))
+                if (const CoatingTable* table = scene.coating(index))
                     return CoatedDiffuseBsdf{table, table->base_albedo(rho)};
                 float eta = at.refractive_index(m.coating.eta);
                 return at.layered(m.coating, eta, DiffuseBsdf{rho}, Ggx{0.7f, 0.7f});

@@ -7,7 +7,7 @@ namespace montelux {
 
 bool is_cut_out(const Shape& shape) { return !shape.alpha.is_constant() || shape.alpha.value < 1; }
 
-std::optional<float> constant_alpha(const Scene& scene, const Shape& shape) {
+std::optional<float> constant_alpha(const SceneView& scene, const Shape& shape) {
     const FloatParameter* p = &shape.alpha;
     while (!p->is_constant()) {
         const auto* texture = std::get_if<ConstantTexture<FloatParameter>>(&scene.float_textures[p->texture]);
@@ -17,11 +17,11 @@ std::optional<float> constant_alpha(const Scene& scene, const Shape& shape) {
     return p->value;
 }
 
-float alpha_at(const Scene& scene, const SceneTables& tables, const Ray& ray, const Hit& hit) {
+float alpha_at(const SceneView& scene, const Ray& ray, const Hit& hit) {
     const SurfacePoint s = surface_point(scene, ray, hit, true);
     const TextureContext context{
         .p = s.p, .n = s.ns, .uv = s.uv, .dpdx = {}, .dpdy = {}, .duvdx = {}, .duvdy = {}};
-    return evaluate(scene, tables, scene.shapes[hit.shape].alpha, context);
+    return evaluate(scene, scene.shapes[hit.shape].alpha, context);
 }
 
 } // namespace montelux

@@ -90,7 +90,7 @@ float stretch(const Transform& t) {
 
 } // namespace
 
-SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, bool coordinates) {
+SurfacePoint surface_point(const SceneView& scene, const Ray& ray, const Hit& hit, bool coordinates) {
     const Shape& shape = scene.shapes[hit.shape];
     SurfacePoint s;
     if (hit.instance == no_index) {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "montelux/mc/math/frame.h"
-#include "montelux/scene/scene.h"
 #include "montelux/scene/shape/ray.h"
+#include "montelux/scene/view.h"
 
 namespace montelux {
 
@@ -20,7 +20,7 @@ struct SurfacePoint {
 
 // Everything at a hit of `ray`. Texture coordinates and derivatives are computed only when asked for:
 // textures and anisotropic BSDFs need them.
-SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, bool coordinates);
+SurfacePoint surface_point(const SceneView& scene, const Ray& ray, const Hit& hit, bool coordinates);
 
 // Of the vertices `v` of a triangle with vertex normals, at the weights b1 and b2 of the second and third
 // one; not of unit length.

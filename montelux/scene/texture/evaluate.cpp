@@ -34,11 +34,11 @@ float second_share(const CheckerboardTexture<Parameter>& t, const TextureContext
     return (cell & 1) == 0 ? 0.0f : 1.0f;
 }
 
-Vec3f image_lookup(const SceneTables& tables, const ImageTexture& t, const TextureContext& context) {
+Vec3f image_lookup(const SceneView& scene, const ImageTexture& t, const TextureContext& context) {
     TextureCoordinates c = t.mapping(context);
     Vec3f rgb =
         t.scale *
-        tables.mipmap(t.image, t.channels).lookup(c.st, c.dstdx, c.dstdy, t.filter, t.wrap, t.max_anisotropy);
+        scene.mipmap(t.image, t.channels).lookup(c.st, c.dstdx, c.dstdy, t.filter, t.wrap, t.max_anisotropy);
     if (t.invert) rgb = Vec3f{1, 1, 1} - rgb;
     return max(rgb, Vec3f{0, 0, 0});
 }
@@ -99,24 +99,22 @@ Value evaluate_node(const Texture& texture, const TextureContext& context, const
 
 } // namespace
 
-float evaluate_texture(const Scene& scene, const SceneTables& tables, const FloatTexture& texture,
-                       const TextureContext& context) {
-    auto value_of = [&](const FloatParameter& p) { return evaluate(scene, tables, p, context); };
+float evaluate_texture(const SceneView& scene, const FloatTexture& texture, const TextureContext& context) {
+    auto value_of = [&](const FloatParameter& p) { return evaluate(scene, p, context); };
     auto from_image = [&](const ImageTexture& t) {
-        Vec3f rgb = image_lookup(tables, t, context);
+        Vec3f rgb = image_lookup(scene, t, context);
         return (rgb.x + rgb.y + rgb.z) / 3;
     };
     return evaluate_node<float>(texture, context, value_of, from_image, value_of);
 }
 
-SampledSpectrum evaluate_texture(const Scene& scene, const SceneTables& tables,
-                                 const SpectrumTexture& texture, const TextureContext& context,
-                                 const SampledWavelengths& lambda) {
-    auto value_of = [&](const SpectrumParameter& p) { return evaluate(scene, tables, p, context, lambda); };
+SampledSpectrum evaluate_texture(const SceneView& scene, const SpectrumTexture& texture,
+                                 const TextureContext& context, const SampledWavelengths& lambda) {
+    auto value_of = [&](const SpectrumParameter& p) { return evaluate(scene, p, context, lambda); };
     auto from_image = [&](const ImageTexture& t) {
-        return as_spectrum(image_lookup(tables, t, context), t, lambda);
+        return as_spectrum(image_lookup(scene, t, context), t, lambda);
     };
-    auto amount = [&](const FloatParameter& p) { return evaluate(scene, tables, p, context); };
+    auto amount = [&](const FloatParameter& p) { return evaluate(scene, p, context); };
     return evaluate_node<SampledSpectrum>(texture, context, value_of, from_image, amount);
 }
 

@@ -8,6 +8,7 @@
 
 #include "montelux/image/image_write.h"
 #include "montelux/scene/light/light_sampling.h"
+#include "montelux/scene/scene_tables.h"
 #include "montelux/spectrum/named_spectra.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
@@ -269,9 +270,9 @@ TEST(PbrtLights, AreaLightsOfShapes) {
         const auto& l = std::get<AreaLight>(d.scene.lights[index]);
         EXPECT_TRUE(l.two_sided);
         EXPECT_EQ(l.shape, i / 2);
-        EXPECT_EQ(part_count({d.scene, tables, index}), index == 1 ? 2u : 1u);
+        EXPECT_EQ(part_count({tables.view(), index}), index == 1 ? 2u : 1u);
         const LightHit hit{.wi = {0, 0, -1}, .part = i % 2, .n = {0, 0, 1}};
-        const float radiance = incident_radiance({d.scene, tables, index}, {}, hit, lambda)[0];
+        const float radiance = incident_radiance({tables.view(), index}, {}, hit, lambda)[0];
         EXPECT_NEAR(radiance / l.spectrum.sample(lambda)[0] * to_photometric(l.spectrum),
                     12 / (2 * areas[i] * pi), 1e-5);
     }

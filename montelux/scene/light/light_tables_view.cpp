@@ -1,0 +1,28 @@
+#include "montelux/scene/light/light_tables_view.h"
+
+namespace montelux {
+
+RgbUnboundedSpectrum LightTablesView::texel_spectrum(const Image& map, std::size_t texel) {
+    const std::size_t i = texel * static_cast<std::size_t>(map.channels());
+    Vec3f rgb{map.value_at(i), map.value_at(i + 1), map.value_at(i + 2)};
+    return {map_color_space(), max(rgb, Vec3f{0, 0, 0})};
+}
+
+SampledSpectrum LightTablesView::texel_factor(const ImageInfiniteLight& light, std::size_t texel,
+                                              const SampledWavelengths& lambda) const {
+    const auto& spectra = map_spectra[light.environment];
+    if (!spectra.empty()) return spectra[texel].sample(lambda);
+    return texel_spectrum(maps[light.environment], texel).sample(lambda);
+}
+
+SampledSpectrum LightTablesView::map_radiance(const ImageInfiniteLight& light, const EnvironmentGrid& grid,
+                                              Vec2f place, const SampledWavelengths& lambda) const {
+    SampledSpectrum white = map_color_space().illuminant().sample(lambda);
+    if (lookup == EnvironmentLookup::nearest) return texel_factor(light, grid.texel(place), lambda) * white;
+    const EnvironmentGrid::Blend blend = grid.blend(place);
+    SampledSpectrum sum;
+    for (std::size_t k = 0; k < 4; ++k) sum += texel_factor(light, blend.texel[k], lambda) * blend.share[k];
+    return sum * white;
+}
+
+} // namespace montelux

@@ -1,0 +1,69 @@
+// LightTablesView: what sampling lights looks up, in spans over the arrays of LightTables.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "montelux/scene/light/environment/environment_sampler.h"
+#include "montelux/scene/light/environment/portal_sampler.h"
+#include "montelux/scene/light/image_infinite_light.h"
+#include "montelux/scene/shape/quadric.h"
+
+namespace montelux {
+
+// A triangle that emits, in world space.
+struct LightTriangle {
+    Point3f p0;
+    Vec3f e1, e2;
+    Normal3f n; // as SurfacePoint::ng, but where vertex normals turn it
+    float area = 0;
+    float error = 0; // as SurfacePoint::error
+};
+
+struct LightTablesView {
+    EnvironmentLookup lookup{};
+    std::span<const LightTriangle> triangles;
+    std::span<const std::size_t> first_triangle; // of each light, and the number of all
+    std::span<const std::optional<WorldSphere>> spheres;
+    std::span<const std::optional<WorldDisk>> disks;
+    std::span<const Image> maps; // Scene::environments
+    // Of all maps without portals and of skies, each layout of a map once; those with portals.
+    std::span<const EnvironmentSampler> environments;
+    std::span<const PortalSampler> portals;
+    std::span<const Index> environment_of_light; // into one of the two
+    // Spectra of the texels of each map, ready to be evaluated; empty for maps that are too large.
+    std::span<const std::vector<RgbUnboundedSpectrum>> map_spectra;
+    std::span<const Index> infinite_lights;
+    std::span<const char> in_world; // one per shape: 0 or 1
+    Bounds3 scene_bounds;
+
+    // Of every environment map.
+    static const RgbColorSpace& map_color_space() { return RgbColorSpace::srgb(); }
+    static RgbUnboundedSpectrum texel_spectrum(const Image& map, std::size_t texel);
+    // Of a light on a mesh in the world.
+    const LightTriangle& triangle(Index light, Index primitive) const {
+        return triangles[first_triangle[light] + primitive];
+    }
+    // Radiance of an environment map at a place of its grid, before Light::scale.
+    SampledSpectrum map_radiance(const ImageInfiniteLight& light, const EnvironmentGrid& grid, Vec2f place,
+                                 const SampledWavelengths& lambda) const;
+    // Of an infinite light with a map, and no portal.
+    const EnvironmentSampler& environment(Index light) const {
+        return environments[environment_of_light[light]];
+    }
+    // Of an infinite light with both.
+    const PortalSampler& portal(Index light) const { return portals[environment_of_light[light]]; }
+    // Of lights that are whole ones without holes.
+    const std::optional<WorldSphere>& sphere(Index light) const { return spheres[light]; }
+    const std::optional<WorldDisk>& disk(Index light) const { return disks[light]; }
+    // Whether a shape is placed in the world itself, where it may emit.
+    bool is_in_world(Index shape) const { return in_world[shape] != 0; }
+
+  private:
+    // Without the white illuminant, at index y * width + x.
+    SampledSpectrum texel_factor(const ImageInfiniteLight& light, std::size_t texel,
+                                 const SampledWavelengths& lambda) const;
+};
+
+} // namespace montelux

@@ -1,0 +1,64 @@
+// SceneView: all that a path reads of a scene and its tables, in spans and indices.
+#pragma once
+
+#include <span>
+#include <type_traits>
+
+#include "montelux/scene/bsdf/coating.h"
+#include "montelux/scene/light/light_tables_view.h"
+#include "montelux/scene/light/sampler/light_sampler.h"
+#include "montelux/scene/scene.h"
+#include "montelux/scene/texture/mipmap.h"
+
+namespace montelux {
+
+// The one argument of whatever follows a path. Trivially copyable; scene and tables outlive it unchanged.
+// SceneTables::view() gives it whole.
+struct SceneView {
+    std::span<const TriangleMesh> meshes;
+    std::span<const Quadric> quadrics;
+    std::span<const Shape> shapes;
+    std::span<const Index> world_shapes;
+    std::span<const ObjectDefinition> objects;
+    std::span<const Instance> instances;
+
+    std::span<const Material> materials;
+    std::span<const char> textured, anisotropic;  // one per material: 0 or 1
+    std::span<const Index> coating_of_material;   // no_index: the random walk is used
+    std::span<const CoatingTable> coating_tables; // where the closed form holds
+    std::span<const FloatTexture> float_textures;
+    std::span<const SpectrumTexture> spectrum_textures;
+    std::span<const MipMap> mipmaps;              // one per image, of its colours
+    std::span<const Index> alpha_mipmap_of_image; // into alpha_mipmaps, or no_index
+    std::span<const MipMap> alpha_mipmaps;
+
+    std::span<const Light> lights;
+    std::span<const SkyModel> skies;
+    LightTablesView light_tables;
+    const LightSampler* light_sampler = nullptr;
+
+    SceneView() = default;
+    // Without tables: enough for geometry and constant parameters.
+    explicit SceneView(const Scene& scene)
+        : meshes(scene.meshes), quadrics(scene.quadrics), shapes(scene.shapes),
+          world_shapes(scene.world_shapes), objects(scene.objects), instances(scene.instances),
+          materials(scene.materials), float_textures(scene.float_textures),
+          spectrum_textures(scene.spectrum_textures), lights(scene.lights), skies(scene.skies) {}
+
+    // The material's parameters look up textures, so coordinates and footprints are needed.
+    bool is_textured(Index material) const { return textured[material] != 0; }
+    // The BSDF's lobes depend on the direction of the tangents.
+    bool is_anisotropic(Index material) const { return anisotropic[material] != 0; }
+    // Null where the closed form of CoatingTable does not hold.
+    const CoatingTable* coating(Index material) const {
+        const Index table = coating_of_material[material];
+        return table == no_index ? nullptr : &coating_tables[table];
+    }
+    const MipMap& mipmap(Index image, ImageChannels channels) const {
+        return channels == ImageChannels::color ? mipmaps[image]
+                                                : alpha_mipmaps[alpha_mipmap_of_image[image]];
+    }
+};
+static_assert(std::is_trivially_copyable_v<SceneView>);
+
+} // namespace montelux
