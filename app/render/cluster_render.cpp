@@ -17,13 +17,14 @@
 #include "montelux/mc/io/byte_stream.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/render/renderer.h"
+#include "montelux/scene/scene_digest.h"
 
 namespace montelux::app {
 namespace {
 
 // What the leader tells the others in the beginning, beside the files of the scene.
 struct Opening {
-    ContentDigest content_hash;
+    SceneDigest scene;
     SamplerSettings sampler;
     std::int32_t tile_size = 0;
 };
@@ -55,7 +56,7 @@ struct Prepared {
             Warnings ignored;
             description = load_pbrt(options.scene, ignored, nullptr, &files);
         }
-        if (description.content_hash != opening.content_hash)
+        if (digest_of(description.scene) != opening.scene)
             throw Error("the scene", "this rank has read another one than rank 0");
         apply(options, description);
         description.sampler = opening.sampler;
@@ -94,7 +95,7 @@ RoundExecutor* SharedRender::begin(const SceneDescription& description, const Re
     settings.tile_size = tile_size_for(description.film.crop, static_cast<double>(threads_) * job_->size());
     settings.patience_seconds = patience_seconds_;
     ByteWriter out;
-    out.put(Opening{description.content_hash, description.sampler, settings.tile_size});
+    out.put(Opening{digest_of(description.scene), description.sampler, settings.tile_size});
     out.put(target);
     out.put_bytes(files_.bundle().to_bytes());
     files_ = {};

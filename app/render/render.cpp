@@ -252,7 +252,7 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
         control.checkpoint = [&](const RenderState& s) {
             checkpoint_failure.clear();
             try {
-                save_checkpoint(options.checkpoint, description, renderer.sampler(), target, s);
+                save_checkpoint(options.checkpoint, renderer, s);
             } catch (const std::exception& e) {
                 checkpoint_failure = e.what();
                 std::fprintf(stderr, "\nmontelux: warning: %s; the render goes on without this checkpoint\n",
@@ -266,8 +266,8 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
 
     const FilmError error = state.film.error();
     Image image = state.film.develop(target.slice.count > 1);
-    add_render_header(image, std::filesystem::path(options.scene).filename().string(), description, renderer,
-                      report, error, clamped_luminance(state.film));
+    add_render_header(image, std::filesystem::path(options.scene).filename().string(), renderer, report,
+                      error, clamped_luminance(state.film));
     finish_on_signals();
     const DenoiseOutcome denoised = denoise_render(denoiser, image, report.cancelled(), options.quiet);
     OutputFiles files;

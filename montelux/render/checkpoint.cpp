@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view kind = "render";
 // Of the layout below.
-constexpr std::uint32_t layout_version = 2;
+constexpr std::uint32_t layout_version = 3;
 static_assert(std::is_trivially_copyable_v<Pixel> && std::endian::native == std::endian::little);
 
 template <typename... T>
@@ -47,9 +47,9 @@ std::uint64_t hash_of_filter(const PixelFilter& filter) {
         filter);
 }
 
-// What a continued render must share with the one that was saved.
+// What a continued render must share with the one that was saved; `difference` is what a message says else.
 struct Fingerprint {
-    const char* what;
+    const char* difference;
     std::uint64_t hash;
 };
 std::uint64_t hash_of_text(std::string_view text) {
@@ -60,34 +60,40 @@ std::uint64_t hash_of_text(std::string_view text) {
 // Another version of the program may take other samples.
 std::uint64_t version() { return hash_of(layout_version, hash_of_text(MONTELUX_VERSION)); }
 
-std::array<Fingerprint, 7> fingerprints(const SceneDescription& d, const RenderTarget& target) {
+std::array<Fingerprint, 10> fingerprints(const SceneDigest& scene, const SceneDescription& d,
+                                         const RenderTarget& target) {
     const FilmSettings& f = d.film;
-    constexpr const char* scene = "scene (its files changed)";
-    return {{{scene, d.content_hash.high},
-             {scene, d.content_hash.low},
-             {"film",
-              hash_of(f.width, f.height, f.crop.x0, f.crop.y0, f.crop.x1, f.crop.y1, hash_of_filter(f.filter),
-                      f.iso, f.exposure_time, f.white_balance, f.max_component_value)},
-             {"sampler or seed", hash_of(static_cast<int>(d.sampler.kind), d.sampler.seed)},
-             {"integrator", hash_of(d.integrator.max_depth, static_cast<int>(d.integrator.strategy),
-                                    static_cast<int>(d.integrator.heuristic),
-                                    static_cast<int>(d.integrator.environment_sampling),
-                                    d.integrator.environment_compensation,
-                                    static_cast<int>(d.integrator.environment_lookup))},
-             {"allocation of samples (--adaptive)", hash_of(target.adaptive)},
-             {"slice", hash_of(target.slice.index, target.slice.count)}}};
+    auto of = [](const ContentDigest& part) { return hash_of(part.high, part.low); };
+    return {
+        {{"the scene's geometry differs", of(scene.geometry)},
+         {"the scene's materials differ", of(scene.materials)},
+         {"the scene's textures differ", of(scene.textures)},
+         {"the scene's lights differ", of(scene.lights)},
+         {"the scene's camera differs", of(scene.camera)},
+         {"the film differs",
+          hash_of(f.width, f.height, f.crop.x0, f.crop.y0, f.crop.x1, f.crop.y1, hash_of_filter(f.filter),
+                  f.iso, f.exposure_time, f.white_balance, f.max_component_value)},
+         {"the sampler or seed differs", hash_of(static_cast<int>(d.sampler.kind), d.sampler.seed)},
+         {"the integrator differs",
+          hash_of(d.integrator.max_depth, static_cast<int>(d.integrator.strategy),
+                  static_cast<int>(d.integrator.heuristic),
+                  static_cast<int>(d.integrator.environment_sampling), d.integrator.environment_compensation,
+                  static_cast<int>(d.integrator.environment_lookup))},
+         {"the allocation of samples (--adaptive) differs", hash_of(target.adaptive)},
+         {"the slice differs", hash_of(target.slice.index, target.slice.count)}}};
 }
 
 } // namespace
 
-void save_checkpoint(const std::filesystem::path& path, const SceneDescription& description,
-                     const SamplerSettings& sampler, const RenderTarget& target, const RenderState& state) {
+void save_checkpoint(const std::filesystem::path& path, const Renderer& renderer, const RenderState& state) {
     ByteWriter out;
     const std::span<const Pixel> pixels = state.film.pixels();
     out.reserve(pixels.size_bytes() + state.target_samples.size() * sizeof(std::uint32_t) + 1024);
     out.put(version());
-    for (const Fingerprint& f : fingerprints(description, target)) out.put(f.hash);
-    out.put(points_per_replicate(sampler));
+    for (const Fingerprint& f :
+         fingerprints(renderer.scene_digest(), renderer.description(), renderer.target()))
+        out.put(f.hash);
+    out.put(points_per_replicate(renderer.sampler()));
     out.put(state.report);
     out.put(static_cast<std::uint64_t>(pixels.size()));
     out.put(static_cast<std::uint64_t>(state.target_samples.size()));
@@ -96,9 +102,10 @@ void save_checkpoint(const std::filesystem::path& path, const SceneDescription& 
     write_generation(path, kind, out.take());
 }
 
-std::uint64_t render_fingerprint(const SceneDescription& description, const SamplerSettings& sampler) {
-    std::uint64_t hash = hash_of(version(), SampleOrder(sampler, {}).replicate_size());
-    for (const Fingerprint& f : fingerprints(description, {})) hash = hash_of(hash, f.hash);
+std::uint64_t render_fingerprint(const Renderer& renderer) {
+    std::uint64_t hash = hash_of(version(), SampleOrder(renderer.sampler(), {}).replicate_size());
+    for (const Fingerprint& f : fingerprints(renderer.scene_digest(), renderer.description(), {}))
+        hash = hash_of(hash, f.hash);
     return hash;
 }
 
@@ -114,11 +121,11 @@ RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDes
     restored.newest_refused_because = generation.newest_refused_because;
     ByteReader in(generation.payload, "checkpoint");
     if (in.get<std::uint64_t>() != version())
-        throw Error(path.string(), "the checkpoint is of another version of the program");
-    for (const Fingerprint& f : fingerprints(description, target))
+        throw Error(path.string(), "the checkpoint is of another version of Montelux, which this one cannot "
+                                   "resume; resume it with that version, or render anew to another file");
+    for (const Fingerprint& f : fingerprints(digest_of(description.scene), description, target))
         if (in.get<std::uint64_t>() != f.hash)
-            throw Error(path.string(),
-                        std::string("the checkpoint is of another render: the ") + f.what + " differs");
+            throw Error(path.string(), std::string("the checkpoint is of another render: ") + f.difference);
     restored.replicate_points = in.get<std::uint32_t>();
     state.report = in.get<RenderReport>();
     const auto count = in.get<std::uint64_t>(), target_samples = in.get<std::uint64_t>();

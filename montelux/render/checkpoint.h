@@ -3,20 +3,19 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 
 #include "montelux/render/render_state.h"
 #include "montelux/render/render_target.h"
+#include "montelux/render/renderer.h"
 #include "montelux/scene/render_settings.h"
 
 namespace montelux {
 
 // Writes a generation file (mc/io/generation_file.h): the state beside fingerprints of what its samples
 // depend on. How far the render shall go (samples per pixel, error, time) is not among these: a render may be
-// continued further than was first asked for. `sampler` is the renderer's own. Throws Error.
-void save_checkpoint(const std::filesystem::path& path, const SceneDescription& description,
-                     const SamplerSettings& sampler, const RenderTarget& target, const RenderState& state);
+// resumed further than was first asked for. Throws Error.
+void save_checkpoint(const std::filesystem::path& path, const Renderer& renderer, const RenderState& state);
 
 struct RestoredRender {
     RenderState state;
@@ -32,6 +31,6 @@ RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDes
                                const RenderTarget& target);
 
 // Of all that the values of samples depend on, and of the replicates they form: equal for slices of one render.
-std::uint64_t render_fingerprint(const SceneDescription& description, const SamplerSettings& sampler);
+std::uint64_t render_fingerprint(const Renderer& renderer);
 
 } // namespace montelux

@@ -27,14 +27,15 @@ std::vector<float> numbers(std::initializer_list<int> values) {
 
 } // namespace
 
-void add_render_header(Image& image, const std::string& scene_name, const SceneDescription& description,
-                       const Renderer& renderer, const RenderReport& report, const FilmError& error,
-                       double clamped_luminance) {
+void add_render_header(Image& image, const std::string& scene_name, const Renderer& renderer,
+                       const RenderReport& report, const FilmError& error, double clamped_luminance) {
+    const SceneDescription& description = renderer.description();
+    const ContentDigest scene = renderer.scene_digest().whole();
     auto& a = image.attributes();
     a["software"] = std::string("Montelux " MONTELUX_VERSION);
     a["scene"] = scene_name;
-    a["sceneHash"] = hexadecimal(description.content_hash.high) + hexadecimal(description.content_hash.low);
-    a["renderHash"] = hexadecimal(render_fingerprint(description, renderer.sampler()));
+    a["sceneHash"] = hexadecimal(scene.high) + hexadecimal(scene.low);
+    a["renderHash"] = hexadecimal(render_fingerprint(renderer));
     a["spp"] = static_cast<int>(description.sampler.spp);
     a["stoppedBy"] = std::string(to_string(report.stop));
     const RenderTarget& target = renderer.target();

@@ -11,8 +11,7 @@ namespace montelux {
 
 // Writes the attributes that `montelux info` shows; `scene_name` is the name of the scene's file. Slices of
 // one render know each other by them (SliceMerger).
-void add_render_header(Image& image, const std::string& scene_name, const SceneDescription& description,
-                       const Renderer& renderer, const RenderReport& report, const FilmError& error,
-                       double clamped_luminance);
+void add_render_header(Image& image, const std::string& scene_name, const Renderer& renderer,
+                       const RenderReport& report, const FilmError& error, double clamped_luminance);
 
 } // namespace montelux

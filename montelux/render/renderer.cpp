@@ -259,6 +259,7 @@ Renderer::Renderer(const SceneDescription& description, const RenderTarget& targ
     if (description.sampler.spp < 1) throw Error("sampler", "at least 1 sample per pixel is needed");
     check_slice(description, target);
     auto begin = Clock::now();
+    scene_digest_ = digest_of(description.scene);
     tables_ = std::make_unique<SceneTables>(description.scene, description.integrator.environments());
     accelerator_ = std::make_unique<Accelerator>(tables_->view());
     build_seconds_ = seconds_since(begin);

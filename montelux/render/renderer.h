@@ -12,6 +12,7 @@
 #include "montelux/render/render_target.h"
 #include "montelux/scene/camera/camera.h"
 #include "montelux/scene/render_settings.h"
+#include "montelux/scene/scene_digest.h"
 #include "montelux/scene/scene_tables.h"
 #include "montelux/transport/ray_tracer.h"
 
@@ -26,6 +27,9 @@ class Renderer {
     // Throws Error on settings that make no sense. Threads as the caller's ThreadLimit allows.
     explicit Renderer(const SceneDescription& description, const RenderTarget& target = {});
 
+    const SceneDescription& description() const { return description_; }
+    // Of the scene, as it was when the renderer was made.
+    const SceneDigest& scene_digest() const { return scene_digest_; }
     const Accelerator& accelerator() const { return *accelerator_; }
     const Camera& camera() const { return camera_; }
     const SceneView& scene() const { return tables_->view(); }
@@ -54,6 +58,7 @@ class Renderer {
     const SceneDescription& description_;
     RenderTarget target_;
     SamplerSettings sampler_;
+    SceneDigest scene_digest_;
     double build_seconds_ = 0;
     std::unique_ptr<SceneTables> tables_;
     std::unique_ptr<Accelerator> accelerator_;

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "montelux/mc/random/sampler_settings.h"
-#include "montelux/scene/content_digest.h"
 #include "montelux/scene/film/film_settings.h"
 #include "montelux/scene/light/environment/environment_settings.h"
 #include "montelux/scene/scene.h"
@@ -48,8 +47,6 @@ struct SceneDescription {
     SamplerSettings sampler;
     IntegratorSettings integrator;
     std::string output_file; // the file's own wish; may be empty
-    // Of all files that the scene was read from: text, meshes, pictures, spectra.
-    ContentDigest content_hash;
 };
 
 } // namespace montelux

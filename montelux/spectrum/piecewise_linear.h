@@ -37,10 +37,13 @@ class PiecewiseLinear {
     // Multiplies every value.
     void scale(float factor);
 
-  private:
     struct Knot {
         float lambda, value, slope; // the slope up to the next knot
     };
+    // Ascending, with those before and behind the given ones.
+    std::span<const Knot> knots() const { return knots_; }
+
+  private:
     static constexpr int cell_count = visible_samples;
     // Cells of 1 nm from 360 nm on; wavelengths outside the visible range belong to the nearest, NaN to the
     // first.

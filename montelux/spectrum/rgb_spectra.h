@@ -33,6 +33,8 @@ class RgbUnboundedSpectrum {
     SampledSpectrum sample(const SampledWavelengths& w) const { return scale_ * polynomial_.sample(w); }
     float operator()(float lambda) const { return scale_ * polynomial_(lambda); }
     float max_value() const { return scale_ * polynomial_.max_value(); }
+    float scale() const { return scale_; }
+    const SigmoidPolynomial& polynomial() const { return polynomial_; }
 
   private:
     float scale_ = 0;
@@ -52,6 +54,7 @@ class RgbIlluminantSpectrum {
     float operator()(float lambda) const { return filter_(lambda) * (*illuminant_)(lambda); }
     // Not below the largest value, and near it.
     float max_value() const { return filter_.max_value() * illuminant_->max_value(); }
+    const RgbUnboundedSpectrum& filter() const { return filter_; }
     const SpectrumTable& illuminant() const { return *illuminant_; }
 
   private:

@@ -81,12 +81,6 @@ EnvironmentLayout map_layout(std::string_view name, const Image& map, const std:
     return layout;
 }
 
-void note_pixels(SceneHolder& scene, const Image& image) {
-    scene.note(image.f32().data(), image.f32().size_bytes());
-    scene.note(image.u16().data(), image.u16().size_bytes());
-    scene.note(image.u8().data(), image.u8().size_bytes());
-}
-
 nb::object channels_of(const std::shared_ptr<const Image>& image, int first, int count) {
     nb::capsule owner(new std::shared_ptr<const Image>(image),
                       [](void* p) noexcept { delete static_cast<std::shared_ptr<const Image>*>(p); });

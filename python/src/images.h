@@ -22,9 +22,6 @@ Image rgb_image(const Image& picture, const std::string& what);
 Image light_map(const nb::object& given, const std::string& what);
 // 'equirectangular', 'equal-area', or 'auto', by the shape of the map. Throws Error beginning with `what`.
 EnvironmentLayout map_layout(std::string_view name, const Image& map, const std::string& what);
-// Takes the pixels into the fingerprint of a scene.
-void note_pixels(SceneHolder& scene, const Image& image);
-
 // An array on channels [first, first + count) of a 32-bit picture, which it keeps alive: shape (h, w, count),
 // or (h, w) for one. Nothing is copied; read-only.
 nb::object channels_of(const std::shared_ptr<const Image>& image, int first, int count);

@@ -80,7 +80,7 @@ void RenderJob::save(const RenderState& state) {
     // A full disk must not cost the render.
     std::string failure;
     try {
-        save_checkpoint(settings_.checkpoint, *description_, renderer_->sampler(), settings_.target, state);
+        save_checkpoint(settings_.checkpoint, *renderer_, state);
     } catch (const std::exception& e) {
         failure = e.what();
     }
@@ -119,7 +119,7 @@ std::optional<RenderSnapshot> RenderJob::snapshot(double seconds) {
 
 std::shared_ptr<Image> RenderJob::developed(const Film& film, const RenderReport& report) const {
     auto image = std::make_shared<Image>(film.develop(settings_.target.slice.count > 1));
-    add_render_header(*image, settings_.scene_name, *description_, *renderer_, report, film.error(),
+    add_render_header(*image, settings_.scene_name, *renderer_, report, film.error(),
                       clamped_luminance(film));
     return image;
 }

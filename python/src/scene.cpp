@@ -75,7 +75,6 @@ void bind_lists(nb::module_& m) {
                  const Material value = all[from];
                  if (const Slot<Material>* slot = material_slot(o); slot->scene() != l.scene) all.pop_back();
                  all[at] = value;
-                 l.scene->note("material at " + std::to_string(at));
              })
         .def(
             "append",
@@ -97,13 +96,11 @@ void bind_lists(nb::module_& m) {
                      throw Error("lights", "this light belongs to a shape; set the light of that shape");
                  const Light light = plain_light(o);
                  l.scene->edit().scene.lights[at] = light;
-                 l.scene->note("light at " + std::to_string(at) + " " + nb::cast<std::string>(nb::repr(o)));
              })
         .def("__delitem__",
              [](const LightList& l, std::int64_t i) {
                  const std::size_t at = checked(i, l.scene->read().scene.lights.size(), "light");
                  erase_light(l.scene->edit(), static_cast<Index>(at));
-                 l.scene->note("no light " + std::to_string(at));
              })
         .def(
             "append",
@@ -111,7 +108,6 @@ void bind_lists(nb::module_& m) {
                 const Light light = plain_light(o);
                 std::vector<Light>& all = l.scene->edit().scene.lights;
                 all.push_back(light);
-                l.scene->note("light " + nb::cast<std::string>(nb::repr(o)));
                 return as_python(Slot<Light>(l.scene, static_cast<Index>(all.size() - 1)));
             },
             "light"_a, "Adds a light, and returns the place it has in the scene.");
@@ -161,7 +157,6 @@ nb::object image_texture(const SceneObject& s, const nb::object& image, const st
         throw Error("image_texture", "the picture has neither channels R, G and B nor Y");
     Scene& scene = s.holder->edit().scene;
     t.image = static_cast<Index>(scene.images.size());
-    note_pixels(*s.holder, picture);
     s.holder->edit().scene.images.push_back(std::move(picture));
     Scene& now = s.holder->edit().scene;
     if (as_float) {
@@ -179,7 +174,6 @@ SpectrumTextureHandle checkerboard(const SceneObject& s, const nb::object& a, co
                 SpectrumParameter{spectrum_of(b, RgbMeaning::albedo, "checkerboard_texture")}};
     t.mapping.su = static_cast<float>(su);
     t.mapping.sv = static_cast<float>(sv);
-    s.holder->note("checkerboard " + nb::cast<std::string>(nb::repr(nb::make_tuple(a, b, su, sv))));
     std::vector<SpectrumTexture>& all = s.holder->edit().scene.spectrum_textures;
     all.emplace_back(std::move(t));
     return {s.holder, static_cast<Index>(all.size() - 1)};
@@ -196,8 +190,6 @@ nb::object add_environment(const SceneObject& s, const nb::object& image, double
     light.scale = static_cast<float>(scale) *
                   photometric_scale(Spectrum(RgbColorSpace::srgb().illuminant()), "add_environment");
     light.world_from_light = transform_of(world_from_light, "add_environment, world_from_light");
-    note_pixels(*s.holder, map);
-    s.holder->note("environment " + std::to_string(scale));
     Scene& scene = s.holder->edit().scene;
     scene.environments.push_back(std::move(map));
     scene.lights.emplace_back(light);
@@ -263,8 +255,6 @@ void bind_scene(nb::module_& m) {
                 const CameraSettings settings = given->read();
                 s.holder->edit().scene.camera = settings;
                 s.holder->has_camera = true;
-                s.holder->note("camera");
-                s.holder->note(&settings.world_from_camera.matrix().m, sizeof(Matrix4));
             },
             nb::for_setter(nb::arg("camera").none()), "The camera; None where there is none yet.")
         .def_prop_rw(

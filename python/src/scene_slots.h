@@ -9,7 +9,6 @@
 #include <variant>
 #include <vector>
 
-#include "montelux/formats/content_hash.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/scene/render_settings.h"
 
@@ -30,15 +29,6 @@ struct SceneHolder {
         if (description.use_count() > 1) description = std::make_shared<SceneDescription>(*description);
         return *description;
     }
-    // Takes a change into the fingerprint by which checkpoints know their scene.
-    void note(const void* bytes, std::size_t size) {
-        ContentHash hash;
-        const ContentDigest before = description->content_hash;
-        hash.add(&before, sizeof before);
-        hash.add(bytes, size);
-        edit().content_hash = hash.value();
-    }
-    void note(const std::string& text) { note(text.data(), text.size()); }
 };
 
 // Where values of a kind stand in a scene.

@@ -95,9 +95,6 @@ void attribute(nb::class_<Ref<T>>& c, const char* name, const char* type, Get ge
                 set(next, given, r, what);
                 value = std::move(next);
             });
-            if (r.scene())
-                r.scene()->note(what + "[" + std::to_string(r.first()) +
-                                "] = " + nb::cast<std::string>(nb::repr(given)));
         },
         nb::for_getter(nb::sig(getter.c_str())), nb::for_setter(nb::sig(setter.c_str())),
         nb::for_setter(nb::arg("value").none()), doc);

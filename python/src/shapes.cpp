@@ -36,8 +36,6 @@ void set_light(const SceneRef& holder, Index shape, const nb::object& emission) 
     s.light = static_cast<Index>(d.scene.lights.size());
     light.shape = shape;
     d.scene.lights.emplace_back(light);
-    holder->note("light of shape " + std::to_string(shape) + " " + std::to_string(light.scale) + " " +
-                 nb::cast<std::string>(nb::repr(nb::cast(light.spectrum))));
 }
 
 nb::object added(const SceneRef& holder, Shape s, const nb::object& material, const nb::object& emission) {
@@ -46,7 +44,6 @@ nb::object added(const SceneRef& holder, Shape s, const nb::object& material, co
     const auto index = static_cast<Index>(d.scene.shapes.size());
     d.scene.shapes.push_back(s);
     d.scene.world_shapes.push_back(index);
-    holder->note("shape of material " + std::to_string(s.material));
     if (!emission.is_none()) set_light(holder, index, emission);
     return nb::cast(ShapeRef(Slot<Shape>(holder, index)));
 }
@@ -90,7 +87,6 @@ Index material_index(const SceneRef& scene, const nb::object& material, const st
     const Material value = slot->read();
     SceneDescription& d = scene->edit();
     d.scene.materials.push_back(value);
-    scene->note("material " + std::to_string(value.index()));
     return static_cast<Index>(d.scene.materials.size() - 1);
 }
 
@@ -131,8 +127,6 @@ nb::object add_mesh(const SceneRef& scene, const nb::object& positions, const nb
     for (const Point3f& q : mesh.positions)
         if (!(std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z)))
             throw Error("add_mesh, positions", "a position is not finite");
-    scene->note(mesh.positions.data(), mesh.positions.size() * sizeof(Point3f));
-    scene->note(mesh.indices.data(), mesh.indices.size() * sizeof(Index));
     Shape s;
     s.mesh = static_cast<Index>(scene->read().scene.meshes.size());
     s.flip_normal = world.swaps_handedness();
@@ -145,7 +139,6 @@ nb::object add_quadric(const SceneRef& scene, Quadric quadric, const Transform& 
     Shape s;
     s.flip_normal = world.swaps_handedness();
     s.quadric = static_cast<Index>(scene->read().scene.quadrics.size());
-    scene->note(&world.matrix().m, sizeof world.matrix().m);
     scene->edit().scene.quadrics.push_back(std::move(quadric));
     return added(scene, s, material, emission);
 }
@@ -161,7 +154,6 @@ nb::object add_sphere(const SceneRef& scene, double radius, const nb::object& ce
     sphere.z_min = -sphere.radius;
     sphere.z_max = sphere.radius;
     sphere.world_from_object = world;
-    scene->note("sphere " + std::to_string(radius));
     return add_quadric(scene, sphere, world, material, emission);
 }
 
@@ -175,8 +167,6 @@ nb::object add_disk(const SceneRef& scene, double radius, double inner_radius, d
     disk.radius = static_cast<float>(radius);
     disk.inner_radius = static_cast<float>(inner_radius);
     disk.world_from_object = transform_of(transform, "add_disk, transform");
-    scene->note("disk " + std::to_string(radius) + " " + std::to_string(inner_radius) + " " +
-                std::to_string(height));
     return add_quadric(scene, disk, disk.world_from_object, material, emission);
 }
 
@@ -192,7 +182,6 @@ void bind_shapes(nb::module_& m) {
             [](ShapeRef& r, const nb::object& given) {
                 const Index i = material_index(r.scene(), given, "Shape.material");
                 r.change([&](Shape& s) { s.material = i; });
-                r.scene()->note("material " + std::to_string(i) + " of shape " + std::to_string(r.first()));
             },
             "The material; one that is not of the scene is added to it.")
         .def_prop_rw(

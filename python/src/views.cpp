@@ -51,7 +51,6 @@ void placed(nb::class_<Ref<T>>& c) {
          [](Ref<T>& r, const nb::object& m) {
              const Transform t = transform_of(m, "camera.world_from_camera");
              r.edit([&](CameraSettings& s) { s.world_from_camera = t; });
-             if (r.scene()) r.scene()->note(&t.matrix().m, sizeof t.matrix().m);
          },
          "Where the camera is, shape (4, 4): camera space has x to the right, y up and z forward.")
         .def(
@@ -68,7 +67,6 @@ void placed(nb::class_<Ref<T>>& c) {
                     throw Error("look_at",
                                 "eye, target and up span no frame: the target is the eye, or lies along up");
                 r.edit([&](CameraSettings& s) { s.world_from_camera = t->inverse(); });
-                if (r.scene()) r.scene()->note(&t->matrix().m, sizeof t->matrix().m);
             },
             "eye"_a, "target"_a, "up"_a = nb::make_tuple(0, 0, 1),
             "Stands at eye, looks at target, up is near up.");
@@ -187,7 +185,6 @@ void bind_film(nb::module_& m) {
             if (!given) throw Error("Film.filter", "expected a pixel filter, such as GaussianFilter()");
             const PixelFilter filter = given->read();
             r.edit([&](FilmSettings& f) { f.filter = filter; });
-            if (r.scene()) r.scene()->note("filter " + nb::cast<std::string>(nb::str(o)));
         },
         "The pixel filter.");
 }

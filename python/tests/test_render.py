@@ -177,6 +177,30 @@ def test_checkpoints_go_on_to_the_same_bits(scene, tmp_path):
     assert np.abs(resumed.mean - whole).mean() < 0.05
 
 
+def test_scenes_are_known_by_their_values(tmp_path):
+    state = tmp_path / "render.state"
+    white_furnace(0.1).render(spp=4, checkpoint=state)
+    with pytest.raises(montelux.Error, match="of another render: the scene's materials differ"):
+        white_furnace(0.9).render(spp=8, checkpoint=state, resume=True)
+    moved = white_furnace(0.1)
+    moved.add_disk(1, montelux.Diffuse(reflectance=0.1))
+    with pytest.raises(montelux.Error, match="the scene's geometry differs"):
+        moved.render(spp=8, checkpoint=state, resume=True)
+    # Neither what was there in between nor how it came about counts.
+    same = white_furnace(0.9)
+    same.materials[0].reflectance = 0.1
+    resumed = same.render(spp=8, checkpoint=state, resume=True)
+    assert np.array_equal(resumed.mean, white_furnace(0.1).render(spp=8).mean)
+
+
+def test_comments_do_not_change_a_scene(tmp_path):
+    state, text = tmp_path / "render.state", TEXT
+    montelux.parse(text).render(spp=4, checkpoint=state)
+    with pytest.raises(montelux.Error, match="the scene's lights differ"):
+        montelux.parse(text.replace("[ 2 2 2 ]", "[ 2 2 3 ]")).render(spp=8, checkpoint=state, resume=True)
+    montelux.parse("# as before\n" + text).render(spp=8, checkpoint=state, resume=True)
+
+
 def test_snapshots_write_no_checkpoint(scene, tmp_path):
     state = tmp_path / "render.state"
     render = scene.render(time=1, checkpoint=state, checkpoint_every=1000, every=0.02)

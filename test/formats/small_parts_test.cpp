@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <string>
 
-#include "montelux/formats/content_hash.h"
 #include "montelux/formats/gunzip.h"
 #include "montelux/formats/nearest_name.h"
 #include "montelux/formats/warnings.h"
@@ -40,20 +39,6 @@ TEST(Warnings, KeepsEachMessageOnceAndIsBounded) {
     for (int i = 0; i < 2000; ++i) w.add("b", std::to_string(i));
     EXPECT_EQ(w.messages().size(), Warnings::max_messages);
     EXPECT_EQ(w.left_out(), 2002 - Warnings::max_messages);
-}
-
-TEST(ContentHash, DependsOnBytesOrderAndBorders) {
-    auto hash = [](std::initializer_list<std::string> pieces) {
-        ContentHash h;
-        for (const std::string& p : pieces) h.add(p.data(), p.size());
-        return h.value();
-    };
-    EXPECT_EQ(hash({"some scene"}), hash({"some scene"}));
-    EXPECT_NE(hash({"some scene"}), hash({"some scenf"}));
-    EXPECT_NE(hash({"ab", "c"}), hash({"a", "bc"}));
-    EXPECT_NE(hash({"a", "b"}), hash({"b", "a"}));
-    EXPECT_NE(hash({"a"}), hash({std::string("a\0", 2)}));
-    EXPECT_NE(hash({}), hash({""}));
 }
 
 TEST(Gunzip, UnpacksAllMembers) {

@@ -187,7 +187,7 @@ std::vector<std::string> fenced_libraries(const std::vector<SourceFile>& files) 
         {std::regex("^(tbb|oneapi/tbb)/"), "montelux/mc/parallel/"},
         {std::regex("^boost/"), "montelux/mc/math/", "bench/"},
         {std::regex("^(OpenEXR/|Imf|Imath|png\\.h|jpeglib\\.h|stb_|stb/)"), "montelux/image/"},
-        {std::regex("^xxh"), "montelux/formats/"},
+        {std::regex("^xxh"), "montelux/scene/"},
         {std::regex("^dlfcn\\.h$"), "montelux/denoise/", "test/"},
         {std::regex("^mpi\\.h$"), "montelux/cluster/"},
         {std::regex("^CLI/"), "app/"},

@@ -55,7 +55,7 @@ TEST_F(Checkpoint, BrokenRendersEndWithTheSameBits) {
                     if (p.samples_done >= begin + more) cancel.request();
                 };
                 control.checkpoint = [&](const RenderState& s) {
-                    save_checkpoint(path_, description, renderer.sampler(), target, s);
+                    save_checkpoint(path_, renderer, s);
                     if (s.report.samples >= begin + more) cancel.request();
                 };
                 renderer.render(state, control);
@@ -77,9 +77,7 @@ TEST_F(Checkpoint, FinishedRendersCanBeRaised) {
         RenderState first(b.description.film);
         Renderer renderer(b.description);
         RenderControl control;
-        control.checkpoint = [&](const RenderState& s) {
-            save_checkpoint(path_, b.description, renderer.sampler(), {}, s);
-        };
+        control.checkpoint = [&](const RenderState& s) { save_checkpoint(path_, renderer, s); };
         renderer.render(first, control);
         b.description.sampler.spp = 90;
         RestoredRender restored = load_checkpoint(path_, b.description, {});
@@ -124,7 +122,7 @@ TEST_F(Checkpoint, SnapshotsAreNoCheckpoints) {
 TEST_F(Checkpoint, OtherRendersAreRefusedWithTheReason) {
     SceneBuilder b = mixed_scene(1, 8, 8);
     const Renderer renderer(b.description);
-    save_checkpoint(path_, b.description, renderer.sampler(), {}, RenderState(b.description.film));
+    save_checkpoint(path_, renderer, RenderState(b.description.film));
     EXPECT_NO_THROW(load_checkpoint(path_, b.description, {}));
     auto refused = [&](const SceneDescription& d, const RenderTarget& target, const std::string& why) {
         try {
@@ -139,7 +137,22 @@ TEST_F(Checkpoint, OtherRendersAreRefusedWithTheReason) {
         change(d);
         return d;
     };
-    refused(changed([](SceneDescription& d) { ++d.content_hash.low; }), {}, "scene");
+    // A scene is known by its values, wherever it comes from.
+    auto of_grey = [&](float reflectance) {
+        return changed(
+            [&](SceneDescription& d) { d.scene.materials[0] = DiffuseMaterial{gray(reflectance)}; });
+    };
+    refused(of_grey(0.1f), {}, "the scene's materials differ");
+    save_checkpoint(path_, Renderer(of_grey(0.1f)), RenderState(b.description.film));
+    refused(of_grey(0.9f), {}, "the scene's materials differ");
+    EXPECT_NO_THROW(load_checkpoint(path_, of_grey(0.1f), {}));
+    save_checkpoint(path_, renderer, RenderState(b.description.film));
+    refused(changed([](SceneDescription& d) { d.scene.meshes[0].positions[0].z += 1e-3f; }), {},
+            "the scene's geometry differs");
+    refused(changed([](SceneDescription& d) { d.scene.environments[0].f32()[7] = 2; }), {},
+            "the scene's lights differ");
+    refused(changed([](SceneDescription& d) { std::get<PerspectiveCamera>(d.scene.camera.model).fov = 30; }),
+            {}, "the scene's camera differs");
     refused(changed([](SceneDescription& d) { d.film.iso *= 2; }), {}, "film");
     refused(changed([](SceneDescription& d) {
                 d.film.filter = GaussianFilter{{1.5f, 1.5f}, 0.4f};
@@ -155,7 +168,7 @@ TEST_F(Checkpoint, OtherRendersAreRefusedWithTheReason) {
             }),
             {}, "film");
     // Damage is found by the file (generation_file_test); the one before is taken.
-    save_checkpoint(path_, b.description, renderer.sampler(), {}, RenderState(b.description.film));
+    save_checkpoint(path_, renderer, RenderState(b.description.film));
     std::filesystem::resize_file(path_, 1000);
     EXPECT_FALSE(load_checkpoint(path_, b.description, {}).newest_refused_because.empty());
 }

@@ -28,7 +28,6 @@ std::filesystem::path Files::find(std::string_view name, Location at) const {
 
 std::vector<std::uint8_t> Files::read_alone(const std::filesystem::path& path) {
     std::vector<std::uint8_t> bytes = source_.read(path, max_file_bytes);
-    hash_.add(bytes.data(), bytes.size());
     if (path.extension() == ".gz") return gunzip(bytes, path.string(), max_file_bytes);
     return bytes;
 }

@@ -1,4 +1,4 @@
-// The files that a scene refers to: found, read whole, and counted in the scene's fingerprint.
+// The files that a scene refers to: found, read whole, and listed.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "montelux/formats/content_hash.h"
 #include "montelux/formats/file_source.h"
 #include "montelux/formats/pbrt/diagnostics.h"
 
@@ -22,7 +21,7 @@ class Files {
 
     // An error at `at` when there is no such file.
     std::filesystem::path find(std::string_view name, Location at) const;
-    // The whole file; one whose name ends in ".gz" is decompressed. Its bytes go into the fingerprint.
+    // The whole file; one whose name ends in ".gz" is decompressed.
     std::vector<std::uint8_t> read(const std::filesystem::path& path, Location at);
     // As `read`, told about without a place in a scene file.
     std::vector<std::uint8_t> read_alone(const std::filesystem::path& path);
@@ -31,14 +30,10 @@ class Files {
     const std::vector<std::filesystem::path>& files_read() const { return files_read_; }
     void count_as_read(const std::filesystem::path& path) { files_read_.push_back(path); }
 
-    ContentDigest content_hash() const { return hash_.value(); }
-    ContentHash& hash() { return hash_; }
-
   private:
     std::filesystem::path main_folder_;
     FileSource& source_;
     Diagnostics& diagnostics_;
-    ContentHash hash_;
     std::vector<std::filesystem::path> files_read_;
 };
 

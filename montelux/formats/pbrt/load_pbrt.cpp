@@ -29,7 +29,6 @@ SceneDescription parse_pbrt(std::string_view text, const std::string& name,
     std::uint32_t file = diagnostics.add_file(name);
     DiskFiles disk;
     pbrt::Files files(folder, disk, diagnostics);
-    files.hash().add(text.data(), text.size());
     pbrt::SceneBuilder builder(files, diagnostics);
     pbrt::SceneParser parser(files, builder, diagnostics);
     return builder.finish(parser.parse(text, file));

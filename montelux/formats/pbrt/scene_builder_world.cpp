@@ -210,7 +210,6 @@ SceneDescription SceneBuilder::finish(Location end) {
     finish_instances();
     textures_.warn_of_unused();
     if (result_.scene.lights.empty()) diagnostics_.warn(end, "the scene has no light; its picture is black");
-    result_.content_hash = files_.content_hash();
     return std::move(result_);
 }
 

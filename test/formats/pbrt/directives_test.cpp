@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
+#include "montelux/scene/scene_digest.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
 namespace montelux {
@@ -315,9 +316,11 @@ TEST(PbrtAttributes, NamesThatFitNoPluginAreTold) {
     EXPECT_EQ(sphere(d, 0).radius, 1);
 }
 
-TEST(PbrtFiles, SameTextSameHash) {
-    EXPECT_EQ(parse_world("Shape \"sphere\"").content_hash, parse_world("Shape \"sphere\"").content_hash);
-    EXPECT_NE(parse_world("Shape \"sphere\"").content_hash, parse_world("Shape \"disk\"").content_hash);
+TEST(PbrtFiles, TheDigestIsOfValues) {
+    auto digest = [](std::string_view world) { return digest_of(parse_world(world).scene); };
+    EXPECT_EQ(digest("Shape \"sphere\""), digest("# a ball\nShape \"sphere\" \"float radius\" 1"));
+    EXPECT_NE(digest("Shape \"sphere\""), digest("Shape \"disk\""));
+    EXPECT_NE(digest("Shape \"sphere\""), digest("Shape \"sphere\" \"float radius\" 2"));
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// The files of a scene: fingerprint, compressed text, imports.
+// The files of a scene: digest, compressed text, imports.
 #include "test/formats/gzip.h"
 #include "test/formats/pbrt/parse.h"
 #include "test/near.h"
@@ -8,6 +8,7 @@
 #include <string>
 
 #include "montelux/image/image_write.h"
+#include "montelux/scene/scene_digest.h"
 
 namespace montelux {
 namespace {
@@ -42,7 +43,8 @@ std::string pfm(int size) {
     return bytes;
 }
 
-TEST_F(PbrtFolder, FingerprintCoversEveryKindOfFile) {
+// What a file says counts, and not how it says it.
+TEST_F(PbrtFolder, TheDigestCoversEveryKindOfFile) {
     const std::string ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
                             "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
                             "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2";
@@ -55,26 +57,37 @@ TEST_F(PbrtFolder, FingerprintCoversEveryKindOfFile) {
         Include "part.pbrt"
         Import "part.pbrt.gz")");
     struct File {
-        std::string name, bytes;
-        std::size_t change; // of a byte that may have another value
+        std::string name, bytes, other_value, same_values;
     };
-    const std::string spd = "400 0.5 700 0.5",
-                      part = "Material \"diffuse\" \"spectrum reflectance\" \"grey.spd\" ",
-                      packed_part = text_of(gzip("Shape \"disk\"")), packed_ply = text_of(gzip(ply));
-    constexpr std::size_t time_of_gzip = 4; // the header's time stamp
-    const File files[] = {{"sky.pfm", pfm(8), pfm(8).size() - 3}, {"picture.pfm", pfm(4), pfm(4).size() - 3},
-                          {"mesh.ply", ply, ply.rfind("1 0\n")},  {"packed.ply.gz", packed_ply, time_of_gzip},
-                          {"part.pbrt", part, part.size() - 1},   {"part.pbrt.gz", packed_part, time_of_gzip},
-                          {"grey.spd", spd, spd.size() - 1}};
+    auto packed = [](const std::string& text) { return text_of(gzip(text)); };
+    auto replaced = [](std::string text, const std::string& from, const std::string& to) {
+        return text.replace(text.find(from), from.size(), to);
+    };
+    auto other_pixel = [](std::string bytes) {
+        bytes[bytes.size() - 3] = 1;
+        return bytes;
+    };
+    const std::string spd = "400 0.5 700 0.5", disk = "Shape \"disk\"";
+    const std::string part = "Material \"diffuse\" \"spectrum reflectance\" \"grey.spd\" ";
+    const std::string wider = replaced(ply, "\n1 0 0", "\n2 0 0");
+    const std::string comment = replaced(ply, "element", "comment made anew\nelement");
+    const File files[] = {
+        {"sky.pfm", pfm(8), other_pixel(pfm(8)), replaced(pfm(8), "\n-1\n", "\n-1.0\n")},
+        {"picture.pfm", pfm(4), other_pixel(pfm(4)), replaced(pfm(4), "\n-1\n", "\n-1.0\n")},
+        {"mesh.ply", ply, wider, comment},
+        {"packed.ply.gz", packed(ply), packed(wider), packed(comment)},
+        {"part.pbrt", part, "Material \"diffuse\" ", part + "# the floor\n"},
+        {"part.pbrt.gz", packed(disk), packed(disk + " \"float radius\" 2"), packed("# a disk\n" + disk)},
+        {"grey.spd", spd, "400 0.5 700 0.6", "# grey\n" + spd}};
     for (const File& f : files) write(f.name, f.bytes);
-    const ContentDigest before = load(main).content_hash;
+    auto digest = [&] { return digest_of(load(main).scene); };
+    const SceneDigest before = digest();
     for (const File& f : files) {
-        std::string changed = f.bytes;
-        changed[f.change] = f.name == "part.pbrt" ? '\n' : static_cast<char>(changed[f.change] ^ 1);
-        write(f.name, changed);
-        EXPECT_NE(load(main).content_hash, before) << f.name;
+        write(f.name, f.other_value);
+        EXPECT_NE(digest(), before) << f.name;
+        write(f.name, f.same_values);
+        EXPECT_EQ(digest(), before) << f.name;
         write(f.name, f.bytes);
-        EXPECT_EQ(load(main).content_hash, before) << f.name;
     }
 }
 

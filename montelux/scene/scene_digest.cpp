@@ -1,0 +1,308 @@
+#include "montelux/scene/scene_digest.h"
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "montelux/scene/value_hash.h"
+
+namespace montelux {
+namespace {
+
+// Structs are taken apart by structured bindings: a member more does not compile until it is added here.
+class SceneHasher {
+  public:
+    // Values one after the other.
+    template <typename... T>
+    void all(const T&... values) {
+        (add(values), ...);
+    }
+    ContentDigest value() const { return hash_.value(); }
+
+  private:
+    template <typename T>
+    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void add(T value) { hash_.add(value); }
+
+    // Containers: the length, the presence or the alternative before the values.
+    template <typename T>
+    void add(std::span<const T> values) {
+        add(static_cast<std::uint64_t>(values.size()));
+        if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, Vec2f> || std::is_same_v<T, Vec3f>)
+            hash_.add_bytes(values.data(), values.size_bytes());
+        else
+            for (const T& v : values) add(v);
+    }
+    template <typename T>
+    void add(const std::vector<T>& values) {
+        add(std::span<const T>(values));
+    }
+    template <typename T, std::size_t n>
+    void add(const std::array<T, n>& values) {
+        add(std::span<const T>(values));
+    }
+    void add(std::string_view text) { add(std::span<const char>(text)); }
+    template <typename T>
+    void add(const std::optional<T>& value) {
+        add(value.has_value());
+        if (value) add(*value);
+    }
+    template <typename... T>
+    void add(const std::variant<T...>& value) {
+        add(static_cast<std::uint64_t>(value.index()));
+        std::visit([this](const auto& v) { add(v); }, value);
+    }
+
+    // Numbers.
+    template <typename T>
+    void add(const Vec2<T>& v) {
+        all(v.x, v.y);
+    }
+    template <typename T>
+    void add(const Vec3<T>& v) {
+        all(v.x, v.y, v.z);
+    }
+    void add(const Matrix4& matrix) {
+        const auto& [rows] = matrix;
+        add(rows);
+    }
+    void add(const Transform& t) { all(t.matrix(), t.inverse_matrix()); }
+
+    // Spectra.
+    void add(const Spectrum& s) { add(s.kind()); }
+    void add(const ConstantSpectrum& s) {
+        const auto& [value] = s;
+        add(value);
+    }
+    template <typename Data>
+    void add(const SharedSpectrum<Data>& s) {
+        add(s.data());
+    }
+    void add(const SpectrumTable& s) { add(s.values()); }
+    void add(const PiecewiseLinear& s) { add(s.knots()); }
+    void add(const PiecewiseLinear::Knot& knot) {
+        const auto& [lambda, value, slope] = knot;
+        all(lambda, value, slope);
+    }
+    void add(const BlackbodySpectrum& s) { add(s.temperature()); }
+    void add(const SigmoidPolynomial& p) {
+        const auto& [a, b, c] = p;
+        all(a, b, c);
+    }
+    void add(const RgbAlbedoSpectrum& s) { add(s.polynomial()); }
+    void add(const RgbUnboundedSpectrum& s) { all(s.scale(), s.polynomial()); }
+    void add(const RgbIlluminantSpectrum& s) { all(s.filter(), s.illuminant()); }
+    void add(const RgbColorSpace* space) {
+        all(space->red(), space->green(), space->blue(), space->illuminant());
+    }
+
+    // Textures.
+    template <typename Value>
+    void add_parameter(const Value& value, Index texture) {
+        add(texture);
+        if (texture == no_index) add(value); // else nothing reads it
+    }
+    void add(const FloatParameter& p) {
+        const auto& [value, texture] = p;
+        add_parameter(value, texture);
+    }
+    void add(const SpectrumParameter& p) {
+        const auto& [value, texture] = p;
+        add_parameter(value, texture);
+    }
+    void add(const TextureMapping& m) {
+        const auto& [kind, su, sv, du, dv, vs, vt, texture_from_world] = m;
+        all(kind, su, sv, du, dv, vs, vt, texture_from_world);
+    }
+    void add(const ImageTexture& t) {
+        const auto& [image, channels, mapping, filter, wrap, anisotropy, scale, invert, meaning, space] = t;
+        all(image, channels, mapping, filter, wrap, anisotropy, scale, invert, meaning, space);
+    }
+    template <typename Parameter>
+    void add(const ConstantTexture<Parameter>& t) {
+        const auto& [value] = t;
+        add(value);
+    }
+    template <typename Parameter>
+    void add(const ScaleTexture<Parameter>& t) {
+        const auto& [texture, scale] = t;
+        all(texture, scale);
+    }
+    template <typename Parameter>
+    void add(const MixTexture<Parameter>& t) {
+        const auto& [first, second, amount] = t;
+        all(first, second, amount);
+    }
+    template <typename Parameter>
+    void add(const CheckerboardTexture<Parameter>& t) {
+        const auto& [dimension, mapping, values] = t;
+        all(dimension, mapping, values);
+    }
+    // Without what its header says beside the pixels.
+    void add(const Image& image) {
+        all(image.width(), image.height(), image.format(), image.encoding().kind(),
+            image.encoding().exponent(), static_cast<std::uint64_t>(image.channels()));
+        for (const std::string& name : image.channel_names()) add(std::string_view(name));
+        all(image.u8(), image.u16(), image.f32());
+    }
+
+    // Materials.
+    void add(const RoughnessParameter& r) {
+        const auto& [u, v, remap] = r;
+        all(u, v, remap);
+    }
+    void add(const DiffuseMaterial& m) {
+        const auto& [reflectance] = m;
+        add(reflectance);
+    }
+    void add(const ConductorMaterial& m) {
+        const auto& [eta, k, reflectance, from_reflectance, roughness] = m;
+        all(eta, k, reflectance, from_reflectance, roughness);
+    }
+    void add(const DielectricMaterial& m) {
+        const auto& [eta, roughness] = m;
+        all(eta, roughness);
+    }
+    void add(const ThinDielectricMaterial& m) {
+        const auto& [eta] = m;
+        add(eta);
+    }
+    void add(const CoatingParameters& c) {
+        const auto& [roughness, eta, thickness, albedo, g, max_depth, sample_count] = c;
+        all(roughness, eta, thickness, albedo, g, max_depth, sample_count);
+    }
+    void add(const CoatedDiffuseMaterial& m) {
+        const auto& [reflectance, coating, albedo_table] = m;
+        all(reflectance, coating, albedo_table);
+    }
+    void add(const CoatedConductorMaterial& m) {
+        const auto& [conductor, coating] = m;
+        all(conductor, coating);
+    }
+
+    // Geometry.
+    void add(const TriangleMesh& m) {
+        const auto& [positions, normals, uvs, indices] = m;
+        all(positions, normals, uvs, indices);
+    }
+    void add(const Sphere& s) {
+        const auto& [radius, z_min, z_max, phi_max, world_from_object] = s;
+        all(radius, z_min, z_max, phi_max, world_from_object);
+    }
+    void add(const Disk& d) {
+        const auto& [height, radius, inner_radius, phi_max, world_from_object] = d;
+        all(height, radius, inner_radius, phi_max, world_from_object);
+    }
+    void add(const Shape& s) {
+        const auto& [mesh, quadric, material, light, alpha, flip_normal] = s;
+        all(mesh, quadric, material, light, alpha, flip_normal);
+    }
+    void add(const ObjectDefinition& o) {
+        const auto& [shapes] = o;
+        add(shapes);
+    }
+    void add(const Instance& i) {
+        const auto& [object, world_from_object] = i;
+        all(object, world_from_object);
+    }
+
+    // Lights.
+    void add(const AreaLight& l) {
+        const auto& [spectrum, scale, two_sided, shape, triangle_flux] = l;
+        all(spectrum, scale, two_sided, shape, triangle_flux);
+    }
+    void add(const PointLight& l) {
+        const auto& [spectrum, scale, position] = l;
+        all(spectrum, scale, position);
+    }
+    void add(const SpotLight& l) {
+        const auto& [spectrum, scale, position, axis, cos_falloff_start, cos_total_width] = l;
+        all(spectrum, scale, position, axis, cos_falloff_start, cos_total_width);
+    }
+    void add(const DistantLight& l) {
+        const auto& [spectrum, scale, to_light] = l;
+        all(spectrum, scale, to_light);
+    }
+    void add(const Portal& p) { add(p.corners()); }
+    void add(const UniformInfiniteLight& l) {
+        const auto& [spectrum, scale, portal] = l;
+        all(spectrum, scale, portal);
+    }
+    void add(const ImageInfiniteLight& l) {
+        const auto& [environment, layout, scale, world_from_light, portal] = l;
+        all(environment, layout, scale, world_from_light, portal);
+    }
+    void add(const SkyLight& l) {
+        const auto& [sky, environment, scale, world_from_light] = l;
+        all(sky, environment, scale, world_from_light);
+    }
+    void add(const SunDisc& d) {
+        const auto& [centre, versine] = d;
+        all(centre, versine);
+    }
+    void add(const SunLight& l) {
+        const auto& [spectrum, scale, disc, up] = l;
+        all(spectrum, scale, disc, up);
+    }
+    // Its tables follow from its settings.
+    void add(const SkyModel& sky) {
+        const auto& [elevation, azimuth, atmosphere, ground_albedo] = sky.settings();
+        const auto& [turbidity, angstrom_exponent, aerosol_albedo, aerosol_g, ozone] = atmosphere;
+        all(elevation, azimuth, ground_albedo);
+        all(turbidity, angstrom_exponent, aerosol_albedo, aerosol_g, ozone);
+    }
+
+    // Cameras.
+    void add(const ScreenWindow& w) {
+        const auto& [x_min, x_max, y_min, y_max] = w;
+        all(x_min, x_max, y_min, y_max);
+    }
+    void add(const PerspectiveCamera& c) {
+        const auto& [fov, lens_radius, focal_distance, frame_aspect_ratio, screen_window] = c;
+        all(fov, lens_radius, focal_distance, frame_aspect_ratio, screen_window);
+    }
+    void add(const OrthographicCamera& c) {
+        const auto& [lens_radius, focal_distance, frame_aspect_ratio, screen_window] = c;
+        all(lens_radius, focal_distance, frame_aspect_ratio, screen_window);
+    }
+    void add(const SphericalCamera& c) {
+        const auto& [mapping] = c;
+        add(mapping);
+    }
+    void add(const CameraSettings& c) {
+        const auto& [model, world_from_camera] = c;
+        all(model, world_from_camera);
+    }
+
+    ValueHash hash_;
+};
+
+template <typename... T>
+ContentDigest digest_of_all(const T&... values) {
+    SceneHasher hasher;
+    hasher.all(values...);
+    return hasher.value();
+}
+
+} // namespace
+
+ContentDigest SceneDigest::whole() const {
+    ValueHash hash;
+    for (const ContentDigest& part : {geometry, materials, textures, lights, camera}) {
+        hash.add(part.high);
+        hash.add(part.low);
+    }
+    return hash.value();
+}
+
+SceneDigest digest_of(const Scene& scene) {
+    const auto& [meshes, quadrics, shapes, world_shapes, objects, instances, materials, float_textures,
+                 spectrum_textures, images, environments, skies, lights, camera] = scene;
+    return {digest_of_all(meshes, quadrics, shapes, world_shapes, objects, instances),
+            digest_of_all(materials), digest_of_all(float_textures, spectrum_textures, images),
+            digest_of_all(lights, environments, skies), digest_of_all(camera)};
+}
+
+} // namespace montelux
