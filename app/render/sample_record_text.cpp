@@ -4,6 +4,7 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "montelux/mc/math/overloaded.h"
 #include "montelux/scene/setting_names.h"
 
 namespace montelux::app {
@@ -179,17 +180,23 @@ void add_scattering(Text& t, const PathVertex& v) {
     }
 }
 
+const char* name_of(const Quadric& quadric) {
+    return std::visit(
+        Overloaded{[](const Sphere&) { return "a sphere"; }, [](const Disk&) { return "a disk"; }}, quadric);
+}
+
 void add_vertex(Text& t, std::size_t number, const PathVertex& v, const Scene& scene) {
     t.end().add("vertex %zu: ", number);
     if (v.surface) {
         const Shape& shape = *v.surface->shape;
         t.add("shape %u, ", static_cast<unsigned>(v.hit.shape));
-        if (shape.mesh != no_index)
-            t.add("triangle %u of mesh %u", static_cast<unsigned>(v.hit.primitive),
-                  static_cast<unsigned>(shape.mesh));
-        else
-            t.add("%s",
-                  std::holds_alternative<Sphere>(scene.quadrics[shape.quadric]) ? "a sphere" : "a disk");
+        std::visit(
+            Overloaded{[&](MeshIndex mesh) {
+                           t.add("triangle %u of mesh %u", static_cast<unsigned>(v.hit.primitive),
+                                 static_cast<unsigned>(mesh.index));
+                       },
+                       [&](QuadricIndex quadric) { t.add("%s", name_of(scene.quadrics[quadric.index])); }},
+            shape.geometry);
         if (v.hit.instance != no_index) t.add(", instance %u", static_cast<unsigned>(v.hit.instance));
         t.add(", material %u", static_cast<unsigned>(shape.material)).end();
         t.label(1, "position").vector(v.surface->p).add(", distance ").number(v.hit.t).end();

@@ -8,6 +8,7 @@
 #include "montelux/accel/alpha.h"
 #include "montelux/accel/embree.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/math/overloaded.h"
 #include "montelux/scene/shape/alpha.h"
 
 namespace montelux {
@@ -18,18 +19,19 @@ namespace {
 struct GeometryData {
     const SceneView* scene = nullptr;
     Index shape = no_index;
+    const Quadric* quadric = nullptr;  // null for meshes
     std::optional<WorldSphere> sphere; // of a quadric that is one
     bool cut_out = false;
 };
 
 std::optional<double> hit_quadric(const GeometryData& data, const Ray& ray, double t_min) {
     if (data.sphere) return intersect(*data.sphere, ray, t_min);
-    return intersect(data.scene->quadrics[data.scene->shapes[data.shape].quadric], ray, t_min);
+    return intersect(*data.quadric, ray, t_min);
 }
 
 void fill_bounds(const RTCBoundsFunctionArguments* args) {
     const auto* data = static_cast<const GeometryData*>(args->geometryUserPtr);
-    Bounds3 b = world_bounds(data->scene->quadrics[data->scene->shapes[data->shape].quadric]);
+    Bounds3 b = world_bounds(*data->quadric);
     RTCBounds& out = *args->bounds_o;
     auto below = [](double v) { return std::nextafter(static_cast<float>(v), -1e38f); };
     auto above = [](double v) { return std::nextafter(static_cast<float>(v), 1e38f); };
@@ -135,36 +137,43 @@ struct Accelerator::Impl {
         return s;
     }
 
+    RTCGeometry mesh_geometry(const TriangleMesh& mesh, bool cut_out) const {
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        // Embree reads 16 bytes a vertex: the buffer is its own copy, so that the last one is padded.
+        auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                                     RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                                     mesh.positions.size()));
+        if (vertices != nullptr)
+            for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+                vertices[3 * i] = mesh.positions[i].x;
+                vertices[3 * i + 1] = mesh.positions[i].y;
+                vertices[3 * i + 2] = mesh.positions[i].z;
+            }
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(),
+                                   0, 3 * sizeof(Index), mesh.triangle_count());
+        if (cut_out) {
+            rtcSetGeometryIntersectFilterFunction(geometry, filter_triangle);
+            rtcSetGeometryOccludedFilterFunction(geometry, filter_triangle);
+        }
+        return geometry;
+    }
+
+    RTCGeometry quadric_geometry() const {
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+        rtcSetGeometryUserPrimitiveCount(geometry, 1);
+        rtcSetGeometryBoundsFunction(geometry, fill_bounds, nullptr);
+        rtcSetGeometryIntersectFunction(geometry, intersect_quadric);
+        rtcSetGeometryOccludedFunction(geometry, occlude_quadric);
+        return geometry;
+    }
+
     void attach_shape(RTCScene to, unsigned id, Index shape_index) {
         const Shape& shape = scene.shapes[shape_index];
         const bool cut_out = data[shape_index].cut_out;
-        RTCGeometry geometry;
-        if (shape.mesh != no_index) {
-            const TriangleMesh& mesh = scene.meshes[shape.mesh];
-            geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-            // Embree reads 16 bytes a vertex: the buffer is its own copy, so that the last one is padded.
-            auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                                         RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                                         mesh.positions.size()));
-            if (vertices != nullptr)
-                for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-                    vertices[3 * i] = mesh.positions[i].x;
-                    vertices[3 * i + 1] = mesh.positions[i].y;
-                    vertices[3 * i + 2] = mesh.positions[i].z;
-                }
-            rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                       mesh.indices.data(), 0, 3 * sizeof(Index), mesh.triangle_count());
-            if (cut_out) {
-                rtcSetGeometryIntersectFilterFunction(geometry, filter_triangle);
-                rtcSetGeometryOccludedFilterFunction(geometry, filter_triangle);
-            }
-        } else {
-            geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-            rtcSetGeometryUserPrimitiveCount(geometry, 1);
-            rtcSetGeometryBoundsFunction(geometry, fill_bounds, nullptr);
-            rtcSetGeometryIntersectFunction(geometry, intersect_quadric);
-            rtcSetGeometryOccludedFunction(geometry, occlude_quadric);
-        }
+        RTCGeometry geometry =
+            visit_geometry(scene, shape,
+                           Overloaded{[&](const TriangleMesh& mesh) { return mesh_geometry(mesh, cut_out); },
+                                      [&](const Quadric&) { return quadric_geometry(); }});
         rtcSetGeometryUserData(geometry, &data[shape_index]);
         rtcCommitGeometry(geometry);
         rtcAttachGeometryByID(to, geometry, id);
@@ -208,7 +217,8 @@ Accelerator::Accelerator(const SceneView& scene) : impl_(std::make_unique<Impl>(
         a.data[i].scene = &a.scene;
         a.data[i].shape = static_cast<Index>(i);
         a.data[i].cut_out = is_cut_out(shape);
-        if (shape.quadric != no_index) a.data[i].sphere = whole_sphere(scene.quadrics[shape.quadric]);
+        a.data[i].quadric = quadric_of(scene, shape);
+        if (a.data[i].quadric != nullptr) a.data[i].sphere = whole_sphere(*a.data[i].quadric);
     }
 
     for (const ObjectDefinition& object : scene.objects) {

@@ -15,7 +15,8 @@ bool is_opaque(const SceneView& scene, const Ray& ray, const Hit& hit) {
     if (!(alpha > 0)) return false;
     // Each surface along the ray decides for itself; a quadric may be hit twice.
     std::uint64_t h = hash_key(hit.shape, hit.primitive);
-    if (scene.shapes[hit.shape].quadric != no_index) h = mix64(h ^ std::bit_cast<std::uint32_t>(hit.t));
+    if (quadric_of(scene, scene.shapes[hit.shape]) != nullptr)
+        h = mix64(h ^ std::bit_cast<std::uint32_t>(hit.t));
     for (float v : {ray.o.x, ray.o.y, ray.o.z, ray.d.x, ray.d.y, ray.d.z})
         h = mix64(h ^ std::bit_cast<std::uint32_t>(v));
     return static_cast<float>(h >> 40) * 0x1p-24f < alpha;

@@ -195,9 +195,17 @@ class SceneHasher {
         const auto& [height, radius, inner_radius, phi_max, world_from_object] = d;
         all(height, radius, inner_radius, phi_max, world_from_object);
     }
+    void add(const MeshIndex& i) {
+        const auto& [index] = i;
+        add(index);
+    }
+    void add(const QuadricIndex& i) {
+        const auto& [index] = i;
+        add(index);
+    }
     void add(const Shape& s) {
-        const auto& [mesh, quadric, material, light, alpha, flip_normal] = s;
-        all(mesh, quadric, material, light, alpha, flip_normal);
+        const auto& [geometry, material, light, alpha, flip_normal] = s;
+        all(geometry, material, light, alpha, flip_normal);
     }
     void add(const ObjectDefinition& o) {
         const auto& [shapes] = o;

@@ -3,15 +3,21 @@
 #include "python/src/bindings.h"
 #include "python/src/scene_values.h"
 
+#include "montelux/mc/math/overloaded.h"
+
 namespace montelux::python {
 namespace {
 
 using ShapeRef = Ref<Shape>;
 
 std::string kind_of(const ShapeRef& r) {
-    const Shape& s = r.value();
-    if (s.mesh != no_index) return "mesh";
-    return std::holds_alternative<Sphere>(r.scene()->read().scene.quadrics[s.quadric]) ? "sphere" : "disk";
+    return visit_geometry(r.scene()->read().scene, r.value(),
+                          Overloaded{[](const TriangleMesh&) { return "mesh"; },
+                                     [](const Quadric& quadric) {
+                                         return std::visit(Overloaded{[](const Sphere&) { return "sphere"; },
+                                                                      [](const Disk&) { return "disk"; }},
+                                                           quadric);
+                                     }});
 }
 
 nb::object light_of(const ShapeRef& r) {
@@ -57,10 +63,10 @@ Numbers rows(const nb::object& given, std::size_t n, const std::string& what) {
 }
 
 nb::object positions_of(const ShapeRef& r) {
-    const Shape& s = r.value();
-    if (s.mesh == no_index) return nb::none();
+    const auto* mesh = std::get_if<MeshIndex>(&r.value().geometry);
+    if (mesh == nullptr) return nb::none();
     std::vector<double> rows;
-    for (const Point3f& p : r.scene()->read().scene.meshes[s.mesh].positions)
+    for (const Point3f& p : r.scene()->read().scene.meshes[mesh->index].positions)
         rows.insert(rows.end(),
                     {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
     return new_array(rows, rows.size() / 3, 3);
@@ -128,7 +134,7 @@ nb::object add_mesh(const SceneRef& scene, const nb::object& positions, const nb
         if (!(std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z)))
             throw Error("add_mesh, positions", "a position is not finite");
     Shape s;
-    s.mesh = static_cast<Index>(scene->read().scene.meshes.size());
+    s.geometry = MeshIndex{static_cast<Index>(scene->read().scene.meshes.size())};
     s.flip_normal = world.swaps_handedness();
     scene->edit().scene.meshes.push_back(std::move(mesh));
     return added(scene, s, material, emission);
@@ -138,7 +144,7 @@ nb::object add_quadric(const SceneRef& scene, Quadric quadric, const Transform& 
                        const nb::object& material, const nb::object& emission) {
     Shape s;
     s.flip_normal = world.swaps_handedness();
-    s.quadric = static_cast<Index>(scene->read().scene.quadrics.size());
+    s.geometry = QuadricIndex{static_cast<Index>(scene->read().scene.quadrics.size())};
     scene->edit().scene.quadrics.push_back(std::move(quadric));
     return added(scene, s, material, emission);
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "montelux/accel/accelerator.h"
+#include "montelux/mc/math/overloaded.h"
 #include "montelux/mc/stats/chi_squared.h"
 #include "montelux/scene/scene_tables.h"
 #include "montelux/scene/shape/surface_point.h"
@@ -29,7 +30,7 @@ inline Index add_material(Scene& scene) {
 }
 inline Index add_shape(Scene& scene, TriangleMesh mesh, bool in_world = true) {
     Shape shape;
-    shape.mesh = static_cast<Index>(scene.meshes.size());
+    shape.geometry = MeshIndex{static_cast<Index>(scene.meshes.size())};
     shape.material = add_material(scene);
     scene.meshes.push_back(std::move(mesh));
     auto index = static_cast<Index>(scene.shapes.size());
@@ -39,7 +40,7 @@ inline Index add_shape(Scene& scene, TriangleMesh mesh, bool in_world = true) {
 }
 inline Index add_shape(Scene& scene, const Quadric& quadric, bool in_world = true) {
     Shape shape;
-    shape.quadric = static_cast<Index>(scene.quadrics.size());
+    shape.geometry = QuadricIndex{static_cast<Index>(scene.quadrics.size())};
     shape.material = add_material(scene);
     scene.quadrics.push_back(quadric);
     auto index = static_cast<Index>(scene.shapes.size());
@@ -157,29 +158,30 @@ class BruteForce {
     }
 
     void try_shape(Index index, Index instance, Vec3d o, Vec3d d, double t_max) const {
-        const Shape& shape = scene_.shapes[index];
-        if (shape.mesh != no_index) {
-            const TriangleMesh& m = scene_.meshes[shape.mesh];
-            for (std::size_t i = 0; i < m.triangle_count(); ++i) {
-                Vec3d p0(m.positions[m.indices[3 * i]]), e1 = Vec3d(m.positions[m.indices[3 * i + 1]]) - p0,
-                                                         e2 = Vec3d(m.positions[m.indices[3 * i + 2]]) - p0;
-                Vec3d n = cross(e1, e2);
-                double det = dot(n, d);
-                if (det == 0) continue;
-                double t = dot(n, p0 - o) / det;
-                Vec3d q = o + t * d - p0;
-                double n2 = dot(n, n), b1 = dot(cross(q, e2), n) / n2, b2 = dot(cross(e1, q), n) / n2;
-                accept(t, std::min({b1, b2, 1 - b1 - b2}), index, static_cast<Index>(i), instance, t_max);
-            }
-            return;
+        visit_geometry(scene_, scene_.shapes[index],
+                       Overloaded{[&](const TriangleMesh& m) { try_mesh(m, index, instance, o, d, t_max); },
+                                  [&](const Quadric& quadric) {
+                                      std::visit(
+                                          [&](const auto& q) {
+                                              Transform inverse = q.world_from_object.inverse();
+                                              try_quadric(q, index, instance, inverse.point(o),
+                                                          inverse.vector(d), t_max);
+                                          },
+                                          quadric);
+                                  }});
+    }
+    void try_mesh(const TriangleMesh& m, Index shape, Index instance, Vec3d o, Vec3d d, double t_max) const {
+        for (std::size_t i = 0; i < m.triangle_count(); ++i) {
+            Vec3d p0(m.positions[m.indices[3 * i]]), e1 = Vec3d(m.positions[m.indices[3 * i + 1]]) - p0,
+                                                     e2 = Vec3d(m.positions[m.indices[3 * i + 2]]) - p0;
+            Vec3d n = cross(e1, e2);
+            double det = dot(n, d);
+            if (det == 0) continue;
+            double t = dot(n, p0 - o) / det;
+            Vec3d q = o + t * d - p0;
+            double n2 = dot(n, n), b1 = dot(cross(q, e2), n) / n2, b2 = dot(cross(e1, q), n) / n2;
+            accept(t, std::min({b1, b2, 1 - b1 - b2}), shape, static_cast<Index>(i), instance, t_max);
         }
-        const Quadric& quadric = scene_.quadrics[shape.quadric];
-        std::visit(
-            [&](const auto& q) {
-                Transform inverse = q.world_from_object.inverse();
-                try_quadric(q, index, instance, inverse.point(o), inverse.vector(d), t_max);
-            },
-            quadric);
     }
     static double azimuth_margin(Vec3d p, double phi_max) {
         if (phi_max > 6.28318) return 1;

@@ -52,14 +52,14 @@ class SceneBuilder {
     }
     Index add_mesh(TriangleMesh mesh, Index material, float emission = 0) {
         Shape shape;
-        shape.mesh = static_cast<Index>(scene.meshes.size());
+        shape.geometry = MeshIndex{static_cast<Index>(scene.meshes.size())};
         shape.material = material;
         scene.meshes.push_back(std::move(mesh));
         return add_shape(shape, emission);
     }
     Index add_quadric(const Quadric& quadric, Index material, float emission = 0, bool flip = false) {
         Shape shape;
-        shape.quadric = static_cast<Index>(scene.quadrics.size());
+        shape.geometry = QuadricIndex{static_cast<Index>(scene.quadrics.size())};
         shape.material = material;
         shape.flip_normal = flip;
         scene.quadrics.push_back(quadric);

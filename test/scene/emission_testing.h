@@ -70,7 +70,7 @@ inline void add_meshes(std::vector<Case>& cases) {
         Case c{.name = name, .scene = {}, .flux = std::move(flux), .place = in_triangle};
         c.scene.meshes.push_back(two_triangles());
         Shape shape;
-        shape.mesh = 0;
+        shape.geometry = MeshIndex{0};
         change(c.scene.meshes[0], shape);
         add_area_light(c.scene, shape, two_sided, triangle_flux);
         cases.push_back(std::move(c));
@@ -102,7 +102,7 @@ inline void add_quadrics(std::vector<Case>& cases) {
                .place = std::move(place)};
         c.scene.quadrics.push_back(quadric);
         Shape shape;
-        shape.quadric = 0;
+        shape.geometry = QuadricIndex{0};
         shape.flip_normal = flip;
         add_area_light(c.scene, shape, two_sided);
         cases.push_back(std::move(c));
@@ -159,7 +159,7 @@ inline void add_scene(Scene& scene) {
     scene.quadrics.push_back(
         Sphere{.radius = 2, .z_min = -2, .z_max = 2, .world_from_object = Transform::translate(centre)});
     Shape shape;
-    shape.quadric = 0;
+    shape.geometry = QuadricIndex{0};
     add_shape(scene, shape);
 }
 

@@ -18,7 +18,7 @@ Scene scene_of_lights() {
     auto add_mesh = [&](std::vector<Index> indices, float radiance, bool in_world) {
         const auto shape = static_cast<Index>(scene.shapes.size());
         Shape s;
-        s.mesh = static_cast<Index>(scene.meshes.size());
+        s.geometry = MeshIndex{static_cast<Index>(scene.meshes.size())};
         s.light = static_cast<Index>(scene.lights.size());
         TriangleMesh mesh;
         mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 2, 0}};

@@ -27,14 +27,14 @@ Index add_light(Scene& scene, Shape shape, bool two_sided, float radiance = 2) {
 }
 Index add_light(Scene& scene, const Quadric& quadric, bool flip = false, bool two_sided = false) {
     Shape shape;
-    shape.quadric = static_cast<Index>(scene.quadrics.size());
+    shape.geometry = QuadricIndex{static_cast<Index>(scene.quadrics.size())};
     shape.flip_normal = flip;
     scene.quadrics.push_back(quadric);
     return add_light(scene, shape, two_sided);
 }
 Index add_light(Scene& scene, Vec3f a, Vec3f b, Vec3f c, bool two_sided = false) {
     Shape shape;
-    shape.mesh = static_cast<Index>(scene.meshes.size());
+    shape.geometry = MeshIndex{static_cast<Index>(scene.meshes.size())};
     TriangleMesh mesh;
     mesh.positions = {a, b, c};
     mesh.indices = {0, 1, 2};
@@ -46,16 +46,16 @@ Index add_light(Scene& scene, Vec3f a, Vec3f b, Vec3f c, bool two_sided = false)
 std::vector<SurfacePoint> points_along(const Scene& scene, const AreaLight& light, const Ray& ray) {
     std::vector<SurfacePoint> points;
     const Shape& shape = scene.shapes[light.shape];
-    if (shape.quadric != no_index) {
+    if (const Quadric* quadric = quadric_of(scene, shape)) {
         double t_min = 0;
-        while (auto t = intersect(scene.quadrics[shape.quadric], ray, t_min)) {
+        while (auto t = intersect(*quadric, ray, t_min)) {
             points.push_back(surface_point(SceneView(scene), ray,
                                            Hit{.t = static_cast<float>(*t), .shape = light.shape}, false));
             t_min = *t * (1 + 1e-9);
         }
         return points;
     }
-    const auto& p = scene.meshes[shape.mesh].positions;
+    const auto& p = scene.meshes[std::get<MeshIndex>(shape.geometry).index].positions;
     Vec3d e1 = Vec3d(p[1]) - Vec3d(p[0]), e2 = Vec3d(p[2]) - Vec3d(p[0]), n = cross(e1, e2), d(ray.d);
     double t = dot(n, Vec3d(p[0]) - Vec3d(ray.o)) / dot(n, d);
     Vec3d q = Vec3d(ray.o) + t * d - Vec3d(p[0]);

@@ -67,7 +67,7 @@ TEST(Portals, PowerIsTheFluxThroughThem) {
     scene.lights.push_back(PointLight{Spectrum(1.0f), 1, {0, 0, 0}});
     scene.quadrics.push_back(Quadric(Sphere{.world_from_object = Transform::scale({4, 4, 4})}));
     Shape shape;
-    shape.quadric = 0;
+    shape.geometry = QuadricIndex{0};
     scene.shapes.push_back(shape);
     scene.world_shapes.push_back(0);
     scene.environments.push_back(Image(16, 16, {"R", "G", "B"}));

@@ -28,9 +28,9 @@ Scene scene_of_all_kinds() {
                         {0, 1, 2}});
     s.quadrics = {Sphere{}, Disk{}};
     s.shapes.resize(3);
-    s.shapes[0].mesh = 0;
-    s.shapes[1].quadric = 0;
-    s.shapes[2].quadric = 1;
+    s.shapes[0].geometry = MeshIndex{0};
+    s.shapes[1].geometry = QuadricIndex{0};
+    s.shapes[2].geometry = QuadricIndex{1};
     s.world_shapes = {0, 1};
     s.objects = {{{2}}};
     s.instances = {{0, Transform::translate({1, 2, 3})}};

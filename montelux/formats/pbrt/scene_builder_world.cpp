@@ -6,6 +6,7 @@
 #include "montelux/formats/pbrt/float_range.h"
 #include "montelux/formats/pbrt/scene_builder.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/math/overloaded.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
 namespace montelux::pbrt {
@@ -78,10 +79,10 @@ void SceneBuilder::shape(const std::string& name, std::vector<Parameter> paramet
     material_uses_.push_back({index, state_.material, at});
     add_lights(shape, index, geometry, at);
     if (auto* mesh = std::get_if<TriangleMesh>(&geometry.shape)) {
-        shape.mesh = static_cast<Index>(scene.meshes.size());
+        shape.geometry = MeshIndex{static_cast<Index>(scene.meshes.size())};
         scene.meshes.push_back(std::move(*mesh));
     } else {
-        shape.quadric = static_cast<Index>(scene.quadrics.size());
+        shape.geometry = QuadricIndex{static_cast<Index>(scene.quadrics.size())};
         scene.quadrics.push_back(std::get<Quadric>(geometry.shape));
     }
     scene.shapes.push_back(shape);
@@ -164,14 +165,15 @@ namespace {
 Bounds3 bounds_of(const ObjectDefinition& object, const Scene& scene) {
     Bounds3 bounds;
     for (Index i : object.shapes) {
-        const Shape& shape = scene.shapes[i];
-        if (shape.mesh != no_index) {
-            for (Point3f p : scene.meshes[shape.mesh].positions) bounds.add(Vec3d(p));
-        } else {
-            const Bounds3 quadric = world_bounds(scene.quadrics[shape.quadric]);
-            bounds.add(quadric.lower);
-            bounds.add(quadric.upper);
-        }
+        visit_geometry(scene, scene.shapes[i],
+                       Overloaded{[&](const TriangleMesh& mesh) {
+                                      for (Point3f p : mesh.positions) bounds.add(Vec3d(p));
+                                  },
+                                  [&](const Quadric& quadric) {
+                                      const Bounds3 b = world_bounds(quadric);
+                                      bounds.add(b.lower);
+                                      bounds.add(b.upper);
+                                  }});
     }
     return bounds;
 }

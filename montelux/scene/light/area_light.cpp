@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "montelux/mc/math/frame.h"
+#include "montelux/mc/math/overloaded.h"
 #include "montelux/mc/warp/hemisphere.h"
 #include "montelux/scene/light/emissive_shape.h"
 #include "montelux/scene/light/shadow_ray.h"
@@ -21,7 +22,7 @@ float sides(const AreaLight& light) { return light.two_sided ? 2.0f : 1.0f; }
 float radiance_scale(const AreaLight& light, const LightContext& context, Index part) {
     if (!(light.triangle_flux > 0)) return light.scale;
     const Shape& shape = context.scene.shapes[light.shape];
-    if (shape.mesh == no_index) return light.scale;
+    if (quadric_of(context.scene, shape) != nullptr) return light.scale;
     const float area = context.tables().triangle(context.light, part).area;
     return area > 0 ? light.scale * (light.triangle_flux / (sides(light) * area * pi_f)) : 0;
 }
@@ -89,12 +90,41 @@ bool is_invisible(const LightContext& context, const Shape& shape) {
     return is_cut_out(shape) && constant_alpha(context.scene, shape).value_or(1) <= 0;
 }
 
+LightBounds triangle_bounds(const TriangleMesh& mesh, const LightTriangle& t, Index part) {
+    LightBounds b;
+    for (const Vec3d p : {Vec3d(t.p0), Vec3d(t.p0) + Vec3d(t.e1), Vec3d(t.p0) + Vec3d(t.e2)}) b.box.add(p);
+    if (!(t.area > 0)) return b;
+    b.axis = t.n;
+    b.cos_theta_o = 1;
+    if (mesh.normals.empty()) return b;
+    // Where the vertices disagree the side changes within the triangle.
+    int turned = 0;
+    for (int k = 0; k < 3; ++k)
+        turned += turns_normal(mesh.normals[mesh.indices[3 * std::size_t{part} + k]], t.n);
+    if (turned == 3) b.axis = -t.n;
+    b.two_sided = turned == 1 || turned == 2;
+    return b;
+}
+
+LightBounds quadric_bounds(const Quadric& quadric, bool flip_normal) {
+    LightBounds b;
+    b.box = world_bounds(quadric);
+    if (const auto normal = constant_normal(quadric)) {
+        b.axis = Vec3f(flip_normal ? -*normal : *normal);
+        b.cos_theta_o = 1;
+    }
+    return b;
+}
+
 } // namespace
 
 Index AreaLight::part_count(const LightContext& context) const {
     if (!context.tables().is_in_world(shape)) return 0;
     const Shape& s = context.scene.shapes[shape];
-    return s.mesh == no_index ? 1 : static_cast<Index>(context.scene.meshes[s.mesh].triangle_count());
+    return visit_geometry(
+        context.scene, s,
+        Overloaded{[](const TriangleMesh& mesh) { return static_cast<Index>(mesh.triangle_count()); },
+                   [](const Quadric&) { return Index{1}; }});
 }
 
 std::optional<LightSample> AreaLight::sample_li(const LightContext& context, Index part,
@@ -170,43 +200,26 @@ void AreaLight::powers(const LightContext& context, std::span<double> parts) con
         if (alpha > 0 && alpha < 1) area *= double(alpha);
         return pi * area * (two_sided ? 2 : 1) * double(factor) * brightness;
     };
-    if (s.mesh == no_index) {
-        parts[0] = power(world_area(context.scene.quadrics[s.quadric]), scale);
-        return;
-    }
-    for (Index part = 0; part < parts.size(); ++part)
-        parts[part] = power(double(context.tables().triangle(context.light, part).area),
-                            radiance_scale(*this, context, part));
+    visit_geometry(context.scene, s,
+                   Overloaded{[&](const Quadric& quadric) { parts[0] = power(world_area(quadric), scale); },
+                              [&](const TriangleMesh&) {
+                                  for (Index part = 0; part < parts.size(); ++part)
+                                      parts[part] =
+                                          power(double(context.tables().triangle(context.light, part).area),
+                                                radiance_scale(*this, context, part));
+                              }});
 }
 
 std::optional<LightBounds> AreaLight::bounds(const LightContext& context, Index part) const {
     const Shape& s = context.scene.shapes[shape];
-    LightBounds b;
+    LightBounds b = visit_geometry(
+        context.scene, s,
+        Overloaded{[&](const TriangleMesh& mesh) {
+                       return triangle_bounds(mesh, context.tables().triangle(context.light, part), part);
+                   },
+                   [&](const Quadric& quadric) { return quadric_bounds(quadric, s.flip_normal); }});
     b.cos_theta_e = 0;
-    b.two_sided = two_sided;
-    if (s.mesh != no_index) {
-        const LightTriangle& t = context.tables().triangle(context.light, part);
-        for (const Vec3d p : {Vec3d(t.p0), Vec3d(t.p0) + Vec3d(t.e1), Vec3d(t.p0) + Vec3d(t.e2)})
-            b.box.add(p);
-        if (!(t.area > 0)) return b;
-        b.axis = t.n;
-        b.cos_theta_o = 1;
-        const TriangleMesh& mesh = context.scene.meshes[s.mesh];
-        if (mesh.normals.empty()) return b;
-        // Where the vertices disagree the side changes within the triangle.
-        int turned = 0;
-        for (int k = 0; k < 3; ++k)
-            turned += turns_normal(mesh.normals[mesh.indices[3 * std::size_t{part} + k]], t.n);
-        if (turned == 3) b.axis = -t.n;
-        b.two_sided = b.two_sided || turned == 1 || turned == 2;
-        return b;
-    }
-    const Quadric& quadric = context.scene.quadrics[s.quadric];
-    b.box = world_bounds(quadric);
-    if (const auto normal = constant_normal(quadric)) {
-        b.axis = Vec3f(s.flip_normal ? -*normal : *normal);
-        b.cos_theta_o = 1;
-    }
+    b.two_sided = b.two_sided || two_sided;
     return b;
 }
 

@@ -2,6 +2,7 @@
 
 #include <numeric>
 
+#include "montelux/mc/math/overloaded.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/scene/shape/alpha.h"
 #include "montelux/scene/shape/surface_point.h"
@@ -47,12 +48,14 @@ Bounds3 bounds_of(const Scene& scene) {
     auto add_shape = [&](Index index, const Transform* t) {
         const Shape& shape = scene.shapes[index];
         auto add = [&](Vec3d p) { bounds.add(t != nullptr ? t->point(p) : p); };
-        if (shape.mesh != no_index) {
-            for (Point3f p : scene.meshes[shape.mesh].positions) add(Vec3d(p));
-        } else {
-            const Bounds3 b = world_bounds(scene.quadrics[shape.quadric]);
-            for (int i = 0; i < 8; ++i) add(b.corner(i));
-        }
+        visit_geometry(scene, shape,
+                       Overloaded{[&](const TriangleMesh& mesh) {
+                                      for (Point3f p : mesh.positions) add(Vec3d(p));
+                                  },
+                                  [&](const Quadric& quadric) {
+                                      const Bounds3 b = world_bounds(quadric);
+                                      for (int i = 0; i < 8; ++i) add(b.corner(i));
+                                  }});
     };
     for (Index shape : scene.world_shapes) add_shape(shape, nullptr);
     for (const Instance& instance : scene.instances)
@@ -94,16 +97,18 @@ LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings
 
 void LightTables::add_shape(const Scene& scene, Index light, const AreaLight& area) {
     const Shape& shape = scene.shapes[area.shape];
-    if (shape.mesh != no_index) {
-        // The number of its triangles, for the time being.
-        if (in_world_[area.shape] != 0)
-            first_triangle_[light + 1] = scene.meshes[shape.mesh].triangle_count();
-        return;
-    }
-    const Quadric& quadric = scene.quadrics[shape.quadric];
-    // Through its holes the far side is seen, too, which the cone does not sample.
-    if (!is_cut_out(shape)) spheres_[light] = whole_sphere(quadric);
-    disks_[light] = whole_disk(quadric);
+    visit_geometry(scene, shape,
+                   Overloaded{[&](const TriangleMesh& mesh) {
+                                  // The number of its triangles; add_triangles sums them up.
+                                  if (in_world_[area.shape] != 0)
+                                      first_triangle_[light + 1] = mesh.triangle_count();
+                              },
+                              [&](const Quadric& quadric) {
+                                  // Through its holes the far side is seen, too, which the cone does not
+                                  // sample.
+                                  if (!is_cut_out(shape)) spheres_[light] = whole_sphere(quadric);
+                                  disks_[light] = whole_disk(quadric);
+                              }});
 }
 
 void LightTables::add_triangles(const Scene& scene) {
@@ -113,9 +118,10 @@ void LightTables::add_triangles(const Scene& scene) {
         const std::size_t first = first_triangle_[i], count = first_triangle_[i + 1] - first;
         if (count == 0) continue;
         const Shape& shape = scene.shapes[std::get<AreaLight>(scene.lights[i]).shape];
+        const TriangleMesh& mesh = scene.meshes[std::get<MeshIndex>(shape.geometry).index];
         parallel_for(static_cast<std::int64_t>(count), [&](std::int64_t k) {
             triangles_[first + static_cast<std::size_t>(k)] =
-                light_triangle(scene.meshes[shape.mesh], shape, static_cast<std::size_t>(k));
+                light_triangle(mesh, shape, static_cast<std::size_t>(k));
         });
     }
 }

@@ -36,10 +36,18 @@ struct Disk {
 
 using Quadric = std::variant<Sphere, Disk>;
 
-// One shape of the scene. Exactly one of mesh and quadric is set.
+// The geometry of a shape: a place in the scene's array of its kind.
+struct MeshIndex {
+    Index index = no_index; // into Scene::meshes
+};
+struct QuadricIndex {
+    Index index = no_index; // into Scene::quadrics
+};
+using ShapeGeometry = std::variant<MeshIndex, QuadricIndex>;
+
+// One shape of the scene.
 struct Shape {
-    Index mesh = no_index;    // into Scene::meshes
-    Index quadric = no_index; // into Scene::quadrics
+    ShapeGeometry geometry;
     Index material = no_index;
     Index light = no_index;  // its area light, into Scene::lights
     FloatParameter alpha{1}; // cut-out: a point is there with this probability
@@ -48,5 +56,23 @@ struct Shape {
     // applied).
     bool flip_normal = false;
 };
+
+// Calls f with the TriangleMesh or the Quadric of the shape. S: Scene or SceneView.
+template <typename S, typename F>
+decltype(auto) visit_geometry(const S& scene, const Shape& shape, const F& f) {
+    struct Visitor {
+        const S& scene;
+        const F& f;
+        decltype(auto) operator()(MeshIndex i) const { return f(scene.meshes[i.index]); }
+        decltype(auto) operator()(QuadricIndex i) const { return f(scene.quadrics[i.index]); }
+    };
+    return std::visit(Visitor{scene, f}, shape.geometry);
+}
+// Null for other geometry.
+template <typename S>
+const Quadric* quadric_of(const S& scene, const Shape& shape) {
+    const auto* i = std::get_if<QuadricIndex>(&shape.geometry);
+    return i != nullptr ? &scene.quadrics[i->index] : nullptr;
+}
 
 } // namespace montelux

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "montelux/mc/math/overloaded.h"
 #include "montelux/scene/shape/quadric.h"
 
 namespace montelux {
@@ -92,17 +93,21 @@ float stretch(const Transform& t) {
 
 SurfacePoint surface_point(const SceneView& scene, const Ray& ray, const Hit& hit, bool coordinates) {
     const Shape& shape = scene.shapes[hit.shape];
+    auto point = [&](const Ray& local) {
+        return visit_geometry(scene, shape,
+                              Overloaded{[&](const TriangleMesh& mesh) {
+                                             return triangle_point(mesh, shape, hit, coordinates);
+                                         },
+                                         [&](const Quadric& quadric) {
+                                             return quadric_point(quadric, shape, local, hit, coordinates);
+                                         }});
+    };
     SurfacePoint s;
     if (hit.instance == no_index) {
-        s = shape.mesh != no_index
-                ? triangle_point(scene.meshes[shape.mesh], shape, hit, coordinates)
-                : quadric_point(scene.quadrics[shape.quadric], shape, ray, hit, coordinates);
+        s = point(ray);
     } else {
         const Transform& t = scene.instances[hit.instance].world_from_object;
-        Ray local{Vec3f(t.inverse_point(Vec3d(ray.o))), Vec3f(t.inverse_vector(Vec3d(ray.d))), ray.t_max};
-        s = shape.mesh != no_index
-                ? triangle_point(scene.meshes[shape.mesh], shape, hit, coordinates)
-                : quadric_point(scene.quadrics[shape.quadric], shape, local, hit, coordinates);
+        s = point({Vec3f(t.inverse_point(Vec3d(ray.o))), Vec3f(t.inverse_vector(Vec3d(ray.d))), ray.t_max});
         transform_by(t, s, stretch(t));
     }
     s.shape = &shape;

@@ -225,7 +225,7 @@ TEST(PbrtShapes, MeshesGoToTheWorld) {
     EXPECT_EQ(mesh.uvs[3], Vec2f(1, 1));
     EXPECT_EQ(mesh.indices, (std::vector<Index>{0, 1, 2, 2, 1, 3}));
     EXPECT_FALSE(d.scene.shapes[0].flip_normal); // both reversed and mirrored
-    EXPECT_EQ(d.scene.shapes[0].quadric, no_index);
+    EXPECT_TRUE(std::holds_alternative<MeshIndex>(d.scene.shapes[0].geometry));
 }
 
 TEST(PbrtShapes, WhatDoesNotFitAMeshIsLeftOut) {

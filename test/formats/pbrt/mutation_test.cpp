@@ -4,6 +4,8 @@
 #include <random>
 #include <string>
 
+#include "montelux/mc/math/overloaded.h"
+
 namespace montelux {
 namespace {
 
@@ -44,8 +46,9 @@ void expect_sound(const std::string& text) {
     ASSERT_GT(d.sampler.spp, 0u);
     for (const Shape& s : d.scene.shapes) {
         ASSERT_LT(s.material, d.scene.materials.size());
-        ASSERT_NE(s.mesh == no_index, s.quadric == no_index);
-        ASSERT_TRUE(s.mesh == no_index || s.mesh < d.scene.meshes.size());
+        ASSERT_TRUE(std::visit(Overloaded{[&](MeshIndex i) { return i.index < d.scene.meshes.size(); },
+                                          [&](QuadricIndex i) { return i.index < d.scene.quadrics.size(); }},
+                               s.geometry));
         ASSERT_TRUE(s.light == no_index || s.light < d.scene.lights.size());
     }
     for (const TriangleMesh& m : d.scene.meshes)
