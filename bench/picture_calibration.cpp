@@ -42,8 +42,8 @@ struct Reference {
 };
 
 // Of scores z of pixels and channels, errors of both pictures taken together; and what to expect of them
-// where errors are estimated, from few replicates: Student's law with the degrees of freedom of Welch 1947, "The
-// Generalization of 'Student's' Problem when Several Different Population Variances are Involved".
+// where errors are estimated, from few replicates: Student's law with the degrees of freedom of Welch 1947,
+// "The Generalization of 'Student's' Problem when Several Different Population Variances are Involved".
 struct Coverage {
     double count = 0, one = 0, two = 0, expected_one = 0, expected_two = 0;
     void add(double z, double degrees_of_freedom) {

@@ -9,7 +9,8 @@
 
 namespace montelux {
 
-// Built once from an immutable scene, whose arrays must outlive it; all members may be called from any thread.
+// Built once from an immutable scene, whose arrays must outlive it; all members may be called from any
+// thread.
 class Accelerator {
   public:
     // Alpha cut-outs look up textures. Throws Error when memory runs out or a geometry is refused.

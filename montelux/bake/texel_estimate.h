@@ -60,8 +60,8 @@ class StratifiedSum {
     Vec3d value_, variance_, inverse_;
 };
 
-// How many times the error that the target allows; 0 where a black texel has none, and infinite where value or
-// error is not a finite number, of which nothing is known.
+// How many times the error that the target allows; 0 where a black texel has none, and infinite where value
+// or error is not a finite number, of which nothing is known.
 inline double missed_by(const TexelEstimate& e, const TexelTarget& target, double target_error) {
     const double reference = std::max((e.value.x + e.value.y + e.value.z) / 3, target.floor);
     double finite = 0; // or NaN

@@ -67,9 +67,9 @@ class Pixel {
         replicate_samples_ = 0;
     }
 
-    // The same, but an open replicate of fewer than half of `points` is left out where there are others: it would
-    // weigh as much as a whole one, and be as noisy as single samples. That depends on numbers alone, so
-    // nothing is biased.
+    // The same, but an open replicate of fewer than half of `points` is left out where there are others: it
+    // would weigh as much as a whole one, and be as noisy as single samples. That depends on numbers alone,
+    // so nothing is biased.
     void end_last_replicate(std::uint32_t points) {
         if (2 * replicate_samples_ < points && replicates_.count() >= 2) {
             replicate_sum_ = {};
@@ -121,11 +121,11 @@ class Film {
         for (Pixel& p : pixels_) p.end_last_replicate(points);
     }
     FilmError error() const { return error_of(*this); }
-    // Layers R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples; replicates (of which the
-    // standard error is made); outlier (Pixel::largest_share); warning (PixelWarning); albedo.R, G, B; N.X, Y, Z;
-    // depth.Z, of the cropped pixels. The standard error is infinite where fewer than two replicates have been
-    // taken. A slice of a render has the layers brightest.R, G, B beside (Pixel::brightest), for the outlier
-    // of the whole cannot be told from those of its slices.
+    // Layers R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples; replicates (of which
+    // the standard error is made); outlier (Pixel::largest_share); warning (PixelWarning); albedo.R, G, B;
+    // N.X, Y, Z; depth.Z, of the cropped pixels. The standard error is infinite where fewer than two
+    // replicates have been taken. A slice of a render has the layers brightest.R, G, B beside
+    // (Pixel::brightest), for the outlier of the whole cannot be told from those of its slices.
     Image develop(bool as_slice = false) const;
 
   private:

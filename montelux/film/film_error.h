@@ -28,7 +28,8 @@ inline constexpr Vec3d luminance_weight{0.2126, 0.7152, 0.0722};
 double luminance_error(const Pixel& pixel);
 
 // Degrees of freedom of the picture's error: those of the pixels that carry it, added up. Small where few
-// pixels do, of few replicates each. Infinite without any spread, 0 where a pixel has fewer than two replicates.
+// pixels do, of few replicates each. Infinite without any spread, 0 where a pixel has fewer than two
+// replicates.
 double error_freedom(const Film& film);
 
 // The error, relative to the mean luminance of the picture, within which a share `quantile` of the pixels

@@ -85,8 +85,8 @@ SkewMoments<3> moments_of(const Image& image, const Layers& at, int x, int y) {
     }
     return SkewMoments<3>(static_cast<std::uint64_t>(n), mean, squares, cubes);
 }
-// The brightest replicate of a pixel. A picture without its layers is taken to have one that stands out by the
-// same share of the variance in each channel, which is exact where nothing is joined with it.
+// The brightest replicate of a pixel. A picture without its layers is taken to have one that stands out by
+// the same share of the variance in each channel, which is exact where nothing is joined with it.
 Vec3d brightest_of(const Image& image, const Layers& at, int x, int y, const SkewMoments<3>& replicates) {
     Vec3d replicate;
     for (std::size_t c = 0; c < 3; ++c) {

@@ -24,9 +24,9 @@ struct MergedSlices {
 };
 
 // Joins what Film::develop() wrote for slices k/n of one render, one picture after the other in any order, so
-// that no two need be in memory. All layers are those of all replicates together, as far as 32-bit layers tell
-// (relative differences of about 1e-7). The standard error is infinite where there are fewer than two replicates.
-// Pictures say what they are of in the attributes `renderHash` and `slice`.
+// that no two need be in memory. All layers are those of all replicates together, as far as 32-bit layers
+// tell (relative differences of about 1e-7). The standard error is infinite where there are fewer than two
+// replicates. Pictures say what they are of in the attributes `renderHash` and `slice`.
 class SliceMerger {
   public:
     // Throws Error, naming the picture, where it is no slice, is of another render than those before, or of a

@@ -30,7 +30,8 @@ struct RestoredRender {
 RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDescription& description,
                                const RenderTarget& target);
 
-// Of all that the values of samples depend on, and of the replicates they form: equal for slices of one render.
+// Of all that the values of samples depend on, and of the replicates they form: equal for slices of one
+// render.
 std::uint64_t render_fingerprint(const Renderer& renderer);
 
 } // namespace montelux

@@ -219,8 +219,9 @@ class RenderLoop {
 
     // Of each pixel, before its error is believed; and before a picture is taken for black.
     static constexpr std::uint64_t least_samples = 16, least_replicates = 4, samples_of_black = 4096;
-    // Of the picture's error, as much as 16 replicates of one pixel have: who looks often and stops at the first
-    // error that is small enough stops at one that is small by chance, and the more so the less it is known.
+    // Of the picture's error, as much as 16 replicates of one pixel have: who looks often and stops at the
+    // first error that is small enough stops at one that is small by chance, and the more so the less it is
+    // known.
     static constexpr double least_freedom = 15;
 
     const Renderer& renderer_;

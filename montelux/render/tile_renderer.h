@@ -33,7 +33,8 @@ struct TileTally {
     void add_to(RenderReport& report) const;
 };
 
-// Pixels in rows that are `stride` elements apart, and their target sample counts in rows that are `target_stride` apart.
+// Pixels in rows that are `stride` elements apart, and their target sample counts in rows that are
+// `target_stride` apart.
 struct TileView {
     PixelBounds bounds;
     Pixel* pixels = nullptr;

@@ -79,7 +79,7 @@ TEST(Calibration, OfLongPaths) {
     }
 }
 
-// Mean over pixels of the variance over seeds, in replicates of the squared mean.
+// Mean over pixels of the variance over seeds, in units of the squared mean.
 double relative_mse(SceneBuilder& b, SamplerKind kind, std::uint32_t samples, std::uint32_t replicates,
                     int seeds) {
     b.description.sampler.kind = kind;

@@ -1,4 +1,4 @@
-// The picture depends on the scene and the seed alone: not on threads, tiles, or the replicate of length.
+// The picture depends on the scene and the seed alone: not on threads, tiles, or the unit of length.
 #include "test/render/mixed_scene.h"
 #include <cstring>
 #include <gtest/gtest.h>
@@ -62,9 +62,9 @@ TEST(Determinism, SeedsDifferAndRepeat) {
 // Millimetres or kilometres: the same random numbers make the same paths, but for the few that rounding
 // sends around an edge. Wrong offsets would speckle the picture at one of the scales.
 TEST(Determinism, AnyUnitOfLength) {
-    SceneBuilder replicate = mixed_scene(1, 24, 24);
-    replicate.description.sampler.spp = 64;
-    Film reference = render(replicate.description);
+    SceneBuilder unit = mixed_scene(1, 24, 24);
+    unit.description.sampler.spp = 64;
+    Film reference = render(unit.description);
     for (double scale : {1e-3, 1e4}) {
         SceneBuilder b = mixed_scene(scale, 24, 24);
         b.description.sampler.spp = 64;

@@ -10,16 +10,16 @@ inline RoughnessParameter alpha_of(float alpha) {
 }
 
 // A coloured box, open in front, with a rough conductor, a coated ball and one of glass, under two area
-// lights and an environment; `scale` is the length of its replicate.
+// lights and an environment; `scale` is its unit of length.
 inline SceneBuilder mixed_scene(double scale = 1, int width = 16, int height = 16) {
     SceneBuilder b;
     b.description.film.width = width;
     b.description.film.height = height;
     b.description.film.crop = {0, 0, width, height};
-    Transform replicate = Transform::scale({scale, scale, scale});
+    Transform unit = Transform::scale({scale, scale, scale});
     auto wall = [&](const Transform& t, Vec3f rgb) {
         SpectrumParameter color{Spectrum(RgbAlbedoSpectrum(RgbColorSpace::srgb(), rgb)), no_index};
-        b.add_mesh(square(replicate * t), b.add(DiffuseMaterial{color}));
+        b.add_mesh(square(unit * t), b.add(DiffuseMaterial{color}));
     };
     wall(Transform::translate({0, 0, -1}), {0.7f, 0.7f, 0.7f});
     wall(Transform::translate({0, 0, 1}) * Transform::rotate(180, {1, 0, 0}), {0.6f, 0.6f, 0.6f});
@@ -28,7 +28,7 @@ inline SceneBuilder mixed_scene(double scale = 1, int width = 16, int height = 1
     wall(Transform::translate({1, 0, 0}) * Transform::rotate(-90, {0, 1, 0}), {0.1f, 0.5f, 0.1f});
 
     auto ball = [&](Vec3d at, double radius, const Material& material) {
-        Transform t = replicate * Transform::translate(at) * Transform::scale({radius, radius, radius});
+        Transform t = unit * Transform::translate(at) * Transform::scale({radius, radius, radius});
         b.add_quadric(Sphere{.world_from_object = t}, b.add(material));
     };
     ball({-0.5, 0.2, -0.65}, 0.35,
@@ -42,13 +42,13 @@ inline SceneBuilder mixed_scene(double scale = 1, int width = 16, int height = 1
     ball({0.5, -0.1, -0.65}, 0.35, DielectricMaterial{Spectrum(1.5f), alpha_of(0)});
 
     Index black = b.add(DiffuseMaterial{gray(0)});
-    b.add_mesh(square(replicate * Transform::translate({0.2, 0.1, 0.95}) * Transform::rotate(180, {1, 0, 0}) *
+    b.add_mesh(square(unit * Transform::translate({0.2, 0.1, 0.95}) * Transform::rotate(180, {1, 0, 0}) *
                       Transform::scale({0.5, 0.4, 1})),
                black, 3);
     b.add_quadric(Sphere{.radius = 0.2f,
                          .z_min = -0.2f,
                          .z_max = 0.2f,
-                         .world_from_object = replicate * Transform::translate({-0.6, 0.5, 0.5})},
+                         .world_from_object = unit * Transform::translate({-0.6, 0.5, 0.5})},
                   black, 4);
     Image map(8, 8, {"R", "G", "B"});
     for (int i = 0; i < 64; ++i)

@@ -32,8 +32,8 @@ TEST(Target, ErrorIsReachedAndNotOvershot) {
         }
 }
 
-// A picture so small that its error is made of few replicates: looked at after each, one that is small by chance
-// would end the render far too early. The targets are shares of the error that 16 samples leave.
+// A picture so small that its error is made of few replicates: looked at after each, one that is small by
+// chance would end the render far too early. The targets are shares of the error that 16 samples leave.
 TEST(Target, FewReplicatesAreNotBelieved) {
     SceneBuilder b;
     b.description.film.width = b.description.film.height = 1;
