@@ -173,6 +173,8 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_choice(c, "--strategy", o.strategy, strategy_names, "How light is found: ");
     add_choice(c, "--heuristic", o.heuristic, heuristic_names,
                "Weights of the strategy mis and its two terms: ");
+    add_choice(c, "--light-sampling", o.light_sampling, light_sampling_names,
+               "How one light is chosen among many: in proportion to its power, the default, or all alike: ");
     add_choice(c, "--environment-sampling", o.environment_sampling, environment_sampling_names,
                "How directions to environment maps are sampled; auto, the default, is tabulated: ");
     add_parsed(
@@ -228,6 +230,7 @@ void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.sampler) d.sampler.kind = *o.sampler;
     if (o.strategy) d.integrator.strategy = *o.strategy;
     if (o.heuristic) d.integrator.heuristic = *o.heuristic;
+    if (o.light_sampling) d.integrator.light_sampling = *o.light_sampling;
     if (o.environment_sampling) d.integrator.environment_sampling = *o.environment_sampling;
     if (o.environment_compensation) d.integrator.environment_compensation = *o.environment_compensation;
     if (o.environment_lookup) d.integrator.environment_lookup = *o.environment_lookup;

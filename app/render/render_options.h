@@ -40,6 +40,7 @@ struct RenderOptions {
     std::optional<SamplerKind> sampler;
     std::optional<Strategy> strategy;
     std::optional<Heuristic> heuristic;
+    std::optional<LightSampling> light_sampling;
     std::optional<EnvironmentSampling> environment_sampling;
     std::optional<bool> environment_compensation;
     std::optional<EnvironmentLookup> environment_lookup;

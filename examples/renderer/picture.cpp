@@ -27,7 +27,7 @@ int main() try {
     montelux::Renderer(description).render(film);
     montelux::write_image("sphere.exr", film.develop());
 
-    const auto& green = film.pixel(32, 32).units();
+    const auto& green = film.pixel(32, 32).replicates();
     const montelux::Estimate middle{green.mean(1), green.standard_error(1), green.count()};
     std::cout << "green in the middle of sphere.exr = " << middle << "\n";
 } catch (const std::exception& e) {

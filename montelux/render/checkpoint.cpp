@@ -76,7 +76,7 @@ std::array<Fingerprint, 10> fingerprints(const SceneDigest& scene, const SceneDe
          {"the sampler or seed differs", hash_of(static_cast<int>(d.sampler.kind), d.sampler.seed)},
          {"the integrator differs",
           hash_of(d.integrator.max_depth, static_cast<int>(d.integrator.strategy),
-                  static_cast<int>(d.integrator.heuristic),
+                  static_cast<int>(d.integrator.heuristic), static_cast<int>(d.integrator.light_sampling),
                   static_cast<int>(d.integrator.environment_sampling), d.integrator.environment_compensation,
                   static_cast<int>(d.integrator.environment_lookup))},
          {"the allocation of samples (--adaptive) differs", hash_of(target.adaptive)},

@@ -25,11 +25,14 @@ enum class Strategy : std::uint8_t {
     mis_light, // sampled lights, by their weight: all of lights that nothing can meet
 };
 enum class Heuristic : std::uint8_t { balance, power };
+// How one light is chosen among many (scene/light/sampler).
+enum class LightSampling : std::uint8_t { uniform, power };
 
 struct IntegratorSettings {
     int max_depth = 5; // scattering events of a path
     Strategy strategy = Strategy::mis;
     Heuristic heuristic = Heuristic::power;
+    LightSampling light_sampling = LightSampling::power;
     EnvironmentSampling environment_sampling = EnvironmentSampling::automatic;
     // MIS compensation, of no effect but where light and BSDF samples are joined: by mis and its terms.
     bool environment_compensation = true;

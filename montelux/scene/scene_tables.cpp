@@ -1,5 +1,6 @@
 #include "montelux/scene/scene_tables.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -52,6 +53,9 @@ bool has_texture(const CoatedConductorMaterial& m) {
     return has_texture(m.conductor) || has_texture(m.coating);
 }
 
+// The sum over 2^32 parts is finite.
+constexpr double most_power = 1e290;
+
 LightSampler make_light_sampler(const SceneView& scene, LightSampling sampling) {
     const auto light_count = static_cast<Index>(scene.lights.size());
     std::vector<Index> counts;
@@ -61,8 +65,8 @@ LightSampler make_light_sampler(const SceneView& scene, LightSampling sampling) 
     std::vector<double> all(parts.size());
     for (Index i = 0; i < light_count; ++i)
         if (counts[i] > 0) light_powers({scene, i}, std::span(all).subspan(parts.row(i, 0), counts[i]));
-    for (double& power : all)
-        if (!std::isfinite(power) || !(power > 0)) power = 0;
+    // Estimates that overflow still choose the light; one that is not a number leaves it to scattering.
+    for (double& power : all) power = power > 0 ? std::min(power, most_power) : 0;
     return LightSampler(PowerLightSampler(std::move(parts), all));
 }
 

@@ -1,16 +1,13 @@
 // What is computed once from an immutable scene: image pyramids, coating tables, light sampling.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "montelux/scene/light/light_tables.h"
+#include "montelux/scene/render_settings.h"
 #include "montelux/scene/view.h"
 
 namespace montelux {
-
-// How lights are chosen (scene/light/sampler).
-enum class LightSampling : std::uint8_t { uniform, power };
 
 class SceneTables {
   public:

@@ -27,6 +27,8 @@ inline constexpr SettingNames<Strategy, 6> strategy_names{{{"uniform", Strategy:
                                                            {"mis-light", Strategy::mis_light}}};
 inline constexpr SettingNames<Heuristic, 2> heuristic_names{
     {{"balance", Heuristic::balance}, {"power", Heuristic::power}}};
+inline constexpr SettingNames<LightSampling, 2> light_sampling_names{
+    {{"power", LightSampling::power}, {"uniform", LightSampling::uniform}}};
 inline constexpr SettingNames<EnvironmentSampling, 4> environment_sampling_names{
     {{"auto", EnvironmentSampling::automatic},
      {"tabulated", EnvironmentSampling::tabulated},
@@ -44,6 +46,7 @@ constexpr std::string_view name_in(const SettingNames<Setting, n>& names, Settin
 constexpr std::string_view name_of(SamplerKind kind) { return name_in(sampler_names, kind); }
 constexpr std::string_view name_of(Strategy strategy) { return name_in(strategy_names, strategy); }
 constexpr std::string_view name_of(Heuristic heuristic) { return name_in(heuristic_names, heuristic); }
+constexpr std::string_view name_of(LightSampling sampling) { return name_in(light_sampling_names, sampling); }
 constexpr std::string_view name_of(EnvironmentSampling sampling) {
     return name_in(environment_sampling_names, sampling);
 }

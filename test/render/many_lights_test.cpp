@@ -1,5 +1,5 @@
 // One light among very many is chosen as often as its probability says.
-#include "test/render/scene_testing.h"
+#include "test/render/mixed_scene.h"
 #include <gtest/gtest.h>
 
 namespace montelux::testing {
@@ -29,6 +29,24 @@ TEST(ManyLights, OneAmongThemIsAsBrightAsAlone) {
         const PictureMean m = picture_mean(render(b.description));
         EXPECT_NEAR(m.mean, truth, 5 * m.standard_error);
         EXPECT_LT(m.standard_error, 0.01 * truth);
+    }
+}
+
+// However lights are chosen, the picture is the same within its errors: 5 standard errors of the difference of
+// two means.
+TEST(ManyLights, AnyChoiceOfLightsGivesTheSamePicture) {
+    SceneBuilder b = mixed_scene(1, 16, 16);
+    b.description.sampler.spp = 256;
+    for (const Strategy strategy : {Strategy::light, Strategy::mis}) {
+        b.description.integrator.strategy = strategy;
+        b.description.integrator.light_sampling = LightSampling::power;
+        const PictureMean power = picture_mean(render(b.description));
+        b.description.integrator.light_sampling = LightSampling::uniform;
+        b.description.sampler.seed += 1;
+        const PictureMean uniform = picture_mean(render(b.description));
+        EXPECT_NEAR(power.mean, uniform.mean, 5 * std::hypot(power.standard_error, uniform.standard_error));
+        EXPECT_LT(uniform.standard_error, 0.02 * uniform.mean);
+        EXPECT_NE(power.mean, uniform.mean);
     }
 }
 

@@ -2,6 +2,7 @@
 // is uniform. Chi-squared tests at the level of significance.h: below 1e-5 for the file.
 #include "test/significance.h"
 #include <gtest/gtest.h>
+#include <limits>
 #include <numeric>
 
 #include "montelux/mc/stats/chi_squared.h"
@@ -72,6 +73,19 @@ TEST(LightSamplers, ByPower) {
     const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
     for (double& p : powers) p /= sum;
     expect_probabilities(*tables.view().light_sampler, powers);
+}
+
+// An estimate of power that overflows: such lights are sampled all the same, by each.
+TEST(LightSamplers, InfinitePowerIsMuch) {
+    Scene scene;
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    for (float scale : {infinite, 1.0f, infinite})
+        scene.lights.push_back(PointLight{Spectrum(1.0f), scale, {0, 0, 0}});
+    const SceneTables tables(scene);
+    const LightSampler& lights = *tables.view().light_sampler;
+    EXPECT_EQ(lights.probability({}, 0, 0), 0.5f);
+    EXPECT_EQ(lights.probability({}, 1, 0), 0);
+    EXPECT_EQ(lights.probability({}, 2, 0), 0.5f);
 }
 
 TEST(LightSamplers, WithoutLights) {

@@ -78,9 +78,12 @@ IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostic
         if (r.boolean("regularize", false))
             diagnostics.warn(r.at("regularize"),
                              "'regularize' is not supported: the picture is rendered without that bias");
-        if (r.ignored("lightsampler"))
+        const std::string_view lights =
+            r.choice("lightsampler", {"uniform", "power", "bvh", "exhaustive"}, "");
+        if (lights == "uniform") s.light_sampling = LightSampling::uniform;
+        if (lights == "exhaustive" || lights == "bvh")
             diagnostics.warn_once("lightsampler", r.at("lightsampler"),
-                                  "'lightsampler' is ignored; it changes the noise alone");
+                                  "lights are chosen by their power; it changes the noise alone");
         r.finish();
     } else if (plugin.name == "simplepath") {
         bool lights = r.boolean("samplelights", true);

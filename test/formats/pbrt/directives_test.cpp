@@ -115,12 +115,23 @@ TEST(PbrtOptions, SpellingsOfOptions) {
 }
 
 // Whatever is read but changes nothing is told.
+TEST(PbrtOptions, LightSamplers) {
+    const auto sampling = [](const std::string& name) {
+        return parse("Integrator \"path\" \"string lightsampler\" \"" + name + "\"\nWorldBegin\n")
+            .integrator.light_sampling;
+    };
+    EXPECT_EQ(sampling("uniform"), LightSampling::uniform);
+    EXPECT_EQ(sampling("power"), LightSampling::power);
+    EXPECT_EQ(sampling("bvh"), LightSampling::power);
+    EXPECT_THROW(sampling("tree"), Error);
+}
+
 TEST(PbrtOptions, WhatIsLeftOutIsTold) {
     Warnings told;
     parse(R"(ColorSpace "rec2020"
 Film "gbuffer" "bool savefp16" true "string coordinatesystem" "camera"
 Accelerator "bvh" "integer maxnodeprims" 4
-Integrator "volpath" "bool regularize" true "string lightsampler" "power"
+Integrator "volpath" "bool regularize" true "string lightsampler" "bvh"
 Sampler "sobol" "string randomization" "none"
 Option "bool disablepixeljitter" true
 WorldBegin TransformBegin TransformEnd LightSource "point"
@@ -137,7 +148,7 @@ WorldEnd)",
         "scene:2:37: 'coordinatesystem' is ignored: normals are in world space",
         "scene:2:16: 'savefp16' is ignored: EXR files hold 32-bit floats",
         "scene:4:22: 'regularize' is not supported",
-        "scene:4:45: 'lightsampler' is ignored",
+        "scene:4:45: lights are chosen by their power",
         "scene:5:17: the points are randomised all the same",
         "scene:7:12: TransformBegin is deprecated",
         "scene:9:1: WorldEnd belongs to pbrt-v3",
