@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "montelux/film/pixel_warnings.h"
-#include "montelux/formats/pbrt/load_pbrt.h"
+#include "montelux/formats/load_scene.h"
 #include "montelux/image/image_read.h"
 #include "montelux/image/metrics.h"
 #include "montelux/mc/math/compensated.h"
@@ -339,7 +339,7 @@ int main(int argc, char** argv) try {
     for (const std::string& name : o.names) {
         Warnings warnings;
         const std::filesystem::path folder = o.scenes / name;
-        const SceneDescription d = load_pbrt(folder / "scene.pbrt", warnings);
+        const SceneDescription d = load_scene(folder / "scene.pbrt", warnings);
         if (o.renders > 0) {
             o.targets.empty() ? print_own_coverage(o, name, d) : print_spread(o, name, d);
             continue;

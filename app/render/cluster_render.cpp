@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "montelux/cluster/tile_worker.h"
-#include "montelux/formats/pbrt/load_pbrt.h"
+#include "montelux/formats/load_scene.h"
 #include "montelux/mc/io/byte_stream.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/render/renderer.h"
@@ -54,7 +54,7 @@ struct Prepared {
             BundledFiles files(FileBundle::from_bytes(in.get_bytes()));
             bytes = {};
             Warnings ignored;
-            description = load_pbrt(options.scene, ignored, nullptr, &files);
+            description = load_scene(options.scene, ignored, nullptr, &files);
         }
         if (digest_of(description.scene) != opening.scene)
             throw Error("the scene", "this rank has read another one than rank 0");

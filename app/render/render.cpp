@@ -20,7 +20,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "montelux/formats/pbrt/load_pbrt.h"
+#include "montelux/formats/load_scene.h"
 #include "montelux/image/image_write.h"
 #include "montelux/mc/io/file.h"
 #include "montelux/mc/io/generation_file.h"
@@ -215,7 +215,7 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     auto load_begin = Clock::now();
     Warnings warnings;
     std::vector<std::filesystem::path> files_read;
-    SceneDescription description = load_pbrt(options.scene, warnings, &files_read, shared.files());
+    SceneDescription description = load_scene(options.scene, warnings, &files_read, shared.files());
     double load_seconds = seconds_since(load_begin);
     if (!options.quiet) print_warnings(warnings);
     apply(options, description);

@@ -1,5 +1,6 @@
 #include "montelux/formats/file_source.h"
 
+#include "montelux/formats/gunzip.h"
 #include "montelux/mc/io/byte_stream.h"
 #include "montelux/mc/io/file.h"
 #include "montelux/mc/math/error.h"
@@ -69,6 +70,13 @@ std::vector<std::uint8_t> BundledFiles::read(const std::filesystem::path& path, 
     const auto known = bundle_.contents.find(path.string());
     if (known == bundle_.contents.end()) throw Error(path.string(), "is not among the files that were sent");
     return known->second;
+}
+
+std::vector<std::uint8_t> read_unpacked(FileSource& source, const std::filesystem::path& path) {
+    constexpr std::size_t max_file_bytes = std::size_t{16} << 30;
+    std::vector<std::uint8_t> bytes = source.read(path, max_file_bytes);
+    if (path.extension() == ".gz") return gunzip(bytes, path.string(), max_file_bytes);
+    return bytes;
 }
 
 } // namespace montelux

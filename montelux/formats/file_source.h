@@ -59,4 +59,8 @@ class BundledFiles final : public FileSource {
     FileBundle bundle_;
 };
 
+// The whole file; one whose name ends in ".gz" is decompressed. No file that a scene consists of is larger
+// than 16 GiB, compressed or not. Throws Error.
+std::vector<std::uint8_t> read_unpacked(FileSource& source, const std::filesystem::path& path);
+
 } // namespace montelux

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "montelux/formats/load_scene.h"
 #include "montelux/formats/pbrt/load_pbrt.h"
 #include "montelux/image/image_read.h"
 
@@ -216,7 +217,7 @@ void bind_scene(nb::module_& m) {
                 SceneDescription d;
                 {
                     nb::gil_scoped_release unlocked;
-                    d = load_pbrt(path, warnings);
+                    d = load_scene(path, warnings);
                 }
                 take(s, std::move(d), warnings, path.filename().string());
             },

@@ -254,3 +254,13 @@ def test_indices_beyond_the_end(scene):
     with pytest.raises(IndexError, match="material 9 of"):
         scene.materials[9]
     assert [type(m).__name__ for m in scene.materials] == ["Diffuse"] * len(scene.materials)
+
+
+def test_files_that_are_no_scenes_are_told_for_what_they_look_like(tmp_path):
+    for name, content, kind in [
+        ("model.gltf", '{"asset": {"version": "2.0"}, "scenes": []}', r"a glTF scene \(JSON\)"),
+        ("bunny.pbrt", "ply\nformat ascii 1.0\n", "a PLY mesh"),
+    ]:
+        (tmp_path / name).write_text(content)
+        with pytest.raises(montelux.Error, match=f"{name}: looks like {kind}; expected a scene of pbrt-v4"):
+            montelux.load(tmp_path / name)

@@ -21,6 +21,15 @@ expect 1 "it is a folder" render long.pbrt -o x.exr --checkpoint folder.exr
 mkdir locked && chmod 500 locked
 if [ "$(id -u)" -ne 0 ]; then expect 1 "Permission denied" render long.pbrt -o locked/x.exr; fi
 
+# What is no scene is told for what it looks like.
+expect 0 "8 x 6 pixels" render ok.pbrt -o picture.exr --checkpoint ok.state
+expect 1 "picture.exr: looks like an OpenEXR picture; expected a scene of pbrt-v4 (.pbrt or .pbrt.gz)" render picture.exr
+expect 1 "ok.state: looks like a checkpoint of Montelux; expected a scene" render ok.state
+printf '<?xml version="1.0"?>\n<scene version="3.0.0"/>' >scene.xml
+expect 1 "scene.xml: looks like a Mitsuba scene (XML); expected" render scene.xml
+cp ok.pbrt 'any name'
+expect 0 "8 x 6 pixels" render 'any name' -o picture.exr
+
 # A full disk leaves the older file as it was, and nothing else.
 printf 'old' >limited.exr
 (trap '' XFSZ && ulimit -f 1 && "$montelux" render ok.pbrt --resolution 300x200 -o limited.exr >out 2>&1)

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
-#include "montelux/formats/pbrt/load_pbrt.h"
+#include "montelux/formats/load_scene.h"
 #include "montelux/image/image_read.h"
 #include "montelux/image/image_write.h"
 #include "montelux/image/metrics.h"
@@ -26,7 +26,7 @@ struct Way {
 // A scene by its name, rendered.
 Image picture_of(const std::string& name, const Way& way, std::uint32_t spp, std::uint64_t seed) {
     Warnings warnings;
-    SceneDescription d = load_pbrt(references / (name + ".pbrt"), warnings);
+    SceneDescription d = load_scene(references / (name + ".pbrt"), warnings);
     EXPECT_TRUE(warnings.messages().empty()) << warnings.messages().front();
     d.sampler = {.kind = way.sampler, .seed = seed, .spp = spp};
     d.integrator.strategy = way.strategy;

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
-#include "montelux/formats/pbrt/load_pbrt.h"
+#include "montelux/formats/load_scene.h"
 #include "montelux/image/image_read.h"
 #include "montelux/image/metrics.h"
 #include "montelux/render/renderer.h"
@@ -25,7 +25,7 @@ TEST_P(ReferenceSlowTest, AgreesWithPbrt) {
     fs::path folder = fs::path(MONTELUX_SHARED_DIR) / "scenes" / "pbrt" / GetParam();
     if (!fs::exists(folder / "ref" / "mean.exr")) GTEST_SKIP() << "no reference pictures";
     Warnings warnings;
-    SceneDescription d = load_pbrt(folder / "scene.pbrt", warnings);
+    SceneDescription d = load_scene(folder / "scene.pbrt", warnings);
     d.sampler = {SamplerKind::independent, 1, 64, 1};
     Film film(d.film);
     RenderReport report = Renderer(d).render(film);

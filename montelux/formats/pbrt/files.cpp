@@ -2,16 +2,9 @@
 
 #include <string>
 
-#include "montelux/formats/gunzip.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux::pbrt {
-namespace {
-
-// No file that a scene consists of is larger, compressed or not.
-constexpr std::size_t max_file_bytes = std::size_t{16} << 30;
-
-} // namespace
 
 std::filesystem::path Files::find(std::string_view name, Location at) const {
     if (name.empty()) diagnostics_.error(at, "an empty file name");
@@ -26,16 +19,10 @@ std::filesystem::path Files::find(std::string_view name, Location at) const {
     diagnostics_.error(at, "there is no file '" + first.string() + "'");
 }
 
-std::vector<std::uint8_t> Files::read_alone(const std::filesystem::path& path) {
-    std::vector<std::uint8_t> bytes = source_.read(path, max_file_bytes);
-    if (path.extension() == ".gz") return gunzip(bytes, path.string(), max_file_bytes);
-    return bytes;
-}
-
 std::vector<std::uint8_t> Files::read(const std::filesystem::path& path, Location at) {
     count_as_read(path);
     try {
-        return read_alone(path);
+        return read_unpacked(source_, path);
     } catch (const Error& e) {
         diagnostics_.error(at, e.what());
     }

@@ -23,8 +23,6 @@ class Files {
     std::filesystem::path find(std::string_view name, Location at) const;
     // The whole file; one whose name ends in ".gz" is decompressed.
     std::vector<std::uint8_t> read(const std::filesystem::path& path, Location at);
-    // As `read`, told about without a place in a scene file.
-    std::vector<std::uint8_t> read_alone(const std::filesystem::path& path);
 
     // Every file that was read, in order.
     const std::vector<std::filesystem::path>& files_read() const { return files_read_; }

@@ -9,10 +9,16 @@ namespace montelux {
 SceneDescription load_pbrt(const std::filesystem::path& path, Warnings& warnings,
                            std::vector<std::filesystem::path>* files_read, FileSource* source) {
     DiskFiles disk;
+    FileSource& files = source != nullptr ? *source : disk;
+    return load_pbrt(read_unpacked(files, path), path, warnings, files_read, files);
+}
+
+SceneDescription load_pbrt(std::vector<std::uint8_t> bytes, const std::filesystem::path& path,
+                           Warnings& warnings, std::vector<std::filesystem::path>* files_read,
+                           FileSource& source) {
     pbrt::Diagnostics diagnostics(warnings);
     std::uint32_t file = diagnostics.add_file(path.string());
-    pbrt::Files files(path.parent_path(), source != nullptr ? *source : disk, diagnostics);
-    std::vector<std::uint8_t> bytes = files.read_alone(path);
+    pbrt::Files files(path.parent_path(), source, diagnostics);
     files.count_as_read(path);
     pbrt::SceneBuilder builder(files, diagnostics);
     pbrt::SceneParser parser(files, builder, diagnostics);

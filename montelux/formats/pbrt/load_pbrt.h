@@ -1,6 +1,7 @@
 // Scenes in the format of pbrt-v4.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -21,6 +22,11 @@ namespace montelux {
 SceneDescription load_pbrt(const std::filesystem::path& path, Warnings& warnings,
                            std::vector<std::filesystem::path>* files_read = nullptr,
                            FileSource* source = nullptr);
+
+// The same for a file of which `bytes` is the unpacked content.
+SceneDescription load_pbrt(std::vector<std::uint8_t> bytes, const std::filesystem::path& path,
+                           Warnings& warnings, std::vector<std::filesystem::path>* files_read,
+                           FileSource& source);
 
 // The same for a text; `name` stands in messages and `folder` is where paths start.
 SceneDescription parse_pbrt(std::string_view text, const std::string& name,
