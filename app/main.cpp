@@ -19,8 +19,8 @@
 #include "montelux/cluster/communicator.h"
 #endif
 
-#include "montelux/formats/nearest_name.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/math/nearest_name.h"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "montelux/formats/nearest_name.h"
+#include "montelux/mc/math/nearest_name.h"
 #include "montelux/mc/random/point_set.h"
 
 namespace montelux::app {

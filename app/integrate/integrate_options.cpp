@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-#include "montelux/formats/nearest_name.h"
+#include "montelux/mc/math/nearest_name.h"
 #include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux::app {

@@ -11,6 +11,7 @@
 #include "montelux/image/image_read.h"
 #include "montelux/image/image_write.h"
 #include "montelux/image/tone_curve.h"
+#include "montelux/scene/build/scene_builder.h"
 
 namespace montelux::python {
 
@@ -41,14 +42,8 @@ Image picture_of(const nb::object& given, const std::string& what) {
 }
 
 Image rgb_image(const Image& picture, const std::string& what) {
-    std::vector<std::string> names;
-    for (const int c : picture.color_channels())
-        names.push_back(picture.channel_names()[static_cast<std::size_t>(c)]);
-    if (names.empty()) throw Error(what, "the picture has neither channels R, G and B nor Y");
-    Image colors = picture.select(names).to_linear_f32();
-    if (names.size() == 3) return colors;
-    Image rgb(picture.width(), picture.height(), {"R", "G", "B"});
-    for (std::size_t i = 0; i < rgb.sample_count(); ++i) rgb.f32()[i] = colors.f32()[i / 3];
+    Image rgb = rgb_map(picture);
+    if (rgb.empty()) throw Error(what, "the picture has neither channels R, G and B nor Y");
     return rgb;
 }
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "montelux/formats/nearest_name.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/math/nearest_name.h"
 #include "montelux/mc/random/point_set.h"
 
 namespace montelux::python {

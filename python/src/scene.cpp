@@ -9,6 +9,7 @@
 #include "montelux/formats/load_scene.h"
 #include "montelux/formats/pbrt/load_pbrt.h"
 #include "montelux/image/image_read.h"
+#include "montelux/scene/build/scene_builder.h"
 
 namespace montelux::python {
 namespace {
@@ -154,12 +155,9 @@ nb::object image_texture(const SceneObject& s, const nb::object& image, const st
     t.mapping.du = static_cast<float>(uv[2]);
     t.mapping.dv = static_cast<float>(uv[3]);
     Image picture = picture_of(image, "image_texture");
-    if (picture.color_channels().empty())
-        throw Error("image_texture", "the picture has neither channels R, G and B nor Y");
-    Scene& scene = s.holder->edit().scene;
-    t.image = static_cast<Index>(scene.images.size());
-    s.holder->edit().scene.images.push_back(std::move(picture));
     Scene& now = s.holder->edit().scene;
+    CallMessages messages("image_texture", &s.holder->warnings);
+    t.image = SceneBuilder(now, messages).add_image(std::move(picture), "the picture");
     if (as_float) {
         now.float_textures.emplace_back(t);
         return nb::cast(FloatTextureHandle{s.holder, static_cast<Index>(now.float_textures.size() - 1)});
@@ -182,19 +180,18 @@ SpectrumTextureHandle checkerboard(const SceneObject& s, const nb::object& a, co
 
 nb::object add_environment(const SceneObject& s, const nb::object& image, double scale,
                            const nb::object& world_from_light) {
-    Image map = light_map(image, "add_environment");
+    const Image map = light_map(image, "add_environment");
     const EnvironmentLayout layout = map_layout("auto", map, "add_environment");
     if (!not_negative(scale)) throw Error("add_environment, scale", "expected a number that is not negative");
     ImageInfiniteLight light;
-    light.environment = static_cast<Index>(s.holder->read().scene.environments.size());
     light.layout = layout;
     light.scale = static_cast<float>(scale) *
                   photometric_scale(Spectrum(RgbColorSpace::srgb().illuminant()), "add_environment");
     light.world_from_light = transform_of(world_from_light, "add_environment, world_from_light");
-    Scene& scene = s.holder->edit().scene;
-    scene.environments.push_back(std::move(map));
-    scene.lights.emplace_back(light);
-    return as_python(Slot<Light>(s.holder, static_cast<Index>(scene.lights.size() - 1)));
+    CallMessages messages("add_environment", &s.holder->warnings);
+    SceneBuilder builder(s.holder->edit().scene, messages);
+    light.environment = builder.add_environment(map, "the map");
+    return as_python(Slot<Light>(s.holder, builder.add_light(light)));
 }
 
 } // namespace

@@ -2,7 +2,8 @@
 
 #include "python/src/bindings.h"
 
-#include "montelux/formats/nearest_name.h"
+#include "montelux/mc/math/nearest_name.h"
+#include "montelux/scene/build/emission.h"
 #include "montelux/spectrum/named_spectra.h"
 
 namespace montelux::python {
@@ -156,10 +157,11 @@ nb::object number_or_texture(const FloatParameter& p, const std::shared_ptr<Scen
 }
 
 float photometric_scale(const Spectrum& s, const std::string& what) {
-    const double y = to_photometric(s);
-    if (y == 0) return 0;
-    if (!(y > 0) || !std::isfinite(y)) throw Error(what, "the light's spectrum has no positive luminance");
-    return static_cast<float>(1 / y);
+    try {
+        return montelux::photometric_scale(s);
+    } catch (const Error& e) {
+        throw Error(what, e.what());
+    }
 }
 
 void bind_spectra(nb::module_& m) {

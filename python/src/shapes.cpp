@@ -2,8 +2,11 @@
 
 #include "python/src/bindings.h"
 #include "python/src/scene_values.h"
+#include <optional>
+#include <utility>
 
 #include "montelux/mc/math/overloaded.h"
+#include "montelux/scene/build/scene_builder.h"
 
 namespace montelux::python {
 namespace {
@@ -26,31 +29,41 @@ nb::object light_of(const ShapeRef& r) {
     return as_python(Slot<Light>(r.scene(), s.light));
 }
 
-// None takes the light away; an AreaLight or a spectrum gives one.
-void set_light(const SceneRef& holder, Index shape, const nb::object& emission) {
+// Of an AreaLight or a spectrum.
+AreaLight area_light_of(const nb::object& emission) {
+    if (nb::isinstance<Ref<AreaLight>>(emission)) return nb::cast<const Ref<AreaLight>&>(emission).value();
     AreaLight light = default_value<AreaLight>();
-    if (nb::isinstance<Ref<AreaLight>>(emission)) {
-        light = nb::cast<const Ref<AreaLight>&>(emission).value();
-    } else if (!emission.is_none()) {
-        light.spectrum = spectrum_of(emission, RgbMeaning::illuminant, "Shape.light");
-        light.scale = photometric_scale(light.spectrum, "Shape.light");
-    }
-    SceneDescription& d = holder->edit();
-    Shape& s = d.scene.shapes[shape];
-    if (s.light != no_index) erase_light(d, s.light);
-    if (emission.is_none()) return;
-    s.light = static_cast<Index>(d.scene.lights.size());
-    light.shape = shape;
-    d.scene.lights.emplace_back(light);
+    light.spectrum = spectrum_of(emission, RgbMeaning::illuminant, "Shape.light");
+    light.scale = photometric_scale(light.spectrum, "Shape.light");
+    return light;
 }
 
-nb::object added(const SceneRef& holder, Shape s, const nb::object& material, const nb::object& emission) {
-    s.material = material_index(holder, material, "material of a shape");
+void add_light(SceneDescription& d, Index shape, AreaLight light) {
+    CallMessages messages("Shape.light");
+    light.shape = shape;
+    d.scene.shapes[shape].light = SceneBuilder(d.scene, messages).add_light(light);
+}
+
+// None takes the light away; an AreaLight or a spectrum gives one.
+void set_light(const SceneRef& holder, Index shape, const nb::object& emission) {
+    std::optional<AreaLight> light;
+    if (!emission.is_none()) light = area_light_of(emission);
     SceneDescription& d = holder->edit();
-    const auto index = static_cast<Index>(d.scene.shapes.size());
-    d.scene.shapes.push_back(s);
-    d.scene.world_shapes.push_back(index);
-    if (!emission.is_none()) set_light(holder, index, emission);
+    if (const Index before = d.scene.shapes[shape].light; before != no_index) erase_light(d, before);
+    if (light) add_light(d, shape, *light);
+}
+
+nb::object added(const SceneRef& holder, const char* call, Geometry geometry, bool flip_normal,
+                 const nb::object& material, const nb::object& emission) {
+    std::optional<AreaLight> light;
+    if (!emission.is_none()) light = area_light_of(emission);
+    ShapeSettings settings;
+    settings.material = material_index(holder, material, "material of a shape");
+    settings.flip_normal = flip_normal;
+    CallMessages messages(call);
+    SceneDescription& d = holder->edit();
+    const Index index = SceneBuilder(d.scene, messages).add_shape(std::move(geometry), settings);
+    if (light) add_light(d, index, *light);
     return nb::cast(ShapeRef(Slot<Shape>(holder, index)));
 }
 
@@ -108,45 +121,25 @@ nb::object add_mesh(const SceneRef& scene, const nb::object& positions, const nb
         mesh.positions.push_back(
             Vec3f(world.point(Vec3d{p.values[3 * i], p.values[3 * i + 1], p.values[3 * i + 2]})));
     for (const double v : t.values) {
-        if (!(v >= 0 && v < static_cast<double>(n) && v == std::floor(v)))
-            throw Error("add_mesh, triangles", "the index " + std::to_string(v) +
-                                                   " was given; expected whole numbers "
-                                                   "from 0 to " +
-                                                   std::to_string(n) + " - 1, the positions");
+        if (!(v >= 0 && v < double{no_index} && v == std::floor(v)))
+            throw Error("add_mesh, triangles",
+                        "the index " + std::to_string(v) + " was given; expected whole numbers from 0 on");
         mesh.indices.push_back(static_cast<Index>(v));
     }
     if (mesh.indices.empty()) throw Error("add_mesh, triangles", "expected at least one triangle");
     if (!normals.is_none()) {
         const Numbers given = rows(normals, 3, "add_mesh, normals");
-        if (given.shape[0] != n) throw Error("add_mesh, normals", "expected one a position");
-        for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t i = 0; i < given.shape[0]; ++i)
             mesh.normals.push_back(Vec3f(
                 world.normal(Vec3d{given.values[3 * i], given.values[3 * i + 1], given.values[3 * i + 2]})));
     }
     if (!uvs.is_none()) {
         const Numbers given = rows(uvs, 2, "add_mesh, uvs");
-        if (given.shape[0] != n) throw Error("add_mesh, uvs", "expected one a position");
-        for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t i = 0; i < given.shape[0]; ++i)
             mesh.uvs.push_back(
                 {static_cast<float>(given.values[2 * i]), static_cast<float>(given.values[2 * i + 1])});
     }
-    for (const Point3f& q : mesh.positions)
-        if (!(std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z)))
-            throw Error("add_mesh, positions", "a position is not finite");
-    Shape s;
-    s.geometry = MeshIndex{static_cast<Index>(scene->read().scene.meshes.size())};
-    s.flip_normal = world.swaps_handedness();
-    scene->edit().scene.meshes.push_back(std::move(mesh));
-    return added(scene, s, material, emission);
-}
-
-nb::object add_quadric(const SceneRef& scene, Quadric quadric, const Transform& world,
-                       const nb::object& material, const nb::object& emission) {
-    Shape s;
-    s.flip_normal = world.swaps_handedness();
-    s.geometry = QuadricIndex{static_cast<Index>(scene->read().scene.quadrics.size())};
-    scene->edit().scene.quadrics.push_back(std::move(quadric));
-    return added(scene, s, material, emission);
+    return added(scene, "add_mesh", std::move(mesh), world.swaps_handedness(), material, emission);
 }
 
 nb::object add_sphere(const SceneRef& scene, double radius, const nb::object& centre,
@@ -160,7 +153,7 @@ nb::object add_sphere(const SceneRef& scene, double radius, const nb::object& ce
     sphere.z_min = -sphere.radius;
     sphere.z_max = sphere.radius;
     sphere.world_from_object = world;
-    return add_quadric(scene, sphere, world, material, emission);
+    return added(scene, "add_sphere", sphere, world.swaps_handedness(), material, emission);
 }
 
 nb::object add_disk(const SceneRef& scene, double radius, double inner_radius, double height,
@@ -173,7 +166,7 @@ nb::object add_disk(const SceneRef& scene, double radius, double inner_radius, d
     disk.radius = static_cast<float>(radius);
     disk.inner_radius = static_cast<float>(inner_radius);
     disk.world_from_object = transform_of(transform, "add_disk, transform");
-    return add_quadric(scene, disk, disk.world_from_object, material, emission);
+    return added(scene, "add_disk", disk, disk.world_from_object.swaps_handedness(), material, emission);
 }
 
 void bind_shapes(nb::module_& m) {

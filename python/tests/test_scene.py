@@ -264,3 +264,24 @@ def test_files_that_are_no_scenes_are_told_for_what_they_look_like(tmp_path):
         (tmp_path / name).write_text(content)
         with pytest.raises(montelux.Error, match=f"{name}: looks like {kind}; expected a scene of pbrt-v4"):
             montelux.load(tmp_path / name)
+
+
+@pytest.mark.parametrize(
+    "changes, sentence",
+    [
+        ({"triangles": [[0, 1, 4]]}, r"add_mesh: triangle 0 refers to vertex 4; the mesh has 3 vertices"),
+        ({"triangles": [[0, 1, -1]]}, r"add_mesh, triangles: the index -1"),
+        ({"normals": [[0, 0, 1]]}, "add_mesh: the mesh has 1 normals for 3 vertices"),
+        ({"uvs": [[0, 0]]}, "add_mesh: the mesh has 1 texture coordinates for 3 vertices"),
+        ({"positions": [[0, 0, 0], [1, 0, 0], [0, 1e300, 0]]}, "add_mesh: vertex 2 lies at infinity"),
+        ({"light": montelux.Spectrum(-1)}, "Shape.light: the light's spectrum has no positive luminance"),
+    ],
+)
+def test_meshes_that_make_no_sense_are_refused_whole(changes, sentence):
+    scene = montelux.Scene()
+    mesh = {"positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]], "material": montelux.Diffuse()}
+    with pytest.raises(montelux.Error, match=sentence):
+        scene.add_mesh(**{**mesh, **changes})
+    assert len(scene.shapes) == 0 and len(scene.lights) == 0
+    scene.add_mesh(**mesh)
+    assert len(scene.shapes) == 1

@@ -91,7 +91,7 @@ def test_cpp_has_the_same_names():
 def test_no_text_has_an_old_name():
     """In what is compiled, run and read; notebooks too."""
     old = re.compile(r"samples_per_pixel|samplesPerPixel|spp[_-]max|max_samples|render\([^)\n]*\b(samples|seconds)=")
-    table = ROOT / "montelux/formats/nearest_name.cpp"  # answers them
+    table = ROOT / "montelux/mc/math/nearest_name.cpp"  # answers them
     found = [
         f"{path.relative_to(ROOT)}: {match[0]}"
         for folder in ("app", "montelux", "python/montelux", "python/src", "docs", "examples", "scenes", "README.md")

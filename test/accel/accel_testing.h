@@ -9,6 +9,7 @@
 #include "montelux/accel/accelerator.h"
 #include "montelux/mc/math/overloaded.h"
 #include "montelux/mc/stats/chi_squared.h"
+#include "montelux/scene/build/scene_builder.h"
 #include "montelux/scene/scene_tables.h"
 #include "montelux/scene/shape/surface_point.h"
 
@@ -28,24 +29,11 @@ inline Index add_material(Scene& scene) {
     scene.materials.push_back(DiffuseMaterial{{Spectrum(0.5f), no_index}});
     return static_cast<Index>(scene.materials.size() - 1);
 }
-inline Index add_shape(Scene& scene, TriangleMesh mesh, bool in_world = true) {
-    Shape shape;
-    shape.geometry = MeshIndex{static_cast<Index>(scene.meshes.size())};
-    shape.material = add_material(scene);
-    scene.meshes.push_back(std::move(mesh));
-    auto index = static_cast<Index>(scene.shapes.size());
-    scene.shapes.push_back(shape);
-    if (in_world) scene.world_shapes.push_back(index);
-    return index;
-}
-inline Index add_shape(Scene& scene, const Quadric& quadric, bool in_world = true) {
-    Shape shape;
-    shape.geometry = QuadricIndex{static_cast<Index>(scene.quadrics.size())};
-    shape.material = add_material(scene);
-    scene.quadrics.push_back(quadric);
-    auto index = static_cast<Index>(scene.shapes.size());
-    scene.shapes.push_back(shape);
-    if (in_world) scene.world_shapes.push_back(index);
+inline Index add_shape(Scene& scene, Geometry geometry, bool in_world = true) {
+    CallMessages messages("scene of a test");
+    const Index index = SceneBuilder(scene, messages)
+                            .add_shape(std::move(geometry), {.material = add_material(scene), .alpha = {1}});
+    if (!in_world) scene.world_shapes.pop_back();
     return index;
 }
 

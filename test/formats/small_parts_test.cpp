@@ -4,9 +4,9 @@
 #include <string>
 
 #include "montelux/formats/gunzip.h"
-#include "montelux/formats/nearest_name.h"
 #include "montelux/formats/warnings.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/math/nearest_name.h"
 
 namespace montelux {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "montelux/film/film.h"
 #include "montelux/render/renderer.h"
+#include "montelux/scene/build/scene_builder.h"
 
 namespace montelux::testing {
 
@@ -16,7 +17,7 @@ inline constexpr SamplerKind samplers[] = {SamplerKind::independent, SamplerKind
 
 // The spectrum of an RGB light that gives film RGB (1, 1, 1), and the scale that goes with it.
 inline Spectrum white_light() { return Spectrum(RgbIlluminantSpectrum(RgbColorSpace::srgb(), {1, 1, 1})); }
-inline float white_scale() { return static_cast<float>(1 / to_photometric(white_light())); }
+inline float white_scale() { return photometric_scale(white_light()); }
 
 inline SpectrumParameter gray(float value) { return {Spectrum(value), no_index}; }
 
@@ -51,19 +52,10 @@ class SceneBuilder {
         return static_cast<Index>(scene.materials.size() - 1);
     }
     Index add_mesh(TriangleMesh mesh, Index material, float emission = 0) {
-        Shape shape;
-        shape.geometry = MeshIndex{static_cast<Index>(scene.meshes.size())};
-        shape.material = material;
-        scene.meshes.push_back(std::move(mesh));
-        return add_shape(shape, emission);
+        return add_shape(std::move(mesh), material, emission, false);
     }
     Index add_quadric(const Quadric& quadric, Index material, float emission = 0, bool flip = false) {
-        Shape shape;
-        shape.geometry = QuadricIndex{static_cast<Index>(scene.quadrics.size())};
-        shape.material = material;
-        shape.flip_normal = flip;
-        scene.quadrics.push_back(quadric);
-        return add_shape(shape, emission);
+        return add_shape(quadric, material, emission, flip);
     }
     void add_uniform_light(float radiance) {
         scene.lights.push_back(UniformInfiniteLight{white_light(), white_scale() * radiance});
@@ -75,15 +67,11 @@ class SceneBuilder {
     }
 
   private:
-    Index add_shape(Shape shape, float emission) {
-        auto index = static_cast<Index>(scene.shapes.size());
-        if (emission > 0) {
-            shape.light = static_cast<Index>(scene.lights.size());
-            scene.lights.push_back(AreaLight{white_light(), emission * white_scale(), false, index});
-        }
-        scene.shapes.push_back(shape);
-        scene.world_shapes.push_back(index);
-        return index;
+    Index add_shape(Geometry geometry, Index material, float emission, bool flip) {
+        const Emission light{white_light(), emission * white_scale()};
+        CallMessages messages("scene of a test");
+        return montelux::SceneBuilder(scene, messages)
+            .add_shape(std::move(geometry), {material, {1}, flip, emission > 0 ? &light : nullptr});
     }
 };
 

@@ -9,35 +9,24 @@
 
 #include "montelux/formats/warnings.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/scene/build/build_messages.h"
+#include "montelux/scene/build/quoted.h"
 
 namespace montelux::pbrt {
 
-// Lines and columns count from 1; columns count bytes.
-struct Location {
-    std::uint32_t file = 0, line = 1, column = 1;
-};
+using Location = SourceLocation;
 
-// An error that says where in the scene file it is. Readers of other files throw plain ones, which become
-// located ones where the scene file names the file.
-class LocatedError : public Error {
-  public:
-    using Error::Error;
-};
-
-class Diagnostics {
+class Diagnostics final : public BuildMessages {
   public:
     explicit Diagnostics(Warnings& warnings) : warnings_(warnings) {}
 
     std::uint32_t add_file(std::string name);
     const std::string& file_name(std::uint32_t file) const { return files_[file]; }
     // "file:line:column"
-    std::string describe(Location at) const;
+    std::string describe(Location at) const override;
 
-    // Throws LocatedError "file:line:column: sentence".
-    [[noreturn]] void error(Location at, std::string_view sentence) const;
-    void warn(Location at, std::string_view sentence);
-    // Tells only the first of all warnings with the same key.
-    void warn_once(std::string_view key, Location at, std::string_view sentence);
+    void warn(Location at, std::string_view sentence) override;
+    void warn_once(std::string_view key, Location at, std::string_view sentence) override;
 
   private:
     Warnings& warnings_;
@@ -45,10 +34,7 @@ class Diagnostics {
     std::unordered_set<std::string> told_;
 };
 
-// Text of a file as it may stand in a message: at most 40 bytes, with what cannot be printed as '?'.
-std::string printable(std::string_view text);
-
-// "'text'"
-inline std::string in_quotes(std::string_view text) { return "'" + printable(text) + "'"; }
+inline std::string printable(std::string_view text) { return shown(text); }
+inline std::string in_quotes(std::string_view text) { return quoted(text); }
 
 } // namespace montelux::pbrt

@@ -21,7 +21,7 @@ struct TransformPair {
 // A material by its declaration, or by a name that may be declared later.
 struct MaterialReference {
     bool by_name = false;
-    std::size_t index = 0; // of the declaration, or of the name
+    Index index = 0; // of the declaration, or a reference of the table of names
 };
 
 // Small, since it is copied for each AttributeBegin: large parts are shared and replaced, never changed.

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
+#include <variant>
 
-#include "montelux/formats/nearest_name.h"
-#include "montelux/formats/pbrt/float_range.h"
 #include "montelux/image/image_read.h"
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/math/nearest_name.h"
+#include "montelux/scene/build/float_range.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
 namespace montelux::pbrt {
@@ -18,11 +20,11 @@ constexpr std::array<std::string_view, 7> light_plugins = {"point", "spot",     
                                                            "sky",   "goniometric", "projection"};
 
 float photometric_scale(const Spectrum& s, ParameterReader& r) {
-    double y = to_photometric(s);
-    // A black light stays black.
-    if (y == 0) return 0;
-    if (!(y > 0) || !std::isfinite(y)) r.error("the light's spectrum has no positive luminance");
-    return static_cast<float>(1 / y);
+    try {
+        return montelux::photometric_scale(s);
+    } catch (const Error& e) {
+        r.error(e.what());
+    }
 }
 
 Vec3f direction(ParameterReader& r, Vec3f v) {
@@ -55,31 +57,7 @@ double upper_illuminance(const Image& map, EnvironmentLayout layout) {
     return sum / 2;
 }
 
-// The linear channels R, G, B of a picture, or three times its Y; empty when it has neither.
-Image rgb_map(const Image& picture) {
-    std::vector<std::string> names;
-    for (int c : picture.color_channels())
-        names.push_back(picture.channel_names()[static_cast<std::size_t>(c)]);
-    if (names.empty()) return {};
-    Image colors = picture.select(names).to_linear_f32();
-    if (names.size() == 3) return colors;
-    Image map(picture.width(), picture.height(), {"R", "G", "B"});
-    for (std::size_t i = 0; i < map.sample_count(); ++i) map.f32()[i] = colors.f32()[i / 3];
-    return map;
-}
-
 } // namespace
-
-AreaLight Emission::light(Index shape, const Geometry& geometry) const {
-    AreaLight light{spectrum, scale, two_sided, shape};
-    if (!(power > 0)) return light;
-    const auto* quadric = std::get_if<Quadric>(&geometry.shape);
-    if (quadric == nullptr)
-        light.triangle_flux = power;
-    else if (const float area = object_area(*quadric); area > 0)
-        light.scale *= power / ((two_sided ? 2.0f : 1.0f) * area * pi_f);
-    return light;
-}
 
 LightReader::Source LightReader::source(ParameterReader& r, std::string_view name,
                                         const RgbColorSpace& color_space) {
@@ -105,16 +83,16 @@ Emission LightReader::read_area(const Plugin& plugin, const RgbColorSpace& color
     return e;
 }
 
-Light LightReader::read(const Plugin& plugin, const Transform& world_from_light,
-                        const RgbColorSpace& color_space) {
+void LightReader::read(const Plugin& plugin, const Transform& world_from_light,
+                       const RgbColorSpace& color_space) {
     ParameterReader r(plugin.parameters, "light " + in_quotes(plugin.name), plugin.at, diagnostics_);
-    Light light;
+    std::variant<Light, SceneBuilder::SkyLights> light;
     if (plugin.name == "point") {
         Source s = source(r, "I", color_space);
         float power = r.number("power", -1);
-        if (power > 0) s.scale *= power / (4 * pi_f);
+        if (power > 0) s.scale *= point_intensity(power);
         Vec3f from = r.point3("from").value_or(Vec3f());
-        light = PointLight{s.spectrum, s.scale, place(r, world_from_light, from)};
+        light = Light(PointLight{s.spectrum, s.scale, place(r, world_from_light, from)});
     } else if (plugin.name == "spot") {
         Source s = source(r, "I", color_space);
         float cone = r.number("coneangle", 30), delta = r.number("conedeltaangle", 5);
@@ -125,18 +103,12 @@ Light LightReader::read(const Plugin& plugin, const Transform& world_from_light,
         double end = std::cos(static_cast<double>(cone) * pi / 180);
         double start = std::cos(static_cast<double>(cone - delta) * pi / 180);
         float power = r.number("power", -1);
-        if (power > 0)
-            s.scale *=
-                static_cast<float>(static_cast<double>(power) / (2 * pi * ((1 - start) + (start - end) / 2)));
+        if (power > 0) s.scale *= spot_intensity(power, start, end);
         Vec3f from = r.point3("from").value_or(Vec3f());
         Vec3f to = r.point3("to").value_or(Vec3f(0, 0, 1));
         Vec3f axis = direction(r, world_from_light.vector(direction(r, to - from)));
-        light = SpotLight{s.spectrum,
-                          s.scale,
-                          place(r, world_from_light, from),
-                          axis,
-                          static_cast<float>(start),
-                          static_cast<float>(end)};
+        light = Light(SpotLight{s.spectrum, s.scale, place(r, world_from_light, from), axis,
+                                static_cast<float>(start), static_cast<float>(end)});
     } else if (plugin.name == "distant") {
         Source s = source(r, "L", color_space);
         float illuminance = r.number("illuminance", -1);
@@ -144,18 +116,24 @@ Light LightReader::read(const Plugin& plugin, const Transform& world_from_light,
         Vec3f from = r.point3("from").value_or(Vec3f());
         Vec3f to = r.point3("to").value_or(Vec3f(0, 0, 1));
         Vec3f to_light = direction(r, world_from_light.vector(direction(r, from - to)));
-        light = DistantLight{s.spectrum, s.scale, to_light};
+        light = Light(DistantLight{s.spectrum, s.scale, to_light});
     } else if (plugin.name == "infinite" || plugin.name == "sky") {
         if (!turns_in_floats(world_from_light))
             r.error("the light's transformation is beyond what single-precision numbers hold");
-        light = plugin.name == "sky" ? sky(r, world_from_light) : infinite(r, world_from_light, color_space);
+        if (plugin.name == "sky")
+            light = sky(r, world_from_light);
+        else
+            light = infinite(r, world_from_light, color_space);
     } else if (plugin.name == "goniometric" || plugin.name == "projection") {
         r.error("light " + in_quotes(plugin.name) + " is not supported yet");
     } else {
         r.error("unknown light " + in_quotes(plugin.name) + did_you_mean(plugin.name, light_plugins));
     }
     r.finish();
-    return light;
+    if (auto* sky = std::get_if<SceneBuilder::SkyLights>(&light))
+        builder_.add_sky(*sky, plugin.at);
+    else
+        builder_.add_light(std::move(std::get<Light>(light)), plugin.at);
 }
 
 // Corners are in world space, whatever the transformation that turns the map.
@@ -184,13 +162,13 @@ Light LightReader::infinite(ParameterReader& r, const Transform& world_from_ligh
         if (through && !r.ignored("L"))
             r.error("portal", "'portal' without 'filename' or 'L'; expected one of them");
         Source s = source(r, "L", color_space);
-        if (illuminance > 0) s.scale *= illuminance / pi_f;
+        if (illuminance > 0) s.scale *= sky_luminance(illuminance);
         return UniformInfiniteLight{s.spectrum, s.scale, through};
     }
     if (r.ignored("L")) r.error("L", "'L' together with 'filename'; expected one or the other");
     ImageInfiniteLight light;
     light.environment = environment(*file, r.at("filename"));
-    const Image& map = scene_.environments[light.environment];
+    const Image& map = builder_.scene().environments[light.environment];
     light.layout = *layout_of_size(map.width(), map.height());
     light.world_from_light = world_from_light;
     light.portal = through;
@@ -210,37 +188,19 @@ Index LightReader::environment(const std::string& file, Location at) {
     if (auto known = environments_.find(path.string()); known != environments_.end()) return known->second;
     std::vector<std::uint8_t> bytes = files_.read(path, at);
     try {
-        Image picture = read_image(bytes, path.string());
-        const std::string size = std::to_string(picture.width()) + " x " + std::to_string(picture.height());
-        const auto layout = layout_of_size(picture.width(), picture.height());
-        if (!layout)
-            diagnostics_.error(at,
-                               path.string() + " has " + size +
-                                   " pixels; an environment map must be square (equal-area octahedral), or "
-                                   "twice as wide as high (latitude-longitude)");
-        if (*layout == EnvironmentLayout::equirectangular)
-            diagnostics_.warn(at, path.string() + " has " + size +
+        const Image picture = read_image(bytes, path.string());
+        const Index index = builder_.add_environment(picture, path.string(), at);
+        if (layout_of_size(picture.width(), picture.height()) == EnvironmentLayout::equirectangular)
+            diagnostics_.warn(at, path.string() + " has " + std::to_string(picture.width()) + " x " +
+                                      std::to_string(picture.height()) +
                                       " pixels and is taken for a latitude-longitude map; pbrt-v4 wants it "
                                       "converted ('imgtool makeequiarea')");
-        Image map = rgb_map(picture);
-        if (map.empty())
-            diagnostics_.error(at, path.string() + " has neither channels R, G and B nor Y alone");
-        bool negative = false, black = true;
-        for (float& v : map.f32()) {
-            if (!std::isfinite(v)) diagnostics_.error(at, path.string() + " has a pixel that is not finite");
-            negative = negative || v < 0;
-            v = std::max(v, 0.0f);
-            black = black && v == 0;
-        }
-        if (black) diagnostics_.warn(at, path.string() + " is black; the light gives nothing");
-        if (negative) diagnostics_.warn(at, path.string() + " has negative pixels; they count as 0");
-        scene_.environments.push_back(std::move(map));
+        return environments_[path.string()] = index;
     } catch (const LocatedError&) {
         throw;
     } catch (const Error& e) {
         diagnostics_.error(at, e.what());
     }
-    return environments_[path.string()] = static_cast<Index>(scene_.environments.size() - 1);
 }
 
 } // namespace montelux::pbrt

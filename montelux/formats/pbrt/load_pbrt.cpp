@@ -20,7 +20,7 @@ SceneDescription load_pbrt(std::vector<std::uint8_t> bytes, const std::filesyste
     std::uint32_t file = diagnostics.add_file(path.string());
     pbrt::Files files(path.parent_path(), source, diagnostics);
     files.count_as_read(path);
-    pbrt::SceneBuilder builder(files, diagnostics);
+    pbrt::Directives builder(files, diagnostics);
     pbrt::SceneParser parser(files, builder, diagnostics);
     parser.enter(path);
     pbrt::Location end = parser.parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file);
@@ -35,7 +35,7 @@ SceneDescription parse_pbrt(std::string_view text, const std::string& name,
     std::uint32_t file = diagnostics.add_file(name);
     DiskFiles disk;
     pbrt::Files files(folder, disk, diagnostics);
-    pbrt::SceneBuilder builder(files, diagnostics);
+    pbrt::Directives builder(files, diagnostics);
     pbrt::SceneParser parser(files, builder, diagnostics);
     return builder.finish(parser.parse(text, file));
 }

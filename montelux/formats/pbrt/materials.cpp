@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "montelux/formats/nearest_name.h"
+#include "montelux/mc/math/nearest_name.h"
 
 namespace montelux::pbrt {
 namespace {

@@ -4,8 +4,8 @@
 #include <array>
 #include <utility>
 
-#include "montelux/formats/nearest_name.h"
 #include "montelux/formats/number.h"
+#include "montelux/mc/math/nearest_name.h"
 
 namespace montelux::pbrt {
 namespace {

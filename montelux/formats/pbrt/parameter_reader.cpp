@@ -4,7 +4,7 @@
 #include <cassert>
 #include <utility>
 
-#include "montelux/formats/nearest_name.h"
+#include "montelux/mc/math/nearest_name.h"
 
 namespace montelux::pbrt {
 

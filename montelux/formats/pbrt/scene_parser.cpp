@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "montelux/formats/nearest_name.h"
 #include "montelux/formats/number.h"
+#include "montelux/mc/math/nearest_name.h"
 
 namespace montelux::pbrt {
 namespace {
@@ -114,7 +114,7 @@ void SceneParser::nested_file(const Token& directive) {
 }
 
 void SceneParser::import(const Token& directive) {
-    SceneBuilder::Import state = builder_.begin_import(directive.at);
+    Directives::Import state = builder_.begin_import(directive.at);
     nested_file(directive);
     builder_.end_import(std::move(state));
 }

@@ -1,4 +1,4 @@
-// The grammar of pbrt scene files: reads directives with their arguments and hands them to a SceneBuilder.
+// The grammar of pbrt scene files: reads directives with their arguments and has Directives carry them out.
 #pragma once
 
 #include <array>
@@ -8,13 +8,13 @@
 #include <string_view>
 #include <vector>
 
-#include "montelux/formats/pbrt/scene_builder.h"
+#include "montelux/formats/pbrt/directives.h"
 
 namespace montelux::pbrt {
 
 class SceneParser {
   public:
-    SceneParser(Files& files, SceneBuilder& builder, Diagnostics& diagnostics)
+    SceneParser(Files& files, Directives& builder, Diagnostics& diagnostics)
         : files_(files), builder_(builder), diagnostics_(diagnostics) {}
 
     // Carries out a whole text; returns where it ends.
@@ -50,7 +50,7 @@ class SceneParser {
     void texture(const Token& directive);
 
     Files& files_;
-    SceneBuilder& builder_;
+    Directives& builder_;
     Diagnostics& diagnostics_;
     Tokenizer* tokens_ = nullptr; // of the file that is being read
     std::vector<std::filesystem::path> open_files_;

@@ -2,10 +2,10 @@
 #include <array>
 #include <cmath>
 
-#include "montelux/formats/nearest_name.h"
 #include "montelux/formats/pbrt/parameter_reader.h"
 #include "montelux/formats/pbrt/settings.h"
 #include "montelux/image/image.h"
+#include "montelux/mc/math/nearest_name.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
 namespace montelux::pbrt {

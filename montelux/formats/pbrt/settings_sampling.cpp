@@ -2,9 +2,9 @@
 #include <array>
 #include <cstdint>
 
-#include "montelux/formats/nearest_name.h"
 #include "montelux/formats/pbrt/parameter_reader.h"
 #include "montelux/formats/pbrt/settings.h"
+#include "montelux/mc/math/nearest_name.h"
 
 namespace montelux::pbrt {
 namespace {

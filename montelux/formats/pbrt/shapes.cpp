@@ -5,11 +5,10 @@
 #include <cmath>
 
 #include "montelux/formats/loop_subdivision.h"
-#include "montelux/formats/nearest_name.h"
-#include "montelux/formats/pbrt/float_range.h"
 #include "montelux/formats/ply.h"
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/math/nearest_name.h"
 
 namespace montelux::pbrt {
 namespace {
@@ -42,11 +41,6 @@ Quadric read_disk(ParameterReader& r, const Transform& world_from_object) {
     d.phi_max = radians(r.number("phimax", 360));
     d.world_from_object = world_from_object;
     return d;
-}
-
-Quadric within_reach(const Quadric& quadric, ParameterReader& r) {
-    if (!fits_float(world_bounds(quadric))) r.error("the shape reaches to infinity in world space");
-    return quadric;
 }
 
 std::vector<Vec3f> triples(std::span<const float> numbers) {
@@ -160,42 +154,12 @@ TriangleMesh read_loop_subdivision(ParameterReader& r, std::size_t& subdivided) 
     return mesh;
 }
 
-void move_to_world(TriangleMesh& mesh, const Transform& world_from_object, bool reverse_orientation,
-                   ParameterReader& r) {
-    bool stays = world_from_object.matrix() == Matrix4{};
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-        if (!stays) mesh.positions[i] = world_from_object.point(mesh.positions[i]);
-        if (!is_finite(mesh.positions[i]))
-            r.error("vertex " + std::to_string(i) + " lies at infinity in world space");
-    }
-    for (Normal3f& n : mesh.normals) {
-        if (!stays) n = world_from_object.normal(n);
-        if (reverse_orientation) n = -n;
-        if (!is_finite(n)) r.error("a vertex normal is not finite in world space");
-    }
-}
-
 } // namespace
-
-std::size_t Geometry::primitive_count() const {
-    const auto* mesh = std::get_if<TriangleMesh>(&shape);
-    return mesh ? mesh->triangle_count() : 1;
-}
-
-float object_area(const Quadric& quadric) {
-    struct Area {
-        float operator()(const Sphere& s) const { return s.phi_max * s.radius * (s.z_max - s.z_min); }
-        float operator()(const Disk& d) const {
-            return 0.5f * d.phi_max * (d.radius * d.radius - d.inner_radius * d.inner_radius);
-        }
-    };
-    return std::visit(Area{}, quadric);
-}
 
 Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transform& world_from_object,
                     bool reverse_orientation, Files& files, std::size_t& subdivided) {
-    if (plugin == "sphere") return {within_reach(read_sphere(r, world_from_object), r)};
-    if (plugin == "disk") return {within_reach(read_disk(r, world_from_object), r)};
+    if (plugin == "sphere") return read_sphere(r, world_from_object);
+    if (plugin == "disk") return read_disk(r, world_from_object);
     TriangleMesh mesh;
     if (plugin == "trianglemesh")
         mesh = read_triangle_mesh(r);
@@ -207,8 +171,8 @@ Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transfo
         r.error("shape " + in_quotes(plugin) + " is not supported yet");
     else
         r.error("unknown shape " + in_quotes(plugin) + did_you_mean(plugin, shape_plugins));
-    move_to_world(mesh, world_from_object, reverse_orientation, r);
-    return {std::move(mesh)};
+    transform_mesh(mesh, world_from_object, reverse_orientation);
+    return mesh;
 }
 
 } // namespace montelux::pbrt

@@ -3,13 +3,9 @@
 #include "montelux/formats/pbrt/lights.h"
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
-#include "montelux/scene/light/sky/sky_map.h"
 
 namespace montelux::pbrt {
 namespace {
-
-// Rows of the map that directions are drawn by. Radiance does not depend on it.
-constexpr int density_rows = 256;
 
 // Where the sun stands in the light's space, degrees.
 void read_sun(ParameterReader& r, SkySettings& settings) {
@@ -41,7 +37,7 @@ void read_sun(ParameterReader& r, SkySettings& settings) {
 
 } // namespace
 
-Light LightReader::sky(ParameterReader& r, const Transform& world_from_light) {
+SceneBuilder::SkyLights LightReader::sky(ParameterReader& r, const Transform& world_from_light) {
     SkySettings settings;
     read_sun(r, settings);
     const auto turbidity = static_cast<double>(r.number("turbidity", 2));
@@ -57,34 +53,11 @@ Light LightReader::sky(ParameterReader& r, const Transform& world_from_light) {
             if (!(settings.ground_albedo(lambda) >= 0 && settings.ground_albedo(lambda) <= 1))
                 r.error("groundalbedo", "parameter 'groundalbedo' is not between 0 and 1");
     }
-    const bool with_sun = r.boolean("sundisc", true);
-    float scale = r.number("scale", 1);
-    if (scale < 0) r.error("scale", "parameter 'scale' is negative");
-    const float illuminance = r.number("illuminance", -1);
-
-    const SkyModel model(settings);
-    // Luminance in cd/m^2, as of all lights that are given in photometric units.
-    scale *= static_cast<float>(luminous_efficacy);
-    if (illuminance > 0) {
-        const SpectrumTable from_sky = model.sky_irradiance(), from_sun = model.sun_irradiance();
-        scale *= static_cast<float>(static_cast<double>(illuminance) /
-                                    (luminous_efficacy * integrate_luminance([&](float lambda) {
-                                         return from_sky(lambda) + (with_sun ? from_sun(lambda) : 0);
-                                     })));
-    }
-    if (with_sun && model.sun_radiance().max_value() > 0)
-        scene_.lights.push_back(SunLight{
-            Spectrum(model.sun_radiance()), scale,
-            SunDisc::of_radius(normalize(world_from_light.vector(model.sun_direction())), sun_angular_radius),
-            normalize(world_from_light.normal(Vec3f(0, 0, 1)))});
-    SkyLight light;
-    light.sky = static_cast<Index>(scene_.skies.size());
-    light.environment = static_cast<Index>(scene_.environments.size());
-    light.scale = scale;
-    light.world_from_light = world_from_light;
-    scene_.environments.push_back(sky_density_map(model, density_rows));
-    scene_.skies.push_back(model);
-    return light;
+    SceneBuilder::SkyLights sky{settings, r.boolean("sundisc", true), r.number("scale", 1), 0,
+                                world_from_light};
+    if (sky.scale < 0) r.error("scale", "parameter 'scale' is negative");
+    sky.illuminance = r.number("illuminance", -1);
+    return sky;
 }
 
 } // namespace montelux::pbrt

@@ -5,10 +5,10 @@
 #include <type_traits>
 #include <utility>
 
-#include "montelux/formats/nearest_name.h"
-#include "montelux/formats/pbrt/float_range.h"
 #include "montelux/image/image_read.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/math/nearest_name.h"
+#include "montelux/scene/build/float_range.h"
 
 namespace montelux::pbrt {
 namespace {
@@ -48,18 +48,6 @@ Transform texture_space(ParameterReader& r, const TextureDeclaration& d) {
     if (!fits_float(d.world_from_texture))
         r.error("the texture's transformation is beyond what single-precision numbers hold");
     return d.world_from_texture.inverse();
-}
-
-// A NaN would spread to every texel that filtering joins it with.
-std::size_t zero_what_is_not_finite(Image& picture) {
-    std::size_t count = 0;
-    if (picture.format() == PixelFormat::f32)
-        for (float& v : picture.f32())
-            if (!std::isfinite(v)) v = 0, ++count;
-    if (picture.format() == PixelFormat::f16)
-        for (std::uint16_t& v : picture.u16())
-            if (!std::isfinite(half_to_float(v))) v = 0, ++count;
-    return count;
 }
 
 // Only then does pbrt-v4 take alpha for the value of a float texture.
@@ -134,8 +122,8 @@ std::optional<SpectrumParameter> TextureLibrary::find_spectrum(ParameterReader& 
 Index TextureLibrary::resolve_float(Entry& entry) {
     if (entry.nodes[0] == no_index) {
         FloatTexture node = make_node<FloatParameter>(entry, RgbMeaning::unbounded);
-        scene_.float_textures.push_back(std::move(node));
-        entry.nodes[0] = static_cast<Index>(scene_.float_textures.size() - 1);
+        builder_.scene().float_textures.push_back(std::move(node));
+        entry.nodes[0] = static_cast<Index>(builder_.scene().float_textures.size() - 1);
     }
     evaluations_ += entry.evaluations;
     return entry.nodes[0];
@@ -145,8 +133,8 @@ Index TextureLibrary::resolve_spectrum(Entry& entry, RgbMeaning meaning) {
     Index& index = entry.nodes[static_cast<std::size_t>(meaning)];
     if (index == no_index) {
         SpectrumTexture node = make_node<SpectrumParameter>(entry, meaning);
-        scene_.spectrum_textures.push_back(std::move(node));
-        index = static_cast<Index>(scene_.spectrum_textures.size() - 1);
+        builder_.scene().spectrum_textures.push_back(std::move(node));
+        index = static_cast<Index>(builder_.scene().spectrum_textures.size() - 1);
     }
     evaluations_ += entry.evaluations;
     return index;
@@ -178,7 +166,7 @@ TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meanin
         node = ConstantTexture<Parameter>{input<Parameter>(r, "value", meaning, 1)};
     } else if (d.plugin == "imagemap") {
         ImageTexture t = image_texture(r, d, meaning);
-        if (std::is_same_v<Parameter, FloatParameter> && has_transparency(scene_.images[t.image]))
+        if (std::is_same_v<Parameter, FloatParameter> && has_transparency(builder_.scene().images[t.image]))
             t.channels = ImageChannels::alpha;
         node = std::move(t);
     } else if (d.plugin == "scale") {
@@ -274,18 +262,14 @@ Index TextureLibrary::image(const std::string& file, const std::optional<std::st
     std::vector<std::uint8_t> bytes = files_.read(path, at);
     try {
         Image picture = read_image(bytes, path.string());
-        if (picture.color_channels().empty())
-            throw Error(path.string(), "has neither channels R, G and B nor Y alone");
-        bool integers = picture.format() == PixelFormat::u8 || picture.format() == PixelFormat::u16;
+        const bool integers = picture.format() == PixelFormat::u8 || picture.format() == PixelFormat::u16;
         if (asked && integers) picture.set_encoding(*asked);
-        if (std::size_t replaced = zero_what_is_not_finite(picture))
-            diagnostics_.warn(at, path.string() + " has " + std::to_string(replaced) +
-                                      " values that are not finite; they count as 0");
-        scene_.images.push_back(std::move(picture));
+        return images_[key] = builder_.add_image(std::move(picture), path.string(), at);
+    } catch (const LocatedError&) {
+        throw;
     } catch (const Error& e) {
         diagnostics_.error(at, e.what());
     }
-    return images_[key] = static_cast<Index>(scene_.images.size() - 1);
 }
 
 void TextureLibrary::warn_of_unused() {

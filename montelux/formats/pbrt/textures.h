@@ -8,7 +8,7 @@
 
 #include "montelux/formats/pbrt/parameter_reader.h"
 #include "montelux/formats/pbrt/spectrum_parameter.h"
-#include "montelux/scene/scene.h"
+#include "montelux/scene/build/scene_builder.h"
 
 namespace montelux::pbrt {
 
@@ -23,8 +23,8 @@ struct TextureDeclaration {
 // parameter that uses the texture needs, so one declaration may give up to three nodes.
 class TextureLibrary {
   public:
-    TextureLibrary(Scene& scene, Files& files, SpectrumReader& spectra, Diagnostics& diagnostics)
-        : scene_(scene), files_(files), spectra_(spectra), diagnostics_(diagnostics) {}
+    TextureLibrary(SceneBuilder& builder, Files& files, SpectrumReader& spectra, Diagnostics& diagnostics)
+        : builder_(builder), files_(files), spectra_(spectra), diagnostics_(diagnostics) {}
 
     // `type` is "float" or "spectrum". Errors: another type, an unknown plugin, a name already taken.
     void declare(std::string_view type, const std::string& name, TextureDeclaration declaration);
@@ -65,7 +65,7 @@ class TextureLibrary {
     ImageTexture image_texture(ParameterReader& r, const TextureDeclaration& d, RgbMeaning meaning);
     TextureMapping mapping(ParameterReader& r, const TextureDeclaration& d);
 
-    Scene& scene_;
+    SceneBuilder& builder_;
     Files& files_;
     SpectrumReader& spectra_;
     Diagnostics& diagnostics_;

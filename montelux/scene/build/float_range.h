@@ -7,7 +7,7 @@
 #include "montelux/mc/math/transform.h"
 #include "montelux/scene/shape/quadric.h"
 
-namespace montelux::pbrt {
+namespace montelux {
 
 inline bool fits_float(Vec3d p) {
     constexpr double most = std::numeric_limits<float>::max();
@@ -27,4 +27,4 @@ inline bool fits_float(const Transform& t, double most = std::numeric_limits<flo
 // For directions, whose lengths are computed: the squares must fit, too. The translation does not matter.
 inline bool turns_in_floats(const Transform& t) { return fits_float(t, 1e18, 3); }
 
-} // namespace montelux::pbrt
+} // namespace montelux

@@ -1,4 +1,4 @@
-#include "montelux/formats/nearest_name.h"
+#include "montelux/mc/math/nearest_name.h"
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,12 @@
-#include "montelux/formats/pbrt/scene_builder.h"
+#include "montelux/formats/pbrt/directives.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
-#include "montelux/formats/nearest_name.h"
-#include "montelux/formats/pbrt/float_range.h"
+#include "montelux/mc/math/nearest_name.h"
+#include "montelux/scene/build/float_range.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
 namespace montelux::pbrt {
@@ -16,27 +16,27 @@ constexpr std::size_t max_blocks = 1000000;
 
 } // namespace
 
-SceneBuilder::SceneBuilder(Files& files, Diagnostics& diagnostics)
-    : files_(files), diagnostics_(diagnostics), spectra_(files, diagnostics),
-      textures_(result_.scene, files, spectra_, diagnostics),
-      lights_(result_.scene, files, spectra_, diagnostics) {
+Directives::Directives(Files& files, Diagnostics& diagnostics)
+    : files_(files), diagnostics_(diagnostics), builder_(result_.scene, diagnostics),
+      spectra_(files, diagnostics), textures_(builder_, files, spectra_, diagnostics),
+      lights_(builder_, files, spectra_, diagnostics) {
     state_.color_space = &RgbColorSpace::srgb();
     materials_.push_back({"diffuse", {}, {}}); // what shapes have before any Material directive
 }
 
-void SceneBuilder::require_world(std::string_view directive, Location at) const {
+void Directives::require_world(std::string_view directive, Location at) const {
     if (!in_world_)
         diagnostics_.error(at,
                            "'" + std::string(directive) + "' stands before WorldBegin; it belongs behind it");
 }
 
-void SceneBuilder::require_options(std::string_view directive, Location at) const {
+void Directives::require_options(std::string_view directive, Location at) const {
     if (in_world_)
         diagnostics_.error(at,
                            "'" + std::string(directive) + "' stands behind WorldBegin; it belongs before it");
 }
 
-void SceneBuilder::world_begin(Location at) {
+void Directives::world_begin(Location at) {
     require_options("WorldBegin", at);
     in_world_ = true;
     state_.ctm = std::make_shared<TransformPair>();
@@ -45,13 +45,13 @@ void SceneBuilder::world_begin(Location at) {
     finish_options();
 }
 
-void SceneBuilder::push(Block::Kind kind, Location at) {
+void Directives::push(Block::Kind kind, Location at) {
     if (blocks_.size() >= max_blocks)
         diagnostics_.error(at, "more than " + std::to_string(max_blocks) + " open blocks");
     blocks_.push_back({kind, at, state_});
 }
 
-void SceneBuilder::pop(Block::Kind kind, std::string_view directive, Location at) {
+void Directives::pop(Block::Kind kind, std::string_view directive, Location at) {
     bool attribute = kind == Block::Kind::attribute;
     if (blocks_.size() <= block_floor_)
         diagnostics_.error(at, std::string(directive) + " without " +
@@ -64,48 +64,42 @@ void SceneBuilder::pop(Block::Kind kind, std::string_view directive, Location at
     blocks_.pop_back();
 }
 
-void SceneBuilder::attribute_begin(Location at) {
+void Directives::attribute_begin(Location at) {
     require_world("AttributeBegin", at);
     push(Block::Kind::attribute, at);
 }
 
-void SceneBuilder::attribute_end(Location at) {
+void Directives::attribute_end(Location at) {
     require_world("AttributeEnd", at);
     pop(Block::Kind::attribute, "AttributeEnd", at);
 }
 
-void SceneBuilder::object_begin(const std::string& name, Location at) {
+void Directives::object_begin(const std::string& name, Location at) {
     require_world("ObjectBegin", at);
-    if (open_object_ != no_index) diagnostics_.error(at, "ObjectBegin inside another object's definition");
-    Index index = static_cast<Index>(result_.scene.objects.size());
-    if (!objects_.emplace(name, index).second)
-        diagnostics_.error(at, "object " + in_quotes(name) + " is defined twice");
+    if (builder_.in_object()) diagnostics_.error(at, "ObjectBegin inside another object's definition");
+    builder_.begin_object(name, at);
     push(Block::Kind::object, at);
-    open_object_ = index;
-    result_.scene.objects.emplace_back();
 }
 
-void SceneBuilder::object_end(Location at) {
+void Directives::object_end(Location at) {
     require_world("ObjectEnd", at);
     pop(Block::Kind::object, "ObjectEnd", at);
-    open_object_ = no_index;
+    builder_.end_object();
 }
 
-void SceneBuilder::object_instance(const std::string& name, Location at) {
+void Directives::object_instance(const std::string& name, Location at) {
     require_world("ObjectInstance", at);
-    if (open_object_ != no_index) diagnostics_.error(at, "ObjectInstance inside an object's definition");
-    if (!fits_float(still_transform(at)))
-        diagnostics_.error(at, "the instance's transformation is beyond what single-precision numbers hold");
-    instances_.push_back({name, still_transform(at), at});
+    if (builder_.in_object()) diagnostics_.error(at, "ObjectInstance inside an object's definition");
+    builder_.add_instance(name, still_transform(at), at);
 }
 
-SceneBuilder::Import SceneBuilder::begin_import(Location at) {
+Directives::Import Directives::begin_import(Location at) {
     require_world("Import", at);
     ++open_imports_;
     return {state_, std::exchange(block_floor_, blocks_.size()), replaced_systems_.size()};
 }
 
-void SceneBuilder::end_import(Import import) {
+void Directives::end_import(Import import) {
     if (blocks_.size() > block_floor_)
         diagnostics_.error(blocks_.back().at, "this block is not closed in the imported file");
     for (; replaced_systems_.size() > import.replaced_systems; replaced_systems_.pop_back()) {
@@ -120,7 +114,7 @@ void SceneBuilder::end_import(Import import) {
     state_ = std::move(import.state);
 }
 
-void SceneBuilder::concatenate(const Transform& t, Location at) {
+void Directives::concatenate(const Transform& t, Location at) {
     auto moved = std::make_shared<TransformPair>(*state_.ctm);
     if (state_.start_active) moved->start = moved->start * t;
     if (state_.end_active) moved->end = moved->end * t;
@@ -133,7 +127,7 @@ void SceneBuilder::concatenate(const Transform& t, Location at) {
     state_.ctm = std::move(moved);
 }
 
-void SceneBuilder::set_transform(const Transform& t, Location at) {
+void Directives::set_transform(const Transform& t, Location at) {
     auto identity = std::make_shared<TransformPair>(*state_.ctm);
     if (state_.start_active) identity->start = Transform();
     if (state_.end_active) identity->end = Transform();
@@ -141,7 +135,7 @@ void SceneBuilder::set_transform(const Transform& t, Location at) {
     concatenate(t, at);
 }
 
-void SceneBuilder::active_transform(std::string_view which, Location at) {
+void Directives::active_transform(std::string_view which, Location at) {
     constexpr std::array<std::string_view, 3> names = {"All", "StartTime", "EndTime"};
     if (which != "All" && which != "StartTime" && which != "EndTime")
         diagnostics_.error(at, "ActiveTransform " + in_quotes(which) +
@@ -150,13 +144,13 @@ void SceneBuilder::active_transform(std::string_view which, Location at) {
     state_.end_active = which != "StartTime";
 }
 
-void SceneBuilder::coordinate_system(const std::string& name) {
+void Directives::coordinate_system(const std::string& name) {
     auto& system = coordinate_systems_[name];
     if (open_imports_ > 0) replaced_systems_.emplace_back(name, system);
     system = state_.ctm;
 }
 
-void SceneBuilder::coordinate_system_transform(const std::string& name, Location at) {
+void Directives::coordinate_system_transform(const std::string& name, Location at) {
     auto found = coordinate_systems_.find(name);
     if (found == coordinate_systems_.end()) {
         std::vector<std::string_view> names;
@@ -168,12 +162,12 @@ void SceneBuilder::coordinate_system_transform(const std::string& name, Location
     state_.ctm = found->second;
 }
 
-void SceneBuilder::reverse_orientation(Location at) {
+void Directives::reverse_orientation(Location at) {
     require_world("ReverseOrientation", at);
     state_.reverse_orientation = !state_.reverse_orientation;
 }
 
-const Transform& SceneBuilder::still_transform(Location at) const {
+const Transform& Directives::still_transform(Location at) const {
     if (!(state_.ctm->start == state_.ctm->end))
         diagnostics_.error(at,
                            "this moves (its transformations at the start and the end of the shutter's time "
@@ -181,13 +175,13 @@ const Transform& SceneBuilder::still_transform(Location at) const {
     return state_.ctm->start;
 }
 
-void SceneBuilder::set_option(std::optional<Plugin>& option, Plugin plugin, std::string_view directive) {
+void Directives::set_option(std::optional<Plugin>& option, Plugin plugin, std::string_view directive) {
     require_options(directive, plugin.at);
     if (option) diagnostics_.warn(plugin.at, std::string(directive) + " is given twice; the last one counts");
     option = std::move(plugin);
 }
 
-void SceneBuilder::set_camera(Plugin plugin) {
+void Directives::set_camera(Plugin plugin) {
     Location at = plugin.at;
     set_option(camera_, std::move(plugin), "Camera");
     if (!fits_float(still_transform(at)))
@@ -197,7 +191,7 @@ void SceneBuilder::set_camera(Plugin plugin) {
     coordinate_systems_["camera"] = std::make_shared<TransformPair>(TransformPair{t, t});
 }
 
-void SceneBuilder::set_film(Plugin plugin) {
+void Directives::set_film(Plugin plugin) {
     if (state_.color_space != &RgbColorSpace::srgb())
         diagnostics_.warn_once("film colour space", plugin.at,
                                "the film's colour space is sRGB; '" +
@@ -206,7 +200,7 @@ void SceneBuilder::set_film(Plugin plugin) {
     set_option(film_, std::move(plugin), "Film");
 }
 
-void SceneBuilder::set_accelerator(const Plugin& plugin) {
+void Directives::set_accelerator(const Plugin& plugin) {
     require_options("Accelerator", plugin.at);
     diagnostics_.warn_once(
         "accelerator", plugin.at,
@@ -225,7 +219,7 @@ std::string normalized(std::string_view name) {
 
 } // namespace
 
-void SceneBuilder::set_render_option(const Parameter& p) {
+void Directives::set_render_option(const Parameter& p) {
     auto expect_one = [&](ParameterType type, const char* what) {
         if (p.type != type || p.value_count() != 1)
             diagnostics_.error(p.at, "option " + in_quotes(p.name) + " has type " +
@@ -267,7 +261,7 @@ void SceneBuilder::set_render_option(const Parameter& p) {
     diagnostics_.error(p.at, "unknown option " + in_quotes(p.name) + did_you_mean(p.name, names));
 }
 
-void SceneBuilder::set_color_space(std::string_view name, Location at) {
+void Directives::set_color_space(std::string_view name, Location at) {
     const RgbColorSpace* space = find_rgb_color_space(name);
     if (!space)
         diagnostics_.error(at, "unknown colour space " + in_quotes(name) +
@@ -275,7 +269,7 @@ void SceneBuilder::set_color_space(std::string_view name, Location at) {
     state_.color_space = space;
 }
 
-void SceneBuilder::add_defaults(std::string_view target, std::vector<Parameter> parameters, Location at) {
+void Directives::add_defaults(std::string_view target, std::vector<Parameter> parameters, Location at) {
     const auto* found = std::find(plugin_kind_names.begin(), plugin_kind_names.end(), target);
     if (found == plugin_kind_names.end())
         diagnostics_.error(at, "Attribute of " + in_quotes(target) +
@@ -301,11 +295,11 @@ void SceneBuilder::add_defaults(std::string_view target, std::vector<Parameter> 
     defaults = std::move(list);
 }
 
-ParameterList SceneBuilder::with_defaults(std::vector<Parameter> own, PluginKind kind) const {
+ParameterList Directives::with_defaults(std::vector<Parameter> own, PluginKind kind) const {
     return {std::move(own), state_.defaults[static_cast<std::size_t>(kind)], kind};
 }
 
-void SceneBuilder::medium_interface(std::string_view inside, std::string_view outside, Location at) {
+void Directives::medium_interface(std::string_view inside, std::string_view outside, Location at) {
     if (!inside.empty() || !outside.empty())
         diagnostics_.error(at, "participating media are not supported yet");
 }

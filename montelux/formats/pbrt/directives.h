@@ -13,14 +13,15 @@
 #include "montelux/formats/pbrt/settings.h"
 #include "montelux/formats/pbrt/shapes.h"
 #include "montelux/formats/pbrt/textures.h"
+#include "montelux/scene/build/scene_builder.h"
 
 namespace montelux::pbrt {
 
 // Each function is one directive; `at` is where it stands. Geometry and lights are made at once; materials,
 // textures and instances when the file is read, since they may be named before they are declared.
-class SceneBuilder {
+class Directives {
   public:
-    SceneBuilder(Files& files, Diagnostics& diagnostics);
+    Directives(Files& files, Diagnostics& diagnostics);
 
     // Blocks.
     void world_begin(Location at);
@@ -92,11 +93,6 @@ class SceneBuilder {
         std::string plugin;
         Location at;
     };
-    struct InstanceUse {
-        std::string name;
-        Transform world_from_object;
-        Location at;
-    };
 
     void require_world(std::string_view directive, Location at) const;
     void require_options(std::string_view directive, Location at) const;
@@ -106,15 +102,14 @@ class SceneBuilder {
     // The transformation where it may not move.
     const Transform& still_transform(Location at) const;
     ParameterList with_defaults(std::vector<Parameter> own, PluginKind kind) const;
-    void add_lights(Shape& shape, Index index, const Geometry& geometry, Location at);
     void finish_options();
     void finish_materials();
     Index material_index(const MaterialReference& reference, Location at);
-    void finish_instances();
 
     Files& files_;
     Diagnostics& diagnostics_;
     SceneDescription result_;
+    SceneBuilder builder_;
     SpectrumReader spectra_;
     TextureLibrary textures_;
     LightReader lights_;
@@ -132,17 +127,10 @@ class SceneBuilder {
 
     std::vector<MaterialDeclaration> materials_;
     std::vector<Index> material_indices_; // into Scene::materials, of each declaration
-    std::map<std::string, std::size_t> named_materials_;
-    std::vector<std::string> material_names_; // that NamedMaterial directives use
-    std::map<std::string, std::size_t> material_name_indices_;
+    NameTable named_materials_{"material"};
     std::vector<MaterialUse> material_uses_;
     std::vector<AlphaUse> alpha_uses_;
     std::size_t subdivided_ = 0; // triangles of 'loopsubdiv' shapes
-
-    std::map<std::string, Index> objects_;
-    Index open_object_ = no_index;
-    std::size_t emissive_primitives_ = 0;
-    std::vector<InstanceUse> instances_;
 };
 
 } // namespace montelux::pbrt

@@ -1,0 +1,133 @@
+// Directives that put something into the world, and how a scene ends.
+#include <algorithm>
+#include <utility>
+
+#include "montelux/formats/pbrt/directives.h"
+#include "montelux/mc/math/error.h"
+#include "montelux/spectrum/rgb_colorspace.h"
+
+namespace montelux::pbrt {
+
+void Directives::material(std::string type, std::vector<Parameter> parameters, Location at) {
+    require_world("Material", at);
+    state_.material = {false, static_cast<Index>(materials_.size())};
+    materials_.push_back({std::move(type), with_defaults(std::move(parameters), PluginKind::material), at});
+}
+
+void Directives::make_named_material(const std::string& name, std::vector<Parameter> parameters,
+                                     Location at) {
+    require_world("MakeNamedMaterial", at);
+    ParameterList list = with_defaults(std::move(parameters), PluginKind::material);
+    std::optional<std::string> type =
+        ParameterReader(list, "named material", at, diagnostics_).string("type");
+    if (!type)
+        diagnostics_.error(at, "named material " + in_quotes(name) + " needs a parameter 'string type'");
+    named_materials_.declare(name, static_cast<Index>(materials_.size()), at, diagnostics_);
+    materials_.push_back({*type, std::move(list), at});
+}
+
+void Directives::named_material(const std::string& name, Location at) {
+    require_world("NamedMaterial", at);
+    state_.material = {true, named_materials_.refer(name)};
+}
+
+void Directives::texture(const std::string& name, std::string_view type, std::string plugin,
+                         std::vector<Parameter> parameters, Location at) {
+    require_world("Texture", at);
+    textures_.declare(type, name,
+                      {std::move(plugin), with_defaults(std::move(parameters), PluginKind::texture), at,
+                       still_transform(at)});
+}
+
+void Directives::light_source(std::string name, std::vector<Parameter> parameters, Location at) {
+    require_world("LightSource", at);
+    Plugin plugin{std::move(name), with_defaults(std::move(parameters), PluginKind::light), at};
+    lights_.read(plugin, still_transform(at), *state_.color_space);
+}
+
+void Directives::area_light_source(std::string name, std::vector<Parameter> parameters, Location at) {
+    require_world("AreaLightSource", at);
+    Plugin plugin{std::move(name), with_defaults(std::move(parameters), PluginKind::light), at};
+    state_.emission = std::make_shared<Emission>(lights_.read_area(plugin, *state_.color_space));
+}
+
+void Directives::shape(const std::string& name, std::vector<Parameter> parameters, Location at) {
+    require_world("Shape", at);
+    const Transform& world_from_object = still_transform(at);
+    ParameterList list = with_defaults(std::move(parameters), PluginKind::shape);
+    ParameterReader r(list, "shape " + in_quotes(name), at, diagnostics_);
+    Geometry geometry =
+        read_shape(r, name, world_from_object, state_.reverse_orientation, files_, subdivided_);
+
+    ShapeSettings settings;
+    settings.flip_normal = state_.reverse_orientation != world_from_object.swaps_handedness();
+    settings.emission = state_.emission.get();
+    const auto index = static_cast<Index>(result_.scene.shapes.size());
+    if (const Parameter* alpha = r.any("alpha", {ParameterType::texture, ParameterType::floating})) {
+        if (alpha->type == ParameterType::texture)
+            alpha_uses_.push_back({index, ParameterList({*alpha}), r.plugin(), at});
+        else
+            settings.alpha.value = r.number_of(*alpha);
+    }
+    r.finish();
+    material_uses_.push_back({index, state_.material, at});
+    builder_.add_shape(std::move(geometry), settings, at);
+}
+
+void Directives::finish_options() {
+    auto plugin = [](std::optional<Plugin>& given, const char* name) {
+        return given ? std::move(*given) : Plugin{name, {}, {}};
+    };
+    FilmSettings& film = result_.film;
+    read_film(plugin(film_, "rgb"), diagnostics_, film, result_.output_file);
+    film.filter = read_filter(plugin(filter_, "gaussian"), diagnostics_);
+    result_.scene.camera.model = read_camera(plugin(camera_, "perspective"), diagnostics_, film);
+    result_.integrator = read_integrator(plugin(integrator_, "volpath"), diagnostics_);
+    result_.sampler = read_sampler(plugin(sampler_, "zsobol"), diagnostics_, seed_.value_or(0));
+}
+
+Index Directives::material_index(const MaterialReference& reference, Location at) {
+    const Index declaration =
+        reference.by_name ? named_materials_.resolve(reference.index, at, diagnostics_, "this shape's ")
+                          : reference.index;
+    Index& index = material_indices_[declaration];
+    if (index == no_index) {
+        result_.scene.materials.push_back(
+            make_material(materials_[declaration], textures_, spectra_, diagnostics_));
+        index = static_cast<Index>(result_.scene.materials.size() - 1);
+    }
+    return index;
+}
+
+void Directives::finish_materials() {
+    material_indices_.assign(materials_.size(), no_index);
+    for (const MaterialUse& use : material_uses_)
+        result_.scene.shapes[use.shape].material = material_index(use.material, use.at);
+    // Unused ones are read as well, so that what is wrong with them is told.
+    for (Index i = 1; i < materials_.size(); ++i) {
+        if (material_indices_[i] != no_index) continue;
+        if (is_supported_material(materials_[i], diagnostics_))
+            material_index({false, i}, materials_[i].at);
+        else
+            diagnostics_.warn(materials_[i].at, "material " + in_quotes(materials_[i].type) +
+                                                    " is not supported yet; no shape uses it");
+    }
+    for (const AlphaUse& use : alpha_uses_) {
+        ParameterReader r(use.parameters, use.plugin, use.at, diagnostics_);
+        result_.scene.shapes[use.shape].alpha = textures_.float_or(r, "alpha", 1);
+    }
+}
+
+SceneDescription Directives::finish(Location end) {
+    if (!in_world_) diagnostics_.error(end, "the file ends before WorldBegin");
+    if (!blocks_.empty())
+        diagnostics_.error(blocks_.back().at, blocks_.back().kind == Block::Kind::attribute
+                                                  ? "this AttributeBegin has no AttributeEnd"
+                                                  : "this ObjectBegin has no ObjectEnd");
+    finish_materials();
+    textures_.warn_of_unused();
+    builder_.finish(end);
+    return std::move(result_);
+}
+
+} // namespace montelux::pbrt

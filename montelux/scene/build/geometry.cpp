@@ -1,0 +1,71 @@
+#include "montelux/scene/build/geometry.h"
+
+#include <string>
+
+#include "montelux/mc/math/error.h"
+#include "montelux/scene/build/float_range.h"
+
+namespace montelux {
+namespace {
+
+void check_one_a_vertex(std::size_t count, std::size_t vertices, const char* what) {
+    if (count != 0 && count != vertices)
+        throw Error("the mesh has " + std::to_string(count) + " " + what + " for " +
+                    std::to_string(vertices) + " vertices; expected one per vertex");
+}
+
+void check_mesh(const TriangleMesh& mesh) {
+    const std::size_t vertices = mesh.positions.size();
+    if (vertices > no_index) throw Error("the mesh has more than 2^32 vertices");
+    if (mesh.indices.size() % 3 != 0)
+        throw Error("the mesh has " + std::to_string(mesh.indices.size()) +
+                    " indices; expected three per triangle");
+    if (mesh.triangle_count() >= no_index) throw Error("the mesh has more than 2^32 triangles");
+    check_one_a_vertex(mesh.normals.size(), vertices, "normals");
+    check_one_a_vertex(mesh.uvs.size(), vertices, "texture coordinates");
+    for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+        if (mesh.indices[i] >= vertices)
+            throw Error("triangle " + std::to_string(i / 3) + " refers to vertex " +
+                        std::to_string(mesh.indices[i]) + "; the mesh has " + std::to_string(vertices) +
+                        " vertices");
+    for (std::size_t i = 0; i < vertices; ++i)
+        if (!is_finite(mesh.positions[i]))
+            throw Error("vertex " + std::to_string(i) + " lies at infinity in world space");
+    for (const Normal3f& n : mesh.normals)
+        if (!is_finite(n)) throw Error("a vertex normal is not finite in world space");
+}
+
+} // namespace
+
+std::size_t primitive_count(const Geometry& geometry) {
+    const auto* mesh = std::get_if<TriangleMesh>(&geometry);
+    return mesh != nullptr ? mesh->triangle_count() : 1;
+}
+
+void transform_mesh(TriangleMesh& mesh, const Transform& t, bool reverse_orientation) {
+    const bool stays = t.matrix() == Matrix4{};
+    if (!stays)
+        for (Point3f& p : mesh.positions) p = t.point(p);
+    for (Normal3f& n : mesh.normals) {
+        if (!stays) n = t.normal(n);
+        if (reverse_orientation) n = -n;
+    }
+}
+
+void check_geometry(const Geometry& geometry) {
+    if (const auto* mesh = std::get_if<TriangleMesh>(&geometry)) return check_mesh(*mesh);
+    if (!fits_float(world_bounds(std::get<Quadric>(geometry))))
+        throw Error("the shape reaches to infinity in world space");
+}
+
+float object_area(const Quadric& quadric) {
+    struct Area {
+        float operator()(const Sphere& s) const { return s.phi_max * s.radius * (s.z_max - s.z_min); }
+        float operator()(const Disk& d) const {
+            return 0.5f * d.phi_max * (d.radius * d.radius - d.inner_radius * d.inner_radius);
+        }
+    };
+    return std::visit(Area{}, quadric);
+}
+
+} // namespace montelux

@@ -1,0 +1,116 @@
+#include "montelux/scene/build/scene_builder.h"
+
+#include <utility>
+
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/math/overloaded.h"
+#include "montelux/scene/build/float_range.h"
+
+namespace montelux {
+namespace {
+
+Bounds3 bounds_of(const ObjectDefinition& object, const Scene& scene) {
+    Bounds3 bounds;
+    for (const Index i : object.shapes) {
+        visit_geometry(scene, scene.shapes[i],
+                       Overloaded{[&](const TriangleMesh& mesh) {
+                                      for (const Point3f p : mesh.positions) bounds.add(Vec3d(p));
+                                  },
+                                  [&](const Quadric& quadric) {
+                                      const Bounds3 b = world_bounds(quadric);
+                                      bounds.add(b.lower);
+                                      bounds.add(b.upper);
+                                  }});
+    }
+    return bounds;
+}
+
+} // namespace
+
+Index SceneBuilder::add_shape(Geometry geometry, const ShapeSettings& settings, SourceLocation at) {
+    try {
+        check_geometry(geometry);
+    } catch (const Error& e) {
+        messages_.error(at, e.what());
+    }
+    if (scene_.shapes.size() >= no_index) messages_.error(at, "more than 2^32 shapes");
+    const auto index = static_cast<Index>(scene_.shapes.size());
+    Shape shape;
+    shape.material = settings.material;
+    shape.alpha = settings.alpha;
+    shape.flip_normal = settings.flip_normal;
+    scene_.shapes.push_back(shape);
+    (in_object() ? scene_.objects[open_object_].shapes : scene_.world_shapes).push_back(index);
+    if (settings.emission != nullptr) add_area_light(index, *settings.emission, geometry, at);
+    scene_.shapes[index].geometry =
+        std::visit(Overloaded{[&](TriangleMesh& mesh) -> ShapeGeometry {
+                                  scene_.meshes.push_back(std::move(mesh));
+                                  return MeshIndex{static_cast<Index>(scene_.meshes.size() - 1)};
+                              },
+                              [&](Quadric& quadric) -> ShapeGeometry {
+                                  scene_.quadrics.push_back(quadric);
+                                  return QuadricIndex{static_cast<Index>(scene_.quadrics.size() - 1)};
+                              }},
+                   geometry);
+    return index;
+}
+
+void SceneBuilder::add_area_light(Index shape, const Emission& emission, const Geometry& geometry,
+                                  SourceLocation at) {
+    if (in_object()) {
+        messages_.warn_once("area light in object", at, "area lights inside object definitions do not shine");
+        return;
+    }
+    const std::size_t count = primitive_count(geometry);
+    if (count == 0) return;
+    emissive_primitives_ += count;
+    if (emissive_primitives_ >= no_index) messages_.error(at, "more than 2^32 emissive triangles");
+    scene_.shapes[shape].light = add_light(emission.light(shape, geometry), at);
+}
+
+void SceneBuilder::begin_object(const std::string& name, SourceLocation at) {
+    objects_.declare(name, static_cast<Index>(scene_.objects.size()), at, messages_);
+    open_object_ = static_cast<Index>(scene_.objects.size());
+    scene_.objects.emplace_back();
+}
+
+void SceneBuilder::add_instance(const std::string& object, const Transform& world_from_object,
+                                SourceLocation at) {
+    if (!fits_float(world_from_object))
+        messages_.error(at, "the instance's transformation is beyond what single-precision numbers hold");
+    instances_.push_back({objects_.refer(object), world_from_object, at});
+}
+
+Index SceneBuilder::add_light(Light light, SourceLocation at) {
+    if (scene_.lights.size() >= no_index) messages_.error(at, "more than 2^32 lights");
+    scene_.lights.push_back(std::move(light));
+    return static_cast<Index>(scene_.lights.size() - 1);
+}
+
+void SceneBuilder::place_instances() {
+    std::vector<Bounds3> bounds;
+    for (const ObjectDefinition& object : scene_.objects) bounds.push_back(bounds_of(object, scene_));
+    for (const InstanceUse& use : instances_) {
+        const Index object = objects_.resolve(use.object, use.at, messages_);
+        const Bounds3& b = bounds[object];
+        for (int i = 0; i < 8 && !b.empty(); ++i)
+            if (!fits_float(use.world_from_object.point(b.corner(i))))
+                messages_.error(use.at, "the instance reaches to infinity in world space");
+        scene_.instances.push_back({object, use.world_from_object});
+    }
+    instances_.clear();
+}
+
+void SceneBuilder::finish(SourceLocation end) {
+    place_instances();
+    for (std::size_t i = 0; i < scene_.shapes.size(); ++i) {
+        const Shape& shape = scene_.shapes[i];
+        if (shape.material >= scene_.materials.size())
+            messages_.error(end, "shape " + std::to_string(i) + " has no material");
+        if (!shape.alpha.is_constant() && shape.alpha.texture >= scene_.float_textures.size())
+            messages_.error(end, "the alpha of shape " + std::to_string(i) + " has no texture");
+    }
+    if (scene_.lights.empty()) messages_.warn(end, "the scene has no light; its picture is black");
+}
+
+} // namespace montelux

@@ -1,0 +1,109 @@
+// What a SceneBuilder takes from pictures and models: textures' images, environment maps, skies.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "montelux/mc/math/error.h"
+#include "montelux/scene/build/scene_builder.h"
+#include "montelux/scene/light/environment/environment_grid.h"
+#include "montelux/scene/light/sky/sky_map.h"
+
+namespace montelux {
+namespace {
+
+// Rows of the map that directions to a sky are drawn by. Radiance does not depend on it.
+constexpr int sky_density_rows = 256;
+
+constexpr const char* no_colors = " has neither channels R, G and B nor Y alone";
+
+// A NaN would spread to every texel that filtering joins it with.
+std::size_t zero_what_is_not_finite(Image& picture) {
+    std::size_t count = 0;
+    if (picture.format() == PixelFormat::f32)
+        for (float& v : picture.f32())
+            if (!std::isfinite(v)) v = 0, ++count;
+    if (picture.format() == PixelFormat::f16)
+        for (std::uint16_t& v : picture.u16())
+            if (!std::isfinite(half_to_float(v))) v = 0, ++count;
+    return count;
+}
+
+} // namespace
+
+Image rgb_map(const Image& picture) {
+    std::vector<std::string> names;
+    for (const int c : picture.color_channels())
+        names.push_back(picture.channel_names()[static_cast<std::size_t>(c)]);
+    if (names.empty()) return {};
+    Image colors = picture.select(names).to_linear_f32();
+    if (names.size() == 3) return colors;
+    Image map(picture.width(), picture.height(), {"R", "G", "B"});
+    for (std::size_t i = 0; i < map.sample_count(); ++i) map.f32()[i] = colors.f32()[i / 3];
+    return map;
+}
+
+Index SceneBuilder::add_image(Image picture, const std::string& name, SourceLocation at) {
+    if (picture.color_channels().empty()) messages_.error(at, name + no_colors);
+    if (const std::size_t replaced = zero_what_is_not_finite(picture))
+        messages_.warn(at, name + " has " + std::to_string(replaced) +
+                               " values that are not finite; they count as 0");
+    scene_.images.push_back(std::move(picture));
+    return static_cast<Index>(scene_.images.size() - 1);
+}
+
+Index SceneBuilder::add_environment(const Image& picture, const std::string& name, SourceLocation at) {
+    if (!layout_of_size(picture.width(), picture.height()))
+        messages_.error(at, name + " has " + std::to_string(picture.width()) + " x " +
+                                std::to_string(picture.height()) +
+                                " pixels; an environment map must be square (equal-area octahedral), or "
+                                "twice as wide as high (latitude-longitude)");
+    Image map = rgb_map(picture);
+    if (map.empty()) messages_.error(at, name + no_colors);
+    bool negative = false, black = true;
+    for (float& v : map.f32()) {
+        if (!std::isfinite(v)) messages_.error(at, name + " has a pixel that is not finite");
+        negative = negative || v < 0;
+        v = std::max(v, 0.0f);
+        black = black && v == 0;
+    }
+    if (black) messages_.warn(at, name + " is black; the light gives nothing");
+    if (negative) messages_.warn(at, name + " has negative pixels; they count as 0");
+    scene_.environments.push_back(std::move(map));
+    return static_cast<Index>(scene_.environments.size() - 1);
+}
+
+void SceneBuilder::add_sky(const SkyLights& sky, SourceLocation at) {
+    std::optional<SkyModel> made;
+    try {
+        made.emplace(sky.settings);
+    } catch (const Error& e) {
+        messages_.error(at, e.what());
+    }
+    const SkyModel& model = *made;
+    // Luminance in cd/m^2, as of all lights that are given in photometric units.
+    float scale = sky.scale * static_cast<float>(luminous_efficacy);
+    if (sky.illuminance > 0) {
+        const SpectrumTable from_sky = model.sky_irradiance(), from_sun = model.sun_irradiance();
+        scale *= static_cast<float>(static_cast<double>(sky.illuminance) /
+                                    (luminous_efficacy * integrate_luminance([&](float lambda) {
+                                         return from_sky(lambda) + (sky.sun ? from_sun(lambda) : 0);
+                                     })));
+    }
+    if (sky.sun && model.sun_radiance().max_value() > 0)
+        add_light(SunLight{Spectrum(model.sun_radiance()), scale,
+                           SunDisc::of_radius(normalize(sky.world_from_light.vector(model.sun_direction())),
+                                              sun_angular_radius),
+                           normalize(sky.world_from_light.normal(Vec3f(0, 0, 1)))},
+                  at);
+    SkyLight light;
+    light.sky = static_cast<Index>(scene_.skies.size());
+    light.environment = static_cast<Index>(scene_.environments.size());
+    light.scale = scale;
+    light.world_from_light = sky.world_from_light;
+    scene_.environments.push_back(sky_density_map(model, sky_density_rows));
+    scene_.skies.push_back(model);
+    add_light(light, at);
+}
+
+} // namespace montelux
