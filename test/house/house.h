@@ -55,5 +55,11 @@ std::vector<std::string> missing_paths(const SourceFile& page, const std::filesy
 // below montelux/), test files (`mc/a/b_test.cpp` below test/), and behind such a file, until the end of the
 // line, its tests: `Suite.Name`, `Suite.*`, `.Name` of the suite before, `Prefix/Suite.Name/...`.
 std::vector<std::string> missing_names(const SourceFile& page, const std::vector<SourceFile>& files);
+SourceFile read_page(const std::string& path, const std::filesystem::path& root);
+// Links and pictures of these Markdown pages, [text](target), that lead nowhere: a path (relative to the page) of
+// which there is no file below `root`, or a #heading that the page does not have. Addresses with a scheme and what
+// stands in code are left out.
+std::vector<std::string> broken_links(const std::vector<SourceFile>& pages,
+                                      const std::filesystem::path& root);
 
 } // namespace montelux::house

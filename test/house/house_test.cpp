@@ -52,11 +52,14 @@ TEST(House, FilesAreShort) {
     std::cout << "longer than they should be:\n" << joined(long_files(real_sources(), 400));
     EXPECT_EQ(joined(long_files(real_sources(), 600)), "");
 }
-SourceFile real_page(const std::string& path) {
-    SourceFile page{path, {}};
-    std::ifstream in(root / page.path);
-    for (std::string line; std::getline(in, line);) page.lines.push_back(line);
-    return page;
+SourceFile real_page(const std::string& path) { return read_page(path, root); }
+std::vector<SourceFile> real_pages() {
+    std::vector<SourceFile> pages{real_page("README.md")};
+    for (const char* folder : {"docs", "examples"})
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder))
+            if (entry.path().extension() == ".md")
+                pages.push_back(real_page(std::filesystem::relative(entry.path(), root).generic_string()));
+    return pages;
 }
 TEST(House, TheArchitectureNamesFilesThatExist) {
     const SourceFile page = real_page("docs/architecture.md");
@@ -67,6 +70,10 @@ TEST(House, TheMissionNamesTestsThatExist) {
     const SourceFile page = real_page("docs/mission.md");
     EXPECT_GE(page.lines.size(), 30u);
     EXPECT_EQ(joined(missing_names(page, real_sources())), "");
+}
+TEST(House, LinksOfPagesLeadSomewhere) {
+    EXPECT_GE(real_pages().size(), 20u);
+    EXPECT_EQ(joined(broken_links(real_pages(), root)), "");
 }
 
 // The rules themselves: each finds the offence that it exists for.
@@ -166,6 +173,20 @@ TEST(HouseRules, MissingTestsAndFilesAreFound) {
     EXPECT_EQ(wrong("`mc/math/no_test.cpp`, `mc/math/no.h`"),
               "docs/a.md:2: there is no test/mc/math/no_test.cpp\ndocs/a.md:2: there is no "
               "montelux/mc/math/no.h\n");
+}
+TEST(HouseRules, BrokenLinksAreFound) {
+    auto wrong = [&](const std::vector<std::string>& lines) {
+        return joined(broken_links({{"docs/a.md", lines}}, root));
+    };
+    EXPECT_EQ(
+        wrong({"# One, `two`: [3](a:b) 4", "[a](../README.md#licence), ![b](images/demo.png) [c](#one-two-3-4)",
+               "[d](https://a.b/c), `[e](none.md)`", "```", "[f](none.md)", "# g", "```"}),
+        "");
+    EXPECT_EQ(wrong({"see [a](none.md), ![b](../docs/images/none.png)"}),
+              "docs/a.md:1: there is no docs/none.md\ndocs/a.md:1: there is no docs/images/none.png\n");
+    EXPECT_EQ(
+        wrong({"# Here", "[a](#there), [b](../README.md#none)"}),
+        "docs/a.md:2: there is no heading #there\ndocs/a.md:2: there is no heading ../README.md#none\n");
 }
 
 } // namespace
