@@ -172,7 +172,7 @@ plt.show()
 
 # %% [markdown]
 # `quasi` estimates its error from the spread of a dozen randomised point sets, so that its scores follow Student's law:
-# a little wider than the normal one. [docs/calibration-of-integration.md](../calibration-of-integration.md) has this table
+# a little wider than the normal one. [docs/measurements/calibration-of-integration.md](../measurements/calibration-of-integration.md) has this table
 # for every method on every test integrand.
 #
 # ## When the error cannot be trusted
@@ -338,4 +338,4 @@ print(sorted(more.to_dict())[:6], "...")
 # - [sampling.ipynb](sampling.ipynb): random variables, point sets, importance sampling with several densities, Metropolis
 # - [rendering.ipynb](rendering.ipynb): pictures are a million integrals, each with its error
 # - [docs/integration.md](../integration.md): every method, what its error means, what each warning says
-# - [docs/integration-bench.md](../integration-bench.md): the methods beside GSL, cubature and vegas
+# - [docs/measurements/integration-bench.md](../measurements/integration-bench.md): the methods beside GSL, cubature and vegas
