@@ -17,7 +17,7 @@ void HardCell::add(const HardRun& run) {
     silent += run.silent();
     silent_at_cap += run.silent_at_cap();
     honest += run.honest();
-    warned += run.run.failure.empty() && run.run.answer.doubtful;
+    warned += run.run.failure.empty() && run.run.answer.warned;
     failed += !run.run.failure.empty();
     if (!run.converged()) return;
     ++converged;
@@ -237,7 +237,7 @@ void write_hard_json(const std::string& path, const HardPlan& plan, const std::v
             << ", \"accuracy\": " << number(r.accuracy) << ", \"value\": " << number(answer.value)
             << ", \"error\": " << number(answer.error) << ", \"evaluations\": " << r.run.evaluations
             << ", \"cpu_seconds\": " << number(r.run.cpu_seconds)
-            << ", \"converged\": " << truth(answer.converged) << ", \"warned\": " << truth(answer.doubtful)
+            << ", \"converged\": " << truth(answer.converged) << ", \"warned\": " << truth(answer.warned)
             << ", \"out_of_time\": " << truth(answer.out_of_time) << ", \"silent\": " << truth(r.silent())
             << ", \"silent_at_cap\": " << truth(r.silent_at_cap()) << ", \"honest\": " << truth(r.honest())
             << ", \"chosen\": " << quoted(answer.chosen) << ", \"reason\": " << quoted(answer.reason)

@@ -81,7 +81,7 @@ std::string serialised(std::size_t number, const HardRun& done) {
     const Run& run = done.run;
     std::array<char, 400> numbers;
     std::snprintf(numbers.data(), numbers.size(), "R\t%zu\t%a\t%a\t%d\t%d\t%d\t%a\t%llu\t%a\t%d\t%a", number,
-                  run.answer.value, run.answer.error, run.answer.converged, run.answer.doubtful,
+                  run.answer.value, run.answer.error, run.answer.converged, run.answer.warned,
                   run.answer.out_of_time, run.exact, static_cast<unsigned long long>(run.evaluations),
                   run.cpu_seconds, done.dimensions, done.accuracy);
     std::string line = numbers.data();
@@ -98,7 +98,7 @@ HardRun parsed(const std::vector<std::string>& fields) {
     run.answer.value = number(2);
     run.answer.error = number(3);
     run.answer.converged = fields[4] == "1";
-    run.answer.doubtful = fields[5] == "1";
+    run.answer.warned = fields[5] == "1";
     run.answer.out_of_time = fields[6] == "1";
     run.exact = number(7);
     run.evaluations = std::strtoull(fields[8].c_str(), nullptr, 10);

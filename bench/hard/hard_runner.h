@@ -31,7 +31,7 @@ struct HardRun {
     // The true error is within so many claimed ones; the accuracy of the exact value is granted.
     bool within(double errors) const;
     // Gave a value and claims nothing against it.
-    bool unwarned() const { return run.failure.empty() && !run.answer.doubtful; }
+    bool unwarned() const { return run.failure.empty() && !run.answer.warned; }
     bool converged() const { return unwarned() && run.answer.converged; }
     // Claims its target; the truth is more than four claimed errors away.
     bool silent() const { return converged() && !within(4); }

@@ -10,7 +10,7 @@ namespace montelux::bench {
 
 struct Trial {
     double value = 0, error = 0;
-    bool doubtful = false;
+    bool warned = false;
 };
 
 // By how much the evaluations grow when the error is not yet small enough.
@@ -31,7 +31,7 @@ Answer escalate(const CountedIntegrand& f, const Request& request, std::uint64_t
         const Trial result = trial(n);
         answer.value = result.value;
         answer.error = result.error;
-        answer.doubtful = result.doubtful;
+        answer.warned = result.warned;
         answer.converged =
             request.relative_error > 0 && result.error <= request.relative_error * std::abs(result.value);
     };

@@ -38,7 +38,7 @@ void write_json(const std::string& path, const Plan& plan, const std::vector<Run
             row["claimed_relative_error"] = run.answer.error / std::abs(run.answer.value);
             row["true_relative_error"] = run.relative_error();
             row["converged"] = run.answer.converged;
-            row["doubtful"] = run.answer.doubtful;
+            row["warned"] = run.answer.warned;
             if (!run.answer.chosen.empty()) row["chosen"] = run.answer.chosen;
         } else {
             row["failure"] = run.failure;
@@ -54,7 +54,7 @@ void write_json(const std::string& path, const Plan& plan, const std::vector<Run
                             {"goal", plan.goals[g].name()},
                             {"runs", cell.runs},
                             {"failed", cell.failed},
-                            {"doubted", cell.doubted},
+                            {"warned", cell.warned},
                             {"median_cpu_seconds", cell.median_cpu_seconds},
                             {"rms_true_relative_error", cell.rms},
                             {"coverage", cell.coverage.within},
@@ -62,7 +62,7 @@ void write_json(const std::string& path, const Plan& plan, const std::vector<Run
                 if (!plan.goals[g].spends()) {
                     row["answered"] = cell.answered;
                     row["silent_failures"] = cell.silent;
-                    row["silent_failures_unheeded"] = cell.silent_unheeded;
+                    row["silent_failures_warnings_ignored"] = cell.silent_warnings_ignored;
                     row["honest"] = cell.honest;
                 }
                 row["median_evaluations"] = cell.median_evaluations ? json(*cell.median_evaluations) : json();

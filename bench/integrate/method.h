@@ -57,7 +57,7 @@ struct Answer {
     double value = 0;
     double error = 0;       // the error that the method claims: one standard deviation, or a rule's estimate
     bool converged = false; // it claims the relative error asked for
-    bool doubtful = false;  // its own diagnostics speak against the result
+    bool warned = false;    // its own diagnostics speak against the result
     std::string chosen;     // the method that an automatic one picked
     std::string reason;     // why it did
     std::string warnings;   // its diagnostics, where it has any, in words

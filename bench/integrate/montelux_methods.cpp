@@ -32,11 +32,11 @@ Answer run(const montelux::Method& method, const CountedIntegrand& f, const Requ
     const IntegrationResult result =
         integrate(integrand_of(f, request.form), f.problem().domain(), method, budget, options);
     std::string warnings;
-    for (const std::string& doubt : result.warnings) warnings += (warnings.empty() ? "" : "; ") + doubt;
+    for (const std::string& warning : result.warnings) warnings += (warnings.empty() ? "" : "; ") + warning;
     return {.value = result.value[0],
             .error = result.standard_error[0],
             .converged = request.relative_error > 0 && result.stop == StopReason::error_target,
-            .doubtful = !result.warnings.empty(),
+            .warned = !result.warnings.empty(),
             .chosen = result.method,
             .reason = result.reason,
             .warnings = warnings,

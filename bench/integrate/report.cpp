@@ -18,22 +18,22 @@ std::vector<std::string> header(std::string first, const Plan& plan) {
     return row;
 }
 
-// A median with `!` where the claims are not honest, `?` where some runs doubted, or `-` where most runs did
+// A median with `!` where the claims are not honest, `?` where some runs had a warning, or `-` where most runs did
 // not answer.
 std::string median_text(const Cell& cell) {
     if (cell.failed == cell.runs) return "";
-    if (!cell.median_evaluations) return cell.doubted > 0 ? "-?" : "-";
+    if (!cell.median_evaluations) return cell.warned > 0 ? "-?" : "-";
     std::string text = short_count(*cell.median_evaluations);
     if (!cell.honest) text += "!";
-    if (cell.doubted > 0) text += "?";
+    if (cell.warned > 0) text += "?";
     return text;
 }
 
 void print_medians(std::ostream& out, const Plan& plan, const Summary& summary, std::size_t goal) {
     out << "\n## Median evaluations to a claimed relative error of " << plan.goals[goal].name() << "\n\n"
-        << "`!`: RMS true error above 1.5 targets; `?`: some runs doubted their result; `-`: most runs did "
+        << "`!`: RMS true error above 1.5 targets; `?`: some runs had a warning; `-`: most runs did "
            "not "
-           "reach the target or doubted.\n\n";
+           "reach the target or had a warning.\n\n";
     MarkdownTable table(header("line", plan));
     for (std::size_t l = 0; l < plan.lines.size(); ++l) {
         std::vector<std::string> row{line_name(plan.lines[l])};
@@ -131,26 +131,28 @@ void print_honesty(std::ostream& out, const Plan& plan, const Summary& summary, 
     if (spends)
         out << "Coverage: share of runs whose true error is within 1/2/3 claimed errors.\n\n";
     else
-        out << "Silent failures: target claimed without a doubt, true error above 3 targets. Coverage: share "
+        out << "Silent failures: target claimed without a warning, true error above 3 targets. Coverage: "
+               "share "
                "of the "
                "runs that answered whose true error is within 1/2/3 claimed errors.\n\n";
-    MarkdownTable table({"method", "runs", "answered", "doubted", "silent", "unheeded", "smooth",
+    MarkdownTable table({"method", "runs", "answered", "warned", "silent", "warnings ignored", "smooth",
                          "discontinuous", "1-D", "hard"});
     for (std::size_t m = 0; m < plan.methods.size(); ++m) {
-        int runs = 0, answered = 0, doubted = 0, silent = 0, unheeded = 0;
+        int runs = 0, answered = 0, warned = 0, silent = 0, ignoring_warnings = 0;
         for (std::size_t l = 0; l < plan.lines.size(); ++l) {
             const Cell& cell = summary.cell(l, m, goal);
             runs += cell.runs - cell.failed;
             answered += cell.answered;
-            doubted += cell.doubted;
+            warned += cell.warned;
             silent += cell.silent;
-            unheeded += cell.silent_unheeded;
+            ignoring_warnings += cell.silent_warnings_ignored;
         }
         auto share = [&](int count) { return runs > 0 ? formatted("%.1f %%", 100.0 * count / runs) : ""; };
         auto covered = [&](Group group) { return coverage_text(summary.coverage(group, m, goal)); };
-        table.add({plan.methods[m].name, std::to_string(runs), spends ? "" : share(answered), share(doubted),
-                   spends ? "" : share(silent), spends ? "" : share(unheeded), covered(Group::smooth),
-                   covered(Group::discontinuous), covered(Group::one_dimensional), covered(Group::hard)});
+        table.add({plan.methods[m].name, std::to_string(runs), spends ? "" : share(answered), share(warned),
+                   spends ? "" : share(silent), spends ? "" : share(ignoring_warnings),
+                   covered(Group::smooth), covered(Group::discontinuous), covered(Group::one_dimensional),
+                   covered(Group::hard)});
     }
     if (plan.goals[goal].relative_error == 1e-3)
         for (const PublishedHonesty& row : published_honesty())

@@ -33,8 +33,8 @@ struct Run {
     std::string failure; // the method's message, where it gave no answer
 
     double relative_error() const { return (answer.value - exact) / exact; }
-    // It gave an answer that it believes: the target reached, and no doubt.
-    bool answered() const { return failure.empty() && answer.converged && !answer.doubtful; }
+    // It gave an answer that it believes: the target reached, and no warning.
+    bool answered() const { return failure.empty() && answer.converged && !answer.warned; }
 };
 
 struct Plan {

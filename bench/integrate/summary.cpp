@@ -25,12 +25,12 @@ Cell summarise(const std::vector<const Run*>& runs, const Goal& goal) {
         const bool counts = goal.spends() ? run->failure.empty() : run->answered();
         cell.failed += !run->failure.empty();
         cell.answered += run->answered();
-        cell.doubted += run->failure.empty() && run->answer.doubtful;
+        cell.warned += run->failure.empty() && run->answer.warned;
         cpu_seconds.push_back(run->cpu_seconds);
         evaluations.push_back(counts ? static_cast<double>(run->evaluations)
                                      : std::numeric_limits<double>::infinity());
         const double error = std::abs(run->relative_error());
-        cell.silent_unheeded +=
+        cell.silent_warnings_ignored +=
             run->failure.empty() && run->answer.converged && error > 3 * goal.relative_error;
         if (!counts) continue;
         cell.silent += run->answered() && error > 3 * goal.relative_error;

@@ -18,10 +18,10 @@ struct Coverage {
 // The runs of one method on one line with one goal.
 struct Cell {
     int runs = 0, failed = 0;
-    int answered = 0; // claimed the target without a doubt
-    int doubted = 0;
-    int silent = 0;          // answered, with a true error above 3 targets
-    int silent_unheeded = 0; // the same, had the warnings not been heeded
+    int answered = 0; // claimed the target without a warning
+    int warned = 0;
+    int silent = 0;                  // answered, with a true error above 3 targets
+    int silent_warnings_ignored = 0; // the same, with warnings ignored
     std::optional<double>
         median_evaluations; // runs that did not answer count as infinite; none if most did not
     double median_cpu_seconds = 0;

@@ -19,7 +19,7 @@ constexpr Goal at_1e3{1e-3, 1000000};
 struct Outcome {
     double true_error, claimed_error;
     std::uint64_t evaluations = 100;
-    bool doubtful = false;
+    bool warned = false;
 };
 Cell cell_of(const std::vector<Outcome>& outcomes, Goal goal = at_1e3) {
     Plan plan;
@@ -34,7 +34,7 @@ Cell cell_of(const std::vector<Outcome>& outcomes, Goal goal = at_1e3) {
         run.answer.value = 2 * (1 + 1e-3 * outcome.true_error);
         run.answer.error = 2 * 1e-3 * outcome.claimed_error;
         run.answer.converged = outcome.claimed_error <= 1;
-        run.answer.doubtful = outcome.doubtful;
+        run.answer.warned = outcome.warned;
         runs.push_back(run);
     }
     return Summary(plan, runs).cell(0, 0, 0);
@@ -53,13 +53,13 @@ TEST(BenchSummary, HonestWhereTheTrueErrorsAreAboutTheTarget) {
     EXPECT_EQ(bad.silent, 0);
 }
 
-TEST(BenchSummary, ALostPeakIsSilentUnlessItIsDoubted) {
+TEST(BenchSummary, ALostPeakIsSilentUnlessThereIsAWarning) {
     const Cell silent = cell_of({{-500, 0.9}, {0, 0.9}});
     EXPECT_EQ(silent.silent, 1);
     const Cell told = cell_of({{-500, 0.9, 100, true}, {0, 0.9}, {0, 0.9}});
     EXPECT_EQ(told.silent, 0);
-    EXPECT_EQ(told.silent_unheeded, 1);
-    EXPECT_EQ(told.doubted, 1);
+    EXPECT_EQ(told.silent_warnings_ignored, 1);
+    EXPECT_EQ(told.warned, 1);
     EXPECT_TRUE(told.honest);
 }
 

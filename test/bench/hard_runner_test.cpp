@@ -16,14 +16,14 @@
 namespace montelux::bench {
 namespace {
 
-HardRun run_of(double value, double error, bool converged, bool doubtful = false) {
+HardRun run_of(double value, double error, bool converged, bool warned = false) {
     HardRun run;
     run.run.exact = 2;
     run.accuracy = 1e-12;
     run.run.answer.value = value;
     run.run.answer.error = error;
     run.run.answer.converged = converged;
-    run.run.answer.doubtful = doubtful;
+    run.run.answer.warned = warned;
     return run;
 }
 

@@ -80,7 +80,7 @@ Answer vegas(const CountedIntegrand& f, const Request& request) {
         integrate(pilot, 0);
         Trial trial = integrate((n - iterations * pilot) / iterations, 1); // keeps the grid, forgets the sums
         // Chi-squared per degree of freedom of the iterations; 4.6 has a p-value of 0.001 with 4 of them.
-        trial.doubtful = gsl_monte_vegas_chisq(state.get()) > 4.6;
+        trial.warned = gsl_monte_vegas_chisq(state.get()) > 4.6;
         return trial;
     });
 }

@@ -63,7 +63,7 @@ std::vector<Method> vegas_methods(const std::string& python, std::string& messag
         return Answer{.value = reply["value"],
                       .error = reply["error"],
                       .converged = reply["converged"],
-                      .doubtful = reply["doubtful"],
+                      .warned = reply["warned"],
                       .chosen = {},
                       .reason = {},
                       .warnings = {},

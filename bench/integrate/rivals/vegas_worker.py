@@ -77,7 +77,7 @@ def answer(library, request):
             "value": float(result.mean),
             "error": float(result.sdev),
             "converged": bool(converged),
-            "doubtful": bool(result.Q < 0.001),  # its own chi-squared test of the iterations
+            "warned": bool(result.Q < 0.001),  # its own chi-squared test of the iterations
             "evaluations": int(library.montelux_bench_evaluations(handle)),
             "cpu_seconds": seconds,
         }
