@@ -1,5 +1,5 @@
 // Noise of the ways to sample environment light: variance a sample of each, beside BSDF sampling and joined
-// with it, for maps and materials of all sorts (docs/environment-light.md).
+// with it, for maps and materials of all sorts (docs/measurements/environment-sampling.md).
 #include "bench/environment_estimate.h"
 #include <chrono>
 #include <cmath>

@@ -19,7 +19,7 @@ class ReferenceSlowTest : public ::testing::TestWithParam<const char*> {};
 // Scores have errors pooled over 3 x 3 pixels, without which those below the truth claim too small an error.
 // What is left is not the normal law: the reference's errors come from eight pictures (Student's t), and
 // errors differ between neighbours, so bounds of the shares are wide. On killeroo-simple pbrt's weights of
-// rough coats, which do not sum to one, add a true difference (docs/rendering.md).
+// rough coats, which do not sum to one, add a true difference (docs/measurements/rendering-against-pbrt.md).
 TEST_P(ReferenceSlowTest, AgreesWithPbrt) {
     namespace fs = std::filesystem;
     fs::path folder = fs::path(MONTELUX_SHARED_DIR) / "scenes" / "pbrt" / GetParam();

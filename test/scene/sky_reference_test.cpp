@@ -1,5 +1,5 @@
 // The whole sky against random walks, from noon to dusk. 75 comparisons at 6 standard errors (2e-9) beyond
-// what docs/environment-light.md says that the sky may be off: 2e-7.
+// what docs/measurements/sky.md says that the sky may be off: 2e-7.
 #include "test/scene/sky_testing.h"
 #include <gtest/gtest.h>
 
