@@ -1,4 +1,4 @@
-// Any distribution of one variable as a value: what a program that reads its distribution from input holds.
+// Any distribution of one variable as a value, for programs that read their distribution from input.
 #pragma once
 
 #include <concepts>
@@ -14,9 +14,9 @@
 
 namespace montelux {
 
-// Holds a distribution of any type, which copies share and nobody changes; safe to use from many threads.
-// Satisfies TwoTailedDistribution1D. A call is one virtual call more than on the type itself, and allocates
-// nothing; the forms that take spans make it once for all values.
+// Holds an immutable distribution of any type, shared by copies; safe to use from many threads. Satisfies
+// TwoTailedDistribution1D. A call is one virtual call more than on the type itself, and allocates nothing;
+// the forms that take spans make it once for all values.
 class Distribution : public SampledByInversion<Distribution> {
   public:
     template <Distribution1D D>

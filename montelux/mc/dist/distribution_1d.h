@@ -1,4 +1,5 @@
-// What a distribution of one variable is: pdf, cdf and quantile in double; tails, and sampling by inversion.
+// Concepts of a distribution of one variable: pdf, cdf and quantile in double; tails, and sampling by
+// inversion.
 #pragma once
 
 #include <algorithm>

@@ -1,9 +1,9 @@
-// What is checked of a density and its antiderivative before they are sampled.
+// Checks of a density and its antiderivative before they are sampled.
 #pragma once
 
 namespace montelux {
 
-// Where the errors of an inversion are from.
+// Names the source of an inversion's errors.
 inline constexpr const char* inversion_errors = "inversion of a density";
 
 // Each require_* throws Error with a sentence.

@@ -1,4 +1,4 @@
-// The pieces that a numerical inversion cuts an interval into, and the sentences of what can be wrong.
+// The pieces into which a numerical inversion cuts an interval.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The one check that the parameters of every distribution go through.
+// Check of the parameters of every distribution.
 #pragma once
 
 #include <initializer_list>

@@ -1,4 +1,4 @@
-// The one check that every table of weights goes through.
+// Check of every table of weights.
 #pragma once
 
 #include <cstddef>

@@ -17,19 +17,19 @@
 namespace montelux {
 namespace {
 
-constexpr int cubature_dimensions = 8; // a region of more costs more points than sampling takes to begin
+constexpr int cubature_dimensions = 8; // with more, a region costs more points than a first step of sampling
 constexpr double least_pilot = 1500;   // evaluations of cubature before it is judged,
 constexpr double pilot_share = 0.25;   // or this share of what sampling is expected to need
-// Errors that fall more slowly with the evaluations, as a power, do so at poles that have no integral: halves
-// of an interval close in on all others.
+// Errors that fall as a smaller power of the evaluations indicate a pole without an integral: the halves that
+// contain it converge on it.
 constexpr double slowest_of_one_variable = 0.25;
 constexpr double cautious_rate = 0.5;     // the same power, where few evaluations are judged after the first
 constexpr double largest_first = 0.25;    // share of a fixed number of evaluations that one region may take
 constexpr std::uint64_t patience = 60000; // evaluations of sampling before cubature gets a second chance,
 constexpr double second_share = 0.2;      // and the share of sampling's evaluations that it then gets
-// Relative errors of sampling with which a localised result is compared: twice the target, within these.
+// A localised result is compared with sampling at twice the target, limited to these relative errors.
 constexpr double finest_comparison = 1e-3, coarsest_comparison = 0.03;
-constexpr double comparable = 1.5;  // errors of cubature that sampling's may be when both are compared
+constexpr double comparable = 1.5;  // largest ratio of sampling's error to cubature's when both are compared
 constexpr double disagreeing = 2.5; // standard errors; a false alarm costs evaluations only
 constexpr double surprising = 4;    // growth of the error that makes a new problem
 
@@ -46,7 +46,7 @@ std::string printed(double x) {
     return text;
 }
 
-// An estimator that was picked from the start: the same, with its name and why.
+// An estimator that was chosen from the start, with its name and the reason.
 class PickedEstimator final : public Estimator {
   public:
     PickedEstimator(std::unique_ptr<Estimator> estimator, std::string_view method, std::string reason)
@@ -92,9 +92,9 @@ class AutoEstimator final : public Estimator {
             judge(request, before);
             return outcome;
         }
-        // It can do no more. Sampling takes over where there is no result yet, or where a target is still
-        // open or the result has a warning and much is left; a remainder that no region fits into would give a
-        // worse result than there is.
+        // Cubature has finished. Sampling takes over if there is no result yet, or if many evaluations are
+        // left and the target is open or the result has a warning; with fewer left it would give a worse
+        // result.
         const Tally rule = cubature_->tally();
         const std::uint64_t spent = rule.evaluations;
         const bool open = outcome == StepOutcome::finished && (targeted || !rule.warnings.empty()) &&
@@ -114,8 +114,8 @@ class AutoEstimator final : public Estimator {
         return other == StepOutcome::advanced ? other : outcome;
     }
 
-    // Sampling goes first; where it takes long, cubature gets a part of the evaluations, since what it seemed
-    // to need was a guess from its first regions.
+    // Sampling goes first; if it takes long, cubature gets a share of the evaluations, since its predicted
+    // cost was a guess from its first regions.
     StepOutcome step_both(const StepRequest& request) {
         const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
         const std::uint64_t rules = cubature_->tally().evaluations;
@@ -139,8 +139,8 @@ class AutoEstimator final : public Estimator {
             }
             if (!rules_arrived(request)) return outcome;
         }
-        // Regions that close in on a singularity may fool both the rules and their check: sampling has to be
-        // nearly as far.
+        // Regions that converge on a singularity may fool both the rules and their check: sampling must have
+        // nearly as small an error.
         const Agreement found =
             agreement(comparable * request.relative_error, comparable * request.absolute_error);
         if (found == Agreement::unknown) return sampling_->step(request);
@@ -165,8 +165,8 @@ class AutoEstimator final : public Estimator {
     }
 
     enum class Agreement : std::uint8_t { unknown, agree, disagree };
-    // Of the values of both methods; unknown while sampling's error is above all of these: relative and
-    // absolute ones, and the like of cubature's.
+    // Whether the values of both methods agree; unknown while sampling's error exceeds its targets and a
+    // multiple of cubature's.
     Agreement agreement(double relative, double absolute) const {
         const Tally rule = cubature_->tally(), sampled = sampling_->tally();
         bool agree = true;
@@ -181,8 +181,8 @@ class AutoEstimator final : public Estimator {
         return agree ? Agreement::agree : Agreement::disagree;
     }
 
-    // What is too narrow for random points to check is compared with a rough result of sampling, which
-    // searches for peaks.
+    // A peak too narrow for the random check is compared with a rough result of sampling, which searches for
+    // peaks.
     StepOutcome compare(const StepRequest& request) {
         StepRequest rough = request;
         const double twice = request.relative_error > 0 ? 2 * request.relative_error : coarsest_comparison;
@@ -215,7 +215,7 @@ class AutoEstimator final : public Estimator {
             if (diverges_)
                 tally.warnings.push_back(
                     "the error does not fall where values are not finite; the integral may not exist");
-            // A rule with a warning is replaced rather than believed.
+            // A cubature with a warning is replaced by sampling.
             tally.ready = tally.ready && tally.warnings.empty() && (agreed_ || !tally.localised);
             tally.localised = tally.localised && !agreed_;
             return tally;
@@ -257,9 +257,8 @@ class AutoEstimator final : public Estimator {
     }
 
   private:
-    // All that keeps cubature, which has nothing left to do, from a relative error is that the value is
-    // within its error of zero: no smaller error would be small beside it. An absolute error can be met by
-    // sampling.
+    // Cubature has finished and misses only the relative error, because the value is within its error of
+    // zero. Sampling could only meet an absolute error.
     static bool is_indistinct_from_zero(const Tally& rule, const StepRequest& request) {
         if (request.absolute_error > 0 || !rule.ready || !rule.warnings.empty()) return false;
         for (std::size_t c = 0; c < rule.value.size(); ++c) {
@@ -273,7 +272,7 @@ class AutoEstimator final : public Estimator {
         return std::ranges::all_of(tally.standard_error, [](double error) { return std::isfinite(error); });
     }
 
-    // With fewer than four variables even few evaluations pay for a region.
+    // With fewer than four variables a region is affordable even with few evaluations.
     bool region_is_too_dear(std::uint64_t max_evaluations) const {
         return dimensions_ >= 4 && static_cast<double>(genz_malik_7(dimensions_).points()) >
                                        largest_first * static_cast<double>(max_evaluations);
@@ -285,7 +284,7 @@ class AutoEstimator final : public Estimator {
         reason_ = std::move(why);
     }
 
-    // Is cubature on its way to the target, sooner than sampling would be?
+    // Will cubature reach the target before sampling would?
     void judge(const StepRequest& request, std::uint64_t before) {
         const Tally tally = cubature_->tally();
         const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
@@ -299,8 +298,7 @@ class AutoEstimator final : public Estimator {
             if (size > 0) tightest = std::min(tightest, tolerance / size);
         }
         const double cost = static_cast<double>(tally.evaluations - tally.check_evaluations);
-        // Random points that meet the unexpected make a new problem of it: what was seen before says nothing
-        // about how fast its error falls.
+        // After a surprise of the random check the earlier errors do not predict how fast the error falls.
         if (!ratios_.empty() && ratio > surprising * std::max(1.0, ratios_.back())) {
             ratios_.clear();
             costs_.clear();
@@ -310,7 +308,7 @@ class AutoEstimator final : public Estimator {
         costs_.push_back(cost);
         reason_ = "cubature converges";
         if (targeted && ratio <= 1) {
-            // A target that is reached with warnings is not reached.
+            // A target reached with a warning does not count.
             if (!tally.warnings.empty()) give_up("cubature warns: " + tally.warnings.front());
             comparing_ = !switched_ && tally.ready && tally.localised && !agreed_;
             return;
@@ -318,7 +316,7 @@ class AutoEstimator final : public Estimator {
         const double spent = cost - begin_;
         const double rate = falling_rate(targeted ? 1 : cautious_rate);
         if (targeted) {
-            // One variable is what the rules are best at.
+            // Rules are at their best in one variable.
             const double alternative = sampling_cost(std::min(1.0, tightest)) * (one_variable() ? 10 : 1);
             if (spent < std::max(least_pilot, pilot_share * alternative)) return;
             const double needed = spent * std::pow(ratio, 1 / std::max(rate, 0.05));

@@ -1,4 +1,4 @@
-// Auto: the method that picks the method, and says which and why.
+// Auto: chooses the method, and says which and why.
 #pragma once
 
 #include <memory>
@@ -8,12 +8,11 @@
 
 namespace montelux {
 
-// Up to eight variables begin with deterministic cubature, whose first regions cost less than any sampling
-// method needs to say anything. As long as its error falls so fast that it should reach the target (or,
-// without a target, the smaller error) before sampling would, it goes on; else, or when it warns,
-// Adaptive takes over from the start. One variable more often stays with cubature, more than eight begin with
-// Adaptive, more than 1024 take BasicMonteCarlo. The result's `method` and `reason` say what was picked;
-// naming a method overrules it.
+// Up to eight variables begin with deterministic cubature, whose first regions are cheaper than any useful
+// number of samples. Cubature continues as long as its error falls fast enough to reach the target (or,
+// without a target, a smaller error) before sampling would; otherwise, or after a warning, Adaptive starts
+// afresh. One variable stays with cubature more often, more than eight begin with Adaptive, more than 1024
+// take BasicMonteCarlo. The result's `method` and `reason` contain the choice; naming a method overrules it.
 struct Auto {
     static constexpr std::string_view name = "auto";
 

@@ -67,7 +67,7 @@ void check_sphere(const char* what, const std::vector<double>& centre, double ra
     if (!(radius > 0 && std::isfinite(radius))) throw Error(what, "expected a finite radius above zero");
 }
 
-// Volumes shrink and grow fast with the dimensions.
+// Volumes underflow or overflow in many dimensions.
 double checked_volume(const char* what, int dimensions, double volume) {
     if (volume >= std::numeric_limits<double>::min() && std::isfinite(volume)) return volume;
     throw Error(what, "the volume in " + std::to_string(dimensions) + " dimensions is too " +
@@ -77,8 +77,8 @@ double checked_volume(const char* what, int dimensions, double volume) {
 // Area of the unit sphere in n dimensions, 2 pi^(n/2) / Gamma(n/2).
 double sphere_area(int n) { return 2 * std::exp(0.5 * n * std::log(pi) - std::lgamma(0.5 * n)); }
 
-// How many variables a direction in n dimensions takes: angles in two and three, else n normal ones, whose
-// map has no quantile that is dear.
+// Uniform variables of a direction in n dimensions: angles in two and three, else n normal variables, which
+// are cheap to map.
 int direction_uniforms(int n) { return n <= 3 ? n - 1 : n; }
 
 // Uniform direction on the unit sphere in x.dimensions() coordinates from u[first...].
@@ -99,7 +99,7 @@ void unit_sphere(const PointBatch& u, int first, PointBuffer& x) {
             x(i, d) = normal_quantile(u(i, first + d));
             square += x(i, d) * x(i, d);
         }
-        // The middle of the cube, which grids meet, has no direction; any will do.
+        // The middle of the cube, a grid point, has no direction: take any.
         if (square == 0) x(i, 0) = square = 1;
         const double scale = 1 / std::sqrt(square);
         for (int d = 0; d < n; ++d) x(i, d) *= scale;

@@ -1,4 +1,4 @@
-// Where is integrated: regions of space as maps from the unit cube, with the change of volume.
+// Domains of integration: regions of space as maps from the unit cube, with the change of volume.
 #pragma once
 
 #include <functional>
@@ -41,7 +41,7 @@ class Domain {
     static Domain ball(std::vector<double> centre, double radius = 1);
     // |x - centre| = radius in dimensions >= 2; the measure is the surface's area.
     static Domain sphere(std::vector<double> centre, double radius = 1);
-    // A map of the user's from the unit cube; `description` names it in results.
+    // A user's map from the unit cube; `description` names it in results.
     static Domain mapped(int uniforms, int dimensions, PointMap map, std::string description = "mapped");
     static Domain mapped_batch(int uniforms, int dimensions, BatchMap map,
                                std::string description = "mapped");

@@ -1,5 +1,4 @@
-// The one shape of all estimators: steps that add evaluations, a tally at any time, a state that can be
-// saved.
+// Interface of all estimators: steps that add evaluations, a tally at any time, a state that can be saved.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +13,7 @@
 
 namespace montelux {
 
-// What an estimator is asked for.
+// The problem that an estimator solves.
 struct Problem {
     const Evaluator& evaluator; // outlives the estimator
     std::uint64_t seed = 0;
@@ -24,7 +23,7 @@ struct Problem {
 struct StepRequest {
     // The step must not evaluate the integrand more often than this.
     std::uint64_t max_evaluations = 0;
-    // The step should aim at these; 0 where there is no such target.
+    // Targets of the step; 0 where there is none.
     double relative_error = 0, absolute_error = 0;
     const CancelFlag* cancel = nullptr;
 };
@@ -36,7 +35,7 @@ enum class StepOutcome : std::uint8_t {
     cancelled, // the state did not change
 };
 
-// Where an estimate stands.
+// Values, errors and warnings of an estimate at this moment.
 struct Tally {
     std::vector<double> value, standard_error; // infinite errors while nothing is known
     std::vector<double> covariance;            // components x components, or empty
@@ -50,20 +49,18 @@ struct Tally {
     int degrees_of_freedom = 0;
     // The target must not be believed before this is true (a pilot is running, too few replicates).
     bool ready = true;
-    // All that is left of the error is rounding, or what points that all agree leave open: more evaluations
-    // do not help.
+    // The remaining error is rounding, or that of points that all agree: more evaluations do not help.
     bool at_limit = false;
-    // A rule found so little of the domain to matter that random points cannot check it.
+    // The integral is concentrated in too small a part of the domain for random points to check the rule.
     bool localised = false;
     std::vector<std::string> warnings;
     std::string method, reason; // filled by estimators that choose among others
 };
 
-// An estimate that grows step by step. What a step does depends on the problem, the settings, the state and
-// the request alone, never on time or threads; so a run that is saved, restored and continued ends with the
-// same bits as one that was not broken. An exception of the integrand (IntegrandInterrupted among them) that
-// leaves a step leaves the state as it was before, as cancelling does. Steps are short enough to be waited
-// for (about a million evaluations or a tenth of those made so far).
+// An estimate that grows step by step. A step depends only on the problem, the settings, the state and the
+// request, never on time or threads; so a resumed run ends with the same bits as an uninterrupted one.
+// Cancelling, and an exception of the integrand (including IntegrandInterrupted), leave the state as it was
+// before the step. A step takes at most about a million evaluations, or a tenth of those made so far.
 class Estimator {
   public:
     virtual ~Estimator() = default;

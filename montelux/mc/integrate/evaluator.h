@@ -1,4 +1,4 @@
-// An integrand over the unit cube: the user's function, its domain, and what happens to values that are not
+// An integrand over the unit cube: the user's function, its domain, and a policy for values that are not
 // finite.
 #pragma once
 
@@ -12,7 +12,7 @@
 namespace montelux {
 
 enum class NonFinitePolicy : std::uint8_t {
-    skip,       // counted, reported, and left out as zero
+    skip,       // count as zero, are counted and reported
     throw_error // ends the integration with an Error that names the point
 };
 
@@ -44,7 +44,7 @@ class Evaluator {
     void operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& non_finite,
                     std::vector<std::size_t>* where = nullptr) const;
 
-    // f at points x of the domain, for estimators that draw them themselves; same treatment.
+    // f at points x of the domain, for estimators that draw these themselves; not-finite values as above.
     void at_points(const PointBatch& x, ValueBatch f, NonFiniteCount& non_finite) const;
 
   private:

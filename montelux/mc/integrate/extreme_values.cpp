@@ -12,7 +12,7 @@
 namespace montelux {
 namespace {
 
-constexpr double few = 16, few_of_all = 1 / 16.; // values that make up a variance
+constexpr double few = 16, few_of_all = 1 / 16.; // values that contribute most of a variance
 constexpr double all_equal = 1e-13;              // deviation over mean: rounding
 constexpr double infinite_variance = 0.5;        // shape from which there is none
 constexpr double shape_errors = 1.5;             // by which the fitted shape must exceed it

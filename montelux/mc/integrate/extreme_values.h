@@ -1,4 +1,4 @@
-// The extreme values among samples, and what they say about the error of a mean.
+// The extreme values among samples, and a lower bound on the error of a mean that follows from them.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,17 @@
 
 namespace montelux {
 
-// The factor by which the standard error of an estimate is too small if k independent values make up its
-// variance, for there may be as many that were not drawn: 1 + 1.32 k^-1.5. With it, more than four errors
-// between k hits of a rare event and their expectation have a probability below 0.3 %, as 10 expected ones
-// for one hit (where the factor is the upper limit of Gehrels 1986, "Confidence limits for small numbers of
+// The factor by which a standard error is too small if its variance comes from only k independent values,
+// since others like them may not have been drawn: 1 + 1.32 k^-1.5. With it, k hits of a rare event are more
+// than four errors from their expectation with a probability below 0.3 %, as for one hit where 10 are
+// expected (there the factor is the upper limit of Gehrels 1986, "Confidence limits for small numbers of
 // events").
 double few_values_factor(double k);
 // The standard error of a mean of n values that are all equal: half of the rule of three, a bound of 95 %.
 inline double equal_values_error(double value, double n) { return 1.5 * (value < 0 ? -value : value) / n; }
 
-// Adds a sentence where the largest of `values` values follow a tail whose variance is probably infinite, and
-// where these matter for the standard error of a mean to which each adds 1 / n of itself.
+// Adds a warning if the largest of `values` values follow a tail whose variance is probably infinite and
+// contribute to the standard error of a mean in which each has weight 1 / n.
 void warn_of_heavy_tail(const ParetoTail& tail, std::uint64_t values, double n, double standard_error,
                         std::vector<std::string>& warnings);
 
@@ -34,15 +34,15 @@ class ExtremeValues {
     int components() const { return static_cast<int>(components_.size()); }
     void add(int component, std::span<const double> values);
     void merge(const ExtremeValues& later);
-    // Holds nothing, and is to be merged into this one.
+    // An empty one, to be filled and merged into this one.
     ExtremeValues empty() const;
     const ParetoTail& tail() const { return tail_; }
     // Magnitude of the first component; 0 without values.
     double largest() const;
 
-    // The standard error of the mean of n values that they justify, were they independent, where only few of
-    // them (hits of a rare event, misses of a common one) make up the variance, or where all are equal; else
-    // 0, and 0 where all are zero. Values that were not added count as zeros.
+    // Lower bound on the standard error of the mean of n independent values, if only few of them (hits of a
+    // rare event, misses of a common one) contribute to the variance, or if all are equal; else 0, and 0 if
+    // all are zero. Values that were not added count as zeros.
     double least_standard_error(int component, std::uint64_t n) const;
 
     void save(StateWriter& state) const;

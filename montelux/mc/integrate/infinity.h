@@ -1,4 +1,4 @@
-// Positive infinity: the error of what is not known yet.
+// Positive infinity: the error of an unknown value.
 #pragma once
 
 #include <limits>

@@ -1,4 +1,4 @@
-// What is integrated: a function of a number, of a point or of many points; scalar or vector-valued.
+// An integrand: a function of a number, of a point or of many points; scalar or vector-valued.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@
 
 namespace montelux {
 
-// A function in one of the forms that users write, behind one call a batch. Functions are called from
-// several threads at once and must not depend on the order of calls. They may throw: the integration then
-// ends with that exception.
+// A function in one of the forms that users write, called once per batch. Functions are called from several
+// threads at once and must not depend on the order of calls. They may throw: the integration then ends with
+// that exception.
 class Integrand {
   public:
     using BatchFunction = std::function<void(const PointBatch&, ValueBatch)>;

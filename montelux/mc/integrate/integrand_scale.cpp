@@ -14,8 +14,8 @@ namespace {
 // p stay finite below the upper one; relative errors of 1e-16 stay above the smallest squares above the lower
 // one.
 constexpr double lowest = -200, highest = 460;
-// Exponent of the largest value that is kept, change of volume included. Those beyond void the estimate, but
-// stay finite, since they are no mistake of the integrand.
+// Exponent of the largest value that is kept, change of volume included. Larger ones void the estimate but
+// stay finite, since the integrand is not at fault.
 constexpr double largest_kept = 900;
 constexpr double nothing = -std::numeric_limits<double>::infinity();
 

@@ -32,7 +32,7 @@ class IntegrandScale {
     double scaled(double x) const;
     // x 2^(k_a + k_b).
     double unscaled_product(double x, std::size_t a, std::size_t b) const;
-    // Moves exponents whose components left the safe range. True: what was computed so far is void.
+    // Moves exponents whose components left the safe range. True: the estimate so far is void.
     bool adjust();
 
     void save(StateWriter& state) const;

@@ -54,7 +54,7 @@ double volume_exponent(const Domain& domain) {
     return size > 0 && std::isfinite(size) ? std::log2(size) : 0;
 }
 
-// One run: the estimator and what drives it.
+// One run: the estimator and its control.
 class Run {
   public:
     Run(const Integrand& f, IntegrandForm form, const Domain& domain, const Method& method,
@@ -114,11 +114,11 @@ class Run {
         absolute_error_ = budget_.absolute_error > 0 ? scale_.scaled(budget_.absolute_error) : 0;
     }
 
-    // After a change of scale: sums so far overflowed or underflowed.
+    // Starts again after a change of scale: sums so far overflowed or underflowed.
     void start_again() {
         const std::uint64_t made = estimator_->tally().evaluations;
         lost_ += made;
-        // The evaluations that are left must be worth a result.
+        // Too few evaluations left would give no result.
         if (limit_ != no_limit && limit_ < lost_ + made) {
             limit_ += made;
             granted_ += made;
@@ -148,15 +148,14 @@ class Run {
 
         const double remaining = budget_.time.count() - elapsed();
         if (done > 0) {
-            // The last step is as short as the time is. What is being made when it is over would be lost.
+            // The last step must fit into the remaining time, or it is lost.
             const double fits = std::max(1.0, 0.95 * rate_ * std::max(remaining, 0.0));
             const bool shortened = rate_ > 0 && fits < static_cast<double>(request.max_evaluations);
             if (shortened) request.max_evaluations = static_cast<std::uint64_t>(fits);
             return timed(request, deadline(), shortened);
         }
-        // How long the first step takes is not known. Where half of the time does not do, the evaluations
-        // that it did were for nothing but to know how many the other half has room for, on one thread at
-        // least.
+        // The first step's duration is unknown. If half of the time is not enough for it, the evaluations
+        // made so far say how many fit into the other half, on one thread at least.
         if (remaining <= 0) return StopReason::time;
         const std::uint64_t before = interruption_.evaluations();
         const auto half = Clock::now() + std::chrono::duration_cast<Clock::duration>(
@@ -220,7 +219,7 @@ class Run {
         return start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
     }
 
-    // Zeros in the place of values that are not numbers must not pass for a result.
+    // Zeros that replace NaN must not pass for a result.
     void check_finite() const {
         const Tally tally = estimator_->tally();
         if (tally.evaluations == 0 || tally.non_finite.count < tally.evaluations) return;
@@ -233,7 +232,7 @@ class Run {
         return seconds_before_ + std::chrono::duration<double>(Clock::now() - start_).count();
     }
 
-    // Nothing but zeros was met: a function that is zero, or peaks that no point has hit yet.
+    // All values were zero: either the function is zero, or no point has hit its peaks.
     static bool nothing_found(const Tally& tally) {
         if (!tally.statistical || tally.evaluations == 0) return false;
         for (std::size_t c = 0; c < tally.value.size(); ++c)
@@ -241,7 +240,7 @@ class Run {
         return false;
     }
 
-    // Errors below which doubles tell nothing apart.
+    // Errors below the resolution of doubles.
     static bool is_rounding(const Tally& tally) {
         for (std::size_t c = 0; c < tally.value.size(); ++c)
             if (tally.value[c] == 0 || !(tally.standard_error[c] <=
@@ -270,7 +269,7 @@ class Run {
         if (tally.value.empty()) return;
         history_.push_back({tally.evaluations + lost_, in_unit(tally.value.at(0), 0),
                             in_unit(tally.standard_error.at(0), 0), elapsed()});
-        // Memory stays bounded however long a run is: every second of the older records goes.
+        // Bounds the memory of long runs: drops every second of the older records.
         constexpr std::size_t most = 4096;
         if (history_.size() < most) return;
         std::size_t kept = 0;
@@ -328,8 +327,7 @@ class Run {
         return r;
     }
 
-    // A state belongs to a problem and a method; the integrand itself cannot be told apart, so its values at
-    // a few points stand for it.
+    // A state belongs to a problem and a method; values of the integrand at a few points identify it.
     std::uint64_t fingerprint() const {
         std::uint64_t key = hash_key(options_.seed, evaluator_.dimensions(), evaluator_.components(),
                                      options_.full_covariance);
@@ -408,9 +406,9 @@ class Run {
     std::string method_;
     bool targeted_;
     std::uint64_t limit_ = 0;
-    std::uint64_t granted_ = 0; // of the limit: for what a change of scale had to repeat
-    std::uint64_t lost_ = 0;    // evaluations of steps that were given up, for time or scale
-    double rate_ = 0;           // evaluations a second in the last step
+    std::uint64_t granted_ = 0; // share of the limit for repetitions after a change of scale
+    std::uint64_t lost_ = 0;    // evaluations of discarded steps (time or scale)
+    double rate_ = 0;           // evaluations per second in the last step
     std::uint64_t fingerprint_ = 0;
     std::string checkpoint_refused_because_;
     std::unique_ptr<Estimator> estimator_;

@@ -6,12 +6,11 @@ namespace montelux {
 namespace {
 
 constexpr double slice_seconds = 0.02;
-// From here on a slice holds any batch, and its time is measured on large batches alone.
+// From here on a slice holds any batch, and only large batches are timed.
 constexpr std::size_t fast = 4096, worth_timing = 256;
-// Batches of slower points are shared among the threads: far above the cost of handing over a slice.
+// Batches of slower points are shared among the threads; far above the cost of handing over a slice.
 constexpr double slow_point_seconds = 20e-6;
-// So short may a slice be for the sake of sharing: a tenth of the usual time, and so that each thread gets a
-// few.
+// Shortest slice for sharing: a tenth of the usual time, a few for each thread.
 constexpr std::size_t least_share = 10, slices_per_thread = 4;
 
 std::size_t in_eights(std::size_t points) { return points < 8 ? points : points - points % 8; }
@@ -20,7 +19,7 @@ std::size_t in_eights(std::size_t points) { return points < 8 ? points : points 
 std::size_t shared_slice(std::size_t slice, std::size_t points) {
     const auto pieces = slices_per_thread * static_cast<std::size_t>(thread_count());
     const std::size_t fair = (points + pieces - 1) / pieces;
-    // At least eight points where the slice has them: fewer are evaluated otherwise by vectorised functions.
+    // At least eight points if the slice has them: vectorised functions may evaluate fewer differently.
     const std::size_t least = std::max(slice / least_share, std::min<std::size_t>(slice, 8));
     return in_eights(std::clamp(fair, least, slice));
 }
@@ -62,10 +61,10 @@ void Interruption::evaluate_slice(const Integrand& f, const PointBatch& x, Value
     const Clock::time_point begin = Clock::now();
     f(x, y);
     const double seconds = std::max(std::chrono::duration<double>(Clock::now() - begin).count(), 1e-9);
-    // The last slice of a batch may be short, and says then only that more would be too long.
+    // A short last slice only gives an upper bound.
     if (n != whole && seconds <= slice_seconds) return;
     const double points = static_cast<double>(n);
-    // Grows fourfold at most, for a few points say little about others.
+    // Grows at most fourfold, since a few points say little about others.
     const double limit = std::min(4.0 * static_cast<double>(slice), 2.0 * fast);
     const double next = std::clamp(points * slice_seconds / seconds, 1.0, limit);
     slice_.store(in_eights(static_cast<std::size_t>(next)), std::memory_order_relaxed);

@@ -11,10 +11,11 @@
 
 namespace montelux {
 
-// Thrown by the integrand when it was asked to stop. No std::exception, so that nobody takes it for an error.
+// Thrown by the integrand after a request to stop. Not a std::exception, so that no handler of errors catches
+// it.
 struct IntegrandInterrupted {};
 
-// Asks an integrand to stop, and counts its evaluations; outlives it.
+// Requests an integrand to stop, and counts its evaluations; outlives it.
 class Interruption {
   public:
     using Clock = std::chrono::steady_clock;
@@ -46,12 +47,11 @@ class Interruption {
     std::atomic<double> point_seconds_{0}; // of the last slice that was timed
 };
 
-// f, called for slices of a batch that take about a fiftieth of a second each. Before each slice the
-// interruption is asked, and IntegrandInterrupted thrown. Slices are multiples of eight points, where eight
-// points fit into that time, so that vectorised functions see no remainders that they would not see else.
-// Where points take more than 20 microseconds, the slices of a batch are evaluated in parallel, and are
-// shorter so that each thread gets some: an estimator's loop over large batches keeps one thread busy
-// otherwise.
+// f, called for slices of a batch that take about a fiftieth of a second each. Before each slice it checks
+// for an interruption and throws IntegrandInterrupted. Slices are multiples of eight points if eight fit into
+// that time, so that vectorised functions get no extra remainders. If a point takes more than 20
+// microseconds, the slices of a batch are evaluated in parallel and are short enough for each thread to get
+// some; otherwise a large batch would keep only one thread busy.
 Integrand interruptible(const Integrand& f, Interruption& interruption);
 
 } // namespace montelux

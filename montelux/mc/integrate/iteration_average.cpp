@@ -12,9 +12,9 @@
 namespace montelux {
 namespace {
 
-constexpr double few_points = 1 / 16.; // points that make up the variance, where these count as few
+constexpr double few_points = 1 / 16.; // points behind the variance, below which they count as few
 constexpr double significance = 1e-3;
-// Of a value, relative: constants would else disagree with themselves.
+// Relative to the value: rounding must not make constants disagree with themselves.
 constexpr double rounding_error = 1e-13;
 
 } // namespace

@@ -13,11 +13,11 @@ namespace montelux {
 // triangle alone filled (or variances alone).
 struct IterationEstimate {
     std::vector<double> value, covariance;
-    // Degrees of freedom of the variances; 0 where they are as good as known.
+    // Degrees of freedom of the variances; 0: practically known.
     int degrees_of_freedom = 0;
     // Of each component, where known: the largest share of one value in the variance.
     std::vector<double> largest_variance = {};
-    double points = 0; // that the estimate was made of; 0 where equal values prove that it is exact
+    double points = 0; // of the estimate; 0 where equal values prove that it is exact
 
     static IterationEstimate zero(int components, bool full_covariance);
     // Adds an independent part: the mean of samples of these moments, with its own covariance.
@@ -25,7 +25,7 @@ struct IterationEstimate {
 };
 
 // Iterations are weighted by numbers that are fixed before they run. (Weights by the variances that
-// iterations find for themselves would be biased: low ones come with low values.) Agreement is told by
+// iterations find for themselves would be biased: low ones come with low values.) Agreement is tested by
 // comparing each iteration with the mean of those before it.
 class IterationAverage {
   public:
@@ -33,7 +33,7 @@ class IterationAverage {
     IterationAverage(int components, bool full_covariance);
 
     void add(double weight, const IterationEstimate& iteration);
-    // Compares only: the iteration takes no part in the mean.
+    // Only compares: the iteration does not enter the mean.
     void compare(const IterationEstimate& iteration);
 
     int iterations() const { return iterations_; }

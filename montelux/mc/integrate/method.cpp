@@ -18,7 +18,7 @@
 namespace montelux {
 namespace {
 
-// The methods that need nothing but a name.
+// The methods that are complete without arguments.
 using Make = Method (*)();
 template <MethodSettings S>
 Method make() {

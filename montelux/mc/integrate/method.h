@@ -1,4 +1,4 @@
-// Which estimator: the settings of any of them, as one value.
+// A method of integration: the settings of any estimator, as one value.
 #pragma once
 
 #include <concepts>
@@ -26,7 +26,7 @@ class Method {
     // Auto.
     Method();
     template <typename S>
-    requires(!std::same_as<S, Method> && MethodSettings<S>) // copies of a Method are not asked what they are
+    requires(!std::same_as<S, Method> && MethodSettings<S>) // not the copy constructor
         Method(S settings)
         : name_(S::name), make_([settings](const Problem& problem) { return settings.estimator(problem); }) {}
 

@@ -14,8 +14,8 @@ namespace montelux {
 // some q_i > 0. A strategy with q_i = 0 has weight 0; infinite densities (a delta) take all the weight
 // and share it by their counts.
 
-// Weight of strategy f beside strategy g, which gets g_share(q_g / q_f) for each 1 of f. By the ratio no
-// power of a density can overflow.
+// Weight of strategy f against strategy g, which gets g_share(q_g / q_f) per 1 of f. The ratio keeps powers
+// of densities from overflowing.
 template <std::floating_point T, typename Share>
 constexpr T weight_of_two(int nf, T f_pdf, int ng, T g_pdf, Share g_share) {
     T qf = static_cast<T>(nf) * f_pdf, qg = static_cast<T>(ng) * g_pdf;

@@ -1,4 +1,4 @@
-// Many points at once, coordinate by coordinate: what integrands and estimators hand to one another.
+// Batches of points and values, coordinate by coordinate, which estimators pass to integrands.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace montelux {
 
-// A view of `count` points of `dimensions` coordinates; coordinate d of all points stands contiguously
-// (structure of arrays), so that loops over the points vectorise.
+// A view of `count` points of `dimensions` coordinates; coordinate d of all points is contiguous (structure
+// of arrays), so that loops over the points vectorise.
 class PointBatch {
   public:
     PointBatch(const double* data, std::size_t count, int dimensions, std::size_t stride)
@@ -44,7 +44,7 @@ class PointBatch {
     int dimensions_;
 };
 
-// std::allocator, but for numbers that nobody asked to be zero: they are written before they are read.
+// std::allocator without zeroing: the numbers are written before they are read.
 template <typename T>
 struct UninitialisedAllocator : std::allocator<T> {
     template <typename U>
@@ -90,7 +90,7 @@ class PointBuffer {
     int dimensions_ = 0;
 };
 
-// The values of an integrand at a batch of points: component c of all points stands contiguously.
+// The values of an integrand at a batch of points: component c of all points is contiguous.
 class ValueBatch {
   public:
     ValueBatch(double* data, std::size_t count, int components, std::size_t stride)

@@ -1,4 +1,4 @@
-// What an integration returns: values, errors, how it got there and whether it can be believed.
+// Result of an integration: values, errors, cost, warnings and the course of the run.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct IterationRecord {
 };
 
 struct IntegrationResult {
-    // One a component.
+    // One per component.
     std::vector<double> value;
     // Standard deviation of each value; for deterministic rules their error estimate (see `statistical`).
     std::vector<double> standard_error;
@@ -48,16 +48,16 @@ struct IntegrationResult {
     double chi_squared = 0;
     int degrees_of_freedom = 0;
     double p_value = 1;
-    std::string method; // the name that was asked for, or that Auto picked
+    std::string method; // the requested name, or the one that Auto chose
     std::string reason; // of Auto's choice; else empty
     StopReason stop = StopReason::finished;
-    // Reasons to doubt the value or its error, as sentences. Empty is the normal case.
+    // Reasons why the value or its error may be wrong, as sentences. Normally empty.
     std::vector<std::string> warnings;
-    // Not empty where the newest checkpoint could not be gone on from, and the one before it was: why.
+    // Why the newest checkpoint could not be resumed and the one before it was; else empty.
     std::string checkpoint_refused_because;
     double seconds = 0; // wall time
 
-    // The targets were met, and nothing speaks against the result.
+    // The targets were met without a warning.
     bool converged() const { return stop == StopReason::error_target && warnings.empty(); }
     // One component as a value with its error.
     Estimate estimate(int component = 0) const;
@@ -66,7 +66,7 @@ struct IntegrationResult {
     }
 };
 
-// One line a component, as 1.2345(67); then evaluations, method, what stopped it, and each warning.
+// One line per component, as 1.2345(67); then evaluations, method, the reason to stop, and each warning.
 std::string to_string(const IntegrationResult& result);
 std::ostream& operator<<(std::ostream& out, const IntegrationResult& result);
 

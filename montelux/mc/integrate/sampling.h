@@ -1,4 +1,4 @@
-// The loop under all estimators: batches of points, evaluated on all threads, added up in a fixed order.
+// The loop of all estimators: batches of points, evaluated on all threads, summed in a fixed order.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace montelux {
 
-// Points of a batch; so many keep the buffers of a batch in the caches and the cost of a call small.
+// Points of a batch: its buffers fit into the caches, and the cost of a call is small.
 inline constexpr std::uint64_t batch_size = 1024;
 // Batches that one task takes: its sums are merged once.
 inline constexpr std::uint64_t batches_per_task = 4;
@@ -65,9 +65,9 @@ struct SampleMoments {
 // covariance, divided by `count`, is that of the mean.
 void tally_mean(const CovarianceMoments& moments, Tally& tally);
 void tally_mean(const SampleMoments& samples, Tally& tally);
-// Raises errors of means of n values where too few of the values made them, and warns of heavy tails.
+// Raises errors of means of n values if too few of the values contribute to them, and warns of heavy tails.
 void judge_extremes(const ExtremeValues& extremes, std::uint64_t n, Tally& tally);
-// Standard errors of at least `least`, one a component; covariances grow in proportion.
+// Standard errors of at least `least`, one per component; covariances grow in proportion.
 void raise_standard_errors(std::span<const double> least, Tally& tally);
 
 void save(StateWriter& state, const CovarianceMoments& moments);
@@ -75,11 +75,11 @@ void load(StateReader& state, CovarianceMoments& moments);
 void save(StateWriter& state, const NonFiniteCount& count);
 void load(StateReader& state, NonFiniteCount& count);
 
-// Evaluations after which a step may end, however many there are: progress and checkpoints are not far.
+// Evaluations after which a step may end, so that progress and checkpoints are frequent.
 inline constexpr std::uint64_t large_step = 1 << 20;
 
-// The size of the next step of an estimator that has made `done` evaluations: a doubling at first, a tenth
-// later on, so that there are steps enough to stop at, and within `limit`.
+// The size of the next step after `done` evaluations, within `limit`: doubling at first, later a tenth, so
+// that a run can stop near its target.
 std::uint64_t next_step_size(std::uint64_t done, std::uint64_t first, std::uint64_t limit);
 // The same for an estimator whose first step is a pilot: a sixteenth of the limit at most.
 std::uint64_t next_step_size_after_pilot(std::uint64_t done, std::uint64_t limit);

@@ -11,7 +11,7 @@
 
 namespace montelux {
 
-// Writes numbers as little-endian 64-bit words. What is written in some order must be read in that order.
+// Writes numbers as little-endian 64-bit words. Reads must have the order of the writes.
 class StateWriter {
   public:
     void put(std::uint64_t x) { words_.push_back(x); }
@@ -55,7 +55,7 @@ class StateReader {
     bool at_end() const { return next_ == words_.size(); }
 
   private:
-    // A length that the rest can hold.
+    // A length that fits into the rest.
     std::size_t get_size();
 
     std::vector<std::uint64_t> words_;
@@ -68,8 +68,8 @@ void write_state(const std::string& path, std::string_view kind, const StateWrit
 
 struct SavedState {
     StateReader reader;
-    // Not empty where the newest file is missing, of another kind or version, cut short or damaged: why, as a
-    // sentence; the reader then reads the one before it.
+    // If the newest file is missing, of another kind or version, cut short or damaged: why, as a sentence;
+    // the reader then reads the previous one. Else empty.
     std::string newest_refused_because;
 };
 // Throws Error when neither file is whole.

@@ -23,8 +23,8 @@ inline double unit_double(std::uint64_t digits) {
 
 constexpr std::size_t lanes = 64; // points that one pass of the Sobol' loop takes
 
-// Four numbers of 32 bits, each in the lower half of 64 bits whose upper half does not matter: products of
-// such numbers need the room.
+// Four 32-bit numbers, each in the lower half of 64 bits (the upper half is unused): their products need 64
+// bits.
 #ifdef __AVX2__
 struct Lanes {
     __m256i v;
@@ -102,7 +102,7 @@ struct RoundKeys {
 };
 
 // Philox4x32-7 of consecutive points, whose state stays in registers: coordinates 4 * group and on. Several
-// vectors go side by side, since each round waits for the one before.
+// vectors are interleaved, since each round depends on the one before.
 struct RandomBlock {
     static constexpr std::size_t vectors = 2, points = 4 * vectors;
     Lanes word[4][vectors];

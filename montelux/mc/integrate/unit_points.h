@@ -1,4 +1,4 @@
-// Points of the unit cube by the batch: pseudo-random, and scrambled Sobol'.
+// Batches of points of the unit cube: pseudo-random, and scrambled Sobol'.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ class ScrambledSobol {
 
   private:
     std::vector<std::uint32_t> keys_;
-    // Bit-reversed generator columns, 32 a dimension.
+    // Bit-reversed generator columns, 32 per dimension.
     std::vector<std::uint32_t> columns_;
 };
 

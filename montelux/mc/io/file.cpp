@@ -19,7 +19,7 @@ constexpr std::size_t buffer_size = std::size_t{1} << 18;
 
 std::string reason(int error_number) { return std::strerror(error_number); }
 
-// A call that a signal interrupted before it did anything is made again.
+// Repeats a call that a signal interrupted before it did anything.
 template <typename Call>
 auto retried(Call call) {
     auto result = call();
@@ -36,7 +36,7 @@ std::string own_path(int descriptor) { return "/proc/self/fd/" + std::to_string(
 } // namespace
 
 InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
-    // O_NONBLOCK: opening a pipe that nobody writes to would wait for ever.
+    // O_NONBLOCK: opening a pipe without a writer would block.
     descriptor_ = retried([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK); });
     if (descriptor_ < 0)
         throw Error(path.empty() ? "''" : path.string(), "cannot be opened: " + reason(errno));
@@ -80,7 +80,7 @@ std::vector<std::uint8_t> read_file_bytes(const std::filesystem::path& path, std
 
 std::filesystem::path output_target(const std::filesystem::path& path) {
     std::filesystem::path target = path;
-    // Links may form a circle; opening such a file fails with its own sentence.
+    // Links may form a circle; opening such a file fails with its own error.
     for (int links = 0; links < 40; ++links) {
         std::error_code error;
         const auto next = std::filesystem::read_symlink(target, error);
@@ -94,7 +94,7 @@ void sync_folder_of(const std::filesystem::path& path) {
     const auto folder = folder_of(path);
     const int descriptor =
         retried([&] { return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); });
-    if (descriptor < 0 && errno == EACCES) return; // one may write to folders that one may not read
+    if (descriptor < 0 && errno == EACCES) return; // a writable folder need not be readable
     int error_number = descriptor < 0 ? errno : 0;
     if (descriptor >= 0) {
         if (retried([&] { return ::fsync(descriptor); }) != 0 && errno != EINVAL && errno != EROFS)
@@ -109,15 +109,15 @@ void sync_folder_of(const std::filesystem::path& path) {
 AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_(output_target(path)) {
     std::error_code error;
     auto status = std::filesystem::status(target_, error);
-    // A file without a name would find that out when it gets one.
+    // An unnamed file would only fail when it is named.
     if (error == std::errc::filename_too_long)
         throw Error(path.string(), "cannot be written: " + reason(ENAMETOOLONG));
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
         throw Error(path.string(), std::filesystem::is_directory(status)
                                        ? "cannot be written: it is a folder"
                                        : "cannot be written: it is not a regular file");
-    // A file without a name is gone with its process, however that ends. Not every file system has them, and
-    // without /proc they could not be named.
+    // An unnamed file disappears with its process, however that ends. Not every file system has them, and
+    // without /proc they cannot be named.
     descriptor_ =
         retried([&] { return ::open(folder_of(target_).c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0666); });
     if (descriptor_ >= 0 && ::access(own_path(descriptor_).c_str(), F_OK) == 0) return;
@@ -125,7 +125,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_
     const std::string folder = "folder '" + folder_of(target_).string() + "'";
     descriptor_ = take_temporary_name(folder, [&](const char* name) {
         const int made = retried([&] { return ::open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
-        // As in /proc, which is there: "no such file" would be said of the folder.
+        // As in /proc, which exists: "no such file" would be about the folder.
         if (made < 0 && errno == ENOENT && std::filesystem::is_directory(folder_of(target_), error))
             throw Error(path.string(), "cannot be written: no files can be made in the " + folder);
         return made;
@@ -207,7 +207,7 @@ void AtomicFile::finish() {
 void AtomicFile::commit() {
     if (!finished_) finish();
     finished_ = false;
-    // A link cannot replace a file that is there, renaming can.
+    // Linking cannot replace an existing file, renaming can.
     if (temporary_.empty())
         take_temporary_name("naming", [&](const char* name) {
             return ::linkat(AT_FDCWD, own_path(descriptor_).c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW);

@@ -15,10 +15,10 @@ namespace montelux {
 // `max_bytes`.
 std::vector<std::uint8_t> read_file_bytes(const std::filesystem::path& path, std::size_t max_bytes);
 
-// A regular file that is read from its beginning. Throws Error, which names the path.
+// A regular file, read from its beginning. Errors name the path.
 class InputFile {
   public:
-    // A pipe or a device is refused, for reading could wait for ever.
+    // Pipes and devices are refused, since reading could block.
     explicit InputFile(const std::filesystem::path& path);
     ~InputFile();
     InputFile(const InputFile&) = delete;
@@ -34,17 +34,16 @@ class InputFile {
     std::uint64_t size_ = 0;
 };
 
-// Where writing to `path` leads: behind a symbolic link, the file that it points to, which may be missing.
+// The file that writing to `path` changes: the target of a symbolic link, which may be missing.
 std::filesystem::path output_target(const std::filesystem::path& path);
 
-// Makes names that were given or taken in the folder of `path` permanent, where its file system can do so.
+// Makes changes of names in the folder of `path` permanent, if its file system can.
 void sync_folder_of(const std::filesystem::path& path);
 
-// Collects output in a file without a name, which commit() puts in the place of `path`. Without a commit
-// `path` is as it was, and nothing else is left. A symbolic link is followed, not replaced. Where the file
-// system has no files without a name, it has a temporary one beside `path`, which a killed process leaves.
-// Every failure is an Error that names the path and the reason; after one, all that follows fails with the
-// same sentence, for a library in between may have swallowed it.
+// Collects output in an unnamed file, which commit() moves to `path`. Without a commit `path` is unchanged,
+// and nothing else is left. A symbolic link is followed, not replaced. On file systems without unnamed files
+// it is a temporary file beside `path`, which a killed process leaves. Every failure is an Error with path
+// and reason; later calls fail with the same Error, since a library in between may have swallowed it.
 class AtomicFile {
   public:
     explicit AtomicFile(const std::filesystem::path& path);
@@ -56,7 +55,7 @@ class AtomicFile {
     void write(const void* data, std::size_t size);
     std::uint64_t position() const { return written_to_ + buffer_.size(); }
     void seek(std::uint64_t position);
-    // Ends the writing: all bytes are on the disk, but not under their name.
+    // Ends the writing: all bytes are on the disk, not yet under their name.
     void finish();
     // Gives the file its name, after finish() where that has not been called.
     void commit();
@@ -72,7 +71,7 @@ class AtomicFile {
     std::filesystem::path path_, target_, temporary_;
     int descriptor_ = -1;
     std::vector<std::uint8_t> buffer_;
-    std::uint64_t written_to_ = 0; // where the buffer begins in the file
+    std::uint64_t written_to_ = 0; // position of the buffer in the file
     std::string failure_;          // the first, as a sentence
     bool finished_ = false;
 };

@@ -15,8 +15,7 @@
 namespace montelux {
 namespace {
 
-// Before the payload, little-endian as it stands in memory. The checksum is of all that stands before it and
-// of the payload.
+// Precedes the payload, little-endian as in memory. The checksum covers everything before it and the payload.
 struct Header {
     std::array<char, 8> magic;
     std::uint64_t version;
@@ -46,12 +45,12 @@ std::array<char, 32> kind_field(std::string_view kind) {
     return field;
 }
 
-// From here on the file's size is known to be the one that its header tells.
+// From here on the file's size agrees with its header.
 Header read_header(InputFile& file, const std::string& path, std::uint64_t max_bytes) {
     Header header{};
     const std::uint64_t size = file.size();
     file.read({reinterpret_cast<std::uint8_t*>(&header), std::min<std::uint64_t>(size, sizeof header)});
-    // A part of the magic word is the sign of a file that was cut short early.
+    // A part of the magic word: the file was cut short early.
     if (!std::equal(magic.begin(), magic.begin() + std::min<std::uint64_t>(size, magic.size()),
                     header.magic.begin()))
         throw Error(path, "is not a saved state of Montelux");
@@ -75,7 +74,7 @@ Header read_header(InputFile& file, const std::string& path, std::uint64_t max_b
 
 void check_end(const Header& header, const SipHash128& hash, const std::string& path, std::string_view kind) {
     if (hash.digest() != header.checksum) throw Error(path, "is damaged: its checksum does not fit");
-    // After the checksum, so that a name that was damaged is not taken for another one.
+    // After the checksum, so that a damaged name is not taken for another kind.
     if (header.kind != kind_field(kind))
         throw Error(path, "holds the state of '" + std::string(header.kind.data()) + "'; expected '" +
                               std::string(kind) + "'");
@@ -93,7 +92,7 @@ std::vector<std::uint8_t> read_whole(const std::filesystem::path& path, std::str
     return payload;
 }
 
-// As read_whole, without the memory.
+// Like read_whole, without the memory.
 bool is_whole(const std::filesystem::path& path, std::string_view kind) {
     try {
         InputFile file(path);
@@ -127,13 +126,13 @@ std::filesystem::path before_its_renaming(const std::filesystem::path& previous)
 // Gives the present file the name of the generation before, and keeps its own.
 void keep_as_previous(const std::filesystem::path& present, const std::filesystem::path& previous,
                       const std::filesystem::path& path) {
-    // They are one file after an end between the two renamings; rename() would do nothing then.
+    // They are the same file if a process ended between the two renamings; rename() would then do nothing.
     if (are_one_file(present, previous)) return;
     auto fail = [&](int error_number) {
         throw Error(path.string(), "cannot be written: the generation before could not be kept as '" +
                                        previous.string() + "': " + std::strerror(error_number));
     };
-    // A second name cannot replace a name that is taken, renaming can.
+    // Linking cannot replace a name that is taken, renaming can.
     const std::filesystem::path second = before_its_renaming(previous);
     ::unlink(second.c_str()); // of a process that was killed
     if (::link(present.c_str(), second.c_str()) == 0) {

@@ -1,5 +1,5 @@
-// A file that outlives crashes and damage: checksummed, replaced at one stroke, with the generation before
-// it.
+// A file that survives crashes and damage: checksummed, replaced atomically, kept with the previous
+// generation.
 #pragma once
 
 #include <cstddef>
@@ -18,16 +18,16 @@ std::filesystem::path previous_generation(const std::filesystem::path& path);
 // Is there a file of either generation, whole or not?
 bool generation_exists(const std::filesystem::path& path);
 
-// Writes the payload and makes the present file, if it is whole and of this kind, the generation before.
-// At every moment, also after the end of the process or a loss of power, at least one whole generation
-// exists if there was one. `kind` names what the payload is, in 1 to 31 bytes.
-// Throws Error. A failure leaves the present file as it is, but for one in making the new names permanent,
-// which leaves the new file; the generation before may then be the present one or the one before it.
+// Writes the payload; the present file, if it is whole and of this kind, becomes the previous generation. At
+// every moment, even after the end of the process or a loss of power, at least one whole generation exists if
+// there was one. `kind` names the payload, in 1 to 31 bytes. Throws Error. A failure leaves the present file
+// unchanged, except a failure to make the new names permanent, which leaves the new file; the previous
+// generation is then the present file or the one before.
 void write_generation(const std::filesystem::path& path, std::string_view kind,
                       std::span<const std::uint8_t> payload);
 
-// Throws the Error that write_generation would meet for a reason that is known now: a missing or read-only
-// folder, a path that is a folder, a name that is too long with what is added to it.
+// Throws the Error that write_generation would throw for a reason known now: a missing or read-only folder, a
+// path that is a folder, a name too long for the suffix.
 void check_generation_writable(const std::filesystem::path& path);
 
 struct Generation {

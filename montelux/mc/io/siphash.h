@@ -1,4 +1,4 @@
-// SipHash-2-4 with 128 bits of output: a checksum of bytes that come in pieces.
+// SipHash-2-4 with 128 bits of output: a checksum of bytes added in pieces.
 #pragma once
 
 #include <array>
@@ -8,14 +8,14 @@
 namespace montelux {
 
 // Aumasson and Bernstein, "SipHash: a fast short-input PRF" (2012); the longer output follows the authors'
-// reference code. Under a fixed key, damage that knows nothing of the function goes unnoticed with a
-// probability of 2^-128. It does not guard against a forger, who knows the key.
+// reference code. Under a fixed key random damage goes unnoticed with a probability of 2^-128. It does not
+// guard against forgery: the key is known.
 class SipHash128 {
   public:
     SipHash128(std::uint64_t key0, std::uint64_t key1);
 
     void add(std::span<const std::uint8_t> bytes);
-    // Of all that was added so far; more may follow.
+    // Digest of all bytes added so far; more may follow.
     std::array<std::uint64_t, 2> digest() const;
 
   private:

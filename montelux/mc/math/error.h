@@ -7,8 +7,8 @@
 
 namespace montelux {
 
-// Thrown at the borders (files, arguments), never on the way of a sample.
-// `where` is a file with line and column, a function, or an option; it may be empty.
+// Thrown at the borders (files, arguments), never in the sampling loop. `where` is a file with line and
+// column, a function, or an option; it may be empty.
 class Error : public std::runtime_error {
   public:
     explicit Error(std::string_view what) : std::runtime_error(std::string(what)) {}

@@ -1,11 +1,11 @@
 // Incomplete gamma and beta functions, the normal and Student laws, and the inverses of all of them.
 #pragma once
 
-// The functions are Boost.Math's, which this header keeps out of sight, and so are the inverses of the gamma
-// function and of the normal law. Relative errors of the functions, and the probabilities of what the
-// inverses return beyond the rounding of that, are below 1e-13 for shapes up to 100 and 3e-12 up to 1e4, for
-// probabilities from 1e-300 to 1 (measured against 40 digits, and on 100,000 random arguments against each
-// other). Outside their domains: NaN; where the result overflows: infinity. Nothing is thrown.
+// The functions, and the inverses of the gamma function and of the normal law, are Boost.Math's, which this
+// header hides. Relative errors of the functions, and the probabilities of what the inverses return beyond
+// the rounding of that, are below 1e-13 for shapes up to 100 and 3e-12 up to 1e4, for probabilities from
+// 1e-300 to 1 (measured against 40 digits, and on 100,000 random arguments against each other). Outside their
+// domains: NaN; where the result overflows: infinity. Nothing is thrown.
 namespace montelux::incomplete {
 
 // P(Z <= z) and P(Z > z) of the standard normal law, and the z of a given probability of either.

@@ -1,4 +1,4 @@
-// The root of an increasing function in a bracket: what every numerical quantile ends in.
+// The root of an increasing function in a bracket, for numerical quantiles.
 #pragma once
 
 #include <algorithm>

@@ -20,7 +20,7 @@
 
 namespace montelux {
 
-// More would only be in each other's way, and use the machine up.
+// More threads would only slow each other down.
 inline constexpr int most_threads = 4096;
 
 // While it lives, loops of the whole process use at most `threads` threads; 0 means one per processor.

@@ -1,4 +1,4 @@
-// Low-discrepancy point sets by name: coordinate (index, dimension) of each, plain or randomised.
+// Low-discrepancy point sets by name: random access by (index, dimension), plain or randomised.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ enum class PointSetKind : std::uint8_t { independent, halton, hammersley, sobol,
 enum class Randomisation : std::uint8_t {
     none,
     shift,             // adds one random vector modulo 1 (Cranley, Patterson 1976); every kind
-    digit_permutation, // one random digit permutation a base, then a shift; Halton and Hammersley
+    digit_permutation, // one random digit permutation per base, then a shift; Halton and Hammersley
     scramble,          // nested (Owen 1995); Halton, Hammersley and Sobol'
 };
 
@@ -49,8 +49,8 @@ class PointSet {
     double halton(std::uint32_t index, int base, std::uint64_t key) const;
 
     Settings settings_;
-    std::vector<std::uint64_t> keys_;  // one a dimension
-    std::vector<std::uint64_t> steps_; // additive sequences: one a dimension
+    std::vector<std::uint64_t> keys_;  // one per dimension
+    std::vector<std::uint64_t> steps_; // additive sequences: one per dimension
 };
 
 } // namespace montelux

@@ -20,8 +20,8 @@
 
 namespace montelux {
 
-// Numbers in [0, 1): a pure function of (settings, pixel, sample index) and of how many were drawn before, in
-// units of one and of two. As many as wanted may be drawn. For every kind each number is uniform, the numbers
+// Numbers in [0, 1): a pure function of (settings, pixel, sample index) and of how many were drawn before,
+// one and two at a time. As many as wanted may be drawn. For every kind each number is uniform, the numbers
 // of a sample are independent of one another, and so a single sample is unbiased. Samples of one replicate
 // depend on each other (that is what makes their mean better); samples of different replicates or pixels do
 // not, except that the pixels of a replicate of `sobol_blue_noise` share one point set. docs/random.md
@@ -117,8 +117,8 @@ class SampleStream {
         }
     }
 
-    // A number that was drawn, with random bits below its 24: for a choice among many, or of the improbable.
-    // To be asked for once, before anything else is drawn.
+    // A drawn number with random bits added below its 24, for a choice among many, or of something
+    // improbable. Call it once, before anything else is drawn.
     double refined(float u) {
         if (kind_ == SamplerKind::independent) [[likely]]
             return double(u) + 0x1p-24 * double(unit_float(next_philox()));

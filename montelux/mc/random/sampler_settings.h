@@ -1,4 +1,4 @@
-// Which points the samples of a picture or an integral are drawn from, and how they split into replicates.
+// Settings of a sampler: its point set, and how samples split into replicates.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +31,8 @@ constexpr std::uint32_t points_per_replicate(const SamplerSettings& s) {
     return points == 0 ? 1 : points;
 }
 
-// A replicate is a run of consecutive samples. It goes on beyond spp: a picture that is
-// rendered further starts new replicates of the same length.
+// A replicate is a run of consecutive samples. Beyond spp, a continued render starts new replicates of the
+// same length.
 constexpr std::uint64_t replicate_of(const SamplerSettings& s, std::uint64_t sample_index) {
     return sample_index / points_per_replicate(s);
 }

@@ -1,5 +1,5 @@
-// The shared statistical engine: does a sampler draw from the density it reports? Chi-squared with
-// adapters for intervals, rectangles and the sphere.
+// Chi-squared tests of samplers against the densities they report, with adapters for intervals, rectangles
+// and the sphere.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A value with its standard error: what every estimator of the library returns.
+// A value with its standard error, as every estimator of the library returns it.
 #pragma once
 
 #include <cstdint>

@@ -41,7 +41,7 @@ class ParetoTail {
         for (double v : values) add(v);
     }
     void merge(const ParetoTail& other) { add(other.kept_); }
-    // Holds nothing, and ignores what could not enter this one after a merge.
+    // An empty one, which ignores values that could not enter this one after a merge.
     ParetoTail empty() const;
 
     std::size_t capacity() const { return capacity_; }

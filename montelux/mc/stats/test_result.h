@@ -1,4 +1,4 @@
-// What a statistical test returns, and how the thresholds of many tests are shared.
+// Result of a statistical test, and thresholds for many tests together.
 #pragma once
 
 #include <cmath>

@@ -16,16 +16,16 @@ namespace {
 
 constexpr std::uint64_t training_points = 2048;      // of a round, at first
 constexpr std::uint64_t least_round = 64;            // of few evaluations,
-constexpr std::uint64_t least_explored = 8;          // points of a replicate, of the same,
+constexpr std::uint64_t least_explored = 8;          // points of a replicate, as a share of the same,
 constexpr std::uint64_t few_evaluations = 16384;     // which are fewer than these
-constexpr int share_step_of_few = 8;                 // units of shares, of the same
+constexpr int share_step_of_few = 8;                 // granularity of shares, as a share of the same
 constexpr std::uint64_t max_training_points = 65536; // of a round
 constexpr int max_rounds = 24;
 constexpr int max_retrainings = 4;
 constexpr double fixed_training_share = 0.1; // of a fixed number of evaluations,
-constexpr double least_training = 20000;     // or so many, if they are no more than a third
+constexpr double least_training = 20000;     // or this many, if they are at most a third
 constexpr double disagreement = 2e-3;        // p-value of the training rounds below which there is a warning
-constexpr std::uint64_t enough_nonzero = 16; // points that must see anything before training begins,
+constexpr std::uint64_t enough_nonzero = 16; // non-zero points needed before training begins,
 constexpr std::uint64_t few_nonzero = 4;     // the same, where a quarter of all has been explored,
 constexpr std::uint64_t most_exploration = 1 << 20; // or evaluations without
 constexpr double peaky = 0.1; // effective share of exploring points below which peaks are searched for
@@ -33,15 +33,15 @@ constexpr double narrow_peaks = 0.01;        // the same, where the search is th
 constexpr double trusted_exploration = 0.05; // the same, above which the error of uniform points is believed
 constexpr double flat = 0.6; // the same, of integrands that uniform points are likely to be best for
 constexpr double uniform_reach = 32768; // evaluations within which uniform points may be expected to arrive
-// Uniform points that a claim takes in several variables: what has an integral of one 1/5000 of the cube is
-// missed by all of them in 4 % of cases.
+// Uniform points behind a claim in several variables: all of them miss a region of 1/5000 of the cube in 4 %
+// of cases.
 constexpr std::uint64_t plateau_evaluations = 16384;
 constexpr double even_values = 0.7;          // effective share of exploring points of a plateau
 constexpr std::uint64_t most_kept = 1 << 18; // uniform points of a step that are kept for training
-constexpr double surprise_matters = 2;       // error over target, from which heavy weights are acted on
-constexpr double much_sooner = 0.5; // share of the expected rest at which uniform points are gone back to
+constexpr double surprise_matters = 2;       // error over target from which heavy weights matter
+constexpr double much_sooner = 0.5; // share of the expected rest below which uniform points are resumed
 constexpr std::uint64_t step_points = 65536; // of each replicate in one step
-constexpr std::uint64_t smallest_budget = 4; // rounds of training that must fit in for training to begin
+constexpr std::uint64_t smallest_budget = 4; // rounds that must be affordable for training to begin
 
 // 2^k or 3 * 2^(k - 1): numbers of Sobol' points that divide the cube evenly; the next one above n.
 std::uint64_t next_balanced(std::uint64_t n) {
@@ -99,7 +99,7 @@ class AdaptiveEstimator final : public Estimator {
                 tally.chi_squared += std::pow(check.value - tally.value[0], 2) / variance;
                 ++tally.degrees_of_freedom;
             }
-        // Of uniform points the best may weigh much, and yet be no surprise.
+        // The largest of uniform points may have a large weight without being a surprise.
         const bool heavy = weighted && estimate.heavy_tailed(tally.standard_error[0]);
         const bool lost = weighted && estimate.lost_what_is_in(uniform_);
         std::vector<std::string> tail;
@@ -154,7 +154,7 @@ class AdaptiveEstimator final : public Estimator {
             std::bit_floor(std::max<std::uint64_t>(request.max_evaluations / (8 * replicates()), 1));
         return std::clamp(eighth, std::min(least_explored, explored_), explored_);
     }
-    // Goes on, doubling, while hardly any point sees anything.
+    // Doubles while hardly any point is non-zero.
     StepOutcome explore(const StepRequest& request) {
         const bool first = uniform_.points() == 0;
         const std::uint64_t explored = first ? exploration(request) : explored_;
@@ -183,11 +183,11 @@ class AdaptiveEstimator final : public Estimator {
             phase_ = trainer_.nonzero() == 0 ? Phase::uniform : first_training();
         return StepOutcome::advanced;
     }
-    // Points of each replicate that the trained density is tried with: half of the exploration.
+    // Points of each replicate for the first trial of the trained density: half of the exploration.
     std::uint64_t first_sample() const {
         return problem_.evaluator.dimensions() == 1 ? explored_ : std::max(least_explored, explored_ / 2);
     }
-    // Values of one size, beside which a spike may be: only more points can tell.
+    // Values of one size, with a possible spike elsewhere: only more points can tell.
     bool plateau() const {
         return problem_.evaluator.dimensions() > 1 && trainer_.effective_share() > even_values;
     }
@@ -206,7 +206,7 @@ class AdaptiveEstimator final : public Estimator {
 
     StepOutcome search(const StepRequest& request) {
         const auto n = static_cast<std::uint64_t>(problem_.evaluator.dimensions());
-        // Where many points saw much, few searches tell whether there are peaks at all.
+        // If many points have large values, few searches show whether there are peaks at all.
         const bool narrow = trainer_.effective_share() < narrow_peaks;
         trainer_.find_peaks(std::min(request.max_evaluations / 4, (narrow ? 32 : 8) * (60 * n + 3 * n * n)),
                             narrow ? 5 : 2);
@@ -221,12 +221,12 @@ class AdaptiveEstimator final : public Estimator {
         const bool stuck =
             trainer_.rounds() > 3 && variance != previous_variance_ && variance > 0.9 * previous_variance_;
         previous_variance_ = variance;
-        // Larger rounds where more of the same size change nothing.
+        // Larger rounds if more of the same size do not improve the fit.
         const double trained = static_cast<double>(trainer_.evaluations() + uniform_.evaluations());
         if (stuck || trained > 5 * static_cast<double>(round_points_))
             round_points_ = std::min(4 * round_points_, max_training_points);
-        // A share of the evaluations there are, a greater one of few; or of what the target will cost with
-        // this density, if the Sobol' points help as they usually do.
+        // A share of the allowed evaluations, larger if these are few; or of the expected cost of the target
+        // with this density and the usual gain of Sobol' points.
         const double all = static_cast<double>(request.max_evaluations) + trained;
         double allowed = std::max(fixed_training_share * all, std::min(all / 3, least_training));
         if (request.relative_error > 0)
@@ -241,7 +241,7 @@ class AdaptiveEstimator final : public Estimator {
         return StepOutcome::advanced;
     }
 
-    // The next phase's first step; if that is not made, nothing changes.
+    // The next phase's first step; if it fails, nothing changes.
     StepOutcome stop_training(const StepRequest& request) {
         phase_ = trainer_.rounds() > 0 ? Phase::weighted : Phase::uniform;
         try {
@@ -266,7 +266,7 @@ class AdaptiveEstimator final : public Estimator {
         } else if (points > 0) {
             while (next_balanced(goal) <= std::min(2 * points, affordable)) goal = next_balanced(goal);
         }
-        while (goal > affordable && goal > points) { // the largest balanced number that can be paid
+        while (goal > affordable && goal > points) { // the largest affordable balanced number
             const std::uint64_t floor = std::bit_floor(goal);
             goal = goal > floor ? floor : floor / 4 * 3;
         }
@@ -274,7 +274,7 @@ class AdaptiveEstimator final : public Estimator {
         goal = goal / balanced * balanced;
         if (goal <= points) return StepOutcome::exhausted;
         const std::uint64_t end = std::min(goal, (points + step_points) / balanced * balanced);
-        // What uniform points have found since the exploration, training is to know.
+        // Training gets the uniform points drawn since the exploration.
         const bool keep = phase_ == Phase::uniform && trainer_.rounds() == 0 && targeted(request) &&
                           (end - points) * replicates() <= most_kept;
         SamplePoints drawn;
@@ -295,11 +295,11 @@ class AdaptiveEstimator final : public Estimator {
         return StepOutcome::advanced;
     }
 
-    // Uniform points where they prove better; more training where the target is much farther than was
+    // Returns to uniform points if they prove better; trains more if the target is much farther than
     // expected.
     void choose_again(const StepRequest& request, bool first) {
         const double ratio = weighted_.error_ratio(request);
-        // Of uneven integrands uniform points know their error too little for that.
+        // For uneven integrands the error of uniform points is too uncertain for that.
         const bool sooner = targeted(request) && trainer_.effective_share() > flat &&
                             uniform_.expected_rest(request) < much_sooner * weighted_.expected_rest(request);
         const double more = static_cast<double>(uniform_.points()) / static_cast<double>(weighted_.points());
@@ -317,12 +317,12 @@ class AdaptiveEstimator final : public Estimator {
             std::min(sampled * (std::pow(ratio, 1.5) - 1), static_cast<double>(request.max_evaluations));
         const double trained = static_cast<double>(trainer_.evaluations());
         const bool far = settings_.training_share * left > 2 * trained && sampled < left;
-        // Weights that the density had not promised: it misses a part of the integrand.
+        // Unexpectedly large weights: the density misses a part of the integrand.
         const bool surprised = ratio <= surprise_matters && surprising(weighted_) &&
                                4 * trained < static_cast<double>(request.max_evaluations);
         if (!far && !surprised) return;
-        // These samples are given up: an estimate that joined densities chosen by what was seen would be
-        // biased.
+        // Discards these samples: an estimate that kept them, with a density chosen by looking at them, would
+        // be biased.
         ++retrained_;
         abandoned_evaluations_ += weighted_.evaluations();
         abandoned_non_finite_.merge(weighted_.sums().non_finite);
@@ -368,7 +368,7 @@ class AdaptiveEstimator final : public Estimator {
     Phase phase_ = Phase::explore;
     double previous_variance_ = std::numeric_limits<double>::infinity();
     std::uint64_t round_points_; // of the next round of training
-    double training_goal_ = 0;   // evaluations that training may take in any case
+    double training_goal_ = 0;   // evaluations that training may always take
     int retrained_ = 0;
     std::uint64_t abandoned_evaluations_ = 0;
     NonFiniteCount abandoned_non_finite_;

@@ -1,4 +1,4 @@
-// A density on the unit cube that rises towards all faces: a defence against singularities there.
+// A density on the unit cube that rises towards all faces, which bounds weights at singularities there.
 #pragma once
 
 #include <span>
@@ -7,10 +7,10 @@
 
 namespace montelux {
 
-// The product over coordinates of (2 m)^(-2/3) / 3, m = min(x, 1 - x). Of 1 / (x + y), and wherever several
-// coordinates vanish together, the marginals have only logarithms. Maps fitted to them leave weights of
-// infinite variance; here a singularity at a corner of order k has bounded weights where 3 k <= 2 n of the n
-// coordinates that vanish there, and finite variance where 6 k < 5 n.
+// The product over coordinates of (2 m)^(-2/3) / 3, m = min(x, 1 - x). If several coordinates vanish
+// together, as in 1 / (x + y), the marginals have only logarithms, and maps fitted to them leave weights of
+// infinite variance. With this density a corner singularity of order k in n vanishing coordinates has bounded
+// weights if 3 k <= 2 n, and finite variance if 6 k < 5 n.
 //
 // x[i] for uniform u[i], and density[i] *= p(x[i]).
 void sample_boundary(std::span<const double> u, std::span<double> x, std::span<double> density);

@@ -26,7 +26,7 @@ constexpr double exploring_width = 1.5;
 constexpr double safe_width = 1.1;
 constexpr std::size_t least_walked = 4, most_walked = 128; // steps of walkers after a round
 constexpr double heavy_shape = 0.4; // of the tail of a round's weights; from 0.5 the variance is infinite
-constexpr std::uint64_t least_seen = 16; // points of a round that saw anything, for the round to teach
+constexpr std::uint64_t least_seen = 16; // non-zero points of a round needed for a fit
 
 bool is_heavy_tailed(std::span<const double> weights) {
     ParetoTail tail;
@@ -75,7 +75,7 @@ void DensityTrainer::start(SamplePoints&& points) {
 
 void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless) {
     if (density_.dimensions() > max_gaussian_dimensions) return;
-    // Taken over at the end, so that an exception of the integrand leaves everything as it was.
+    // Assigned at the end, so that an exception of the integrand changes nothing.
     std::uint64_t evaluations = 0;
     NonFiniteCount non_finite;
     const DensityFunction h = counted_steering(evaluations, non_finite);
@@ -95,8 +95,8 @@ void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless) {
 }
 
 bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
-    // With peaks just found, the density is tried before it is fitted. While weights are uneven, every second
-    // round draws from wider Gaussians, which see the ends of ridges.
+    // After a search for peaks, the density is tried before it is fitted. While weights are uneven, every
+    // second round draws from wider Gaussians, which see the ends of ridges.
     const bool wide =
         rounds_ % 2 == 1 && lacking(rounds_, relative_variance_) && !density_.gaussians().empty();
     const MixtureDensity drawn = wide ? density_.widened(exploring_width) : density_;
@@ -124,14 +124,14 @@ bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
                                          ? spread * static_cast<double>(n) / (mean_size * mean_size)
                                          : std::numeric_limits<double>::infinity();
     const auto seen = static_cast<std::uint64_t>(std::ranges::count_if(h, [](double v) { return v > 0; }));
-    // Worse than the exploration: Gaussians of peaks at faces lie outside the cube, or off a jump.
+    // Worse than the exploration: Gaussians of peaks at faces lie partly outside the cube or beyond a jump.
     const bool useless = seen < std::min(nonzero_, least_seen);
     Round drawn_round{drawn, std::move(points.x), std::move(h), std::move(points.density)};
     Walk walked;
     if (!useless && lacking(rounds_ + 1, relative_variance) && !density_.gaussians().empty())
         walked = walk(drawn_round, n / 4);
 
-    // An exception of the integrand leaves everything as it was: nothing is changed before this line.
+    // Nothing is changed before this line, so an exception of the integrand changes nothing.
     ++rounds_;
     evaluations_ += sums->evaluations + walked.evaluations;
     non_finite_.merge(sums->non_finite);
@@ -223,7 +223,7 @@ DensityTrainer::Pool DensityTrainer::pool() const {
 void DensityTrainer::fit() {
     const int dimensions = density_.dimensions();
     const Round& last = recent_.back();
-    // The maps follow the last round alone, whose weights are the evenest.
+    // The maps follow only the last round, whose weights are the most even.
     std::vector<double> weights(last.h.size());
     for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = last.h[i] / last.p[i];
     if (!(std::accumulate(weights.begin(), weights.end(), 0.0) > 0)) return;
@@ -239,8 +239,7 @@ void DensityTrainer::fit() {
                         dimensions <= max_gaussian_dimensions;
     const bool more = !enriched_ && uneven;
     const bool boundary = density_.has_boundary() || (uneven && is_heavy_tailed(weights));
-    // Gaussians have more to learn: all recent points, weighted by the mixture of the densities that drew
-    // them.
+    // Gaussians are fitted to all recent points, weighted by the mixture of the densities that drew them.
     const Pool all = pool();
     weights.resize(all.h.size());
     double total = 0;
@@ -254,7 +253,7 @@ void DensityTrainer::fit() {
         gaussians = gaussians.empty() ? scattered_gaussians(all.x, weights) : split_gaussians(gaussians);
     }
     if (!gaussians.empty()) fit_gaussians(gaussians, all.x, weights, em_steps);
-    for (Gaussian& g : gaussians) g = g.widened(safe_width); // tails cost little, and their absence much
+    for (Gaussian& g : gaussians) g = g.widened(safe_width); // heavier tails cost little, missing tails much
     MixtureDensity density_before = std::move(density_);
     density_ = MixtureDensity(dimensions, maps, gaussians, boundary);
     density_.optimise_shares(all.x, all.h, all.p, uniform_units_, share_step_);

@@ -12,23 +12,22 @@
 namespace montelux {
 
 // Each round draws points from the density fitted so far and fits it again to the last rounds; the weights
-// get evener and the fit with them. The rounds' estimates of the integral do not enter the final one, which
-// is therefore unbiased; they only check it.
+// become more even, and so does the fit. The rounds' estimates of the integral do not enter the final one,
+// which is therefore unbiased; they only check it.
 class DensityTrainer {
   public:
     DensityTrainer(const Problem& problem, int uniform_units);
 
-    // Shares of channels are multiples of so many units from now on: fewer points divide exactly.
+    // Granularity of the channels' shares from now on: with coarser shares fewer points divide exactly.
     void set_share_step(int step) { share_step_ = step; }
-    // Takes the points of the exploration, which were uniform; once more if it went on.
+    // Takes the uniform points of the exploration; again after it continued.
     void start(SamplePoints&& points);
-    // Of |g| over the points last taken: number of points with any, and effective number, (sum h)^2 / sum
-    // h^2.
+    // Over the points last taken: number of non-zero points, and effective number, (sum h)^2 / sum h^2, of
+    // |g|.
     std::uint64_t nonzero() const { return nonzero_; }
     double effective_share() const { return effective_share_; }
 
-    // Looks for peaks, until so many searches in a row have led to known ones; evaluations are counted in
-    // evaluations().
+    // Searches for peaks until this many searches in a row lead to known ones; evaluations() counts the cost.
     void find_peaks(std::uint64_t max_evaluations, int fruitless = ModeSearch().fruitless);
     // One round of n points, about (a multiple of what the density divides exactly). False when cancelled:
     // nothing changed.
@@ -40,10 +39,10 @@ class DensityTrainer {
     const NonFiniteCount& non_finite() const { return non_finite_; }
     // Relative variance of g / q within channels, of the last round.
     double relative_variance() const { return relative_variance_; }
-    // Share of the integral at points of the last rounds where h is far above its mean under the density
-    // fitted to them: places that it does not cover.
+    // Share of the integral, in the last rounds, at points where h / q is far above its mean: places that the
+    // density does not cover.
     double uncovered_share() const { return uncovered_share_; }
-    static constexpr double uncovered_matters = 2e-3; // from which it is acted on
+    static constexpr double uncovered_matters = 2e-3; // above which it matters
     // The last two rounds' estimates of the first component, with variances as of independent points.
     struct Check {
         double value = 0, variance = 0;
@@ -68,7 +67,7 @@ class DensityTrainer {
     std::vector<double> steering(const ValueBuffer& g) const;
     // The same at points, counted.
     DensityFunction counted_steering(std::uint64_t& evaluations, NonFiniteCount& non_finite) const;
-    // Are weights so uneven, or is so much not covered, that Gaussians are to learn more?
+    // Are weights so uneven, or is so much uncovered, that Gaussians must be fitted again?
     bool lacking(int rounds, double relative_variance) const;
     struct Walk {
         WalkedPoints points;
@@ -84,10 +83,9 @@ class DensityTrainer {
     Problem problem_;
     int uniform_units_, share_step_ = 1;
     MixtureDensity density_;
-    std::vector<double> scale_; // one a component
+    std::vector<double> scale_; // one per component
     std::vector<Round> recent_; // two at most
-    // Points of all rounds where h was greatest beside the density fitted then: what was seen once is not
-    // forgotten.
+    // Points of all rounds with the greatest h / q at the time, so that later rounds do not forget them.
     PointBuffer remembered_;
     std::vector<double> remembered_h_;
     WalkedPoints walked_; // of the last walk

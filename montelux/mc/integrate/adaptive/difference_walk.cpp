@@ -11,7 +11,7 @@
 namespace montelux {
 namespace {
 
-constexpr double shortest_step = 0.05; // of the one that is best for a Gaussian: for ridges that bend
+constexpr double shortest_step = 0.05; // relative to the best one for a Gaussian, for ridges that bend
 
 // Systematic draws of indices by weight.
 std::vector<std::size_t> draw_by_weight(std::span<const double> weights, std::size_t count, double u) {

@@ -1,4 +1,4 @@
-// Random walkers that follow a function into places where importance sampling has not been.
+// Random walkers that follow a function to places that importance sampling has not reached.
 #pragma once
 
 #include <cstdint>
@@ -16,16 +16,15 @@ struct DifferenceWalk {
     std::size_t steps = 32;
 };
 
-// Points on the unit cube, with h at each; the last `walkers` of them are where the walkers are.
+// Points on the unit cube, with h at each; the last `walkers` of them are the walkers' positions.
 struct WalkedPoints {
     PointBuffer x;
     std::vector<double> h;
 };
 
-// Metropolis walkers with density h, whose proposals are differences of two others of them (ter Braak 2006,
-// "A Markov Chain Monte Carlo version of the genetic algorithm Differential Evolution"): they have the shape
-// of a ridge without anything being fitted to it. They begin at points drawn by weight, and make walkers *
-// steps evaluations.
+// Metropolis walkers with density h, whose proposals are differences of two other walkers (ter Braak 2006, "A
+// Markov Chain Monte Carlo version of the genetic algorithm Differential Evolution"): they take the shape of
+// a ridge without a fit. They start at points drawn by weight, and cost walkers * steps evaluations.
 WalkedPoints walk_by_differences(const DensityFunction& h, const PointBatch& x,
                                  std::span<const double> h_at_x, std::span<const double> weights,
                                  const DifferenceWalk& settings);

@@ -11,8 +11,8 @@
 namespace montelux {
 namespace {
 
-// Where weights vanish from some place on, so many points beyond it are kept that one of them would probably
-// have been seen, given how many nearby are seen where weights do not vanish.
+// If weights vanish beyond some place, the margin has as many points as would probably have shown one
+// non-zero weight, at the rate nearby.
 constexpr double margin = 5;
 constexpr std::size_t nearby = 32;
 constexpr double least_gain = 0.25; // of likelihood, in units of the noise of one effective point
@@ -62,7 +62,7 @@ class Splitter {
                      right = all - left;
         const bool no_left = !(profile_.mass(leaf.first, k) > 0),
                    no_right = !(profile_.mass(k, leaf.last) > 0);
-        // A few points that saw something among many that did not say too little to part with them.
+        // A few non-zero points among many zeros are too little evidence for a split.
         auto too_few = [&](std::size_t first, std::size_t last) {
             const std::size_t seen = profile_.nonzero[last] - profile_.nonzero[first];
             return seen > 0 && seen < least_;
@@ -141,10 +141,10 @@ Power fit_power(const Profile& profile, std::size_t count, double upper) {
     return {mass / logarithms, std::sqrt(squares) / logarithms};
 }
 
-// That of the first bin where there is surely a singularity: one that falls faster than a straight line
-// would, or that stays near 0; else 1.
+// The power of the first bin if it surely has a singularity (falls faster than a straight line, or stays near
+// 0); else 1.
 double end_power(const Profile& profile, const Leaf& first) {
-    // The first bin alone has few points.
+    // The first bin by itself has few points.
     const std::size_t window = std::max(first.last, profile.x.size() / 16);
     const double end = window < profile.x.size() ? std::max(first.upper, profile.x[window]) : 1;
     const Power all = fit_power(profile, window, end), near = fit_power(profile, first.last, first.upper / 8);
@@ -194,7 +194,7 @@ MonotoneMap fit_monotone_map(std::span<const double> positions, std::span<const 
     std::vector<double> edges{0}, masses;
     for (const Leaf& leaf : leaves) {
         edges.push_back(leaf.upper);
-        // The weight of one point more: a bin in which nothing was seen is not known to be empty.
+        // The weight of one more point: a bin without non-zero points need not be empty.
         masses.push_back(profile.mass(leaf.first, leaf.last) + one);
     }
     return {std::move(edges), std::move(masses), end_power(profile, leaves.front())};

@@ -144,11 +144,11 @@ void fit_gaussians(std::vector<Gaussian>& components, const PointBatch& x, std::
     const auto n = static_cast<std::size_t>(x.dimensions());
     double total = 0;
     for (double w : weights) total += w;
-    // Points that matter, one after the other.
+    // Points with non-zero weight, contiguous.
     std::vector<std::size_t> used;
     for (std::size_t i = 0; i < x.count(); ++i)
         if (weights[i] * static_cast<double>(x.count()) > 1e-9 * total) used.push_back(i);
-    // Of many points some that are drawn by weight, systematically, and then have equal weights.
+    // A systematic subsample drawn by weight, whose points then have equal weights.
     std::vector<double> resampled;
     if (used.size() > most_points) {
         double sum = 0;

@@ -11,7 +11,7 @@
 namespace montelux {
 namespace {
 
-// Too few points near a corner show how heavy its weights are, so that this share is not left to the fit.
+// Too few points near a corner show how heavy its weights are, so this share is not fitted.
 constexpr int boundary_units = 1;
 constexpr double most_weight = 10; // times the mean, of a point that shares are fitted to
 
@@ -107,7 +107,7 @@ void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double
     std::vector<std::vector<double>> q(n, std::vector<double>(x.count()));
     for (std::size_t k = 0; k < n; ++k) channel_pdf(static_cast<int>(k), x, q[k]);
     const double least = static_cast<double>(uniform_units) / units;
-    // One point with a weight far above all others must not decide over the shares.
+    // A single point of far larger weight must not decide the shares.
     double total = 0;
     for (std::size_t i = 0; i < x.count(); ++i) total += h[i] / p[i];
     const double mean = total / static_cast<double>(x.count()), largest = most_weight * mean;

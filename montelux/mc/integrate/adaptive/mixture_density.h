@@ -12,17 +12,17 @@
 namespace montelux {
 
 // q(x) = sum over channels k of a_k q_k(x) on the unit cube. Channel 0 is uniform, and always has a share, so
-// that no part of the cube is left out (a defensive mixture: Owen and Zhou 2000, "Safe and effective
+// that every part of the cube is sampled (a defensive mixture: Owen and Zhou 2000, "Safe and effective
 // importance sampling"); then boundary_density.h and the product of maps, if they are there; then the
 // Gaussians, whose points outside the cube count as zeros. Each channel draws its own share of the points,
 // from a point set of its own, and every point is weighted by the whole mixture (Veach's balance heuristic),
-// so that channels that miss something do no harm.
+// so that channels may miss parts of the integrand.
 class MixtureDensity {
   public:
     // Shares are multiples of 1 / units, so that every multiple of `units` points is divided exactly.
     static constexpr int units = 64;
 
-    // Times the mean of h / q: above it the shares cannot help, only a channel that is not there yet.
+    // Multiple of the mean of h / q above which only a new channel helps, not other shares.
     static constexpr double beyond_reach = 100;
 
     // Uniform.
@@ -34,14 +34,13 @@ class MixtureDensity {
     int dimensions() const { return dimensions_; }
     int channels() const { return static_cast<int>(shares_.size()); }
     std::span<const int> shares() const { return shares_; }
-    // One a channel, summing to `units`.
+    // One per channel, summing to `units`.
     void set_shares(std::vector<int> shares) { shares_ = std::move(shares); }
     bool has_boundary() const { return boundary_; }
     std::span<const MonotoneMap> maps() const { return maps_; }
     std::span<const Gaussian> gaussians() const { return gaussians_; }
 
-    // Multiples of so many points are divided exactly: `units`, or fewer where the shares have a common
-    // factor.
+    // Multiples of this many points divide exactly: `units`, or fewer if the shares have a common factor.
     std::uint64_t balanced_points() const;
     // Number of points of a channel among the first n of the mixture.
     std::uint64_t channel_points(int channel, std::uint64_t n) const {
@@ -56,8 +55,8 @@ class MixtureDensity {
 
     // Shares that make the second moment of h / q small, given points x drawn with density p and h there
     // (Kleiss and Pittau 1994, "Weight optimization in multichannel Monte Carlo"). The uniform channel keeps
-    // `uniform_units` at least, that of the boundary one, and each of the last `newest` channels one step:
-    // what it can do is not known. Shares are multiples of `step` units, a power of two.
+    // `uniform_units` at least, that of the boundary one, and each of the last `newest` channels at least one
+    // step, since its benefit is not known yet. Shares are multiples of `step` units, a power of two.
     void optimise_shares(const PointBatch& x, std::span<const double> h, std::span<const double> p,
                          int uniform_units, int step = 1, int newest = 0);
     // The same with all Gaussians wider.
@@ -82,7 +81,7 @@ class MixtureDensity {
 
     int dimensions_;
     bool boundary_ = false;
-    std::vector<MonotoneMap> maps_; // one a dimension, or none
+    std::vector<MonotoneMap> maps_; // one per dimension, or none
     std::vector<Gaussian> gaussians_;
     std::vector<int> shares_;
 };

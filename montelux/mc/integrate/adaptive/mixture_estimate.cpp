@@ -14,7 +14,7 @@ constexpr double most_inflation = 3;    // and the largest factor by which a fas
 constexpr double usual_fall = 1.2;      // exponent by which they usually fall
 constexpr double heavy_weight = 5;      // times the mean, of one sample,
 constexpr double heavy_influence = 0.5; // and times the standard error, of what it adds
-// Of normal replicates one alone hardly ever makes up so much of the spread.
+// A single one of normal replicates hardly ever causes so much of the spread.
 constexpr double outstanding = 0.8;
 constexpr int enough_replicates = 8;
 
@@ -56,8 +56,8 @@ double MixtureEstimate::standard_error(const CovarianceMoments& moments, int com
 
 double MixtureEstimate::least_error(const CovarianceMoments& moments, int component) const {
     const double least = sums_.extremes.least_standard_error(component, all_points());
-    // Replicates of an indicator agree exactly where each has the same number of points on either side of a
-    // jump; their spread then says nothing about where within a cell of the net it is.
+    // Replicates of an indicator agree exactly if each has the same number of points on either side of a
+    // jump; their spread then does not contain the jump's position within a cell of the net.
     if (moments.variance(component) > 0) return least;
     return std::max(least, equal_values_error(moments.mean(component), static_cast<double>(all_points())));
 }

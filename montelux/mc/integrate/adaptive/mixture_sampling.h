@@ -19,7 +19,7 @@ struct SamplePoints {
     std::vector<double> density;
 };
 
-// What evaluating some points of a mixture gave.
+// Sums from evaluating points of a mixture.
 struct MixtureSums {
     ReplicateSums sums; // of g / q
     NonFiniteCount non_finite;

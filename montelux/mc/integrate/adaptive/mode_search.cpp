@@ -54,7 +54,7 @@ class Climber {
             }
             const std::vector<double> f = log_at(around);
             if (std::ranges::find(f, nowhere) != f.end()) {
-                // Zero there, for a jump or an underflow: differences are taken closer by.
+                // Zero there, by a jump or an underflow: takes closer differences.
                 width *= 0.3;
                 if (width < least_difference) break;
                 continue;
@@ -160,8 +160,8 @@ class Climber {
 
   private:
     // Standard deviations along the axes of log h's curvature, at most `widest`. A Gaussian as wide as a
-    // curved ridge or shell seems straight would seem to explain what lies beside it: where h falls sooner,
-    // they are shorter.
+    // curved ridge or shell looks straight would cover its surroundings: if h falls sooner, the deviations
+    // are shorter.
     std::vector<double> axis_widths(const std::vector<double>& x, double top, const Eigensystem& axes,
                                     double widest) {
         constexpr int halvings = 6;

@@ -13,8 +13,8 @@ namespace montelux {
 
 struct ModeSearch {
     int most_modes = 24;
-    int fruitless = 5; // searches in a row that lead to a known mode, before giving up
-    int remote = 3;    // searches from points far from all modes, whose h is small for all that
+    int fruitless = 5;                 // searches in a row that lead to a known mode before the end
+    int remote = 3;                    // searches from points far from all modes, although h is small there
     std::uint64_t max_evaluations = 0; // in all
     double widest = 0.3;               // largest standard deviation of a Gaussian, of the cube's width
 };
@@ -22,10 +22,9 @@ struct ModeSearch {
 // h at a batch of points.
 using DensityFunction = std::function<void(const PointBatch&, std::span<double>)>;
 
-// Climbs log h from points where h is known, each time from where h stands highest above the Gaussians that
-// describe the modes found so far, so that a narrow peak among wide ones is not passed over: even where h is
-// astronomically small, its logarithm shows the way. Each mode gives the Gaussian of its curvature (Laplace's
-// approximation).
+// Climbs log h from points where h is known, each time from the point where h most exceeds the Gaussians of
+// the modes found so far, so that a narrow peak among wide ones is found: log h has a slope even where h is
+// astronomically small. Each mode gives the Gaussian of its curvature (Laplace's approximation).
 std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
                                  std::span<const double> h_at_x, const ModeSearch& settings);
 

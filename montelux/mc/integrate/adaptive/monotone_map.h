@@ -12,7 +12,7 @@ namespace montelux {
 // (Gregory, Delbourgo 1982, "Piecewise rational quadratic interpolation to monotonic data"), which is
 // increasing, has its inverse in closed form, and joins the bins with a continuous slope. So the density is
 // continuous too, and an integrand divided by it stays as smooth as low-discrepancy points like it. Between
-// bins whose densities differ by more than a factor of five the slope may jump, for so do some integrands.
+// bins whose densities differ by more than a factor of five the slope may jump, as some integrands do.
 class MonotoneMap {
   public:
     // The identity.
@@ -52,8 +52,8 @@ struct MapFit {
 };
 
 // The map whose density follows weighted points of the unit interval: bins are split where that raises the
-// likelihood most. Where the weights vanish from some place on, the last bin keeps a margin of a few points,
-// since the place is known no better.
+// likelihood most. If the weights vanish beyond some place, the last bin keeps a margin of a few points, the
+// uncertainty of that place.
 MonotoneMap fit_monotone_map(std::span<const double> positions, std::span<const double> weights,
                              const MapFit& settings = {});
 

@@ -9,7 +9,7 @@
 
 namespace montelux {
 
-// Each component as two along its longest axis, or four where there are one or two components.
+// Splits each component in two along its longest axis, or in four if there are one or two components.
 std::vector<Gaussian> split_gaussians(const std::vector<Gaussian>& components);
 
 // Four, centred at points drawn by weight, half as wide as the whole.

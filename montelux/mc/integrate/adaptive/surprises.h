@@ -1,4 +1,4 @@
-// Gaussians for places where a density is too small for the function that it is meant to follow.
+// Gaussians for places where a density is too small for its function.
 #pragma once
 
 #include <span>

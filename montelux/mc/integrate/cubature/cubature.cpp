@@ -20,11 +20,10 @@
 namespace montelux {
 namespace {
 
-// While all values were zero, so many evaluations in so many regions are made before that is believed; until
-// then the error is infinite.
+// If all values are zero, the error is infinite until this many evaluations in this many regions.
 constexpr std::uint64_t search_evaluations = 4096;
 constexpr std::size_t search_regions = 16;
-// Points after which an integrand that was the same at all of them is examined no further.
+// Points after which an integrand with equal values at all of them is taken as constant.
 constexpr std::uint64_t most_equal_values = 1 << 21;
 
 class CubatureEstimator final : public Estimator {
@@ -37,8 +36,8 @@ class CubatureEstimator final : public Estimator {
             throw Error("cubature", "expected memory for at least 64 regions, " +
                                         std::to_string(64 * regions_.bytes_each()) + " bytes, got " +
                                         std::to_string(max_memory));
-        // The first rule is the one that regions start with, the second what they go on with where the
-        // integrand is smooth; the coarse one is for where it is not.
+        // Regions start with the first rule and continue with the second if the integrand is smooth; the
+        // coarse one is for regions where it is not.
         if (n_ == 1) {
             coarse_.emplace(coarse_rule_of_one_dimension());
             fine_.emplace(fine_rule_of_one_dimension());
@@ -54,7 +53,8 @@ class CubatureEstimator final : public Estimator {
         CubatureRegions fresh(n_, m_);
         std::vector<const SymmetricRule*> rules;
         std::vector<std::size_t> parents;
-        // In one dimension, and in four and more, the cube is first tried by the cheaper rule, which may do.
+        // In one dimension, and in four and more, the cube is first evaluated by the cheaper rule, which may
+        // suffice.
         const bool retry = regions_.count() == 1 && started_coarse() && !regions_.marks(0).rough && !refined_;
         const bool check = !regions_.empty() && !searching();
         if (check && verification_.due(regions_, totals_.value, totals_.error, evaluations_, request,
@@ -64,7 +64,7 @@ class CubatureEstimator final : public Estimator {
             fresh.add_cube();
             rules.push_back(regions_.empty() && started_coarse() ? &*coarse_ : &*fine_);
         } else {
-            // What equal values leave open is no matter of regions.
+            // Halving regions does not reduce the error of equal values.
             if (searching() || reached(request) || !reaches(totals_.rule_error, request))
                 parents = regions_to_halve(regions_, scales(request), searching());
             if (regions_.count() + parents.size() > max_regions_)
@@ -132,7 +132,7 @@ class CubatureEstimator final : public Estimator {
                 if (nonzero_[c] == 0) tally.standard_error[c] = std::numeric_limits<double>::infinity();
         tally.ready = !searching() && verification_.verified(totals_.value);
         tally.at_limit = at_limit_;
-        // Of one variable halving alone finds all that has a width.
+        // In one variable halving alone finds every feature of some width.
         tally.localised = n_ > 1 && verification_.evaluations() > 0 && verification_.blind();
         tally.check_evaluations = verification_.evaluations();
         tally.singular = singular_;
@@ -223,7 +223,7 @@ class CubatureEstimator final : public Estimator {
         return StepOutcome::advanced;
     }
 
-    // No region is left to halve. Equal values everywhere are known the better the more points were met.
+    // No region is left to halve. The error of equal values falls with the number of points.
     StepOutcome end(const StepRequest& request) {
         if (verification_.due(regions_, totals_.value, totals_.error, evaluations_, request, true))
             return verify(request);
@@ -239,7 +239,7 @@ class CubatureEstimator final : public Estimator {
     }
 
     // Was the integrand the same at all points, and not zero? A constant beside other components, as for a
-    // normalisation, is no sign of a part that was not met.
+    // normalisation, does not count.
     bool equal_values() const {
         return std::ranges::all_of(totals_.equal, [](char equal) { return equal != 0; });
     }
@@ -254,8 +254,8 @@ class CubatureEstimator final : public Estimator {
         return n_ > 1 && regions_.marks(parent).rough ? &*coarse_ : &*fine_;
     }
 
-    // What errors of the components are measured by: their targets, or their values where there is none.
-    // Zero for components that need no further work while others do.
+    // Scale of each component's errors: its target, or its value if there is none. Zero for components that
+    // are done while others are not.
     std::vector<double> scales(const StepRequest& request) const {
         std::vector<double> scale(components());
         bool all_reached = true;
@@ -291,7 +291,7 @@ class CubatureEstimator final : public Estimator {
                     of_a *= factor;
                     of_b *= factor;
                     if (factor > 2) halves.marks(a).exhausted = halves.marks(b).exhausted = false;
-                } else { // what the region saw, its halves did not
+                } else { // value of the region less that of its halves
                     of_a = of_b = difference / 2;
                     halves.marks(a).exhausted = halves.marks(b).exhausted = false;
                 }
@@ -373,9 +373,9 @@ class CubatureEstimator final : public Estimator {
     bool refined_ = false; // the cube was evaluated again by the fine rule
     NonFiniteCount non_finite_;
     std::vector<char> nonzero_; // a component: was it ever seen to be other than zero?
-    // Squared differences of regions from their halves, and what their errors expected, of late.
+    // Recent squared differences of regions from their halves, and the squares that their errors predicted.
     std::vector<double> disagreement_, expected_;
-    bool at_limit_ = false;      // no region is left whose error is more than rounding
+    bool at_limit_ = false;      // every region's error is rounding
     std::uint64_t singular_ = 0; // evaluations repeated beside singularities
     CubatureVerification verification_;
 };

@@ -16,7 +16,7 @@ constexpr double tolerance_part = 0.25;
 constexpr double volume_share = 0.6, spread_share = 0.3; // of the points; the rest goes equally to regions
 constexpr std::size_t blocks = 16;                       // parts whose spread is the error of the mean
 constexpr std::uint64_t check_task_points = 4096;        // unless one region has more
-constexpr std::uint64_t stream = 0x6368656b;             // apart from those of the methods that sample
+constexpr std::uint64_t stream = 0x6368656b;             // distinct from those of the sampling methods
 
 // The points of one region.
 struct Share {
@@ -26,9 +26,9 @@ struct Share {
 };
 
 // Systematic sampling: a region gets a number of points within one of its share of the measure, the right one
-// on average. Most of the measure is volume. A part follows volume times range, as the variance of the
-// difference asks for (Neyman allocation); and a part is the same for each region, since small regions lie
-// where the integrand has structure, and what was overlooked often has its place beside it.
+// on average. Most of the measure is volume. A part follows volume times range (Neyman allocation for the
+// variance of the difference); and a part is the same for each region, since small regions lie where the
+// integrand has structure, and overlooked structure is often nearby.
 std::vector<Share> share_out(const CubatureRegions& regions, std::uint64_t count, std::uint64_t key) {
     const double offset = static_cast<double>(hash_key(key, 0) >> 11) * 0x1p-53;
     const std::size_t all = regions.count(), components = regions.value(0).size();
@@ -133,7 +133,7 @@ CheckedPart check_some(const Evaluator& evaluator, const CubatureRegions& region
         double* const sums = part.differences.data() + part.differences.size() - m;
         for (std::uint64_t i = 0; i < s.count; ++i, ++at) {
             bool surprising = false;
-            // Consecutive Sobol' points of a region make one block, small regions go round.
+            // Consecutive Sobol' points of a region form one block; small regions rotate.
             const std::size_t block =
                 s.count >= blocks ? static_cast<std::size_t>(i * blocks / s.count) : (s.first + i) % blocks;
             for (std::size_t c = 0; c < m; ++c) {

@@ -1,4 +1,4 @@
-// The check of a cubature: random points of all regions beside what the rules saw there.
+// The check of a cubature: random points in all regions, compared with the values of the rules.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace montelux {
 // A point of the cube whose value the rule of its region did not expect.
 struct CubatureWitness {
     std::size_t region = 0;
-    std::vector<double> x, value; // a coordinate, a component each
+    std::vector<double> x, value; // one per coordinate, one per component
 };
 
 struct CubatureCheck {
@@ -24,7 +24,7 @@ struct CubatureCheck {
     // Of g - (mean of its region), over the points.
     CovarianceMoments residual;
     std::vector<double> difference; // of the integral by these points and its value by the rules
-    // The same, region by region, of those that have points; components side by side.
+    // The same for each region that has points; components side by side.
     std::vector<std::size_t> regions;
     std::vector<double> differences;
     // Standard error of the difference, from the spread of its parts (scrambled Sobol' blocks): mostly too
@@ -36,7 +36,7 @@ struct CubatureCheck {
 
 // Far beyond what a smooth integrand does between the points of a rule: how much |value| exceeds the range
 // that the rule of `region` saw, widened by half of it, by four times the region's claimed error and by a
-// quarter of the tolerance. Zero where the value is no surprise. `tolerance`: of the whole integral, one a
+// quarter of the tolerance. Zero where the value is no surprise. `tolerance`: of the whole integral, one per
 // component.
 double surprise(const CubatureRegions& regions, std::size_t region, std::size_t component, double value,
                 double tolerance);
@@ -44,7 +44,7 @@ double surprise(const CubatureRegions& regions, std::size_t region, std::size_t 
 // Evaluates `count` points: three fifths of them spread over the regions by volume, the others by volume
 // times the range of the values that the rules saw, and equally over the regions; within a region they are
 // scrambled Sobol' points. (seed, round) key the randomisation. Empty when cancelled. A part of the cube of
-// volume v whose values are a surprise is overlooked with a probability of at most about exp(-0.6 count v).
+// volume v with unexpected values is overlooked with a probability of at most about exp(-0.6 count v).
 std::optional<CubatureCheck> check_regions(const Evaluator& evaluator, const CubatureRegions& regions,
                                            std::uint64_t count, std::uint64_t seed, std::uint64_t round,
                                            std::span<const double> tolerance, bool full_covariance,

@@ -9,7 +9,7 @@
 namespace montelux {
 namespace {
 
-// One evaluator call takes at least so many points where there are regions enough.
+// Minimum points per evaluator call, if there are regions enough.
 constexpr std::size_t points_per_task = 512;
 
 // Value, error and marks of a region from the integrand's values. `not_finite`: some were not, and are zero.
@@ -35,7 +35,7 @@ void assess(CubatureRegions& fresh, std::size_t r, const SymmetricRule& rule,
         size /= static_cast<double>(values[c].size());
         const double rounding = 8 * std::numeric_limits<double>::epsilon() * size;
         const SymmetricRule::Assessment found = rule.assess(nulls, rounding);
-        // The odd 1/x would vanish with its middle left out: zeros beside other values may be poles.
+        // Without its middle the odd 1/x would integrate to zero: zeros beside other values may be poles.
         const double pole = not_finite ? largest : 0;
         const double error = std::max(found.error + rule.edge_surprise(values[c]), pole);
         marks.exhausted = marks.exhausted && error <= rounding;
@@ -44,7 +44,7 @@ void assess(CubatureRegions& fresh, std::size_t r, const SymmetricRule& rule,
         const auto [low, high] = std::ranges::minmax(values[c]);
         fresh.lowest(r)[c] = low;
         fresh.highest(r)[c] = high;
-        // The component that is worst for its size decides how to go on.
+        // The component of the largest relative error decides how to divide.
         const double weight = totals[c] != 0 ? 1 / std::abs(totals[c]) : size > 0 ? 1 / (volume * size) : 0;
         if (n > 1) rule.add_roughness(values[c], weight, differences);
         if (error * weight > worst) {
@@ -68,8 +68,8 @@ void assess(CubatureRegions& fresh, std::size_t r, const SymmetricRule& rule,
 }
 
 // The points of symmetric rules often coincide with singularities on diagonals and at centres. Where the
-// integrand is not finite it is evaluated again at a point nearby, off every such coincidence; `not_finite`
-// keeps those that are not finite there either.
+// integrand is not finite it is evaluated again at a generic point nearby; `not_finite` keeps those that are
+// not finite there either.
 void shift_off_singularities(const Evaluator& evaluator, const PointBuffer& u, std::size_t known,
                              const CubatureWork& work, std::size_t begin, ValueBuffer& values,
                              std::vector<std::size_t>& not_finite, NonFiniteCount& non_finite,
@@ -86,7 +86,7 @@ void shift_off_singularities(const Evaluator& evaluator, const PointBuffer& u, s
         for (int d = 0; d < n; ++d) {
             const double h = work.fresh.half_width(region)[static_cast<std::size_t>(d)];
             const double x = u.view()(distinct[i] - known, d);
-            // Towards the middle of the cube, by amounts that no two coordinates share.
+            // Towards the middle of the cube, by a different amount in each coordinate.
             const double by = step * h * (0.5 + std::fmod(0.6180339887498949 * (d + 1), 1.0));
             moved(i, d) = x < 0.5 ? x + by : x - by;
         }

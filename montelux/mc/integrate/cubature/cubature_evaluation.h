@@ -1,4 +1,4 @@
-// Evaluates the integrand over regions: values, errors and how to go on with each.
+// Evaluates the integrand over regions: values, errors, and how to divide each.
 #pragma once
 
 #include <cstddef>
@@ -14,14 +14,14 @@ namespace montelux {
 
 // The regions that a step evaluates.
 struct CubatureWork {
-    const std::vector<const SymmetricRule*>& rules; // one a region of `fresh`
-    const CubatureRegions& regions;                 // those that there were before
+    const std::vector<const SymmetricRule*>& rules; // one per region of `fresh`
+    const CubatureRegions& regions;                 // those that existed before
     const std::vector<std::size_t>& parents;        // fresh regions are their halves, two by two; or empty
     CubatureRegions& fresh;
-    // The face that halves share, as each sees it; a number for each region and component.
+    // Each half's prediction of the shared face, per region and component.
     std::vector<SymmetricRule::FaceValue>& faces;
-    // Of the only region, if it is one: its values at the first points of its rule, known already, and
-    // afterwards those at all of them; component after component.
+    // If there is a single region: its known values at the first points of its rule, afterwards those at all
+    // points; component after component.
     ValueBuffer* nested = nullptr;
     bool nested_not_finite = false; // were some of the known ones not finite?
     // May points where the integrand is not finite be evaluated again nearby? Each costs one more evaluation.

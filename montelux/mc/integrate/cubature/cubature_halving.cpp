@@ -58,7 +58,7 @@ void correct_cube(const CubatureRegions& before, CubatureRegions& fresh) {
             if (one_variable) error *= caution_with_few_points;
             continue;
         }
-        // What two rules differ by is known better than what null rules say of one box.
+        // The difference of two rules is a better estimate than the null rules of one box.
         const double difference = std::abs(before.value(0)[c] - fresh.value(0)[c]);
         const double coarse = before.error(0)[c] / caution_with_few_points;
         if (!one_variable)
@@ -84,7 +84,7 @@ void add_face_errors(const CubatureWork& work) {
         for (std::size_t c = 0; c < components; ++c) {
             const SymmetricRule::FaceValue &own = work.faces[r * components + c],
                                            &other = work.faces[(r ^ 1) * components + c];
-            // Slopes and curvature are no jump.
+            // Subtracts slope and curvature, which are not jumps.
             const double expected =
                 2 * (own.slack + other.slack) + 0.25 * std::max(std::abs(own.value), std::abs(other.value));
             const double jump = std::max(0.0, std::abs(own.value - other.value) - expected);

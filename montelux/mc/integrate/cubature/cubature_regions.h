@@ -1,4 +1,4 @@
-// The regions of an adaptive integration: boxes that fill the unit cube, with what is known of each.
+// The regions of an adaptive integration: boxes that fill the unit cube, each with its values and errors.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace montelux {
 
-// Regions in structure of arrays, each with a box, a value and an error a component.
+// Regions in structure of arrays, each with a box, and a value and an error per component.
 class CubatureRegions {
   public:
-    // What became known of a region when it was evaluated.
+    // Marks of an evaluated region.
     struct Marks {
         std::uint8_t axis = 0;      // to halve it along
         bool rough = false;         // the integrand is not smooth at its scale
-        bool exhausted = false;     // its errors are rounding alone
+        bool exhausted = false;     // its errors are only rounding
         bool indivisible = false;   // its halves could not be told apart in floating point
         std::uint8_t face_axis = 0; // the face that face_error() is about
         bool face_upper = false;
@@ -37,7 +37,7 @@ class CubatureRegions {
     std::span<const double> value(std::size_t r) const { return {&value_[r * m_], m_}; }
     std::span<double> error(std::size_t r) { return {&error_[r * m_], m_}; }
     std::span<const double> error(std::size_t r) const { return {&error_[r * m_], m_}; }
-    // The part of the error that comes of a jump suspected at a face.
+    // The part of the error that is due to a suspected jump at a face.
     std::span<double> face_error(std::size_t r) { return {&face_error_[r * m_], m_}; }
     std::span<const double> face_error(std::size_t r) const { return {&face_error_[r * m_], m_}; }
     // The least and the greatest value that the rule saw.

@@ -7,8 +7,8 @@ namespace {
 
 using Generator = SymmetricRule::Generator;
 
-// The outermost points on the axes leave a twentieth of a region unseen, two fortieths at its faces: a jump
-// that runs there is common when regions are halved many times. Probes leave 1/200 a face.
+// The outermost points on the axes leave a twentieth of a region unseen, 1/40 at each face, where jumps are
+// common after many halvings. Probes leave 1/200 per face.
 constexpr double probe = 0.995;
 
 Generator diagonal(int places, double x) { return Generator(static_cast<std::size_t>(places), x); }

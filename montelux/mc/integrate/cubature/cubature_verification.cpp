@@ -21,7 +21,7 @@ constexpr double significance = 5;           // standard errors between rules an
 constexpr std::uint64_t most_rounds = 12;
 constexpr std::uint64_t fewest_points = 16;
 constexpr double plateau = 0.1;             // range of the values beside their mean
-constexpr std::uint64_t plateau_points = 4; // times as many points where nothing but a plateau was seen
+constexpr std::uint64_t plateau_points = 4; // times as many points if only a plateau was seen
 constexpr std::size_t most_climbs = 8;      // of a check
 
 bool targeted(const StepRequest& request) { return request.relative_error > 0 || request.absolute_error > 0; }
@@ -46,8 +46,8 @@ double volume_of_half(const CubatureRegions& regions) {
     return least;
 }
 
-// Surprises often lie in the tails of peaks whose tops are in other regions. The greatest ones climb, and the
-// tops become witnesses as well. The evaluations made.
+// Surprises often lie in tails of peaks whose tops are in other regions. Climbs from the greatest ones; the
+// tops become witnesses as well. Returns the evaluations made.
 std::uint64_t climb(const Evaluator& evaluator, const CubatureRegions& regions,
                     std::span<const double> tolerance, std::uint64_t most, CubatureCheck& check) {
     const int n = evaluator.dimensions(), m = evaluator.components();
@@ -70,7 +70,7 @@ std::uint64_t climb(const Evaluator& evaluator, const CubatureRegions& regions,
         if (evaluations + of_each + 1 > most) break;
         const CubatureWitness from = witnesses[order[k].second];
         ValueBuffer g;
-        // Distance of the components from what the region of the surprise has on average.
+        // Distance of the components from the mean of the surprise's region.
         const DensityFunction h = [&](const PointBatch& x, std::span<double> values) {
             g.resize(x.count(), m);
             evaluator(x, g, check.non_finite);
@@ -166,7 +166,7 @@ std::vector<double> CubatureVerification::tolerances(const CubatureRegions& regi
         for (std::size_t r = 0; r < regions.count(); ++r)
             size +=
                 regions.volume(r) * std::max(std::abs(regions.lowest(r)[c]), std::abs(regions.highest(r)[c]));
-        // No error relative to a value that vanishes can be asked for.
+        // A relative target of a vanishing value cannot be met.
         tolerance[c] = std::max(error[c], least_tolerance * size);
         if (targeted(request))
             tolerance[c] =
@@ -199,7 +199,7 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
         const double difference = std::abs(check->difference[c]), noise = check->standard_error[c];
         const bool doubtful = difference > error[c] + suspicion * noise;
         surprised_ = surprised_ || doubtful || !check->surprises.empty();
-        // Rules that were wrong once know no error that is smaller than what the points can tell.
+        // Once wrong, rules claim no smaller error than the points' own.
         slack_[c] = surprised_ ? std::min(std::max(difference, noise), tolerance_[c] / 2) : 0;
     }
     points_in_bulk_ = static_cast<double>(points) * volume_of_half(regions);

@@ -1,4 +1,4 @@
-// Whether the regions of a cubature have been verified by random points, and what these found.
+// Verification of a cubature's regions by random points, with the surprises found.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@
 
 namespace montelux {
 
-// No rule is believed on its own word. A result that claims its target is checked by random points; a point
-// whose value is a surprise becomes a witness: its region counts as wrong by volume x surprise, and is halved
-// until a rule expects the value or the volume is negligible. What moved the value by more than the error
-// that was checked is checked again with new points.
+// A result that claims its target is checked by random points. A point with an unexpected value becomes a
+// witness: its region's error is at least volume x surprise, and it is halved until a rule predicts the value
+// or the volume is negligible. If the value then moves by more than the checked error, it is checked again
+// with new points.
 class CubatureVerification {
   public:
     // `points` of each check; 0: none is made.
@@ -30,16 +30,16 @@ class CubatureVerification {
     // Points of a check that is due; 0 where the evaluations left are too few for one.
     std::uint64_t points(const CubatureRegions& regions, std::span<const double> value,
                          std::uint64_t evaluations, const StepRequest& request) const;
-    // Makes a check, and adds what witnesses tell to the errors of their regions. The evaluations made; none
-    // when cancelled, and then nothing changed.
+    // Makes a check, and adds the witnesses' errors to their regions. Returns the evaluations made; empty,
+    // and nothing changed, when cancelled.
     std::uint64_t run(CubatureRegions& regions, std::span<const double> value, std::span<const double> error,
                       std::uint64_t points, const StepRequest& request);
     // Forgets that the values were checked.
     void renew() { checked_value_.clear(); }
-    // Takes note of a check that could not be made.
+    // Notes that a check could not be made.
     void skip(std::span<const double> value, std::span<const double> error);
-    // After halving: lower halves in the place of `parents`, upper halves from `first_new` on. Adds what
-    // witnesses tell to their errors.
+    // After halving: lower halves in the place of `parents`, upper halves from `first_new` on. Adds the
+    // witnesses' errors.
     void follow(CubatureRegions& regions, std::span<const std::size_t> parents, std::size_t first_new);
 
     std::uint64_t evaluations() const { return evaluations_; }
@@ -50,12 +50,12 @@ class CubatureVerification {
     // the first check.
     double correlation(std::size_t a, std::size_t b) const;
     bool knows_correlations() const { return residual_.full() && residual_.count() > 1; }
-    // Did so few points fall where half of the integral is, as the rules see it, that other such places may
-    // have been missed?
+    // Did so few points fall into the part that holds half of the integral, by the rules, that other such
+    // parts may have been missed?
     bool blind() const { return points_in_bulk_ < enough_in_bulk; }
-    // Error of a component beyond that of the rules, where points have shown that these may be wrong.
+    // Additional error of a component if points have shown that the rules may be wrong.
     double slack(std::size_t component) const { return slack_.empty() ? 0 : slack_[component]; }
-    // Empty in the normal case.
+    // Normally empty.
     const std::string& warning() const { return warning_; }
 
     void save(StateWriter& state) const;
@@ -68,7 +68,7 @@ class CubatureVerification {
     // Error that the witness adds to its region; 0 where it is expected or negligible.
     double weight(const CubatureRegions& regions, const CubatureWitness& witness,
                   std::size_t component) const;
-    // Of regions whose points disagree with their rule, where the whole does.
+    // Errors of regions whose points disagree with their rule, if the whole disagrees.
     void add_differences(CubatureRegions& regions, const CubatureCheck& check, std::size_t component);
     void add_errors(CubatureRegions& regions, std::span<const std::size_t> of_regions);
 

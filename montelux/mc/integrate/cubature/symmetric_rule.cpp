@@ -32,9 +32,8 @@ void for_each_partition(int total, int dimensions, const std::function<void(cons
     recurse(recurse, total, total);
 }
 
-// What values are divided by before they are squared and summed: 1, but for values whose squares are out of
-// the range of numbers. Integrands have such, densities above all: seen in passing, a peak is 1e-180 of
-// itself.
+// Divisor of values before they are squared and summed: 1, except for values whose squares leave the range of
+// numbers, as in the far tail of a peak.
 double unit_of_squares(std::span<const double> values) {
     double largest = 0;
     for (double v : values) largest = std::max(largest, std::abs(v));
@@ -164,7 +163,7 @@ void SymmetricRule::solve(const std::vector<Generator>& generators) {
     std::vector<long double> targets;
     std::vector<int> degrees;
     long double largest_miss = 0;
-    // Numbers of equations and their order of size are small; what is left of a dependent one is rounding.
+    // Equations are few and of similar size; the remainder of a dependent one is rounding.
     constexpr long double dependent = 1e-9L;
     auto add_equation = [&](std::vector<long double> row, long double target, int degree, bool exact) {
         long double norm_before = 0, norm = 0;
@@ -196,7 +195,7 @@ void SymmetricRule::solve(const std::vector<Generator>& generators) {
         });
     if (largest_miss > 1e-10L)
         throw Error("SymmetricRule", "these generators allow no rule of degree " + std::to_string(degree_));
-    // What the equations leave free.
+    // The free part of the solution.
     for (std::size_t j = 0; j < m; ++j) {
         std::vector<long double> row(m, 0.0L);
         row[j] = 1;

@@ -11,19 +11,19 @@ namespace montelux {
 
 // Points of [-1, 1]^n, all permutations and changes of sign of a few generators, with weights that integrate
 // polynomials up to a degree exactly; and null rules: weights at the same points that give zero for all
-// polynomials up to a lower degree, so that what they give for an integrand tells how far it is from such a
+// polynomials up to a lower degree, so that their values measure the integrand's distance from such a
 // polynomial (Berntsen, Espelid & Genz 1991, "An adaptive algorithm for the approximate calculation of
-// multiple integrals"; Berntsen & Espelid 1991, "Error estimation in automatic quadrature routines").
-// Generators are all that is tabulated: weights and null rules follow from the moment equations.
+// multiple integrals"; Berntsen & Espelid 1991, "Error estimation in automatic quadrature routines"). Only
+// generators are tabulated: weights and null rules follow from the moment equations.
 class SymmetricRule {
   public:
     // Coordinates of a generator that are not zero, each above zero.
     using Generator = std::vector<double>;
 
     // Weights of a rule of this odd degree on the orbits of the generators, the first of which is the centre.
-    // Where these leave a choice of weights, the one of least square sum is taken. `probe` above zero adds
-    // points at this distance on the axes that no rule uses, see edge_surprise(). Throws Error where no
-    // weights reach the degree.
+    // If these leave a choice of weights, that of least square sum is taken. `probe` above zero adds points
+    // at this distance on the axes that no rule uses, see edge_surprise(). Throws Error where no weights
+    // reach the degree.
     SymmetricRule(int dimensions, int degree, std::vector<Generator> generators, double probe = 0);
 
     int dimensions() const { return dimensions_; }
@@ -39,37 +39,36 @@ class SymmetricRule {
     // Polynomials up to this degree give zero.
     int null_degree(int k) const { return null_degrees_[static_cast<std::size_t>(k)]; }
 
-    // The mean of a function over the box from its values at the points, and what the null rules give, one
-    // number each into `nulls`.
+    // The mean of a function over the box from its values at the points; the values of the null rules go into
+    // `nulls`.
     double apply(std::span<const double> values, std::span<double> nulls) const;
 
-    // How far the integrand is from what the rule can do.
+    // Distance of the integrand from the rule's polynomials.
     struct Assessment {
         double error; // of the mean over the box: an estimate that should rarely be too small
         double ratio; // the largest ratio of null rules of successive degrees; below 1 they fall, as they do
                       // where the integrand is smooth at the scale of the box
     };
-    // From what the null rules gave. While they fall by a factor r from degree to degree, the error is taken
-    // as 4 r times that of the highest degree (the rule's own degree is higher by 2 than that, and falls on
-    // by another factor of r); where they do not, as the largest of them (Berntsen & Espelid 1991). What is
-    // not above `rounding` says nothing of how they fall.
+    // Error from the values of the null rules. While they fall by a factor r from degree to degree, it is 4 r
+    // times that of the highest degree (the rule's own degree is higher by 2, another factor of r); otherwise
+    // the largest of them (Berntsen & Espelid 1991). Values below `rounding` are ignored.
     Assessment assess(std::span<const double> nulls, double rounding = 0) const;
 
     // How far the integrand is from a cubic along each axis: a tenth of the coefficient of x^4 of the quartic
-    // through the centre and two orbits on the axis, and what the probes differ from that quartic, so that a
-    // zero of one alone does not hide an axis. Adds scale times these to `sums`, one an axis. Needs two
-    // orbits on the axes.
+    // through the centre and two orbits on the axis, and the probes' difference from that quartic, so that a
+    // zero of either does not hide an axis. Adds scale times these to `sums`, one per axis. Needs two orbits
+    // on the axes.
     void add_roughness(std::span<const double> values, double scale, std::span<double> sums) const;
 
-    // An error of the mean over the box that no rule sees: what the probes differ from the quartic through
-    // the points on their axis, beyond 0.8 times its coefficient of x^4, times the part of the box that lies
-    // beyond the outermost point. It is large where a jump runs along a face. Zero without probes.
+    // An error of the mean over the box that no rule sees: the probes' difference from the quartic through
+    // the points on their axis, beyond 0.8 times its coefficient of x^4, times the part of the box beyond the
+    // outermost point. It is large if a jump runs along a face. Zero without probes.
     double edge_surprise(std::span<const double> values) const;
 
-    // What the two outermost points on one side of an axis say of the middle of the face there.
+    // Prediction of the middle of a face by the two outermost points on its side of the axis.
     struct FaceValue {
         double value;  // by a straight line through them
-        double slack;  // what the line adds to the outermost value
+        double slack;  // extrapolation beyond the outermost value
         double unseen; // part of the box that lies beyond the outermost point
     };
     // Needs two orbits on the axes, or one and probes.

@@ -152,7 +152,7 @@ class GridEstimator final : public Estimator {
         const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
         if (fits && (targeted || points(2 * twice) <= limit - cost_of_twice)) return twice;
         const std::uint64_t most = largest(limit);
-        // Levels that are too close tell nothing about each other.
+        // Levels that are too close do not test each other.
         const double ratio = static_cast<double>(most) / static_cast<double>(cells_);
         return fits && most < twice ? twice : ratio >= 1.2 ? most : 0;
     }

@@ -9,17 +9,16 @@
 
 namespace montelux {
 
-// All three divide each of the d variables of the unit cube into `cells` equal cells and add up values at the
-// points of the tensor grid, n^d of them with n points a variable. They are rulers to measure others by: for
-// smooth integrands the error falls as N^(-order / d) with the number N of points, the curse of
-// dimensionality.
+// All three divide each of the d variables of the unit cube into `cells` equal cells and sum values at the
+// n^d points of the tensor grid. They are baselines for other methods: for smooth integrands the error falls
+// as N^(-order / d) with the number N of points, the curse of dimensionality.
 //
 // With cells = 0 the grid is refined, by doubling `cells` in each step while an error is asked for, and at
 // last by the largest grid that the evaluations left allow. Left Riemann sums and trapezoids use the points
 // of the grid before again where they double. The error is then |I_k - I_(k-1)| / (r^order - 1) (Richardson
-// 1911; r the ratio of the numbers of cells), or what the level before let expect if that is larger: an
-// estimate for smooth integrands, no bound, and not statistical. It is infinite where there is one grid only.
-// With cells > 0 that grid is evaluated and nothing more.
+// 1911; r the ratio of the numbers of cells), or the one predicted by the level before if that is larger: an
+// estimate for smooth integrands, not a bound and not statistical. With a single grid it is infinite. With
+// cells > 0 only that grid is evaluated.
 
 // Order 1: f at the lower corner of each cell.
 struct RiemannSum {
@@ -37,7 +36,7 @@ struct MidpointRule {
     std::unique_ptr<Estimator> estimator(const Problem& problem) const;
 };
 
-// Order 2: f at the corners of each cell, so cells + 1 points a variable. Corners at infinity count as zero
+// Order 2: f at the corners of each cell, so cells + 1 points per variable. Corners at infinity count as zero
 // unless f has another value there (then as not finite).
 struct TrapezoidRule {
     static constexpr std::string_view name = "trapezoid";

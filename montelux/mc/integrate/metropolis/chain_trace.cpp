@@ -146,8 +146,8 @@ ChainSummary summarize(std::span<const ChainTrace> chains, int k) {
                 sum += (chain.mean(k, i) - summary.mean) * (chain.mean(k, i + lag) - summary.mean);
         return sum / all;
     };
-    // Sums of neighbouring autocovariances of a reversible chain are positive and fall; what comes after the
-    // first that is not is noise.
+    // Sums of neighbouring autocovariances of a reversible chain are positive and fall; after the first that
+    // is not, only noise follows.
     const double own = autocovariance(0);
     double asymptotic = -own, last = infinite;
     for (std::size_t lag = 0; lag + 1 < batches; lag += 2) {

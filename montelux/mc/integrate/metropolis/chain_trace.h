@@ -1,5 +1,4 @@
-// What a Markov chain says of a mean: its error, autocorrelation time, effective sample size and
-// convergence.
+// Diagnostics of a mean over Markov chains: error, autocorrelation time, effective sample size, convergence.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +10,7 @@
 namespace montelux {
 
 // The values of some observables along a chain, as means of consecutive batches. Batches double in length
-// when they get too many, so that memory is constant however long the chain is.
+// when there are too many, so memory is constant.
 class ChainTrace {
   public:
     static constexpr std::size_t max_batches = 1024;

@@ -70,14 +70,14 @@ class MetropolisEstimator final : public Estimator {
         if (state_.walkers.chains.empty()) {
             if (request.max_evaluations < settings_.pilot + chains * settings_.burn_in)
                 return StepOutcome::exhausted;
-            // Nothing to walk on.
+            // No point where s > 0.
             if (state_.evaluations >= most_pilot_points) return StepOutcome::finished;
             return start(request.cancel);
         }
         const double done = static_cast<double>(state_.evaluations);
         std::uint64_t size = next_step_size(static_cast<std::uint64_t>(done), first_step, large_step);
         size = std::min(size, request.max_evaluations);
-        // The chains say nothing of g / s where it is always the same; an eighth then watches on.
+        // Chains are useless while g / s is constant; an eighth of the evaluations keeps checking.
         const std::uint64_t walked = varied() ? size / 2 : size / 8;
         const std::uint64_t states = walked / chains;
         if (states == 0) return StepOutcome::exhausted;
@@ -126,7 +126,7 @@ class MetropolisEstimator final : public Estimator {
                 for (std::size_t b = 0; b <= a; ++b) {
                     const double r =
                         a == b ? 1 : correlation_of_means(traces, static_cast<int>(a), static_cast<int>(b));
-                    // One number for both places: sums in another order could round otherwise.
+                    // The same number in both places, since sums in another order round differently.
                     tally.covariance[a * m + b] = tally.covariance[b * m + a] =
                         z * z * r * means[a].standard_error * means[b].standard_error +
                         means[a].mean * means[b].mean * z_variance;

@@ -14,20 +14,20 @@ namespace montelux {
 // square), and Z, the integral of s, is unknown to them. Then
 //     integral of g_c = Z * (mean of g_c / s over the chains).
 // Z comes from importance sampling with points of their own: a mixture of nine parts of a multivariate
-// Student density (4 degrees of freedom, mean and covariance those of the chains' burn-in, which is then left
-// out) and one part uniform, so that no weight exceeds 10 s. The estimate of Z is unbiased; that of the mean
-// is consistent, for chains forget their starts only in time; the two are independent, and so
+// Student density (4 degrees of freedom, mean and covariance of the chains' burn-in, which is then discarded)
+// and one part uniform, so that no weight exceeds 10 s. The estimate of Z is unbiased; that of the mean is
+// consistent, since chains forget their starts only in time; the two are independent, and so
 //     variance = Z^2 variance(mean) + mean^2 variance(Z).
-// Where g never changes sign the mean is 1 or -1 exactly, and the chains serve the importance density alone.
+// If g never changes sign the mean is exactly 1 or -1, and the chains only fit the importance density.
 //
-// Starts are drawn in proportion to s from a uniform pilot. The split R-hat over chains (of the means, of
-// log s and of coordinates) above 1.01 gives a warning: the weights of separate peaks are then not known.
-// For expectations under a density of one's own, see metropolis() in metropolis_chain.h.
+// Starts are drawn in proportion to s from a uniform pilot. The split R-hat over chains (of the means, of log
+// s and of coordinates) above 1.01 gives a warning: the weights of separate peaks are then not known. For
+// expectations under a user's density see metropolis() in metropolis_chain.h.
 struct Metropolis {
     static constexpr std::string_view name = "metropolis";
 
     int chains = 32;
-    // States of each chain that are left out.
+    // Discarded states at the start of each chain.
     std::uint64_t burn_in = 500;
     // Uniform points among which the starts are chosen.
     std::uint64_t pilot = 4096;

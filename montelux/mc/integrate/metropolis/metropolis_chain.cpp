@@ -24,8 +24,8 @@ void AdaptedWalk::learn(std::span<const double> x, double acceptance) {
     ++seen_;
     // Robbins and Monro 1951, with steps that fall as t^-0.6.
     step_ *= std::exp((acceptance - target_) * 3 * std::pow(static_cast<double>(++since_window_), -0.6));
-    // The spreads of windows that double become the scales: each lets a coordinate that is far too slow grow
-    // by an order of magnitude. The second half of the burn-in adapts the step alone.
+    // The spreads in windows of doubling length become the scales; each window lets a far too small scale
+    // grow by an order of magnitude. The second half of the burn-in adapts the step alone.
     if (window_end_ == 0) window_end_ = std::max<std::uint64_t>(50, burn_in_ / 32);
     if (window_end_ > burn_in_ / 2) return;
     for (std::size_t d = 0; d < x.size(); ++d) moments_[d].add(x[d]);
@@ -39,7 +39,7 @@ void AdaptedWalk::learn(std::span<const double> x, double acceptance) {
         new_size += std::log(scale_[d]);
         moments_[d] = {};
     }
-    // The product of step and mean scale stays as it is, and is sought anew.
+    // The product of step and mean scale is kept, then adapted again.
     step_ *= std::exp((old_size - new_size) / static_cast<double>(x.size()));
     since_window_ = 0;
 }

@@ -29,7 +29,7 @@ concept LogDensity = requires(const F& f, std::span<const double> x) {
 };
 
 // Draws a proposal y from q(y | x) with numbers of the stream and returns log q(x | y) - log q(y | x): zero
-// for symmetric proposals. No value: there is no proposal, and the chain stays.
+// for symmetric proposals. Empty: no proposal, and the chain stays.
 template <typename P>
 concept ProposalFunction = requires(const P& propose, PhiloxStream& numbers, std::span<const double> x,
                                     std::span<double> y) {
@@ -56,9 +56,9 @@ struct GaussianWalk {
 
 struct MetropolisOptions {
     int chains = 4;
-    std::uint64_t burn_in = 2000;  // states of each chain that are left out
+    std::uint64_t burn_in = 2000;  // discarded states of each chain
     std::uint64_t samples = 20000; // states of each chain after it
-    std::uint64_t thin = 1;        // every so many states one goes to `visit`
+    std::uint64_t thin = 1;        // every thin-th state goes to `visit`
     std::uint64_t seed = 0;
     const CancelFlag* cancel = nullptr;
 };
@@ -114,7 +114,7 @@ struct ChainOutcome {
 };
 
 void check(const MetropolisOptions& options, const std::vector<std::vector<double>>& starts, int observables);
-// What the traces and counts say together.
+// Combines the traces and counts.
 MetropolisResult gather(const std::vector<ChainTrace>& traces, const std::vector<ChainOutcome>& outcomes,
                         const MetropolisOptions& options, bool cancelled);
 
@@ -175,12 +175,12 @@ ChainOutcome run_chain(const Density& log_density, const Propose& propose, const
 
 // Runs the chains, each with random numbers of its own and all at once on the threads there are; the result
 // does not depend on their number. `starts` holds one point for all chains, or one for each, where the
-// density is not zero; points that are spread widely make R-hat speak. `observe(x, values)` fills the values
-// of `observables` functions whose means over the density are wanted. `visit(chain, k, x)` gets every
-// thin-th state, from the chain's thread. Functions are called from several threads at once. Throws Error
-// for options and starts that make no sense.
+// density is not zero; widely spread points make R-hat meaningful. `observe(x, values)` fills the values of
+// `observables` functions, whose means over the density are computed. `visit(chain, k, x)` gets every thin-th
+// state, from the chain's thread. Functions are called from several threads at once. Throws Error for options
+// and starts that make no sense.
 //
-// After the burn-in the density of a state is p up to what the start still shows; standard errors know the
+// After the burn-in states follow p up to a remaining influence of the start; standard errors contain the
 // autocorrelation, and a split R-hat above 1.01 gives a warning.
 template <LogDensity Density, typename Propose, typename Observe, typename Visit>
 requires(ProposalFunction<Propose> || std::same_as<Propose, GaussianWalk>) //

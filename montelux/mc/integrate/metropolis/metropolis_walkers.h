@@ -1,4 +1,4 @@
-// The chains of the method Metropolis: random walks in step, whose proposals are evaluated together.
+// The chains of the method Metropolis: random walks in lockstep, with proposals evaluated together.
 #pragma once
 
 #include <cstdint>
@@ -43,9 +43,9 @@ struct Walkers {
 
     // What is traced: g_c / s, then log s, then the first coordinates.
     static int observables(const Evaluator& g);
-    // Moves all chains by so many states. Traces them; or, in a window of the burn-in (from 1), gathers their
-    // points in `seen`. (number, window) keys the random numbers. Empty when cancelled; the chains are then
-    // of no more use.
+    // Moves all chains by this many states. Traces them or, in a window of the burn-in (from 1), appends
+    // their points to `seen`. (number, window) keys the random numbers. Empty when cancelled; the chains are
+    // then unusable.
     std::optional<WalkCounts> walk(const Problem& problem, std::uint64_t states, std::uint32_t number,
                                    std::uint32_t window, CovarianceMoments* seen, const CancelFlag* cancel);
 

@@ -1,4 +1,4 @@
-// A multivariate Student density on the unit cube, mixed with a uniform one: importance density of a fit.
+// A multivariate Student density on the unit cube, mixed with a uniform one, as importance density.
 #pragma once
 
 #include <optional>

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t first_points = 64;
-constexpr std::uint64_t limited = std::uint64_t{1} << 50; // more evaluations than anyone makes
+constexpr std::uint64_t limited = std::uint64_t{1} << 50; // more evaluations than any run makes
 
 Randomisation best_randomisation(PointSetKind kind) {
     switch (kind) {
@@ -39,7 +39,7 @@ class QuasiEstimator final : public Estimator {
           running_extremes_(completed_extremes_) {
         if (asked_ < 0 || asked_ == 1 || asked_ > 65536)
             throw Error("quasi", std::to_string(asked_) + " replicates; expected 2 to 65536, or 0");
-        // Tells at once whether the set exists.
+        // Throws at once if the set does not exist.
         RandomisedPoints(kind_, randomisation_, problem_.evaluator.dimensions(), 1, 0, 0);
     }
 
@@ -148,18 +148,18 @@ class QuasiEstimator final : public Estimator {
         if (plain_) return 1;
         if (asked_ != 0) return asked_;
         if (kind_ != PointSetKind::sobol || evaluations >= limited || evaluations < 24) return 16;
-        // At least 12 of them, each of as many points as a power of two can be.
+        // At least 12, each of the largest possible power of two of points.
         return static_cast<int>(evaluations >> (std::bit_width(evaluations / 12) - 1));
     }
 
-    // The points of each replicate that are to be reached next; 0 where the evaluations do not suffice.
-    // `each` is what is left for a replicate.
+    // The next number of points per replicate; 0 if the evaluations do not suffice. `each`: evaluations left
+    // per replicate.
     std::uint64_t choose_points(const StepRequest& request, std::uint64_t each) const {
         const bool binary = kind_ == PointSetKind::sobol;
         const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
         if (each == 0) return 0;
         if (points_ == 0) {
-            // A set that has no prefix costs all that was made before: at once, where that is a step.
+            // A set without prefixes starts anew, which costs all its points in one step.
             constexpr std::uint64_t short_wait = 1 << 16;
             if (!extensible() && !targeted && each <= short_wait) return each;
             return each >= first_points ? first_points : binary ? std::bit_floor(each) : each;
@@ -171,7 +171,7 @@ class QuasiEstimator final : public Estimator {
             if (binary || targeted || next_cost <= after) return twice;
         }
         if (binary) return 0;
-        // The rest, where it makes a difference.
+        // Uses up the rest if it is large enough.
         const std::uint64_t all = std::min(start + each, most_points());
         return all >= points_ + points_ / 16 + 1 ? all : 0;
     }
@@ -267,7 +267,7 @@ class QuasiEstimator final : public Estimator {
         return surely || twice;
     }
 
-    // Few replicates that see something which the others miss, and integrands that show nothing at all.
+    // Warns if few replicates see something that the others miss, or if all values are zero.
     void warn(Tally& tally) const {
         const CovarianceMoments moments = completed_.moments(points_, false);
         for (int c = 0; c < moments.components(); ++c) {

@@ -1,4 +1,4 @@
-// Independent randomisations of a point set, by the batch.
+// Batches of points of independent randomisations of a point set.
 #pragma once
 
 #include <cstdint>

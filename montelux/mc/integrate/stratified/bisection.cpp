@@ -21,7 +21,7 @@ struct Node {
     std::uint64_t key = 1; // of the path that leads here
 };
 
-// What one node becomes: two halves, or nothing when it stays a box.
+// Split of a node into two halves; empty if it stays a box.
 struct Split {
     std::vector<Node> halves;
     std::uint64_t pilot = 0; // evaluations
@@ -141,7 +141,7 @@ class Bisector {
                     inverse_variance_[c] * variance(lower_count, total[c] - sum, squares[c] - square);
             }
             const double root[2] = {std::cbrt(lower_variance), std::cbrt(upper_variance)};
-            // The wider side first where nothing tells them apart.
+            // The wider side first on a tie.
             const double sum = root[0] + root[1];
             if (best == d_ || sum < best_sum || (sum == best_sum && node.width[j] > node.width[best])) {
                 best = j;
@@ -215,7 +215,7 @@ std::optional<Bisection> bisect(const Problem& problem, std::uint64_t samples, d
     found.pilot = root.pilot;
     found.non_finite = std::move(root.non_finite);
 
-    // Level by level; what becomes of a node depends on nothing but the node.
+    // Level by level; the split of a node depends only on the node.
     while (!level.empty()) {
         std::vector<std::optional<Split>> splits(level.size());
         const bool whole = parallel_for(

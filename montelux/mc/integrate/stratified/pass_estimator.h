@@ -1,4 +1,5 @@
-// Base of stratified estimators that work in passes: each a whole estimate, averaged with fixed weights.
+// Base of stratified estimators that work in passes: each pass is a complete estimate; passes are averaged
+// with fixed weights.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,7 @@
 
 namespace montelux {
 
-// Holds what passes add up to; a derived class only makes the next one.
+// Sums the passes; a derived class only makes the next one.
 class PassEstimator : public Estimator {
   public:
     Tally tally() const final;
@@ -34,7 +35,7 @@ class PassEstimator : public Estimator {
     const Problem& problem() const { return problem_; }
     std::uint64_t evaluations() const { return evaluations_; }
     std::uint32_t passes() const { return passes_; }
-    // Streams of random numbers that no other pass has.
+    // Streams of random numbers of this pass only.
     std::uint32_t sample_stream() const { return 2 * passes_; }
     std::uint32_t pilot_stream() const { return 2 * passes_ + 1; }
 

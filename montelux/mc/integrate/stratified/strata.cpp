@@ -11,7 +11,7 @@
 namespace montelux {
 namespace {
 
-// What the strata of one task add.
+// Sums over the strata of one task.
 struct PartialSum {
     std::vector<double> value, covariance;
     std::vector<double> largest_variance; // that one value added, where there is one component
@@ -256,7 +256,7 @@ std::uint64_t next_pass_size(std::uint64_t done, const StepRequest& request) {
     const std::uint64_t most = std::clamp(done / 10, large, largest), limit = request.max_evaluations;
     const bool to_the_end = request.relative_error == 0 && request.absolute_error == 0 && limit < limited;
     const std::uint64_t size = to_the_end ? most : done == 0 ? 4096 : std::min(done, most);
-    // No small rest.
+    // Leaves no small rest.
     return limit < 2 * size ? std::min(limit, 2 * most) : size;
 }
 

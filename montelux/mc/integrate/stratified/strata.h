@@ -1,4 +1,4 @@
-// Stratified sampling's inner part: samples within given boxes of the unit cube, and the sum over them.
+// Samples within given boxes of the unit cube, and the sum over them: the core of stratified sampling.
 #pragma once
 
 #include <cstdint>
@@ -28,8 +28,8 @@ std::vector<std::uint64_t> balanced_cells(int dimensions, std::uint64_t count);
 struct StrataSum {
     // Sum over strata of volume * mean of its samples; the variance adds volume^2 * s^2 / n. Both unbiased.
     IterationEstimate estimate;
-    // Where there is one component: of the largest deviation in each stratum, times the sample's share times
-    // the number of samples.
+    // If there is one component: tail of the largest deviation in each stratum, times the sample's share
+    // times the number of samples.
     ParetoTail tail;
     std::uint64_t tail_values = 0;
     NonFiniteCount non_finite;
@@ -42,13 +42,12 @@ std::optional<StrataSum> sample_strata(const Problem& problem, const Strata& str
                                        std::vector<double>* variances, const CancelFlag* cancel);
 
 // Offsets of `samples` samples in all, `least` in each stratum and the rest in proportion to `shares` (equal
-// where they are empty or add up to nothing).
+// if they are empty or sum to zero).
 std::vector<std::uint64_t> allocate_samples(std::uint64_t strata, std::uint64_t samples, std::uint64_t least,
                                             std::span<const double> shares);
 
-// The samples of the next pass of an estimator whose passes have finer strata the larger they are: all that
-// is left where there is no target to stop at, else doublings; never so many that a pass lasts long or its
-// strata fill the memory.
+// The samples of the next pass; larger passes have finer strata. Without a target all that is left, else
+// doublings; limited so that a pass is short and its strata fit into memory.
 std::uint64_t next_pass_size(std::uint64_t done, const StepRequest& request);
 
 } // namespace montelux

@@ -47,10 +47,10 @@ class StratifiedEstimator final : public PassEstimator {
             settings_.strata != 0 ? std::vector<std::uint64_t>(static_cast<std::size_t>(d), settings_.strata)
                                   : balanced_cells(d, std::max<std::uint64_t>(most, 1));
         const Strata strata = grid_strata(cells);
-        // A grid that is given may need more than the pass would have.
+        // A given grid may need more samples than the pass.
         size = std::max(size, strata.count * (pilot + 2));
         if (size > request.max_evaluations) return StepOutcome::exhausted;
-        // A small rest beside finer strata would hardly count.
+        // A small rest has little weight beside finer strata.
         if (passes() > 0 && size < std::min<std::uint64_t>(1 << 20, evaluations() / 4))
             return StepOutcome::exhausted;
 
@@ -84,8 +84,8 @@ class StratifiedEstimator final : public PassEstimator {
 
   private:
     // Standard deviations within strata; those of several components relative to their means over strata.
-    // Half of each variance is that of the neighbours in the grid: a few points tell little, and a stratum
-    // that hides an edge from them lies beside others which show it.
+    // Half of each variance is that of the neighbours in the grid: a few points are uncertain, and a stratum
+    // whose points miss an edge has neighbours that show it.
     std::vector<double> neyman_shares(const std::vector<double>& variances,
                                       const std::vector<std::uint64_t>& cells) const {
         const auto m = static_cast<std::size_t>(problem().evaluator.components());

@@ -13,23 +13,22 @@ enum class Allocation : std::uint8_t {
     // As many samples in each of the (equal) strata: the variance is never above basic Monte Carlo's.
     proportional,
     // n_k in proportion to the standard deviation within stratum k (Neyman 1934, "On the two different
-    // aspects of the representative method"), as a pilot estimates it. The pilot decides the allocation alone
-    // and does not enter the estimate, which so stays unbiased; a fifth of the samples is spread evenly, for
-    // strata that the pilot did not understand.
+    // aspects of the representative method"), as a pilot estimates it. The pilot only decides the allocation
+    // and does not enter the estimate, which stays unbiased; a fifth of the samples is spread evenly, for
+    // strata that the pilot misjudged.
     neyman
 };
 
 // The unit cube is divided into a grid of strata; the estimate is the sum of volume times mean over strata,
-// its error the sum of volume^2 s^2 / n, each from at least two samples. By itself (strata = 0) the grid is
-// the finest that the samples of a pass allow with two in a stratum, so that the error of a smooth integrand
-// in n dimensions falls as N^(-1/2 - 1/n): as 1/N in two. There are about 16 in a stratum where a pilot takes
-// part, for its allocation to tell, and in one dimension: there a jump lies in a single stratum, which alone
-// decides the error, and two samples would mostly not notice. (16 miss one that is close to an end of its
-// stratum still: the error of a jump in one dimension is the least reliable.)
+// its error the sum of volume^2 s^2 / n, each from at least two samples. By default (strata = 0) the grid is
+// the finest that the samples of a pass allow with two per stratum, so that the error of a smooth integrand
+// in n dimensions falls as N^(-1/2 - 1/n): as 1/N in two. With a pilot there are about 16 per stratum, so
+// that allocation matters; also in one dimension, where a jump lies in a single stratum that decides the
+// error, and two samples would mostly miss it. (16 still miss one close to an end of its stratum: the error
+// of a jump in one dimension is the least reliable.)
 //
-// One pass takes all evaluations that are allowed, up to a million; where there is an error to reach, passes
-// double. Passes are averaged with weights N^(1 + 2/n) that are fixed beforehand (for a grid that is given:
-// N).
+// One pass takes all allowed evaluations, up to a million; with an error target, passes double. Passes are
+// averaged with weights N^(1 + 2/n) that are fixed beforehand (for a grid that is given: N).
 struct Stratified {
     static constexpr std::string_view name = "stratified";
 

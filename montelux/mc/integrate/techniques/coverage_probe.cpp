@@ -10,8 +10,8 @@
 namespace montelux {
 namespace {
 
-// Less than so many standard errors may be missing without a word: where densities with thin tails underflow
-// to zero, integrands need not.
+// Standard errors that may be missing without a warning: densities with thin tails underflow to zero sooner
+// than integrands.
 constexpr double negligible = 1e-3;
 constexpr std::uint32_t probe_stream = 0xc07e7a9eu;
 
@@ -43,7 +43,7 @@ std::uint64_t CoverageProbe::due(std::uint64_t samples, std::uint64_t limit) con
 }
 
 bool CoverageProbe::run(const Problem& problem, std::uint64_t points, const CancelFlag* cancel) {
-    // Values that are not finite at probes say nothing of the estimate.
+    // Values that are not finite at probes do not concern the estimate.
     const Evaluator f(problem.evaluator.integrand(), problem.evaluator.domain());
     const Domain& domain = f.domain();
     auto found = sum_batches(

@@ -9,8 +9,8 @@
 namespace montelux {
 
 // Where all densities are zero but the integrand is not, a part of the integral is missing from the estimate
-// and from its error, and no sample can tell. Uniform points of the unit cube that the domain's map takes its
-// points from can. They never enter the estimate; what they add up is the missing part itself.
+// and from its error, and no sample shows it. Uniform points of the unit cube, mapped to the domain, do. They
+// never enter the estimate; their sum is the missing part.
 class CoverageProbe {
   public:
     explicit CoverageProbe(std::vector<Technique> techniques) : techniques_(std::move(techniques)) {}
@@ -21,7 +21,8 @@ class CoverageProbe {
     std::uint64_t due(std::uint64_t samples, std::uint64_t limit) const;
     // Evaluates further points; false, and nothing changed, when cancelled.
     bool run(const Problem& problem, std::uint64_t points, const CancelFlag* cancel);
-    // Adds a sentence that names a point, if one was found and what is missing matters beside the errors.
+    // Adds a warning that names a point, if one was found and the missing part is not small compared with the
+    // errors.
     void warn(Tally& tally) const;
 
     void save(StateWriter& state) const;

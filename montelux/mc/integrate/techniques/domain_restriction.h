@@ -1,4 +1,4 @@
-// An integrand that is zero outside a domain, for points that are drawn without regard to its borders.
+// An integrand that is zero outside of a domain, for points drawn without regard to its borders.
 #pragma once
 
 #include "montelux/mc/integrate/domain.h"
@@ -6,8 +6,8 @@
 
 namespace montelux {
 
-// f where the coordinates lie in the ranges of the domain, else zero without a call of f. Domains other than
-// boxes have no such test; f stands for itself there.
+// f where the coordinates lie in the ranges of the domain, else zero without a call of f. For domains other
+// than boxes it is f itself.
 Integrand restricted(const Integrand& f, const Domain& domain);
 
 } // namespace montelux

@@ -11,7 +11,7 @@
 namespace montelux {
 namespace {
 
-// The inverse of a density is what its sampling changes volume by.
+// Sampling changes volume by the inverse of the density.
 Domain sampled_domain(const Technique& technique) {
     return Domain::mapped_batch(
         technique.uniforms(), technique.dimensions(),

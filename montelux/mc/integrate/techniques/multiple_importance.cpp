@@ -15,8 +15,8 @@ namespace {
 
 using Batch = TechniqueSampler::Batch;
 
-// What the samples of one technique add: moments of its values and, for optimal weights, the technique matrix
-// and the contribution vectors.
+// Sums of one technique's samples: moments of its values and, for optimal weights, the technique matrix and
+// the contribution vectors.
 struct TechniqueSum {
     SampleMoments samples;
     std::vector<double> matrix, vectors;
@@ -28,7 +28,7 @@ struct TechniqueSum {
     }
 };
 
-// Steps by whole rounds, with the probes beside them; what a round adds is for the two kinds of weights.
+// Steps by whole rounds, with probes; derived classes sum a round for each kind of weights.
 class RoundsEstimator : public Estimator {
   public:
     RoundsEstimator(const Problem& problem, const MultipleImportance& settings)
@@ -192,7 +192,7 @@ class OptimalEstimator final : public RoundsEstimator {
     std::uint64_t step_size(std::uint64_t done, std::uint64_t limit) const override {
         return next_step_size_after_pilot(done, limit);
     }
-    // A variance takes two samples of each technique.
+    // A variance needs two samples of each technique.
     std::uint64_t least_rounds() const override { return 2; }
     TechniqueSum empty() const override {
         return {{CovarianceMoments(components(), full()), {}},
@@ -206,7 +206,7 @@ class OptimalEstimator final : public RoundsEstimator {
         std::vector<double> ratio(techniques); // p_k / sum of q
         for (std::size_t j = 0; j < count; ++j) {
             const double sum = batch.sum[j];
-            // Points without density or with an infinite one have no part in the densities' integrals.
+            // Points with zero or infinite density do not enter the densities' integrals.
             const bool regular = sum > 0 && std::isfinite(sum);
             for (std::size_t k = 0; k < techniques; ++k)
                 ratio[k] =

@@ -31,11 +31,10 @@ struct OptimalWeights {};
 // With OptimalWeights the estimate is
 //     sum_k alpha_k + sum_i sum_j (f(X_ij) - sum_k alpha_k p_k(X_ij)) / sum_k n_k p_k(X_ij),
 // eq. 16 there: the densities, whose integrals are 1, are control variates for the balance heuristic. alpha
-// solves A alpha = b (one b for each component of f), with A_ik = integral of p_i p_k / sum n p and
-// b_i = integral of f p_i / sum n p, estimated from the samples of all steps before; so every step is
-// unbiased whatever alpha is, the steps are uncorrelated, and they are averaged by their numbers of samples.
-// The first step is a pilot and gives alpha only. Where A is singular (techniques that are one and the same)
-// alpha is one of its solutions.
+// solves A alpha = b (one b for each component of f), with A_ik = integral of p_i p_k / sum n p and b_i =
+// integral of f p_i / sum n p, estimated from the samples of all steps before; so every step is unbiased
+// whatever alpha is, the steps are uncorrelated, and they are averaged by their numbers of samples. The first
+// step is a pilot for alpha. If A is singular (identical techniques) alpha is one of its solutions.
 //
 // A small part of the evaluations probes uniform points of the domain for places where f != 0 and all
 // densities are zero (see Importance).

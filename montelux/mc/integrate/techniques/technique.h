@@ -15,8 +15,8 @@
 
 namespace montelux {
 
-// A joint distribution of as many variables as its type says: ProductDistribution, MarginalConditional, or a
-// class of the user's. sample(xi) maps the open unit cube to points that follow pdf(x).
+// A joint distribution with a number of variables fixed by its type: ProductDistribution,
+// MarginalConditional, or a user's class. sample(xi) maps the open unit cube to points that follow pdf(x).
 template <typename D>
 concept JointDistribution = std::same_as<typename D::Point, std::array<double, D::dimensions>> &&
     requires(const D& d, const typename D::Point& x) {
@@ -59,8 +59,8 @@ class Technique {
     int uniforms() const { return uniforms_; }
     int dimensions() const { return dimensions_; }
 
-    // x is resized to as many points as u has. Where a technique fails to give finite coordinates, so be it:
-    // the point then has no density.
+    // x is resized to as many points as u has. If a technique returns coordinates that are not finite, the
+    // point's density is set to 0.
     void sample(const PointBatch& u, PointBuffer& x) const;
     // Throws Error for a density that is negative or NaN, with the point.
     void density(const PointBatch& x, std::span<double> p) const;

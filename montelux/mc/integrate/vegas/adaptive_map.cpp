@@ -11,7 +11,7 @@ namespace montelux {
 namespace {
 
 constexpr std::string_view file_kind = "adaptive map";
-// Edges never come closer: points within an increment must differ, or its volume is lost.
+// Minimum distance of edges: points within an increment must differ, or its volume is lost.
 constexpr double least_bin_width = 0x1p-44;
 constexpr double uniform_part = 1e-3;
 constexpr double growth = 2;
@@ -69,9 +69,9 @@ std::vector<double> rebalanced(std::span<const double> edges, const std::vector<
     return fresh;
 }
 
-// Cuts increments that are much wider than a neighbour into some that grow from it step by step. Where an
-// integrand ends at a jump, the last narrow increment ends a little before; without steps the sliver between
-// would lie in a wide one that hardly any point comes to, with values that are rare and huge.
+// Splits increments that are much wider than a neighbour into a graded sequence. If an integrand ends at a
+// jump, the last narrow increment ends just before it; without grading the sliver between would lie in a wide
+// increment that few points hit, with rare and huge values.
 std::vector<double> graded(std::span<const double> edges) {
     const std::size_t n = edges.size() - 1;
     std::vector<double> fresh{0}, from_right;
@@ -234,7 +234,7 @@ void AdaptiveMap::inverse(const PointBatch& x, PointBuffer& y, std::span<double>
         double* to = y.coordinate(d).data();
         for (std::size_t begin = 0; begin < x.count(); begin += lanes) {
             const std::size_t count = std::min(lanes, x.count() - begin);
-            // Bisection in step for all lanes: as many halvings for each, and no branches.
+            // Bisection in lockstep for all lanes: the same number of halvings, no branches.
             std::array<int, lanes> low{};
             for (int length = increments_; length > 1;) {
                 const int half = length / 2;

@@ -11,11 +11,10 @@
 
 namespace montelux {
 
-// What a map learns from: for each increment of each coordinate, the mean of (g |dx/dy|)^2 over the points
-// that fell into it.
+// Training data of a map: for each increment of each coordinate, the mean of (g |dx/dy|)^2 over its points.
 class MapTraining {
   public:
-    // Holds nothing, and learns nothing.
+    // Empty.
     MapTraining() = default;
     MapTraining(int dimensions, int increments)
         : increments_(increments),
@@ -69,14 +68,13 @@ class AdaptiveMap {
 
     // Moves the edges towards increments of equal mean squares, by smoothing those over neighbours and
     // compressing them with the power alpha (Lepage 2021, section II; 0 moves nothing, 0.5 slowly, 1.5 fast).
-    // A thousandth of the density stays uniform in each coordinate, so that a part of the cube that the
-    // training has not seen is not given up for good. Coordinates where all squares are zero stay as they
-    // are.
+    // A thousandth of the density stays uniform in each coordinate, so that parts of the cube that training
+    // has not seen stay reachable. Coordinates where all squares are zero do not change.
     void refine(const MapTraining& training, double alpha);
     // The same map (but for rounding corners) with another number of increments.
     AdaptiveMap resampled(int increments) const;
 
-    // The map among other saved numbers; load throws Error for edges that make no map.
+    // The map among other saved numbers; load throws Error for invalid edges.
     void save(StateWriter& state) const;
     static AdaptiveMap load(StateReader& state);
     // The map as a file of its own, written whole or not at all. Both throw Error.

@@ -9,7 +9,7 @@
 namespace montelux {
 namespace {
 
-constexpr double even_part = 0.25; // Lepage's choice: three quarters of the points go where the spread is
+constexpr double even_part = 0.25; // Lepage's choice: three quarters of the points follow the spread
 constexpr std::uint64_t few_boxes = 64;
 
 } // namespace
@@ -60,10 +60,10 @@ std::vector<std::uint32_t> Hypercubes::allocate(std::uint64_t n, double beta) co
     const double largest = *std::max_element(variances_.begin(), variances_.end());
     for (std::size_t h = 0; h < wishes.size(); ++h)
         total += wishes[h] = largest > 0 ? std::pow(variances_[h] / largest, 0.5 * beta) : 1;
-    // Less a rounding error, which must not give one point too many.
+    // Minus a rounding error, which must not add a point.
     const double rest = std::max(0.0, points - least * boxes) / total * (1 - 1e-12);
     std::vector<std::uint32_t> counts(wishes.size());
-    // The fractions are carried on, so that all points are given away.
+    // Carries the fractions, so that all points are used.
     double carried = 0;
     for (std::size_t h = 0; h < counts.size(); ++h) {
         const double wanted = rest * wishes[h] + carried, given = std::floor(wanted);

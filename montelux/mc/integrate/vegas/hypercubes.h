@@ -1,4 +1,4 @@
-// Adaptive stratification: a grid of hypercubes, each with as many points as its spread asks for.
+// Adaptive stratification: a grid of hypercubes, with points in proportion to the spread of values in each.
 #pragma once
 
 #include <cstdint>
@@ -24,17 +24,16 @@ class Hypercubes {
     // s_d.
     int strata(int d) const { return strata_[static_cast<std::size_t>(d)]; }
 
-    // The finest grid of at most `most` boxes whose s_d differ by one at most, larger ones first. Spreads
-    // are taken over: a new box gets that of the old one around its centre.
+    // The finest grid of at most `most` boxes whose s_d differ by one at most, larger ones first. A new box
+    // inherits the spread of the old one around its centre.
     void resize(std::uint64_t most);
 
-    // n_h for about n points: never more in all, two at least in each box (n >= 2 count()), and of 64 boxes
-    // and more none gets more than a sixteenth (it would keep a thread busy alone, perhaps on a chance
-    // finding).
+    // n_h for at most n points in all: at least two per box (n >= 2 count()), and with 64 boxes and more at
+    // most a sixteenth in one (which would keep a single thread busy, perhaps on an outlier).
     std::vector<std::uint32_t> allocate(std::uint64_t n, double beta) const;
 
-    // Takes in the variances of values that were found in each box. Those of before keep a half, for two or
-    // three points say little.
+    // Blends in the variances found in each box; the old ones keep a half, since two or three points say
+    // little.
     void learn(std::span<const double> variances);
 
     // Moves points u, uniform in the unit cube, into boxes: box[i] is the number of point i's.

@@ -22,7 +22,7 @@ void MappedPoints::evaluate_uniform(const Evaluator& g, const AdaptiveMap& map, 
     x_.resize(x.count(), x.dimensions());
     values_.resize(x.count(), g.components());
     jacobian_.assign(x.count(), 1.0);
-    map.inverse(x, x_, jacobian_); // of which the Jacobian alone is wanted
+    map.inverse(x, x_, jacobian_); // of which only the Jacobian is used
     g(x, values_, non_finite);
     finish(inverse_scale);
 }

@@ -1,4 +1,4 @@
-// An integrand seen through an adaptive map: values at a batch of points, and what they tell about the map.
+// An integrand under an adaptive map: values at a batch of points, and sums that judge the map.
 #pragma once
 
 #include <span>

@@ -10,11 +10,11 @@
 namespace montelux {
 namespace {
 
-// Of a false alarm of the means, for all components together.
+// Probability of a false alarm of the means, for all components together.
 constexpr double significance = 1e-4;
-// What is hidden must change the result by this many of its standard errors.
+// Standard errors by which a hidden part must change the result.
 constexpr double hidden_errors = 3;
-// A value |w| that the map hides is so many times the largest that its own points had.
+// A value |w| counts as hidden if it is this many times the largest of the map's own points.
 constexpr double far_beyond = 4;
 
 struct UniformSum {
@@ -78,7 +78,7 @@ void UniformCheck::warn(const std::vector<double>& value, const std::vector<doub
     double worst = 0, error_square = 0;
     std::size_t where = 0;
     for (std::size_t c = 0; c < value.size(); ++c) {
-        // The larger of the variances that the points show and that the map expects: few points miss peaks.
+        // The larger of the points' variance and the map's: few points miss peaks.
         const double expected = expected_square_[c] - value[c] * value[c];
         const double variance = std::max(moments_.variance(static_cast<int>(c)), expected) / n +
                                 standard_error[c] * standard_error[c];
@@ -99,7 +99,7 @@ void UniformCheck::warn(const std::vector<double>& value, const std::vector<doub
         warnings.emplace_back(text);
     }
     const double hidden = hidden_ / n;
-    // What the map may miss by chance: a region that a few of its points might have met, none of which did.
+    // What the map may miss by chance: a region that a few of its points might have hit.
     const double chance = far_beyond * std::sqrt(largest_square_) / weight_;
     if (hidden > hidden_errors * std::sqrt(error_square) + chance && size_ > 0) {
         std::snprintf(text, sizeof text,

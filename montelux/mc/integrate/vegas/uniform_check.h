@@ -1,4 +1,4 @@
-// A check on an adapted sampler by points that know nothing of its adaptation.
+// A check of an adapted sampler by uniform points.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace montelux {
 
-// Uniform points beside those of a map, never part of its estimate. They are asked two things: is their mean
-// the map's result, and do they find values where the map hardly ever goes? Both tests are made so that a
-// narrow peak which the map knows, and which uniform points mostly miss, raises no alarm.
+// Uniform points beside those of a map, never part of its estimate. Two tests: is their mean the map's
+// result, and do they find values where the map hardly ever samples? A narrow peak that the map knows and
+// uniform points mostly miss raises no alarm in either.
 class UniformCheck {
   public:
     UniformCheck() = default;
@@ -27,7 +27,7 @@ class UniformCheck {
              std::uint64_t points, std::uint32_t stream, std::span<const double> inverse_scale,
              NonFiniteCount& non_finite, const CancelFlag* cancel);
 
-    // Sentences, for the result and its errors.
+    // Warnings for the result and its errors.
     void warn(const std::vector<double>& value, const std::vector<double>& standard_error,
               std::span<const double> inverse_scale, std::vector<std::string>& warnings) const;
 
@@ -35,11 +35,11 @@ class UniformCheck {
     void load(StateReader& state);
 
   private:
-    CovarianceMoments moments_;           // of g_c over the uniform points
-    std::vector<double> expected_square_; // mean of g_c^2 as the map knows it
-    double size_ = 0;                     // integral of the components' common size, as the map knows it
+    CovarianceMoments moments_;           // moments of g_c over the uniform points
+    std::vector<double> expected_square_; // mean of g_c^2 by the map
+    double size_ = 0;                     // integral of the components' common size by the map
     double weight_ = 0;                   // points of the map
-    double hidden_ = 0;                   // sum, over uniform points, of sizes which the map hides
+    double hidden_ = 0;                   // sum of hidden sizes over uniform points
     double largest_square_ = 0;           // of the map's points
 };
 

@@ -13,24 +13,22 @@
 namespace montelux {
 
 // VEGAS+ (Lepage 2021, "Adaptive multidimensional integration: VEGAS enhanced"): points y stratified over
-// hypercubes of the unit cube, with more points where the values spread, are carried to x(y) by a map of
-// each coordinate that makes the values g(x(y)) |dx/dy| as equal as it can. Map and strata learn from each
-// iteration and serve the next one.
+// hypercubes of the unit cube, with more points where the values spread, are mapped to x(y), coordinate by
+// coordinate, so that the values g(x(y)) |dx/dy| become as equal as possible. Map and strata are trained
+// after each iteration for the next one.
 //
 // Unbiased for any number of evaluations: the first iterations only train, and the others are weighted by
-// their numbers of points, not by variances that they find for themselves. A share of uniform points beside
-// the estimate checks that the map has not lost a part of the integral; iterations are compared by
-// chi-squared; and a sum that hangs on a few points is told. What none of these can find is a part so narrow
-// that no point came near.
+// their numbers of points, not by their own variances. Additional uniform points check that the map has not
+// lost a part of the integral; iterations are compared by chi-squared; and a sum dominated by a few points
+// gives a warning. A part so narrow that no point came near is not found.
 //
-// Components of a vector-valued integrand are trained on together: on the sum of their squares, each
-// relative to its mean square.
+// Vector-valued integrands are trained on the sum of squared components, each relative to its mean square.
 struct Vegas {
     static constexpr std::string_view name = "vegas";
 
     enum class Points : std::uint8_t {
         stratified, // pseudo-random, in hypercubes
-        // Randomised Sobol' points, carried by the map; they are stratified by themselves, so there are no
+        // Randomised Sobol' points under the map; they are stratified by themselves, so there are no
         // hypercubes. The error comes from `replicates`. Iterations grow sixteenfold, with the map fixed
         // while one runs, and are weighted by the squares of their lengths.
         sobol
@@ -38,14 +36,14 @@ struct Vegas {
     Points points = Points::stratified;
     // How fast the map moves; 0 keeps it.
     double alpha = 1;
-    // Points of a hypercube grow as the spread of its values to this power; 0 gives the same to all.
+    // Points of a hypercube are proportional to the spread of its values to this power; 0: equal.
     double beta = 0.75;
-    // Iterations at the start that train alone. More follow while they still help much, but never beyond a
-    // quarter of the evaluations allowed. With 0 the first iteration counts, which suits a trained map.
+    // Iterations at the start that only train. More follow while they help much, up to a quarter of the
+    // allowed evaluations. With 0 the first iteration counts, which suits a trained map.
     int training_iterations = 5;
-    // Evaluations of each of them; 0 leaves it to the method (about 2000 in eight dimensions).
+    // Evaluations of each; 0: automatic (about 2000 in eight dimensions).
     std::uint64_t training_evaluations = 0;
-    // At most so many increments of the map in a coordinate; fewer while there are few points.
+    // Maximum increments of the map per coordinate; fewer while there are few points.
     int increments = 512;
     // Uniform points for each point of the estimate, [0, 1].
     double uniform_share = 0.05;
@@ -66,8 +64,8 @@ struct VegasSobol {
     std::unique_ptr<Estimator> estimator(const Problem& problem) const;
 };
 
-// The map after so many evaluations (none of which an integral comes of), to be saved or to start other
-// integrations from: Vegas{.training_iterations = 0, .map = train_map(...)}.
+// The map after this many evaluations (used for training only), to save or to start other integrations from:
+// Vegas{.training_iterations = 0, .map = train_map(...)}.
 AdaptiveMap train_map(const Evaluator& g, std::uint64_t evaluations, const Vegas& settings = {},
                       std::uint64_t seed = 0);
 

@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::uint64_t pilot_points = 1024;
 constexpr std::uint64_t least_points_per_variable = 128;
-// The map learns from about so many points of an iteration at most; more make it no better, only slower.
+// Maximum points of an iteration used for training; more are only slower.
 constexpr std::uint64_t training_points = 1 << 17;
-// The sum hangs on one point that has this share of the squares of all.
+// Share of the sum of squares above which one point dominates the sum.
 constexpr double concentrated = 0.1;
 constexpr double few_points = 1000;
 
@@ -123,7 +123,7 @@ void VegasEstimator::plan(VegasState& next, const StepRequest& request) const {
     const std::uint64_t budget = request.max_evaluations;
     const auto iterations = static_cast<std::uint64_t>(settings_.training_iterations);
     next.training_limit = std::min(budget / 4, std::uint64_t{1} << 22);
-    // Fitted to fewer points, the maps of so many variables together would follow noise.
+    // With fewer points, maps of so many variables would follow noise.
     const std::uint64_t needed =
         std::max(static_cast<std::uint64_t>(least_),
                  least_points_per_variable * static_cast<std::uint64_t>(problem_.evaluator.dimensions()));
@@ -134,7 +134,7 @@ void VegasEstimator::plan(VegasState& next, const StepRequest& request) const {
     std::uint64_t size = settings_.training_evaluations;
     if (size == 0) {
         size = default_training(problem_.evaluator.dimensions());
-        // Where no error is asked for, a twentieth of all is well spent on the training.
+        // Without a target error, training takes a twentieth of the evaluations.
         if (request.relative_error == 0 && request.absolute_error == 0)
             size = std::max(size, std::min<std::uint64_t>(budget / (20 * iterations), 1 << 15));
     }
@@ -161,7 +161,7 @@ std::uint64_t VegasEstimator::uniform_points(std::uint64_t points) const {
 }
 
 bool VegasEstimator::trains(std::uint64_t stream, std::uint64_t batch, std::uint64_t points) {
-    // By a hash, for regular gaps would line up with strata.
+    // By a hash, since regular gaps would line up with strata.
     return points <= training_points ||
            static_cast<double>(hash_key(stream, batch) >> 11) * 0x1p-53 * static_cast<double>(points) <
                static_cast<double>(training_points);
@@ -182,7 +182,7 @@ void VegasEstimator::note_training(VegasState& next, double points, double error
     const double spread = error * error * points;
     ++next.training_done;
     if (next.training_done >= settings_.training_iterations) {
-        // Still vague, or large and falling: better trained on than counted.
+        // Error still uncertain, or large and falling: training is better than counting.
         const bool falling = spread > 1 && spread < 0.75 * next.last_spread;
         next.trained = !(error > vague || falling);
         next.training_size += next.training_size / 2;

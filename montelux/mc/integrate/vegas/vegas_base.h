@@ -1,4 +1,4 @@
-// What the two forms of Vegas share: pilot, plan of the training, checks, saved state.
+// Base of both forms of Vegas: pilot, plan of the training, checks, saved state.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace montelux {
 // Points of a batch that one task takes.
 inline constexpr std::uint64_t vegas_task_points = 1 << 14;
 
-// The state that both forms have.
+// State of both forms.
 struct VegasState {
     AdaptiveMap map;
     IterationAverage average;
@@ -52,16 +52,16 @@ class VegasEstimator : public Estimator {
     // Values of components are compared after division by their root mean squares; a scalar needs none.
     // The pilot of a vector finds them at uniform points. False when cancelled.
     bool run_pilot(VegasState& next, const StepRequest& request, std::uint64_t& used) const;
-    // How long to train, from what the first step may use.
+    // Plans the training from the evaluations of the first step.
     void plan(VegasState& next, const StepRequest& request) const;
     // More increments where points are many.
     void sharpen(AdaptiveMap& map, std::uint64_t points) const;
-    // Adapts the map to what so many points saw; too few for so many variables change nothing.
+    // Adapts the map to this many points; too few for the number of variables change nothing.
     void refine(AdaptiveMap& map, const MapTraining& training, std::uint64_t points) const;
-    // Points for the uniform check beside so many of the map.
+    // Uniform check points for this many points of the map.
     std::uint64_t uniform_points(std::uint64_t points) const;
-    // Takes in what an iteration of `points` points showed: whether the training is over, and what the sum of
-    // squares hangs on.
+    // Records an iteration of `points` points: whether the training is over, and whether a few points
+    // dominate.
     void note_training(VegasState& next, double points, double relative_error) const;
     void note_iteration(VegasState& next, const MapInsight& insight, double points) const;
     static void rescale(VegasState& next, const MapInsight& insight);

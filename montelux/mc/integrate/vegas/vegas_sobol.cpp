@@ -65,7 +65,7 @@ class SobolVegas final : public VegasEstimator {
         note_iteration(next, pass->insight, static_cast<double>(all));
         iteration.sums.merge(pass->sums);
         iteration.points += points;
-        // Each chunk's training is a mean; longer chunks say more.
+        // Each chunk's training data is a mean; longer chunks weigh more.
         iteration.training.merge(pass->insight.training);
         if (iteration.points >= iteration.length) {
             next.average.add(weight(iteration), estimate(iteration));
@@ -101,7 +101,7 @@ class SobolVegas final : public VegasEstimator {
         return StepOutcome::advanced;
     }
 
-    // A fresh iteration: new scrambles, and a map that stays as it is.
+    // A new iteration: new scrambles, the map unchanged.
     void begin(Iteration& iteration, VegasState& next) const {
         if (iteration.length == 0) iteration.length = iteration_growth * first_points;
         iteration.length = std::min(iteration.length, longest);
@@ -119,7 +119,7 @@ class SobolVegas final : public VegasEstimator {
             std::bit_floor(std::max({large_step / replicates(), iteration.points / 8, std::uint64_t{1}}));
         const std::uint64_t start = std::max(first_points, iteration.length / iteration_growth);
         const std::uint64_t wanted = std::min(iteration.points == 0 ? start : iteration.points, large);
-        // At the end of the budget the largest power of two that fits; a little remainder is not worth it.
+        // At the end of the budget the largest power of two that fits; a small remainder is not used.
         if (wanted <= most) return wanted;
         const std::uint64_t fits = std::bit_floor(most);
         return fits * 16 < iteration.points ? 0 : fits;

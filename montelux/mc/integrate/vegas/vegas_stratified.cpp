@@ -153,8 +153,8 @@ class StratifiedVegas final : public VegasEstimator {
     }
 
   private:
-    // Points of the map in the next iteration: a half of those that counted before, so that the numbers of
-    // evaluations to stop at lie close, and that the last ones have the best map.
+    // Points of the next iteration: half of all that counted before, so that a run can stop at many places
+    // and the last iterations have the best map.
     std::uint64_t iteration_size(const VegasState& next, std::uint64_t limit) const {
         if (!next.trained) return std::min(next.training_size, limit);
         const auto counted = static_cast<std::uint64_t>(next.points);
@@ -163,7 +163,7 @@ class StratifiedVegas final : public VegasEstimator {
         std::uint64_t size = std::max(2 * next.training_size, counted / 2);
         if (size == 0) size = 4096;
         size = std::min(size, std::max(large_step, counted / 10));
-        // A small rest is not left for an iteration of its own.
+        // Avoids a small last iteration.
         if (size + size / 4 > room) size = room;
         while (size > 2 && size + uniform_points(size) > limit) --size;
         return size;
