@@ -1,4 +1,4 @@
-# The front door: `make` lists what can be asked for. Each line below is a few commands that can also be typed.
+# `make` lists the targets. Each is a few commands that can also be typed.
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help

@@ -1,6 +1,5 @@
-// One sample of the light that a surface reflects from an environment map, by a direction to the map, one of
-// the BSDF, or both joined by MIS; with the maps and materials that bench/environment_sampling and its test
-// look at.
+// One sample of the light that a surface reflects from an environment map, by light sampling, BSDF sampling,
+// or both with MIS; with the maps and materials of bench/environment_sampling and its test.
 #pragma once
 
 #include <cmath>

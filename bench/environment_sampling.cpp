@@ -1,5 +1,5 @@
-// Noise of the ways to sample environment light: variance a sample of each, beside BSDF sampling and joined
-// with it, for maps and materials of all sorts (docs/measurements/environment-sampling.md).
+// Noise of the ways to sample environment light: variance per sample of each, beside BSDF sampling and
+// combined with it, for maps and materials of many kinds (docs/measurements/environment-sampling.md).
 #include "bench/environment_estimate.h"
 #include <chrono>
 #include <cmath>
@@ -41,7 +41,7 @@ constexpr Way ways[] = {{"BSDF alone", tabulated, false, Use::bsdf},
                         {"tabulated", tabulated, true, Use::balance}};
 
 struct Noise {
-    double independent = 0, sobol = 0; // variance a sample over squared mean, both summed over the normals
+    double independent = 0, sobol = 0; // variance per sample over squared mean, both summed over the normals
     double mean = 0, error = 0;
 };
 Noise noise_of(const EnvironmentPicture& map, const EnvironmentSampler& sampler, const Bsdf& bsdf, Use use,
@@ -83,7 +83,7 @@ Noise noise_of(const EnvironmentPicture& map, const EnvironmentSampler& sampler,
     return noise;
 }
 
-// Time to draw a direction and to ask for the density of another.
+// Time to draw a direction and to evaluate the density of another.
 double nanoseconds(const EnvironmentSampler& sampler) {
     constexpr int n = 2'000'000;
     SampleStream stream({SamplerKind::independent, 3, 1}, 0, 0, 0);

@@ -7,7 +7,7 @@
 
 namespace {
 
-// Arguments: kind, samples per pixel. Opens a stream a sample and draws eight times a pair and a number.
+// Arguments: kind, samples per pixel. Opens a stream per sample and draws eight times a pair and a number.
 void sample_stream(benchmark::State& state) {
     const montelux::SamplerSettings settings{static_cast<montelux::SamplerKind>(state.range(0)), 1,
                                              static_cast<std::uint32_t>(state.range(1)), 4};

@@ -1,4 +1,4 @@
-// What a sample costs: warps, tabulated densities, weights and moments, per call.
+// Cost per sample of warps, tabulated densities, weights and moments.
 #include <array>
 #include <benchmark/benchmark.h>
 #include <cmath>

@@ -1,5 +1,5 @@
-// Pictures with errors beside converged references: how often errors cover the truth, and whether renders
-// that are asked for an error end with it.
+// Pictures with errors compared with converged references: how often errors cover the truth, and whether
+// renders to an error reach it.
 #include <boost/math/distributions/students_t.hpp>
 #include <charconv>
 #include <cmath>
@@ -33,7 +33,7 @@ struct Options {
     std::vector<double> targets;
     double time = 0; // seconds at most, for a target
     std::uint64_t seed = 1;
-    int renders = 0; // of each target, beside one another instead of the reference
+    int renders = 0; // of each target, compared with one another instead of the reference
     int width = 160; // of those, in pixels
 };
 
@@ -66,9 +66,9 @@ constexpr double reference_freedom = 7;
 struct Figures {
     FilmError claimed;
     double true_error = 0;      // root mean square of the luminance's, over the reference's mean
-    double reference_error = 0; // the same of the reference's own error, which true_error is free of
+    double reference_error = 0; // the same of the reference's own error, which true_error excludes
     double warned_share = 0;    // of the pixels, in the layer `warning`
-    Coverage all, sure;         // all pixels, and those that are not warned
+    Coverage all, sure;         // all pixels, and those without a warning
     RenderReport report;
 };
 
@@ -158,8 +158,8 @@ void print_targets(const Options& o, const std::string& name, const SceneDescrip
             }
 }
 
-// The true error of a render that is asked for one, from the spread of many of them: it needs no reference,
-// so that no target is too small.
+// The true error of a render to an error, from the spread of many: it needs no reference, so no target is too
+// small.
 void print_spread(const Options& o, const std::string& name, SceneDescription d) {
     shrink(d, o.width);
     for (double target : o.targets)

@@ -1,7 +1,7 @@
 #!/bin/bash
-# CPU time a camera sample on real pbrt-v4 scenes, one thread, beside pbrt-v4.
+# CPU time per camera sample on real pbrt-v4 scenes, one thread, beside pbrt-v4.
 # Usage: render.sh montelux-program [folder-of-scenes]
-# With PBRT=/path/to/pbrt the rival is measured in the same run; else its column holds figures that were measured once on
+# With PBRT=/path/to/pbrt pbrt-v4 is measured in the same run; else its column holds figures that were measured once on
 # an idle machine (-O3 -march=native, 16 spp, path integrator) and serve as a rough guide only.
 set -eu
 montelux=$1
@@ -13,7 +13,7 @@ declare -A noted=([cornell-box]=5.7 [veach-mis]=4.1 [killeroo-simple]=5.0 [kille
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 
-# The least of three runs: load of other programs only ever adds.
+# The least of three runs: other programs only add time.
 least() { sort -n | head -n 1; }
 ours() {
     for _ in 1 2 3; do

@@ -15,7 +15,7 @@ target_compile_options(montelux_flags INTERFACE ${MONTELUX_PROCESSOR_FLAGS})
 if(MONTELUX_SANITIZE)
     target_compile_options(montelux_flags INTERFACE
         -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
-    # Outside the integrals, tests wait for the compiler longer than for what it made.
+    # Outside of the integrals, tests take longer to compile than to run.
     target_compile_options(montelux_flags INTERFACE
         "$<$<NOT:$<OR:$<CONFIG:Debug>,$<BOOL:$<FILTER:$<TARGET_PROPERTY:NAME>,INCLUDE,^mc_(integrate|random)|_room_mc_>>>>:-Og>")
     target_link_options(montelux_flags INTERFACE -fsanitize=address,undefined)
@@ -24,7 +24,7 @@ if(MONTELUX_SANITIZE)
 endif()
 if(CMAKE_UNITY_BUILD)
     # Several files as one (the presets of the tests, which compile everything twice). GCC then takes their
-    # unnamed namespaces for those of a header, and warns falsely of a local variable in Pixel::end_unit.
+    # unnamed namespaces for those of a header, and warns falsely of a local variable in Pixel::end_replicate.
     target_compile_options(montelux_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>
         $<$<CXX_COMPILER_ID:GNU>:-Wno-dangling-pointer>)
 endif()

@@ -1,4 +1,4 @@
-# MPI, as the cluster room links it: in MONTELUX_MPI_LINKS, and nothing where it is not wanted or not found.
+# MPI, as the cluster room links it, in MONTELUX_MPI_LINKS; empty if it is not wanted or not found.
 set(MONTELUX_MPI_LINKS)
 if(MONTELUX_MPI)
     find_package(MPI 3.0 QUIET COMPONENTS CXX)

@@ -1,5 +1,5 @@
-# MONTELUX_PROCESSOR_FLAGS: for x86-64 the level v3 (AVX2, FMA), for other processors what the compiler takes by
-# itself, with MONTELUX_NATIVE all that this machine's processor has.
+# MONTELUX_PROCESSOR_FLAGS: for x86-64 the level v3 (AVX2, FMA), for other processors the compiler's default,
+# with MONTELUX_NATIVE all features of this machine's processor.
 set(MONTELUX_PROCESSOR_FLAGS)
 if(MONTELUX_NATIVE)
     include(CheckCXXCompilerFlag)

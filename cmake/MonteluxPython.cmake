@@ -1,5 +1,5 @@
-# Python: MONTELUX_PYTHON=ON builds the module for the interpreter at hand, which must have nanobind and NumPy;
-# AUTO makes a virtual environment in the build folder first, and leaves the module out where that cannot be.
+# Python: MONTELUX_PYTHON=ON builds the module for the present interpreter, which must have nanobind and
+# NumPy; AUTO first makes a virtual environment in the build folder, and omits the module if that fails.
 set(MONTELUX_PYTHON_LEFT_OUT)
 if(MONTELUX_PYTHON AND NOT MONTELUX_RENDER)
     set(MONTELUX_PYTHON_LEFT_OUT "it needs the renderer")

@@ -1,4 +1,4 @@
-# One CMake target a room, and the libraries that gather rooms.
+# One CMake target per room, and the libraries made of rooms.
 
 # montelux_room(path/of/room [USES rooms...] [LINKS libraries...] [INCLUDES directories...])
 # Compiles montelux/<room>/**.cpp; its unit tests are test/<room>/**_test.cpp.

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Prepares a virtual environment in which the Python package can be built and tested; on failure says why and ends with 1.
+# Prepares a virtual environment in which the Python package can be built and tested; on failure prints why
+# and exits with 1.
 # Usage: python-environment.sh FOLDER
 set -eu
 folder=$1

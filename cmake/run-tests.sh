@@ -1,6 +1,6 @@
 #!/bin/bash
-# Runs the tests with some labels in each build folder; the last line is "N passed, N failed". What failed is shown once
-# more before it, where it is found in a long log.
+# Runs the tests with some labels in each build folder; the last line is "N passed, N failed". Failures are
+# repeated before it, where they are easy to find.
 # Usage: run-tests.sh label-expression jobs build-folder...
 set -u
 labels=$1 jobs=$2
@@ -12,7 +12,7 @@ for build in "$@"; do
     ctest --test-dir "$build" --label-regex "$labels" --parallel "$jobs" --output-on-failure \
         --no-tests=error --output-junit "$report"
     status=$?
-    # The attributes of <testsuite> stand one a line; a report that says nothing counts as a failed run.
+    # The attributes of <testsuite> are one per line; an empty report counts as a failed run.
     count() { sed -n "s/.*[[:space:]]$1=\"\([0-9]*\)\".*/\1/p" "$report" | head -n 1; }
     tests=$(count tests) bad=$(count failures) left_out=$(count skipped)
     total=$((total + ${tests:-0})) failed=$((failed + ${bad:-0})) skipped=$((skipped + ${left_out:-0}))

@@ -1,4 +1,4 @@
-// Families about numbers rather than shapes: scales, cancelling signs, constants; and Genz's, as controls.
+// Families of extreme numbers: scales, cancelling signs, constants; and Genz's, as controls.
 #include "bench/hard/bank.h"
 #include "bench/hard/draws.h"
 #include "bench/hard/quadrature.h"

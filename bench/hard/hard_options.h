@@ -21,7 +21,7 @@ struct HardOptions {
     bool quick = false, verbose = false, list = false, help = false;
 };
 
-// Throws Error for an option that there is not, or a value that cannot be read.
+// Throws Error for an unknown option, or a value that cannot be read.
 HardOptions parse_hard_options(const std::vector<std::string_view>& arguments);
 std::string_view hard_options_help();
 

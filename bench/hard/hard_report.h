@@ -1,4 +1,4 @@
-// What runs over the bank say: silent failures, honest convergence, coverage; as Markdown and as JSON.
+// Report of the runs over the bank: silent failures, honest convergence, coverage; as Markdown and as JSON.
 #pragma once
 
 #include "bench/hard/hard_runner.h"

@@ -28,9 +28,9 @@ struct HardRun {
     double accuracy = 0; // of the exact value, relative
     std::string parameters;
 
-    // The true error is within so many claimed ones; the accuracy of the exact value is granted.
+    // The true error is within this many claimed ones, plus the uncertainty of the exact value.
     bool within(double errors) const;
-    // Gave a value and claims nothing against it.
+    // Gave a value without a warning.
     bool unwarned() const { return run.failure.empty() && !run.answer.warned; }
     bool converged() const { return unwarned() && run.answer.converged; }
     // Claims its target; the truth is more than four claimed errors away.

@@ -1,4 +1,4 @@
-// montelux_bench_hard: integrators on the bank of hard integrals, judged by whether their errors are true.
+// montelux_bench_hard: integrators on the bank of hard integrals, judged by the truth of their errors.
 #include "bench/hard/hard_options.h"
 #include "bench/hard/hard_report.h"
 #include "bench/hard/quick.h"

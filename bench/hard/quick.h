@@ -1,4 +1,4 @@
-// The comparison that continuous integration makes: a small part of the bank, judged by counts.
+// The comparison of continuous integration: a small part of the bank, judged by counts.
 #pragma once
 
 #include <string_view>

@@ -1,4 +1,4 @@
-// How integrators without a stopping rule of their own are driven to a relative error.
+// Drives integrators without a stopping rule to a relative error.
 #pragma once
 
 #include "bench/integrate/method.h"
@@ -13,16 +13,16 @@ struct Trial {
     bool warned = false;
 };
 
-// By how much the evaluations grow when the error is not yet small enough.
+// Factor on the evaluations while the error is too large.
 struct Growth {
-    double least = 2, most = 16; // between them, as 1/sqrt(N) predicts with a fifth in reserve
+    double least = 2, most = 16; // prediction by 1/sqrt(N) with a fifth in reserve, within these factors
 
     static Growth by(double factor) { return {factor, factor}; }
 };
 
-// Runs trial(N) with N from `first` upwards until the error that it claims is small enough, or until the cap,
-// from which every trial is taken, leaves no hope. trial(N) makes at most about N evaluations. A request
-// without a target is one trial with all of them.
+// Runs trial(N) with N from `first` upwards until its claimed error is small enough, or until the cap, which
+// counts all trials, makes that impossible. trial(N) makes at most about N evaluations. A request without a
+// target is one trial with all of them.
 template <typename RunTrial>
 Answer escalate(const CountedIntegrand& f, const Request& request, std::uint64_t first, const Growth& growth,
                 const RunTrial& trial) {

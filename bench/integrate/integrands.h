@@ -1,5 +1,4 @@
-// The integrands that quadrature programs are compared on: Genz's families, one-dimensional classics, hard
-// peaks.
+// Integrands to compare quadrature programs: Genz's families, one-dimensional classics, hard peaks.
 #pragma once
 
 #include "bench/integrate/problem.h"

@@ -1,4 +1,4 @@
-// What the comparison asks of an integrator, ours or another's, and what it answers.
+// Interface of an integrator, ours or another's, to the comparison.
 #pragma once
 
 #include "bench/integrate/problem.h"
@@ -47,7 +47,7 @@ enum class Form { scalar, batch };
 
 struct Request {
     double relative_error = 0;     // 0: spend the evaluations
-    std::uint64_t evaluations = 0; // the cap, or what is to be spent
+    std::uint64_t evaluations = 0; // the cap, or the number to be spent
     std::uint64_t seed = 0;
     Form form = Form::batch;
     double seconds = 0; // wall time, for methods that know a limit of it; 0: none
@@ -57,7 +57,7 @@ struct Answer {
     double value = 0;
     double error = 0;       // the error that the method claims: one standard deviation, or a rule's estimate
     bool converged = false; // it claims the relative error asked for
-    bool warned = false;    // its own diagnostics speak against the result
+    bool warned = false;    // its own diagnostics give a warning
     std::string chosen;     // the method that an automatic one picked
     std::string reason;     // why it did
     std::string warnings;   // its diagnostics, where it has any, in words

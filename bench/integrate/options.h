@@ -21,7 +21,7 @@ struct Options {
     bool list = false, help = false;
 };
 
-// Throws Error for an option that there is not, or a value that cannot be read.
+// Throws Error for an unknown option, or a value that cannot be read.
 Options parse_options(const std::vector<std::string_view>& arguments);
 std::string_view options_help();
 

@@ -1,4 +1,4 @@
-// An integral over a box whose value is known: what integrators are compared on.
+// An integral over a box with a known value.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,4 @@
-// Figures of integrators that cannot be installed here, from an earlier measurement: never of the present
-// run.
+// Published figures of integrators that are not installed, from an earlier measurement.
 #pragma once
 
 #include "bench/integrate/integrands.h"
@@ -30,7 +29,7 @@ struct PublishedErrors {
 };
 std::optional<PublishedErrors> published_errors(Line line);
 
-// CPU nanoseconds an evaluation with a trivial integrand in 8 dimensions.
+// CPU nanoseconds per evaluation with a trivial integrand in 8 dimensions.
 struct PublishedOverhead {
     std::string_view method, nanoseconds;
 };

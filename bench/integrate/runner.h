@@ -1,4 +1,4 @@
-// Runs every method on every line, target and seed, and keeps what each run answered.
+// Runs every method on every line, target and seed, and keeps the answers.
 #pragma once
 
 #include "bench/integrate/integrands.h"
@@ -15,7 +15,7 @@ namespace montelux::bench {
 // A relative error to be reached, or a number of evaluations to be spent.
 struct Goal {
     double relative_error = 0;
-    std::uint64_t evaluations = 0; // the cap, or what is to be spent
+    std::uint64_t evaluations = 0; // the cap, or the number to be spent
 
     bool spends() const { return !(relative_error > 0); }
     // "1e-3", or "1e6 evaluations".
@@ -33,7 +33,7 @@ struct Run {
     std::string failure; // the method's message, where it gave no answer
 
     double relative_error() const { return (answer.value - exact) / exact; }
-    // It gave an answer that it believes: the target reached, and no warning.
+    // It gave an answer: target reached, no warning.
     bool answered() const { return failure.empty() && answer.converged && !answer.warned; }
 };
 

@@ -1,4 +1,4 @@
-// What the runs of a method say: medians, honesty, coverage.
+// Summary of a method's runs: medians, honesty, coverage.
 #pragma once
 
 #include "bench/integrate/runner.h"

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Prepares a Python environment with the package vegas for the comparison of integrators; says so where it cannot.
+# Prepares a Python environment with the package vegas for the comparison of integrators; prints why if it
+# cannot.
 # Usage: vegas-environment.sh FOLDER
 set -eu
 folder=$1

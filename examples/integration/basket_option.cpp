@@ -1,6 +1,6 @@
 // The price of a call on the mean of six stocks that follow correlated geometric Brownian motions (Black and
 // Scholes 1973). The call on their geometric mean has a closed form: it is a test, and as a control variate
-// it takes away most of the variance.
+// it removes most of the variance.
 #include "comparison.h"
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-// Prints results beside what is known of them, and remembers whether they agree.
+// Prints results beside known values, and remembers whether they agree.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 class Comparison {
   public:
-    // Results agree that lie within so many standard errors of what is known.
+    // Results agree within this many standard errors of the known value.
     explicit Comparison(double most_errors = 3) : most_errors_(most_errors) {}
 
     // `known` may have an error of its own, independent of the result's.

@@ -1,4 +1,4 @@
-// The warps of the unit square that the library has, with what is known of each.
+// The warps of the unit square in the library, with known properties of each.
 #pragma once
 
 #include <algorithm>

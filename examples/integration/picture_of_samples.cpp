@@ -1,5 +1,5 @@
-// Draws where Adaptive takes its samples, for a disc and for two narrow peaks: an SVG on standard output.
-// Grey are the points of exploration and training, blue those that the estimate is made of.
+// Draws the samples of Adaptive for a disc and for two narrow peaks, as an SVG on standard output: grey the
+// points of exploration and training, blue those of the estimate.
 #include <array>
 #include <cmath>
 #include <iostream>

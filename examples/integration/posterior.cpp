@@ -1,7 +1,6 @@
 // Expectations over a posterior: logistic regression of how many beetles die of a dose of carbon disulphide
 // (Bliss 1935, "The calculation of the dosage-mortality curve"), with wide normal priors. Metropolis needs
-// the density up to a constant only; two parameters are few enough for quadrature to tell whether it is
-// right.
+// the density only up to a constant; with two parameters quadrature can check the result.
 #include "comparison.h"
 #include <algorithm>
 #include <array>

@@ -22,7 +22,7 @@ int main() {
     const auto f = [](double x) { return std::sin(x); };
     const Domain domain = Domain::interval(0, pi / 2);
 
-    // Each runner by itself, to the same error; what differs is what it costs.
+    // Each density by itself, to the same error at different cost.
     const auto by_uniform =
         integrate(f, domain, Importance{UniformDistribution(0, pi / 2)}, {.absolute_error = 2e-4});
     const auto by_linear =

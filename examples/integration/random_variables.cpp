@@ -164,7 +164,7 @@ void several(Comparison& comparison) {
 }
 
 int main() {
-    Comparison comparison(4); // of so many comparisons one would now and then lie beyond three errors
+    Comparison comparison(4); // wider, since one of this many comparisons would sometimes exceed three errors
     discrete(comparison);
     exponential(comparison);
     cosine(comparison);

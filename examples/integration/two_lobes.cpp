@@ -1,6 +1,6 @@
-// An integrand of two lobes, a wide one and a narrow one upon it, times a quantity that neither density
-// knows: |x|^2 (N(x; a, s^2) + N(x; b, t^2)) over the plane, which is |a|^2 + 2 s^2 + |b|^2 + 2 t^2. Samples
-// of both densities are combined by multiple importance sampling; each heuristic is unbiased.
+// An integrand of two lobes, a wide and a narrow one, times a quantity that neither density contains: |x|^2
+// (N(x; a, s^2) + N(x; b, t^2)) over the plane, which is |a|^2 + 2 s^2 + |b|^2 + 2 t^2. Samples of both
+// densities are combined by multiple importance sampling; each heuristic is unbiased.
 #include "comparison.h"
 #include <limits>
 #include <montelux/mc/dist/family/normal.h>
@@ -27,7 +27,7 @@ struct Lobe {
 constexpr Lobe wide{0, 0, 1}, narrow{1, 0.5, 0.1};
 
 int main() {
-    Comparison comparison(4); // of so many comparisons one would now and then lie beyond three errors
+    Comparison comparison(4); // wider, since one of this many comparisons would sometimes exceed three errors
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const Domain plane{{-infinity, infinity}, {-infinity, infinity}};
     const double exact = wide.integral() + narrow.integral();

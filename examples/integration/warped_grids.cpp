@@ -1,4 +1,4 @@
-// Draws the grid of the unit square as each warp carries it over: an SVG on standard output. A density is a
+// Draws the image of the unit square's grid under each warp, as an SVG on standard output. A density is a
 // change of area: cells are large where 1/p is large, and dark where p is. Directions are seen from above by
 // the projection that keeps areas (Lambert's azimuthal one); its rim is the direction straight down.
 #include "known_warps.h"

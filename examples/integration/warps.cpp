@@ -1,6 +1,6 @@
-// Triangles, discs and directions from the unit square. Each warp draws what it says: a mean over its samples
-// is the known one. And its density is a change of area: where p is small the square is stretched, so that
-// the integral of 1/p over a cell of the square is the area of the cell's image.
+// Triangles, discs and directions from the unit square. Two tests of each warp: a mean over its samples has
+// the known value; and its density is a change of area, so that the integral of 1/p over a cell of the square
+// is the area of the cell's image.
 #include "comparison.h"
 #include "known_warps.h"
 #include <montelux/mc/integrate/basic_monte_carlo.h>
@@ -43,7 +43,7 @@ void compare_areas(Comparison& comparison, const Warp& warp) {
 }
 
 int main() {
-    Comparison comparison(4); // of so many comparisons one would now and then lie beyond three errors
+    Comparison comparison(4); // wider, since one of this many comparisons would sometimes exceed three errors
     const std::vector<Warp> warps = all_warps();
     std::cout << "Means over samples\n";
     for (const Warp& warp : warps) compare_samples(comparison, warp);

@@ -1,4 +1,4 @@
-// A grey sphere under a white sky: each of its points sees nothing but sky and sends back its albedo, 0.5.
+// A grey sphere under a white sky: each of its points sees only sky and reflects its albedo, 0.5.
 #include <exception>
 #include <iostream>
 #include <montelux/film/film.h>

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t finest = 1u << 24; // parts along a texel's edge
 constexpr std::uint64_t samples_per_part = 2;
-// Whatever is asked for: with a target, which keeps them, some 150 MB a thread.
+// Limit in any case: with a target, which keeps the parts, some 150 MB per thread.
 constexpr std::size_t most_parts = std::size_t{1} << 19;
 
 Vec3f lower(Vec3f a, Vec3f b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
@@ -47,9 +47,9 @@ void AreaEstimator::finish(Part& part) const {
         first = {std::min(first.x, d.x), std::min(first.y, d.y)};
         last = {std::max(last.x, d.x), std::max(last.y, d.y)};
     }
-    // All texels between the corners, and a little more, since sides are curved on the map. Where those are
-    // many more than such a part can cover, it lies on a pole or an edge of the octahedron, and its corners
-    // are far apart on the map alone.
+    // All texels between the corners, and a little more, since sides are curved on the map. If there are far
+    // more than such a part can cover, it contains a pole or an edge of the octahedron, and its corners are
+    // far apart only on the map.
     const double across = 0.5 * pi / (size_ * static_cast<double>(part.resolution) * grid.texel_angle());
     const Vec2f margin = (last - first) * 0.05f;
     const Vec2f begin = part.middle.grid + first - margin, end = part.middle.grid + last + margin;
@@ -70,7 +70,7 @@ void AreaEstimator::finish(Part& part) const {
     }
     const auto resolution = static_cast<float>(part.resolution);
     part.weighted_range = max_component(part.high - part.low) / (resolution * resolution);
-    // Finer ones know the texels that they touch by their corners and middle.
+    // Finer parts touch only the texels of their corners and middle.
     part.is_known = seen || across < 1;
 }
 
@@ -189,7 +189,7 @@ TexelEstimate AreaEstimator::estimate(const CubeTexel& texel, int size, const Te
     }
     cut_evenly(std::min(first_cut(map_, size), most_along));
     double aim =
-        0.9 * target.target_error; // of the error that ranges tell, so that the samples seldom tell more
+        0.9 * target.target_error; // by ranges, so that the error by samples is seldom above the target
     std::uint64_t samples = 0;
     bool room = true;
     for (std::uint32_t round = 0;; ++round) {

@@ -14,22 +14,21 @@ namespace montelux {
 
 // A texel is cut into parts, finer and finer where the map changes across them, and the map is looked up at
 // two points of each, weighted by their solid angles, less the radiance at the texel's centre, which is added
-// again: unbiased, and exact where the map is constant. Where to cut is told by the map's range in a part and
-// not by the samples, so nothing depends on how they came out.
+// again: unbiased, and exact where the map is constant. Cuts depend on the map's range in a part and not on
+// samples, so there is no bias from them.
 //
-// An edge of the map that crosses a part leaves one point on either side, or both on one, which then agree
-// and know of no error. So a part that an edge crosses, as far as its corners, middle and points tell, has
-// the variance that it has on average over the places of the edge: a sixth of the squared range for one
-// point.
+// If an edge of the map crosses a part with both points on one side, these agree and show no error. So a part
+// crossed by an edge, judged by its corners, middle and points, gets the mean variance over positions of the
+// edge: a sixth of the squared range for one point.
 class AreaEstimator {
   public:
     AreaEstimator(const EnvironmentMap& map, const CubeFrame& frame) : map_(map), frame_(frame) {}
 
-    // A function of the arguments and nothing else.
+    // A pure function of the arguments.
     TexelEstimate estimate(const CubeTexel& texel, int size, const TexelTarget& target, std::uint64_t key);
 
   private:
-    // A place of the texel, in [0, 1]^2, and where it is on the map.
+    // A position in the texel, in [0, 1]^2, and its position on the map.
     struct Place {
         Vec2f grid;
         Vec3f radiance;

@@ -117,8 +117,7 @@ AlbedoTerm BrdfIntegrals::ggx_average_albedo(double alpha) const {
 
 AlbedoTerm BrdfIntegrals::charlie_sheen(double n_dot_v, double alpha) const {
     const View view(n_dot_v);
-    // D over the cosine c is (1 - c^2)^exponent: beyond `reach` nothing is left of it beside its value at the
-    // lower end.
+    // D over the cosine c is (1 - c^2)^exponent: beyond `reach` it is negligible.
     const double exponent = 0.5 / alpha;
     const double lowest = std::cos(view.theta_2), middle = std::cos(view.theta_1);
     auto reach = [&](double from) { return std::min(1.0, std::sqrt(from * from + 40 / exponent)); };

@@ -1,4 +1,4 @@
-// The integrals that tables for image-based lighting hold: GGX in two terms, its mean albedo, Charlie sheen.
+// The integrals tabulated for image-based lighting: GGX in two terms, its mean albedo, Charlie sheen.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace montelux {
 // Walter et al. 2007; Heitz 2014.
 struct SplitSumTerms {
     double scale = 0, bias = 0;
-    // How far the rule with half as many nodes lies away, the larger of both terms: the error is far smaller.
+    // Distance to the rule with half as many nodes, the larger of both terms: the error is far smaller.
     double error = 0;
 };
 
@@ -30,7 +30,7 @@ class BrdfIntegrals {
     // n_dot_v in (0, 1]; alpha in (0, 1].
     SplitSumTerms ggx(double n_dot_v, double alpha) const;
     // 2 integral_0^1 (scale + bias)(mu) mu dmu: the mean albedo for F = 1. Kulla and Conty 2017, "Revisiting
-    // Physically Based Shading at Imageworks", need it for what is scattered more than once.
+    // Physically Based Shading at Imageworks", need it for multiple scattering.
     AlbedoTerm ggx_average_albedo(double alpha) const;
     // Albedo of the sheen of Estevez and Kulla 2017, "Production Friendly Microfacet Sheen BRDF", D =
     // (2 + 1/alpha) sin^(1/alpha)(theta) / (2 pi), with the visibility 1 / (4 (n.l + n.v - n.l n.v)) of

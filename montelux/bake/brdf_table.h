@@ -8,7 +8,7 @@
 
 namespace montelux {
 
-// What the channel B holds.
+// Content of channel B.
 enum class BrdfTableExtra {
     zero,
     sheen,         // BrdfIntegrals::charlie_sheen
@@ -19,14 +19,13 @@ struct BrdfTableSettings {
     int size = 256;
     BrdfTableExtra extra = BrdfTableExtra::zero;
     const CancelFlag* cancel = nullptr;
-    std::function<void(double fraction)> progress; // called now and then by the thread that asked
+    std::function<void(double fraction)> progress; // called from time to time by the calling thread
 };
 
-// Channels R (scale), G (bias) and B (extra), and "error.R", "error.G", "error.B": how far the quadrature
-// with half as many nodes lies away, which the error of the value is far below. Texel (x, y) belongs to n.v =
-// (x + 1/2) / size and perceptual roughness (y + 1/2) / size with alpha = roughness^2, so the first row is
-// the smoothest. 32-bit float. Throws Error when the size is not in [1, 4096]; an empty image when it was
-// cancelled.
+// Channels R (scale), G (bias) and B (extra), and "error.R", "error.G", "error.B": distance to the quadrature
+// with half as many nodes, an upper bound far above the error. Texel (x, y) belongs to n.v = (x + 1/2) / size
+// and perceptual roughness (y + 1/2) / size with alpha = roughness^2, so the first row is the smoothest.
+// 32-bit float. Throws Error when the size is not in [1, 4096]; an empty image when it was cancelled.
 Image brdf_table(const BrdfTableSettings& settings);
 
 } // namespace montelux

@@ -39,7 +39,7 @@ bool CellEstimator::cut(Vec3f direction, float allowed, std::size_t most) {
     const float width = std::min(1.0f, 2 * std::sqrt(kernel_.a));
     std::size_t samples = 0;
     bool limited = false;
-    // Coarse to fine, so that a limit on their number leaves no part of the map out.
+    // Coarse to fine, so that with a limit on their number the cells still cover the map.
     while (!open_.empty()) {
         next_.clear();
         for (std::size_t i = 0; i < open_.size(); ++i) {
@@ -141,7 +141,7 @@ TexelEstimate CellEstimator::estimate(Vec3f direction, const TexelTarget& target
             estimate.samples = samples;
             return estimate;
         }
-        // The error goes with the power 2/3 of what is allowed: a cell's share is its area times its width.
+        // The error is proportional to `allowed`^(2/3): a cell's share is its area times its width.
         allowed *= std::pow(std::max(1.1, 1.25 * missed), -1.5);
     }
 }

@@ -1,4 +1,4 @@
-// Integrals of an environment map under a radial kernel, by sampling within cells that are cut to fit.
+// Integrals of an environment map under a radial kernel, by sampling within adaptive cells.
 #pragma once
 
 #include <cstdint>
@@ -10,19 +10,18 @@
 
 namespace montelux {
 
-// The kernel is known, the map is known, and their product is not: the map's quadtree is cut into cells over
-// which the kernel varies little, each by as much as it may contribute to the error, so that a sun comes in
-// small pieces and the rest of the sky in large ones. A cell gives its exact energy times the kernel at its
-// middle, plus the mean of what the kernel differs from that at two or four directions drawn in proportion to
-// the map's sum of channels: unbiased, and no value of the map is ever met by chance. Their differences give
-// the variance of each cell, and the sum of those that of the texel; the cells that may have most of it get
-// four, so that it is known better. A cut that misses the target is made finer, and only the last round
-// counts.
+// Kernel and map are known in closed form, their product is not. The map's quadtree is cut into cells over
+// which the kernel varies little, as far as each contributes to the error: small cells at a sun, large ones
+// in the sky. A cell contributes its exact energy times the kernel at its middle, plus the mean deviation of
+// the kernel at two or four directions drawn in proportion to the map's sum of channels: unbiased, and no
+// value of the map is met by chance. The spread of the directions gives each cell's variance, and their sum
+// the texel's; cells that may have most of it get four directions. A cut that misses the target is refined,
+// and only the last round counts.
 class CellEstimator {
   public:
     CellEstimator(const EnvironmentMap& map, const RadialKernel& kernel) : map_(map), kernel_(kernel) {}
 
-    // `direction`: unit vector in the map's frame; a function of the arguments and nothing else.
+    // `direction`: unit vector in the map's frame; a pure function of the arguments.
     TexelEstimate estimate(Vec3f direction, const TexelTarget& target, std::uint64_t key);
 
   private:

@@ -169,7 +169,7 @@ EnvironmentMap::Ball EnvironmentMap::ball_of_block(int x, int y, int size) const
 EnvironmentMap::Ball EnvironmentMap::ball_of_range(double x0, double x1, double y0, double y1) const {
     Ball ball;
     ball.centre = grid_.direction(Vec2d{(x0 + x1) / 2, (y0 + y1) / 2});
-    // More than a quarter of a map turns about its poles and corners in ways that the edges do not tell.
+    // A block of more than a quarter of a map may contain poles and corners that its edges do not show.
     if ((x1 - x0) * 4 > grid_.width() || (y1 - y0) * 4 > grid_.height()) return ball;
     float farthest = 0;
     for (double x : {x0, (x0 + x1) / 2, x1})

@@ -12,7 +12,7 @@
 
 namespace montelux {
 
-// What had to be done to the texels of a map before it made sense as light.
+// Corrections to the texels of a map.
 struct MapRepairs {
     std::uint64_t negative = 0, nan = 0, infinite = 0; // samples that were set to 0
     int halvings = 0;                                  // how often 2 x 2 texels were averaged
@@ -26,7 +26,7 @@ struct MapCell {
 };
 
 // Directions are in the frame of the map, left-handed with z up, as in pbrt-v4: the middle of the top of an
-// equirectangular map's first column is (1, 0, 0), its columns go on towards +y; the centre of an equal-area
+// equirectangular map's first column is (1, 0, 0), its columns run towards +y; the centre of an equal-area
 // map is +z.
 class EnvironmentMap {
   public:
@@ -45,7 +45,7 @@ class EnvironmentMap {
     const MapRepairs& repairs() const { return repairs_; }
     // The level of the one block that is the whole map.
     int top_level() const { return static_cast<int>(levels_.size()) - 1; }
-    // Of the smallest parts that a cell can have: their places fit into 30 bits.
+    // Level of the smallest parts of a cell: their positions fit into 30 bits.
     int lowest_level() const { return top_level() - 30; }
     // Mean over the sphere.
     Vec3d mean_radiance() const;
@@ -92,7 +92,7 @@ class EnvironmentMap {
   private:
     struct Level {
         int width = 0, height = 0;
-        // Blocks of four siblings stand together, in one line of the cache.
+        // Four sibling blocks are contiguous, in one cache line.
         std::vector<Vec3f> energy;
         std::vector<float> energy_sum;
         // Equirectangular: of the columns' and rows' middles, and of the rows' extents.

@@ -1,4 +1,4 @@
-// Integrals of an environment map under the GGX lobe, by drawing directions from the lobe alone.
+// Integrals of an environment map under the GGX lobe, by sampling directions from the lobe only.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace montelux {
 
-// The plain way, as in most bakers: half vectors from D(h) n.h, which for n = v are the visible normals as
-// well, weighted by n.l; scrambled Sobol' points in independent randomisations, whose spread gives the error.
-// Unbiased, but a small sun is met by few directions.
+// The plain estimator, as in most bakers: half vectors from D(h) n.h, which for n = v are the visible normals
+// as well, weighted by n.l; scrambled Sobol' points in independent randomisations, whose spread gives the
+// error. Unbiased, but few directions hit a small sun.
 class LobeEstimator {
   public:
     // `source_mips`: look radiance up in averages over as many texels as a sample stands for (Krivanek and
     // Colbert 2008, "Real-time Shading with Filtered Importance Sampling"). Less noise, and a bias that the
-    // errors do not know of.
+    // errors do not include.
     LobeEstimator(const EnvironmentMap& map, double alpha, bool source_mips);
 
     TexelEstimate estimate(Vec3f direction, const TexelTarget& target, std::uint64_t key) const;

@@ -17,7 +17,7 @@ namespace {
 constexpr int largest_face = 8192;
 constexpr std::uint32_t irradiance_stream = 1000; // levels have their number
 
-// What one level is made of; `roughness` below 0 stands for the cosine.
+// Settings of one level; `roughness` below 0 means the cosine.
 struct LevelTask {
     int level = 0, size = 0;
     double roughness = 0;
@@ -75,7 +75,7 @@ bool bake_level(const EnvironmentMap& map, const LevelTask& task, const BakeSett
     const LobeEstimator lobe(map, by_lobe ? alpha : 1, settings.source_mips);
 
     const std::uint64_t texels = texel_count(task.size);
-    // Texels that share their working memory, and blocks after which the progress is told.
+    // Texels that share their working memory, and blocks after which progress is reported.
     constexpr std::uint64_t run = 16, block = 512 * run;
     Tally tally;
     for (std::uint64_t begin = 0; begin < texels; begin += block) {

@@ -1,5 +1,5 @@
-// Environment maps made ready for real-time engines: cube maps blurred by the GGX lobe level by level, and by
-// the cosine.
+// Prefiltered environment maps for real-time engines: cube maps blurred by the GGX lobe level by level, and
+// by the cosine.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ enum class PrefilterSampling {
 struct BakeSettings {
     PrefilterSampling sampling = PrefilterSampling::cells;
     bool source_mips = false; // with `lobe` alone
-    // Standard error of each channel of a texel beside the mean of the texel's channels; without it `samples`
-    // are taken.
+    // Target standard error of each channel of a texel relative to the mean of its channels; without it
+    // `samples` are taken.
     std::optional<double> target_error = 0.01;
     // Texels darker than this share of the map's mean are measured by the share.
     double dark_floor = 0.01;
@@ -32,7 +32,7 @@ struct BakeSettings {
     std::uint64_t seed = 0;
     CubeFrame frame;
     const CancelFlag* cancel = nullptr;
-    std::function<void(double fraction)> progress; // called now and then by the thread that asked
+    std::function<void(double fraction)> progress; // called from time to time by the calling thread
 };
 
 struct LevelReport {
@@ -40,7 +40,7 @@ struct LevelReport {
     double roughness = 0;
     std::uint64_t samples = 0; // of all texels
     std::uint64_t missed = 0;  // texels whose error is above the target
-    // Of the texels' largest channel errors beside what the target is measured by; 0 without light.
+    // Of the texels' largest channel errors relative to the scale of the target; 0 without light.
     double mean_error = 0, largest_error = 0;
 };
 
@@ -63,8 +63,8 @@ std::vector<double> roughness_by_rule(RoughnessRule rule, std::optional<int> lev
 
 // One level for each roughness in [0, 1]; the first has faces of size x size texels. A roughness of 0 gives
 // the mean of the map over each texel, any other the radiance that the GGX lobe with n = v = r reflects, over
-// that of a white map. The same bits for any number of threads. Throws Error on a size, a roughness or a
-// number of levels that makes no sense.
+// that of a white map. The same bits for any number of threads. Throws Error on an invalid size, roughness or
+// number of levels.
 BakedCubes prefilter_environment(const EnvironmentMap& map, int size, const std::vector<double>& roughness,
                                  const BakeSettings& settings);
 

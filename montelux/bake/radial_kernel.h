@@ -1,5 +1,5 @@
-// Weights over directions that depend on the angle to one direction alone: the GGX lobe seen along its
-// normal, and the cosine of diffuse light.
+// Weights over directions that depend only on the angle to one direction: the GGX lobe seen along its normal,
+// and the cosine of diffuse light.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@ namespace montelux {
 struct RadialKernel {
     float norm = 0, a = 1, b = 0;
 
-    // D(h) n.l, what remains of the GGX lobe for n = v = r (Karis 2013): with cos^2(theta_h) = (1 + n.l) / 2
-    // its D = alpha^2 / (pi (d/2 + alpha^2 (1 - d/2))^2). alpha in (0, 1].
+    // D(h) n.l, the GGX lobe for n = v = r (Karis 2013): with cos^2(theta_h) = (1 + n.l) / 2 its D = alpha^2
+    // / (pi (d/2 + alpha^2 (1 - d/2))^2). alpha in (0, 1].
     static RadialKernel ggx(double alpha);
     // Irradiance over pi.
     static RadialKernel cosine();

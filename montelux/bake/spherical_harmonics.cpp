@@ -39,8 +39,8 @@ Vec3d DiffuseHarmonics::irradiance_at(Vec3d normal) const {
 }
 
 DiffuseHarmonics diffuse_harmonics(const EnvironmentMap& map, const CubeFrame& frame) {
-    // Parts of texels on small maps, so that two nodes a side do for a part, and one where texels are tiny:
-    // the functions' curvature leaves an error of 2e-6.
+    // Divides texels of small maps so that two nodes per side suffice, one where texels are tiny: the
+    // functions' curvature leaves an error of 2e-6.
     const int width = map.grid().width(), height = map.grid().height(), shorter = std::min(width, height);
     const int parts = std::clamp(256 / shorter, 1, 256);
     const auto rule = gauss_legendre_rule(shorter < 512 ? 2 : 1);

@@ -1,4 +1,4 @@
-// Diffuse light as nine numbers a channel: order-2 spherical harmonics of an environment map.
+// Diffuse light as nine numbers per channel: order-2 spherical harmonics of an environment map.
 #pragma once
 
 #include <array>
@@ -32,8 +32,8 @@ struct DiffuseHarmonics {
     Vec3d irradiance_at(Vec3d normal) const;
 };
 
-// In the cube's frame. By Gauss's rule over each texel, in which all functions are smooth: exact beside the
-// precision of the map.
+// In the cube's frame. By Gauss's rule over each texel, in which all functions are smooth: exact compared
+// with the precision of the map.
 DiffuseHarmonics diffuse_harmonics(const EnvironmentMap& map, const CubeFrame& frame);
 
 } // namespace montelux

@@ -95,7 +95,7 @@ class Comparison {
         }
     }
 
-    // The contribution of a direction that either way has drawn.
+    // The contribution of a direction drawn by either technique.
     void add(const Ggx& ggx, Vec3f v, Vec3f l, const Frame& frame, float f0, Vec3d& sum, bool by_lobe) const {
         if (!(l.z > 0)) return;
         const Vec3f h = normalize(v + l), w = frame.to_world(l);
@@ -136,7 +136,7 @@ SplitSumRow row_of(const Comparison& comparison, const SplitSumSettings& setting
         const double f = mean_of(s.full.value), d = mean_of(s.split.value) - f;
         full.add(f);
         difference.add(d);
-        // Channels of one estimate go together: their errors add up at most.
+        // Channels of one estimate are correlated: the sum bounds their error.
         const double e1 = mean_of(s.full.standard_error), e2 = mean_of(s.split.standard_error);
         squares += d * d - e1 * e1 - e2 * e2;
     }

@@ -1,4 +1,4 @@
-// How far the split sum lies from the integral that it stands for.
+// Error of the split sum against the full integral.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct SplitSumSettings {
     int orientations = 64;             // of surface and view, for each row of the table
     int sphere_size = 96;              // pixels; 0: no picture
     double sphere_f0 = 1;
-    // Standard error of either side beside its mean of channels, or the map's where that is darker.
+    // Standard error of either side relative to its mean of channels, or to the map's where that is darker.
     double target_error = 0.01;
     std::uint64_t samples_max = 1 << 16; // of the full integral at one place
     std::uint64_t seed = 0;
@@ -30,7 +30,7 @@ struct SplitSumSettings {
 
 // Over random orientations, in the mean of channels: `full` is the mean of the integral, `bias` the mean of
 // split sum minus integral over `full` with the standard error of the orientations drawn, `rms` the root mean
-// square of the difference over `full`, less what the errors of both sides add to it.
+// square of the difference over `full`, without the part due to the errors of both sides.
 struct SplitSumRow {
     double roughness = 0, n_dot_v = 0, f0 = 0;
     double full = 0, bias = 0, bias_error = 0, rms = 0;
@@ -44,10 +44,10 @@ struct SplitSumReport {
     bool cancelled = false;
 };
 
-// Both sides have the same BRDF: GGX with height-correlated Smith masking and Schlick's Fresnel term. The
-// full integral is estimated by multiple importance sampling of visible normals and of the map; the split sum
-// is the prefiltered radiance at the mirror direction, for the roughness itself and not interpolated from a
-// chain, times F0 * scale + bias.
+// Both sides use the same BRDF: GGX with height-correlated Smith masking and Schlick's Fresnel term. The full
+// integral is estimated by multiple importance sampling of visible normals and of the map; the split sum is
+// the prefiltered radiance at the mirror direction, for the exact roughness, not interpolated from a chain,
+// times F0 * scale + bias.
 SplitSumReport split_sum_report(const EnvironmentMap& map, const SplitSumSettings& settings);
 
 } // namespace montelux

@@ -1,4 +1,4 @@
-// A texel that is baked: its value, its error, and when it is good enough.
+// A baked texel: value, error, and stopping rule.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +11,13 @@
 
 namespace montelux {
 
-// When one texel is done.
+// Stopping rule of a texel.
 struct TexelTarget {
-    // Standard error of each channel beside the larger of the mean of the three channels and `floor`; 0:
+    // Standard error of each channel relative to the larger of the mean of the three channels and `floor`; 0:
     // none.
     double target_error = 0.01;
     double floor = 0; // in radiance
-    // Without a target, the number of samples to take; with one, the most that a round may take.
+    // Without a target, the number of samples; with one, the limit per round.
     std::uint64_t samples = 1 << 20;
 };
 
@@ -27,13 +27,12 @@ struct TexelEstimate {
     bool met = true;
 };
 
-// Sum of strata with a few samples each, and its standard error. Two samples tell their variance with one
-// degree of freedom only, and few strata may hold most of it: the error is that of Student's law with as many
-// degrees of freedom nu as Satterthwaite (1946) gives the sum, so that the mean square of deviation over
-// error is 1.
+// Sum of strata with a few samples each, and its standard error. Two samples give their variance one degree
+// of freedom, and few strata may hold most of it: the error is by Student's law with Satterthwaite's (1946)
+// degrees of freedom nu of the sum, so that the mean square of deviation over error is 1.
 class StratifiedSum {
   public:
-    // At least two samples of one stratum, whose mean is what it adds.
+    // At least two samples of one stratum, which contributes their mean.
     void add(std::span<const Vec3d> samples) {
         const auto n = static_cast<double>(samples.size());
         Vec3d mean, squares;
@@ -60,8 +59,7 @@ class StratifiedSum {
     Vec3d value_, variance_, inverse_;
 };
 
-// How many times the error that the target allows; 0 where a black texel has none, and infinite where value
-// or error is not a finite number, of which nothing is known.
+// Error over the target's; 0 for a black texel without error, infinite if value or error is not finite.
 inline double missed_by(const TexelEstimate& e, const TexelTarget& target, double target_error) {
     const double reference = std::max((e.value.x + e.value.y + e.value.z) / 3, target.floor);
     double finite = 0; // or NaN

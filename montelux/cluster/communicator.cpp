@@ -37,7 +37,7 @@ std::optional<int> number_in_environment(const char* name) {
 } // namespace
 
 std::optional<LaunchedAs> launched_as() {
-    // Open MPI's mpirun; launchers that speak PMI, as MPICH's and Slurm's do; those that speak PMIx alone.
+    // Open MPI's mpirun; launchers with PMI, such as MPICH's and Slurm's; those with PMIx only.
     constexpr const char* names[][2] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
                                         {"PMI_RANK", "PMI_SIZE"},
                                         {"PMIX_RANK", "SLURM_STEP_NUM_TASKS"}};
@@ -52,14 +52,14 @@ std::optional<LaunchedAs> launched_as() {
 namespace {
 
 constexpr std::chrono::microseconds shortest_nap{50}, longest_nap{5000};
-// What MPI counts is an int.
+// MPI counts are ints.
 constexpr std::size_t largest_message = std::size_t{256} << 20;
-// Of what is broadcast: on a slow network too, a piece is soon taken by ranks that are well.
+// Piece of a broadcast: healthy ranks take one quickly on a slow network, too.
 constexpr std::size_t broadcast_piece = std::size_t{16} << 20;
 constexpr double without_limit = std::numeric_limits<double>::infinity();
 
-// Waits without the polling that would take a processor away from ranks beside this one; calls meanwhile()
-// between. False: it was not done in this time.
+// Waits without busy polling, which would take a processor from other ranks; calls meanwhile() in between.
+// False: not done in this time.
 template <typename Done, typename Meanwhile>
 bool wait_until(const Done& done, double patience_seconds, const Meanwhile& meanwhile) {
     const auto begin = std::chrono::steady_clock::now();
@@ -95,7 +95,7 @@ struct Communicator::State {
         std::vector<std::uint8_t> bytes;
         MPI_Request request;
     };
-    // A communicator of its own, so that nobody else's messages are met.
+    // A communicator of its own, so that its messages are separate.
     MPI_Comm world = MPI_COMM_NULL;
     int rank = 0, size = 1;
     std::list<Outgoing> outgoing; // MPI reads the bytes until the request is done
@@ -137,7 +137,7 @@ Communicator::~Communicator() {
 bool Communicator::leave(double patience_seconds) {
     state_->left = true;
     if (state_->broken) return false;
-    // Long messages are not sent before somebody takes them, and this rank may have stopped listening.
+    // Long messages are only sent when they are received, and the receiver may have stopped listening.
     const auto listen = [this] {
         while (receive()) {
         }
@@ -222,7 +222,7 @@ int Communicator::fair_threads() {
     std::vector<cpu_set_t> all(static_cast<std::size_t>(ranks));
     MPI_Allgather(&mine, sizeof mine, MPI_BYTE, all.data(), sizeof mine, MPI_BYTE, machine);
     MPI_Comm_free(&machine);
-    // Launchers bind ranks to processors of their own, or to sets that some of them share.
+    // Launchers bind ranks to their own processors, or to sets that several share.
     const auto sharing = std::count_if(all.begin(), all.end(),
                                        [&](const cpu_set_t& other) { return CPU_EQUAL(&mine, &other); });
     return std::max(1, CPU_COUNT(&mine) / static_cast<int>(sharing));

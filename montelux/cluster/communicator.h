@@ -1,4 +1,4 @@
-// The ranks of an MPI job; the only file but its source that knows of MPI.
+// The ranks of an MPI job; only this file and its source use MPI.
 #pragma once
 
 #include <memory>
@@ -13,18 +13,18 @@ namespace montelux {
 // Was the program built with MPI? Its version if so, "" otherwise.
 std::string mpi_version();
 
-// What the launcher (mpirun, srun) says in the environment, before MPI is started.
+// Rank and size by the launcher's (mpirun, srun) environment, before MPI is started.
 struct LaunchedAs {
-    int rank = 0, size = 1; // size 0: not said
+    int rank = 0, size = 1; // size 0: unknown
 };
-// Empty for a program that was started alone.
+// Empty for a program started without a launcher.
 std::optional<LaunchedAs> launched_as();
 
-// The whole job. One lives at a time, and only one in the life of a process; its thread is the one that uses
-// it. Other ranks are waited for at its end, which leave() gives a limit. An error within MPI ends the job.
+// The whole job. One per process, used by one thread. Its destructor waits for the other ranks; leave() sets
+// a limit. An error within MPI ends the job.
 class Communicator final : public Mailbox {
   public:
-    // Throws Error when the program was built without MPI, or MPI does not know of the launcher.
+    // Throws Error when the program was built without MPI, or MPI does not recognise the launcher.
     Communicator();
     ~Communicator() override;
     Communicator(const Communicator&) = delete;
@@ -35,15 +35,14 @@ class Communicator final : public Mailbox {
     void send(int to, int tag, std::vector<std::uint8_t> bytes) override;
     std::optional<Message> receive() override;
 
-    // What rank 0 has becomes what every rank has. All ranks call it; waiting takes no processor time to
-    // speak of. Throws Error on rank 0 where the others take nothing of it for so long; they wait for rank 0
-    // without a limit.
+    // Broadcasts the bytes of rank 0. All ranks call it; waiting takes hardly any processor time. Throws
+    // Error on rank 0 if the others take nothing for this time; they wait for rank 0 without a limit.
     void broadcast(std::vector<std::uint8_t>& bytes, double patience_seconds);
     // Threads for each rank, so that those on one machine fill the processors that they may use. All ranks
     // call it.
     int fair_threads();
-    // Waits until all ranks have come to this, and so long at most. True: that was the end of MPI. False:
-    // some have not come, and nothing but abort() can follow.
+    // Waits for all ranks to call it, at most this long. True: MPI has ended. False: some are missing, and
+    // only abort() can follow.
     bool leave(double patience_seconds);
     // Ends all ranks at once.
     [[noreturn]] void abort(int exit_code);

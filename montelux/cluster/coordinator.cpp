@@ -12,9 +12,9 @@
 namespace montelux {
 namespace {
 
-// A task is as long as that, but longer where so many threads would keep the leader busy with their reports.
+// Duration of a task; longer if the reports of many threads would keep the leader busy.
 constexpr double task_seconds = 0.1, seconds_a_thread = 1e-4;
-// Tasks a thread that a rank has in hand: one in work, and one to go on with.
+// Tasks per thread of a rank: one in work, one waiting.
 constexpr int tasks_a_thread = 2;
 constexpr std::uint32_t first_step = 4; // samples per pixel, where the cost of a tile is not known
 
@@ -24,8 +24,8 @@ double seconds_between(std::chrono::steady_clock::time_point a, std::chrono::ste
     return std::chrono::duration<double>(b - a).count();
 }
 
-// Calls f(first, count, offset) for each row of a tile: where it begins in the film, how long it is, and how
-// many pixels of the tile lie before it.
+// Calls f(first, count, offset) for each row of a tile: start in the film, length, and number of the tile's
+// pixels before it.
 template <typename F>
 void for_rows(const PixelBounds& film, const PixelBounds& tile, const F& f) {
     const auto width = static_cast<std::size_t>(film.width()), count = static_cast<std::size_t>(tile.width());
@@ -102,12 +102,12 @@ void Coordinator::begin_round() {
 void Coordinator::run(const TileRenderer& renderer, RenderState& state, const RoundWatch& watch) {
     state_ = &state;
     watch_ = &watch;
-    // Nobody is silent whom the leader did not listen to: between rounds it writes checkpoints.
+    // Between rounds the leader writes checkpoints and does not listen, so silence then does not count.
     const Clock::time_point now = Clock::now();
     for (Rank& r : ranks_) r.last_heard = worker_ ? r.last_heard + (now - paused_) : now;
     if (!worker_) worker_ = std::make_unique<TileWorker>(renderer, bounds_, settings_.threads, mailbox_);
     begin_round();
-    // Polling more seldom while nothing happens leaves the processor to those that render.
+    // Polls less often while nothing happens, to leave the processor to rendering threads.
     constexpr std::chrono::microseconds shortest{50}, longest{1000};
     std::chrono::microseconds pause = shortest;
     while (!schedule_.finished() && !failed() && !watch.stop(something_done_)) {
@@ -137,7 +137,8 @@ void Coordinator::deal() {
             t.wanted_by = r;
             ByteWriter out;
             out.put(static_cast<std::uint32_t>(*pick));
-            // It forgets the tile, also where the round ends before the tile gets to the rank that wants it.
+            // The holder forgets the tile, even if the round ends before the tile reaches the rank that needs
+            // it.
             send(std::exchange(t.holder, TileSchedule::nobody), protocol::release, out.take());
         }
         if (!message.empty()) send(r, protocol::assign, std::move(message));
@@ -256,7 +257,7 @@ void Coordinator::take_tiles(const Message& message) {
             throw Error("rank " + std::to_string(message.source), "sent a tile of another size");
         const auto tally = in.get<TileTally>();
         tally.add_to(state_->report);
-        // What is in the report is not told of twice.
+        // Does not report the same ranks twice.
         samples_ -= std::min(samples_, tally.samples);
         something_done_ = something_done_ || tally.samples > 0;
         for_rows(state_->film.bounds(), bounds, [&](std::size_t first, std::size_t count, std::size_t) {

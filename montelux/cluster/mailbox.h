@@ -7,7 +7,7 @@
 
 namespace montelux {
 
-// The rank that decides, speaks and writes.
+// The rank that decides, prints and writes.
 inline constexpr int leading_rank = 0;
 
 struct Message {
@@ -22,7 +22,7 @@ class Mailbox {
     virtual ~Mailbox() = default;
     virtual int rank() const = 0;
     virtual int size() const = 0;
-    // Does not wait. Messages from one rank to another, also to itself, arrive in the order of sending.
+    // Does not wait. Messages from one rank to another, or to itself, arrive in the order of sending.
     virtual void send(int to, int tag, std::vector<std::uint8_t> bytes) = 0;
     // The next message, if one is there.
     virtual std::optional<Message> receive() = 0;

@@ -1,4 +1,4 @@
-// What the leader of a render and its workers say to one another.
+// Messages between the leader of a render and its workers.
 #pragma once
 
 #include <cstdint>
@@ -9,39 +9,39 @@ namespace montelux::protocol {
 enum Tag : int {
     // To a worker.
     assign = 1, // Assignments, one after another
-    release,    // a tile's number: its pixels are to be sent back and forgotten
-    gather,     // all pixels that changed are to be sent back; what was assigned and not done is forgotten
+    release,    // a tile's number: send its pixels back and forget them
+    gather,     // send back all changed pixels; forget open assignments
     end,        // the render is over
     // To the leader.
     hello,    // a worker's number of threads: it is ready
     done,     // TaskReports, one after another
     tiles,    // TilePixels, one after another
     gathered, // after the last of the tiles that `gather` asked for
-    beat,     // nothing but that the worker is alive, also before its hello
-    failed,   // why the worker cannot go on; it does nothing more
-    wish,     // somebody asked this rank to end: cancel the render
+    beat,     // the worker is alive, also before its hello
+    failed,   // why the worker cannot continue; its last message
+    wish,     // this rank received a signal: cancel the render
 };
 
-// A tile is rendered on by at most `step` samples per pixel. What the worker does not have yet follows.
+// Renders at most `step` more samples per pixel of a tile. Data that the worker does not have yet follows.
 struct Assignment {
     enum class TargetSamples : std::uint8_t {
         known,
         uniform,
         each
-    }; // uniform: one number follows; each: one a pixel
+    }; // uniform: one number follows; each: one per pixel
     enum class Pixels : std::uint8_t { known, fresh, follow }; // fresh: without a sample
     std::uint32_t tile = 0, step = 0;
     TargetSamples target_samples = TargetSamples::known;
     Pixels pixels = Pixels::known;
 };
 
-// What became of an assignment.
+// Result of an assignment.
 struct TaskReport {
     std::uint32_t tile = 0;
     std::uint64_t samples = 0;   // that were taken
     std::uint64_t remaining = 0; // up to the target sample counts of the round
     double cpu_seconds = 0;
-    // Sums over the tile's pixels: luminance, and its squared error; for the progress alone.
+    // Sums over the tile's pixels: luminance, and its squared error; only for progress.
     double luminance = 0, squared_error = 0;
 };
 

@@ -15,12 +15,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 enum Tag : int { hello = 101, points, values, alive, wish, end };
 constexpr std::chrono::seconds alive_interval{1};
-// Polling more seldom while nothing happens leaves the processor to those that evaluate.
+// Polls less often while nothing happens, to leave the processor to evaluating threads.
 constexpr std::chrono::microseconds shortest_pause{20}, longest_pause{1000};
-// Threads that wait for other ranks cost memory and time to wake.
+// Limit on threads that wait for other ranks, which cost memory and time to wake.
 constexpr int most_callers = 512;
 
-// Points that were sent, and what became of them.
+// Points that were sent, and their results.
 struct Job {
     std::uint64_t number = 0;
     PointBuffer x;
@@ -50,7 +50,7 @@ class EvaluationThreads {
         }
         jobs_there_.notify_one();
     }
-    // Messages to the leader that are ready, after at most so long a wait for one.
+    // Ready messages to the leader; waits at most this long for one.
     std::vector<std::vector<std::uint8_t>> answers(std::chrono::microseconds longest) {
         std::unique_lock lock(mutex_);
         answers_there_.wait_for(lock, longest, [this] { return !answers_.empty(); });
@@ -189,7 +189,7 @@ bool SharedIntegrand::listen(const std::function<void()>& on_wish) {
     return heard;
 }
 
-// To the rank whose threads have the least to do.
+// To the rank with the least work per thread.
 bool SharedIntegrand::send_requests() {
     bool sent = false;
     std::unique_lock lock(mutex_);
@@ -220,7 +220,7 @@ void SharedIntegrand::take_values(const Message& message) {
     std::lock_guard lock(mutex_);
     --ranks_.at(static_cast<std::size_t>(message.source)).in_hand;
     const auto open = open_.find(number);
-    if (open == open_.end()) return; // it was given up
+    if (open == open_.end()) return; // the batch was given up
     Request& request = *open->second;
     request.error = in.get_text();
     if (request.error.empty())
@@ -241,7 +241,7 @@ void SharedIntegrand::check_silence() {
     }
 }
 
-// A step may go by without a batch for the others.
+// A step may have no batch for the others.
 void SharedIntegrand::say_alive() {
     const Clock::time_point now = Clock::now();
     if (now - last_said_ < alive_interval) return;

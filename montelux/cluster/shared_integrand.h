@@ -18,30 +18,29 @@
 
 namespace montelux {
 
-// Values of a batch: a pure function, called by several threads, the same on every rank.
+// Evaluates a batch: a pure function, called by several threads, the same on every rank.
 using BatchFunction = std::function<void(const PointBatch&, ValueBatch)>;
 
-// The side of rank 0, on which the estimator runs. What is integrated, and by which method, makes no
-// difference: whoever evaluates a batch finds the same values, so the result is that of one process. Points
-// and values travel (8 bytes a coordinate and a component), which pays where an evaluation takes much longer
-// than a microsecond.
+// The side of rank 0, which runs the estimator. Every rank computes the same values of a batch, so the result
+// is that of one process, for any integrand and method. Points and values are sent (8 bytes per coordinate
+// and component), which pays if an evaluation takes much longer than a microsecond.
 class SharedIntegrand {
   public:
-    // Waits until all ranks are there. `threads`: how many batches this rank evaluates at a time.
+    // Waits for all ranks. `threads`: number of batches that this rank evaluates at a time.
     SharedIntegrand(Mailbox& mailbox, BatchFunction f, int components, int threads,
                     double patience_seconds = 60);
     ~SharedIntegrand();
     SharedIntegrand(const SharedIntegrand&) = delete;
     SharedIntegrand& operator=(const SharedIntegrand&) = delete;
 
-    // So many threads should evaluate at a time; those whose batch is elsewhere wait for it.
+    // Number of threads that should evaluate at a time, including those that wait for a batch elsewhere.
     int threads() const { return callers_; }
-    // From any thread of `work`. Throws Error for what a rank throws, or when one is silent for too long.
+    // Callable from any thread of `work`. Throws Error if a rank throws, or is silent for too long.
     void operator()(const PointBatch& x, ValueBatch y);
-    // Runs work() in a thread of its own and serves its evaluations until it ends; what it throws comes from
-    // here. on_wish() is called when another rank was asked to end.
+    // Runs work() in a thread of its own and serves its evaluations until it ends; rethrows its exceptions.
+    // on_wish() is called when another rank received a request to end.
     void lead(const std::function<void()>& work, const std::function<void()>& on_wish = {});
-    // A rank that does not answer, if there is one; it cannot be waited for.
+    // A rank that does not answer, if there is one.
     bool failed() const { return failure_.has_value(); }
 
   private:
@@ -82,8 +81,8 @@ class SharedIntegrand {
     std::optional<std::string> failure_;
 };
 
-// The side of the other ranks, until rank 0 ends it. `cancel`, where it is requested here, is passed on.
-// Throws Error when rank 0 says nothing for so long.
+// The side of the other ranks, until rank 0 ends it. A `cancel` requested here is passed on. Throws Error
+// when rank 0 is silent for this long.
 void serve_integrand(Mailbox& mailbox, const BatchFunction& f, int components, int threads,
                      const CancelFlag* cancel, double patience_seconds);
 

@@ -1,4 +1,4 @@
-// Which rank renders which tile next: decided by the leader, one tile at a time.
+// Schedule of tiles: the leader chooses each rank's next tile.
 #pragma once
 
 #include <cstdint>
@@ -9,20 +9,20 @@
 
 namespace montelux {
 
-// A tile stays with the rank that rendered it last (its holder), so that its pixels need not travel. A rank
-// that has none left gets tiles that nobody holds, and then those of the rank with the most work left. Tiles
-// that had fewer turns come first, and of those the ones with the most work.
+// A tile stays with the rank that rendered it last (its holder), so that its pixels need not be sent. A rank
+// without tiles gets tiles without a holder, then those of the rank with the most work left. Tiles with fewer
+// turns come first, and of those the ones with the most work.
 class TileSchedule {
   public:
     static constexpr int nobody = -1;
 
     TileSchedule(int ranks, int tiles);
 
-    // Work that is left, by tile: 0 where none is. No tile may be in work.
+    // Remaining work of each tile. No tile may be in work.
     void begin_round(std::span<const double> work);
     bool finished() const { return unfinished_ == 0; }
 
-    // The next tile for a rank, which is in work there from now on.
+    // The next tile for a rank, in work from now on.
     std::optional<int> next(int rank);
     // A tile came back from its turn with this much work left; with 0 it is finished.
     void returned(int tile, double work);

@@ -14,15 +14,15 @@ namespace montelux {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-// Of pixels in one message: memory at both ends stays small.
+// Bytes of pixels in one message, which bounds memory at both ends.
 constexpr std::size_t message_bytes = std::size_t{8} << 20;
 constexpr std::chrono::seconds beat_interval{1};
-// Polling more seldom while nothing happens leaves the processor to those that render.
+// Polls less often while nothing happens, to leave the processor to rendering threads.
 constexpr std::chrono::microseconds shortest_poll{50}, longest_poll{1000};
-// A reason that no reader would finish; short messages need nobody who waits for them.
+// Longest reason: short messages need no waiting receiver.
 constexpr std::size_t longest_reason = 1000;
 
-// Throws when the leader has said nothing since then.
+// Throws when the leader has been silent since then.
 void check_leader(const Mailbox& mailbox, Clock::time_point last_heard, double patience_seconds) {
     if (std::chrono::duration<double>(Clock::now() - last_heard).count() > patience_seconds)
         throw LeaderIsSilent("rank " + std::to_string(mailbox.rank()),

@@ -29,9 +29,9 @@ class TileWorker {
     TileWorker(const TileWorker&) = delete;
     TileWorker& operator=(const TileWorker&) = delete;
 
-    // A message to a worker. Throws Error for one that makes no sense.
+    // Handles a message to a worker. Throws Error for an invalid one.
     void handle(const Message& message);
-    // Tells the leader what there is to tell.
+    // Sends the waiting reports to the leader.
     void report();
     // Returns when there is something to report, and after this time.
     void wait(std::chrono::microseconds longest);
@@ -73,22 +73,22 @@ class TileWorker {
     std::vector<std::thread> threads_;
 };
 
-// The leader has said nothing for too long.
+// The leader has been silent for too long.
 struct LeaderIsSilent : Error {
     using Error::Error;
 };
 
-// What ranks that do not lead do, one after another.
-// Calls prepare() in a thread of its own, and tells the leader meanwhile that this rank is alive: a large
-// scene may take longer to build than the leader waits for silent ranks. What it throws comes from here.
+// The phases of a worker rank. Calls prepare() in a thread of its own, and meanwhile reports to the leader
+// that this rank is alive: a large scene may take longer to build than the leader waits for silent ranks.
+// Rethrows its exceptions.
 void prepare_and_beat(Mailbox& mailbox, const std::function<void()>& prepare);
-// Serves until the leader ends the render. `cancel`, where it is requested here, is passed on to the leader.
-// Throws LeaderIsSilent when the leader says nothing for `patience`.
+// Serves until the leader ends the render. A `cancel` requested here is passed on to the leader. Throws
+// LeaderIsSilent when the leader is silent for `patience`.
 void serve_tiles(const TileRenderer& renderer, const PixelBounds& crop, int tile_size, int threads,
                  Mailbox& mailbox, const CancelFlag* cancel, double patience_seconds);
-// In place of that, or after it has thrown: tells the leader why this rank cannot go on, and waits for the
-// end of the render. So the leader alone speaks, of a mistake that all ranks meet as of one that is a single
-// rank's. Throws LeaderIsSilent.
+// Instead of that, or after it has thrown: reports to the leader why this rank cannot continue, and waits for
+// the end of the render. So only the leader prints errors, whether all ranks meet them or a single one.
+// Throws LeaderIsSilent.
 void serve_failure(const std::string& why, Mailbox& mailbox, double patience_seconds);
 
 } // namespace montelux

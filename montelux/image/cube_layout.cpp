@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 3> layout_names{"cross", "vertical", "hor
 struct Cell {
     int column, row;
 };
-// Where each face stands, in the order of CubeFace.
+// Position of each face, in the order of CubeFace.
 constexpr std::array<Cell, cube_faces> cross_cells{{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 1}, {3, 1}}};
 
 // Throws Error where the picture would be larger than there are.

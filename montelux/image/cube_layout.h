@@ -9,7 +9,7 @@
 
 namespace montelux {
 
-// Faces are put side by side as they are, never turned.
+// Faces are placed side by side, never turned.
 enum class CubeLayout {
     horizontal_cross, // 4 x 3 faces: +Y; -X +Z +X -Z; -Y. +Y above and -Y below +Z; the rest is black.
     vertical_strip,   // 1 x 6 faces: +X, -X, +Y, -Y, +Z, -Z from the top
@@ -31,7 +31,7 @@ std::filesystem::path cube_face_path(const std::filesystem::path& path, CubeFace
 // without smoothing. Linear light; the bars are black.
 struct ContactSheet {
     Image picture;
-    // What automatic_exposure says of the picture, for a PNG.
+    // The automatic_exposure of the picture, for a PNG.
     float exposure = 0;
 };
 ContactSheet contact_sheet(const CubeMapChain& chain, int cell = 128);

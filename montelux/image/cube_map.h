@@ -1,4 +1,4 @@
-// Cube maps: six square faces, the directions that their texels see, and mip chains of them.
+// Cube maps: six square faces, the directions of their texels, and mip chains of them.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace montelux {
 
-// Faces stand in the order and orientation of OpenGL (4.6 core, table 8.19) and KTX2: +X, -X, +Y, -Y, +Z, -Z,
+// Faces have the order and orientation of OpenGL (4.6 core, table 8.19) and KTX2: +X, -X, +Y, -Y, +Z, -Z,
 // seen from inside a left-handed cube. Row 0 of a face is the first one in memory; on the four sides it is
 // the edge towards +Y.
 enum class CubeFace { positive_x, negative_x, positive_y, negative_y, positive_z, negative_z };
@@ -18,7 +18,7 @@ inline constexpr int cube_faces = 6;
 // "px", "nx", "py", "ny", "pz", "nz"
 std::string_view name_of(CubeFace face);
 
-// A place on the cube: (u, v) in [0, 1]^2 on a face, u to the right and v down.
+// A position on the cube: (u, v) in [0, 1]^2 on a face, u to the right and v down.
 struct CubePoint {
     int face = 0;
     double u = 0, v = 0;
@@ -26,8 +26,8 @@ struct CubePoint {
 
 // Unit vector from the middle of the cube.
 Vec3d cube_direction(const CubePoint& p);
-// Where a direction, of any length but 0, meets the cube. On an edge the face of x goes before that of y
-// before that of z.
+// Where a direction, of any length but 0, meets the cube. On an edge the face of x takes precedence over y,
+// and y over z.
 CubePoint cube_point(Vec3d direction);
 
 struct CubeTexel {
@@ -66,7 +66,7 @@ constexpr int level_count(int size) {
     for (; size > 1; size >>= 1) ++levels;
     return levels;
 }
-// Throws Error, which begins with `where`, unless the chain has at least one level and all are as said above.
+// Throws Error, which begins with `where`, unless the chain has at least one level and all satisfy the above.
 void check_cube_map_chain(std::string_view where, const CubeMapChain& chain);
 
 } // namespace montelux

@@ -31,7 +31,7 @@ std::vector<std::uint8_t> dds_header(std::uint32_t size, std::uint32_t levels, b
     bytes.put(std::uint32_t{32}); // of the pixel format
     bytes.put(four_cc);
     bytes.put(half ? a16b16g16r16f : a32b32g32r32f);
-    // Bits of a texel mean nothing beside a code, but Babylon.js steps from level to level by them.
+    // Bits per texel are unused with a format code, but Babylon.js computes level sizes from them.
     bytes.put(std::uint32_t{half ? 64u : 128u});
     put_zeros(bytes, 4); // masks of formats without a code
     bytes.put(texture | complex | (levels > 1 ? mipmap : 0));

@@ -60,7 +60,7 @@ DifferencePicture difference_picture(const MeasuredPicture& a, const MeasuredPic
     std::vector<double> magnitudes;
     for (std::size_t i = 0; i < difference.size(); ++i) {
         double d = z ? std::sqrt(denominator[i]) : denominator[i] + floor;
-        // No difference needs no error to be told so.
+        // A zero difference needs no error.
         if (difference[i] != 0) difference[i] /= d;
         if (std::isfinite(difference[i])) magnitudes.push_back(std::abs(difference[i]));
     }

@@ -1,4 +1,4 @@
-// One encoder a file format, internal to the image room: Image in, bytes out.
+// One encoder per file format, internal to the image room: Image in, bytes out.
 #pragma once
 
 #include "montelux/image/image.h"

@@ -1,4 +1,4 @@
-// The order in which an image's channels stand: colour first, then layers by name.
+// The order of an image's channels: colour first, then layers by name.
 #pragma once
 
 #include <string>

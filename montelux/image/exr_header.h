@@ -49,11 +49,11 @@ struct ExrPart {
 struct ExrHeaders {
     std::vector<ExrPart> parts;
     bool tiled = false;     // the mark of a file with one tiled part
-    bool multipart = false; // parts say themselves what they are
+    bool multipart = false; // each part names its own type
     std::uint64_t end = 0;  // where the tables of chunks begin
 };
 
-// Bounded access to the bytes of a file, and its complaints.
+// Bounded access to the bytes of a file, and its errors.
 struct ExrBytes {
     std::span<std::uint8_t> bytes;
     const std::string& name;
@@ -70,7 +70,7 @@ struct ExrBytes {
 };
 
 // Throws Error for what is damaged, deep or subsampled. Attributes that are not needed for the pixels get an
-// unknown type in `file.bytes`, so that the library passes over values nobody has checked.
+// unknown type in `file.bytes`, so that the library skips unchecked values.
 ExrHeaders parse_exr_headers(const ExrBytes& file);
 
 } // namespace montelux

@@ -13,7 +13,7 @@ constexpr std::uint64_t max_chunk_bytes = std::uint64_t{256} << 20;
 enum Compression { none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab, compression_count };
 constexpr std::array<int, compression_count> lines_per_chunk{1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
 
-// Holds the headers against the bytes that follow them.
+// Checks the headers against the bytes that follow them.
 class Checker {
   public:
     Checker(const ExrBytes& file, const ReadOptions& options, const ExrHeaders& headers)
@@ -112,7 +112,7 @@ void Checker::check_chunks(const ExrPart& part, int index, std::uint64_t count) 
     at_ += count * 8;
     std::uint64_t frame = (headers_.multipart ? 4u : 0u) + (is_tiled(part) ? 20u : 8u);
     // The tightest packing of each method: deflate 1032 to 1 (after 4 bytes became 3 in PXR24), run lengths
-    // 128 bytes into 2; the others have no bound worth a check.
+    // 128 bytes into 2; the others have no useful bound.
     int method = *part.compression;
     bool deflated = method == zips || method == zip || method == pxr24;
     std::uint64_t best_ratio = method == none ? 1 : method == rle ? 64 : deflated ? 1400 : 1 << 20;

@@ -11,7 +11,7 @@
 
 namespace montelux {
 
-// What parse_exr learns of the first part.
+// Layout of the first part, as parse_exr finds it.
 struct ExrLayout {
     int min_x = 0, min_y = 0; // of the data window
     int width = 0, height = 0;

@@ -74,7 +74,7 @@ Image decode_exr(const EncodedImage& file) {
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& e) {
-        // The library's messages begin with what failed in which file, which is said here already.
+        // Strips the beginning of the library's message, which repeats file and action.
         std::string what = e.what(), quoted = "\"" + file.name + "\". ";
         if (auto at = what.find(quoted); at != std::string::npos) what.erase(0, at + quoted.size());
         throw Error(file.name, "the EXR file is damaged: " + what);

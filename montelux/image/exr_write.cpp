@@ -23,7 +23,7 @@ namespace montelux {
 
 namespace {
 
-// The library swallows what is thrown while it closes a file; AtomicFile remembers, and commit() fails.
+// The library swallows exceptions while it closes a file; AtomicFile remembers the error, and commit() fails.
 class FileStream final : public Imf::OStream {
   public:
     FileStream(AtomicFile& file, const char* name) : OStream(name), file_(file) {}

@@ -114,10 +114,10 @@ class LineReader {
     std::size_t at_ = 0;
 };
 
-// Linear sRGB of CIE XYZ with an equal-energy white, which is Radiance's (Radiance's color.h; ra_xyze -r
-// takes the same way): Bradford's chromatic adaptation (CIE 159:2004) from the white x = y = 1/3 to sRGB's,
-// (0.3127, 0.3290), then the inverse of the matrix that the primaries of ITU-R BT.709 and that white give. So
-// (1, 1, 1) stays (1, 1, 1).
+// Linear sRGB of CIE XYZ with an equal-energy white, which is Radiance's (Radiance's color.h; ra_xyze -r does
+// the same): Bradford's chromatic adaptation (CIE 159:2004) from the white x = y = 1/3 to sRGB's, (0.3127,
+// 0.3290), then the inverse of the matrix that the primaries of ITU-R BT.709 and that white give. So (1, 1,
+// 1) stays (1, 1, 1).
 constexpr double rgb_from_xyz[3][3] = {{3.146657654, -1.666463755, -0.480193900},
                                        {-0.995521606, 1.955756734, 0.039764872},
                                        {0.063594803, -0.214563222, 1.150968419}};

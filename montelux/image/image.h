@@ -30,7 +30,7 @@ using Attributes = std::map<std::string, Attribute, std::less<>>;
 // Row y = 0 is the top one; samples are interleaved: index = (y * width + x) * channels + c.
 class Image {
   public:
-    // No image has more pixels than this on a side, whatever a file says.
+    // Largest number of pixels on a side.
     static constexpr int max_dimension = 1 << 16;
     static constexpr int max_channels = 1024;
 
@@ -55,8 +55,8 @@ class Image {
 
     const std::vector<std::string>& channel_names() const { return names_; }
     std::optional<int> find_channel(std::string_view name) const;
-    // Indices of `layer`R, G, B (for example layer "stderr."); or the single channel `layer`Y, unless X and Z
-    // beside it tell that it is one of CIE XYZ; else empty.
+    // Indices of `layer`R, G, B (for example layer "stderr."); or the single channel `layer`Y, unless there
+    // are also X and Z (CIE XYZ); else empty.
     std::vector<int> color_channels(std::string_view layer = "") const;
 
     Attributes& attributes() { return attributes_; }

@@ -27,7 +27,7 @@ void check_image_size(const EncodedImage& file, std::uint64_t width, std::uint64
                                    " channels) would need " + std::to_string(bytes >> 20) +
                                    " MiB; the limit is " +
                                    std::to_string(file.options.max_pixel_bytes >> 20) + " MiB");
-    // No photograph or render shrinks so far; what does is a small file made to keep a reader busy.
+    // No photograph or render compresses this far, only a small file made to keep a reader busy.
     constexpr std::uint64_t unsuspicious_bytes = std::uint64_t{256} << 20, largest_ratio = 256;
     if (bytes > unsuspicious_bytes && bytes / largest_ratio > file.bytes.size())
         throw Error(file.name, "the picture (" + size + ") would need " + std::to_string(bytes >> 20) +

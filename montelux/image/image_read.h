@@ -1,4 +1,4 @@
-// Reading pictures: EXR, PNG, JPEG, Radiance HDR, PFM, PNM, TGA and BMP files that nobody vouches for.
+// Reading pictures: untrusted EXR, PNG, JPEG, Radiance HDR, PFM, PNM, TGA and BMP files.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,17 @@
 namespace montelux {
 
 struct ReadOptions {
-    // A picture that needs more for its pixels is refused before any of them is read.
+    // A picture that needs more memory for its pixels is refused before reading them.
     std::size_t max_pixel_bytes = std::size_t{768} << 20;
     std::size_t max_file_bytes = std::size_t{1} << 30;
 };
 
-// The format is told by the first bytes, and for TGA, which has no mark, by the extension.
-// Integer formats come as u8 or u16 with the sRGB encoding (a PNG's own gamma is kept as the attribute
-// "png.gamma" and not applied); float formats as f16 or f32, linear. Channels: "R", "G", "B", "A", or "Y" for
-// grey; an EXR file gives all channels of its first part, R, G, B and A first. Row 0 is the top one.
-// EXR: the image is the data window; attributes tell where it lies (placement.h). Throws Error, with the path
-// and what is wrong, on anything that cannot be read whole.
+// The format is recognised by the first bytes, and for TGA, which has no signature, by the extension. Integer
+// formats come as u8 or u16 with the sRGB encoding (a PNG's own gamma is kept as the attribute "png.gamma"
+// and not applied); float formats as f16 or f32, linear. Channels: "R", "G", "B", "A", or "Y" for grey; an
+// EXR file gives all channels of its first part, R, G, B and A first. Row 0 is the top one. EXR: the image is
+// the data window; attributes contain its position (placement.h). Throws Error, with the path and what is
+// wrong, on anything that cannot be read whole.
 Image read_image(const std::filesystem::path& path, const ReadOptions& options = {});
 
 // The same for a picture in memory (embedded in another file); `name` is used in messages, and its extension.

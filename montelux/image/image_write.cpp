@@ -63,7 +63,7 @@ void write_image(const std::filesystem::path& path, const Image& image, const Wr
 
 void check_writable(const std::filesystem::path& path) {
     format_of(path);
-    // Creates and removes the temporary file: permission bits alone do not tell.
+    // Creates and removes a temporary file, since permission bits alone are not conclusive.
     AtomicFile probe(path);
 }
 

@@ -26,7 +26,7 @@ struct WriteOptions {
 void write_image(const std::filesystem::path& path, const Image& image, const WriteOptions& options = {});
 
 // Throws the Error that write_image would meet for a reason known now: an unknown extension, a missing or
-// read-only folder, a path that is a folder. A renderer asks before it spends hours.
+// read-only folder, a path that is a folder. A renderer calls it before it spends hours.
 void check_writable(const std::filesystem::path& path);
 
 } // namespace montelux

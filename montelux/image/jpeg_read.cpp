@@ -14,8 +14,8 @@ namespace montelux {
 
 namespace {
 
-// A progressive file can ask for the whole picture to be gone through once per scan, and a scan can be a few
-// bytes long: this many pixel visits take some seconds.
+// A progressive file can require a pass over the whole picture per scan, and a scan can be a few bytes long:
+// this many pixel visits take some seconds.
 constexpr std::uint64_t max_progressive_work = 1'500'000'000;
 
 // libjpeg leaves through longjmp, which must not jump over destructors: everything that owns memory lives
@@ -41,7 +41,7 @@ struct JpegReader {
 
 void on_message(j_common_ptr jpeg, int level) {
     if (level >= 0) return;
-    // The library would go on with invented pixels after these.
+    // After these warnings the library would continue with invented pixels.
     switch (jpeg->err->msg_code) {
     case JWRN_JPEG_EOF:
     case JWRN_HIT_MARKER:

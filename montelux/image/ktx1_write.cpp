@@ -34,7 +34,7 @@ TexelLosses write_ktx1(const std::filesystem::path& path, const CubeMapChain& ch
     head.put_all(std::span<const std::uint8_t>(identifier));
     head.put(little_endian);
     head.put(half ? gl_half_float : gl_float);
-    head.put(std::uint32_t{half ? 2u : 4u}); // bytes of the unit that a big-endian machine swaps
+    head.put(std::uint32_t{half ? 2u : 4u}); // bytes of the word that a big-endian machine swaps
     head.put(gl_rgba);
     head.put(half ? gl_rgba16f : gl_rgba32f);
     head.put(gl_rgba);

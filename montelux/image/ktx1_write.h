@@ -1,4 +1,4 @@
-// Writing KTX 1 textures: cube maps with their mip chains, for engines that read version 1 alone.
+// Writing KTX 1 textures: cube maps with their mip chains, for engines that only read version 1.
 #pragma once
 
 #include <filesystem>

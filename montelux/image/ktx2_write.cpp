@@ -28,7 +28,7 @@ constexpr std::uint32_t alpha = 15;
 
 struct VulkanFormat {
     std::uint32_t number;    // of VkFormat
-    std::uint32_t type_size; // bytes of the unit that a big-endian machine swaps
+    std::uint32_t type_size; // bytes of the word that a big-endian machine swaps
     bool is_color;
     std::vector<Sample> samples;
 };

@@ -14,8 +14,7 @@ namespace montelux {
 // R8G8B8A8_UNORM for RGBM. Transfer function: linear. Primaries: BT.709, and none for the two-channel
 // formats, which hold tables. KTXorientation is "rd": row 0 is the top one. RGBM adds the notes
 // "montelux.rgbm.range" and "montelux.rgbm.power". The file appears complete or not at all. Throws Error when
-// it cannot be written, or the chain, the channels or the options are not as said in cube_map.h and
-// texel_format.h.
+// it cannot be written, or the chain, the channels or the options violate cube_map.h and texel_format.h.
 TexelLosses write_ktx2(const std::filesystem::path& path, const CubeMapChain& chain,
                        const TextureOptions& options = {});
 TexelLosses write_ktx2(const std::filesystem::path& path, const Image& image,

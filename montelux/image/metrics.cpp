@@ -27,7 +27,7 @@ bool finite_pixel(const MeasuredPicture& p, int x, int y) {
     return true;
 }
 
-// Which pixels count: finite in both, and not among the noisiest.
+// Pixels that count: finite in both, and not among the noisiest.
 std::vector<bool> choose_pixels(const MeasuredPicture& a, const MeasuredPicture& b, double percent,
                                 Comparison& result) {
     int width = a.image->width(), height = a.image->height(), channels = static_cast<int>(a.channels.size());
@@ -200,7 +200,7 @@ Comparison compare_pictures(const MeasuredPicture& a, const MeasuredPicture& b,
                 if (!any_error) continue;
                 double variance = variances[pixel];
                 scores.add(d, variance);
-                // What is equal and has no error is no random number: it has no score here either.
+                // Equal samples without error have no score here either.
                 pooled_scores.add(d, variance == 0 && d == 0 ? 0 : pooled[pixel]);
                 if (result.skew_known) {
                     double cumulant = a.third_cumulant(x, y, c) - b.third_cumulant(x, y, c);

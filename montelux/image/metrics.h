@@ -1,4 +1,4 @@
-// How far two pictures are apart: RMSE, relative MSE, means, and z-scores where standard errors are known.
+// Differences of two pictures: RMSE, relative MSE, means, and z-scores where standard errors are known.
 #pragma once
 
 #include <array>
@@ -47,11 +47,11 @@ struct ComparisonOptions {
     // e in relMSE = mean of (a-b)^2 / (b^2 + e), in squared units of the picture. 0.01 is the value of
     // Rousselle et al. 2011, "Adaptive Sampling and Reconstruction using Greedy Error Minimization", 6.
     double relative_epsilon = 0.01;
-    // Per cent of the pixels, those whose reference is the noisiest, that are left out of every figure:
-    // their own standard errors are the least certain. The noise of a pixel is the sum over channels of the
-    // reference's standard error divided by (the sum of its |values| + 1/1000 of the picture's mean sum).
-    // Rounded down to whole pixels; of equals, the later pixels go first. When only the first picture has
-    // errors, its noise is taken. Throws Error when neither has, or when it is outside [0, 100).
+    // Per cent of the pixels, those with the noisiest reference, left out of every figure: their own standard
+    // errors are the least certain. The noise of a pixel is the sum over channels of the reference's standard
+    // error divided by (the sum of its |values| + 1/1000 of the picture's mean sum). Rounded down to whole
+    // pixels; of equals, the later pixels go first. When only the first picture has errors, its noise is
+    // taken. Throws Error when neither has, or when it is outside [0, 100).
     double set_aside_percent = 0;
 };
 
@@ -76,7 +76,7 @@ struct ZScores {
     std::uint64_t unexplained = 0;           // samples with a != b although both errors are 0
     std::uint64_t invalid_errors = 0;        // samples whose error is negative, NaN or infinite: no score
 
-    // What `within` would be for errors that are Gaussian and rightly known.
+    // `within` for right, Gaussian errors.
     static constexpr std::array<double, 3> expected_within{0.682689492137086, 0.954499736103642,
                                                            0.997300203936740};
 };
@@ -90,13 +90,13 @@ struct Comparison {
     bool a_has_error = false, b_has_error = false;
     ZScores z; // empty when neither picture has errors
     // The same scores corrected for the skewness of the pictures' samples (skew_corrected_z), where a picture
-    // has the layer "skewness."; `skew_known` tells.
+    // has the layer "skewness." (`skew_known`).
     ZScores skew_corrected;
     bool skew_known = false;
-    // The same scores with each pixel's variance pooled from the 3 x 3 pixels around it (pool_variances): of
-    // unbiased pictures their mean is near 0 however skewed the samples are. Pixels that are set aside have
-    // no score, but count among their neighbours. A sample that differs although its own errors are 0 has a
-    // score where its surroundings have errors. Empty when neither picture has errors.
+    // The same scores with each pixel's variance pooled from the 3 x 3 pixels around it (pool_variances): for
+    // unbiased pictures their mean is near 0 however skewed the samples are. Pixels set aside have no score,
+    // but count as neighbours. A sample that differs although its own errors are 0 has a score where its
+    // surroundings have errors. Empty when neither picture has errors.
     ZScores pooled;
 };
 

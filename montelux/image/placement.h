@@ -20,7 +20,7 @@ struct PixelWindow {
 
 // The image's own pixels (data) and the picture that they are a part of (display). An image keeps both in its
 // attributes: "dataWindow.x" and ".y" where they are not 0, and "displayWindow.x", ".y", ".width" and
-// ".height" where the display window is another than the data window. Formats but EXR do not keep them.
+// ".height" where the two windows differ. Only EXR keeps them.
 struct Placement {
     PixelWindow data, display;
 };
@@ -37,8 +37,8 @@ Image cut_out(const Image& image, const PixelWindow& window);
 // "columns 4 to 7, rows 0 to 9".
 std::string text_of(const PixelWindow& window);
 
-// What two parts of one picture have in common, where they are not the same part; none where they are, and
-// where their display windows differ. Throws Error when they have no pixel in common.
+// The intersection of two different parts of one picture; empty if they are the same part, or if their
+// display windows differ. Throws Error when they have no pixel in common.
 std::optional<PixelWindow> common_pixels(const std::string& a_name, const Image& a, const std::string& b_name,
                                          const Image& b);
 

@@ -49,7 +49,7 @@ bool read_header(PngReader& r) {
     png_set_user_limits(r.png, Image::max_dimension, Image::max_dimension);
     png_set_chunk_malloc_max(r.png, 1 << 20);
     png_set_chunk_cache_max(r.png, 64);
-    // Texts, profiles and the like are passed over unread.
+    // Texts, profiles and the like are skipped.
     static constexpr png_byte ignored[] = "tEXt\0zTXt\0iTXt\0iCCP\0eXIf\0sPLT\0hIST\0pCAL\0sCAL";
     png_set_keep_unknown_chunks(r.png, PNG_HANDLE_CHUNK_NEVER, ignored, sizeof ignored / 5);
     png_read_info(r.png, r.info);

@@ -21,7 +21,7 @@ namespace montelux {
 
 namespace {
 
-// stb_image reads zeros after the end of a file; here it is noticed.
+// stb_image reads zeros after the end of a file; this detects it.
 struct Source {
     std::span<const std::uint8_t> bytes;
     std::size_t at = 0;

@@ -41,12 +41,12 @@ void check_rgbm_scale(std::string_view where, const RgbmScale& scale);
 struct TextureOptions {
     TexelFormat format = TexelFormat::rgba16f;
     RgbmScale rgbm{}; // where the format is rgbm8
-    // Notes for whoever reads the file: key to text, without zero bytes. Keys that begin with "KTX" or "ktx"
-    // belong to the file format.
+    // Metadata of the file: key to text, without zero bytes. Keys that begin with "KTX" or "ktx" belong to
+    // the file format.
     std::map<std::string, std::string> notes{};
 };
 
-// What a format could not hold, in samples (not texels).
+// Values that a format could not hold, in samples (not texels).
 struct TexelLosses {
     std::uint64_t too_large = 0;  // became the largest number of the format, infinities included
     std::uint64_t negative = 0;   // became 0, where the format has no sign
@@ -55,8 +55,8 @@ struct TexelLosses {
 
     bool any() const { return too_large + negative + not_number > 0; }
     TexelLosses& operator+=(const TexelLosses& other);
-    // One sentence for a person, such as "3 values were larger than rgba16f can hold (up to 1e+06) and became
-    // its largest"; empty without losses.
+    // One sentence, such as "3 values were larger than rgba16f can hold (up to 1e+06) and became its
+    // largest"; empty without losses.
     std::string sentence(TexelFormat format) const;
 };
 

@@ -34,7 +34,7 @@ class TextCursor {
         while (peek() != -1 && !is_space(peek()) && w.size() < 64) w.push_back(static_cast<char>(next()));
         return w;
     }
-    // A line without its end, or nothing when it is longer than `limit` or the file is over.
+    // A line without its end; empty if it is longer than `limit` or the file has ended.
     std::optional<std::string> line(std::size_t limit) {
         std::string l;
         while (peek() != '\n') {
@@ -51,7 +51,7 @@ class TextCursor {
     std::size_t at_ = 0;
 };
 
-// The whole word as a number, or nothing.
+// The whole word as a number, or empty.
 template <typename T>
 std::optional<T> parse_number(std::string_view word) {
     T v{};

@@ -1,4 +1,4 @@
-// Tone curve for previews: exposure, then the sRGB curve, clipped to what a screen can show.
+// Tone curve for previews: exposure, then the sRGB curve, clipped to [0, 1].
 #pragma once
 
 #include "montelux/image/image.h"

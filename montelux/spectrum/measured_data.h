@@ -6,13 +6,13 @@
 
 namespace montelux::measured {
 
-// values[i] stands at first + i step (nm).
+// values[i] is at first + i step (nm).
 struct EvenSamples {
     float first, step;
     std::span<const float> values;
 };
 
-// values[i] stands at lambda[i] (nm), ascending.
+// values[i] is at lambda[i] (nm), ascending.
 struct UnevenSamples {
     std::span<const float> lambda, values;
 };

@@ -124,7 +124,7 @@ const std::vector<std::string_view>& named_spectrum_names() {
 }
 
 std::string_view nearest_spectrum_name(std::string_view name) {
-    // Longer words than any name cost time and tell nothing.
+    // Words longer than any name are not compared.
     name = name.substr(0, 40);
     return *std::ranges::min_element(named_spectrum_names(), {},
                                      [&](std::string_view n) { return edit_distance(name, n); });

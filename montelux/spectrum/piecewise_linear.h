@@ -10,7 +10,7 @@
 
 namespace montelux {
 
-// What a spectrum is beyond its first and last wavelength.
+// Value of a spectrum beyond its first and last wavelength.
 enum class SpectrumEnds { zero, constant };
 
 // A lookup takes the same time for any number of knots.
@@ -50,14 +50,14 @@ class PiecewiseLinear {
     static int visible_cell(float lambda) {
         return static_cast<int>(std::min(std::max(0.0f, lambda - lambda_min), cell_count - 1.0f));
     }
-    // `k` is a knot at or before lambda, of which the last is wanted.
+    // `k` is a knot at or before lambda; returns the last such knot.
     float value_after(std::uint32_t k, float lambda) const {
         while (knots_[k + 1].lambda <= lambda) ++k;
         return knots_[k].value + (lambda - knots_[k].lambda) * knots_[k].slope;
     }
 
-    // Before the given knots stands one of value 0, and after them one of value 0 and one at infinity, so
-    // that a search needs no bounds.
+    // A knot of value 0 precedes the given ones; one of value 0 and one at infinity follow, so that a search
+    // needs no bounds.
     std::vector<Knot> knots_;
     // For each cell, the last knot at or before its start.
     std::array<std::uint32_t, cell_count> first_in_cell_{};

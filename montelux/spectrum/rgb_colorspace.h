@@ -1,4 +1,4 @@
-// RGB colour spaces: primaries, white, and what follows from them.
+// RGB colour spaces: primaries, white, and the matrices that follow.
 #pragma once
 
 #include <span>
@@ -42,7 +42,7 @@ class RgbColorSpace {
 
 // The names of the four spaces above.
 std::span<const std::string_view> rgb_color_space_names();
-// Null when there is no such space; upper and lower case are the same.
+// Null when there is no such space; case does not matter.
 const RgbColorSpace* find_rgb_color_space(std::string_view name);
 
 // Linear RGB of one space to linear RGB of another, without chromatic adaptation.

@@ -52,7 +52,7 @@ class RgbIlluminantSpectrum {
         return filter_.sample(w) * illuminant_->sample(w);
     }
     float operator()(float lambda) const { return filter_(lambda) * (*illuminant_)(lambda); }
-    // Not below the largest value, and near it.
+    // A close upper bound.
     float max_value() const { return filter_.max_value() * illuminant_->max_value(); }
     const RgbUnboundedSpectrum& filter() const { return filter_; }
     const SpectrumTable& illuminant() const { return *illuminant_; }

@@ -18,7 +18,7 @@ std::vector<float> uplift_grid(int resolution) {
     return grid;
 }
 
-// What the coefficients are multiplied by in the table.
+// Scale of the coefficients in the table.
 float uplift_scale(float luminance) { return std::sqrt(std::max(luminance * (1 - luminance), 1e-12f)); }
 
 // Scaled coefficients along one line of the table, where only the largest component changes.
@@ -65,7 +65,7 @@ std::vector<Float4> RgbUpliftTable::compute(const RgbColorSpace& space, int reso
     const std::vector<float> grid = uplift_grid(resolution);
     const int n = resolution;
     std::vector<Float4> nodes(std::size_t{3} * n * n * n);
-    // At black itself the spectrum says nothing of the ratios, and no reflectance but 1 is white.
+    // At black the ratios do not matter, and only the reflectance 1 is white.
     const double darkest = 0.01 * static_cast<double>(grid[1]), lightest = 1 - 1e-7;
     for (int l = 0; l < 3; ++l)
         for (int j = 0; j < n; ++j)

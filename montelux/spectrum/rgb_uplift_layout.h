@@ -1,4 +1,4 @@
-// Which uplift tables the embedded file holds, in order.
+// The uplift tables of the embedded file, in order.
 #pragma once
 
 #include <array>

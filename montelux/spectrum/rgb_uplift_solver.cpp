@@ -10,7 +10,7 @@ namespace {
 constexpr int max_iterations = 40;
 // Squared CIELAB difference at which a colour counts as matched; 1 is a just noticeable difference.
 constexpr double matched =
-    1e-8; // Colours at the rim of what reflectances can reach would drive the coefficients to infinity.
+    1e-8; // Colours at the boundary of the reachable ones would drive the coefficients to infinity.
 constexpr double largest_coefficient = 1e5;
 
 // f of CIELAB (CIE 015:2018, equations 8.3 to 8.11) and its derivative.

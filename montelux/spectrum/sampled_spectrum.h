@@ -8,8 +8,8 @@ namespace montelux {
 // Number of wavelengths that a path carries.
 inline constexpr int spectrum_samples = 4;
 
-// What the values mean (radiance in W/(m^2 sr nm), reflectance, throughput, a density) is its
-// owner's affair; which wavelengths they stand at is told by a SampledWavelengths.
+// The owner defines the meaning of the values (radiance in W/(m^2 sr nm), reflectance, throughput, a
+// density); a SampledWavelengths has their wavelengths.
 struct alignas(16) SampledSpectrum {
     Float4 values{};
 

@@ -8,11 +8,11 @@
 
 namespace montelux {
 
-// How a sensor exposes. The defaults leave values as they are.
+// Exposure of a sensor. The defaults do not change values.
 struct SensorSettings {
     float exposure_time = 1; // seconds the shutter is open
     float iso = 100;         // sensitivity
-    // Colour temperature (K) of the light that is to look white; 0 leaves colours as they are.
+    // Colour temperature (K) of the light that appears white; 0: no white balance.
     float white_balance = 0;
 };
 

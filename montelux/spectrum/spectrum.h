@@ -1,4 +1,4 @@
-// A spectrum of any kind, as a value: what materials, lights and media are described with.
+// A spectrum of any kind, as a value, for materials, lights and media.
 #pragma once
 
 #include <memory>
@@ -61,7 +61,7 @@ class Spectrum {
     float operator()(float lambda) const {
         return std::visit([&](const auto& s) { return s(lambda); }, kind_);
     }
-    // An upper bound of the values in the visible range, exact but for coloured lights.
+    // An upper bound of the values in the visible range, exact except for coloured lights.
     float max_value() const {
         return std::visit([](const auto& s) { return s.max_value(); }, kind_);
     }

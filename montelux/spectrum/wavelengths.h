@@ -11,9 +11,9 @@ inline constexpr float lambda_max = 830.0f;
 // Number of 1 nm samples in that range, both ends included.
 inline constexpr int visible_samples = 471;
 
-// Four stratified wavelengths drawn from one uniform variable. Wilkie et al. 2014, "Hero Wavelength
-// Spectral Sampling", Computer Graphics Forum 33(4): the path is sampled at the first wavelength (the
-// hero) and the other three ride along.
+// Four stratified wavelengths drawn from one uniform variable. Wilkie et al. 2014, "Hero Wavelength Spectral
+// Sampling", Computer Graphics Forum 33(4): the path is sampled at the first wavelength (the hero); the other
+// three share it.
 struct SampledWavelengths {
     Float4 lambda{};     // nm, in [lambda_min, lambda_max]
     SampledSpectrum pdf; // 1/nm; 0 for a terminated wavelength
@@ -47,9 +47,8 @@ struct SampledWavelengths {
         return 0.0039398042f / (c * c);
     }
 
-    // Keeps the hero alone, because the path went on in a direction that depends on the wavelength.
-    // The hero was drawn as one of four equally likely ones, so its density is divided by four.
-    // Calling it again changes nothing.
+    // Keeps only the hero, because the path's direction depends on the wavelength. The hero was drawn as one
+    // of four equally likely ones, so its density is divided by four. Calling it again changes nothing.
     void terminate_secondary() {
         if (secondary_terminated()) return;
         pdf = SampledSpectrum(0.25f * pdf[0], 0, 0, 0);

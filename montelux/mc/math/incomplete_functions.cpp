@@ -16,7 +16,7 @@ namespace montelux::incomplete {
 namespace {
 
 namespace bm = boost::math;
-// No exceptions on the way of a sample. `double` within: `long double` takes four times as long.
+// No exceptions in the sampling loop. `double` internally: `long double` takes four times as long.
 using Policy = bm::policies::policy<bm::policies::promote_double<false>,
                                     bm::policies::domain_error<bm::policies::ignore_error>,
                                     bm::policies::pole_error<bm::policies::ignore_error>,
@@ -27,7 +27,7 @@ using Policy = bm::policies::policy<bm::policies::promote_double<false>,
                                     bm::policies::evaluation_error<bm::policies::ignore_error>,
                                     bm::policies::indeterminate_result_error<bm::policies::ignore_error>>;
 constexpr Policy policy;
-// Where factors of the result underflow though it does not itself.
+// For results whose factors underflow although they do not.
 constexpr bm::policies::normalise<Policy, bm::policies::promote_double<true>>::type extended;
 constexpr double extreme = 1e-200;
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -162,7 +162,7 @@ double student_t_cdf(double dof, double t) {
     }
     return bm::cdf(bm::students_t_distribution<double, Policy>(dof), t);
 }
-// By way of the beta law: z = n / (n + t^2) has I_z(n/2, 1/2) = 2 P(T < -|t|).
+// By the beta law: z = n / (n + t^2) has I_z(n/2, 1/2) = 2 P(T < -|t|).
 double student_t_quantile(double dof, double p) {
     if (!is_probability(p)) return nan;
     if (p == 0 || p == 1) return p == 0 ? -infinity : infinity;

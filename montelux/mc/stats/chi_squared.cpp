@@ -41,7 +41,7 @@ double adaptive(const Density& f, Vec2d lower, Vec2d upper, double whole, double
     std::array<double, 4> parts;
     for (std::size_t q = 0; q < 4; ++q) parts[q] = gauss(f, quarters[q][0], quarters[q][1]);
     double sum = parts[0] + parts[1] + parts[2] + parts[3];
-    constexpr int first_depth = 1, last_depth = 7; // the first level is split unseen, lest a peak be missed
+    constexpr int first_depth = 1, last_depth = 7; // always splits once, so that no peak is missed
     if (depth >= first_depth && (std::abs(sum - whole) <= tolerance || depth >= last_depth)) return sum;
     double total = 0;
     for (std::size_t q = 0; q < 4; ++q)
@@ -137,8 +137,8 @@ TestResult CellCounts::test(const std::function<double(Vec2d)>& pdf, double pool
             integral.add(p);
         }
     double missing = 1 - integral.value();
-    // A total that is off by less would add less than 1 to the statistic; the quadrature is good to far
-    // better. A density above 1 in total is wrong in itself.
+    // A smaller error of the total would add less than 1 to the statistic; the quadrature is far more
+    // accurate. A density that integrates to more than 1 is wrong.
     double slack = 1 / std::sqrt(n);
     if (missing < -slack) {
         TestResult r;

@@ -17,7 +17,7 @@ std::string formatted(const char* format, int precision, double v) {
 }
 
 int decimal_exponent(double v) {
-    // By way of the printed form, which rounds as the final one does.
+    // Through the printed form, which rounds like the final one.
     std::string s = formatted("%.*e", 1, v);
     return std::stoi(s.substr(s.find('e') + 1));
 }

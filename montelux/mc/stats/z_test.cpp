@@ -13,7 +13,7 @@ TestResult unbiasedness_test(const RunningMoments& replicates, double truth) {
     TestResult r;
     r.degrees_of_freedom = static_cast<double>(replicates.count()) - 1;
     double error = replicates.standard_error(), miss = replicates.mean() - truth;
-    // Replicates that do not vary are right or wrong without doubt.
+    // Replicates without spread are exactly right or wrong.
     r.statistic = miss == 0 ? 0 : miss / error;
     r.p_value = std::isinf(r.statistic) ? 0 : 2 * student_t_cdf(-std::abs(r.statistic), r.degrees_of_freedom);
     std::ostringstream s;
