@@ -241,7 +241,7 @@ void add_compare(CLI::App& app, int& exit_code) {
     command->add_option("--stderr-b", s->error_b, "Standard errors of B, in place of its stderr layer");
     command
         ->add_option("--set-aside", s->options.set_aside_percent,
-                     "Leave out this per cent of the pixels, those where the reference is noisiest")
+                     "Leave out this per cent of the pixels, where the reference is noisiest")
         ->check(number_within(0.0, 99.999));
     add_parsed(*command, "--epsilon", "EPSILON", s->options.relative_epsilon, parse_positive,
                "Epsilon of relMSE")
@@ -253,7 +253,7 @@ void add_compare(CLI::App& app, int& exit_code) {
         ->capture_default_str()
         ->needs(difference);
     add_parsed(*command, "--full-scale", "DIFFERENCE", s->full_scale, parse_positive,
-               "Difference of the fullest colour; else the 99th percentile")
+               "Difference shown by the fullest colour; default: the 99th percentile")
         ->needs(difference);
     command->add_flag("--json", s->json, "Print JSON");
     command->footer(

@@ -64,16 +64,16 @@ void add_denoise(CLI::App& app, int& exit_code) {
         ->type_name("FILE")
         ->allow_extra_args(false)
         ->required();
-    command->add_option("--threads", settings->threads, "Threads at most; 0: one a processor")
+    command->add_option("--threads", settings->threads, "Threads at most; 0: one per processor")
         ->type_name("N")
         ->check(CLI::Range(0, most_threads));
-    command->add_flag("--quiet", settings->quiet, "Print nothing but errors");
+    command->add_flag("--quiet", settings->quiet, "Print only errors");
     command->footer(
         "Example:\n  montelux denoise out.exr -o out.exr -o out.png\n"
         "\n"
-        "The library is looked for as libOpenImageDenoise.so.2, .so.1 and .so, or is the file that the\n"
+        "The library is libOpenImageDenoise.so.2, .so.1 or .so, or the file that the\n"
         "variable MONTELUX_OIDN_LIBRARY names. A denoised picture is a guess: the layer stderr holds the\n"
-        "errors of the picture before denoising and says nothing of the guess.");
+        "errors of the picture before denoising, not of the guess.");
     command->callback([settings, &exit_code] {
         exit_code = with_threads(settings->threads, [&] { return run(*settings); });
     });

@@ -121,7 +121,7 @@ void print_text(const InfoSettings& settings, const Image& image) {
 void add_info(CLI::App& app, int& exit_code) {
     auto settings = std::make_shared<InfoSettings>();
     CLI::App* command =
-        app.add_subcommand("info", "Tell what is in a picture: size, channels, header, values");
+        app.add_subcommand("info", "Print what a picture contains: size, channels, header, values");
     command->add_option("FILE", settings->file, "The picture (EXR, PNG, JPEG, HDR, PFM, PNM, TGA, BMP)")
         ->required();
     command->add_flag("--json", settings->json, "Print JSON");

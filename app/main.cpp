@@ -96,7 +96,7 @@ int report_usage(const CLI::App& app, const CLI::ParseError& e, int argc, char**
         message = command_wanted(*command, words < argc ? argv[words] : "");
     else if (dynamic_cast<const CLI::ExtrasError*>(&e) != nullptr)
         message = not_expected(*command, command->remaining(), std::move(message));
-    return give_up(message + "\nRun '" + line + " --help' for what it understands.", exit_usage);
+    return give_up(message + "\nRun '" + line + " --help' for its options.", exit_usage);
 }
 
 void parse(CLI::App& app, int argc, char** argv) {
@@ -120,19 +120,18 @@ int run(int argc, char** argv) {
         CLI::App app("Montelux: Monte Carlo integration and light transport", "montelux");
         app.set_version_flag("--version", version());
         app.require_subcommand(1);
-        app.footer(
-            "Examples:\n"
-            "  montelux integrate 'sin(x)*y' --over x=0:pi/2 --over y=0:1 --relative-error 1e-4\n"
-            "  montelux sample --set sobol --n 1024 --dim 2 -o points.csv\n"
-            "  montelux render scene.pbrt --spp 64 -o out.exr\n"
-            "  montelux denoise out.exr -o out.png\n"
-            "  montelux bake environment sky.hdr -o sky.ktx2\n"
-            "  montelux info out.exr\n"
-            "  montelux compare out.exr reference.exr\n"
-            "\n"
-            "'montelux COMMAND --help' tells of a command's options.\n"
-            "Exit codes: 0 done, 1 could not do it, 2 wrong usage, 3 stopped before the error that was "
-            "asked for,\n130 interrupted (what there was is saved).");
+        app.footer("Examples:\n"
+                   "  montelux integrate 'sin(x)*y' --over x=0:pi/2 --over y=0:1 --relative-error 1e-4\n"
+                   "  montelux sample --set sobol --n 1024 --dim 2 -o points.csv\n"
+                   "  montelux render scene.pbrt --spp 64 -o out.exr\n"
+                   "  montelux denoise out.exr -o out.png\n"
+                   "  montelux bake environment sky.hdr -o sky.ktx2\n"
+                   "  montelux info out.exr\n"
+                   "  montelux compare out.exr reference.exr\n"
+                   "\n"
+                   "'montelux COMMAND --help' lists a command's options.\n"
+                   "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 stopped before the target error,\n"
+                   "130 interrupted (the result so far is saved).");
         add_integrate(app, exit_code);
         add_sample(app, exit_code);
 #ifdef MONTELUX_WITH_RENDER

@@ -70,7 +70,7 @@ void add_merge(CLI::App& app, int& exit_code) {
         ->type_name("FILE")
         ->required()
         ->allow_extra_args(false);
-    command->add_flag("--quiet", s->quiet, "Print nothing but errors");
+    command->add_flag("--quiet", s->quiet, "Print only errors");
     command->footer(
         "Example:\n"
         "  for k in 1 2 3 4; do montelux render scene.pbrt --spp 256 --slice $k/4 -o part$k.exr; done\n"

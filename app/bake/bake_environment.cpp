@@ -140,7 +140,7 @@ void write_text(const std::string& path, const std::string& text) {
 
 void check_files(const EnvironmentOptions& o, std::size_t levels) {
     if (o.outputs.empty() && o.irradiance.empty() && o.harmonics.empty() && o.preview.empty())
-        throw UsageError("nothing is asked for: give --output, --irradiance, --harmonics or --preview");
+        throw UsageError("nothing to bake: give --output, --irradiance, --harmonics or --preview");
     check(o.files);
     std::vector<std::string> names = o.harmonics;
     names.push_back(o.preview);
@@ -160,8 +160,7 @@ void check_files(const EnvironmentOptions& o, std::size_t levels) {
         const AtomicFile never_committed(path);
     }
     if (!o.preview.empty()) {
-        if (o.outputs.empty())
-            throw UsageError("--preview", "shows the chain of --output, which is not asked for");
+        if (o.outputs.empty()) throw UsageError("--preview", "shows the chain of --output, which is missing");
         check_writable(o.preview);
     }
 }
@@ -264,13 +263,12 @@ int run(const EnvironmentOptions& o) {
         std::printf("%s map of %d x %d texels, %s\n", std::string(name_of(map.grid().layout())).c_str(),
                     map.grid().width(), map.grid().height(), duration_text(time).c_str());
         if (o.source_mips)
-            std::printf("averages over texels were used: the errors do not know of their bias\n");
+            std::printf("averages over texels were used: the errors do not include their bias\n");
     }
     files.throw_failures();
     const std::uint64_t texels_missed = missed(chain) + missed(irradiance);
     if (texels_missed == 0) return exit_done;
-    std::fprintf(stderr,
-                 "montelux: %llu texels have a larger error than was asked for; --samples-max limits them\n",
+    std::fprintf(stderr, "montelux: %llu texels exceed the target error; --samples-max limits them\n",
                  static_cast<unsigned long long>(texels_missed));
     return exit_stopped;
 }
@@ -286,7 +284,7 @@ void add_bake_environment(CLI::App& bake, int& exit_code) {
         ->add_option(
             "-o,--output", o->outputs,
             "Chain of cube maps; may be given several times. .ktx2, .ktx and .dds hold all levels; .exr "
-            "(with standard errors), .hdr, .pfm and .png are a picture a level, named _m0, _m1, ...")
+            "(with standard errors), .hdr, .pfm and .png are a picture per level, named _m0, _m1, ...")
         ->type_name("FILE")
         ->allow_extra_args(false);
     command->add_option("--size", o->size, "Texels along an edge of level 0")
@@ -320,25 +318,28 @@ void add_bake_environment(CLI::App& bake, int& exit_code) {
                      "polynomial in nine lines")
         ->type_name("FILE")
         ->allow_extra_args(false);
-    command->add_option("--preview", o->preview, "Contact sheet of the chain: a row a level, a column a face")
+    command
+        ->add_option("--preview", o->preview,
+                     "Contact sheet of the chain: a row per level, a column per face")
         ->type_name("FILE");
     declare(*command, o->files);
-    add_parsed(*command, "--target-error", "ERROR", o->target_error, parse_share,
-               "Standard error of each channel of each texel, beside the mean of its channels: 0.01 (taken "
-               "without the option) or 1%");
-    add_whole_number(*command, "--samples", o->samples, 1, 1u << 30, "Take so many samples a texel instead");
+    add_parsed(
+        *command, "--target-error", "ERROR", o->target_error, parse_share,
+        "Standard error of each channel of each texel, relative to the mean of its channels: 0.01 (taken "
+        "without the option) or 1%");
+    add_whole_number(*command, "--samples", o->samples, 1, 1u << 30, "Number of samples per texel instead");
     add_whole_number(*command, "--samples-max", o->samples_max, 2, 1u << 30,
-                     "At most so many samples in a round of a texel (1048576)");
+                     "Limit on the samples per round of a texel (1048576)");
     add_parsed(*command, "--dark-floor", "SHARE", o->dark_floor, parse_not_negative,
                "Texels darker than this share of the map's mean are measured by the share (0.01)");
     command
         ->add_option("--sampling", o->sampling,
-                     "cells: within cells of the map that fit the lobe; lobe: directions of the lobe alone")
+                     "cells: within cells of the map that fit the lobe; lobe: directions from the lobe only")
         ->check(CLI::IsMember({"cells", "lobe"}))
         ->type_name("HOW");
     command->add_flag("--source-mips", o->source_mips,
                       "With --sampling lobe: look up averages over texels; less noise, but biased");
-    add_whole_number(*command, "--seed", o->seed, 0, UINT64_MAX, "Another seed, other noise");
+    add_whole_number(*command, "--seed", o->seed, 0, UINT64_MAX, "Seed of the noise");
     declare(*command, o->run);
     command->footer(
         "Example:\n  montelux bake environment sky.hdr -o sky.ktx2 --harmonics sky.json --preview sky.png");

@@ -72,7 +72,7 @@ void tell(const std::string& path, const TexelLosses& losses, TexelFormat format
 void declare(CLI::App& command, BakeFileOptions& options) {
     command
         .add_option("--layout", options.layout,
-                    "Of pictures: cross, vertical, horizontal, or faces (six files a level, _px to _nz)")
+                    "Of pictures: cross, vertical, horizontal, or faces (six files per level, _px to _nz)")
         ->check(CLI::IsMember({"cross", "vertical", "horizontal", "faces"}))
         ->type_name("LAYOUT");
     command
@@ -87,7 +87,7 @@ void declare(CLI::App& command, BakeFileOptions& options) {
         ->check(number_within(1, 65536))
         ->type_name("RANGE")
         ->each(given);
-    command.add_option("--rgbm-power", options.rgbm.power, "RGBM: 1, or 2 for more of the dark")
+    command.add_option("--rgbm-power", options.rgbm.power, "RGBM: 1, or 2 for more precision in the dark")
         ->check(CLI::Range(1, 2))
         ->type_name("POWER")
         ->each(given);

@@ -46,7 +46,7 @@ void declare(CLI::App& command, BakeMapOptions& options) {
     command.add_flag("--mirror", options.mirror,
                      "Exchange left and right of the cube, for engines that look it up with right-handed "
                      "directions");
-    command.add_option("--turn", options.turn, "Turn the map by so many degrees about the up axis")
+    command.add_option("--turn", options.turn, "Turn the map by this angle about the up axis")
         ->type_name("DEGREES")
         ->check(number_within(-360, 360));
 }

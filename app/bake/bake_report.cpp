@@ -77,12 +77,11 @@ int run(const ReportOptions& o) {
 void add_bake_report(CLI::App& bake, int& exit_code) {
     auto o = std::make_shared<ReportOptions>();
     SplitSumSettings& s = o->settings;
-    CLI::App* command =
-        bake.add_subcommand("report", "Compare the split sum with the integral that it stands for");
+    CLI::App* command = bake.add_subcommand("report", "Compare the split sum with the full integral");
     declare(*command, o->map);
     command
         ->add_option("-o,--output", o->outputs,
-                     "Picture of spheres, a column a roughness: full integral, split sum, size of the "
+                     "Picture of spheres, a column per roughness: full integral, split sum, size of the "
                      "difference; .exr has "
                      "the standard errors")
         ->type_name("FILE")
@@ -114,10 +113,10 @@ void add_bake_report(CLI::App& bake, int& exit_code) {
     command->add_option("--exposure", o->exposure, "Of a .png picture, in stops")
         ->check(number_within(-100.0, 100.0))
         ->type_name("STOPS");
-    add_whole_number(*command, "--seed", s.seed, 0, UINT64_MAX, "Another seed, other noise");
+    add_whole_number(*command, "--seed", s.seed, 0, UINT64_MAX, "Seed of the noise");
     declare(*command, o->run);
     command->footer(
-        "split - full is the mean difference beside the mean of the integral over random orientations, with "
+        "split - full is the mean difference over the mean of the integral over random orientations, with "
         "its standard error;\nrms is the root of the mean squared difference.\n\n"
         "Example:\n  montelux bake report sky.hdr -o spheres.png --exposure -1");
     on_command(*command, o->run, exit_code, [o] { return run(*o); });

@@ -9,11 +9,11 @@
 namespace montelux::app {
 
 void declare(CLI::App& command, BakeRunOptions& options) {
-    command.add_option("--threads", options.threads, "Threads at most; 0: one a processor")
+    command.add_option("--threads", options.threads, "Threads at most; 0: one per processor")
         ->type_name("N")
         ->check(CLI::Range(0, most_threads));
     command.add_flag("--json", options.json, "Print a summary as JSON");
-    command.add_flag("--quiet", options.quiet, "Print nothing but errors and warnings");
+    command.add_flag("--quiet", options.quiet, "Print only errors and warnings");
 }
 
 void on_command(CLI::App& command, const BakeRunOptions& options, int& exit_code, std::function<int()> run) {

@@ -39,7 +39,7 @@ void check_files(const IntegrateOptions& o) {
         if (!path.empty()) check_output(path);
     if (!o.checkpoint.empty() && !o.resume && generation_exists(o.checkpoint))
         throw UsageError(o.checkpoint,
-                         "exists already; add --resume to go on from it, or remove it to begin anew");
+                         "exists already; add --resume to continue from it, or remove it to start again");
 }
 
 void show_progress(ProgressLine& line, const IntegrationTask& task, const IntegrationResult& r) {

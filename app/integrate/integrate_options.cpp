@@ -181,7 +181,7 @@ void declare(CLI::App& c, IntegrateOptions& o) {
          "N");
     text("--time", o.time, "Stop after this time, for example 90, 90s, 10m or 1h30m", "TIME");
     text("--seed", o.seed, "Seed of all random numbers. Default: 0", "N");
-    text("--threads", o.threads, "Threads; 0: one a processor. The result does not depend on it", "N");
+    text("--threads", o.threads, "Threads; 0: one per processor. The result does not depend on it", "N");
     text("--domain", o.domain,
          "Where: " + joined(domain_names) + "; all but the box take --over NAMES. Default: box", "NAME");
     text("--radius", o.radius, "Radius of ball and sphere. Default: 1", "R");
@@ -191,11 +191,12 @@ void declare(CLI::App& c, IntegrateOptions& o) {
          "POLICY");
     text("--checkpoint", o.checkpoint, "Keep the running state in this file", "FILE")->check(file_name());
     text("--checkpoint-every", o.checkpoint_every, "How often it is written. Default: 60", "SECONDS");
-    c.add_flag("--resume", o.resume, "Go on from the checkpoint, where there is one");
+    c.add_flag("--resume", o.resume, "Resume from the checkpoint, if it exists");
     text("--plot", o.plot, "Draw value and error against the evaluations (.svg)", "FILE");
     text("--points", o.points, "Write the points and values of the integrand (.csv); uses one thread",
          "FILE");
-    text("--points-limit", o.points_limit, "How many of them, from the first on. Default: 10000", "N");
+    text("--points-limit", o.points_limit, "Number of points written, from the first on. Default: 10000",
+         "N");
     c.add_flag("--json", o.json, "Print JSON");
     c.add_flag("--quiet", o.quiet, "Show no progress");
     c.footer(
@@ -209,8 +210,8 @@ void declare(CLI::App& c, IntegrateOptions& o) {
         "  " +
         formula_functions() +
         ".\n"
-        "Exit codes: 0 done, 1 could not, 2 wrong usage, 3 stopped before the error asked for (the result "
-        "is\nprinted), 130 interrupted (so is what there was).");
+        "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 stopped before the target error (the result is\n"
+        "printed), 130 interrupted (the result so far is printed).");
 }
 
 IntegrationTask make_task(const IntegrateOptions& o) {
@@ -247,7 +248,7 @@ IntegrationTask make_task(const IntegrateOptions& o) {
     options.checkpoint_every = std::chrono::duration<double>(every);
     options.resume = o.resume;
     if (o.resume && o.checkpoint.empty())
-        throw UsageError("--resume", "expected --checkpoint FILE, which says what to go on from");
+        throw UsageError("--resume", "expected --checkpoint FILE to resume from");
     if (!o.points.empty()) {
         if (options.threads > 1)
             throw UsageError("--points", "the points are written in their order, by one thread; leave out "

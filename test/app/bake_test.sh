@@ -68,7 +68,7 @@ cmp -s t1_m1.pfm turn_m1.pfm && fail "--turn changes nothing"
 [ -s out ] && fail "--quiet prints: $(cat out)"
 
 # Options that make no sense, and answers of "no".
-expect 2 "nothing is asked for" bake environment sky.pfm
+expect 2 "nothing to bake" bake environment sky.pfm
 expect 2 "--seed: '-1' was given; a whole number is expected" bake environment sky.pfm -o x.exr --seed -1
 expect 2 "--seed: '-1' was given" bake report sky.pfm --seed -1
 expect 2 "--exposure: 'nan' was given; a number from -100 to 100" bake environment sky.pfm -o x.png --exposure nan
@@ -94,7 +94,7 @@ expect 2 "at most 3 levels" bake environment sky.pfm -o x.exr --size 4 --levels 
 expect 0 "0.4" bake environment sky.pfm --size 4 -o x.exr --roughness 0.4,0.8
 expect 2 "does not go into this kind of file" bake environment sky.pfm -o x.dds --format rgbm8
 expect 2 "spherical harmonics go into" bake environment sky.pfm --harmonics x.exr
-expect 3 "have a larger error than was asked for" bake environment sky.pfm --size 4 --roughness 0.5 -o x.exr \
+expect 3 "texels exceed the target error" bake environment sky.pfm --size 4 --roughness 0.5 -o x.exr \
     --target-error 1e-5 --samples-max 64
 expect 1 "missing.hdr" bake environment missing.hdr -o x.exr
 expect 1 "no-folder" bake environment sky.pfm -o no-folder/x.exr
