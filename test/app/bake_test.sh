@@ -87,7 +87,7 @@ expect 2 "'2' was given; a number above 0 and below 1 is expected" bake environm
 expect 2 "'-1' was given; a number that is not negative" bake environment sky.pfm -o x.exr --dark-floor -1
 expect 2 "'0' was given; a number above 0 is expected" bake sky -o x.exr --scale 0
 expect 2 "needs --sampling lobe" bake environment sky.pfm -o x.exr --source-mips
-expect 0 "do not know of their bias" bake environment sky.pfm --size 4 -o x.exr --sampling lobe --source-mips --samples 64
+expect 0 "do not include their bias" bake environment sky.pfm --size 4 -o x.exr --sampling lobe --source-mips --samples 64
 expect 2 "expected linear, filament, babylon, or numbers" bake environment sky.pfm -o x.exr --roughness 0,2
 expect 2 "do not go together" bake environment sky.pfm -o x.exr --roughness 0,1 --levels 3
 expect 2 "at most 3 levels" bake environment sky.pfm -o x.exr --size 4 --levels 4
