@@ -37,7 +37,7 @@ class Chains:
     evaluations: int
     #: Densities that were NaN or +infinity, and were rejected.
     non_finite: int
-    #: Reasons to doubt the means, as sentences.
+    #: Reasons why the means may be wrong, as sentences.
     warnings: tuple[str, ...]
     #: Every `thin`-th state after the burn-in, shape (chains, states, d).
     states: Array

@@ -140,7 +140,7 @@ def integrate(
     `Vegas(alpha=0.5)`. `montelux.METHODS` lists the names; docs/integration.md says which is for what.
 
     It stops when every component's standard error is below the larger of `absolute_error` and `relative_error`
-    times its value; after so many `evaluations`; or `time` seconds. Without any of these after 1e6 evaluations.
+    times its value; after this many `evaluations`; or `time` seconds. Without any of these after 1e6 evaluations.
 
     The result depends on f, domain, method, budget and seed, and not on `threads`. Python runs one thread at a
     time, so that more than one helps only functions that release the interpreter's lock for long; 0: one a
@@ -155,7 +155,7 @@ def integrate(
     progress: True shows a line on standard error; a function is called with the Result so far, between steps.
 
     checkpoint: a file that keeps the running state, written every `checkpoint_every` seconds and at the end;
-    with `resume` the run goes on from it, to the digits of one that was not broken.
+    with `resume` the run continues from it, to the digits of an uninterrupted one.
     """
     return _run(
         _core.integrate,

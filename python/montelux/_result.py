@@ -53,7 +53,7 @@ class Result:
     reason: str
     #: 'error_target', 'evaluations', 'time', 'cancelled' or 'finished'.
     stop: str
-    #: Reasons to doubt the value or its error, as sentences. Empty is the normal case.
+    #: Reasons why the value or its error may be wrong, as sentences. Normally empty.
     warnings: tuple[str, ...]
     #: Do independent parts of the run agree? No degrees of freedom where there is nothing to compare.
     chi_squared: float
@@ -62,7 +62,7 @@ class Result:
     #: Wall time.
     seconds: float
     history: History
-    #: Not empty where the newest checkpoint could not be gone on from, and the one before it was: why.
+    #: Why the newest checkpoint could not be resumed and the one before it was; else empty.
     checkpoint_refused_because: str = ""
     _text: str = field(default="", compare=False)
 
@@ -140,7 +140,7 @@ class LogResult:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Reasons to doubt the value or its error, as sentences. Empty is the normal case."""
+        """Reasons why the value or its error may be wrong, as sentences. Normally empty."""
         return self.relative.warnings
 
     @property

@@ -22,16 +22,16 @@ using bench::Line;
 // Of all runs of a method on a line of the tables.
 struct Coverage {
     int runs = 0;
-    int doubted = 0;    // runs that name a reason not to believe them
+    int warned = 0;     // runs with a warning
     int refused = 0;    // runs whose first step needs more evaluations
     int rules = 0;      // runs that report no standard deviation (Auto, where it stays with cubature)
     int exact = 0;      // runs with an error so small that the rounding of the known integral counts
     int within_one = 0; // of the others: truth within one reported standard error,
     int within_two = 0; // within two
 
-    int judged() const { return runs - doubted - refused - rules - exact; }
+    int judged() const { return runs - warned - refused - rules - exact; }
     double share(int within) const { return judged() > 0 ? static_cast<double>(within) / judged() : 0; }
-    bool says_so() const { return 2 * doubted > runs; }
+    bool mostly_warned() const { return 2 * warned > runs; }
 };
 
 // The seed draws the integrand's parameters as well as the samples.
@@ -58,7 +58,7 @@ Coverage measure(const Method& method, Line line, std::uint64_t evaluations, int
         }
         EXPECT_LE(r.evaluations, evaluations);
         if (!r.warnings.empty()) {
-            ++coverage.doubted;
+            ++coverage.warned;
             continue;
         }
         if (!r.statistical) {
@@ -127,7 +127,8 @@ TEST_P(MethodCalibration, TruthLiesWithinTheErrorsAsOftenAsTheySay) {
                             Line{bench::Family::continuous, 5}}) {
         SCOPED_TRACE(GetParam() + " on " + bench::line_name(line));
         const Coverage c = measure(Method::named(GetParam()), line, evaluations_of(GetParam()), 40);
-        if (!c.says_so() && c.judged() > 0) expect_honest_errors(c.within_one, c.within_two, c.judged());
+        if (!c.mostly_warned() && c.judged() > 0)
+            expect_honest_errors(c.within_one, c.within_two, c.judged());
     }
 }
 INSTANTIATE_TEST_SUITE_P(Methods, MethodCalibration, testing::ValuesIn(statistical_methods()), test_name);
@@ -155,7 +156,7 @@ class CalibrationSlowTest : public testing::TestWithParam<std::string> {
                     cell += (cell.empty() ? "" : ", ") + std::to_string(count) + " " + what;
                 };
                 if (c.judged() > 0 && !falls_short(method, line).empty()) cell += " (*)";
-                add(c.doubted, "doubted");
+                add(c.warned, "warned");
                 add(c.refused, "refused");
                 add(c.rules, "by a rule");
                 add(c.exact, "exact");
@@ -178,11 +179,11 @@ TEST_P(CalibrationSlowTest, TruthLiesWithinTheErrorsAsOftenAsTheySay) {
         SCOPED_TRACE(GetParam() + " on " + name);
         const Coverage c = lines[name] =
             measure(Method::named(GetParam()), line, evaluations_of(GetParam()), 200);
-        std::printf("%s %s: %d doubted, %d refused, %d by a rule, %d exact, within one %d, two %d of %d\n",
-                    GetParam().c_str(), name.c_str(), c.doubted, c.refused, c.rules, c.exact, c.within_one,
+        std::printf("%s %s: %d warned, %d refused, %d by a rule, %d exact, within one %d, two %d of %d\n",
+                    GetParam().c_str(), name.c_str(), c.warned, c.refused, c.rules, c.exact, c.within_one,
                     c.within_two, c.judged());
         std::fflush(stdout);
-        if (!c.says_so() && c.judged() > 0 && falls_short(GetParam(), line).empty())
+        if (!c.mostly_warned() && c.judged() > 0 && falls_short(GetParam(), line).empty())
             expect_honest_errors(c.within_one, c.within_two, c.judged());
     }
 }
