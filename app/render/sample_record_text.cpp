@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <type_traits>
 
 #include "montelux/mc/math/overloaded.h"
 #include "montelux/scene/setting_names.h"
@@ -61,7 +62,9 @@ void add_light(Text& t, const char* how, Index index, Index part, const Scene& s
         t.add(" of shape %u, primitive %u", static_cast<unsigned>(area->shape), static_cast<unsigned>(part));
 }
 
-void add_alpha(Text& t, const char* name, const Ggx& ggx) {
+// A field of a BSDF that fits into the line of its name.
+void add_inline(Text& t, const char* name, float value) { t.add(", %s ", name).number(value); }
+void add_inline(Text& t, const char* name, const Ggx& ggx) {
     if (ggx.is_smooth())
         t.add(", %s smooth", name);
     else
@@ -69,42 +72,23 @@ void add_alpha(Text& t, const char* name, const Ggx& ggx) {
 }
 
 // The kind of the BSDF, and its parameters at the vertex.
-struct BsdfText {
-    Text& t;
-
-    void operator()(const DiffuseBsdf& b) const {
-        t.add("diffuse").end();
-        t.columns(2, "reflectance", b.reflectance);
-    }
-    void operator()(const ConductorBsdf& b) const {
-        t.add("conductor");
-        add_alpha(t, "surface", b.ggx);
-        t.end();
-        t.columns(2, "eta", b.eta);
-        t.columns(2, "k", b.k);
-    }
-    void operator()(const DielectricBsdf& b) const {
-        t.add("dielectric, eta ").number(b.eta);
-        add_alpha(t, "surface", b.ggx);
-        t.end();
-    }
-    void operator()(const ThinDielectricBsdf& b) const { t.add("thin dielectric, eta ").number(b.eta).end(); }
-    void operator()(const CoatedDiffuseBsdf& b) const {
-        t.add("coated diffuse, closed form, eta ").number(b.table->eta());
-        add_alpha(t, "coat", b.table->coat().ggx);
-        t.end();
-        t.columns(2, "base albedo", b.base_albedo);
-    }
-    template <typename Base>
-    void operator()(const LayeredBsdf<Base>& b) const {
-        t.add("coated by random walks, eta ").number(b.coat.eta).add(", thickness ").number(b.thickness);
-        add_alpha(t, "coat", b.coat.ggx);
-        t.end();
-        if (!is_black(b.medium_albedo)) t.columns(2, "medium albedo", b.medium_albedo);
-        t.label(2, "base");
-        BsdfText{t}(b.base);
-    }
-};
+void add_bsdf(Text& t, const BsdfModel auto& bsdf) {
+    t.add("%s", bsdf.name);
+    bsdf.visit_fields([&](const char* name, const auto& field) {
+        if constexpr (requires { add_inline(t, name, field); }) add_inline(t, name, field);
+    });
+    t.end();
+    bsdf.visit_fields([&]<typename F>(const char* name, const F& field) {
+        if constexpr (std::is_same_v<F, SampledSpectrum>) {
+            t.columns(2, name, field);
+        } else if constexpr (BsdfModel<F>) {
+            t.label(2, name);
+            add_bsdf(t, field);
+        } else {
+            static_assert(requires { add_inline(t, name, field); });
+        }
+    });
+}
 
 void add_densities(Text& t, float light_pdf, float bsdf_pdf, float weight) {
     t.label(2, "densities").add("light ").number(light_pdf).add(", BSDF ").number(bsdf_pdf);
@@ -201,7 +185,7 @@ void add_vertex(Text& t, std::size_t number, const PathVertex& v, const Scene& s
         t.add(", material %u", static_cast<unsigned>(shape.material)).end();
         t.label(1, "position").vector(v.surface->p).add(", distance ").number(v.hit.t).end();
         t.label(1, "geometric normal").vector(v.surface->ng).end();
-        t.label(1, "shading normal").vector(v.surface->ns).end();
+        t.label(1, "shading normal").vector(v.bsdf ? v.bsdf->frame.n : v.surface->ns).end();
     } else {
         t.add("beyond the scene").end();
         t.label(1, "direction").vector(v.ray.d).end();
@@ -210,7 +194,7 @@ void add_vertex(Text& t, std::size_t number, const PathVertex& v, const Scene& s
     for (const FoundLight& found : v.found) add_found(t, found, scene);
     if (v.bsdf) {
         t.label(1, "BSDF");
-        std::visit(BsdfText{t}, *v.bsdf);
+        std::visit([&](const auto& b) { add_bsdf(t, b); }, v.bsdf->bsdf);
     }
     if (v.direct) add_direct(t, *v.direct, scene);
     if (v.scattering) add_scattering(t, v);

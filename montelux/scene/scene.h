@@ -35,8 +35,9 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<FloatTexture> float_textures;
     std::vector<SpectrumTexture> spectrum_textures;
-    std::vector<Image> images;       // of image textures
-    std::vector<Image> environments; // maps of infinite lights, R, G, B linear
+    std::vector<ImageTexture> normal_maps; // R, G, B = (n + 1) / 2, without scale or invert
+    std::vector<Image> images;             // of image textures and normal maps
+    std::vector<Image> environments;       // maps of infinite lights, R, G, B linear
     std::vector<SkyModel> skies;
 
     std::vector<Light> lights;

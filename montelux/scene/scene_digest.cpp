@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "montelux/scene/material/material_model.h"
 #include "montelux/scene/value_hash.h"
 
 namespace montelux {
@@ -148,38 +149,14 @@ class SceneHasher {
         all(image.u8(), image.u16(), image.f32());
     }
 
-    // Materials.
-    void add(const RoughnessParameter& r) {
-        const auto& [u, v, remap] = r;
-        all(u, v, remap);
+    // Materials, by their lists of parameters.
+    void add(const Material& m) {
+        add(static_cast<std::uint64_t>(m.index()));
+        visit_fields(m, [this](std::string_view, const auto& value) { add(value); });
     }
-    void add(const DiffuseMaterial& m) {
-        const auto& [reflectance] = m;
-        add(reflectance);
-    }
-    void add(const ConductorMaterial& m) {
-        const auto& [eta, k, reflectance, from_reflectance, roughness] = m;
-        all(eta, k, reflectance, from_reflectance, roughness);
-    }
-    void add(const DielectricMaterial& m) {
-        const auto& [eta, roughness] = m;
-        all(eta, roughness);
-    }
-    void add(const ThinDielectricMaterial& m) {
-        const auto& [eta] = m;
-        add(eta);
-    }
-    void add(const CoatingParameters& c) {
-        const auto& [roughness, eta, thickness, albedo, g, max_depth, sample_count] = c;
-        all(roughness, eta, thickness, albedo, g, max_depth, sample_count);
-    }
-    void add(const CoatedDiffuseMaterial& m) {
-        const auto& [reflectance, coating, albedo_table] = m;
-        all(reflectance, coating, albedo_table);
-    }
-    void add(const CoatedConductorMaterial& m) {
-        const auto& [conductor, coating] = m;
-        all(conductor, coating);
+    void add(const NormalMapParameter& p) {
+        const auto& [map] = p;
+        add(map);
     }
 
     // Geometry.
@@ -307,9 +284,9 @@ ContentDigest SceneDigest::whole() const {
 
 SceneDigest digest_of(const Scene& scene) {
     const auto& [meshes, quadrics, shapes, world_shapes, objects, instances, materials, float_textures,
-                 spectrum_textures, images, environments, skies, lights, camera] = scene;
+                 spectrum_textures, normal_maps, images, environments, skies, lights, camera] = scene;
     return {digest_of_all(meshes, quadrics, shapes, world_shapes, objects, instances),
-            digest_of_all(materials), digest_of_all(float_textures, spectrum_textures, images),
+            digest_of_all(materials), digest_of_all(float_textures, spectrum_textures, normal_maps, images),
             digest_of_all(lights, environments, skies), digest_of_all(camera)};
 }
 

@@ -9,7 +9,7 @@
 
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/scene/light/light_sampling.h"
-#include "montelux/scene/material/make_bsdf.h"
+#include "montelux/scene/material/material_model.h"
 
 namespace montelux {
 
@@ -32,25 +32,6 @@ std::optional<CoatingKey> closed_form(const Material& material) {
     float eta = c.eta(550);
     if (!(eta > 0)) return std::nullopt;
     return CoatingKey{eta, alpha, std::max(c.thickness.value, 0.0f), c.max_depth};
-}
-
-bool has_texture(const FloatParameter& p) { return !p.is_constant(); }
-bool has_texture(const SpectrumParameter& p) { return !p.is_constant(); }
-bool has_texture(const RoughnessParameter& r) { return has_texture(r.u) || has_texture(r.v); }
-bool has_texture(const ConductorMaterial& m) {
-    return has_texture(m.eta) || has_texture(m.k) || has_texture(m.reflectance) || has_texture(m.roughness);
-}
-bool has_texture(const CoatingParameters& c) {
-    return has_texture(c.roughness) || has_texture(c.thickness) || has_texture(c.albedo) || has_texture(c.g);
-}
-bool has_texture(const DiffuseMaterial& m) { return has_texture(m.reflectance); }
-bool has_texture(const DielectricMaterial& m) { return has_texture(m.roughness); }
-bool has_texture(const ThinDielectricMaterial&) { return false; }
-bool has_texture(const CoatedDiffuseMaterial& m) {
-    return has_texture(m.reflectance) || has_texture(m.coating);
-}
-bool has_texture(const CoatedConductorMaterial& m) {
-    return has_texture(m.conductor) || has_texture(m.coating);
 }
 
 // The sum over 2^32 parts is finite.
@@ -79,7 +60,7 @@ SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environm
     add_materials(scene);
     view_ = SceneView(scene);
     view_.textured = textured_;
-    view_.anisotropic = anisotropic_;
+    view_.follows_tangents = follows_tangents_;
     view_.coating_of_material = coating_of_material_;
     view_.coating_tables = coatings_;
     view_.mipmaps = mipmaps_;
@@ -110,8 +91,8 @@ void SceneTables::add_materials(const Scene& scene) {
     std::map<CoatingKey, Index> index_of;
     std::vector<CoatingKey> keys;
     for (const Material& material : scene.materials) {
-        anisotropic_.push_back(is_anisotropic(material) ? 1 : 0);
-        textured_.push_back(std::visit([](const auto& m) { return has_texture(m); }, material) ? 1 : 0);
+        textured_.push_back(is_textured(material) ? 1 : 0);
+        follows_tangents_.push_back(has_textured_bsdf(material) || is_anisotropic(material) ? 1 : 0);
         Index table = no_index;
         if (auto key = closed_form(material)) {
             auto [found, inserted] = index_of.try_emplace(*key, static_cast<Index>(keys.size()));

@@ -30,7 +30,7 @@ class SceneTables {
     std::vector<Index> alpha_mipmap_of_image_;
     std::vector<CoatingTable> coatings_;
     std::vector<Index> coating_of_material_;
-    std::vector<char> textured_, anisotropic_;
+    std::vector<char> textured_, follows_tangents_;
     LightTables lights_;
     LightSampler light_sampler_;
     SceneView view_;

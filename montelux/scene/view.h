@@ -23,11 +23,12 @@ struct SceneView {
     std::span<const Instance> instances;
 
     std::span<const Material> materials;
-    std::span<const char> textured, anisotropic;  // one per material: 0 or 1
-    std::span<const Index> coating_of_material;   // no_index: the random walk is used
-    std::span<const CoatingTable> coating_tables; // where the closed form holds
+    std::span<const char> textured, follows_tangents; // one per material: 0 or 1
+    std::span<const Index> coating_of_material;       // no_index: the random walk is used
+    std::span<const CoatingTable> coating_tables;     // where the closed form holds
     std::span<const FloatTexture> float_textures;
     std::span<const SpectrumTexture> spectrum_textures;
+    std::span<const ImageTexture> normal_maps;
     std::span<const MipMap> mipmaps;              // one per image, of its colours
     std::span<const Index> alpha_mipmap_of_image; // into alpha_mipmaps, or no_index
     std::span<const MipMap> alpha_mipmaps;
@@ -43,12 +44,13 @@ struct SceneView {
         : meshes(scene.meshes), quadrics(scene.quadrics), shapes(scene.shapes),
           world_shapes(scene.world_shapes), objects(scene.objects), instances(scene.instances),
           materials(scene.materials), float_textures(scene.float_textures),
-          spectrum_textures(scene.spectrum_textures), lights(scene.lights), skies(scene.skies) {}
+          spectrum_textures(scene.spectrum_textures), normal_maps(scene.normal_maps), lights(scene.lights),
+          skies(scene.skies) {}
 
     // The material's parameters look up textures, so coordinates and footprints are needed.
     bool is_textured(Index material) const { return textured[material] != 0; }
-    // The BSDF's lobes depend on the direction of the tangents.
-    bool is_anisotropic(Index material) const { return anisotropic[material] != 0; }
+    // The BSDF's frame follows the tangents: its lobes depend on them, or its textures need them anyway.
+    bool frame_follows_tangents(Index material) const { return follows_tangents[material] != 0; }
     // Null where the closed form of CoatingTable does not hold.
     const CoatingTable* coating(Index material) const {
         const Index table = coating_of_material[material];

@@ -40,45 +40,37 @@ TextureContext texture_context(const PathScene& ps, const SurfacePoint& s) {
     return c;
 }
 
-bool transmits(const Bsdf& bsdf) {
-    return std::holds_alternative<DielectricBsdf>(bsdf) || std::holds_alternative<ThinDielectricBsdf>(bsdf);
-}
-
-// Directions that know nothing of the BSDF: uniform over the hemisphere of wo, or over the sphere for clear
-// surfaces. A delta lobe beside others gets half of the samples, since no such direction can find it.
-std::optional<BsdfSample> sample_uniform(const Bsdf& bsdf, Vec3f wo, SampleStream& stream) {
-    return std::visit(
-        [&](const auto& b) -> std::optional<BsdfSample> {
-            float share = 1;
-            if (b.has_specular()) {
-                share = 0.5f;
-                float u_choice = stream.next_1d();
-                if (u_choice < share) {
-                    auto s = b.sample(wo, TransportMode::radiance, stream);
-                    if (!s || !s->specular) return std::nullopt;
-                    s->weight /= share;
-                    return s;
-                }
-            }
-            Vec2f u = stream.next_2d();
-            BsdfSample s;
-            if (transmits(bsdf)) {
-                s.wi = sample_uniform_sphere(u);
-                s.pdf = share * inv_four_pi_f;
-                s.transmission = !same_hemisphere(wo, s.wi);
-            } else {
-                s.wi = sample_uniform_hemisphere(u);
-                if (wo.z < 0) s.wi.z = -s.wi.z;
-                s.pdf = share * inv_two_pi_f;
-            }
-            BsdfEvaluation e = b.evaluate(wo, s.wi, TransportMode::radiance, stream);
-            if (const auto* d = std::get_if<DielectricBsdf>(&bsdf); d != nullptr && s.transmission)
-                s.eta = wo.z > 0 ? d->eta : 1 / d->eta;
-            s.weight = e.f / s.pdf;
-            if (is_black(s.weight)) return std::nullopt;
+// Directions that know nothing of the BSDF: uniform over the hemisphere of wo, or over the sphere where it
+// transmits. A delta lobe beside others gets half of the samples, since no such direction can find it.
+template <BsdfModel B>
+std::optional<BsdfSample> sample_uniform(const B& bsdf, Vec3f wo, SampleStream& stream) {
+    float share = 1;
+    if (bsdf.has_specular()) {
+        share = 0.5f;
+        float u_choice = stream.next_1d();
+        if (u_choice < share) {
+            auto s = bsdf.sample(wo, TransportMode::radiance, stream);
+            if (!s || !s->specular) return std::nullopt;
+            s->weight /= share;
             return s;
-        },
-        bsdf);
+        }
+    }
+    Vec2f u = stream.next_2d();
+    BsdfSample s;
+    if constexpr (B::traits.transmits) {
+        s.wi = sample_uniform_sphere(u);
+        s.pdf = share * inv_four_pi_f;
+        s.transmission = !same_hemisphere(wo, s.wi);
+        if (s.transmission) s.eta = bsdf.transmitted_eta(wo);
+    } else {
+        s.wi = sample_uniform_hemisphere(u);
+        if (wo.z < 0) s.wi.z = -s.wi.z;
+        s.pdf = share * inv_two_pi_f;
+    }
+    BsdfEvaluation e = bsdf.evaluate(wo, s.wi, TransportMode::radiance, stream);
+    s.weight = e.f / s.pdf;
+    if (is_black(s.weight)) return std::nullopt;
+    return s;
 }
 
 // The state of one path between its vertices.
@@ -232,7 +224,7 @@ SampledSpectrum path_radiance(const PathScene& ps, RayTracer& tracer, Ray ray, S
         }
         const Shape& shape = ps.scene.shapes[hit.shape];
         const bool textured = ps.scene.is_textured(shape.material);
-        const bool tangents = textured || ps.scene.is_anisotropic(shape.material);
+        const bool tangents = textured || ps.scene.frame_follows_tangents(shape.material);
         SurfacePoint s = surface_point(ps.scene, ray, hit, tangents);
         if (path.recorder) path.recorder.hit_surface(ray, hit, s, path.throughput);
         if (hit.instance == no_index) path.add_emission(s, ray.d);
@@ -243,13 +235,14 @@ SampledSpectrum path_radiance(const PathScene& ps, RayTracer& tracer, Ray ray, S
 
         TextureContext context;
         if (textured) context = texture_context(ps, s);
-        Bsdf bsdf = make_bsdf(ps.scene, shape.material, context, lambda);
-        Frame frame = tangents ? Frame::from_normal_and_tangent(s.ns, s.dpdu) : Frame::from_normal(s.ns);
+        const SurfaceBsdf made = make_bsdf(ps.scene, s, -ray.d, context, lambda);
+        const Bsdf& bsdf = made.bsdf;
+        const Frame frame = made.frame; // a copy, which stays in registers
         Vec3f wo = frame.to_local(-ray.d);
-        if (path.recorder) path.recorder.made_bsdf(bsdf, wo);
+        if (path.recorder) path.recorder.made_bsdf(made, wo);
         if (depth == 1 && first != nullptr)
             *first = {.albedo = std::visit([&](const auto& b) { return b.albedo(wo); }, bsdf),
-                      .normal = s.ns,
+                      .normal = frame.n,
                       .depth = hit.t,
                       .found = true};
         if (wo.z == 0) {
@@ -263,7 +256,7 @@ SampledSpectrum path_radiance(const PathScene& ps, RayTracer& tracer, Ray ray, S
             [&](const auto& b) -> std::optional<BsdfSample> {
                 if (!b.is_specular()) {
                     path.add_direct_light(b, frame, wo, here);
-                    if (uniform) return sample_uniform(bsdf, wo, stream);
+                    if (uniform) return sample_uniform(b, wo, stream);
                 }
                 return b.sample(wo, TransportMode::radiance, stream);
             },

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "montelux/scene/bsdf/bsdf.h"
 #include "montelux/scene/light/light_sampling.h"
+#include "montelux/scene/material/make_bsdf.h"
 #include "montelux/scene/shape/surface_point.h"
 
 namespace montelux {
@@ -69,7 +69,8 @@ enum class PathEnd : std::uint8_t {
     left_scene,
     max_depth,
     grazing,         // the ray lies in the plane of the shading normal's surface
-    no_direction,    // the BSDF sampled none: absorbed, or to the side of the surface where there is no lobe
+    no_direction,    // the BSDF sampled none: absorbed, or to a side of the surface that it does not send
+                     // light to
     nothing_carried, // the throughput is black
     bad_throughput,  // it is not a number, or negative: it is added to the radiance, so that the sample is
                      // told of
@@ -83,8 +84,8 @@ struct PathVertex {
     Hit hit;
     std::optional<SurfacePoint> surface; // none where the ray left the scene
     std::vector<FoundLight> found;
-    std::optional<Bsdf> bsdf; // from here on: none where the path ended before
-    Vec3f wo;                 // towards the vertex before, in the frame of the shading normal
+    std::optional<SurfaceBsdf> bsdf; // from here on: none where the path ended before
+    Vec3f wo;                        // towards the vertex before, in the frame of the shading normal
     std::optional<DirectLight> direct;
     std::optional<Scattering> scattering;
     std::optional<Roulette> roulette;

@@ -28,7 +28,7 @@ void PathRecorder::found_light(FoundLight light) const {
     v.found.push_back(light);
 }
 
-void PathRecorder::made_bsdf(const Bsdf& bsdf, Vec3f wo) const {
+void PathRecorder::made_bsdf(const SurfaceBsdf& bsdf, Vec3f wo) const {
     last().bsdf = bsdf;
     last().wo = wo;
 }

@@ -22,7 +22,7 @@ class PathRecorder {
     [[gnu::cold]] void left_scene(const Ray& ray, SampledSpectrum throughput) const;
     // Contributions are for the recorder to multiply.
     [[gnu::cold]] void found_light(FoundLight light) const;
-    [[gnu::cold]] void made_bsdf(const Bsdf& bsdf, Vec3f wo) const;
+    [[gnu::cold]] void made_bsdf(const SurfaceBsdf& bsdf, Vec3f wo) const;
     [[gnu::cold]] void sampled_light(DirectLight light) const;
     [[gnu::cold]] void scattered(const Scattering& scattering) const;
     [[gnu::cold]] void played_roulette(Roulette roulette) const;

@@ -183,12 +183,7 @@ def _represent(value: Any) -> str:
 
 
 VALUES = (
-    _core.Diffuse,
-    _core.Conductor,
-    _core.Dielectric,
-    _core.ThinDielectric,
-    _core.CoatedDiffuse,
-    _core.CoatedConductor,
+    *_core.MATERIALS,
     _core.AreaLight,
     _core.PointLight,
     _core.SpotLight,

@@ -2,207 +2,203 @@
 #include "python/src/scene_values.h"
 #include <string>
 
-#include "montelux/scene/material/material.h"
-#include "montelux/spectrum/named_spectra.h"
+#include "montelux/scene/material/material_model.h"
 
 namespace montelux::python {
 namespace {
 
 constexpr const char* spectrum_type = "typing.Any";
 
-// A spectrum or texture that `at` finds in a material.
-template <typename T, typename At>
-void spectrum(nb::class_<Ref<T>>& c, const char* name, At at, RgbMeaning meaning, const char* doc) {
-    attribute<T>(
-        c, name, spectrum_type,
-        [at](const T& t, const Ref<T>& r) {
-            return spectrum_or_texture(at(const_cast<T&>(t)), r.scene() ? r.scene() : r.textures_of);
-        },
-        [at, meaning](T& t, nb::handle v, Ref<T>& r, const std::string& what) {
-            at(t) = spectrum_parameter_of(v, meaning, r, what);
-        },
-        doc);
-}
-template <typename T, typename At>
-void index_of_refraction(nb::class_<Ref<T>>& c, const char* name, At at) {
-    attribute<T>(
-        c, name, spectrum_type, [at](const T& t, const auto&) { return nb::cast(at(const_cast<T&>(t))); },
-        [at](T& t, nb::handle v, auto&, const std::string& what) {
-            at(t) = spectrum_of(v, RgbMeaning::unbounded, what);
-        },
-        "Index of refraction: a number above zero, a Spectrum, or a name such as 'glass-BK7'.");
-}
-template <typename T, typename At>
-void parameter(nb::class_<Ref<T>>& c, const char* name, At at, double least, double most, const char* doc) {
-    attribute<T>(
-        c, name, "typing.Any",
-        [at](const T& t, const Ref<T>& r) {
-            return number_or_texture(at(const_cast<T&>(t)), r.scene() ? r.scene() : r.textures_of);
-        },
-        [=](T& t, nb::handle v, Ref<T>& r, const std::string& what) {
-            const FloatParameter p = float_parameter_of(v, r, what);
-            const double x = static_cast<double>(p.value);
-            if (p.is_constant() && !(x >= least && x <= most))
-                throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected a number from " +
-                                      nb::repr(nb::float_(least)).c_str() + " to " +
-                                      nb::repr(nb::float_(most)).c_str());
-            at(t) = p;
-        },
-        doc);
-}
-constexpr double no_bound = std::numeric_limits<double>::max();
+// The n-th parameter of a material, which is an F.
+template <typename F>
+struct ParameterAt {
+    std::size_t n;
 
-// `roughness` sets both directions at once.
-template <typename T, typename At>
-void roughness(nb::class_<Ref<T>>& c, const std::string& prefix, At at) {
-    parameter(
-        c, (prefix + "roughness_u").c_str(), [at](T& t) -> FloatParameter& { return at(t).u; }, 0, no_bound,
-        "GGX roughness along u; 0 is a mirror.");
-    parameter(
-        c, (prefix + "roughness_v").c_str(), [at](T& t) -> FloatParameter& { return at(t).v; }, 0, no_bound,
-        "GGX roughness along v.");
-    attribute<T>(
-        c, (prefix + "roughness").c_str(), "typing.Any",
-        [at](const T& t, const Ref<T>& r) {
-            return number_or_texture(at(const_cast<T&>(t)).u, r.scene() ? r.scene() : r.textures_of);
-        },
-        [at](T& t, nb::handle v, Ref<T>& r, const std::string& what) {
-            const FloatParameter p = float_parameter_of(v, r, what);
-            if (p.is_constant() && !not_negative(static_cast<double>(p.value)))
-                throw Error(what, std::string(nb::repr(v).c_str()) +
-                                      " was given; expected a number that is not negative");
-            at(t).u = at(t).v = p;
-        },
-        "GGX roughness along u and v together (a number or a texture); reads the one along u.");
-    attribute<T>(
-        c, (prefix + "remap_roughness").c_str(), "bool",
-        [at](const T& t, const auto&) { return nb::bool_(at(const_cast<T&>(t)).remap); },
-        [at](T& t, nb::handle v, auto&, const std::string& what) { at(t).remap = boolean_of(v, what); },
-        "Whether alpha is the root of the roughness; else it is the roughness itself.");
+    template <typename M>
+    F& operator()(M& material) const {
+        F* found = nullptr;
+        std::size_t i = 0;
+        visit_parameters(material, [&]<typename Field>(const ParameterInfo&, Field& field) {
+            if constexpr (std::is_same_v<Field, F>)
+                if (i == n) found = &field;
+            ++i;
+        });
+        return *found;
+    }
+    template <typename M>
+    const F& operator()(const M& material) const {
+        return (*this)(const_cast<M&>(material));
+    }
+};
+
+template <typename M>
+std::shared_ptr<SceneHolder> scene_of_textures(const Ref<M>& r) {
+    return r.scene() ? r.scene() : r.textures_of;
 }
 
-template <typename T, typename At>
-void conductor(nb::class_<Ref<T>>& c, const std::string& prefix, At at) {
-    auto optical = [&](const char* name, SpectrumParameter ConductorMaterial::*member, const char* doc) {
-        attribute<T>(
-            c, (prefix + name).c_str(), spectrum_type,
-            [at, member](const T& t, const Ref<T>& r) -> nb::object {
-                const ConductorMaterial& m = at(const_cast<T&>(t));
-                if (m.from_reflectance) return nb::none();
-                return spectrum_or_texture(m.*member, r.scene() ? r.scene() : r.textures_of);
+// The attributes of one parameter of the material M.
+template <typename M>
+struct Attributes {
+    nb::class_<Ref<M>>& c;
+
+    void add(const ParameterInfo& info, ParameterAt<SpectrumParameter> at) const {
+        const RgbMeaning meaning = info.meaning;
+        attribute<M>(
+            c, info.python_name().c_str(), spectrum_type,
+            [at](const M& m, const Ref<M>& r) { return spectrum_or_texture(at(m), scene_of_textures(r)); },
+            [at, meaning](M& m, nb::handle v, Ref<M>& r, const std::string& what) {
+                at(m) = spectrum_parameter_of(v, meaning, r, what);
             },
-            [at, member](T& t, nb::handle v, Ref<T>& r, const std::string& what) {
-                at(t).*member = spectrum_parameter_of(v, RgbMeaning::unbounded, r, what);
-                at(t).from_reflectance = false;
+            info.doc);
+    }
+    void add(const ParameterInfo& info, ParameterAt<FloatParameter> at) const {
+        add_number(info.python_name(), at, info.least, info.most, info.doc);
+    }
+    void add(const ParameterInfo& info, ParameterAt<Spectrum> at) const {
+        attribute<M>(
+            c, info.python_name().c_str(), spectrum_type,
+            [at](const M& m, const auto&) { return nb::cast(at(m)); },
+            [at](M& m, nb::handle v, auto&, const std::string& what) {
+                at(m) = spectrum_of(v, RgbMeaning::unbounded, what);
             },
-            doc);
-    };
-    optical("eta", &ConductorMaterial::eta,
+            "Index of refraction: a number above zero, a Spectrum, or a name such as 'glass-BK7'.");
+    }
+    void add(const ParameterInfo& info, ParameterAt<float> at) const {
+        const double least = info.least, most = info.most;
+        attribute<M>(
+            c, info.python_name().c_str(), "float",
+            [at](const M& m, const auto&) { return nb::float_(static_cast<double>(at(m))); },
+            [=](M& m, nb::handle v, auto&, const std::string& what) {
+                const double x = number_of(v, what);
+                require_range(x, least, most, v, what);
+                at(m) = static_cast<float>(x);
+            },
+            info.doc);
+    }
+    void add(const ParameterInfo& info, ParameterAt<int> at) const {
+        const auto least = static_cast<std::int64_t>(info.least);
+        attribute<M>(
+            c, info.python_name().c_str(), "int", [at](const M& m, const auto&) { return nb::int_(at(m)); },
+            [=](M& m, nb::handle v, auto&, const std::string& what) {
+                at(m) = static_cast<int>(whole_number_of(v, least, 1 << 20, what));
+            },
+            info.doc);
+    }
+
+    // `roughness` sets both directions at once.
+    void add(const ParameterInfo& info, ParameterAt<RoughnessParameter> at) const {
+        const std::string name = info.python_name();
+        const auto u = [at](auto& m) -> auto& { return at(m).u; };
+        const auto v = [at](auto& m) -> auto& { return at(m).v; };
+        add_number(name + "_u", u, info.least, info.most, "GGX roughness along u; 0 is a mirror.");
+        add_number(name + "_v", v, info.least, info.most, "GGX roughness along v.");
+        attribute<M>(
+            c, name.c_str(), "typing.Any",
+            [u](const M& m, const Ref<M>& r) { return number_or_texture(u(m), scene_of_textures(r)); },
+            [at](M& m, nb::handle given, Ref<M>& r, const std::string& what) {
+                const FloatParameter p = float_parameter_of(given, r, what);
+                if (p.is_constant() && !not_negative(static_cast<double>(p.value)))
+                    throw Error(what, std::string(nb::repr(given).c_str()) +
+                                          " was given; expected a number that is not negative");
+                at(m).u = at(m).v = p;
+            },
+            "GGX roughness along u and v together (a number or a texture); reads the one along u.");
+        const std::string remap =
+            ParameterInfo{.prefix = info.prefix, .name = "remap_roughness"}.python_name();
+        attribute<M>(
+            c, remap.c_str(), "bool", [at](const M& m, const auto&) { return nb::bool_(at(m).remap); },
+            [at](M& m, nb::handle given, auto&, const std::string& what) {
+                at(m).remap = boolean_of(given, what);
+            },
+            "Whether alpha is the root of the roughness; else it is the roughness itself.");
+    }
+
+    // eta and k, or the reflectance: what is not in force reads as None.
+    void add(const ParameterInfo& info, ParameterAt<MetalParameter> at) const {
+        const auto optical = [&](const std::string& name, SpectrumParameter MetalParameter::*member,
+                                 bool from_reflectance, const char* doc) {
+            attribute<M>(
+                c, name.c_str(), spectrum_type,
+                [=](const M& m, const Ref<M>& r) -> nb::object {
+                    if (at(m).from_reflectance != from_reflectance) return nb::none();
+                    return spectrum_or_texture(at(m).*member, scene_of_textures(r));
+                },
+                [=](M& m, nb::handle v, Ref<M>& r, const std::string& what) {
+                    const RgbMeaning meaning = from_reflectance ? RgbMeaning::albedo : RgbMeaning::unbounded;
+                    at(m).*member = spectrum_parameter_of(v, meaning, r, what);
+                    at(m).from_reflectance = from_reflectance;
+                },
+                doc);
+        };
+        const auto named = [&](std::string_view name) {
+            return ParameterInfo{.prefix = info.prefix, .name = name}.python_name();
+        };
+        optical(
+            named("eta"), &MetalParameter::eta, false,
             "Real part of the index of refraction, such as 'metal-Au-eta'; None where a reflectance is set.");
-    optical("k", &ConductorMaterial::k, "Imaginary part, such as 'metal-Au-k'.");
-    attribute<T>(
-        c, "reflectance", spectrum_type,
-        [at](const T& t, const Ref<T>& r) -> nb::object {
-            const ConductorMaterial& m = at(const_cast<T&>(t));
-            if (!m.from_reflectance) return nb::none();
-            return spectrum_or_texture(m.reflectance, r.scene() ? r.scene() : r.textures_of);
-        },
-        [at](T& t, nb::handle v, Ref<T>& r, const std::string& what) {
-            at(t).reflectance = spectrum_parameter_of(v, RgbMeaning::albedo, r, what);
-            at(t).from_reflectance = true;
-        },
-        "Reflectance at normal incidence, in the place of eta and k; None where these are set.");
-    roughness(c, prefix, [at](T& t) -> RoughnessParameter& { return at(t).roughness; });
-}
+        optical(named("k"), &MetalParameter::k, false, "Imaginary part, such as 'metal-Au-k'.");
+        optical("reflectance", &MetalParameter::reflectance, true,
+                "Reflectance at normal incidence, in the place of eta and k; None where these are set.");
+    }
 
-template <typename T>
-void coating(nb::class_<Ref<T>>& c, const std::string& prefix) {
-    roughness(c, prefix, [](T& t) -> RoughnessParameter& { return t.coating.roughness; });
-    index_of_refraction(c, (prefix + "eta").c_str(), [](T& t) -> Spectrum& { return t.coating.eta; });
-    parameter(
-        c, "thickness", [](T& t) -> FloatParameter& { return t.coating.thickness; }, 0, no_bound,
-        "Thickness of the layer between interface and base.");
-    spectrum(
-        c, "albedo", [](T& t) -> SpectrumParameter& { return t.coating.albedo; }, RgbMeaning::albedo,
-        "Single-scattering albedo of the medium in the layer; 0: none.");
-    parameter(
-        c, "g", [](T& t) -> FloatParameter& { return t.coating.g; }, -1, 1,
-        "Mean cosine of the scattering in that medium.");
-    auto count = [&](const char* name, int CoatingParameters::*member, const char* doc) {
-        attribute<T>(
-            c, name, "int", [member](const T& t, const auto&) { return nb::int_(t.coating.*member); },
-            [member](T& t, nb::handle v, auto&, const std::string& what) {
-                t.coating.*member = static_cast<int>(whole_number_of(v, 1, 1 << 20, what));
+    void add(const ParameterInfo& info, ParameterAt<NormalMapParameter> at) const {
+        attribute<M>(
+            c, info.python_name().c_str(), "NormalMap | None",
+            [at](const M& m, const Ref<M>& r) -> nb::object {
+                if (!at(m).is_given()) return nb::none();
+                return nb::cast(NormalMapHandle{scene_of_textures(r), at(m).map});
+            },
+            [at](M& m, nb::handle v, Ref<M>& r, const std::string& what) {
+                if (v.is_none()) {
+                    at(m) = {};
+                    return;
+                }
+                if (!nb::isinstance<NormalMapHandle>(v))
+                    throw Error(what, std::string(nb::repr(v).c_str()) +
+                                          " was given; expected None or what Scene.normal_map() returns");
+                const auto& map = nb::cast<const NormalMapHandle&>(v);
+                require_scene(r, map.scene, what);
+                at(m) = {map.index};
+            },
+            info.doc);
+    }
+
+  private:
+    static void require_range(double x, double least, double most, nb::handle v, const std::string& what) {
+        if (!(x >= least && x <= most))
+            throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected a number from " +
+                                  nb::repr(nb::float_(least)).c_str() + " to " +
+                                  nb::repr(nb::float_(most)).c_str());
+    }
+    // `at` finds a FloatParameter in a material.
+    template <typename At>
+    void add_number(const std::string& name, At at, double least, double most, const char* doc) const {
+        attribute<M>(
+            c, name.c_str(), "typing.Any",
+            [at](const M& m, const Ref<M>& r) { return number_or_texture(at(m), scene_of_textures(r)); },
+            [=](M& m, nb::handle v, Ref<M>& r, const std::string& what) {
+                const FloatParameter p = float_parameter_of(v, r, what);
+                if (p.is_constant()) require_range(static_cast<double>(p.value), least, most, v, what);
+                at(m) = p;
             },
             doc);
-    };
-    count("max_depth", &CoatingParameters::max_depth, "Interface crossings of one random walk.");
-    count("sample_count", &CoatingParameters::sample_count, "Random walks of one evaluation.");
-}
-
-SpectrumParameter grey() { return {spectrum_of(nb::float_(0.5), RgbMeaning::albedo, "")}; }
-CoatingParameters clear_coat() {
-    CoatingParameters c;
-    c.eta = Spectrum(1.5f);
-    c.albedo = {Spectrum(0.0f)};
-    return c;
-}
+    }
+};
 
 } // namespace
 
-template <>
-DiffuseMaterial default_value() {
-    return {grey()};
-}
-template <>
-ConductorMaterial default_value() {
-    ConductorMaterial m;
-    m.eta = {*find_named_spectrum("metal-Cu-eta")};
-    m.k = {*find_named_spectrum("metal-Cu-k")};
-    return m;
-}
-template <>
-DielectricMaterial default_value() {
-    return {Spectrum(1.5f), {}};
-}
-template <>
-ThinDielectricMaterial default_value() {
-    return {Spectrum(1.5f)};
-}
-template <>
-CoatedDiffuseMaterial default_value() {
-    return {grey(), clear_coat()};
-}
-template <>
-CoatedConductorMaterial default_value() {
-    return {default_value<ConductorMaterial>(), clear_coat()};
-}
-
 void bind_materials(nb::module_& m) {
-    auto diffuse = value_class<DiffuseMaterial>(m, "Diffuse", "Lambert's matt surface.");
-    spectrum(
-        diffuse, "reflectance", [](DiffuseMaterial& d) -> SpectrumParameter& { return d.reflectance; },
-        RgbMeaning::albedo, "Reflectance, 0 to 1: number, R, G, B, Spectrum or texture.");
-    auto metal = value_class<ConductorMaterial>(m, "Conductor", "A metal.");
-    conductor(metal, "", [](ConductorMaterial& c) -> ConductorMaterial& { return c; });
-    auto glass = value_class<DielectricMaterial>(m, "Dielectric", "Glass, water: refracts and reflects.");
-    index_of_refraction(glass, "eta", [](DielectricMaterial& d) -> Spectrum& { return d.eta; });
-    roughness(glass, "", [](DielectricMaterial& d) -> RoughnessParameter& { return d.roughness; });
-    auto pane =
-        value_class<ThinDielectricMaterial>(m, "ThinDielectric", "A thin pane, which does not refract.");
-    index_of_refraction(pane, "eta", [](ThinDielectricMaterial& d) -> Spectrum& { return d.eta; });
-    auto varnished =
-        value_class<CoatedDiffuseMaterial>(m, "CoatedDiffuse", "A matt surface under a clear coat.");
-    spectrum(
-        varnished, "reflectance",
-        [](CoatedDiffuseMaterial& d) -> SpectrumParameter& { return d.reflectance; }, RgbMeaning::albedo,
-        "Reflectance of the base, 0 to 1.");
-    coating(varnished, "");
-    auto lacquered =
-        value_class<CoatedConductorMaterial>(m, "CoatedConductor", "A metal under a clear coat.");
-    conductor(lacquered, "conductor_",
-              [](CoatedConductorMaterial& c) -> ConductorMaterial& { return c.conductor; });
-    coating(lacquered, "interface_");
+    nb::list kinds;
+    for_each_material_kind([&]<typename M>(std::type_identity<M>) {
+        auto c = value_class<M>(m, M::name, M::doc);
+        M defaults;
+        std::size_t n = 0;
+        visit_parameters(defaults, [&]<typename Field>(const ParameterInfo& info, Field&) {
+            Attributes<M>{c}.add(info, ParameterAt<Field>{n++});
+        });
+        kinds.append(c);
+    });
+    m.attr("MATERIALS") = nb::tuple(kinds);
 }
 
 } // namespace montelux::python

@@ -128,9 +128,8 @@ void take(SceneObject& s, SceneDescription description, const Warnings& warnings
     s.holder->warnings = warnings.messages();
 }
 
-nb::object image_texture(const SceneObject& s, const nb::object& image, const std::string& filter,
-                         const std::string& wrap, double scale, bool invert, const std::vector<double>& uv,
-                         bool as_float) {
+ImageTexture texture_of(const std::string& filter, const std::string& wrap, const std::vector<double>& uv,
+                        const std::string& what) {
     ImageTexture t;
     const std::vector<std::pair<std::string, TextureFilter>> filters{{"point", TextureFilter::point},
                                                                      {"bilinear", TextureFilter::bilinear},
@@ -138,22 +137,29 @@ nb::object image_texture(const SceneObject& s, const nb::object& image, const st
                                                                      {"ewa", TextureFilter::ewa}};
     const std::vector<std::pair<std::string, TextureWrap>> wraps{
         {"repeat", TextureWrap::repeat}, {"black", TextureWrap::black}, {"clamp", TextureWrap::clamp}};
-    auto pick = [](const auto& table, const std::string& name, const char* what) {
+    auto pick = [&](const auto& table, const std::string& name, const char* kind) {
         for (const auto& [text, value] : table)
             if (text == name) return value;
-        throw Error("image_texture", "there is no " + std::string(what) + " '" + name + "'");
+        throw Error(what, "there is no " + std::string(kind) + " '" + name + "'");
     };
     t.filter = pick(filters, filter, "filter");
     t.wrap = pick(wraps, wrap, "wrap");
-    if (!(scale >= 0 && std::isfinite(scale)))
-        throw Error("image_texture, scale", "expected a number that is not negative");
-    if (uv.size() != 4) throw Error("image_texture, uv", "expected four numbers: su, sv, du, dv");
-    t.scale = static_cast<float>(scale);
-    t.invert = invert;
+    if (uv.size() != 4) throw Error(what + ", uv", "expected four numbers: su, sv, du, dv");
     t.mapping.su = static_cast<float>(uv[0]);
     t.mapping.sv = static_cast<float>(uv[1]);
     t.mapping.du = static_cast<float>(uv[2]);
     t.mapping.dv = static_cast<float>(uv[3]);
+    return t;
+}
+
+nb::object image_texture(const SceneObject& s, const nb::object& image, const std::string& filter,
+                         const std::string& wrap, double scale, bool invert, const std::vector<double>& uv,
+                         bool as_float) {
+    ImageTexture t = texture_of(filter, wrap, uv, "image_texture");
+    if (!(scale >= 0 && std::isfinite(scale)))
+        throw Error("image_texture, scale", "expected a number that is not negative");
+    t.scale = static_cast<float>(scale);
+    t.invert = invert;
     Image picture = picture_of(image, "image_texture");
     Scene& now = s.holder->edit().scene;
     CallMessages messages("image_texture", &s.holder->warnings);
@@ -164,6 +170,21 @@ nb::object image_texture(const SceneObject& s, const nb::object& image, const st
     }
     now.spectrum_textures.emplace_back(t);
     return nb::cast(SpectrumTextureHandle{s.holder, static_cast<Index>(now.spectrum_textures.size() - 1)});
+}
+
+NormalMapHandle normal_map(const SceneObject& s, const nb::object& image, const std::string& filter,
+                           const std::string& wrap, const std::vector<double>& uv) {
+    ImageTexture t = texture_of(filter, wrap, uv, "normal_map");
+    Image picture = picture_of(image, "normal_map");
+    if (picture.color_channels().size() != 3)
+        throw Error("normal_map", "the picture has no channels R, G and B");
+    if (picture.format() == PixelFormat::u8 || picture.format() == PixelFormat::u16)
+        picture.set_encoding(ColorEncoding::linear());
+    CallMessages messages("normal_map", &s.holder->warnings);
+    t.image = SceneBuilder(s.holder->edit().scene, messages).add_image(std::move(picture), "the picture");
+    std::vector<ImageTexture>& all = s.holder->edit().scene.normal_maps;
+    all.push_back(t);
+    return {s.holder, static_cast<Index>(all.size() - 1)};
 }
 
 SpectrumTextureHandle checkerboard(const SceneObject& s, const nb::object& a, const nb::object& b, double su,
@@ -204,6 +225,9 @@ void bind_scene(nb::module_& m) {
     nb::class_<FloatTextureHandle>(m, "FloatTexture", "A texture of numbers, of one scene.")
         .def("__repr__",
              [](const FloatTextureHandle& t) { return "<FloatTexture " + std::to_string(t.index) + ">"; });
+    nb::class_<NormalMapHandle>(m, "NormalMap", "Shading normals over surfaces, of one scene.")
+        .def("__repr__",
+             [](const NormalMapHandle& t) { return "<NormalMap " + std::to_string(t.index) + ">"; });
     bind_lists(m);
     nb::class_<SceneObject> c(m, "SceneBase", "What montelux.Scene is made of.");
     c.def(nb::init<>())
@@ -321,8 +345,12 @@ void bind_scene(nb::module_& m) {
              "A texture of a picture: a file, or an array of shape (h, w, 3) or (h, w), linear numbers or "
              "uint8 in "
              "sRGB. uv: su, sv, du, dv of (s, t) = (su u + du, sv v + dv). as_float: of numbers, for "
-             "roughnesses and "
+             "roughnesses, bumps and "
              "cut-outs.")
+        .def("normal_map", &normal_map, "image"_a, nb::kw_only(), "filter"_a = "bilinear",
+             "wrap"_a = "repeat", "uv"_a = std::vector<double>{1, 1, 0, 0},
+             "Shading normals of a picture whose R, G, B are (n + 1) / 2 along dp/du, dp/dv and the normal, "
+             "linear whatever the file says; for the normal_map of materials. See image_texture.")
         .def("checkerboard_texture", &checkerboard, "a"_a, "b"_a, "su"_a = 1., "sv"_a = 1.,
              "Unit cells of two colours in (su u, sv v).");
 }

@@ -90,6 +90,15 @@ template <typename T>
 struct KindOf {
     using type = T;
 };
+template <typename T, typename Variant>
+inline constexpr bool is_alternative_of = false;
+template <typename T, typename... Ts>
+inline constexpr bool is_alternative_of<T, std::variant<Ts...>> = (std::is_same_v<T, Ts> || ...);
+template <typename T>
+requires is_alternative_of<T, Material>
+struct KindOf<T> {
+    using type = Material;
+};
 template <typename T>
 T* alternative(T& value, std::type_identity<T>) {
     return &value;
@@ -110,18 +119,6 @@ template <typename T>
 T default_value() {
     return T{};
 }
-template <>
-DiffuseMaterial default_value();
-template <>
-ConductorMaterial default_value();
-template <>
-DielectricMaterial default_value();
-template <>
-ThinDielectricMaterial default_value();
-template <>
-CoatedDiffuseMaterial default_value();
-template <>
-CoatedConductorMaterial default_value();
 template <>
 AreaLight default_value();
 template <>
@@ -169,12 +166,6 @@ struct Ref : Slot<Kind<T>> {
     struct KindOf<T> {                                                                                       \
         using type = V;                                                                                      \
     }
-MONTELUX_KIND(DiffuseMaterial, Material);
-MONTELUX_KIND(ConductorMaterial, Material);
-MONTELUX_KIND(DielectricMaterial, Material);
-MONTELUX_KIND(ThinDielectricMaterial, Material);
-MONTELUX_KIND(CoatedDiffuseMaterial, Material);
-MONTELUX_KIND(CoatedConductorMaterial, Material);
 MONTELUX_KIND(AreaLight, Light);
 MONTELUX_KIND(PointLight, Light);
 MONTELUX_KIND(SpotLight, Light);

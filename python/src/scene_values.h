@@ -25,6 +25,11 @@ struct FloatTextureHandle {
     Index index;
 };
 
+struct NormalMapHandle {
+    std::shared_ptr<SceneHolder> scene;
+    Index index;
+};
+
 // All throw Error that begins with `what`.
 double number_of(nb::handle v, const std::string& what);
 // Exactly n finite numbers.

@@ -169,6 +169,65 @@ def test_meshes_textures_and_environments():
         other.add_sphere(1, material)
 
 
+def test_every_material_has_bumps_and_normal_maps():
+    def picture(material, **detail):
+        scene = montelux.Scene()
+        scene.camera = montelux.PerspectiveCamera(look_at=((0, 0, 4), (0, 0, 0), (0, 1, 0)), fov=30)
+        scene.film.resolution = (8, 8)
+        scene.lights.append(montelux.PointLight(position=(1, 0, 3)))
+        corners = [[-2, -2, 0], [2, -2, 0], [2, 2, 0], [-2, 2, 0]]
+        shape = scene.add_mesh(corners, [[0, 1, 2], [0, 2, 3]], material(), uvs=[[0, 0], [1, 0], [1, 1], [0, 1]])
+        for name, make in detail.items():
+            setattr(shape.material, name, make(scene))
+        return scene, scene.render(spp=4)
+
+    def bumps(scene):
+        ramp = np.tile((np.arange(64) + 0.5) / 64, (64, 1))
+        return scene.image_texture(ramp, scale=0.8, as_float=True)
+
+    def normals(scene):
+        return scene.normal_map(np.array([[[0.4, 0.5, 1.0]]]))
+
+    def flat(scene):
+        return scene.normal_map(np.array([[[0.5, 0.5, 1.0]]]))
+
+    for material in montelux._core.MATERIALS:
+        assert material().normal_map is None and material().displacement == 0
+        scene, plain = picture(material)
+        # Both tilt the normal by a slope of 0.2 against x.
+        for name, make in (("displacement", bumps), ("normal_map", normals)):
+            scene, tilted = picture(material, **{name: make})
+            normal = tilted.layers["normal"][4, 4]
+            assert normal == pytest.approx(np.array([-0.2, 0, 1]) / np.sqrt(1.04), abs=2e-3), (material, name)
+        assert repr(scene.materials[0].normal_map) == "<NormalMap 0>"
+        scene.materials[0].normal_map = None
+        assert scene.materials[0].normal_map is None
+        assert (picture(material, normal_map=flat)[1].mean == plain.mean).all()
+    # Bytes are taken for linear.
+    _, eight_bits = picture(montelux.Diffuse, normal_map=lambda s: s.normal_map(np.uint8([[[102, 128, 255]]])))
+    assert eight_bits.layers["normal"][4, 4][0] == pytest.approx(-0.2, abs=0.01)
+    with pytest.raises(montelux.Error, match="normal_map: 3 was given; expected None or what Scene.normal_map"):
+        scene.materials[0].normal_map = 3
+    with pytest.raises(montelux.Error, match="another scene"):
+        scene.materials[0].normal_map = montelux.Scene().normal_map(np.ones((1, 1, 3)))
+    with pytest.raises(montelux.Error, match="no channels R, G and B"):
+        scene.normal_map(np.ones((2, 2)))
+
+
+def test_light_shines_through_a_leaf():
+    scene = montelux.Scene()
+    scene.camera = montelux.PerspectiveCamera(look_at=((0, 0, 4), (0, 0, 0), (0, 1, 0)), fov=1)
+    scene.film.resolution = (4, 4)
+    lamp = scene.lights.append(montelux.PointLight(position=(0, 0, -2)))
+    leaf = montelux.DiffuseTransmission(reflectance=0.5, transmittance=0.25)
+    shape = scene.add_disk(3, leaf)
+    behind = scene.render(spp=16).mean.mean()
+    lamp.position = (0, 0, 2)
+    assert scene.render(spp=16).mean.mean() == pytest.approx(2 * behind, rel=1e-3)
+    shape.material.scale = 0.5
+    assert scene.render(spp=16).mean.mean() == pytest.approx(behind, rel=1e-3)
+
+
 def test_every_value_can_be_made_and_read():
     from montelux._scene import VALUES
 

@@ -60,15 +60,16 @@ TEST(KnownAnswers, WhiteFurnaceOfEachLosslessMaterial) {
                             .albedo = gray(0),
                             .g = {0},
                             .max_depth = 400};
-    ConductorMaterial mirror{
-        .eta = gray(1), .k = gray(1), .reflectance = gray(1), .from_reflectance = true, .roughness = smooth};
+    ConductorMaterial mirror{.metal = {.reflectance = gray(1), .from_reflectance = true},
+                             .roughness = smooth};
     const std::pair<const char*, Material> cases[] = {
         {"diffuse", DiffuseMaterial{gray(1)}},
+        {"leaf", DiffuseTransmissionMaterial{gray(0.7f), gray(0.3f)}},
         {"mirror", mirror},
         {"glass", DielectricMaterial{Spectrum(1.5f), smooth}},
         {"thin glass", ThinDielectricMaterial{Spectrum(1.5f)}},
         {"coated diffuse", CoatedDiffuseMaterial{gray(1), clear}},
-        {"coated conductor", CoatedConductorMaterial{mirror, clear}},
+        {"coated conductor", CoatedConductorMaterial{mirror.metal, smooth, clear}},
     };
     for (const auto& [name, material] : cases)
         for (bool from_map : {false, true}) {
@@ -94,12 +95,10 @@ TEST(KnownAnswers, WhiteFurnaceOfEachLosslessMaterial) {
 TEST(KnownAnswers, WhiteFurnaceOfRoughMaterials) {
     for (float alpha : {0.05f, 0.3f}) {
         RoughnessParameter rough{FloatParameter{alpha}, FloatParameter{alpha}, false};
-        const Material cases[] = {ConductorMaterial{.eta = gray(1),
-                                                    .k = gray(1),
-                                                    .reflectance = gray(1),
-                                                    .from_reflectance = true,
-                                                    .roughness = rough},
-                                  DielectricMaterial{Spectrum(1.5f), rough}};
+        const Material cases[] = {
+            ConductorMaterial{.metal = {.reflectance = gray(1), .from_reflectance = true},
+                              .roughness = rough},
+            DielectricMaterial{Spectrum(1.5f), rough}};
         for (const Material& material : cases) {
             SceneBuilder b;
             b.add_quadric(Sphere{}, b.add(material));

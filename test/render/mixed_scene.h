@@ -32,8 +32,7 @@ inline SceneBuilder mixed_scene(double scale = 1, int width = 16, int height = 1
         b.add_quadric(Sphere{.world_from_object = t}, b.add(material));
     };
     ball({-0.5, 0.2, -0.65}, 0.35,
-         ConductorMaterial{
-             .eta = gray(0.2f), .k = gray(3), .reflectance = gray(0), .roughness = alpha_of(0.3f)});
+         ConductorMaterial{.metal = {.eta = gray(0.2f), .k = gray(3)}, .roughness = alpha_of(0.3f)});
     ball({0.1, 0.5, -0.7}, 0.3,
          CoatedDiffuseMaterial{gray(0.6f), CoatingParameters{.roughness = alpha_of(0.2f),
                                                              .eta = Spectrum(1.5f),

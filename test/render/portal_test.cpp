@@ -25,8 +25,8 @@ SceneBuilder room_with_window() {
     const Index wall = b.add(DiffuseMaterial{gray(0.6f)});
     ConductorMaterial metal;
     metal.roughness = {FloatParameter{0.3f}, FloatParameter{0.3f}, false};
-    metal.reflectance = gray(0.7f);
-    metal.from_reflectance = true;
+    metal.metal.reflectance = gray(0.7f);
+    metal.metal.from_reflectance = true;
     const Index floor = b.add(metal);
     const Transform back = Transform::translate({0, 2, 0}) * Transform::rotate(90, {1, 0, 0}); // z up is y
     b.add_mesh(rectangle(-2, -2, -0.5, 2, back), wall);

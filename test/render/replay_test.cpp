@@ -133,7 +133,7 @@ TEST(Replay, WavelengthsThatEnded) {
     const SampleRecord r = Renderer(b.description).replay(4, 4, 0);
     EXPECT_FALSE(r.lambda.secondary_terminated());
     EXPECT_TRUE(r.lambda_end.secondary_terminated());
-    EXPECT_EQ(r.path.vertices[0].bsdf->index(), Bsdf(DielectricBsdf{}).index());
+    EXPECT_EQ(r.path.vertices[0].bsdf->bsdf.index(), Bsdf(DielectricBsdf{}).index());
 }
 
 const float not_a_number = std::numeric_limits<float>::quiet_NaN(),
@@ -173,7 +173,7 @@ struct TwoWalls {
 };
 
 ConductorMaterial metal(float k, float alpha) {
-    return {.eta = gray(0.2f), .k = gray(k), .reflectance = gray(0), .roughness = alpha_of(alpha)};
+    return {.metal = {.eta = gray(0.2f), .k = gray(k)}, .roughness = alpha_of(alpha)};
 }
 const DiffuseMaterial half{gray(0.5f)};
 

@@ -25,10 +25,7 @@ SceneBuilder ball_in_the_sun() {
     b.scene.lights.push_back(sun);
     b.add_quadric(Disk{.radius = 20, .world_from_object = {}}, b.add(DiffuseMaterial{gray(0.4f)}));
     b.add_quadric(Sphere{.world_from_object = Transform::translate({0, 0, 1})},
-                  b.add(ConductorMaterial{.eta = gray(1.2f),
-                                          .k = gray(3),
-                                          .reflectance = gray(1),
-                                          .from_reflectance = false,
+                  b.add(ConductorMaterial{.metal = {.eta = gray(1.2f), .k = gray(3)},
                                           .roughness = {FloatParameter{0.3f}, FloatParameter{0.3f}, false}}));
     b.look({0, -6, 2}, {0, 0, 0.8}, 40);
     return b;

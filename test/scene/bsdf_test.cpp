@@ -79,17 +79,71 @@ TEST_P(EveryBsdf, IsReciprocal) {
             backward.add(double(evaluate(bsdf, wi, wo, stream).f[1] / std::abs(wo.z)));
         }
         double a = forward.mean(), b = backward.mean();
-        if (const auto* d = std::get_if<DielectricBsdf>(&bsdf); d != nullptr && wo.z * wi.z < 0) {
+        if (wo.z * wi.z < 0) {
             // Radiance is larger by the squared index on the denser side.
-            double eta = double(d->eta);
-            (wo.z > 0 ? b : a) /= 1;
-            (wo.z > 0 ? a : b) *= eta * eta;
-            (wo.z > 0 ? b : a) *= 1;
+            a *= transmitted_eta(bsdf, wo);
+            b *= transmitted_eta(bsdf, wi);
         }
         double tolerance = 2e-4 * (a + b) + 1e-6;
         if (!c.exact_pdf) tolerance = 6 * std::hypot(forward.standard_error(), backward.standard_error());
         EXPECT_NEAR(a, b, tolerance) << c.name;
     }
+}
+
+// The traits say what samples do: which side they leave on, and how the index changes there.
+TEST_P(EveryBsdf, SamplesAreAsTheTraitsSay) {
+    TestStream stream(23);
+    int transmitted = 0;
+    for (Vec3f wo : directions_out)
+        for (int i = 0; i < 500; ++i) {
+            auto s = sample(bsdf, wo, stream);
+            if (!s) continue;
+            EXPECT_EQ(s->transmission, !same_hemisphere(wo, s->wi)) << c.name;
+            transmitted += s->transmission ? 1 : 0;
+            EXPECT_NEAR(s->eta, s->transmission ? transmitted_eta(bsdf, wo) : 1, 1e-6f) << c.name;
+        }
+    EXPECT_EQ(transmitted > 0, std::visit([](const auto& b) { return b.traits.transmits; }, bsdf)) << c.name;
+}
+
+// Without a tangent in its traits a BSDF does not see that wo and wi are turned about the normal.
+TEST_P(EveryBsdf, TurnsWithTheTangentsOnlyIfItSaysSo) {
+    if (is_specular(bsdf) || std::visit([](const auto& b) { return b.traits.uses_tangents; }, bsdf))
+        GTEST_SKIP() << "no value, or lobes that may turn";
+    TestStream stream(29);
+    auto turned = [](Vec3f w) { return Vec3f{0.6f * w.x - 0.8f * w.y, 0.8f * w.x + 0.6f * w.y, w.z}; };
+    for (Vec3f wo : directions_out)
+        for (Vec3f wi : {direction(20, 60), direction(70, 200), direction(150, 30)}) {
+            const BsdfEvaluation a = evaluate(bsdf, wo, wi, stream);
+            const BsdfEvaluation b = evaluate(bsdf, turned(wo), turned(wi), stream);
+            EXPECT_NEAR(a.f[0], b.f[0], 2e-5f * a.f[0] + 1e-7f) << c.name;
+            EXPECT_NEAR(a.pdf, b.pdf, 2e-5f * a.pdf + 1e-7f) << c.name;
+        }
+}
+
+// Value and probability of each side of a sheet.
+TEST(DiffuseTransmission, SidesHaveTheirShares) {
+    const DiffuseTransmissionBsdf b{SampledSpectrum(0.6f), SampledSpectrum(0.3f)};
+    for (Vec3f wo : {direction(30), direction(150)}) {
+        FixedStream stream({0.3f, 0.4f}, 0);
+        const Vec3f wi = direction(40, 70);
+        const bool reflects = same_hemisphere(wo, wi);
+        const BsdfEvaluation e = b.evaluate(wo, wi, TransportMode::radiance, stream);
+        EXPECT_NEAR(e.f[0], (reflects ? 0.6f : 0.3f) * inv_pi_f * wi.z, 1e-6f);
+        EXPECT_NEAR(e.pdf, (reflects ? 2 : 1) / 3.0f * inv_pi_f * wi.z, 1e-6f);
+        TestStream random(31);
+        RunningMoments reflected, transmitted;
+        for (int i = 0; i < 40000; ++i) {
+            auto s = b.sample(wo, TransportMode::radiance, random);
+            ASSERT_TRUE(s);
+            const bool same = same_hemisphere(wo, s->wi);
+            reflected.add(same ? double(s->weight[0]) : 0);
+            transmitted.add(same ? 0 : double(s->weight[0]));
+        }
+        EXPECT_NEAR(reflected.mean(), 0.6, 6 * reflected.standard_error());
+        EXPECT_NEAR(transmitted.mean(), 0.3, 6 * transmitted.standard_error());
+    }
+    EXPECT_FALSE(b.traits.uses_tangents);
+    EXPECT_FLOAT_EQ(b.albedo(direction(10))[0], 0.9f);
 }
 
 // Importance that leaves a lossless surface equals what came in; with losses it is less.

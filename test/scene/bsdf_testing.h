@@ -131,6 +131,24 @@ inline std::vector<BsdfCase> bsdf_cases() {
          [=] {
              return DielectricBsdf{1.0f, {0.3f, 0.3f}};
          }},
+        {"diffuse_transmission",
+         [=] {
+             return DiffuseTransmissionBsdf{SampledSpectrum(0.2f, 0.4f, 0.1f, 0.3f),
+                                            SampledSpectrum(0.5f, 0.1f, 0.6f, 0.55f)};
+         }},
+        {"diffuse_transmission_alone",
+         [=] {
+             return DiffuseTransmissionBsdf{SampledSpectrum(0), SampledSpectrum(0.7f)};
+         }},
+        {"diffuse_transmission_tilted",
+         [=] {
+             return TiltedBsdf{DiffuseTransmissionBsdf{SampledSpectrum(0.5f), SampledSpectrum(0.4f)},
+                               direction(8, 50)};
+         }},
+        {"dielectric_tilted",
+         [=] {
+             return TiltedBsdf{DielectricBsdf{1.5f, {0.3f, 0.3f}}, direction(25, 200)};
+         }},
         {"thin_dielectric", [=] { return ThinDielectricBsdf{1.5f}; }},
         {"coated_diffuse_smooth", [=] { return coated_diffuse(0, 0.6f); }},
         {"coated_diffuse_0_1", [=] { return coated_diffuse(0.1f, 0.6f); }},
@@ -154,6 +172,17 @@ inline std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3f wo, auto& stream
 inline BsdfEvaluation evaluate(const Bsdf& bsdf, Vec3f wo, Vec3f wi, auto& stream,
                                TransportMode mode = TransportMode::radiance) {
     return std::visit([&](const auto& b) { return b.evaluate(wo, wi, mode, stream); }, bsdf);
+}
+// 1 where nothing is transmitted.
+inline float transmitted_eta(const Bsdf& bsdf, Vec3f wo) {
+    return std::visit(
+        [&]<typename B>(const B& b) {
+            if constexpr (B::traits.transmits)
+                return b.transmitted_eta(wo);
+            else
+                return 1.0f;
+        },
+        bsdf);
 }
 inline bool is_specular(const Bsdf& bsdf) {
     return std::visit([](const auto& b) { return b.is_specular(); }, bsdf);

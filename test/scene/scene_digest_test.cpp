@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "montelux/scene/material/material_model.h"
 #include "montelux/scene/scene_digest.h"
 #include "montelux/scene/value_hash.h"
 
@@ -36,11 +37,13 @@ Scene scene_of_all_kinds() {
     s.instances = {{0, Transform::translate({1, 2, 3})}};
     const SpectrumParameter gray{Spectrum(0.5f), no_index};
     s.materials = {DiffuseMaterial{gray},
-                   ConductorMaterial{gray, gray, gray, false, {}},
+                   ConductorMaterial{{gray, gray, gray, false}},
                    DielectricMaterial{Spectrum(1.5f), {}},
                    ThinDielectricMaterial{Spectrum(1.5f)},
                    CoatedDiffuseMaterial{gray, {}},
-                   CoatedConductorMaterial{{gray, gray, gray, true, {}}, {}}};
+                   CoatedConductorMaterial{{gray, gray, gray, true}},
+                   DiffuseTransmissionMaterial{gray, gray}};
+    s.normal_maps = {ImageTexture{.image = 0, .mapping = {}}};
     s.float_textures = {ConstantTexture<FloatParameter>{{1}}, ScaleTexture<FloatParameter>{{1}, {2}}};
     s.spectrum_textures = {ImageTexture{.image = 0, .mapping = {}},
                            MixTexture<SpectrumParameter>{gray, gray, {0.5f}},
@@ -136,8 +139,8 @@ TEST(SceneDigest, MaterialsCount) {
         {[=](Scene& s) { at(s, std::type_identity<DiffuseMaterial>()).reflectance.value = Spectrum(0.1f); },
          [=](Scene& s) { at(s, std::type_identity<DiffuseMaterial>()).reflectance.value = Spectrum(0.9f); },
          [=](Scene& s) { at(s, std::type_identity<DiffuseMaterial>()).reflectance.texture = 0; },
-         [=](Scene& s) { at(s, Conductor()).k.value = Spectrum(0.1f); },
-         [=](Scene& s) { at(s, Conductor()).from_reflectance = true; },
+         [=](Scene& s) { at(s, Conductor()).metal.k.value = Spectrum(0.1f); },
+         [=](Scene& s) { at(s, Conductor()).metal.from_reflectance = true; },
          [=](Scene& s) { at(s, Conductor()).roughness.u.value = 0.1f; },
          [=](Scene& s) { at(s, Conductor()).roughness.v.value = 0.1f; },
          [=](Scene& s) { at(s, Conductor()).roughness.remap = false; },
@@ -148,16 +151,54 @@ TEST(SceneDigest, MaterialsCount) {
          [=](Scene& s) { at(s, Coated()).coating.g.value = 0.5f; },
          [=](Scene& s) { at(s, Coated()).coating.max_depth = 3; },
          [=](Scene& s) { at(s, Coated()).coating.sample_count = 3; },
-         [=](Scene& s) { at(s, CoatedMetal()).conductor.eta.texture = 1; },
+         [=](Scene& s) { at(s, CoatedMetal()).metal.eta.texture = 1; },
          [=](Scene& s) { at(s, CoatedMetal()).coating.eta = Spectrum(1.1f); },
          [](Scene& s) { std::swap(s.materials[0], s.materials[1]); },
          [](Scene& s) { s.materials.pop_back(); }});
+}
+
+// Changes a simple field of a material.
+struct ChangeField {
+    void operator()(Spectrum& x) const { x = Spectrum(0.123f); }
+    void operator()(SpectrumParameter& x) const { x.texture = 7; }
+    void operator()(FloatParameter& x) const { x.texture = 7; }
+    void operator()(NormalMapParameter& x) const { x.map = 7; }
+    void operator()(float& x) const { x += 1; }
+    void operator()(int& x) const { x += 1; }
+    void operator()(bool& x) const { x = !x; }
+};
+
+TEST(SceneDigest, EveryParameterOfEveryMaterialCounts) {
+    std::size_t changed = 0;
+    for_each_material_kind([&]<typename M>(std::type_identity<M>) {
+        auto digest = [](const M& m) {
+            Scene scene;
+            scene.materials = {m};
+            return digest_of(scene).materials;
+        };
+        std::vector<ContentDigest> seen{digest(M{})};
+        for (std::size_t n = 0;; ++n) {
+            M m;
+            std::size_t i = 0;
+            visit_parameters(m, [&](const ParameterInfo& info, auto& field) {
+                visit_leaves(info.name, field, [&](std::string_view, auto& leaf) {
+                    if (i++ == n) ChangeField{}(leaf);
+                });
+            });
+            if (n == i) break;
+            for (const ContentDigest& d : seen) EXPECT_NE(digest(m), d) << M::name << ' ' << n;
+            seen.push_back(digest(m));
+            ++changed;
+        }
+    });
+    EXPECT_GT(changed, 50u);
 }
 
 TEST(SceneDigest, TexturesCount) {
     auto image = [](Scene& s) -> ImageTexture& { return std::get<ImageTexture>(s.spectrum_textures[0]); };
     expect_changes(&SceneDigest::textures,
                    {[](Scene& s) { s.images[0].u8()[5] = 1; },
+                    [](Scene& s) { s.normal_maps[0].wrap = TextureWrap::clamp; },
                     [](Scene& s) { s.images[0].set_encoding(ColorEncoding::linear()); },
                     [](Scene& s) { s.images[0].set_encoding(ColorEncoding::gamma(2)); },
                     [](Scene& s) { s.images[0] = s.images[0].to_linear_f32(); },

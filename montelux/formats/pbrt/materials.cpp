@@ -1,28 +1,36 @@
 #include "montelux/formats/pbrt/materials.h"
 
 #include <algorithm>
-#include <array>
+#include <deque>
 
 #include "montelux/mc/math/nearest_name.h"
+#include "montelux/scene/material/material_model.h"
 
 namespace montelux::pbrt {
 namespace {
 
-constexpr std::array<std::string_view, 6> supported_materials = {
-    "diffuse", "conductor", "dielectric", "thindielectric", "coateddiffuse", "coatedconductor"};
-constexpr std::array<std::string_view, 12> known = {"diffuse",
-                                                    "conductor",
-                                                    "dielectric",
-                                                    "thindielectric",
-                                                    "coateddiffuse",
-                                                    "coatedconductor",
-                                                    "diffusetransmission",
-                                                    "hair",
-                                                    "interface",
-                                                    "measured",
-                                                    "mix",
-                                                    "subsurface"};
+// Materials of pbrt-v4 that Montelux does not have yet.
+constexpr std::array<std::string_view, 5> not_supported = {"hair", "interface", "measured", "mix",
+                                                           "subsurface"};
 
+// "coateddiffuse" for CoatedDiffuse.
+std::string type_name(std::string_view name) {
+    std::string result;
+    for (char c : name) result += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return result;
+}
+
+const std::vector<std::string>& supported_materials() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for_each_material_kind([&]<typename M>(std::type_identity<M>) { all.push_back(type_name(M::name)); });
+        return all;
+    }();
+    return names;
+}
+
+// Reads the parameters that a material lists (scene/material/parameter.h); each keeps its default where it is
+// not given.
 class MaterialMaker {
   public:
     MaterialMaker(const MaterialDeclaration& d, TextureLibrary& textures, SpectrumReader& spectra,
@@ -31,96 +39,74 @@ class MaterialMaker {
           spectra_(spectra) {}
 
     Material make(std::string_view type) {
-        Material material = select(type);
+        Material material;
+        for_each_material_kind([&]<typename M>(std::type_identity<M>) {
+            if (type_name(M::name) != type) return;
+            M m;
+            visit_parameters(m, [&](const ParameterInfo& info, auto& field) { read(info, field); });
+            material = std::move(m);
+        });
         r_.ignored("type");
-        if (r_.ignored("displacement")) warn_of_bumps("displacement");
-        if (r_.ignored("normalmap")) warn_of_bumps("normalmap");
         r_.finish();
         return material;
     }
 
   private:
-    Material select(std::string_view type) {
-        if (type == "diffuse") return DiffuseMaterial{reflectance("reflectance", 0.5f)};
-        if (type == "conductor") return conductor("");
-        if (type == "dielectric") return DielectricMaterial{eta("eta"), roughness("")};
-        if (type == "thindielectric") return ThinDielectricMaterial{eta("eta")};
-        if (type == "coateddiffuse")
-            return CoatedDiffuseMaterial{reflectance("reflectance", 0.5f), coating("")};
-        if (type == "coatedconductor") {
-            CoatedConductorMaterial coated;
-            coated.coating = coating("interface.");
-            coated.conductor = conductor("conductor.");
-            return coated;
-        }
-        r_.error("material " + in_quotes(type) + " is not supported yet");
+    void read(const ParameterInfo& info, SpectrumParameter& p) {
+        if (auto given = textures_.find_spectrum(r_, name(info.pbrt_name()), info.meaning)) p = *given;
+    }
+    void read(const ParameterInfo& info, FloatParameter& p) {
+        if (auto given = textures_.find_float(r_, name(info.pbrt_name()))) p = *given;
+    }
+    void read(const ParameterInfo& info, float& x) { x = r_.number(name(info.pbrt_name()), x); }
+    void read(const ParameterInfo& info, int& n) {
+        const std::string_view parameter = name(info.pbrt_name());
+        n = r_.integer(parameter, n);
+        if (n < info.least)
+            r_.error(parameter, "parameter " + in_quotes(parameter) + " is below " +
+                                    std::to_string(static_cast<int>(info.least)));
     }
 
-    void warn_of_bumps(std::string_view name) {
-        r_.diagnostics().warn_once(r_.plugin() + std::string(name), r_.at(name),
-                                   "parameter " + in_quotes(name) +
-                                       " is not supported yet: the surface is rendered without it, and the "
-                                       "picture differs");
+    // An index of refraction: a number or a spectrum.
+    void read(const ParameterInfo& info, Spectrum& eta) {
+        const std::string_view parameter = name(info.pbrt_name());
+        const Parameter* p = r_.any(parameter, {ParameterType::floating, ParameterType::spectrum,
+                                                ParameterType::rgb, ParameterType::blackbody});
+        if (!p) return;
+        if (p->type == ParameterType::floating && (p->numbers.size() != 1 || !(p->numbers[0] > 0)))
+            r_.error(parameter, "parameter " + in_quotes(parameter) +
+                                    " is no index of refraction; expected 1 positive number");
+        eta = p->type == ParameterType::floating ? Spectrum(p->numbers[0])
+                                                 : spectra_.read(*p, RgbMeaning::unbounded);
     }
 
-    SpectrumParameter reflectance(std::string_view name, float otherwise) {
-        return textures_.spectrum_or(r_, name, RgbMeaning::albedo, otherwise);
-    }
-
-    // `prefix` + "uroughness" and "vroughness", each "roughness" where it is missing.
-    RoughnessParameter roughness(const std::string& prefix) {
-        RoughnessParameter p;
+    // "uroughness" and "vroughness" with the prefix, each "roughness" where it is missing.
+    void read(const ParameterInfo& info, RoughnessParameter& p) {
+        const std::string prefix = info.prefix.empty() ? std::string() : std::string(info.prefix) + '.';
         FloatParameter both = textures_.float_or(r_, name(prefix + "roughness"), 0);
         p.u = textures_.find_float(r_, name(prefix + "uroughness")).value_or(both);
         p.v = textures_.find_float(r_, name(prefix + "vroughness")).value_or(both);
-        p.remap = r_.boolean("remaproughness", true);
-        return p;
-    }
-
-    // A number or a spectrum; 1.5 when it is missing.
-    Spectrum eta(std::string_view parameter) {
-        const Parameter* p = r_.any(parameter, {ParameterType::floating, ParameterType::spectrum,
-                                                ParameterType::rgb, ParameterType::blackbody});
-        if (!p) return Spectrum(1.5f);
-        if (p->type != ParameterType::floating) return spectra_.read(*p, RgbMeaning::unbounded);
-        if (p->numbers.size() != 1 || !(p->numbers[0] > 0))
-            r_.error(parameter, "parameter " + in_quotes(parameter) +
-                                    " is no index of refraction; expected 1 "
-                                    "positive number");
-        return Spectrum(p->numbers[0]);
+        p.remap = r_.boolean("remaproughness", p.remap);
     }
 
     // In a coated conductor eta and k have a prefix and the reflectance has none.
-    ConductorMaterial conductor(const std::string& prefix) {
-        ConductorMaterial m;
-        auto eta_given = textures_.find_spectrum(r_, name(prefix + "eta"), RgbMeaning::unbounded);
-        auto k_given = textures_.find_spectrum(r_, name(prefix + "k"), RgbMeaning::unbounded);
-        auto reflectance_given = textures_.find_spectrum(r_, "reflectance", RgbMeaning::albedo);
-        if (reflectance_given && (eta_given || k_given))
+    void read(const ParameterInfo& info, MetalParameter& m) {
+        const std::string prefix = info.prefix.empty() ? std::string() : std::string(info.prefix) + '.';
+        auto eta = textures_.find_spectrum(r_, name(prefix + "eta"), RgbMeaning::unbounded);
+        auto k = textures_.find_spectrum(r_, name(prefix + "k"), RgbMeaning::unbounded);
+        auto reflectance = textures_.find_spectrum(r_, "reflectance", RgbMeaning::albedo);
+        if (reflectance && (eta || k))
             r_.error("reflectance", "'reflectance' together with 'eta' or 'k'; expected one or the other");
-        if (reflectance_given) {
-            m.from_reflectance = true;
-            m.reflectance = *reflectance_given;
-        } else {
-            m.eta = eta_given ? *eta_given : SpectrumParameter{SpectrumReader::named("metal-Cu-eta")};
-            m.k = k_given ? *k_given : SpectrumParameter{SpectrumReader::named("metal-Cu-k")};
-        }
-        m.roughness = roughness(prefix);
-        return m;
+        if (eta) m.eta = *eta;
+        if (k) m.k = *k;
+        m.from_reflectance = reflectance.has_value();
+        if (reflectance) m.reflectance = *reflectance;
     }
 
-    CoatingParameters coating(const std::string& prefix) {
-        CoatingParameters c;
-        c.roughness = roughness(prefix);
-        c.eta = eta(name(prefix + "eta"));
-        c.thickness = textures_.float_or(r_, "thickness", 0.01f);
-        c.albedo = textures_.spectrum_or(r_, "albedo", RgbMeaning::albedo, 0);
-        c.g = textures_.float_or(r_, "g", 0);
-        c.max_depth = r_.integer("maxdepth", 10);
-        c.sample_count = r_.integer("nsamples", 1);
-        if (c.max_depth < 1) r_.error("maxdepth", "parameter 'maxdepth' is below 1");
-        if (c.sample_count < 1) r_.error("nsamples", "parameter 'nsamples' is below 1");
-        return c;
+    void read(const ParameterInfo& info, NormalMapParameter& p) {
+        const std::string_view parameter = name(info.pbrt_name());
+        if (std::optional<std::string> file = r_.string(parameter))
+            p.map = textures_.normal_map(*file, r_.at(parameter));
     }
 
     // Keeps a composed parameter name alive: the reader remembers views of the names it was asked for.
@@ -135,10 +121,11 @@ class MaterialMaker {
 } // namespace
 
 bool is_supported_material(const MaterialDeclaration& d, Diagnostics& diagnostics) {
-    if (std::find(supported_materials.begin(), supported_materials.end(), d.type) !=
-        supported_materials.end())
-        return true;
+    const std::vector<std::string>& supported = supported_materials();
+    if (std::find(supported.begin(), supported.end(), d.type) != supported.end()) return true;
     if (d.type.empty() || d.type == "none") return false;
+    std::vector<std::string_view> known(supported.begin(), supported.end());
+    known.insert(known.end(), not_supported.begin(), not_supported.end());
     if (std::find(known.begin(), known.end(), d.type) == known.end())
         diagnostics.error(d.at, "unknown material " + in_quotes(d.type) + did_you_mean(d.type, known));
     return false;

@@ -272,6 +272,16 @@ Index TextureLibrary::image(const std::string& file, const std::optional<std::st
     }
 }
 
+Index TextureLibrary::normal_map(const std::string& file, Location at) {
+    const Index picture = image(file, "linear", at);
+    if (builder_.scene().images[picture].color_channels().size() != 3)
+        diagnostics_.error(at, "normal map " + in_quotes(file) + " has no channels R, G and B");
+    const auto [known, is_new] =
+        normal_maps_.emplace(picture, static_cast<Index>(builder_.scene().normal_maps.size()));
+    if (is_new) builder_.scene().normal_maps.push_back({.image = picture, .mapping = {}});
+    return known->second;
+}
+
 void TextureLibrary::warn_of_unused() {
     for (const Table* table : {&float_, &spectrum_})
         for (const auto& [name, entry] : *table)

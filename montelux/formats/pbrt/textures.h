@@ -44,6 +44,9 @@ class TextureLibrary {
     // The picture of a file as it stands in Scene::images, read once for each encoding.
     Index image(const std::string& file, const std::optional<std::string>& encoding, Location at);
 
+    // The shading normals of a picture of (n + 1) / 2, into Scene::normal_maps; looked up as in pbrt-v4.
+    Index normal_map(const std::string& file, Location at);
+
     void warn_of_unused();
 
   private:
@@ -71,9 +74,10 @@ class TextureLibrary {
     Diagnostics& diagnostics_;
     Table float_, spectrum_;
     std::map<std::string, Index> images_;
-    std::size_t resolving_ = 0;       // how many textures are being resolved, one inside the other
-    std::size_t resolving_order_ = 0; // of the innermost of them
-    std::size_t evaluations_ = 0;     // what looking it up takes, as far as it is known
+    std::map<Index, Index> normal_maps_; // by image
+    std::size_t resolving_ = 0;          // how many textures are being resolved, one inside the other
+    std::size_t resolving_order_ = 0;    // of the innermost of them
+    std::size_t evaluations_ = 0;        // what looking it up takes, as far as it is known
 };
 
 } // namespace montelux::pbrt

@@ -1,33 +1,24 @@
-// The closed set of BSDFs.
+// Bsdf: what a path meets on a surface.
 #pragma once
 
-#include <concepts>
+#include <type_traits>
 #include <variant>
 
-#include "montelux/scene/bsdf/coating.h"
-#include "montelux/scene/bsdf/conductor.h"
-#include "montelux/scene/bsdf/dielectric.h"
-#include "montelux/scene/bsdf/diffuse.h"
-#include "montelux/scene/bsdf/layered.h"
-#include "montelux/scene/bsdf/thin_dielectric.h"
+#include "montelux/scene/bsdf/bsdf_model.h"
+#include "montelux/scene/bsdf/tilted.h"
+#include "montelux/scene/bsdf/untilted_bsdf.h"
 
 namespace montelux {
 
-// Plain values in the local frame of the shading normal. sample and evaluate agree: E[weight over a set of
-// directions] is the integral of f |cos theta_i| over it, delta lobes apart.
-template <typename B, typename Stream>
-concept BsdfModel = std::is_trivially_copyable_v<B> &&
-    requires(const B& b, Vec3f w, TransportMode mode, Stream& stream) {
-    { b.is_specular() } -> std::same_as<bool>;
-    // Some lobe is a delta.
-    { b.has_specular() } -> std::same_as<bool>;
-    // Directional albedo, perhaps approximate: a guide for denoisers, not part of an estimate.
-    { b.albedo(w) } -> std::same_as<SampledSpectrum>;
-    { b.evaluate(w, w, mode, stream) } -> std::same_as<BsdfEvaluation>;
-    { b.sample(w, mode, stream) } -> std::same_as<std::optional<BsdfSample>>;
-};
+template <typename... B>
+std::variant<B..., TiltedBsdf> with_tilted(std::type_identity<std::variant<B...>>);
+// The BSDFs that materials make (untilted_bsdf.h) and those that a normal map or bumps have tilted.
+using Bsdf = decltype(with_tilted(std::type_identity<UntiltedBsdf>{}));
 
-using Bsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, ThinDielectricBsdf, CoatedDiffuseBsdf,
-                          LayeredBsdf<DiffuseBsdf>, LayeredBsdf<ConductorBsdf>>;
+template <typename... B>
+constexpr bool all_are_models(std::type_identity<std::variant<B...>>) {
+    return (BsdfModel<B> && ...);
+}
+static_assert(all_are_models(std::type_identity<Bsdf>{}));
 
 } // namespace montelux

@@ -17,6 +17,13 @@ inline constexpr TransportMode adjoint(TransportMode mode) {
     return mode == TransportMode::radiance ? TransportMode::importance : TransportMode::radiance;
 }
 
+// What all BSDFs of one type have in common.
+struct BsdfTraits {
+    bool transmits = false;     // light may leave on the other side of the surface
+    bool uses_tangents = false; // lobes may depend on the direction of the tangents
+    bool stochastic = false;    // evaluate estimates the value by random walks
+};
+
 // Value and density for a given pair of directions; lobes that are Dirac deltas count as zero in both.
 struct BsdfEvaluation {
     SampledSpectrum f; // f(wo, wi) |cos theta_i|, 1/sr times cosine

@@ -63,6 +63,15 @@ struct CoatedDiffuseBsdf {
     const CoatingTable* table = nullptr;
     SampledSpectrum base_albedo; // CoatingTable::base_albedo of the base's reflectance
 
+    static constexpr const char* name = "coated diffuse, closed form";
+    static constexpr BsdfTraits traits{};
+    template <typename Visit>
+    void visit_fields(Visit&& visit) const {
+        visit("eta", table->eta());
+        visit("coat", table->coat().ggx);
+        visit("base albedo", base_albedo);
+    }
+
     bool is_specular() const { return false; }
     bool has_specular() const { return table->coat().is_specular(); }
     SampledSpectrum albedo(Vec3f wo) const {

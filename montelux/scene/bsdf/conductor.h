@@ -13,6 +13,15 @@ struct ConductorBsdf {
     SampledSpectrum eta, k;
     Ggx ggx;
 
+    static constexpr const char* name = "conductor";
+    static constexpr BsdfTraits traits{.uses_tangents = true};
+    template <typename Visit>
+    void visit_fields(Visit&& visit) const {
+        visit("surface", ggx);
+        visit("eta", eta);
+        visit("k", k);
+    }
+
     bool is_specular() const { return ggx.is_smooth(); }
     bool has_specular() const { return is_specular(); }
     SampledSpectrum albedo(Vec3f wo) const { return fresnel_conductor(abs_cos_theta(wo), eta, k); }

@@ -17,9 +17,18 @@ struct DielectricBsdf {
     float eta = 1.5f; // index below the surface (-z) over that above
     Ggx ggx;
 
+    static constexpr const char* name = "dielectric";
+    static constexpr BsdfTraits traits{.transmits = true, .uses_tangents = true};
+    template <typename Visit>
+    void visit_fields(Visit&& visit) const {
+        visit("eta", eta);
+        visit("surface", ggx);
+    }
+
     // An index of 1 bends nothing, however rough the interface.
     bool is_specular() const { return eta == 1 || ggx.is_smooth(); }
     bool has_specular() const { return is_specular(); }
+    float transmitted_eta(Vec3f wo) const { return wo.z > 0 ? eta : 1 / eta; }
     SampledSpectrum albedo(Vec3f) const { return SampledSpectrum(1); }
 
     template <typename Stream>

@@ -11,6 +11,13 @@ namespace montelux {
 struct DiffuseBsdf {
     SampledSpectrum reflectance;
 
+    static constexpr const char* name = "diffuse";
+    static constexpr BsdfTraits traits{};
+    template <typename Visit>
+    void visit_fields(Visit&& visit) const {
+        visit("reflectance", reflectance);
+    }
+
     bool is_specular() const { return false; }
     bool has_specular() const { return false; }
     SampledSpectrum albedo(Vec3f) const { return reflectance; }

@@ -31,6 +31,17 @@ struct LayeredBsdf {
     int max_depth = 10;
     int sample_count = 1;
 
+    static constexpr const char* name = "coated by random walks";
+    static constexpr BsdfTraits traits{.uses_tangents = true, .stochastic = true};
+    template <typename Visit>
+    void visit_fields(Visit&& visit) const {
+        visit("eta", coat.eta);
+        visit("thickness", thickness);
+        visit("coat", coat.ggx);
+        if (!is_black(medium_albedo)) visit("medium albedo", medium_albedo);
+        visit("base", base);
+    }
+
     bool is_specular() const { return coat.is_specular() && base.is_specular() && is_black(medium_albedo); }
     bool has_specular() const { return coat.is_specular(); }
     // Without what bounces between the layers.

@@ -11,8 +11,16 @@ namespace montelux {
 struct ThinDielectricBsdf {
     float eta = 1.5f;
 
+    static constexpr const char* name = "thin dielectric";
+    static constexpr BsdfTraits traits{.transmits = true};
+    template <typename Visit>
+    void visit_fields(Visit&& visit) const {
+        visit("eta", eta);
+    }
+
     bool is_specular() const { return true; }
     bool has_specular() const { return true; }
+    float transmitted_eta(Vec3f) const { return 1; }
     SampledSpectrum albedo(Vec3f) const { return SampledSpectrum(1); }
 
     template <typename Stream>

@@ -135,7 +135,6 @@ Integrator "volpath" "bool regularize" true "string lightsampler" "bvh"
 Sampler "sobol" "string randomization" "none"
 Option "bool disablepixeljitter" true
 WorldBegin TransformBegin TransformEnd LightSource "point"
-Material "diffuse" "string normalmap" "a.png"
 WorldEnd)",
           &told);
     const char* expected[] = {
@@ -151,8 +150,7 @@ WorldEnd)",
         "scene:4:45: lights are chosen by their power",
         "scene:5:17: the points are randomised all the same",
         "scene:7:12: TransformBegin is deprecated",
-        "scene:9:1: WorldEnd belongs to pbrt-v3",
-        "scene:8:20: parameter 'normalmap' is not supported yet",
+        "scene:8:1: WorldEnd belongs to pbrt-v3",
     };
     ASSERT_EQ(told.messages().size(), std::size(expected));
     for (std::size_t i = 0; i < std::size(expected); ++i)

@@ -42,13 +42,13 @@ TEST(PbrtMaterials, Defaults) {
     EXPECT_EQ(coated.coating.roughness.u.value, 0);
     EXPECT_TRUE(coated.coating.roughness.remap);
     auto metal = material<ConductorMaterial>("Material \"conductor\"");
-    expect_same(metal.eta.value, *find_named_spectrum("metal-Cu-eta"));
-    expect_same(metal.k.value, *find_named_spectrum("metal-Cu-k"));
-    EXPECT_FALSE(metal.from_reflectance);
+    expect_same(metal.metal.eta.value, *find_named_spectrum("metal-Cu-eta"));
+    expect_same(metal.metal.k.value, *find_named_spectrum("metal-Cu-k"));
+    EXPECT_FALSE(metal.metal.from_reflectance);
     EXPECT_EQ(material<DielectricMaterial>("Material \"dielectric\"").eta(500), 1.5f);
     EXPECT_EQ(material<ThinDielectricMaterial>("Material \"thindielectric\"").eta(500), 1.5f);
     auto both = material<CoatedConductorMaterial>("Material \"coatedconductor\"");
-    expect_same(both.conductor.eta.value, *find_named_spectrum("metal-Cu-eta"));
+    expect_same(both.metal.eta.value, *find_named_spectrum("metal-Cu-eta"));
     EXPECT_EQ(both.coating.eta(500), 1.5f);
     EXPECT_EQ(both.coating.thickness.value, 0.01f);
 }
@@ -65,16 +65,16 @@ TEST(PbrtMaterials, RoughnessAndPrefixes) {
         "\"float conductor.uroughness\" 0.4 \"rgb reflectance\" [ 0.5 0.25 0.125 ]");
     EXPECT_EQ(c.coating.roughness.v.value, 0.2f);
     expect_same(c.coating.eta, *find_named_spectrum("glass-BK7"));
-    EXPECT_EQ(c.conductor.roughness.u.value, 0.4f);
-    EXPECT_EQ(c.conductor.roughness.v.value, 0);
-    EXPECT_TRUE(c.conductor.from_reflectance);
+    EXPECT_EQ(c.roughness.u.value, 0.4f);
+    EXPECT_EQ(c.roughness.v.value, 0);
+    EXPECT_TRUE(c.metal.from_reflectance);
 }
 
 TEST(PbrtMaterials, MeaningOfColours) {
     auto m =
         material<ConductorMaterial>("Material \"conductor\" \"rgb eta\" [ 3 2 1 ] \"rgb k\" [ 3.9 2.4 2.1 ]");
     const RgbColorSpace& srgb = RgbColorSpace::srgb();
-    expect_same(m.eta.value, Spectrum(RgbUnboundedSpectrum(srgb, {3, 2, 1})));
+    expect_same(m.metal.eta.value, Spectrum(RgbUnboundedSpectrum(srgb, {3, 2, 1})));
     auto d = material<DiffuseMaterial>("Material \"diffuse\" \"rgb reflectance\" [ 0.1 0.2 0.3 ]");
     expect_same(d.reflectance.value, Spectrum(RgbAlbedoSpectrum(srgb, {0.1f, 0.2f, 0.3f})));
     d = material<DiffuseMaterial>(
@@ -83,6 +83,64 @@ TEST(PbrtMaterials, MeaningOfColours) {
                 Spectrum(RgbAlbedoSpectrum(RgbColorSpace::rec2020(), {0.1f, 0.2f, 0.3f})));
     d = material<DiffuseMaterial>("Material \"diffuse\" \"spectrum reflectance\" [ 400 0.2 600 0.6 ]");
     EXPECT_FLOAT_EQ(d.reflectance.value(500), 0.4f);
+}
+
+TEST(PbrtMaterials, DiffuseTransmission) {
+    auto m = material<DiffuseTransmissionMaterial>("Material \"diffusetransmission\"");
+    EXPECT_EQ(m.reflectance.value(500), 0.25f);
+    EXPECT_EQ(m.transmittance.value(500), 0.25f);
+    EXPECT_EQ(m.scale, 1);
+    m = material<DiffuseTransmissionMaterial>("Material \"diffusetransmission\" \"spectrum transmittance\" "
+                                              "[ 400 0.2 600 0.6 ] \"float scale\" 0.5");
+    EXPECT_FLOAT_EQ(m.transmittance.value(500), 0.4f);
+    EXPECT_EQ(m.reflectance.value(500), 0.25f);
+    EXPECT_EQ(m.scale, 0.5f);
+}
+
+const char* const all_materials[] = {
+    "diffuse",       "conductor",       "dielectric",         "thindielectric",
+    "coateddiffuse", "coatedconductor", "diffusetransmission"};
+
+TEST(PbrtMaterials, EachHasNormalMapAndBumps) {
+    TemporaryFolder folder;
+    Image normals(1, 1, {"R", "G", "B"}, PixelFormat::u8, ColorEncoding::srgb());
+    for (int c = 0; c < 3; ++c) normals.u8()[static_cast<std::size_t>(c)] = c == 2 ? 255 : 51;
+    write_image(folder / "n.png", normals);
+    for (const char* name : all_materials) {
+        Warnings told;
+        const SceneDescription d =
+            parse_pbrt("WorldBegin LightSource \"point\"\n"
+                       "Texture \"h\" \"float\" \"checkerboard\"\nMaterial \"" +
+                           std::string(name) +
+                           "\" \"string normalmap\" \"n.png\" \"texture displacement\" "
+                           "\"h\"\nShape \"sphere\" Shape \"disk\"",
+                       "scene", folder.path(), told);
+        EXPECT_TRUE(told.messages().empty()) << told.messages()[0];
+        ASSERT_EQ(d.scene.materials.size(), 1u);
+        const SurfaceDetail detail = std::visit([](const auto& m) { return m.detail; }, d.scene.materials[0]);
+        EXPECT_EQ(detail.displacement.texture, 0u) << name;
+        ASSERT_EQ(d.scene.normal_maps.size(), 1u);
+        EXPECT_EQ(detail.normal_map.map, 0u) << name;
+        // Linear, whatever PNG files are.
+        const Image& picture = d.scene.images[d.scene.normal_maps[0].image];
+        EXPECT_NEAR(picture.value(0, 0, 0), 0.2f, 1e-6f);
+    }
+}
+
+TEST(PbrtMaterials, NormalMapsThatAreNoneSayWhere) {
+    EXPECT_EQ(test::world_error("Material \"diffuse\"\n\"string normalmap\" \"lost.png\" Shape \"sphere\"")
+                  .substr(0, 10),
+              "scene:3:1:");
+    TemporaryFolder folder;
+    write_image(folder / "gray.png", Image(1, 1, {"Y"}, PixelFormat::u8, ColorEncoding::srgb()));
+    Warnings told;
+    try {
+        parse_pbrt("WorldBegin Material \"diffuse\" \"string normalmap\" \"gray.png\" Shape \"sphere\"",
+                   "scene", folder.path(), told);
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_EQ(std::string(e.what()), "scene:1:31: normal map 'gray.png' has no channels R, G and B");
+    }
 }
 
 TEST(PbrtMaterials, NamedOnesMayComeLaterAndUnusedOnesAreTold) {
@@ -131,7 +189,7 @@ TEST(PbrtTextures, NodesAndDefaults) {
     EXPECT_EQ(c3.mapping.texture_from_world.point(Vec3f(1, 0, 0)), Vec3f());
     // As an index of refraction the same texture is another node.
     const auto& metal = std::get<ConductorMaterial>(d.scene.materials[d.scene.shapes[1].material]);
-    EXPECT_NE(metal.eta.texture, m.reflectance.texture);
+    EXPECT_NE(metal.metal.eta.texture, m.reflectance.texture);
 }
 
 TEST(PbrtTextures, PicturesAreReadOnceForEachEncoding) {

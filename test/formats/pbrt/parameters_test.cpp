@@ -78,7 +78,7 @@ TEST(PbrtParameters, OfSeveralDefaultsTheLastThatFitsCounts) {
     SceneDescription d = parse_world(with_light + "Attribute \"material\" " + spectrum + number +
                                          "Material \"conductor\" Shape \"sphere\"",
                                      &told);
-    EXPECT_EQ(std::get<ConductorMaterial>(d.scene.materials.at(0)).eta.value(500),
+    EXPECT_EQ(std::get<ConductorMaterial>(d.scene.materials.at(0)).metal.eta.value(500),
               (*find_named_spectrum("glass-BK7"))(500));
     EXPECT_TRUE(told.messages().empty());
 }

@@ -1,0 +1,59 @@
+#include "montelux/scene/bsdf/tilted.h"
+
+#include <type_traits>
+
+namespace montelux {
+
+namespace {
+
+// The numbers that a BSDF may take, drawn already.
+struct DrawnNumbers {
+    float uc;
+    Vec2f u;
+
+    float next_1d() const { return uc; }
+    Vec2f next_2d() const { return u; }
+};
+
+} // namespace
+
+bool TiltedBsdf::is_specular() const {
+    return std::visit([](const auto& b) { return b.is_specular(); }, base);
+}
+bool TiltedBsdf::has_specular() const {
+    return std::visit([](const auto& b) { return b.has_specular(); }, base);
+}
+bool TiltedBsdf::is_stochastic() const {
+    return std::visit([](const auto& b) { return b.traits.stochastic; }, base);
+}
+float TiltedBsdf::transmitted_eta(Vec3f wo) const {
+    return std::visit(
+        [&]<typename B>(const B& b) {
+            if constexpr (B::traits.transmits)
+                return b.transmitted_eta(wo);
+            else
+                return 1.0f;
+        },
+        base);
+}
+SampledSpectrum TiltedBsdf::albedo(Vec3f wo) const {
+    return std::visit([&](const auto& b) { return b.albedo(wo); }, base);
+}
+
+// Flattened: with calls from here the compiler would inline less of the BSDFs elsewhere.
+[[gnu::flatten]] BsdfEvaluation TiltedBsdf::evaluate(Vec3f wo, Vec3f wi, TransportMode mode, Vec2f u) const {
+    if (!keeps_side(wo) || !keeps_side(wi)) return {};
+    DrawnNumbers numbers{0, u};
+    return std::visit([&](const auto& b) { return b.evaluate(wo, wi, mode, numbers); }, base);
+}
+
+[[gnu::flatten]] std::optional<BsdfSample> TiltedBsdf::sample(Vec3f wo, TransportMode mode, float uc,
+                                                              Vec2f u) const {
+    if (!keeps_side(wo)) return std::nullopt;
+    DrawnNumbers numbers{uc, u};
+    auto s = std::visit([&](const auto& b) { return b.sample(wo, mode, numbers); }, base);
+    if (s && !keeps_side(s->wi)) return std::nullopt;
+    return s;
+}
+
+} // namespace montelux

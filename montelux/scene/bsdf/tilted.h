@@ -1,0 +1,48 @@
+// A BSDF whose normal a map or bumps tilt against the surface: no light leaks to the surface's other side.
+#pragma once
+
+#include <optional>
+
+#include "montelux/scene/bsdf/untilted_bsdf.h"
+
+namespace montelux {
+
+// The base in the frame of the tilted normal, without the directions that lie above that normal's plane but
+// below the surface, and the other way round (Veach 1997, section 5.3).
+struct TiltedBsdf {
+    UntiltedBsdf base;
+    Normal3f geometric_normal; // in the local frame, on the side of +z
+
+    static constexpr const char* name = "by a tilted normal";
+    // Of any base.
+    static constexpr BsdfTraits traits{.transmits = true, .uses_tangents = true, .stochastic = true};
+    template <typename Visit>
+    void visit_fields(Visit&& visit) const {
+        std::visit([&](const auto& b) { visit("BSDF", b); }, base);
+    }
+
+    bool is_specular() const;
+    bool has_specular() const;
+    float transmitted_eta(Vec3f wo) const;
+    SampledSpectrum albedo(Vec3f wo) const;
+
+    template <typename Stream>
+    BsdfEvaluation evaluate(Vec3f wo, Vec3f wi, TransportMode mode, Stream& stream) const {
+        return evaluate(wo, wi, mode, is_stochastic() ? stream.next_2d() : Vec2f{});
+    }
+    template <typename Stream>
+    std::optional<BsdfSample> sample(Vec3f wo, TransportMode mode, Stream& stream) const {
+        const float uc = stream.next_1d();
+        const Vec2f u = stream.next_2d();
+        return sample(wo, mode, uc, u);
+    }
+
+  private:
+    // Compiled apart: what is not tilted keeps its code, and so its speed and its bits.
+    BsdfEvaluation evaluate(Vec3f wo, Vec3f wi, TransportMode mode, Vec2f u) const;
+    std::optional<BsdfSample> sample(Vec3f wo, TransportMode mode, float uc, Vec2f u) const;
+    bool is_stochastic() const;
+    bool keeps_side(Vec3f w) const { return w.z * dot(geometric_normal, w) > 0; }
+};
+
+} // namespace montelux

@@ -1,0 +1,20 @@
+// The closed set of BSDFs that materials make.
+#pragma once
+
+#include <variant>
+
+#include "montelux/scene/bsdf/coating.h"
+#include "montelux/scene/bsdf/conductor.h"
+#include "montelux/scene/bsdf/dielectric.h"
+#include "montelux/scene/bsdf/diffuse.h"
+#include "montelux/scene/bsdf/diffuse_transmission.h"
+#include "montelux/scene/bsdf/layered.h"
+#include "montelux/scene/bsdf/thin_dielectric.h"
+
+namespace montelux {
+
+using UntiltedBsdf =
+    std::variant<DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf, ThinDielectricBsdf,
+                 CoatedDiffuseBsdf, LayeredBsdf<DiffuseBsdf>, LayeredBsdf<ConductorBsdf>>;
+
+} // namespace montelux

@@ -1,0 +1,28 @@
+// DiffuseMaterial: Lambert's matt surface.
+#pragma once
+
+#include "montelux/scene/bsdf/diffuse.h"
+#include "montelux/scene/material/surface_detail.h"
+
+namespace montelux {
+
+struct DiffuseMaterial {
+    static constexpr const char* name = "Diffuse";
+    static constexpr const char* doc = "Lambert's matt surface.";
+
+    SpectrumParameter reflectance{Spectrum(0.5f)};
+    SurfaceDetail detail{};
+
+    template <typename Self, typename Visit>
+    static void visit_parameters(Self& m, Visit&& visit) {
+        visit({.name = "reflectance", .doc = "Reflectance, 0 to 1: number, R, G, B, Spectrum or texture."},
+              m.reflectance);
+    }
+
+    template <typename Evaluator>
+    DiffuseBsdf bsdf(const Evaluator& at) const {
+        return {at.reflectance(reflectance)};
+    }
+};
+
+} // namespace montelux

@@ -1,0 +1,32 @@
+// DiffuseTransmissionMaterial: a thin matt sheet that light shines through.
+#pragma once
+
+#include "montelux/scene/bsdf/diffuse_transmission.h"
+#include "montelux/scene/material/surface_detail.h"
+
+namespace montelux {
+
+struct DiffuseTransmissionMaterial {
+    static constexpr const char* name = "DiffuseTransmission";
+    static constexpr const char* doc = "A thin matt sheet that light shines through: a leaf, paper, cloth.";
+
+    SpectrumParameter reflectance{Spectrum(0.25f)}, transmittance{Spectrum(0.25f)};
+    float scale = 1; // of both
+    SurfaceDetail detail{};
+
+    template <typename Self, typename Visit>
+    static void visit_parameters(Self& m, Visit&& visit) {
+        visit({.name = "reflectance", .doc = "Share of light that is reflected, 0 to 1."}, m.reflectance);
+        visit({.name = "transmittance", .doc = "Share of light that is transmitted, 0 to 1."},
+              m.transmittance);
+        visit({.name = "scale", .doc = "Factor of reflectance and transmittance."}, m.scale);
+    }
+
+    template <typename Evaluator>
+    DiffuseTransmissionBsdf bsdf(const Evaluator& at) const {
+        const SampledSpectrum r = at(reflectance), t = at(transmittance);
+        return {clamp(r * scale, 0, 1), clamp(t * scale, 0, 1)};
+    }
+};
+
+} // namespace montelux

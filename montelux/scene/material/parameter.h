@@ -1,0 +1,79 @@
+// ParameterInfo: what a material says of one of its parameters beside its value; and the kinds of parameters.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include "montelux/scene/texture/texture.h"
+#include "montelux/spectrum/named_spectra.h"
+
+namespace montelux {
+
+// A material lists its parameters once, in a function visit_parameters(material, visit) that calls
+// visit(info, field) for each. A field is a Spectrum (an index of refraction), SpectrumParameter, FloatParameter, float, int, or
+// one of the kinds below. From the list come the readers of scene files, the Python attributes, what is
+// hashed and whether the material is textured.
+struct ParameterInfo {
+    std::string_view prefix{}; // of the part of the material that the parameter belongs to; may be empty
+    std::string_view name{};   // as in Python
+    const char* doc = "";
+    RgbMeaning meaning = RgbMeaning::albedo;                     // of R, G, B given for a spectrum
+    double least = 0, most = std::numeric_limits<double>::max(); // of numbers
+    std::string_view pbrt{};                                     // where it is not the name without '_'
+
+    // conductor_eta
+    std::string python_name() const {
+        return prefix.empty() ? std::string(name) : std::string(prefix) + '_' + std::string(name);
+    }
+    // conductor.eta
+    std::string pbrt_name() const {
+        std::string result = prefix.empty() ? std::string() : std::string(prefix) + '.';
+        for (char c : pbrt.empty() ? name : pbrt)
+            if (c != '_') result += c;
+        return result;
+    }
+};
+
+// GGX roughness along u and v. With `remap`, alpha = sqrt(roughness); else the parameter is alpha itself.
+struct RoughnessParameter {
+    FloatParameter u{}, v{};
+    bool remap = true;
+
+    bool is_anisotropic() const { return u.texture != v.texture || (u.is_constant() && u.value != v.value); }
+};
+
+// Either the complex index of refraction eta + ik, or `reflectance` at normal incidence (then k is found for
+// eta = 1).
+struct MetalParameter {
+    SpectrumParameter eta{*find_named_spectrum("metal-Cu-eta")}, k{*find_named_spectrum("metal-Cu-k")};
+    SpectrumParameter reflectance{};
+    bool from_reflectance = false;
+};
+
+// Shading normals as R, G, B = (n + 1) / 2 along dp/du, dp/dv and the normal.
+struct NormalMapParameter {
+    Index map = no_index; // into Scene::normal_maps
+
+    bool is_given() const { return map != no_index; }
+};
+
+// The simple fields of a parameter: visit(name, field) of Spectrum, SpectrumParameter, FloatParameter, float,
+// int, bool or NormalMapParameter.
+template <typename Field, typename Visit>
+void visit_leaves(std::string_view name, Field& field, Visit&& visit) {
+    if constexpr (requires { field.remap; }) {
+        visit("roughness_u", field.u);
+        visit("roughness_v", field.v);
+        visit("remap_roughness", field.remap);
+    } else if constexpr (requires { field.from_reflectance; }) {
+        visit("eta", field.eta);
+        visit("k", field.k);
+        visit("reflectance", field.reflectance);
+        visit("from_reflectance", field.from_reflectance);
+    } else {
+        visit(name, field);
+    }
+}
+
+} // namespace montelux

@@ -1,0 +1,84 @@
+// ParameterEvaluator: the values of a material's parameters at a point, and the parts of BSDFs made of them.
+#pragma once
+
+#include <algorithm>
+
+#include "montelux/scene/bsdf/bsdf.h"
+#include "montelux/scene/texture/evaluate.h"
+
+namespace montelux {
+
+// Where an index of refraction depends on the wavelength, all wavelengths but the hero are terminated.
+class ParameterEvaluator {
+  public:
+    ParameterEvaluator(const SceneView& scene, Index material, const TextureContext& context,
+                       SampledWavelengths& lambda)
+        : scene_(scene), material_(material), context_(context), lambda_(lambda) {}
+
+    float operator()(const FloatParameter& p) const { return evaluate(scene_, p, context_); }
+    SampledSpectrum operator()(const SpectrumParameter& p) const {
+        return evaluate(scene_, p, context_, lambda_);
+    }
+    SampledSpectrum reflectance(const SpectrumParameter& p) const { return clamp((*this)(p), 0, 1); }
+
+    Ggx roughness(const RoughnessParameter& r) const {
+        float u = (*this)(r.u), v = (*this)(r.v);
+        if (r.remap) {
+            u = Ggx::alpha_from_roughness(u);
+            v = Ggx::alpha_from_roughness(v);
+        }
+        // A lobe narrower than this along one axis alone would overflow floats.
+        Ggx ggx{u, v};
+        if (!ggx.is_smooth()) ggx = {std::max(u, 1e-4f), std::max(v, 1e-4f)};
+        return ggx;
+    }
+
+    float refractive_index(const Spectrum& eta) const {
+        float value = eta.sample(lambda_)[0];
+        if (!eta.is_constant()) lambda_.terminate_secondary();
+        return value > 0 ? value : 1;
+    }
+
+    // `outside`: index of refraction of what light comes through. Fresnel's formulae want indices relative to
+    // it, parameters are relative to vacuum.
+    ConductorBsdf conductor(const MetalParameter& m, const RoughnessParameter& r, float outside) const {
+        ConductorBsdf b;
+        if (m.from_reflectance) {
+            SampledSpectrum rho = clamp((*this)(m.reflectance), 0, 0.9999f);
+            b.eta = SampledSpectrum(1);
+            b.k = 2.0f * sqrt(rho) / sqrt(clamp_zero(1.0f - rho));
+        } else {
+            b.eta = (*this)(m.eta);
+            b.k = (*this)(m.k);
+        }
+        b.eta /= outside;
+        b.k /= outside;
+        b.ggx = roughness(r);
+        return b;
+    }
+
+    template <typename Base>
+    LayeredBsdf<Base> layered(const CoatingParameters& c, float eta, const Base& base, Ggx proxy) const {
+        LayeredBsdf<Base> b;
+        b.coat = {eta, roughness(c.roughness)};
+        b.base = base;
+        b.proxy = proxy;
+        b.medium_albedo = reflectance(c.albedo);
+        b.g = std::clamp((*this)(c.g), -0.999f, 0.999f);
+        b.thickness = std::max((*this)(c.thickness), 1e-30f);
+        b.max_depth = c.max_depth;
+        b.sample_count = std::max(c.sample_count, 1);
+        return b;
+    }
+
+    // Null where the closed form of CoatingTable does not hold for the material.
+    const CoatingTable* coating_table() const { return scene_.coating(material_); }
+
+  private:
+    const SceneView& scene_;
+    Index material_;
+    const TextureContext& context_;
+    SampledWavelengths& lambda_;
+};
+
+} // namespace montelux

@@ -1,0 +1,102 @@
+#include "montelux/scene/material/shading_frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "montelux/scene/texture/evaluate.h"
+
+namespace montelux {
+
+namespace {
+
+// Shading normal, and derivatives of the surface's points in the plane across it.
+struct Tangents {
+    Normal3f n;
+    Vec3f u, v;
+};
+
+// Bound of the relative rounding error of a filtered lookup: a level map is level.
+constexpr float lookup_rounding = 1e-6f;
+
+Vec3f across(Vec3f a, Normal3f n) { return a - n * dot(n, a); }
+
+// Slope of the height along one coordinate by a forward difference over half a pixel's footprint, as
+// pbrt-v4's BumpMap; without a footprint over less than the texel of a map 8192 wide.
+float slope(const SceneView& scene, const FloatParameter& height, float here, const TextureContext& context,
+            int axis, Vec3f dp) {
+    const float footprint = 0.5f * (std::abs(context.duvdx[axis]) + std::abs(context.duvdy[axis]));
+    TextureContext shifted = context;
+    shifted.uv[axis] += std::max(footprint, 1.0f / 8192);
+    // What the coordinate was shifted by in floats.
+    const float step = shifted.uv[axis] - context.uv[axis];
+    shifted.p += dp * step;
+    const float rise = evaluate(scene, height, shifted) - here;
+    const float s = rise / step;
+    return std::abs(rise) > lookup_rounding * std::abs(here) && std::isfinite(s) ? s : 0;
+}
+
+// Returns false where the height is level. That a curved surface stretches with its height is left out: it
+// flattens slopes by 1 + height / radius of curvature.
+bool add_bumps(const SceneView& scene, const FloatParameter& height, const SurfacePoint& surface,
+               const TextureContext& context, Tangents& t) {
+    if (height.is_constant()) return false;
+    const float here = evaluate(scene, height, context);
+    const float slope_u = slope(scene, height, here, context, 0, surface.dpdu);
+    const float slope_v = slope(scene, height, here, context, 1, surface.dpdv);
+    if (slope_u == 0 && slope_v == 0) return false;
+    const Vec3f u = t.u + t.n * slope_u, v = t.v + t.n * slope_v;
+    Vec3f n = cross(u, v);
+    const float len = length(n);
+    if (!(len > 0 && std::isfinite(len))) return false;
+    n = n / len;
+    t = {dot(n, t.n) < 0 ? -n : n, u, v};
+    return true;
+}
+
+// Returns false where the map says that the normal is as it is. The map's second axis is the side of dp/dv:
+// mirrored instances and coordinates show mirrored dents.
+bool add_map(const SceneView& scene, const NormalMapParameter& map, const TextureContext& context,
+             Tangents& t) {
+    if (!map.is_given()) return false;
+    const ImageTexture& texture = scene.normal_maps[map.map];
+    const TextureCoordinates c = texture.mapping(context);
+    const Vec3f rgb =
+        scene.mipmap(texture.image, texture.channels)
+            .lookup(c.st, c.dstdx, c.dstdy, texture.filter, texture.wrap, texture.max_anisotropy);
+    const Vec3f m = 2 * rgb - Vec3f{1, 1, 1};
+    if (std::abs(m.x) < lookup_rounding && std::abs(m.y) < lookup_rounding) return false;
+    const Frame frame = Frame::from_normal_and_tangent(t.n, t.u);
+    const float side = dot(frame.t, t.v) < 0 ? -1.0f : 1.0f;
+    const Vec3f n = frame.to_world({m.x, side * m.y, m.z});
+    const float len = length(n);
+    if (!(len > 0 && std::isfinite(len))) return false;
+    t.n = n / len;
+    return true;
+}
+
+// Keller et al. 2017, "The Iray Light Transport Simulation and Rendering System", appendix A.3: a normal that
+// mirrors wo below the surface is replaced by the one that mirrors it just above.
+Normal3f facing(Normal3f n, Normal3f geometric, Vec3f wo) {
+    constexpr float least = 1e-3f; // sine of the least angle above the surface
+    const float side = dot(wo, geometric) < 0 ? -1.0f : 1.0f;
+    const Vec3f g = geometric * side;
+    Vec3f m = n * side;
+    if (const float above = dot(m, g); above < least) m = normalize(m + g * (least - above));
+    const Vec3f mirrored = m * (2 * dot(m, wo)) - wo;
+    if (const float above = dot(mirrored, g); above < least)
+        m = normalize(wo + normalize(mirrored + g * (least - above)));
+    return m * side;
+}
+
+} // namespace
+
+std::optional<Frame> tilted_frame(const SceneView& scene, const SurfaceDetail& detail,
+                                  const SurfacePoint& surface, Vec3f wo, const TextureContext& context) {
+    Tangents t{surface.ns, across(surface.dpdu, surface.ns), across(surface.dpdv, surface.ns)};
+    const bool bumpy = add_bumps(scene, detail.displacement, surface, context, t);
+    const bool mapped = add_map(scene, detail.normal_map, context, t);
+    if (!bumpy && !mapped) return std::nullopt;
+    return Frame::from_normal_and_tangent(facing(t.n, surface.ng, wo), t.u);
+}
+
+} // namespace montelux

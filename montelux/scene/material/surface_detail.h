@@ -1,0 +1,25 @@
+// SurfaceDetail: what tilts the shading normal of any material.
+#pragma once
+
+#include "montelux/scene/material/parameter.h"
+
+namespace montelux {
+
+struct SurfaceDetail {
+    // Height above the surface in units of length. A texture gives bumps; a constant changes nothing.
+    FloatParameter displacement{};
+    NormalMapParameter normal_map{};
+
+    bool is_flat() const { return displacement.is_constant() && !normal_map.is_given(); }
+
+    template <typename Self, typename Visit>
+    static void visit_parameters(Self& d, Visit&& visit) {
+        visit({.name = "displacement",
+               .doc = "Height of bumps above the surface: a texture of numbers.",
+               .least = std::numeric_limits<double>::lowest()},
+              d.displacement);
+        visit({.name = "normal_map", .doc = "Shading normals: a NormalMap, or None."}, d.normal_map);
+    }
+};
+
+} // namespace montelux
