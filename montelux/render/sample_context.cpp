@@ -29,9 +29,8 @@ constexpr float footprint_scale = 0.125f;
 
 SampleContext::SampleContext(const SceneDescription& description, const SamplerSettings& sampler,
                              const SceneView& scene, const Camera& camera)
-    : sampler_(sampler),
-      max_component_value_(description.film.max_component_value), path_{scene, camera, description.integrator,
-                                                                        footprint_scale},
+    : sampler_(sampler), max_component_value_(description.film.max_component_value), scene_(scene),
+      camera_(camera), integrator_(PathIntegrator(description.integrator, camera, footprint_scale)),
       filter_(description.film.filter),
       sensor_(RgbColorSpace::srgb(),
               {description.film.exposure_time, description.film.iso, description.film.white_balance}),
@@ -44,29 +43,31 @@ SampleContext::Result SampleContext::trace(RayTracer& tracer, int x, int y, std:
     SampleStream stream(sampler_, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), index);
     Vec2f u_film = stream.next_2d();
     float u_lambda = stream.next_1d();
-    Vec2f u_lens = path_.camera.has_lens() ? stream.next_2d() : Vec2f{0.5f, 0.5f};
+    Vec2f u_lens = camera_.has_lens() ? stream.next_2d() : Vec2f{0.5f, 0.5f};
     FilterSample point = filter_.sample(u_film);
     Point2f film{static_cast<float>(x) + 0.5f + point.offset.x,
                  static_cast<float>(y) + 0.5f + point.offset.y};
-    Ray ray = path_.camera.generate_ray(film, u_lens);
-    SampledWavelengths lambda = SampledWavelengths::sample_visible(u_lambda);
-    const SampledWavelengths all = lambda;
-    FirstHit first;
+    const CameraSample camera{camera_.generate_ray(film, u_lens),
+                              SampledWavelengths::sample_visible(u_lambda)};
     PathRecord* path_record = record != nullptr ? &record->path : nullptr;
-    SampledSpectrum radiance = path_radiance(path_, tracer, ray, lambda, stream, &first, path_record);
+    const FilmContribution path = std::visit(
+        [&](const auto& integrator) {
+            return integrator.estimate(scene_, tracer, camera, stream, path_record);
+        },
+        integrator_);
 
     Result result;
-    const Vec3f sensor_rgb = sensor_.to_rgb(radiance, lambda);
+    const Vec3f sensor_rgb = sensor_.to_rgb(path.radiance, path.lambda);
     const float largest = max_component(sensor_rgb);
     const float clamp = largest > max_component_value_ ? max_component_value_ / largest : 1;
     const Vec3f rgb = sensor_rgb * clamp * point.weight;
-    result.bad = badness(rgb, radiance);
+    result.bad = badness(rgb, path.radiance);
     if (record != nullptr) [[unlikely]] {
         record->filter = point;
         record->film = film;
         record->lens = u_lens;
-        record->lambda = all;
-        record->lambda_end = lambda;
+        record->lambda = camera.lambda;
+        record->lambda_end = path.lambda;
         record->sensor_rgb = sensor_rgb;
         record->clamp = clamp;
         record->rgb = rgb;
@@ -77,8 +78,9 @@ SampleContext::Result SampleContext::trace(RayTracer& tracer, int x, int y, std:
     if (clamp < 1) [[unlikely]]
         result.clamped =
             static_cast<float>(dot(Vec3d(sensor_rgb), luminance_weight)) * (1 - clamp) * point.weight;
-    if (first.found) {
-        result.film.albedo = albedo_sensor_.to_rgb(first.albedo * white_.sample(all) * white_scale_, all);
+    if (const FirstHit& first = path.first; first.found) {
+        result.film.albedo =
+            albedo_sensor_.to_rgb(first.albedo * white_.sample(camera.lambda) * white_scale_, camera.lambda);
         result.film.normal = first.normal;
         result.film.depth = first.depth;
     }

@@ -12,7 +12,7 @@
 #include "montelux/spectrum/rgb_colorspace.h"
 #include "montelux/spectrum/sensor.h"
 #include "montelux/spectrum/spectrum_table.h"
-#include "montelux/transport/path.h"
+#include "montelux/transport/integrator.h"
 
 namespace montelux {
 
@@ -42,7 +42,9 @@ class SampleContext {
 
     const SamplerSettings& sampler_;
     float max_component_value_;
-    PathScene path_;
+    SceneView scene_;
+    const Camera& camera_;
+    Integrator integrator_;
     PixelFilterSampler filter_;
     Sensor sensor_;
     Sensor albedo_sensor_;

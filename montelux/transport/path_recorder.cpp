@@ -40,6 +40,11 @@ void PathRecorder::sampled_light(DirectLight light) const {
     v.direct = light;
 }
 
+void PathRecorder::occluded() const {
+    last().direct->outcome = DirectLight::Outcome::occluded;
+    last().direct->contribution = {};
+}
+
 void PathRecorder::scattered(const Scattering& scattering) const {
     PathVertex& v = last();
     v.continued = v.throughput * scattering.sample.weight;

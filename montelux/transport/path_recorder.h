@@ -24,6 +24,8 @@ class PathRecorder {
     [[gnu::cold]] void found_light(FoundLight light) const;
     [[gnu::cold]] void made_bsdf(const SurfaceBsdf& bsdf, Vec3f wo) const;
     [[gnu::cold]] void sampled_light(DirectLight light) const;
+    // The shadow ray of the light that was sampled.
+    [[gnu::cold]] void occluded() const;
     [[gnu::cold]] void scattered(const Scattering& scattering) const;
     [[gnu::cold]] void played_roulette(Roulette roulette) const;
     [[gnu::cold]] void ended(PathEnd end) const;

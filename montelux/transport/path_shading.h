@@ -1,0 +1,230 @@
+// The templates of PathIntegrator, for use with any stream of numbers.
+#pragma once
+
+#include <algorithm>
+
+#include "montelux/mc/warp/hemisphere.h"
+#include "montelux/mc/warp/sphere.h"
+#include "montelux/scene/light/light_sampling.h"
+#include "montelux/scene/material/make_bsdf.h"
+#include "montelux/scene/shape/surface_point.h"
+#include "montelux/transport/one_copy.h"
+#include "montelux/transport/path_integrator.h"
+
+namespace montelux {
+
+// Directions that know nothing of the BSDF: uniform over the hemisphere of wo, or over the sphere where it
+// transmits. A delta lobe beside others gets half of the samples, since no such direction can find it.
+template <BsdfModel B, RandomStream Stream>
+std::optional<BsdfSample> sample_uniform(const B& bsdf, Vec3f wo, Stream& stream) {
+    float share = 1;
+    if (bsdf.has_specular()) {
+        share = 0.5f;
+        float u_choice = stream.next_1d();
+        if (u_choice < share) {
+            auto s = bsdf.sample(wo, TransportMode::radiance, stream);
+            if (!s || !s->specular) return std::nullopt;
+            s->weight /= share;
+            return s;
+        }
+    }
+    Vec2f u = stream.next_2d();
+    BsdfSample s;
+    if constexpr (B::traits.transmits) {
+        s.wi = sample_uniform_sphere(u);
+        s.pdf = share * inv_four_pi_f;
+        s.transmission = !same_hemisphere(wo, s.wi);
+        if (s.transmission) s.eta = bsdf.transmitted_eta(wo);
+    } else {
+        s.wi = sample_uniform_hemisphere(u);
+        if (wo.z < 0) s.wi.z = -s.wi.z;
+        s.pdf = share * inv_two_pi_f;
+    }
+    BsdfEvaluation e = bsdf.evaluate(wo, s.wi, TransportMode::radiance, stream);
+    s.weight = e.f / s.pdf;
+    if (is_black(s.weight)) return std::nullopt;
+    return s;
+}
+
+// What scatters at one vertex of a path.
+template <RandomStream Stream>
+struct PathIntegrator::Vertex {
+    const PathIntegrator& path;
+    const SceneView& scene;
+    PathState& state;
+    Stream& stream;
+    PathRecorder recorder;
+    Frame frame; // of the BSDF
+    Vec3f wo;    // in it
+    ReferencePoint here;
+
+    // Next-event estimation: one light, one point on it. Lights that scattering cannot find are sampled
+    // whatever the strategy says.
+    template <BsdfModel B>
+    std::optional<ShadowRay> sample_light(const B& bsdf) const {
+        using Outcome = DirectLight::Outcome;
+        const LightSampler& lights = *scene.light_sampler;
+        if (lights.empty()) return std::nullopt;
+        // Among few lights the choice takes the first number's leading digits and leaves the others for the
+        // point: one dimension less keeps point sets better stratified.
+        const bool few = lights.size() <= 64;
+        Vec2f u = stream.next_2d();
+        const LightChoice chosen = lights.sample(here, stream.refined(few ? u.x : stream.next_1d()));
+        const float choice = chosen.probability;
+        if (few) u.x = std::min(static_cast<float>(chosen.remapped), largest_below_one<float>);
+        const auto light = sample_li({scene, chosen.light}, chosen.part, here, u, state.lambda);
+        if (!light || (!light->invisible && !path.samples_lights())) {
+            if (recorder)
+                recorder.sampled_light({.outcome = light ? Outcome::left_to_scattering : Outcome::dark,
+                                        .light = chosen.light,
+                                        .part = chosen.part,
+                                        .choice = choice});
+            return std::nullopt;
+        }
+        const BsdfEvaluation e =
+            bsdf.evaluate(wo, frame.to_local(light->wi), TransportMode::radiance, stream);
+        const float light_pdf = choice * light->pdf;
+        auto record = [&](Outcome outcome, float weight) {
+            if (recorder)
+                recorder.sampled_light({.outcome = outcome,
+                                        .light = chosen.light,
+                                        .part = chosen.part,
+                                        .choice = choice,
+                                        .delta = light->delta,
+                                        .wi = light->wi,
+                                        .shadow = light->shadow,
+                                        .radiance = light->radiance,
+                                        .f = e.f,
+                                        .light_pdf = light_pdf,
+                                        .bsdf_pdf = e.pdf,
+                                        .weight = weight});
+        };
+        if (is_black(e.f) || is_black(light->radiance)) {
+            record(Outcome::no_transport, 0);
+            return std::nullopt;
+        }
+        const Strategy strategy = path.settings_.strategy;
+        const float weight =
+            light->invisible || strategy == Strategy::light ? 1 : path.weight(light_pdf, e.pdf);
+        if (strategy == Strategy::mis_bsdf) {
+            record(Outcome::other_term, weight);
+            return std::nullopt;
+        }
+        record(Outcome::counted, weight);
+        return ShadowRay{light->shadow, state.throughput * e.f * light->radiance * (weight / light_pdf)};
+    }
+
+    template <BsdfModel B>
+    std::optional<BsdfSample> sample_direction(const B& bsdf) const {
+        if (path.settings_.strategy == Strategy::uniform && !bsdf.is_specular())
+            return sample_uniform(bsdf, wo, stream);
+        return bsdf.sample(wo, TransportMode::radiance, stream);
+    }
+
+    // Russian roulette on what the path can still carry to the film. Returns false at its end.
+    bool survives() const {
+        const float strength = max_value(state.throughput) * state.eta_scale;
+        if (!(strength > 0)) {
+            // What is not a number must not end unseen: the sample becomes bad with it.
+            state.radiance += state.throughput;
+            if (recorder)
+                recorder.ended(is_black(state.throughput) ? PathEnd::nothing_carried
+                                                          : PathEnd::bad_throughput);
+            return false;
+        }
+        if (!(strength < 1) || state.depth <= 1) return true;
+        const float u = stream.next_1d();
+        if (recorder) recorder.played_roulette({.survival = strength, .u = u});
+        if (!(u < strength)) {
+            if (recorder) recorder.ended(PathEnd::roulette);
+            return false;
+        }
+        state.throughput /= strength;
+        return true;
+    }
+};
+
+// One copy, so that every driver of paths gets the same bits.
+template <RandomStream Stream>
+MONTELUX_ONE_COPY std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState& state,
+                                                                 const Hit& hit, Stream& stream,
+                                                                 PathRecorder recorder) const {
+    const Vec3f w = state.ray.d;
+    const Index material = scene.shapes[hit.shape].material;
+    const bool textured = scene.is_textured(material);
+    const SurfacePoint s =
+        surface_point(scene, state.ray, hit, textured || scene.frame_follows_tangents(material));
+    if (recorder) recorder.hit_surface(state.ray, hit, s, state.throughput);
+    if (hit.instance == no_index && s.shape->light != no_index)
+        add_met_light(scene, state, s.shape->light, {.wi = w, .part = s.primitive, .p = s.p, .n = s.ng},
+                      recorder);
+    state.alive = false; // unless the path is found to go on
+    if (state.depth++ == settings_.max_depth) {
+        if (recorder) recorder.ended(PathEnd::max_depth);
+        return std::nullopt;
+    }
+
+    TextureContext context;
+    if (textured) context = texture_context(s);
+    const SurfaceBsdf surface = make_bsdf(scene, s, -w, context, state.lambda);
+    const Vec3f wo = surface.frame.to_local(-w);
+    if (recorder) recorder.made_bsdf(surface, wo);
+    if (state.depth == 1)
+        state.first = {.albedo = std::visit([&](const auto& b) { return b.albedo(wo); }, surface.bsdf),
+                       .normal = surface.frame.n,
+                       .depth = hit.t,
+                       .found = true};
+    if (wo.z == 0) {
+        if (recorder) recorder.ended(PathEnd::grazing);
+        return std::nullopt;
+    }
+
+    const Vertex<Stream> vertex{*this,    scene,         state, stream,
+                                recorder, surface.frame, wo,    {s.p, s.ng, s.error}};
+    std::optional<ShadowRay> shadow;
+    const std::optional<BsdfSample> scattered = std::visit(
+        [&](const BsdfModel auto& bsdf) {
+            if (!bsdf.is_specular()) shadow = vertex.sample_light(bsdf);
+            return vertex.sample_direction(bsdf);
+        },
+        surface.bsdf);
+    if (!scattered) {
+        if (recorder) recorder.ended(PathEnd::no_direction);
+        return shadow;
+    }
+    state.throughput *= scattered->weight;
+    state.bsdf_pdf = scattered->pdf;
+    state.sees_lights = scattered->specular;
+    state.previous = vertex.here;
+    if (scattered->transmission) state.eta_scale *= scattered->eta * scattered->eta;
+    const Vec3f wi = surface.frame.to_world(scattered->wi);
+    if (recorder) recorder.scattered({*scattered, wi});
+    state.ray = {offset_origin(s.p, s.ng, s.error, wi), wi};
+    state.alive = vertex.survives();
+    return shadow;
+}
+
+template <RandomStream Stream>
+FilmContribution PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer,
+                                          const CameraSample& camera, Stream& stream,
+                                          PathRecord* record) const {
+    const PathRecorder recorder(record);
+    PathState state(camera);
+    while (state.alive) {
+        Hit hit;
+        if (!tracer.intersect(state.ray, hit)) {
+            escape(scene, state, recorder);
+            break;
+        }
+        const std::optional<ShadowRay> shadow = shade(scene, state, hit, stream, recorder);
+        if (!shadow) continue;
+        if (!tracer.occluded(shadow->ray))
+            state.radiance += shadow->contribution;
+        else if (recorder)
+            recorder.occluded();
+    }
+    if (recorder) recorder.traced(state.radiance);
+    return {state.radiance, state.lambda, state.first};
+}
+
+} // namespace montelux
