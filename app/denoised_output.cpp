@@ -1,7 +1,6 @@
 #include "app/denoised_output.h"
 
 #include <cstdio>
-#include <exception>
 
 namespace montelux::app {
 
@@ -19,17 +18,6 @@ std::string describe(const Denoiser& denoiser, const DenoiseReport& report, bool
     return "denoised by " + denoiser.name() +
            (report.guides.empty() ? " without albedo and normal" : " with " + report.guides) +
            " (the error bars are those of the picture before denoising)";
-}
-
-DenoiseOutcome denoise_render(const std::optional<Denoiser>& denoiser, Image& image, bool stopped,
-                              bool quiet) {
-    if (!denoiser) return {};
-    if (stopped) return {", not denoised ('montelux denoise' can do it)", ""};
-    try {
-        return {", " + describe(*denoiser, denoise_image(*denoiser, image), quiet), ""};
-    } catch (const std::exception& e) {
-        return {", not denoised", e.what()};
-    }
 }
 
 } // namespace montelux::app

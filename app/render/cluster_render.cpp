@@ -88,14 +88,15 @@ SharedRender::~SharedRender() {
     }
 }
 
-RoundExecutor* SharedRender::begin(const SceneDescription& description, const RenderTarget& target) {
+RoundExecutor* SharedRender::begin(const SceneDescription& description, const SamplerSettings& sampler,
+                                   const RenderTarget& target) {
     if (job_ == nullptr) return nullptr;
     CoordinatorSettings settings;
     settings.threads = threads_;
     settings.tile_size = tile_size_for(description.film.crop, static_cast<double>(threads_) * job_->size());
     settings.patience_seconds = patience_seconds_;
     ByteWriter out;
-    out.put(Opening{digest_of(description.scene), description.sampler, settings.tile_size});
+    out.put(Opening{digest_of(description.scene), sampler, settings.tile_size});
     out.put(target);
     out.put_bytes(files_.bundle().to_bytes());
     files_ = {};

@@ -24,7 +24,8 @@ class SharedRender {
     FileSource* files() { return job_ != nullptr ? &files_ : nullptr; }
     // Sends scene and settings to the others, which begin to prepare them, and returns who leads; null where
     // the process is alone.
-    RoundExecutor* begin(const SceneDescription& description, const RenderTarget& target);
+    RoundExecutor* begin(const SceneDescription& description, const SamplerSettings& sampler,
+                         const RenderTarget& target);
     // The render is over; files may be written yet. Prints what the ranks missed.
     void end();
     void print_statistics() const;

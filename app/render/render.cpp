@@ -16,6 +16,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -26,10 +27,9 @@
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/render/checkpoint.h"
-#include "montelux/render/render_header.h"
-#include "montelux/render/renderer.h"
+#include "montelux/render/render_session.h"
+#include "montelux/render/render_warnings.h"
 #include "montelux/render/sample_allocation.h"
-#include "montelux/render/sample_order.h"
 
 namespace montelux::app {
 
@@ -103,31 +103,9 @@ void print_warnings(const Warnings& warnings) {
 
 void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed) {
     if (bad.count() == 0) return;
-    const char* kind = bad.first->kind == BadSample::Kind::nan        ? "not a number"
-                       : bad.first->kind == BadSample::Kind::infinite ? "infinite"
-                                                                      : "negative";
-    std::fprintf(
-        stderr,
-        "montelux: warning: %llu samples were left out (%llu not a number, %llu infinite, %llu "
-        "negative); the first, %s, is sample %llu of pixel %d,%d with seed %llu; to see its path, add "
-        "--debug-sample %d,%d,%llu\n",
-        static_cast<unsigned long long>(bad.count()), static_cast<unsigned long long>(bad.nan),
-        static_cast<unsigned long long>(bad.infinite), static_cast<unsigned long long>(bad.negative), kind,
-        static_cast<unsigned long long>(bad.first->sample), bad.first->x, bad.first->y,
-        static_cast<unsigned long long>(seed), bad.first->x, bad.first->y,
-        static_cast<unsigned long long>(bad.first->sample));
-}
-
-// A render that was stopped may be without errors, which nothing in its picture would explain.
-void print_missing_error(const FilmError& error, const SamplerSettings& sampler, const RenderTarget& target) {
-    if (target.slice.count > 1) return; // the joined slices will have them
-    const std::uint64_t points = SampleOrder(sampler, target.slice).replicate_size();
-    if (std::isfinite(error.relative) || error.mean_samples < 2 || points < 2) return;
-    std::fprintf(
-        stderr,
-        "montelux: warning: the errors are unknown: fewer than two replicates of %llu samples per pixel are "
-        "complete; --time and --target-error use short replicates\n",
-        static_cast<unsigned long long>(points));
+    std::fprintf(stderr, "montelux: warning: %s; to see its path, add --debug-sample %d,%d,%llu\n",
+                 bad_sample_warning(bad, seed).c_str(), bad.first->x, bad.first->y,
+                 static_cast<unsigned long long>(bad.first->sample));
 }
 
 // What ended the render, where that is not the number of samples.
@@ -163,15 +141,19 @@ void print_statistics(const RenderReport& report, double load_seconds, double bu
     std::printf("peak memory        %.1f MiB\n", static_cast<double>(usage.ru_maxrss) / 1024);
 }
 
-void check_slice_option(const SceneDescription& description, const RenderTarget& target) {
+void check_slice_option(const SamplerSettings& sampler, const RenderTarget& target) {
     try {
-        check_slice(description, target);
+        check_slice(sampler, target);
     } catch (const Error& e) {
         throw UsageError("--slice", e.what());
     }
 }
 
 int replay(const RenderOptions& options, const SceneDescription& description, const RenderTarget& target) {
+    // The replicates of a render that was resumed are those of its beginning.
+    std::uint32_t replicate_points = 0;
+    if (options.resume && generation_exists(options.checkpoint))
+        replicate_points = load_checkpoint(options.checkpoint, description, target).replicate_points;
     const SampleAddress& s = *options.debug_sample;
     try {
         check_sample(description, s.x, s.y, s.index, target);
@@ -181,31 +163,24 @@ int replay(const RenderOptions& options, const SceneDescription& description, co
     if (!options.quiet && (!options.outputs.empty() || options.stats))
         std::fprintf(stderr, "montelux: warning: --debug-sample renders no picture: nothing is written, and "
                              "there are no statistics\n");
-    check_slice_option(description, target);
-    const Renderer renderer(description, target);
+    check_slice_option(with_points(description.sampler, replicate_points), target);
+    const Renderer renderer(description, target, replicate_points);
     std::fputs(sample_record_text(renderer.replay(s.x, s.y, s.index), description).c_str(), stdout);
     return exit_done;
 }
 
-// A new render, or the one that is to be gone on with, whose replicates the description takes over.
-RenderState initial_state(const RenderOptions& options, SceneDescription& description,
-                          const RenderTarget& target) {
-    if (!options.resume || !generation_exists(options.checkpoint)) {
-        if (options.resume && !options.quiet)
-            std::fprintf(stderr, "montelux: %s is not there yet: rendering from the start\n",
-                         options.checkpoint.c_str());
-        return RenderState(description.film);
-    }
-    RestoredRender restored = load_checkpoint(options.checkpoint, description, target);
-    if (!restored.newest_refused_because.empty())
+void tell_of_beginning(const RenderSession& session, bool quiet) {
+    const std::string file = session.settings().checkpoint.string();
+    if (!session.refused_checkpoint().empty())
         std::fprintf(stderr, "montelux: warning: going on from the checkpoint before the last: %s\n",
-                     restored.newest_refused_because.c_str());
-    description.sampler.replicate_points = restored.replicate_points;
-    if (const double there = restored.state.film.error().mean_samples;
-        !options.quiet && target.slice.count == 1 && there > description.sampler.spp)
+                     session.refused_checkpoint().c_str());
+    if (quiet) return;
+    if (session.settings().resume && !session.resumed())
+        std::fprintf(stderr, "montelux: %s is not there yet: rendering from the start\n", file.c_str());
+    const std::uint32_t spp = session.description().sampler.spp;
+    if (session.settings().target.slice.count == 1 && session.samples_before() > spp)
         std::fprintf(stderr, "montelux: %s has %.7g samples per pixel already, more than the %u asked for\n",
-                     options.checkpoint.c_str(), there, description.sampler.spp);
-    return std::move(restored.state);
+                     file.c_str(), session.samples_before(), spp);
 }
 
 int load_and_render(const RenderOptions& options, SharedRender& shared) {
@@ -220,13 +195,7 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     if (!options.quiet) print_warnings(warnings);
     apply(options, description);
     const RenderTarget target = target_of(options);
-    if (options.debug_sample) {
-        // The replicates of a render that was gone on with are those of its beginning.
-        if (options.resume && generation_exists(options.checkpoint))
-            description.sampler.replicate_points =
-                load_checkpoint(options.checkpoint, description, target).replicate_points;
-        return replay(options, description, target);
-    }
+    if (options.debug_sample) return replay(options, description, target);
     const std::vector<std::string> outputs = outputs_of(options, description);
     for (const std::string& output : outputs) check_picture_path(output, files_read);
     if (!options.checkpoint.empty()) check_checkpoint(options, outputs, files_read);
@@ -234,69 +203,67 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     std::optional<Denoiser> denoiser; // one that is missing is told before the render
     if (options.denoise) denoiser.emplace(Denoiser::load(options.threads));
 
-    RenderState state = initial_state(options, description, target);
-    check_slice_option(description, target);
-    RoundExecutor* const executor = shared.begin(description, target);
-    Renderer renderer(description, target);
-    const PixelBounds& crop = description.film.crop;
+    RenderSession session(std::make_shared<const SceneDescription>(std::move(description)),
+                          {target, std::filesystem::path(options.scene).filename().string(),
+                           options.checkpoint, options.checkpoint_every, options.resume});
+    tell_of_beginning(session, options.quiet);
+    const SamplerSettings sampler = session.sampler();
+    check_slice_option(sampler, target);
+    RenderCompany company;
+    company.executor = shared.begin(session.description(), sampler, target);
+    session.prepare();
+    const PixelBounds& crop = session.description().film.crop;
     ProgressPrinter printer(options.quiet, target.quantile > 0 ? 0 : target.error,
-                            static_cast<double>(crop.width()) * crop.height() * description.sampler.spp);
-    RenderControl control;
-    control.progress = [&](const RenderProgress& p) { printer.update(p); };
-    control.cancel = &cancel_on_signals();
-    control.executor = executor;
-    control.checkpoint_seconds = options.checkpoint_every;
-    // A full disk must not cost the render: it goes on, and says so in the end too.
-    std::string checkpoint_failure;
-    if (!options.checkpoint.empty())
-        control.checkpoint = [&](const RenderState& s) {
-            checkpoint_failure.clear();
-            try {
-                save_checkpoint(options.checkpoint, renderer, s);
-            } catch (const std::exception& e) {
-                checkpoint_failure = e.what();
-                std::fprintf(stderr, "\nmontelux: warning: %s; the render goes on without this checkpoint\n",
-                             e.what());
-            }
-        };
-    renderer.render(state, control);
+                            static_cast<double>(crop.width()) * crop.height() * sampler.spp);
+    company.progress = [&](const RenderProgress& p) { printer.update(p); };
+    company.cancel = &cancel_on_signals();
+    // It goes on, and says so in the end, too.
+    company.checkpoint_failed = [](const std::string& reason) {
+        std::fprintf(stderr, "\nmontelux: warning: %s; the render goes on without this checkpoint\n",
+                     reason.c_str());
+    };
+    session.render(company);
     printer.finish();
     shared.end();
-    const RenderReport& report = state.report;
-
-    const FilmError error = state.film.error();
-    Image image = state.film.develop(target.slice.count > 1);
-    add_render_header(image, std::filesystem::path(options.scene).filename().string(), renderer, report,
-                      error, clamped_luminance(state.film));
     finish_on_signals();
-    const DenoiseOutcome denoised = denoise_render(denoiser, image, report.cancelled(), options.quiet);
+    std::string denoised = denoiser ? ", not denoised ('montelux denoise' can do it)" : "";
+    std::function<void(Image&)> denoise;
+    if (denoiser)
+        denoise = [&](Image& image) {
+            denoised = ", not denoised";
+            denoised = ", " + describe(*denoiser, denoise_image(*denoiser, image), options.quiet);
+        };
+    const RenderSnapshot result = session.finish(denoise);
+    const RenderReport& report = result.report;
     OutputFiles files;
-    for (const std::string& output : outputs) files.write(output, [&] { write_picture(output, image); });
+    for (const std::string& output : outputs)
+        files.write(output, [&] { write_picture(output, *result.image); });
     if (!options.quiet) {
-        print_bad_samples(report.bad, description.sampler.seed);
-        print_clamped(static_cast<double>(report.clamped_samples), clamped_luminance(state.film),
-                      error.mean_luminance);
+        print_bad_samples(report.bad, sampler.seed);
+        print_clamped(static_cast<double>(report.clamped_samples), result.clamped_luminance,
+                      result.error.mean_luminance);
         for (const std::string& output : files.written())
             std::printf("%s: %d x %d pixels, %.7g samples per pixel, relative error %s, %s%s%s\n",
-                        output.c_str(), image.width(), image.height(), error.mean_samples,
-                        percent_text(error.relative).c_str(), duration_text(report.seconds).c_str(),
-                        ending_text(report, target).c_str(), denoised.note.c_str());
-        print_missing_error(error, renderer.sampler(), target);
-        print_outliers(outliers_of(state.film));
+                        output.c_str(), crop.width(), crop.height(), result.error.mean_samples,
+                        percent_text(result.error.relative).c_str(), duration_text(report.seconds).c_str(),
+                        ending_text(report, target).c_str(), denoised.c_str());
+        if (const std::string warning = missing_error_warning(result, session.renderer()); !warning.empty())
+            std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
+        print_outliers(*result.outliers);
         if (options.stats) {
-            print_statistics(report, load_seconds, renderer.build_seconds());
-            for (const EnvironmentSampler& map : renderer.scene().light_tables.environments)
+            print_statistics(report, load_seconds, session.renderer().build_seconds());
+            for (const EnvironmentSampler& map : session.renderer().scene().light_tables.environments)
                 std::printf("environment        %s\n", map.description().c_str());
-            for (const PortalSampler& map : renderer.scene().light_tables.portals)
+            for (const PortalSampler& map : session.renderer().scene().light_tables.portals)
                 std::printf("environment        %s\n", map.description().c_str());
             shared.print_statistics();
         }
     }
     files.throw_failures();
     shared.end_job_if_failed(exit_interrupted);
-    if (!denoised.failure.empty()) throw Error(denoised.failure);
-    if (!checkpoint_failure.empty())
-        throw Error("the last checkpoint was not written, the picture was", checkpoint_failure);
+    if (!result.denoise_failure.empty()) throw Error(result.denoise_failure);
+    if (const std::string failure = session.checkpoint_failure(); !failure.empty())
+        throw Error("the last checkpoint was not written, the picture was", failure);
     if (report.cancelled()) return exit_interrupted;
     return target.error > 0 && report.stop != RenderStop::error ? exit_stopped : exit_done;
 }

@@ -1,19 +1,26 @@
-// RenderControl: progress, checkpoints and cancelling of a running render, and the executor of its rounds.
+// RenderControl: progress, checkpoints, looks at and cancelling of a running render, and who takes its samples.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <optional>
 
-#include "montelux/film/film_error.h"
+#include "montelux/film/film.h"
 #include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux {
 
 struct RenderState;
-
+class LiveFilm;
 class RoundExecutor;
+
+// A tile whose pixels have reached their target sample counts. The pixels are those of the film, and do not
+// change before the callback returns.
+struct FinishedTile {
+    PixelBounds bounds;
+    std::uint64_t round = 0; // counted from 0 since the render began or was resumed
+    const Film* film = nullptr;
+};
 
 struct RenderProgress {
     std::uint64_t samples_done = 0, samples_total = 0; // the total is a guess where a target is given
@@ -31,10 +38,11 @@ struct RenderControl {
     // at the end, before the film is closed.
     std::function<void(const RenderState&)> checkpoint;
     double checkpoint_seconds = 60;
-    // Setting `snapshot_wanted` asks for one call of `snapshot`, as soon as no sample is being taken and
-    // unless the render ends then; the render resets it. Checkpoints keep their times.
-    std::function<void(const RenderState&)> snapshot;
-    std::atomic<bool>* snapshot_wanted = nullptr;
+    // Called when all pixels of a tile have their samples of a round: once per tile and round, from the threads
+    // that render, for several tiles at once.
+    std::function<void(const FinishedTile&)> tile;
+    // For threads that look at the render meanwhile; null: none. With an executor a look ends the round early.
+    LiveFilm* live = nullptr;
     const CancelFlag* cancel = nullptr;
     // Who takes the samples; the threads of this process where there is none. The result is the same.
     RoundExecutor* executor = nullptr;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "montelux/mc/math/error.h"
+#include "montelux/render/live_film.h"
 #include "montelux/render/round_executor.h"
 #include "montelux/render/sample_allocation.h"
 #include "montelux/render/sample_context.h"
@@ -33,7 +34,14 @@ class RenderLoop {
         : renderer_(renderer), state_(state), control_(control),
           order_(renderer.sampler(), renderer.target().slice),
           tile_renderer_(context, renderer.accelerator(), order_),
-          tiles_(tiles_of(state.film.bounds(), tile_size)), seconds_before_(state.report.seconds) {}
+          tiles_(tiles_of(state.film.bounds(), tile_size)), finished_(tiles_.size()),
+          seconds_before_(state.report.seconds) {
+        if (!round_is_done()) round_ = 0; // of a restored state
+        if (control.live != nullptr) control.live->open(state, tiles_, [this] { return report_now(); });
+    }
+    ~RenderLoop() { close_live(); }
+    RenderLoop(const RenderLoop&) = delete;
+    RenderLoop& operator=(const RenderLoop&) = delete;
 
     // The loop over rounds.
     void run() {
@@ -48,10 +56,14 @@ class RenderLoop {
                 if (target_samples.empty()) return end(RenderStop::samples);
                 state_.target_samples = std::move(target_samples);
                 join_rounds();
+                std::ranges::fill(finished_, char{0});
+                ++round_;
             }
-            if (snapshot_is_due() && state_.report.samples > 0) take_snapshot();
             take_samples();
-            state_.report.seconds = seconds();
+            {
+                std::lock_guard lock(mutex_);
+                state_.report.seconds = seconds();
+            }
             if (cancelled() || (control_.executor != nullptr && control_.executor->failed()))
                 return end(all_taken() ? RenderStop::samples : RenderStop::cancelled);
             if (checkpoint_is_due()) save_checkpoint();
@@ -64,15 +76,11 @@ class RenderLoop {
     bool checkpoint_is_due() const {
         return control_.checkpoint && seconds_since(last_checkpoint_) >= control_.checkpoint_seconds;
     }
-    bool snapshot_is_due() const {
-        return control_.snapshot_wanted != nullptr &&
-               control_.snapshot_wanted->load(std::memory_order_relaxed);
-    }
     bool out_of_time() const {
         // A picture with a sample of each pixel is the least there is to show.
         return renderer_.target().time > 0 && every_pixel_seen_ && seconds() >= renderer_.target().time;
     }
-    bool pause_is_due() const { return checkpoint_is_due() || snapshot_is_due() || out_of_time(); }
+    bool pause_is_due() const { return checkpoint_is_due() || out_of_time(); }
     void pause_if_due() {
         if (pause_is_due()) pause_ = true;
     }
@@ -130,46 +138,89 @@ class RenderLoop {
     }
 
     void take_samples() {
-        if (control_.executor != nullptr) {
-            const RoundWatch watch{
-                [this](bool something_done) { return cancelled() || (something_done && pause_is_due()); },
-                [this](std::uint64_t samples, const std::optional<FilmError>& error) {
-                    samples_beyond_ = samples;
-                    report_progress(error);
-                },
-                control_.cancel};
-            control_.executor->run(tile_renderer_, state_, watch);
-            samples_beyond_ = 0;
-            return;
-        }
+        if (control_.executor != nullptr) return let_executor_take_samples();
         pause_ = false;
         parallel_for(
             static_cast<std::int64_t>(tiles_.size()),
-            [&](std::int64_t t) { render_tile(tiles_[static_cast<std::size_t>(t)]); }, control_.cancel);
+            [&](std::int64_t t) { render_tile(static_cast<std::size_t>(t)); }, control_.cancel);
     }
 
-    void render_tile(const PixelBounds& tile) {
+    void let_executor_take_samples() {
+        LiveFilm* const live = control_.live;
+        const RoundWatch watch{[&](bool something_done) {
+                                   const bool looked_at = live != nullptr && live->is_wanted();
+                                   return cancelled() || (something_done && (pause_is_due() || looked_at));
+                               },
+                               [this](std::uint64_t samples, const std::optional<FilmError>& error) {
+                                   samples_beyond_ = samples;
+                                   report_progress(error);
+                               },
+                               control_.cancel};
+        {
+            const auto held = live != nullptr ? live->hold_all() : std::unique_lock<std::timed_mutex>();
+            control_.executor->run(tile_renderer_, state_, watch);
+        }
+        samples_beyond_ = 0;
+        for (std::size_t t = 0; t < tiles_.size(); ++t) tell_if_finished(t);
+        if (live != nullptr) live->wait_for_copies();
+    }
+
+    void render_tile(std::size_t index) {
         if (pause_) return;
         const PixelBounds& film = state_.film.bounds();
+        const PixelBounds& tile = tiles_[index];
         const auto stride = static_cast<std::size_t>(film.width());
         const std::size_t first = static_cast<std::size_t>(tile.y0 - film.y0) * stride +
                                   static_cast<std::size_t>(tile.x0 - film.x0);
         TileTally tally;
-        auto stopped = [this] { return pause_ || cancelled(); };
-        tile_renderer_.render({.bounds = tile,
-                               .pixels = &state_.film.pixels()[first],
-                               .stride = stride,
-                               .target_samples = &state_.target_samples[first],
-                               .target_stride = stride},
-                              tally, stopped, [&] {
-                                  pause_if_due();
-                                  return stopped();
-                              });
+        LiveFilm* const live = control_.live;
+        auto stopped = [&] {
+            if (live != nullptr) live->between_samples(index);
+            return pause_ || cancelled();
+        };
+        {
+            const auto held = live != nullptr ? live->hold(index) : std::unique_lock<std::mutex>();
+            tile_renderer_.render({.bounds = tile,
+                                   .pixels = &state_.film.pixels()[first],
+                                   .stride = stride,
+                                   .target_samples = &state_.target_samples[first],
+                                   .target_stride = stride},
+                                  tally, stopped, [&] {
+                                      pause_if_due();
+                                      return stopped();
+                                  });
+        }
+        tell_if_finished(index);
         std::lock_guard lock(mutex_);
         tally.add_to(state_.report);
         // Not before something was done: short intervals must not keep the loop from going on.
         if (tally.samples > 0) pause_if_due();
         if (seconds_since(last_progress_) > 0.2) report_progress(std::nullopt);
+    }
+
+    void tell_if_finished(std::size_t index) {
+        if (!control_.tile || finished_[index] != 0) return;
+        const PixelBounds& film = state_.film.bounds();
+        const PixelBounds& tile = tiles_[index];
+        for (int y = tile.y0; y < tile.y1; ++y)
+            for (int x = tile.x0; x < tile.x1; ++x) {
+                const std::size_t i =
+                    static_cast<std::size_t>(y - film.y0) * static_cast<std::size_t>(film.width()) +
+                    static_cast<std::size_t>(x - film.x0);
+                if (state_.film.pixels()[i].samples() < state_.target_samples[i]) return;
+            }
+        finished_[index] = 1;
+        control_.tile({tile, round_, &state_.film});
+    }
+
+    RenderReport report_now() {
+        std::lock_guard lock(mutex_);
+        RenderReport report = state_.report;
+        report.seconds = seconds();
+        return report;
+    }
+    void close_live() {
+        if (control_.live != nullptr) control_.live->close();
     }
 
     void report_progress(const std::optional<FilmError>& error) {
@@ -194,15 +245,12 @@ class RenderLoop {
         return std::max(progress_.samples_done, static_cast<std::uint64_t>(expected));
     }
 
-    void take_snapshot() {
-        control_.snapshot_wanted->store(false, std::memory_order_relaxed);
-        control_.snapshot(state_);
-    }
     void save_checkpoint() {
         control_.checkpoint(state_);
         last_checkpoint_ = Clock::now();
     }
     void end(RenderStop reason) {
+        close_live();
         state_.report.seconds = seconds();
         state_.report.stop = reason;
         if (state_.report.rays.timed > 0)
@@ -230,7 +278,9 @@ class RenderLoop {
     SampleOrder order_;
     TileRenderer tile_renderer_;
     std::vector<PixelBounds> tiles_;
-    double seconds_before_; // of earlier sessions
+    std::vector<char> finished_;              // of each tile, in this round
+    std::uint64_t round_ = ~std::uint64_t{0}; // the next is the first
+    double seconds_before_;                   // of earlier sessions
     Clock::time_point begin_ = Clock::now(), last_checkpoint_ = begin_, last_progress_ = begin_;
     bool every_pixel_seen_ = false;
     std::atomic<bool> pause_{false};
@@ -254,11 +304,13 @@ std::string_view to_string(RenderStop reason) {
     }
 }
 
-Renderer::Renderer(const SceneDescription& description, const RenderTarget& target)
-    : description_(description), target_(target), sampler_(with_replicates(description.sampler, target)),
+Renderer::Renderer(const SceneDescription& description, const RenderTarget& target,
+                   std::uint32_t replicate_points)
+    : description_(description), target_(target),
+      sampler_(with_replicates(with_points(description.sampler, replicate_points), target)),
       camera_(description.scene.camera, description.film.width, description.film.height) {
     if (description.sampler.spp < 1) throw Error("sampler", "at least 1 sample per pixel is needed");
-    check_slice(description, target);
+    check_slice(with_points(description.sampler, replicate_points), target);
     auto begin = Clock::now();
     scene_digest_ = digest_of(description.scene);
     tables_ = std::make_unique<SceneTables>(description.scene, description.integrator.environments(),

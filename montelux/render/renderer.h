@@ -25,7 +25,9 @@ class TileRenderer;
 class Renderer {
   public:
     // Throws Error on settings that make no sense. Threads as the caller's ThreadLimit allows.
-    explicit Renderer(const SceneDescription& description, const RenderTarget& target = {});
+    // `replicate_points`, where not 0, are those of the render that is resumed.
+    explicit Renderer(const SceneDescription& description, const RenderTarget& target = {},
+                      std::uint32_t replicate_points = 0);
 
     const SceneDescription& description() const { return description_; }
     // Of the scene, as it was when the renderer was made.

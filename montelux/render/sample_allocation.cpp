@@ -85,11 +85,16 @@ SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& ta
     return settings;
 }
 
-void check_slice(const SceneDescription& description, const RenderTarget& target) {
+SamplerSettings with_points(SamplerSettings settings, std::uint32_t replicate_points) {
+    if (replicate_points != 0) settings.replicate_points = replicate_points;
+    return settings;
+}
+
+void check_slice(const SamplerSettings& sampler, const RenderTarget& target) {
     const Slice& slice = target.slice;
     if (slice.index >= slice.count)
         throw Error("slices are counted from 0, and there are " + std::to_string(slice.count));
-    if (SampleOrder(with_replicates(description.sampler, target), slice).share() == 0)
+    if (SampleOrder(with_replicates(sampler, target), slice).share() == 0)
         throw Error("there are fewer replicates than slices; more samples per pixel are needed");
 }
 

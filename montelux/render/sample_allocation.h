@@ -20,8 +20,11 @@ namespace montelux {
 // replicates, of at most eight points each, since the number of samples is not known beforehand.
 SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& target);
 
+// With the replicates of a render that is resumed, which are those of its beginning; 0: as they are.
+SamplerSettings with_points(SamplerSettings settings, std::uint32_t replicate_points);
+
 // Throws Error, a sentence, where the slice does not exist or would take no samples.
-void check_slice(const SceneDescription& description, const RenderTarget& target);
+void check_slice(const SamplerSettings& sampler, const RenderTarget& target);
 
 // Samples per pixel of the pilot of an adaptive render, from which its first errors are computed.
 std::uint64_t pilot_of(const SampleOrder& order);

@@ -114,9 +114,8 @@ class Render(Picture):
             if isinstance(self._watch, RenderProgress):
                 self._watch.finish()
             self._held = self._job.result()
-            for text in (self._held.bad_text, self._job.checkpoint_failure, self._job.denoise_failure):
-                if text:
-                    warnings.warn(text, RuntimeWarning, stacklevel=3)
+            for text in self._job.warnings():
+                warnings.warn(text, RuntimeWarning, stacklevel=3)
         return self._held
 
     def __repr__(self) -> str:

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "montelux/image/image_write.h"
 #include "montelux/image/tone_curve.h"
+#include "montelux/mc/io/generation_file.h"
+#include "montelux/render/render_warnings.h"
 
 namespace montelux::python {
 namespace {
@@ -33,20 +36,32 @@ std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::ui
         if (seed) own->sampler.seed = *seed;
         description = std::move(own);
     }
-    RenderJobSettings settings;
+    if (!checkpoint.empty() && !resume && generation_exists(checkpoint))
+        throw Error(checkpoint.string(),
+                    "the file is there already; resume=True goes on from it, or remove it");
+    RenderSessionSettings settings;
     settings.target.error = target_error;
     settings.target.quantile = quantile;
     settings.target.time = time;
     settings.target.adaptive = adaptive;
-    settings.threads = threads;
+    settings.target.slice = {slice.first - 1, slice.second};
+    settings.scene_name = scene.holder->name;
     settings.checkpoint = checkpoint;
     settings.checkpoint_every = checkpoint_every;
     settings.resume = resume;
-    settings.target.slice = {slice.first - 1, slice.second};
-    settings.scene_name = scene.holder->name;
-    settings.denoise = denoise;
     nb::gil_scoped_release unlocked;
-    return std::make_unique<RenderJob>(std::move(description), std::move(settings));
+    return std::make_unique<RenderJob>(std::move(description), std::move(settings), threads, denoise);
+}
+
+// What speaks against the finished render.
+std::vector<std::string> warnings_of(const RenderJob& job) {
+    const RenderSnapshot result = job.result();
+    const RenderSession& session = job.session();
+    std::vector<std::string> texts{bad_sample_warning(result.report.bad, session.sampler().seed),
+                                   missing_error_warning(result, session.renderer()),
+                                   session.checkpoint_failure(), result.denoise_failure};
+    std::erase(texts, "");
+    return texts;
 }
 
 // Layers by the names that users know, as arrays on the picture's own memory.
@@ -72,14 +87,6 @@ nb::dict layers_of(const RenderSnapshot& snapshot) {
     return d;
 }
 
-std::string bad_text(const BadSampleReport& bad) {
-    if (bad.count() == 0) return {};
-    return std::to_string(bad.count()) + " samples were left out (" + std::to_string(bad.nan) +
-           " not a number, " + std::to_string(bad.infinite) + " infinite, " + std::to_string(bad.negative) +
-           " negative); the first is sample " + std::to_string(bad.first->sample) + " of pixel " +
-           std::to_string(bad.first->x) + "," + std::to_string(bad.first->y);
-}
-
 // What screens and formats without layers show: the denoised picture, where there is one.
 Image shown(const RenderSnapshot& snapshot) {
     return snapshot.image->find_channel("denoised.R") ? denoised_picture(*snapshot.image) : *snapshot.image;
@@ -103,7 +110,6 @@ void bind_render(nb::module_& m) {
         .def_prop_ro("seconds", [](const RenderSnapshot& l) { return l.report.seconds; })
         .def_prop_ro("cpu_seconds", [](const RenderSnapshot& l) { return l.report.cpu_seconds; })
         .def_prop_ro("bad_samples", [](const RenderSnapshot& l) { return l.report.bad.count(); })
-        .def_prop_ro("bad_text", [](const RenderSnapshot& l) { return bad_text(l.report.bad); })
         .def_prop_ro("clamped_samples", [](const RenderSnapshot& l) { return l.report.clamped_samples; })
         .def_prop_ro("stop", [](const RenderSnapshot& l) { return std::string(to_string(l.report.stop)); })
         .def("screen", &screen, "exposure"_a, "8-bit sRGB: (bytes, height, width, channels).")
@@ -126,9 +132,9 @@ void bind_render(nb::module_& m) {
                  return nb::make_tuple(p.samples_done, p.samples_total, p.seconds,
                                        p.error ? nb::object(nb::float_(p.error->relative)) : nb::none());
              })
-        .def_prop_ro("refused_checkpoint", &RenderJob::refused_checkpoint)
-        .def_prop_ro("checkpoint_failure", &RenderJob::checkpoint_failure)
-        .def_prop_ro("denoise_failure", &RenderJob::denoise_failure);
+        .def("warnings", &warnings_of)
+        .def_prop_ro("refused_checkpoint",
+                     [](const RenderJob& j) { return j.session().refused_checkpoint(); });
     m.def("start_render", &start, "scene"_a, "spp"_a.none(), "seed"_a.none(), "target_error"_a,
           "target_quantile"_a, "time"_a, "adaptive"_a, "threads"_a, "checkpoint"_a, "checkpoint_every"_a,
           "resume"_a, "slice"_a, "denoise"_a, "montelux.Scene.render, with everything decided.");

@@ -43,6 +43,8 @@ def test_the_header_is_that_of_the_program(folder):
     assert {k: v for k, v in program.items() if k != "renderSeconds"} == {
         k: v for k, v in python.items() if k != "renderSeconds"
     }
+    there, here = montelux.read_channels(folder / "program.exr"), montelux.read_channels(folder / "python.exr")
+    assert there.keys() == here.keys() and all(np.array_equal(there[c], here[c], equal_nan=True) for c in there)
     scene.materials[0].reflectance = 0.1
     scene.render(spp=24, target_error=0.9).save(folder / "other.exr")
     other = header(folder, "other.exr")

@@ -1,7 +1,6 @@
 // Renders that are stopped, saved and continued end with the bits of one that never was.
 #include "test/render/mixed_scene.h"
 #include "test/temporary_folder.h"
-#include <atomic>
 #include <filesystem>
 #include <gtest/gtest.h>
 
@@ -88,35 +87,6 @@ TEST_F(Checkpoint, FinishedRendersCanBeRaised) {
         expect_same(restored.state.film, whole.film);
         EXPECT_EQ(restored.state.film.pixel(0, 0).samples(), 90u);
     }
-}
-
-// Both have times of their own, and neither changes a bit.
-TEST_F(Checkpoint, SnapshotsAreNoCheckpoints) {
-    SceneBuilder b = mixed_scene(1, 16, 16);
-    b.description.sampler.spp = 400;
-    RenderState whole(b.description.film), state(b.description.film);
-    const Renderer renderer(b.description);
-    renderer.render(whole);
-    std::atomic<bool> wanted{true};
-    int checkpoints = 0, snapshots = 0;
-    std::uint64_t seen = 0;
-    RenderControl control;
-    control.checkpoint_seconds = 1e9;
-    control.checkpoint = [&](const RenderState& s) {
-        ++checkpoints;
-        EXPECT_GT(s.report.samples, seen); // at the end alone
-    };
-    control.snapshot_wanted = &wanted;
-    control.snapshot = [&](const RenderState& s) {
-        ++snapshots;
-        EXPECT_GT(s.report.samples, seen);
-        seen = s.report.samples;
-        wanted = true;
-    };
-    renderer.render(state, control);
-    EXPECT_EQ(checkpoints, 1);
-    EXPECT_GT(snapshots, 3);
-    expect_same(state.film, whole.film);
 }
 
 TEST_F(Checkpoint, OtherRendersAreRefusedWithTheReason) {

@@ -1,0 +1,105 @@
+#include "montelux/render/render_session.h"
+
+#include <utility>
+
+#include "montelux/mc/io/generation_file.h"
+#include "montelux/mc/math/error.h"
+#include "montelux/render/checkpoint.h"
+#include "montelux/render/render_header.h"
+#include "montelux/render/sample_allocation.h"
+#include "montelux/render/sample_order.h"
+
+namespace montelux {
+
+RenderSession::RenderSession(std::shared_ptr<const SceneDescription> description,
+                             RenderSessionSettings settings)
+    : description_(std::move(description)), settings_(std::move(settings)) {
+    const std::filesystem::path& path = settings_.checkpoint;
+    if (path.empty() && settings_.resume)
+        throw Error("render", "resume was asked for without a checkpoint file to resume from");
+    const bool exists = !path.empty() && generation_exists(path);
+    if (exists && !settings_.resume)
+        throw Error(path.string(), "the file exists; resume the render that it holds, or remove it");
+    if (exists) {
+        RestoredRender restored = load_checkpoint(path, *description_, settings_.target);
+        refused_checkpoint_ = std::move(restored.newest_refused_because);
+        replicate_points_ = restored.replicate_points;
+        state_.emplace(std::move(restored.state));
+        samples_before_ = state_->film.error().mean_samples;
+    } else {
+        state_.emplace(description_->film);
+    }
+}
+
+SamplerSettings RenderSession::sampler() const {
+    return with_points(description_->sampler, replicate_points_);
+}
+
+void RenderSession::prepare() {
+    if (!renderer_)
+        renderer_ = std::make_unique<Renderer>(*description_, settings_.target, replicate_points_);
+}
+
+void RenderSession::render(const RenderCompany& company) {
+    prepare();
+    RenderControl control;
+    control.progress = company.progress;
+    control.tile = company.tile;
+    control.live = &live_;
+    control.cancel = company.cancel;
+    control.executor = company.executor;
+    control.checkpoint_seconds = settings_.checkpoint_every;
+    if (!settings_.checkpoint.empty())
+        control.checkpoint = [&](const RenderState& state) { save(state, company); };
+    renderer_->render(*state_, control);
+}
+
+void RenderSession::save(const RenderState& state, const RenderCompany& company) {
+    // A full disk must not cost the render.
+    std::string failure;
+    try {
+        save_checkpoint(settings_.checkpoint, *renderer_, state);
+    } catch (const std::exception& e) {
+        failure = e.what();
+        if (company.checkpoint_failed) company.checkpoint_failed(failure);
+    }
+    std::lock_guard lock(mutex_);
+    checkpoint_failure_ = std::move(failure);
+}
+
+std::string RenderSession::checkpoint_failure() const {
+    std::lock_guard lock(mutex_);
+    return checkpoint_failure_;
+}
+
+RenderSnapshot RenderSession::finish(const std::function<void(Image&)>& denoise) {
+    const RenderReport report = state_->report;
+    RenderSnapshot result = picture_of(state_->film, report);
+    result.outliers = outliers_of(state_->film);
+    state_.reset();
+    if (denoise && !report.cancelled()) {
+        try {
+            denoise(*std::const_pointer_cast<Image>(result.image)); // nobody else has it yet
+        } catch (const std::exception& e) {
+            result.denoise_failure = e.what();
+        }
+    }
+    return result;
+}
+
+std::optional<RenderSnapshot> RenderSession::snapshot(double seconds) {
+    std::optional<LiveCopy> now = live_.copy(seconds);
+    if (!now) return std::nullopt;
+    now->film.end_replicates(SampleOrder(renderer_->sampler(), settings_.target.slice).replicate_size());
+    return picture_of(now->film, now->report);
+}
+
+RenderSnapshot RenderSession::picture_of(const Film& film, const RenderReport& report) const {
+    auto image = std::make_shared<Image>(film.develop(settings_.target.slice.count > 1));
+    const FilmError error = film.error();
+    const double clamped = clamped_luminance(film);
+    add_render_header(*image, settings_.scene_name, *renderer_, report, error, clamped);
+    return {std::move(image), error, report, clamped};
+}
+
+} // namespace montelux

@@ -1,0 +1,100 @@
+// RenderSession: one render from its settings to its picture, with checkpoints, snapshots and header.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "montelux/film/film_error.h"
+#include "montelux/image/image.h"
+#include "montelux/render/live_film.h"
+#include "montelux/render/render_control.h"
+#include "montelux/render/renderer.h"
+
+namespace montelux {
+
+struct RenderSessionSettings {
+    RenderTarget target;
+    std::string scene_name;           // for the header of the picture
+    std::filesystem::path checkpoint; // empty: none
+    double checkpoint_every = 60;     // seconds
+    bool resume = false;              // from the checkpoint, where there is one
+};
+
+// The picture of a render at some moment.
+struct RenderSnapshot {
+    std::shared_ptr<const Image> image; // the layers of Film::develop() with the header of a render
+    FilmError error;
+    RenderReport report;
+    double clamped_luminance = 0;            // mean over pixels, of what the film's limit took away
+    std::optional<OutlierReport> outliers{}; // of the finished picture
+    std::string denoise_failure{};           // why it was not denoised though it should have been
+};
+
+// Who takes part in a render, beside the session.
+struct RenderCompany {
+    ProgressCallback progress{};
+    std::function<void(const FinishedTile&)> tile{}; // RenderControl::tile
+    const CancelFlag* cancel = nullptr;
+    RoundExecutor* executor = nullptr;
+    // A checkpoint could not be written: the render goes on without.
+    std::function<void(const std::string& reason)> checkpoint_failed{};
+};
+
+// What the program and Python have in common. Threads as the caller's ThreadLimit allows.
+class RenderSession {
+  public:
+    // Begins a render, or resumes it from the checkpoint. The description must not change any more. Throws
+    // Error for settings that make no sense, for a checkpoint of another render (load_checkpoint), and for one
+    // that exists and would be overwritten without `resume`.
+    RenderSession(std::shared_ptr<const SceneDescription> description, RenderSessionSettings settings);
+
+    const SceneDescription& description() const { return *description_; }
+    const RenderSessionSettings& settings() const { return settings_; }
+    // The description's, with the replicates of the render that is resumed.
+    SamplerSettings sampler() const;
+    bool resumed() const { return replicate_points_ != 0; }
+    // Mean samples per pixel of the checkpoint.
+    double samples_before() const { return samples_before_; }
+    // Why the newest checkpoint was not resumed but the one before it; empty where it was.
+    const std::string& refused_checkpoint() const { return refused_checkpoint_; }
+
+    // Builds what the scene needs; render() does so where this was not called.
+    void prepare();
+    // After that.
+    const Renderer& renderer() const { return *renderer_; }
+
+    // Takes samples until the target is reached, all are taken, or the company cancels. To be called once.
+    void render(const RenderCompany& company = {});
+    // The finished picture, after render(). `denoise` adds its layers to it, unless the render was cancelled;
+    // what it throws costs these layers and nothing else. Gives the memory of the film back.
+    RenderSnapshot finish(const std::function<void(Image&)>& denoise = {});
+
+    // The picture as it is now, from any thread while render() runs in another. Nothing is paused, no
+    // checkpoint is written, and the result keeps its bits. Waits so many seconds at most; empty where that
+    // did not do, before the first samples and after the end (LiveFilm).
+    std::optional<RenderSnapshot> snapshot(double seconds);
+
+    // Why the last checkpoint was not written; empty where it was. From any thread.
+    std::string checkpoint_failure() const;
+
+  private:
+    RenderSnapshot picture_of(const Film& film, const RenderReport& report) const;
+    void save(const RenderState& state, const RenderCompany& company);
+
+    std::shared_ptr<const SceneDescription> description_;
+    RenderSessionSettings settings_;
+    std::optional<RenderState> state_;
+    std::uint32_t replicate_points_ = 0;
+    double samples_before_ = 0;
+    std::string refused_checkpoint_;
+    std::unique_ptr<Renderer> renderer_;
+    LiveFilm live_;
+    mutable std::mutex mutex_; // of the next
+    std::string checkpoint_failure_;
+};
+
+} // namespace montelux
