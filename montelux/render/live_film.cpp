@@ -29,7 +29,8 @@ void LiveFilm::close() {
 }
 
 void LiveFilm::wait_for_copies() const {
-    while (is_wanted()) std::this_thread::sleep_for(between_looks);
+    // Some 20 ms at most: who looks again and again must not hold the render up.
+    for (int i = 0; i < 200 && is_wanted(); ++i) std::this_thread::sleep_for(between_looks);
 }
 
 void LiveFilm::copy_tile(const Tile& tile, Film& into) const {

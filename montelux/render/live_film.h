@@ -49,7 +49,7 @@ class LiveFilm {
     // Held while others than the threads of this process change pixels.
     std::unique_lock<std::timed_mutex> hold_all() { return std::unique_lock(film_); }
     bool is_wanted() const { return looking_.load(std::memory_order_relaxed) > 0; }
-    // Returns once all who look have their copy. Not while the film is held.
+    // Gives those who look time for their copies. Not while the film is held.
     void wait_for_copies() const;
 
   private:

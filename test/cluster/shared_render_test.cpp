@@ -1,13 +1,19 @@
 // However many ranks share a render, and however it is broken off, it ends with the bits of one process.
 #include "test/cluster/local_job.h"
 #include "test/render/mixed_scene.h"
+#include <atomic>
+#include <chrono>
 #include <gtest/gtest.h>
+#include <map>
+#include <set>
 #include <thread>
+#include <utility>
 
 #include "montelux/cluster/coordinator.h"
 #include "montelux/cluster/tile_worker.h"
 #include "montelux/mc/io/byte_stream.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/render/live_film.h"
 #include "montelux/render/renderer.h"
 
 namespace montelux::testing {
@@ -112,6 +118,42 @@ TEST(SharedRender, BrokenRendersEndWithTheSameBits) {
         EXPECT_EQ(differing(whole.film, state.film), 0);
         EXPECT_EQ(state.report.samples, whole.report.samples);
     }
+}
+
+// The film is looked at between the rounds, and tiles are told of as they come home.
+TEST(SharedRender, CanBeLookedAt) {
+    const SceneBuilder b = scene(SamplerKind::independent, 600);
+    RenderState whole(b.description.film), state(b.description.film);
+    Renderer(b.description).render(whole);
+    LiveFilm live;
+    std::atomic<bool> ended{false};
+    std::uint64_t looks = 0, seen = 0, wrong = 0;
+    std::thread watcher([&] {
+        while (!ended)
+            if (const auto copy = live.copy(1)) {
+                std::uint64_t samples = 0;
+                for (const Pixel& p : copy->film.pixels()) samples += p.samples();
+                wrong += samples != copy->report.samples || samples < seen;
+                seen = samples;
+                ++looks;
+                std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            }
+    });
+    std::map<std::uint64_t, std::set<std::pair<int, int>>> tiles; // by round
+    RenderControl control;
+    control.live = &live;
+    control.tile = [&](const FinishedTile& t) {
+        wrong += !tiles[t.round].emplace(t.bounds.x0, t.bounds.y0).second;
+    };
+    render_on(3, b.description, {}, state, control);
+    ended = true;
+    watcher.join();
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_GT(looks, 2u);
+    EXPECT_GT(tiles.size(), 1u);
+    for (const auto& [round, corners] : tiles) EXPECT_EQ(corners.size(), 4u) << round; // 22 x 18 pixels
+    EXPECT_EQ(differing(whole.film, state.film), 0);
+    EXPECT_EQ(state.report.samples, whole.report.samples);
 }
 
 // A rank without tiles gets those of another, in the middle of a round.
