@@ -27,9 +27,9 @@ class LiveFilm {
     LiveFilm(const LiveFilm&) = delete;
     LiveFilm& operator=(const LiveFilm&) = delete;
 
-    // The render as it is now, every pixel between two samples. From any thread, several at once too. Waits
-    // so many seconds at most, as a rule for one sample of each thread. Empty where that did not do, before
-    // the first samples, and once the render has ended.
+    // The render as it is now, every pixel between two samples. From any thread, several at once too, but not
+    // from the render's own callbacks. Waits at most `seconds`, as a rule for one pixel of each thread. Empty
+    // where that is too short, before the first samples, and after the end of the render.
     std::optional<LiveCopy> copy(double seconds);
 
     // The rest is for the loop that renders, and called by its threads alone.

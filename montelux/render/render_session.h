@@ -40,7 +40,7 @@ struct RenderCompany {
     std::function<void(const FinishedTile&)> tile{}; // RenderControl::tile
     const CancelFlag* cancel = nullptr;
     RoundExecutor* executor = nullptr;
-    // A checkpoint could not be written: the render goes on without.
+    // A checkpoint could not be written; the render continues without it.
     std::function<void(const std::string& reason)> checkpoint_failed{};
 };
 
@@ -74,8 +74,8 @@ class RenderSession {
     RenderSnapshot finish(const std::function<void(Image&)>& denoise = {});
 
     // The picture as it is now, from any thread while render() runs in another. Nothing is paused, no
-    // checkpoint is written, and the result keeps its bits. Waits so many seconds at most; empty where that
-    // did not do, before the first samples and after the end (LiveFilm).
+    // checkpoint is written, and the result keeps its bits. Waits at most `seconds`; empty where LiveFilm
+    // gives no copy. Not from the callbacks of the company.
     std::optional<RenderSnapshot> snapshot(double seconds);
 
     // Why the last checkpoint was not written; empty where it was. From any thread.
