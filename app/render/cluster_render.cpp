@@ -22,14 +22,14 @@
 namespace montelux::app {
 namespace {
 
-// What the leader tells the others in the beginning, beside the files of the scene.
+// The leader's message to the others at the start, beside the files of the scene.
 struct Opening {
     SceneDigest scene;
     SamplerSettings sampler;
     std::int32_t tile_size = 0;
 };
 
-// Large tiles have the least to say; small ones keep many threads busy to the end of a round.
+// Large tiles need the fewest messages; small ones keep many threads busy to the end of a round.
 int tile_size_for(const PixelBounds& crop, double threads) {
     constexpr double tiles_a_thread = 8;
     int size = 16;
@@ -84,7 +84,7 @@ SharedRender::~SharedRender() {
     std::vector<std::uint8_t> nothing_to_do;
     try {
         job_->broadcast(nothing_to_do, patience_seconds_);
-    } catch (const Error&) { // what went wrong before is told; leave_job() ends the others
+    } catch (const Error&) { // already reported; leave_job() ends the others
     }
 }
 

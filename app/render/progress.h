@@ -9,13 +9,13 @@ namespace montelux::app {
 
 class ProgressPrinter {
   public:
-    // Above an error of `target`, unless that is 0, the end is not near however many samples were expected,
-    // but for the largest number that there may be.
+    // While the error is above `target` (unless 0), the end is not near whatever number of samples was
+    // expected, except for the upper limit.
     ProgressPrinter(bool quiet, double target, double most_samples)
         : line_(quiet), target_(target), most_samples_(most_samples) {}
 
     void update(const RenderProgress& progress);
-    // Ends the bar's line, if one is being drawn.
+    // Ends the line of an unfinished bar.
     void finish() { line_.finish(); }
 
   private:

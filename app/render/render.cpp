@@ -46,7 +46,7 @@ std::vector<std::string> outputs_of(const RenderOptions& options, const SceneDes
             if (std::find(outputs.begin(), outputs.end(), output) == outputs.end()) outputs.push_back(output);
         return outputs;
     }
-    // The file's own wish, in the current folder, always with the layers that only EXR can hold.
+    // The file's own name, in the current folder, always as EXR, the only format with all layers.
     std::filesystem::path name = description.output_file.empty() ? options.scene : description.output_file;
     return {name.filename().replace_extension(".exr").string()};
 }
@@ -61,7 +61,7 @@ void check_picture_path(const std::string& output, const std::vector<std::filesy
     check_writable(output);
     check_not_read(output, files_read);
 }
-// Before the work rather than after it. Nothing is replaced that is not to be gone on from.
+// Checks outputs before the work. Never overwrites a checkpoint without --resume.
 void check_checkpoint(const RenderOptions& options, const std::vector<std::string>& outputs,
                       const std::vector<std::filesystem::path>& files_read) {
     const std::string& checkpoint = options.checkpoint;
@@ -74,11 +74,10 @@ void check_checkpoint(const RenderOptions& options, const std::vector<std::strin
                 throw UsageError(output, "the checkpoint has this name; the picture needs another");
     check_generation_writable(checkpoint);
     if (!options.resume && generation_exists(checkpoint))
-        throw UsageError(checkpoint,
-                         "the file is there already; add --resume to go on from it, or remove it");
+        throw UsageError(checkpoint, "the file exists; add --resume to resume from it, or remove it");
 }
 
-// Asking for more than there is would end in the killing of some program, seconds or hours later.
+// Without this check the kernel would kill a process for memory, seconds or hours later.
 void check_memory(const FilmSettings& film, bool with_checkpoints) {
     auto pages = static_cast<double>(sysconf(_SC_PHYS_PAGES));
     double there = pages * static_cast<double>(sysconf(_SC_PAGESIZE));
@@ -108,7 +107,7 @@ void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed) {
                  static_cast<unsigned long long>(bad.first->sample));
 }
 
-// What ended the render, where that is not the number of samples.
+// Why the render ended, unless by the number of samples.
 std::string ending_text(const RenderReport& report, const RenderTarget& target) {
     switch (report.stop) {
     case RenderStop::cancelled:
@@ -132,7 +131,7 @@ void print_statistics(const RenderReport& report, double load_seconds, double bu
     std::printf("samples            %ssamples/s, %.3f us of CPU each\n",
                 count_text(samples / report.seconds).c_str(), 1e6 * report.cpu_seconds / samples);
     std::printf(
-        "rays               %srays/s, %srays/s of CPU, %.2f a sample (%.2f closest hit, %.2f occlusion)\n",
+        "rays               %srays/s, %srays/s of CPU, %.2f per sample (%.2f closest hit, %.2f occlusion)\n",
         count_text(rays / report.seconds).c_str(), count_text(rays / report.cpu_seconds).c_str(),
         rays / samples, static_cast<double>(report.rays.closest) / samples,
         static_cast<double>(report.rays.occlusion) / samples);
@@ -150,7 +149,7 @@ void check_slice_option(const SamplerSettings& sampler, const RenderTarget& targ
 }
 
 int replay(const RenderOptions& options, const SceneDescription& description, const RenderTarget& target) {
-    // The replicates of a render that was resumed are those of its beginning.
+    // A resumed render keeps its original replicates.
     std::uint32_t replicate_points = 0;
     if (options.resume && generation_exists(options.checkpoint))
         replicate_points = load_checkpoint(options.checkpoint, description, target).replicate_points;
@@ -172,7 +171,7 @@ int replay(const RenderOptions& options, const SceneDescription& description, co
 void tell_of_beginning(const RenderSession& session, bool quiet) {
     const std::string file = session.settings().checkpoint.string();
     if (!session.refused_checkpoint().empty())
-        std::fprintf(stderr, "montelux: warning: going on from the checkpoint before the last: %s\n",
+        std::fprintf(stderr, "montelux: warning: resuming from the checkpoint before the last: %s\n",
                      session.refused_checkpoint().c_str());
     if (quiet) return;
     if (session.settings().resume && !session.resumed())
@@ -200,7 +199,7 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     for (const std::string& output : outputs) check_picture_path(output, files_read);
     if (!options.checkpoint.empty()) check_checkpoint(options, outputs, files_read);
     check_memory(description.film, !options.checkpoint.empty());
-    std::optional<Denoiser> denoiser; // one that is missing is told before the render
+    std::optional<Denoiser> denoiser; // if it is missing, the error comes before the render
     if (options.denoise) denoiser.emplace(Denoiser::load(options.threads));
 
     RenderSession session(std::make_shared<const SceneDescription>(std::move(description)),
@@ -217,9 +216,9 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
                             static_cast<double>(crop.width()) * crop.height() * sampler.spp);
     company.progress = [&](const RenderProgress& p) { printer.update(p); };
     company.cancel = &cancel_on_signals();
-    // It goes on, and says so in the end, too.
+    // The render continues, and reports it at the end, too.
     company.checkpoint_failed = [](const std::string& reason) {
-        std::fprintf(stderr, "\nmontelux: warning: %s; the render goes on without this checkpoint\n",
+        std::fprintf(stderr, "\nmontelux: warning: %s; the render continues without this checkpoint\n",
                      reason.c_str());
     };
     session.render(company);
@@ -270,7 +269,7 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
 
 int run(const RenderOptions& options) {
     end_on_signals();
-    // A closed pipe behind the messages must not end the render.
+    // A closed pipe of messages must not end the render.
     std::signal(SIGPIPE, SIG_IGN);
     Communicator* const job = join_job(options.rank_timeout);
     const int fair_threads = job != nullptr ? job->fair_threads() : 0;

@@ -16,7 +16,7 @@ namespace montelux::app {
 
 namespace {
 
-// Where a target or a time alone is to end the render.
+// Limit of the samples per pixel if only a target or a time is given.
 constexpr std::uint32_t most_samples = 1u << 24;
 
 template <typename Table>
@@ -26,7 +26,7 @@ std::string names(const Table& table) {
     return list;
 }
 
-// Ranks that are well may say nothing for a second.
+// Healthy ranks may be silent for a second.
 double parse_rank_timeout(const std::string& option, const std::string& s) {
     const double seconds = parse_duration(option, s);
     if (!(seconds >= 2)) refuse(option, s, "a time of at least 2s is expected, for example 10s or 2m");
@@ -131,10 +131,10 @@ void declare(CLI::App& c, RenderOptions& o) {
          "Picture to write: .exr, .png, .hdr or .pfm; may be given several times. Default: the name that "
          "the scene asks for, in this folder, as .exr")
         ->type_name("FILE")
-        ->allow_extra_args(false); // the scene may stand behind it
+        ->allow_extra_args(false); // the scene may follow it
     add_whole_number(c, "--spp", o.spp, 1, 1u << 30, "Samples per pixel, in place of the scene's");
     add_whole_number(c, "--max-spp", o.max_spp, 1, 1u << 30,
-                     "Samples per pixel at most, where an error or a time is asked for");
+                     "Limit of the samples per pixel with --target-error or --time");
     add_parsed(c, "--target-error", "ERROR", o.target_error, parse_share,
                "Stop when the picture's relative error is this, for example 0.01 or 1%");
     add_parsed(c, "--target-quantile", "SHARE", o.target_quantile, parse_share,
@@ -142,9 +142,9 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_parsed(c, "--time", "TIME", o.time, parse_time_limit,
                "Stop after this time, for example 90, 90s, 10m or 1h30m");
     add_parsed(c, "--adaptive", "on|off", o.adaptive, parse_on_off,
-               "More samples where the error is: on, off. Default: on where an error is asked for");
+               "More samples where the error is: on, off. Default: on with --target-error");
     add_parsed(c, "--clamp", "VALUE", o.clamp, parse_positive,
-               "Largest RGB value of a sample; what it takes away is said at the end. Default: none but the "
+               "Largest RGB value of a sample; the light it removes is reported. Default: none but the "
                "scene's");
     CLI::Option* checkpoint =
         c.add_option("--checkpoint", o.checkpoint, "Keep the running state in this file")
@@ -153,18 +153,17 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_parsed(c, "--checkpoint-every", "TIME", o.checkpoint_every, parse_duration,
                "How often it is written. Default: 60s")
         ->needs(checkpoint);
-    c.add_flag("--resume", o.resume, "Go on from the checkpoint, where there is one");
+    c.add_flag("--resume", o.resume, "Resume from the checkpoint, if it exists");
     add_parsed(c, "--slice", "K/N", o.slice, parse_slice,
                "Take a part of the samples, K/N with K from 1 to N; montelux merge joins the parts");
     add_whole_number(c, "--seed", o.seed, 0, UINT64_MAX,
                      "Seed of all random numbers, in place of the scene's");
     add_whole_number(
         c, "--threads", o.threads, 0, most_threads,
-        "Threads, also more than processors; 0: one a processor. The picture does not depend on it");
-    add_parsed(
-        c, "--rank-timeout", "TIME", o.rank_timeout, parse_rank_timeout,
-        "Under mpirun: a rank that says nothing for so long is given up, and the render ends with what "
-        "the others did. Default: 60s");
+        "Threads, also more than processors; 0: one per processor. The picture does not depend on it");
+    add_parsed(c, "--rank-timeout", "TIME", o.rank_timeout, parse_rank_timeout,
+               "Under mpirun: a rank that is silent for this long is given up, and the render ends with what "
+               "the others did. Default: 60s");
     add_parsed(c, "--resolution", "WxH", o.resolution, parse_resolution,
                "Size of the film in pixels; the scene's crop keeps its place");
     add_parsed(c, "--crop", "x0,x1,y0,y1", o.crop, parse_crop,
@@ -199,7 +198,7 @@ void declare(CLI::App& c, RenderOptions& o) {
              "\n"
              "'mpirun -n 8 montelux render ...' shares the render among machines; the picture is the same.\n"
              "An EXR file holds every layer: mean, standard error, samples, albedo, normal, depth.\n"
-             "SIGINT (Ctrl-C) or SIGTERM ends the render early and saves what there is; another one, a "
+             "SIGINT (Ctrl-C) or SIGTERM ends the render early and saves the picture; another one, a "
              "second later or more, ends it at once: the picture is not saved.");
 }
 
@@ -240,10 +239,9 @@ void apply(const RenderOptions& o, SceneDescription& d) {
 
 RenderTarget target_of(const RenderOptions& o) {
     if (o.target_quantile && !o.target_error)
-        throw UsageError("--target-quantile",
-                         "expected --target-error ERROR, within which that share shall be");
+        throw UsageError("--target-quantile", "expected --target-error ERROR, the error of that share");
     if (o.resume && o.checkpoint.empty())
-        throw UsageError("--resume", "expected --checkpoint FILE, which says what to go on from");
+        throw UsageError("--resume", "expected --checkpoint FILE, the file to resume from");
     RenderTarget target;
     target.error = o.target_error.value_or(0);
     target.quantile = o.target_quantile.value_or(0);

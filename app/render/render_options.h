@@ -1,4 +1,4 @@
-// What the render command can be told, and how that overrides a scene file.
+// RenderOptions: the options of the render command, and how they override a scene file.
 #pragma once
 
 #include "app/usage_error.h"
@@ -18,7 +18,7 @@ class App;
 
 namespace montelux::app {
 
-// Which sample of which pixel, as in messages about samples that were left out.
+// A sample of a pixel, as in messages about samples that were left out.
 struct SampleAddress {
     int x = 0, y = 0;
     std::uint64_t index = 0;
@@ -44,18 +44,18 @@ struct RenderOptions {
     std::optional<EnvironmentSampling> environment_sampling;
     std::optional<bool> environment_compensation;
     std::optional<EnvironmentLookup> environment_lookup;
-    std::optional<SampleAddress> debug_sample; // is traced alone, instead of a render
+    std::optional<SampleAddress> debug_sample; // traced alone, instead of a render
     int threads = 0;
     double rank_timeout = 60; // seconds
     bool denoise = false, stats = false, quiet = false;
 };
 
-// A value that makes no sense ends the parse with a CLI::ValidationError.
+// An invalid value ends the parse with a CLI::ValidationError.
 void declare(CLI::App& command, RenderOptions& options);
 
-// Throws UsageError when a crop holds no pixel of the film.
+// Throws UsageError if a crop contains no pixel of the film.
 void apply(const RenderOptions& options, SceneDescription& description);
-// Throws UsageError for options that do not go together.
+// Throws UsageError for incompatible options.
 RenderTarget target_of(const RenderOptions& options);
 
 } // namespace montelux::app

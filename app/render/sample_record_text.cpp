@@ -12,7 +12,7 @@ namespace montelux::app {
 
 namespace {
 
-// Lines of a label and what it says, in columns.
+// Lines of a label and a text, in columns.
 class Text {
   public:
     std::string take() { return std::move(text_); }
@@ -34,7 +34,7 @@ class Text {
         text_ += '\n';
         return *this;
     }
-    // "nan" has no sign that means anything.
+    // The sign of "nan" is meaningless.
     Text& number(float v, int width = 0) {
         return std::isnan(v) ? add("%*s", width, "nan") : add("%*.7g", width, static_cast<double>(v));
     }
@@ -148,7 +148,7 @@ void add_direct(Text& t, const DirectLight& direct, const Scene& scene) {
 
 void add_scattering(Text& t, const PathVertex& v) {
     const BsdfSample& s = v.scattering->sample;
-    t.add("  went on by %s of a %s lobe", s.transmission ? "transmission" : "reflection",
+    t.add("  continued by %s of a %s lobe", s.transmission ? "transmission" : "reflection",
           s.specular ? "delta" : "rough");
     if (s.transmission) t.add(", eta ").number(s.eta);
     t.end();
@@ -213,7 +213,7 @@ const char* sentence_of(PathEnd end) {
     case PathEnd::nothing_carried:
         return "the path carries nothing any more";
     case PathEnd::bad_throughput:
-        return "the throughput is bad; it is added to the radiance, so that the sample is told of";
+        return "the throughput is bad; it is added to the radiance, so that the sample is reported";
     case PathEnd::roulette:
         return "Russian roulette";
     }

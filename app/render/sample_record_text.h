@@ -1,4 +1,4 @@
-// A sample that was traced again, as text: its path vertex by vertex, and what became of it.
+// A replayed sample as text: its path vertex by vertex, and its contribution.
 #pragma once
 
 #include <string>

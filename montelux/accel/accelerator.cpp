@@ -15,12 +15,12 @@ namespace montelux {
 
 namespace {
 
-// What Embree hands back to the callbacks of one geometry.
+// User data of Embree's callbacks for one geometry.
 struct GeometryData {
     const SceneView* scene = nullptr;
     Index shape = no_index;
     const Quadric* quadric = nullptr;  // null for meshes
-    std::optional<WorldSphere> sphere; // of a quadric that is one
+    std::optional<WorldSphere> sphere; // if the quadric is one
     bool cut_out = false;
 };
 
@@ -64,7 +64,7 @@ RTCRay embree_ray(const Ray& ray) {
             .flags = 0};
 }
 
-// Quadrics: Embree calls with one ray at a time (N = 1), since only rtcIntersect1 and rtcOccluded1 are used.
+// Quadrics: Embree passes one ray at a time (N = 1), since only rtcIntersect1 and rtcOccluded1 are used.
 void intersect_quadric(const RTCIntersectFunctionNArguments* args) {
     if (args->valid[0] == 0) return;
     const auto* data = static_cast<const GeometryData*>(args->geometryUserPtr);
@@ -102,7 +102,7 @@ void occlude_quadric(const RTCOccludedFunctionNArguments* args) {
     }
 }
 
-// Cut-outs of meshes: a hit that is not there is rejected.
+// Alpha cut-outs of meshes: rejects hits on holes.
 void filter_triangle(const RTCFilterFunctionNArguments* args) {
     if (args->valid[0] == 0) return;
     const auto* data = static_cast<const GeometryData*>(args->geometryUserPtr);
@@ -118,7 +118,7 @@ struct Accelerator::Impl {
     RTCDevice device = nullptr;
     RTCScene world = nullptr;
     std::vector<RTCScene> objects;
-    std::vector<GeometryData> data; // one a shape
+    std::vector<GeometryData> data; // one per shape
     SceneView scene;
     Bounds3 bounds;
     std::string error;
@@ -131,7 +131,7 @@ struct Accelerator::Impl {
 
     RTCScene new_scene() const {
         RTCScene s = rtcNewScene(device);
-        // Robust: rays do not slip through between triangles that share an edge.
+        // Robust: no ray passes between triangles that share an edge.
         rtcSetSceneFlags(s, RTC_SCENE_FLAG_ROBUST);
         rtcSetSceneBuildQuality(s, RTC_BUILD_QUALITY_HIGH);
         return s;
@@ -139,7 +139,7 @@ struct Accelerator::Impl {
 
     RTCGeometry mesh_geometry(const TriangleMesh& mesh, bool cut_out) const {
         RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        // Embree reads 16 bytes a vertex: the buffer is its own copy, so that the last one is padded.
+        // Embree reads 16 bytes per vertex: a buffer of its own pads the last one.
         auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
                                                                      RTC_FORMAT_FLOAT3, 3 * sizeof(float),
                                                                      mesh.positions.size()));

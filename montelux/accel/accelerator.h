@@ -1,4 +1,4 @@
-// Rays against the scene: closest hits and occlusion. The only room that knows Embree.
+// Accelerator: closest hits and occlusion of rays in the scene. The only room that names Embree.
 #pragma once
 
 #include <memory>
@@ -23,7 +23,7 @@ class Accelerator {
     bool intersect(const Ray& ray, Hit& hit) const;
     // Whether anything lies within (0, t_max).
     bool occluded(const Ray& ray) const;
-    // Of everything that can be hit, in world space.
+    // Bounds of all surfaces, in world space.
     const Bounds3& bounds() const;
 
   private:

@@ -9,11 +9,11 @@
 namespace montelux {
 
 bool is_opaque(const SceneView& scene, const Ray& ray, const Hit& hit) {
-    // Instances: the ray is already in the space of the object, and so is the shape.
+    // With instances, ray and shape are already in object space.
     const float alpha = alpha_at(scene, ray, hit);
     if (alpha >= 1) return true;
     if (!(alpha > 0)) return false;
-    // Each surface along the ray decides for itself; a quadric may be hit twice.
+    // Each surface along the ray decides independently; a quadric may be hit twice.
     std::uint64_t h = hash_key(hit.shape, hit.primitive);
     if (quadric_of(scene, scene.shapes[hit.shape]) != nullptr)
         h = mix64(h ^ std::bit_cast<std::uint32_t>(hit.t));

@@ -1,4 +1,4 @@
-// Alpha cut-outs: whether a surface is there at a hit.
+// Alpha cut-outs: whether a hit is on the surface or in a hole.
 #pragma once
 
 #include "montelux/scene/shape/ray.h"
@@ -6,8 +6,8 @@
 
 namespace montelux {
 
-// A point with alpha a is there with probability a. The decision is a function of the ray and the primitive
-// alone, so that a sample stays a pure function of its key.
+// A point of alpha a is present with probability a. The decision is a function of the ray and the primitive
+// only, so a sample remains a pure function of its key.
 bool is_opaque(const SceneView& scene, const Ray& ray, const Hit& hit);
 
 } // namespace montelux

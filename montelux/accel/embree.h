@@ -1,4 +1,4 @@
-// Embree 3 and 4 behind the same names: the header of either, and the calls in which they differ.
+// Embree 3 and 4 under common names: the header of either, and the calls in which they differ.
 #pragma once
 
 #if !defined(MONTELUX_EMBREE)

@@ -1,4 +1,4 @@
-// The film: running moments of every pixel, and the image that they give.
+// Film: running moments of every pixel, and the image made of them.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@
 
 namespace montelux {
 
-// What one sample of a pixel has to say. All but the radiance are of the first surface, 0 where there is
-// none.
+// The contribution of one sample to its pixel. All but the radiance belong to the first surface; 0 without
+// one.
 struct FilmSample {
     Vec3f radiance; // linear sRGB, filter weight applied
     Vec3f albedo;   // linear sRGB
@@ -23,7 +23,7 @@ struct FilmSample {
     float depth = 0;
 };
 
-// A radiance that is not a number, infinite, or below zero though no filter weight made it so.
+// A radiance that is NaN, infinite, or negative although the filter weight is not.
 struct BadSample {
     enum class Kind : std::uint8_t { nan, infinite, negative };
     Kind kind = Kind::nan;
@@ -32,8 +32,8 @@ struct BadSample {
     auto operator<=>(const BadSample&) const = default;
 };
 
-// Share of the replicates' squared deviations from their mean that one of them alone makes up, by luminance
-// weights; 0 without any.
+// The largest share of the replicates' squared deviations from their mean that a single replicate
+// contributes, by luminance weights; 0 without any.
 double share_of_replicate(const SkewMoments<3>& replicates, Vec3d replicate);
 
 // A pixel's value is the mean of independent, identically distributed replicates: single samples for the
@@ -49,14 +49,14 @@ class Pixel {
         depth_ += s.depth;
         ++samples_;
     }
-    // Luminance that the film's limit took away from a sample.
+    // Luminance that clamping removed from a sample.
     void add_clamped(float luminance) { clamped_ += static_cast<double>(luminance); }
     void count_bad() {
         ++replicate_samples_;
         ++samples_;
         ++bad_;
     }
-    // Closes the replicate that the samples since the last call make up.
+    // Closes the replicate of the samples since the last call.
     void end_replicate() {
         if (replicate_samples_ == 0) return;
         const Vec3d replicate = replicate_sum_ / static_cast<double>(replicate_samples_);
@@ -67,9 +67,9 @@ class Pixel {
         replicate_samples_ = 0;
     }
 
-    // The same, but an open replicate of fewer than half of `points` is left out where there are others: it
-    // would weigh as much as a whole one, and be as noisy as single samples. That depends on numbers alone,
-    // so nothing is biased.
+    // The same, but drops an open replicate of fewer than half of `points` where there are others: it would
+    // weigh as much as a whole one and be as noisy as single samples. The rule depends on counts only, so it
+    // adds no bias.
     void end_last_replicate(std::uint32_t points) {
         if (2 * replicate_samples_ < points && replicates_.count() >= 2) {
             replicate_sum_ = {};
@@ -78,13 +78,13 @@ class Pixel {
         end_replicate();
     }
 
-    // All replicates must have ended.
+    // All replicates must be closed.
     const SkewMoments<3>& replicates() const { return replicates_; }
     // The replicate of greatest luminance; 0 without any.
     Vec3d brightest() const { return brightest_; }
     std::uint32_t samples() const { return samples_; }
     std::uint32_t bad() const { return bad_; }
-    // Mean luminance that clamping took away.
+    // Mean luminance that clamping removed.
     double clamped() const { return samples_ > 0 ? clamped_ / samples_ : 0; }
     double largest_share() const { return share_of_replicate(replicates_, brightest_); }
     Vec3f albedo() const { return samples_ > 0 ? albedo_ / static_cast<float>(samples_) : Vec3f{}; }
@@ -121,11 +121,11 @@ class Film {
         for (Pixel& p : pixels_) p.end_last_replicate(points);
     }
     FilmError error() const { return error_of(*this); }
-    // Layers R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples; replicates (of which
-    // the standard error is made); outlier (Pixel::largest_share); warning (PixelWarning); albedo.R, G, B;
-    // N.X, Y, Z; depth.Z, of the cropped pixels. The standard error is infinite where fewer than two
-    // replicates have been taken. A slice of a render has the layers brightest.R, G, B beside
-    // (Pixel::brightest), for the outlier of the whole cannot be told from those of its slices.
+    // Layers R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples; replicates (from which
+    // the standard error is computed); outlier (Pixel::largest_share); warning (PixelWarning); albedo.R, G,
+    // B; N.X, Y, Z; depth.Z, of the cropped pixels. The standard error is infinite below two replicates. A
+    // slice of a render also has the layers brightest.R, G, B (Pixel::brightest): the outlier of the whole
+    // picture cannot be computed from those of its slices.
     Image develop(bool as_slice = false) const;
 
   private:

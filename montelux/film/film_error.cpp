@@ -20,7 +20,7 @@ double mean_luminance(const Film& film) {
         for (int c = 0; c < 3; ++c) luminance.add(luminance_weight[c] * p.replicates().mean(c));
     return luminance.value() / static_cast<double>(film.pixels().size());
 }
-// In place of a quotient by a luminance that may be zero.
+// Replaces a quotient by a luminance that may be zero.
 double relative_to(double luminance, double error) {
     if (luminance > 0) return error / luminance;
     return error > 0 ? infinity : 0;
@@ -42,7 +42,7 @@ FilmError error_of(const Film& film) {
         samples.add(p.samples());
     }
     const auto n = static_cast<double>(film.pixels().size());
-    // The compensation of a sum with infinite terms, the errors of single replicates, is not a number.
+    // With infinite terms (pixels of a single replicate) the compensation of the sum is NaN.
     const double total = std::isnan(variance.value()) ? infinity : variance.value();
     FilmError e;
     e.mean_luminance = mean_luminance(film);

@@ -1,4 +1,4 @@
-// The error of a whole picture, and how it is spread over the pixels.
+// FilmError: the error of a whole picture, and its distribution over the pixels.
 #pragma once
 
 #include <cstdint>
@@ -17,41 +17,39 @@ struct FilmError {
     // Root mean square over pixels of the standard error of luminance, over the mean luminance.
     double relative = 0;
     double mean_luminance = 0;
-    double mean_samples = 0; // a pixel
+    double mean_samples = 0; // per pixel
 };
 FilmError error_of(const Film& film);
 
 // Of linear sRGB (IEC 61966-2-1).
 inline constexpr Vec3d luminance_weight{0.2126, 0.7152, 0.0722};
-// Standard error of a pixel's luminance: channels rise and fall together, so that the bound by the triangle
-// inequality is close. Infinite below two replicates.
+// Standard error of a pixel's luminance, bounded by the triangle inequality; channels are strongly
+// correlated, so the bound is tight. Infinite below two replicates.
 double luminance_error(const Pixel& pixel);
 
-// Degrees of freedom of the picture's error: those of the pixels that carry it, added up. Small where few
-// pixels do, of few replicates each. Infinite without any spread, 0 where a pixel has fewer than two
-// replicates.
+// Degrees of freedom of the picture's error, by Satterthwaite's formula. Small where few pixels with few
+// replicates carry the error. Infinite at zero variance, 0 where a pixel has fewer than two replicates.
 double error_freedom(const Film& film);
 
-// The error, relative to the mean luminance of the picture, within which a share `quantile` of the pixels
-// lies.
+// The error, relative to the picture's mean luminance, that a share `quantile` of the pixels does not exceed.
 double error_quantile(const Film& film, double quantile);
 
-// Mean over pixels of the luminance that clamping took away.
+// Mean over pixels of the luminance that clamping removed.
 double clamped_luminance(const Film& film);
 
-// Fireflies: where the error of a picture sits.
+// Fireflies: the pixels that carry the error of a picture.
 struct OutlierReport {
     // Pixels with the greatest errors that carry half of the squared error, and their share of all.
     std::uint64_t pixels_of_half = 0;
     double share_of_half = 0;
     std::uint64_t heavy_tailed = 0; // pixels (PixelWarning::bright_replicate)
-    double heavy_error_share = 0;   // of the squared error, that those pixels carry
+    double heavy_error_share = 0;   // their share of the squared error
     std::uint64_t outshone = 0;     // pixels (PixelWarning::neighbours)
     std::uint64_t unknown = 0;      // pixels (PixelWarning::unknown)
     std::uint64_t pixels = 0;       // all
 };
 OutlierReport outliers_of(const Film& film);
-// Of the standard errors of the pixels' luminances.
+// From the standard errors of the pixels' luminances.
 OutlierReport outliers_of(std::span<const double> errors, std::span<const PixelWarning> warnings);
 
 } // namespace montelux

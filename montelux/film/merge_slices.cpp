@@ -39,11 +39,11 @@ SliceNumber slice_of(const Image& image, const std::string& name) {
     throw Error(name, "its attribute slice is '" + text + "'; K/N is expected");
 }
 
-// The layers of one picture, by what they are.
+// The layers of one picture, by meaning.
 struct Layers {
     std::array<int, 3> mean{}, error{}, skewness{}, albedo{}, normal{};
     int samples = 0, replicates = 0, outlier = 0, depth = 0;
-    std::optional<std::array<int, 3>> brightest; // of slices alone
+    std::optional<std::array<int, 3>> brightest; // only in slices
 
     Layers(const Image& image, const std::string& name) {
         auto find = [&](const std::string& channel) {
@@ -69,7 +69,7 @@ struct Layers {
     }
 };
 
-// Moments of the replicates of a pixel, from what its layers say of their mean.
+// Moments of a pixel's replicates, reconstructed from its layers.
 SkewMoments<3> moments_of(const Image& image, const Layers& at, int x, int y) {
     const double n = std::clamp(std::round(static_cast<double>(image.value(x, y, at.replicates))), 0.0, 1e15);
     if (!(n >= 1)) return {};
@@ -85,8 +85,8 @@ SkewMoments<3> moments_of(const Image& image, const Layers& at, int x, int y) {
     }
     return SkewMoments<3>(static_cast<std::uint64_t>(n), mean, squares, cubes);
 }
-// The brightest replicate of a pixel. A picture without its layers is taken to have one that stands out by
-// the same share of the variance in each channel, which is exact where nothing is joined with it.
+// The brightest replicate of a pixel. For a picture without its layers, an outlier with the same share of the
+// variance in each channel is assumed; exact if no other picture is merged with it.
 Vec3d brightest_of(const Image& image, const Layers& at, int x, int y, const SkewMoments<3>& replicates) {
     Vec3d replicate;
     for (std::size_t c = 0; c < 3; ++c) {

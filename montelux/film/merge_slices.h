@@ -1,4 +1,4 @@
-// Pictures of slices of one render, joined into the picture of the whole.
+// SliceMerger: joins the pictures of slices of one render.
 #pragma once
 
 #include <array>
@@ -15,24 +15,24 @@ namespace montelux {
 
 struct MergedSlices {
     Image image;
-    std::vector<int> missing;  // slices, counted from 1, that no picture was of
+    std::vector<int> missing;  // slices without a picture, counted from 1
     double relative_error = 0; // FilmError::relative
     double mean_samples = 0, mean_luminance = 0;
-    // How many samples were clamped, and the mean luminance that this took away.
+    // Number of clamped samples, and the mean luminance that clamping removed.
     double clamped_samples = 0, clamped_luminance = 0;
     OutlierReport outliers;
 };
 
-// Joins what Film::develop() wrote for slices k/n of one render, one picture after the other in any order, so
-// that no two need be in memory. All layers are those of all replicates together, as far as 32-bit layers
-// tell (relative differences of about 1e-7). The standard error is infinite where there are fewer than two
-// replicates. Pictures say what they are of in the attributes `renderHash` and `slice`.
+// Joins the images that Film::develop() makes for slices k/n of one render, one at a time in any order, so
+// that no two need be in memory. Layers equal those of all replicates together, to the precision of 32-bit
+// layers (relative differences of about 1e-7). The standard error is infinite below two replicates. The
+// attributes `renderHash` and `slice` identify the render and the slice.
 class SliceMerger {
   public:
-    // Throws Error, naming the picture, where it is no slice, is of another render than those before, or of a
-    // slice that one of these is of. `name` is for messages.
+    // Throws Error, naming the picture, if it is no slice, belongs to another render than those before, or
+    // repeats a slice. `name` is for messages.
     void add(const Image& slice, const std::string& name);
-    // The joined picture of all that were added; throws Error where there were none.
+    // The joined picture; throws Error if none was added.
     MergedSlices finish() const;
 
   private:
@@ -40,7 +40,7 @@ class SliceMerger {
         SkewMoments<3> replicates;
         Vec3d brightest; // replicate
         double samples = 0;
-        double depth = 0; // these and the next are weighted by samples
+        double depth = 0; // this and the next are weighted by samples
         std::array<double, 3> albedo{}, normal{};
     };
 

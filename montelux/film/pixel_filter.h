@@ -9,7 +9,7 @@
 
 namespace montelux {
 
-// The filter's value at an offset from the centre of the pixel, in pixels; not normalised. Zero outside the
+// The filter's value at an offset from the pixel's centre, in pixels; not normalised. Zero outside the
 // radius.
 float filter_value(const PixelFilter& filter, Vec2f offset);
 Vec2f filter_radius(const PixelFilter& filter);
@@ -19,9 +19,8 @@ struct FilterSample {
     float weight = 1; // filter over density, scaled to mean 1; negative in negative lobes
 };
 
-// Draws film points in proportion to the filter's magnitude, so that each sample counts for one pixel alone
-// and samples of different pixels are independent. Ernst, Stamminger, Greiner 2006, "Filter Importance
-// Sampling".
+// Draws film points in proportion to the filter's magnitude, so each sample belongs to one pixel and samples
+// of different pixels are independent. Ernst, Stamminger, Greiner 2006, "Filter Importance Sampling".
 class PixelFilterSampler {
   public:
     // Throws Error on radii that are not positive and finite.
@@ -30,7 +29,7 @@ class PixelFilterSampler {
     FilterSample sample(Vec2f u) const;
 
   private:
-    // Every filter is a product of one factor an axis.
+    // Every filter is a product of one factor per axis.
     struct Axis {
         std::optional<InverseTable1D> density; // absent for box and triangle, which invert in closed form
         std::vector<float> weight;             // the factor over its integral, at equal steps from -radius

@@ -11,8 +11,8 @@ namespace montelux {
 namespace {
 
 constexpr double enough_replicates = 16, heavy_share = 0.5;
-// Measured (docs/render-to-an-error.md): with a factor of 4 the pixels that are left are still too sure by a
-// little, with 2 every edge is marked.
+// Measured (docs/render-to-an-error.md): with a factor of 4 the error bars of unmarked pixels are still
+// slightly too small; with 2 every edge is marked.
 constexpr double far_larger = 3;
 
 double mean_variance_around(std::span<const PixelSpread> pixels, int width, int height, int x, int y) {

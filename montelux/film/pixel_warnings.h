@@ -12,16 +12,16 @@ class Film;
 // Values of the layer `warning`.
 enum class PixelWarning : std::uint8_t {
     none = 0,
-    bright_replicate = 1, // one replicate alone makes up most of the variance
+    bright_replicate = 1, // one replicate contributes most of the variance
     neighbours = 2, // the neighbours' variance is far larger: light may have been missed, or an edge is near
-    unknown = 3,    // fewer than 16 replicates, too few to tell
+    unknown = 3,    // fewer than 16 replicates: too few to decide
 };
-// Is there evidence that the error bar is unreliable?
+// Whether the error bar is known to be unreliable.
 inline bool marks_unreliable_error(PixelWarning d) {
     return d == PixelWarning::bright_replicate || d == PixelWarning::neighbours;
 }
 
-// What decides about a pixel. Variance NaN: too few replicates to decide.
+// The quantities that decide. Variance NaN: too few replicates.
 struct PixelSpread {
     double variance = 0; // of a sample's luminance
     bool bright_replicate = false;

@@ -1,4 +1,4 @@
-// What a file looks like, by its content: for messages about files that are not what was expected.
+// FileKind: what a file is, by its content; for messages about files of the wrong kind.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@
 namespace montelux {
 
 struct FileKind {
-    std::string name; // "a PNG picture"; empty for text of no kind that is known
-    std::string hint; // what to do with such a file instead; often empty
+    std::string name; // "a PNG picture"; empty for text of an unknown kind
+    std::string hint; // what to do with such a file; often empty
 };
 
-// By the first bytes of a file, and of JSON files by all of them.
+// Recognised by the first bytes; JSON files by all of them.
 FileKind file_kind(std::span<const std::uint8_t> bytes);
 
 } // namespace montelux

@@ -25,17 +25,17 @@ class DiskFiles final : public FileSource {
     std::vector<std::uint8_t> read(const std::filesystem::path& path, std::size_t max_bytes) override;
 };
 
-// What was asked of a file source, with the answers: enough to ask the same again elsewhere.
+// The queries to a file source with their answers: enough to repeat them in another process.
 struct FileBundle {
-    std::map<std::string, bool> exists; // by path, as it was asked for
+    std::map<std::string, bool> exists; // by path as queried
     std::map<std::string, std::vector<std::uint8_t>> contents;
 
     std::vector<std::uint8_t> to_bytes() const;
-    // Throws Error for bytes that to_bytes() did not make.
+    // Throws Error for bytes that to_bytes() did not produce.
     static FileBundle from_bytes(std::span<const std::uint8_t> bytes);
 };
 
-// Reads from the disk, each file once, and keeps what it read.
+// Reads from the disk, each file once, and keeps the content.
 class RecordedFiles final : public FileSource {
   public:
     bool exists(const std::filesystem::path& path) override;
@@ -48,7 +48,7 @@ class RecordedFiles final : public FileSource {
     FileBundle bundle_;
 };
 
-// Answers from a bundle, and knows nothing else: reading what is not in it is an Error.
+// Answers from a bundle only: reading a file that is not in it is an Error.
 class BundledFiles final : public FileSource {
   public:
     explicit BundledFiles(FileBundle bundle) : bundle_(std::move(bundle)) {}
@@ -59,8 +59,8 @@ class BundledFiles final : public FileSource {
     FileBundle bundle_;
 };
 
-// The whole file; one whose name ends in ".gz" is decompressed. No file that a scene consists of is larger
-// than 16 GiB, compressed or not. Throws Error.
+// The whole file; one whose name ends in ".gz" is decompressed. Files are limited to 16 GiB, compressed or
+// not. Throws Error.
 std::vector<std::uint8_t> read_unpacked(FileSource& source, const std::filesystem::path& path);
 
 } // namespace montelux

@@ -18,7 +18,7 @@ SceneDescription load_scene(const std::filesystem::path& path, Warnings& warning
         throw Error(path.string(), "looks like " + kind.name +
                                        "; expected a scene of pbrt-v4 (.pbrt or .pbrt.gz)" +
                                        (kind.hint.empty() ? "" : ": " + kind.hint));
-    // All other text is left to the reader of pbrt's format, which says what it does not understand.
+    // All other text goes to the pbrt reader, which reports what it does not understand.
     return load_pbrt(std::move(bytes), path, warnings, files_read, files);
 }
 

@@ -1,4 +1,4 @@
-// Scenes from files of any format that Montelux reads, which today is that of pbrt-v4.
+// load_scene: scene files of any supported format; at present pbrt-v4.
 #pragma once
 
 #include <filesystem>
@@ -10,9 +10,9 @@
 
 namespace montelux {
 
-// The format is recognised by the file's content, whatever its name; only compressed files need the ending
-// ".gz". Throws Error for files of other kinds, with what they look like, and as the reader of the format
-// does (pbrt/load_pbrt.h, where the other arguments are explained).
+// The format is recognised by the file's content, not by its name; only compressed files need the suffix
+// ".gz". Throws Error for files of other kinds, with their kind, and for the errors of the reader
+// (pbrt/load_pbrt.h, which explains the other arguments).
 SceneDescription load_scene(const std::filesystem::path& path, Warnings& warnings,
                             std::vector<std::filesystem::path>* files_read = nullptr,
                             FileSource* source = nullptr);

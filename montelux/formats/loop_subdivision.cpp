@@ -21,7 +21,7 @@ struct Mesh {
     std::vector<Vec3d> positions;
     std::vector<Index> corners;  // vertex at the start of each half-edge
     std::vector<Index> twins;    // of each half-edge
-    std::vector<Index> outgoing; // of each vertex, a half-edge that starts there; none if no triangle has it
+    std::vector<Index> outgoing; // of each vertex, a half-edge that starts there; none if it is unused
 
     Index head(Index h) const { return corners[next(h)]; }
 };

@@ -11,9 +11,9 @@
 
 namespace montelux {
 
-// Each takes about 80 bytes on the way: 2.5 GiB in all.
+// Peak memory is about 80 bytes per triangle: 2.5 GiB in all.
 inline constexpr std::size_t max_subdivided_triangles = std::size_t{1} << 25;
-// How many `triangles` become; the largest number there is when that is too small.
+// The number of triangles after subdivision; saturates at the largest integer.
 std::size_t subdivided_count(std::size_t triangles, int levels);
 
 struct SubdividedMesh {

@@ -13,7 +13,7 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 constexpr float powers_of_ten[] = {1e0f, 1e1f, 1e2f, 1e3f, 1e4f, 1e5f, 1e6f, 1e7f, 1e8f, 1e9f, 1e10f};
 
 // Clinger 1990, "How to Read Floating Point Numbers Accurately": digits that fit the significand, times or
-// over a power of ten that is exact, need one rounding. Covers most coordinates; null where it does not hold.
+// over an exact power of ten, need one rounding. Covers most coordinates; null elsewhere.
 const char* parse_short(const char* p, const char* end, float& value) {
     bool negative = *p == '-';
     if (negative) ++p;
@@ -36,7 +36,7 @@ const char* parse_short(const char* p, const char* end, float& value) {
     return p;
 }
 
-// Of a number that is out of range: is it too small rather than too large?
+// For a number out of range: whether it is too small rather than too large.
 bool underflows(const char* p, const char* end) {
     int magnitude = 0; // decimal exponent of the leading digit, roughly
     bool seen_point = false, seen_digit = false;

@@ -13,8 +13,8 @@ struct NumberResult {
     NumberStatus status = NumberStatus::malformed;
 };
 
-// Reads one number from the start of [begin, end); a leading '+' is allowed, "inf", "nan" and hexadecimal are
-// not. Floating-point results are correctly rounded; what is smaller than the smallest number becomes 0.
+// Reads one number from the start of [begin, end). A leading '+' is allowed; "inf", "nan" and hexadecimal are
+// not. Floating-point results are correctly rounded; underflow gives 0.
 NumberResult parse_number(const char* begin, const char* end, float& value);
 NumberResult parse_number(const char* begin, const char* end, double& value);
 NumberResult parse_number(const char* begin, const char* end, std::int32_t& value);

@@ -31,7 +31,7 @@ T byte_swapped(T value) {
     return value;
 }
 
-// Both cursors read one number after the other and know where they are for messages.
+// Both cursors read numbers in sequence and know their position for messages.
 class BinaryCursor {
   public:
     BinaryCursor(std::span<const std::uint8_t> bytes, const Header& header, std::string_view name)
@@ -60,7 +60,7 @@ class BinaryCursor {
         }
         return read<double>();
     }
-    // Bytes that a row takes at least.
+    // Lower bound of a row's size.
     static std::size_t smallest_row(const Element& e) {
         std::size_t size = 0;
         for (const Property& p : e.properties) size += ply::size_of(p.is_list ? p.count_type : p.type);
@@ -110,7 +110,7 @@ class AsciiCursor {
         p_ = result.end;
         return value;
     }
-    // A digit for each number or list.
+    // At least one digit for each number or list.
     static std::size_t smallest_row(const Element& e) { return e.properties.size(); }
     void skip(std::uint64_t count, Type type) {
         if (count > remaining()) fail_short();
@@ -164,7 +164,7 @@ class BodyParser {
             std::size_t smallest = Cursor::smallest_row(e);
             if (e.count > 0 && smallest > 0 && e.count > cursor_.remaining() / smallest)
                 throw Error(std::string(name_) + ":" + std::to_string(e.line),
-                            "the header tells of " + std::to_string(e.count) + " rows of '" + e.name +
+                            "the header declares " + std::to_string(e.count) + " rows of '" + e.name +
                                 "', more than the file can hold");
             if (e.name == "vertex") {
                 parse_vertices(e);

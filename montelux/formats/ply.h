@@ -22,9 +22,8 @@ struct PlyMesh {
 // ASCII and binary, little and big endian, properties of any type in any order. Vertices: x, y, z; optional
 // nx, ny, nz; optional u, v (also s, t; texture_u, texture_v; texture_s, texture_t). Faces: a list
 // vertex_indices or vertex_index. Other elements and properties are skipped.
-// Nothing is allocated that the file's size does not back. Throws Error, with `name` in front, when the
-// header is wrong, the data end early, a number cannot be read or is not finite, or an index points to no
-// vertex.
+// Allocates no more than the file's size justifies. Throws Error, prefixed with `name`, for a wrong header,
+// data that ends early, numbers that cannot be read or are not finite, and vertex indices out of range.
 PlyMesh parse_ply(std::span<const std::uint8_t> bytes, std::string_view name);
 
 // The same for a file, which may be gzipped (".gz").

@@ -1,4 +1,4 @@
-// What a reader has to tell the user without stopping: parameters it ignores, things it does differently.
+// Warnings: the messages of a reader that do not stop it: ignored parameters, differences from the format.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace montelux {
 
-// Messages in the order in which they came up; the same message is kept once. At most `max_messages` are
-// kept, so that a broken file cannot fill the memory with complaints; `left_out` counts the others.
+// Messages in order of occurrence, each kept once. At most `max_messages` are kept, so that a broken file
+// cannot exhaust the memory; `left_out` counts the others.
 class Warnings {
   public:
     static constexpr std::size_t max_messages = 1000;

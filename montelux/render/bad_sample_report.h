@@ -1,4 +1,4 @@
-// Samples that were left out of a picture: how many of which kind, and the first.
+// BadSampleReport: the samples left out of a picture: counts by kind, and the first.
 #pragma once
 
 #include <cstdint>

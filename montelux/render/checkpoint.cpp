@@ -16,7 +16,7 @@ namespace montelux {
 namespace {
 
 constexpr std::string_view kind = "render";
-// Of the layout below.
+// Version of the layout below.
 constexpr std::uint32_t layout_version = 3;
 static_assert(std::is_trivially_copyable_v<Pixel> && std::endian::native == std::endian::little);
 
@@ -47,7 +47,7 @@ std::uint64_t hash_of_filter(const PixelFilter& filter) {
         filter);
 }
 
-// What a continued render must share with the one that was saved; `difference` is what a message says else.
+// What a resumed render must share with the saved one; `difference` is the message if it does not.
 struct Fingerprint {
     const char* difference;
     std::uint64_t hash;
@@ -57,7 +57,7 @@ std::uint64_t hash_of_text(std::string_view text) {
     for (const char c : text) h = hash_key(h, static_cast<std::uint8_t>(c));
     return h;
 }
-// Another version of the program may take other samples.
+// Another version of the program may take different samples.
 std::uint64_t version() { return hash_of(layout_version, hash_of_text(MONTELUX_VERSION)); }
 
 std::array<Fingerprint, 10> fingerprints(const SceneDigest& scene, const SceneDescription& d,
@@ -114,8 +114,8 @@ RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDes
     RestoredRender restored{RenderState(description.film), 0, {}};
     RenderState& state = restored.state;
     const std::span<Pixel> pixels = state.film.pixels();
-    // Of the right film it is no longer than this; many times as much, so that one of a larger film is
-    // refused for what it is. What cannot be one is not read into memory.
+    // An upper bound of the size for this film, generous so that a checkpoint of a larger film is refused by
+    // the right message. Larger files are not read into memory.
     const std::size_t most = 64 * (pixels.size_bytes() + pixels.size() * sizeof(std::uint32_t)) + 1024;
     const Generation generation = read_generation(path, kind, most);
     restored.newest_refused_because = generation.newest_refused_because;

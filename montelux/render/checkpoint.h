@@ -1,4 +1,4 @@
-// Renders that survive: the state of a render in a file, and what it must fit to be continued.
+// Checkpoints: the state of a render in a file, with fingerprints of the render that may resume it.
 #pragma once
 
 #include <cstdint>
@@ -12,26 +12,25 @@
 
 namespace montelux {
 
-// Writes a generation file (mc/io/generation_file.h): the state beside fingerprints of what its samples
-// depend on. How far the render shall go (samples per pixel, error, time) is not among these: a render may be
-// resumed further than was first asked for. Throws Error.
+// Writes a generation file (mc/io/generation_file.h): the state and fingerprints of everything that samples
+// depend on. Limits (samples per pixel, error, time) are not among these: a render may be resumed with higher
+// ones. Throws Error.
 void save_checkpoint(const std::filesystem::path& path, const Renderer& renderer, const RenderState& state);
 
 struct RestoredRender {
     RenderState state;
-    // Of the render that was saved; to be taken over, for another number of samples may ask for others.
+    // Of the saved render; the resumed one keeps it, although another number of samples may imply another.
     std::uint32_t replicate_points = 0;
-    // Why the newest file was not used but the generation before it; empty where it was.
+    // Why the newest file was not used but the generation before it; empty if it was used.
     std::string newest_refused_because;
 };
 
-// Throws Error, with the reason, for a file that is missing or damaged, of another version of the program, or
-// of a render whose scene, film, sampler, integrator, allocation or slice was another.
+// Throws Error, with the reason, for a file that is missing, damaged, or of another version of the program,
+// and for a render with another scene, film, sampler, integrator, allocation or slice.
 RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDescription& description,
                                const RenderTarget& target);
 
-// Of all that the values of samples depend on, and of the replicates they form: equal for slices of one
-// render.
+// Hash of everything that the values and replicates of samples depend on: equal for the slices of one render.
 std::uint64_t render_fingerprint(const Renderer& renderer);
 
 } // namespace montelux

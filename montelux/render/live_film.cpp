@@ -29,7 +29,7 @@ void LiveFilm::close() {
 }
 
 void LiveFilm::wait_for_copies() const {
-    // Some 20 ms at most: who looks again and again must not hold the render up.
+    // At most 20 ms: frequent snapshots must not delay the render.
     for (int i = 0; i < 200 && is_wanted(); ++i) std::this_thread::sleep_for(between_looks);
 }
 
@@ -42,7 +42,7 @@ void LiveFilm::copy_tile(const Tile& tile, Film& into) const {
 void LiveFilm::hand_over(std::size_t tile) {
     Tile& t = tiles_[tile];
     std::lock_guard wish(t.wish);
-    if (!t.wanted.load(std::memory_order_relaxed)) return; // it has been withdrawn
+    if (!t.wanted.load(std::memory_order_relaxed)) return; // the request was withdrawn
     copy_tile(t, *into_);
     t.wanted.store(false, std::memory_order_release);
 }
@@ -61,7 +61,7 @@ std::optional<LiveCopy> LiveFilm::copy(double seconds) {
     LiveCopy copy{Film(state_->film.settings()), report_()};
     if (copy.report.samples == 0) return std::nullopt;
     into_ = &copy.film;
-    std::vector<Tile*> held; // by threads that are asked for a copy
+    std::vector<Tile*> held; // by threads that have been asked for a copy
     for (Tile& t : std::span(tiles_.get(), tile_count_)) {
         if (const std::unique_lock mine(t.held, std::try_to_lock); mine.owns_lock()) {
             copy_tile(t, copy.film);

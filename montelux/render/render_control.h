@@ -1,4 +1,4 @@
-// RenderControl: progress, checkpoints, looks at and cancelling of a running render, and who takes its samples.
+// RenderControl: progress, checkpoints, snapshots and cancellation of a running render; its executor.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +14,18 @@ struct RenderState;
 class LiveFilm;
 class RoundExecutor;
 
-// A tile whose pixels have reached their target sample counts. The pixels are those of the film, and do not
-// change before the callback returns.
+// A tile whose pixels have reached their target sample counts. The pixels are the film's, and do not change
+// before the callback returns.
 struct FinishedTile {
     PixelBounds bounds;
-    std::uint64_t round = 0; // counted from 0 since the render began or was resumed
+    std::uint64_t round = 0; // from 0 at the start or resumption of the render
     const Film* film = nullptr;
 };
 
 struct RenderProgress {
-    std::uint64_t samples_done = 0, samples_total = 0; // the total is a guess where a target is given
+    std::uint64_t samples_done = 0, samples_total = 0; // with a target the total is an estimate
     double seconds = 0;
-    // After each round at whose end no replicate is open.
+    // After each round that ends with no open replicate.
     std::optional<FilmError> error;
 };
 
@@ -34,17 +34,17 @@ using ProgressCallback = std::function<void(const RenderProgress&)>;
 
 struct RenderControl {
     ProgressCallback progress;
-    // Called when `checkpoint_seconds` have passed since the last call, while no sample is being taken; and
-    // at the end, before the film is closed.
+    // Called every `checkpoint_seconds`, while no sample is being taken, and at the end, before the film is
+    // closed.
     std::function<void(const RenderState&)> checkpoint;
     double checkpoint_seconds = 60;
-    // Called when all pixels of a tile have their samples of a round: once per tile and round, from the threads
-    // that render, for several tiles at once.
+    // Called when all pixels of a tile have their samples of a round: once per tile and round, from the
+    // rendering threads, for several tiles at once.
     std::function<void(const FinishedTile&)> tile;
-    // For threads that look at the render meanwhile; null: none. With an executor a look ends the round early.
+    // For snapshots by other threads; null: none. With an executor a snapshot ends the round early.
     LiveFilm* live = nullptr;
     const CancelFlag* cancel = nullptr;
-    // Who takes the samples; the threads of this process where there is none. The result is the same.
+    // Takes the samples; null: the threads of this process. The result is the same.
     RoundExecutor* executor = nullptr;
 };
 

@@ -1,4 +1,4 @@
-// What a rendered picture says of how it came about.
+// The header attributes of a rendered picture.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace montelux {
 
-// Writes the attributes that `montelux info` shows; `scene_name` is the name of the scene's file. Slices of
-// one render know each other by them (SliceMerger).
+// Writes the attributes that `montelux info` prints; `scene_name` is the name of the scene's file.
+// SliceMerger matches slices of one render by them.
 void add_render_header(Image& image, const std::string& scene_name, const Renderer& renderer,
                        const RenderReport& report, const FilmError& error, double clamped_luminance);
 

@@ -55,7 +55,7 @@ void RenderSession::render(const RenderCompany& company) {
 }
 
 void RenderSession::save(const RenderState& state, const RenderCompany& company) {
-    // A full disk must not cost the render.
+    // A full disk must not end the render.
     std::string failure;
     try {
         save_checkpoint(settings_.checkpoint, *renderer_, state);
@@ -79,7 +79,7 @@ RenderSnapshot RenderSession::finish(const std::function<void(Image&)>& denoise)
     state_.reset();
     if (denoise && !report.cancelled()) {
         try {
-            denoise(*std::const_pointer_cast<Image>(result.image)); // nobody else has it yet
+            denoise(*std::const_pointer_cast<Image>(result.image)); // not shared yet
         } catch (const std::exception& e) {
             result.denoise_failure = e.what();
         }

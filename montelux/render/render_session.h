@@ -21,7 +21,7 @@ struct RenderSessionSettings {
     std::string scene_name;           // for the header of the picture
     std::filesystem::path checkpoint; // empty: none
     double checkpoint_every = 60;     // seconds
-    bool resume = false;              // from the checkpoint, where there is one
+    bool resume = false;              // from the checkpoint, if it exists
 };
 
 // The picture of a render at some moment.
@@ -29,12 +29,12 @@ struct RenderSnapshot {
     std::shared_ptr<const Image> image; // the layers of Film::develop() with the header of a render
     FilmError error;
     RenderReport report;
-    double clamped_luminance = 0;            // mean over pixels, of what the film's limit took away
+    double clamped_luminance = 0;            // mean over pixels, removed by the film's limit
     std::optional<OutlierReport> outliers{}; // of the finished picture
-    std::string denoise_failure{};           // why it was not denoised though it should have been
+    std::string denoise_failure{};           // why requested denoising failed
 };
 
-// Who takes part in a render, beside the session.
+// The callbacks, cancel flag and executor of a render.
 struct RenderCompany {
     ProgressCallback progress{};
     std::function<void(const FinishedTile&)> tile{}; // RenderControl::tile
@@ -44,41 +44,41 @@ struct RenderCompany {
     std::function<void(const std::string& reason)> checkpoint_failed{};
 };
 
-// What the program and Python have in common. Threads as the caller's ThreadLimit allows.
+// Common to the program and the Python package. Uses threads as the caller's ThreadLimit allows.
 class RenderSession {
   public:
-    // Begins a render, or resumes it from the checkpoint. The description must not change any more. Throws
-    // Error for settings that make no sense, for a checkpoint of another render (load_checkpoint), and for one
-    // that exists and would be overwritten without `resume`.
+    // Starts a render, or resumes it from the checkpoint. The description must not change afterwards. Throws
+    // Error for invalid settings, for a checkpoint of another render (load_checkpoint), and for an existing
+    // checkpoint without `resume`.
     RenderSession(std::shared_ptr<const SceneDescription> description, RenderSessionSettings settings);
 
     const SceneDescription& description() const { return *description_; }
     const RenderSessionSettings& settings() const { return settings_; }
-    // The description's, with the replicates of the render that is resumed.
+    // The description's, with the replicates of the resumed render.
     SamplerSettings sampler() const;
     bool resumed() const { return replicate_points_ != 0; }
     // Mean samples per pixel of the checkpoint.
     double samples_before() const { return samples_before_; }
-    // Why the newest checkpoint was not resumed but the one before it; empty where it was.
+    // Why the newest checkpoint was not resumed but the one before it; empty if it was.
     const std::string& refused_checkpoint() const { return refused_checkpoint_; }
 
-    // Builds what the scene needs; render() does so where this was not called.
+    // Builds the scene's tables; render() does so if this was not called.
     void prepare();
-    // After that.
+    // Valid after prepare().
     const Renderer& renderer() const { return *renderer_; }
 
-    // Takes samples until the target is reached, all are taken, or the company cancels. To be called once.
+    // Takes samples until the target is reached, all are taken, or the render is cancelled. Call once.
     void render(const RenderCompany& company = {});
-    // The finished picture, after render(). `denoise` adds its layers to it, unless the render was cancelled;
-    // what it throws costs these layers and nothing else. Gives the memory of the film back.
+    // The finished picture, after render(). `denoise` adds layers to it, unless the render was cancelled; if
+    // it throws, only these layers are lost. Frees the film's memory.
     RenderSnapshot finish(const std::function<void(Image&)>& denoise = {});
 
-    // The picture as it is now, from any thread while render() runs in another. Nothing is paused, no
-    // checkpoint is written, and the result keeps its bits. Waits at most `seconds`; empty where LiveFilm
-    // gives no copy. Not from the callbacks of the company.
+    // The current picture, from any thread while render() runs in another. Pauses nothing, writes no
+    // checkpoint, and changes no bit of the result. Waits at most `seconds`; empty if LiveFilm gives no copy.
+    // Must not be called from the callbacks of the render.
     std::optional<RenderSnapshot> snapshot(double seconds);
 
-    // Why the last checkpoint was not written; empty where it was. From any thread.
+    // Why the last checkpoint was not written; empty if it was. From any thread.
     std::string checkpoint_failure() const;
 
   private:
@@ -93,7 +93,7 @@ class RenderSession {
     std::string refused_checkpoint_;
     std::unique_ptr<Renderer> renderer_;
     LiveFilm live_;
-    mutable std::mutex mutex_; // of the next
+    mutable std::mutex mutex_; // of the next member
     std::string checkpoint_failure_;
 };
 

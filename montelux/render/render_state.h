@@ -1,4 +1,4 @@
-// RenderState: the film and the report of a render so far, which a checkpoint holds.
+// RenderState: film and report of a render so far, the content of a checkpoint.
 #pragma once
 
 #include <cstdint>
@@ -32,11 +32,11 @@ struct RenderReport {
     bool cancelled() const { return stop == RenderStop::cancelled; }
 };
 
-// A render between two samples of any of its pixels. A render resumed from it ends with the same bits as one
-// that was not interrupted.
+// A render between two samples of any of its pixels. A render resumed from it ends with the same bits as an
+// uninterrupted one.
 struct RenderState {
     Film film;
-    // Samples that each pixel shall have at the end of the present round; empty before the first.
+    // Target sample count of each pixel in the current round; empty before the first.
     std::vector<std::uint32_t> target_samples;
     RenderReport report; // so far
 

@@ -1,12 +1,12 @@
-// RenderTarget: the error, time limit, allocation and slice that a render is asked for.
+// RenderTarget: the target error, time limit, allocation and slice of a render.
 #pragma once
 
 #include "montelux/render/sample_order.h"
 
 namespace montelux {
 
-// What is asked for. The samples of the description's sampler are the most a pixel gets: on average over the
-// picture where they are allocated adaptively, each where they are not.
+// The samples per pixel of the description's sampler are a limit: for the mean over the picture with adaptive
+// allocation, for each pixel without.
 struct RenderTarget {
     // Relative error of the picture (FilmError::relative), or the error, relative to the mean luminance,
     // within which a share `quantile` of the pixels lies. 0: none.

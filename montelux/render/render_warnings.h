@@ -1,4 +1,4 @@
-// What speaks against a finished render, as sentences.
+// Warnings about a finished render, as sentences.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace montelux {
 
-// Samples that were left out, and how to find the first; empty without any.
+// The samples left out, and how to replay the first; empty without any.
 std::string bad_sample_warning(const BadSampleReport& bad, std::uint64_t seed);
 
-// A render that was stopped may be without errors, which nothing in its picture would explain; empty where
-// they are known, and for slices, which have them once they are joined.
+// For an interrupted render whose picture has no errors; empty if they are known, and for slices, which get
+// errors when they are merged.
 std::string missing_error_warning(const RenderSnapshot& result, const Renderer& renderer);
 
 } // namespace montelux

@@ -36,7 +36,7 @@ class RenderLoop {
           tile_renderer_(context, renderer.accelerator(), order_),
           tiles_(tiles_of(state.film.bounds(), tile_size)), finished_(tiles_.size()),
           seconds_before_(state.report.seconds) {
-        if (!round_is_done()) round_ = 0; // of a restored state
+        if (!round_is_done()) round_ = 0; // in a restored state
         if (control.live != nullptr) control.live->open(state, tiles_, [this] { return report_now(); });
     }
     ~RenderLoop() { close_live(); }
@@ -77,15 +77,15 @@ class RenderLoop {
         return control_.checkpoint && seconds_since(last_checkpoint_) >= control_.checkpoint_seconds;
     }
     bool out_of_time() const {
-        // A picture with a sample of each pixel is the least there is to show.
+        // A time limit ends the render only after one sample per pixel.
         return renderer_.target().time > 0 && every_pixel_seen_ && seconds() >= renderer_.target().time;
     }
     bool pause_is_due() const { return checkpoint_is_due() || out_of_time(); }
     void pause_if_due() {
         if (pause_is_due()) pause_ = true;
     }
-    // With an executor, ends of rounds are expensive. Where nothing is decided by the error, one round takes
-    // all samples that are left, after the first one; so does a pilot.
+    // With an executor, ends of rounds are expensive. If no decision depends on the error, one round takes
+    // all remaining samples after the first one; so does a pilot.
     void join_rounds() {
         const RenderTarget& target = renderer_.target();
         if (control_.executor == nullptr || !every_pixel_seen_) return;
@@ -95,7 +95,7 @@ class RenderLoop {
         if (!target.adaptive && !(target.error > 0))
             std::ranges::fill(state_.target_samples, static_cast<std::uint32_t>(order_.share()));
     }
-    // Pixels of a restored film may lack samples of the present round, as those of a broken-off loop do.
+    // Pixels of a restored film may lack samples of the current round, as after an interrupted loop.
     bool round_is_done() const {
         if (state_.target_samples.empty()) return true;
         const std::span<const Pixel> pixels = state_.film.pixels();
@@ -123,7 +123,7 @@ class RenderLoop {
     bool target_is_reached(const FilmError& error) const {
         const RenderTarget& target = renderer_.target();
         if (!(target.error > 0)) return false;
-        // Few samples may all be dark by chance; a quantile is satisfied by pixels that saw nothing yet.
+        // Few samples may all be dark by chance; pixels that found no light yet would satisfy a quantile.
         const std::uint64_t least = target.quantile > 0 ? 4 * least_samples : least_samples;
         const std::uint64_t replicates = fewest_replicates();
         if (replicates < least_replicates || replicates * order_.replicate_size() < least) return false;
@@ -193,7 +193,7 @@ class RenderLoop {
         tell_if_finished(index);
         std::lock_guard lock(mutex_);
         tally.add_to(state_.report);
-        // Not before something was done: short intervals must not keep the loop from going on.
+        // Only after some samples: short intervals must not stop progress.
         if (tally.samples > 0) pause_if_due();
         if (seconds_since(last_progress_) > 0.2) report_progress(std::nullopt);
     }
@@ -232,7 +232,7 @@ class RenderLoop {
         progress_.samples_total = expected_samples();
         control_.progress(progress_);
     }
-    // All, or what the last error makes expect.
+    // All samples, or an estimate from the last error.
     std::uint64_t expected_samples() const {
         const auto pixels = static_cast<double>(state_.film.pixels().size());
         const double all = pixels * static_cast<double>(order_.share());
@@ -258,18 +258,18 @@ class RenderLoop {
                                         static_cast<double>(state_.report.rays.rays()) /
                                         static_cast<double>(state_.report.rays.timed);
         if (control_.checkpoint) save_checkpoint();
-        // Replicates that were cut short count where they are half of one: each is unbiased.
+        // Truncated replicates count if they are at least half of one: each is unbiased.
         state_.film.end_replicates(order_.replicate_size());
-        // Replicates that were open may have been all that was missing.
+        // The open replicates may have been the only ones missing.
         if (reason != RenderStop::cancelled && target_is_reached(state_.film.error()))
             state_.report.stop = RenderStop::error;
     }
 
-    // Of each pixel, before its error is believed; and before a picture is taken for black.
+    // Samples per pixel before its error is trusted; and before a picture counts as black.
     static constexpr std::uint64_t least_samples = 16, least_replicates = 4, samples_of_black = 4096;
-    // Of the picture's error, as much as 16 replicates of one pixel have: who looks often and stops at the
-    // first error that is small enough stops at one that is small by chance, and the more so the less it is
-    // known.
+    // Degrees of freedom of the picture's error, as many as 16 replicates of one pixel have: stopping at the
+    // first error that is small enough selects errors that are small by chance, the more so the less certain
+    // they are.
     static constexpr double least_freedom = 15;
 
     const Renderer& renderer_;
@@ -279,14 +279,14 @@ class RenderLoop {
     TileRenderer tile_renderer_;
     std::vector<PixelBounds> tiles_;
     std::vector<char> finished_;              // of each tile, in this round
-    std::uint64_t round_ = ~std::uint64_t{0}; // the next is the first
-    double seconds_before_;                   // of earlier sessions
+    std::uint64_t round_ = ~std::uint64_t{0}; // incremented to 0 by the first round
+    double seconds_before_;                   // of earlier runs of this render
     Clock::time_point begin_ = Clock::now(), last_checkpoint_ = begin_, last_progress_ = begin_;
     bool every_pixel_seen_ = false;
     std::atomic<bool> pause_{false};
     std::mutex mutex_; // of the report and the progress
     RenderProgress progress_;
-    std::uint64_t samples_beyond_ = 0; // those in the report, which an executor told of
+    std::uint64_t samples_beyond_ = 0; // samples beyond the report, counted by an executor
 };
 
 } // namespace

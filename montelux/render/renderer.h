@@ -1,4 +1,4 @@
-// The loop over rounds, tiles, pixels and samples.
+// Renderer: the loop over rounds, tiles, pixels and samples.
 #pragma once
 
 #include <cstdint>
@@ -21,39 +21,39 @@ namespace montelux {
 struct SampleRecord;
 class TileRenderer;
 
-// Holds what is built once for a scene. The description must outlive it.
+// Contains the tables built once for a scene. The description must outlive it.
 class Renderer {
   public:
-    // Throws Error on settings that make no sense. Threads as the caller's ThreadLimit allows.
-    // `replicate_points`, where not 0, are those of the render that is resumed.
+    // Throws Error on invalid settings. Uses threads as the caller's ThreadLimit allows. `replicate_points`,
+    // if not 0, are those of the resumed render.
     explicit Renderer(const SceneDescription& description, const RenderTarget& target = {},
                       std::uint32_t replicate_points = 0);
 
     const SceneDescription& description() const { return description_; }
-    // Of the scene, as it was when the renderer was made.
+    // Digest of the scene when the renderer was made.
     const SceneDigest& scene_digest() const { return scene_digest_; }
     const Accelerator& accelerator() const { return *accelerator_; }
     const Camera& camera() const { return camera_; }
     const SceneView& scene() const { return tables_->view(); }
-    // As the description says, with the number of replicates decided.
+    // The description's, with the number of replicates decided.
     const SamplerSettings& sampler() const { return sampler_; }
     double build_seconds() const { return build_seconds_; }
 
     const RenderTarget& target() const { return target_; }
 
-    // Goes on with a render, new or restored, until its target is reached or all samples are taken, and
-    // closes the film. Unless time or the caller stopped it, what the film holds depends on description and
-    // target alone: not on the number of threads, nor on when it was looked at, stopped, saved and restored.
+    // Continues a render, new or restored, until its target is reached or all samples are taken, and closes
+    // the film. Unless time or the caller stops it, the film depends on description and target only: not on
+    // the number of threads, snapshots, interruptions or checkpoints.
     void render(RenderState& state, const RenderControl& control = {}) const;
     // A render from the start. The film must be new.
     RenderReport render(Film& film, const ProgressCallback& progress = {},
                         const CancelFlag* cancel = nullptr) const;
 
-    // Takes samples for a render that another process leads: calls `work` with what renders its tiles.
+    // Takes samples for a render led by another process: calls `work` with the renderer of its tiles.
     void serve(const std::function<void(const TileRenderer&)>& work) const;
 
-    // Traces one sample of the render again and writes it down (sample_record.h). The record refers to the
-    // renderer's scene and tables. Throws Error, as check_sample does, where the render takes no such sample.
+    // Replays one sample of the render (sample_record.h). The record refers to the renderer's scene and
+    // tables. Throws Error, as check_sample does, if the render does not take this sample.
     SampleRecord replay(int x, int y, std::uint64_t index) const;
 
   private:

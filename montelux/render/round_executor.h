@@ -1,4 +1,4 @@
-// Who takes the samples of a round: the place where other processes come in.
+// RoundExecutor: takes the samples of a round; the interface by which other processes take part.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@ namespace montelux {
 
 class TileRenderer;
 
-// The render loop as an executor sees it. Called from the thread that runs the round alone.
+// The render loop as an executor sees it. Called only from the thread that runs the round.
 struct RoundWatch {
-    // Shall the round end before its target sample counts are reached? Something was done in it, or not yet:
-    // short intervals between checkpoints must not keep a render from going on.
+    // Whether the round must end before its target sample counts are reached. The argument says whether it
+    // has taken samples: short intervals between checkpoints must not stop progress.
     std::function<bool(bool something_done)> stop;
-    // Samples taken in this round so far, beyond those in the state's report, and the error of the picture
-    // where it is known: for the progress alone.
+    // Samples of this round so far, beyond those in the state's report, and the error of the picture if
+    // known: for progress only.
     std::function<void(std::uint64_t samples, const std::optional<FilmError>& error)> tell;
-    // The render's own, or null: whoever requested it is in a hurry.
+    // The render's cancel flag, or null. When it is set, the executor returns as soon as it can.
     const CancelFlag* cancel = nullptr;
 };
 
@@ -29,11 +29,11 @@ class RoundExecutor {
   public:
     virtual ~RoundExecutor() = default;
 
-    // Takes the samples of pixels that have fewer than state.target_samples tells, in their order, until none
-    // lacks any or the watch stops it. At the end film and report of the state hold everything that was
+    // Takes the missing samples of all pixels, up to state.target_samples, in their order, until none is
+    // missing or the watch stops it. At the end the state's film and report contain everything that was
     // taken.
     virtual void run(const TileRenderer& tiles, RenderState& state, const RoundWatch& watch) = 0;
-    // Is the render to end as if it had been cancelled, because the executor cannot go on?
+    // Whether the render must end as if cancelled, because the executor cannot continue.
     virtual bool failed() const = 0;
 };
 

@@ -15,15 +15,15 @@ namespace {
 
 constexpr std::uint64_t longest_round = 16;
 constexpr std::uint32_t points_for_targets = 8;
-constexpr std::uint32_t many_samples = 256; // so many are split into 16 replicates
-// Of adaptive renders, for the first errors: samples, and replicates.
+constexpr std::uint32_t many_samples = 256; // from here on split into 16 replicates
+// Samples and replicates of the pilot of adaptive renders.
 constexpr std::uint64_t pilot_samples = 16, pilot_replicates = 4;
 
-constexpr int radius = 3;               // of the pixels around one
+constexpr int radius = 3;               // of the neighbourhood of a pixel
 constexpr double least_share = 1.0 / 3; // of the mean number of samples
 constexpr double least_growth = 1.1, most_growth = 2;
 
-// Standard deviation of one sample of each pixel, as the pixels around it know it.
+// Standard deviation of one sample of each pixel, estimated from the pixels around it.
 std::vector<double> deviations(const Film& film) {
     const int width = film.bounds().width(), height = film.bounds().height();
     std::vector<double> variance(film.pixels().size());
@@ -39,8 +39,7 @@ std::vector<double> deviations(const Film& film) {
     auto at = [&](int x, int y) {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
     };
-    // Added up anew for each: differences of running sums would let the pixel itself in again by their
-    // rounding.
+    // Summed anew for each pixel: rounding in running sums would let the pixel's own value in again.
     auto around = [&](int x0, int y0) {
         double sum = 0;
         int count = 0;
@@ -128,7 +127,7 @@ std::vector<std::uint32_t> neyman_allocation(const Film& film, const SampleOrder
     const double most = static_cast<double>(order.share()) * pixels;
     if (taken.value() + replicate > most) return {};
 
-    // n_p = scale * weight_p, and no fewer than there are.
+    // n_p = scale * weight_p, at least the current count.
     auto target_of = [&](std::size_t i, double scale) {
         const double wanted = std::min(std::ceil(scale * weight[i] / replicate) * replicate, 4e9);
         return std::max(static_cast<double>(film.pixels()[i].samples()), wanted);
@@ -146,7 +145,7 @@ std::vector<std::uint32_t> neyman_allocation(const Film& film, const SampleOrder
             },
             std::plus<>());
     };
-    // The greatest scale whose total is within a limit.
+    // The largest scale whose total is within a limit.
     auto scale_within = [&](double limit) {
         double low = 0, high = weights.value() > 0 ? 2 * limit / weights.value() : 0;
         for (int i = 0; i < 50; ++i) {
@@ -174,7 +173,7 @@ std::vector<std::uint32_t> neyman_allocation(const Film& film, const SampleOrder
         target_samples[i] = static_cast<std::uint32_t>(target_of(i, scale));
         more = more || target_samples[i] > film.pixels()[i].samples();
     }
-    // Replicates are too large for the limit, or nothing varies: the same for all, as far as that is allowed.
+    // If replicates exceed the limit, or nothing varies: equal counts, as far as allowed.
     if (!more) {
         const std::uint64_t room = static_cast<std::uint64_t>((most - taken.value()) / (pixels * replicate));
         if (room == 0) return {};

@@ -13,25 +13,25 @@
 
 namespace montelux {
 
-// With `replicates` 0 or 1 and a quasi-random sampler: the number that suits. Eight give an error estimate
+// Chooses the number if `replicates` is 0 or 1 and the sampler quasi-random. Eight give an error estimate
 // with seven degrees of freedom and leave most samples to the point sets: the truth then lies within two
 // errors in 91 % of the pixels. From 256 samples on there are sixteen (94 %), and never fewer than slices.
-// With fewer than eight samples each is a replicate of its own. A target or a time needs many short
-// replicates, of at most eight points each, since the number of samples is not known beforehand.
+// Below eight samples each is a replicate. A target or a time needs many short replicates, of at most eight
+// points each, since the number of samples is not known beforehand.
 SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& target);
 
-// With the replicates of a render that is resumed, which are those of its beginning; 0: as they are.
+// The same for a resumed render, with its original points per replicate; 0: as chosen above.
 SamplerSettings with_points(SamplerSettings settings, std::uint32_t replicate_points);
 
-// Throws Error, a sentence, where the slice does not exist or would take no samples.
+// Throws Error if the slice does not exist or would take no samples.
 void check_slice(const SamplerSettings& sampler, const RenderTarget& target);
 
 // Samples per pixel of the pilot of an adaptive render, from which its first errors are computed.
 std::uint64_t pilot_of(const SampleOrder& order);
 
-// The target sample counts of the next round, one per pixel, once all pixels have reached those of the last
+// The target sample counts of the next round, one per pixel, when all pixels have reached those of the last
 // (`state.target_samples`, empty at first); empty when all samples are taken. A function of its arguments
-// alone.
+// only.
 //
 // Without adaptive allocation all pixels get the same: rounds are short at first, so that a first snapshot
 // comes early, and never long. Adaptively: a pilot of equal counts, then rounds of whole replicates
@@ -40,7 +40,7 @@ std::uint64_t pilot_of(const SampleOrder& order);
 std::vector<std::uint32_t> next_target_samples(const RenderState& state, const SamplerSettings& sampler,
                                                const RenderTarget& target);
 
-// The adaptive part of the above: none fewer than a pixel has; empty when no pixel may have more.
+// The adaptive part of the above: no count decreases; empty if no pixel may get more.
 //
 // The mean squared error over pixels of n_p samples and variances v_p is least, for a given sum of n_p, where
 // n_p is proportional to sqrt(v_p) (Neyman 1934, "On the Two Different Aspects of the Representative

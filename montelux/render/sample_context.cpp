@@ -9,9 +9,9 @@ namespace montelux {
 
 namespace {
 
-// Why radiance may not enter a sum, if it may not.
+// The reason to leave a sample out, if any.
 std::optional<BadSample::Kind> badness(Vec3f rgb, SampledSpectrum radiance) {
-    // The radiance first: infinite light makes differences of infinities in RGB.
+    // The radiance first: with infinite light RGB contains differences of infinities.
     if (has_nan(radiance)) return BadSample::Kind::nan;
     if (!all_finite(radiance)) return BadSample::Kind::infinite;
     if (std::isnan(rgb.x + rgb.y + rgb.z)) return BadSample::Kind::nan;
@@ -21,8 +21,8 @@ std::optional<BadSample::Kind> badness(Vec3f rgb, SampledSpectrum radiance) {
     return std::nullopt;
 }
 
-// Of the footprint of a pixel on a texture: what pbrt-v4 takes from 64 samples per pixel on. The pixel filter
-// does the rest; and a sample must not depend on how many others there are.
+// Scale of a pixel's footprint on textures: pbrt-v4's value from 64 samples per pixel on. The pixel filter
+// does the rest, and a sample must not depend on the number of others.
 constexpr float footprint_scale = 0.125f;
 
 } // namespace

@@ -1,4 +1,4 @@
-// One sample of one pixel: from its random numbers to what the film adds up.
+// SampleContext: one sample of one pixel, from its random numbers to its contribution to the film.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,9 @@ class SampleContext {
   public:
     struct Result {
         FilmSample film;
-        // Why the sample may not enter a sum; `film` is then empty.
+        // Why the sample is left out; `film` is then empty.
         std::optional<BadSample::Kind> bad;
-        float clamped = 0; // luminance that the film's limit took away, filter weight applied
+        float clamped = 0; // luminance removed by the film's limit, filter weight applied
     };
 
     // All arguments must outlive the context.
@@ -34,7 +34,7 @@ class SampleContext {
     Result take(RayTracer& tracer, int x, int y, std::uint64_t index) const {
         return trace(tracer, x, y, index, nullptr);
     }
-    // The same sample, and how it came about.
+    // The same sample with every step of its path.
     SampleRecord record(RayTracer& tracer, int x, int y, std::uint64_t index) const;
 
   private:
@@ -48,7 +48,7 @@ class SampleContext {
     PixelFilterSampler filter_;
     Sensor sensor_;
     Sensor albedo_sensor_;
-    // Spectrum of the white that albedos are seen under.
+    // Spectrum of the white light of albedos.
     const SpectrumTable& white_;
     float white_scale_;
 };

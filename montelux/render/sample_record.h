@@ -1,4 +1,4 @@
-// One sample of one pixel, traced again and written down.
+// SampleRecord: one replayed sample of one pixel, step by step.
 #pragma once
 
 #include <cstdint>
@@ -19,21 +19,21 @@ struct SampleRecord {
 
     FilterSample filter;           // where in the pixel, and the weight of the filter there
     Point2f film;                  // the same point on the film, in pixels
-    Vec2f lens;                    // uniform numbers; the middle for a camera without a lens
+    Vec2f lens;                    // uniform numbers; 0.5 for a camera without a lens
     SampledWavelengths lambda;     // as sampled
-    SampledWavelengths lambda_end; // as the path left them: dispersion ends all but the first
+    SampledWavelengths lambda_end; // at the path's end: dispersion terminates all but the first
     PathRecord path;
     Vec3f sensor_rgb; // of the path's radiance, linear sRGB
-    float clamp = 1;  // factor that holds the largest component to the film's limit
+    float clamp = 1;  // factor that limits the largest component to the film's limit
     Vec3f rgb;        // sensor_rgb times clamp times filter weight
 
-    // What the render adds to the pixel, or why it does not.
+    // The contribution to the pixel, or why the sample is left out.
     FilmSample contribution;
     std::optional<BadSample::Kind> bad;
 };
 
-// Throws Error, naming what was expected, where the pixel is not one of the crop or the index not one of the
-// samples that the description asks for. With adaptive allocation a pixel may have any number of them.
+// Throws Error, naming the valid range, if the pixel is outside the crop or the index beyond the samples of
+// the description. With adaptive allocation every index is valid.
 void check_sample(const SceneDescription& description, int x, int y, std::uint64_t index,
                   const RenderTarget& target = {});
 

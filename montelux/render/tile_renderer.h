@@ -1,4 +1,4 @@
-// The samples of the pixels of one tile, taken up to their target sample counts.
+// TileRenderer: takes the samples of a tile's pixels up to their target sample counts.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ inline std::size_t pixel_count(const PixelBounds& b) {
     return static_cast<std::size_t>(b.width()) * static_cast<std::size_t>(b.height());
 }
 
-// What the samples of a tile add beside the film. Trivially copyable.
+// The statistics of a tile's samples, beside the film. Trivially copyable.
 struct TileTally {
     RayStatistics rays;
     BadSampleReport bad;
@@ -41,7 +41,7 @@ struct TileView {
     std::size_t stride = 0;
     const std::uint32_t* target_samples = nullptr;
     std::size_t target_stride = 0;
-    // A pixel gets no more than so many samples beyond those that it has.
+    // At most this many new samples per pixel.
     std::uint32_t most = ~std::uint32_t{0};
 };
 
@@ -53,9 +53,8 @@ class TileRenderer {
 
     const SampleOrder& order() const { return order_; }
 
-    // Adds what it did to `tally`. Ends early once stop() says so, which is asked before each pixel, and
-    // check(), which is asked after so many samples: pixels are left between two samples, and what they have
-    // is whole at any number of them.
+    // Adds its statistics to `tally`. Stops early when stop(), called before each pixel, or check(), called
+    // every few samples, returns true. Stops only between samples, so pixels are always consistent.
     template <typename Stop, typename Check>
     void render(const TileView& tile, TileTally& tally, const Stop& stop, const Check& check) const {
         const double begin = thread_cpu_seconds();
@@ -78,7 +77,7 @@ class TileRenderer {
   private:
     static constexpr std::uint64_t samples_between_checks = 1024;
 
-    // CPU time of the calling thread: what other programs take away does not count.
+    // CPU time of the calling thread: other programs do not affect it.
     static double thread_cpu_seconds() {
         timespec t{};
         clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

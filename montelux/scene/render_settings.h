@@ -1,5 +1,5 @@
-// What a scene file says beside the scene itself: film, sampler, integrator. Options of the command line
-// override it.
+// SceneDescription: a scene with its film, sampler and integrator settings. Options of the command line
+// override them.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,16 @@
 
 namespace montelux {
 
-// How the light at a vertex of a path is found (MISSION C5, C9). From `light` on lights are sampled.
+// How direct light is found (MISSION C5, C9). From `light` on, lights are sampled.
 enum class Strategy : std::uint8_t {
     uniform, // directions uniform over the sphere (hemisphere for opaque surfaces)
     bsdf,    // directions by BSDF sampling
-    light,   // points on lights; what lights cannot be sampled for (mirrors, seen lights) by BSDF sampling
-    mis,     // both, joined by multiple importance sampling
-    // The two terms of mis, to be looked at: by the same random numbers they add up to it. Light that the
-    // path meets, by its weight: what the camera and mirrors see as well.
+    light,   // points on lights; BSDF sampling for light that cannot be sampled (mirrors, visible lights)
+    mis,     // both, weighted by multiple importance sampling
+    // The two terms of mis, for inspection; with the same random numbers they sum to it. Light that the path
+    // hits, weighted, including light seen by the camera and in mirrors.
     mis_bsdf,
-    mis_light, // sampled lights, by their weight: all of lights that nothing can meet
+    mis_light, // sampled lights, weighted; includes all of lights that cannot be hit
 };
 enum class Heuristic : std::uint8_t { balance, power };
 // How one light is chosen among many (scene/light/sampler).
@@ -34,7 +34,7 @@ struct IntegratorSettings {
     Heuristic heuristic = Heuristic::power;
     LightSampling light_sampling = LightSampling::power;
     EnvironmentSampling environment_sampling = EnvironmentSampling::automatic;
-    // MIS compensation, of no effect but where light and BSDF samples are joined: by mis and its terms.
+    // MIS compensation; effective only with mis and its terms.
     bool environment_compensation = true;
     EnvironmentLookup environment_lookup = EnvironmentLookup::nearest;
 
@@ -49,7 +49,7 @@ struct SceneDescription {
     FilmSettings film;
     SamplerSettings sampler;
     IntegratorSettings integrator;
-    std::string output_file; // the file's own wish; may be empty
+    std::string output_file; // the file's own name; may be empty
 };
 
 } // namespace montelux

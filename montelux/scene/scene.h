@@ -1,4 +1,4 @@
-// The scene: plain values in flat arrays, immutable once built.
+// Scene: plain values in flat arrays, immutable once built.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace montelux {
 
-// A group of shapes in a space of its own, placed by instances.
+// A group of shapes in its own space, placed by instances.
 struct ObjectDefinition {
     std::vector<Index> shapes;
 };
@@ -28,7 +28,7 @@ struct Scene {
     std::vector<TriangleMesh> meshes;
     std::vector<Quadric> quadrics;
     std::vector<Shape> shapes;
-    std::vector<Index> world_shapes; // shapes that stand directly in the world
+    std::vector<Index> world_shapes; // shapes directly in the world
     std::vector<ObjectDefinition> objects;
     std::vector<Instance> instances;
 

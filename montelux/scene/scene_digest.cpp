@@ -13,7 +13,7 @@
 namespace montelux {
 namespace {
 
-// Structs are taken apart by structured bindings: a member more does not compile until it is added here.
+// Structured bindings list every member: a new one does not compile until it is hashed here.
 class SceneHasher {
   public:
     // Values one after the other.
@@ -103,7 +103,7 @@ class SceneHasher {
     template <typename Value>
     void add_parameter(const Value& value, Index texture) {
         add(texture);
-        if (texture == no_index) add(value); // else nothing reads it
+        if (texture == no_index) add(value); // ignored if there is a texture
     }
     void add(const FloatParameter& p) {
         const auto& [value, texture] = p;
@@ -141,7 +141,7 @@ class SceneHasher {
         const auto& [dimension, mapping, values] = t;
         all(dimension, mapping, values);
     }
-    // Without what its header says beside the pixels.
+    // Pixels only, without the header.
     void add(const Image& image) {
         all(image.width(), image.height(), image.format(), image.encoding().kind(),
             image.encoding().exponent(), static_cast<std::uint64_t>(image.channels()));

@@ -1,4 +1,4 @@
-// SceneDigest: what a scene contains, as hashes of its values. Equal digests mean equal samples.
+// SceneDigest: hashes of the values of a scene. Equal digests mean equal samples.
 #pragma once
 
 #include "montelux/scene/content_digest.h"
@@ -6,20 +6,20 @@
 
 namespace montelux {
 
-// By parts, so that a message can say which of them differs.
+// By parts, so that messages can name the part that differs.
 struct SceneDigest {
     ContentDigest geometry;  // meshes, quadrics, shapes, objects, instances
-    ContentDigest materials; // parameters; which shape has which is geometry
-    ContentDigest textures;  // and their images
-    ContentDigest lights;    // and their maps
+    ContentDigest materials; // their parameters; the assignment to shapes is part of the geometry
+    ContentDigest textures;  // with their images
+    ContentDigest lights;    // with their maps
     ContentDigest camera;
 
     ContentDigest whole() const;
     bool operator==(const SceneDigest&) const = default;
 };
 
-// Of values alone: not of addresses, file names, comments, or how the scene came about. Order counts, since
-// values refer to one another by index. Some 10 GB a second.
+// Values only: addresses, file names, comments and the order of calls have no effect. The order of values
+// counts, since they refer to one another by index. About 10 GB/s.
 SceneDigest digest_of(const Scene& scene);
 
 } // namespace montelux

@@ -17,8 +17,8 @@ namespace {
 
 using CoatingKey = std::tuple<float, float, float, int>; // eta, alpha, thickness, max_depth
 
-// The coating's parameters where CoatingTable's closed form holds: nothing varies over the surface, the lobe
-// is isotropic, the layer is clear and refracts all wavelengths alike.
+// The coating's parameters if CoatingTable's closed form applies: constant over the surface, isotropic, with
+// a clear layer and no dispersion.
 std::optional<CoatingKey> closed_form(const Material& material) {
     const auto* m = std::get_if<CoatedDiffuseMaterial>(&material);
     if (m == nullptr) return std::nullopt;
@@ -46,7 +46,7 @@ LightSampler make_light_sampler(const SceneView& scene, LightSampling sampling) 
     std::vector<double> all(parts.size());
     for (Index i = 0; i < light_count; ++i)
         if (counts[i] > 0) light_powers({scene, i}, std::span(all).subspan(parts.row(i, 0), counts[i]));
-    // Estimates that overflow still choose the light; one that is not a number leaves it to scattering.
+    // Estimates that overflow still choose the light; a NaN leaves it to scattering.
     for (double& power : all) power = power > 0 ? std::min(power, most_power) : 0;
     return LightSampler(PowerLightSampler(std::move(parts), all));
 }

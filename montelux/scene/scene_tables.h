@@ -1,4 +1,4 @@
-// What is computed once from an immutable scene: image pyramids, coating tables, light sampling.
+// SceneTables: tables computed once from an immutable scene: image pyramids, coatings, light sampling.
 #pragma once
 
 #include <vector>
@@ -11,15 +11,15 @@ namespace montelux {
 
 class SceneTables {
   public:
-    // Pyramids of images that no texture filters are built all the same; independent parts are built in
-    // parallel.
+    // Builds the pyramids of all images, even of those that no texture filters. Independent parts are built
+    // in parallel.
     explicit SceneTables(const Scene& scene, const EnvironmentSettings& environments = {},
                          LightSampling light_sampling = LightSampling::power);
 
     SceneTables(const SceneTables&) = delete;
     SceneTables& operator=(const SceneTables&) = delete;
 
-    // Of the scene with its tables; both outlive it.
+    // The scene with its tables; both must outlive the view.
     const SceneView& view() const { return view_; }
 
   private:

@@ -1,4 +1,4 @@
-// The names of settings, as options, headers of pictures and Python have them.
+// The names of settings in options, headers of pictures and Python.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 #include "montelux/scene/value_hash.h"
 
-#define XXH_INLINE_ALL // nothing to link
+#define XXH_INLINE_ALL // header only
 #include <xxhash.h>
 
 namespace montelux {

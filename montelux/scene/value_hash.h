@@ -11,8 +11,8 @@
 
 namespace montelux {
 
-// Protects against mistakes (a scene that changed between two runs), not against forgery. Floats count by
-// their bits. What has a length of its own adds that first, so that no two sequences run together alike.
+// Protects against mistakes (a scene that changed between two runs), not against forgery. Floats are hashed
+// by their bits. A sequence of variable length is preceded by its length, so different sequences differ.
 class ValueHash {
   public:
     template <typename T>
@@ -24,14 +24,14 @@ class ValueHash {
         std::memcpy(buffer_.data() + used_, data, size);
         used_ += size;
     }
-    // Of all values so far.
+    // Hash of all values so far.
     ContentDigest value() const;
 
   private:
     void add_slowly(const void* data, std::size_t size);
     void flush();
 
-    ContentDigest digest_; // of all but what is in the buffer
+    ContentDigest digest_; // without the buffer
     std::array<std::uint8_t, 4096> buffer_;
     std::size_t used_ = 0;
 };

@@ -1,4 +1,4 @@
-// SceneView: all that a path reads of a scene and its tables, in spans and indices.
+// SceneView: everything that a path reads of a scene and its tables, in spans and indices.
 #pragma once
 
 #include <span>
@@ -12,8 +12,8 @@
 
 namespace montelux {
 
-// The one argument of whatever follows a path. Trivially copyable; scene and tables outlive it unchanged.
-// SceneTables::view() gives it whole.
+// The scene argument of all path tracing code. Trivially copyable; scene and tables must outlive it
+// unchanged. SceneTables::view() returns a complete one.
 struct SceneView {
     std::span<const TriangleMesh> meshes;
     std::span<const Quadric> quadrics;
@@ -47,11 +47,12 @@ struct SceneView {
           spectrum_textures(scene.spectrum_textures), normal_maps(scene.normal_maps), lights(scene.lights),
           skies(scene.skies) {}
 
-    // The material's parameters look up textures, so coordinates and footprints are needed.
+    // The material's parameters use textures, so coordinates and footprints are needed.
     bool is_textured(Index material) const { return textured[material] != 0; }
-    // The BSDF's frame follows the tangents: its lobes depend on them, or its textures need them anyway.
+    // The BSDF's frame is aligned with the tangents: its lobes depend on them, or its textures need them
+    // anyway.
     bool frame_follows_tangents(Index material) const { return follows_tangents[material] != 0; }
-    // Null where the closed form of CoatingTable does not hold.
+    // Null if CoatingTable's closed form does not apply.
     const CoatingTable* coating(Index material) const {
         const Index table = coating_of_material[material];
         return table == no_index ? nullptr : &coating_tables[table];

@@ -1,4 +1,4 @@
-// IntegratorModel: from a camera ray and a stream of numbers to what a sample adds to the film.
+// IntegratorModel: maps a camera ray and a random stream to a sample's contribution to the film.
 #pragma once
 
 #include <concepts>
@@ -17,7 +17,7 @@ struct CameraSample {
     SampledWavelengths lambda;
 };
 
-// What the first surface looks like; zero where there is none.
+// Features of the first surface; zero without one.
 struct FirstHit {
     SampledSpectrum albedo;
     Normal3f normal;
@@ -25,21 +25,21 @@ struct FirstHit {
     bool found = false;
 };
 
-// What a sample adds to its pixel.
+// The contribution of a sample to its pixel.
 struct FilmContribution {
     SampledSpectrum radiance;
-    SampledWavelengths lambda; // those of the camera sample, perhaps without their secondary ones
+    SampledWavelengths lambda; // of the camera sample, possibly without the secondary ones
     FirstHit first;
 };
 
 // Stateless between samples: `estimate` is a function of the scene, the camera sample and the numbers of the
-// stream, whose mean over streams of independent uniform numbers is the radiance along the ray. The tracer
+// stream. Its mean over streams of independent uniform numbers is the radiance along the ray. The tracer
 // counts rays.
 template <typename I, typename Stream>
 concept IntegratorModel = RandomStream<Stream> &&
     requires(const I& integrator, const SceneView& scene, RayTracer& tracer, const CameraSample& camera,
              Stream& stream) {
-    { I::name } -> std::convertible_to<std::string_view>; // for people
+    { I::name } -> std::convertible_to<std::string_view>; // for messages
     { integrator.estimate(scene, tracer, camera, stream) } -> std::same_as<FilmContribution>;
 };
 

@@ -43,7 +43,7 @@ void PathIntegrator::add_met_light(const SceneView& scene, PathState& state, Ind
     const LightContext context{scene, light};
     const SampledSpectrum le = incident_radiance(context, state.previous, hit, state.lambda);
     if (is_black(le)) return;
-    // Where light sampling could have found it as well.
+    // Light sampling could have found it as well.
     const bool shared = !state.sees_lights;
     const float pdf = shared ? scene.light_sampler->probability(state.previous, light, hit.part) *
                                    pdf_li(context, state.previous, hit)

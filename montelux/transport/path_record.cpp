@@ -8,7 +8,7 @@ namespace {
 
 using Quantity = BadOrigin::Quantity;
 
-// Looks for what is not finite or, where all is finite, for what is negative.
+// Finds values that are not finite or, if all are finite, negative ones.
 class BadSearch {
   public:
     BadSearch(const PathRecord& record, bool negative) : record_(record), negative_(negative) {}
@@ -29,7 +29,7 @@ class BadSearch {
     bool bad(SampledSpectrum s) const { return negative_ ? has_negative(s) : !all_finite(s); }
     bool bad(float x) const { return negative_ ? x < 0 : !std::isfinite(x); }
 
-    // The throughput of the path that arrives at this vertex.
+    // Throughput of the path that arrives at this vertex.
     BadOrigin in_throughput(std::size_t vertex) const {
         std::size_t i = 0;
         for (; i + 1 < vertex; ++i) {

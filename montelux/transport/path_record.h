@@ -1,4 +1,4 @@
-// A path written down vertex by vertex: every factor of everything that it adds to a pixel.
+// PathRecord: a path vertex by vertex, with every factor of its contributions to a pixel.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +11,18 @@
 
 namespace montelux {
 
-// Light that the path met by following its ray: on the surface that it hit, or from beyond the scene.
+// Light that the path hit: on a surface, or outside the scene.
 struct FoundLight {
     Index light = no_index;
     Index part = 0;             // the triangle of an emissive mesh
     SampledSpectrum radiance{}; // along the ray
-    // Light sampling at the vertex before could have found it too. Where it could not (the camera's ray, a
-    // delta lobe), the weight is 1 and there are no densities.
+    // Light sampling at the previous vertex could have found it too. If not (the camera ray, a delta lobe),
+    // the weight is 1 and there are no densities.
     bool shared = false;
-    float bsdf_pdf = 0;  // of the ray's direction, per solid angle at the vertex before
+    float bsdf_pdf = 0;  // of the ray's direction, per solid angle at the previous vertex
     float light_pdf = 0; // of light sampling finding the same, per solid angle, choice of the light included
     float weight = 1;    // of multiple importance sampling
-    bool counted = true; // false: the strategy looks at the other term of multiple importance sampling alone
+    bool counted = true; // false: the strategy shows only the other MIS term
     SampledSpectrum contribution{}; // to the radiance of the path
 };
 
@@ -31,22 +31,22 @@ struct DirectLight {
     enum class Outcome : std::uint8_t {
         counted,
         occluded,
-        // The light cannot shine on the vertex, for example from behind.
+        // The light cannot illuminate the vertex, for example from behind.
         dark,
-        // The strategy leaves lights that can be hit to scattering.
+        // The strategy finds lights that can be hit by scattering only.
         left_to_scattering,
-        // The light is black here or the BSDF sends nothing of it along the path.
+        // The light is black here, or the BSDF is zero.
         no_transport,
-        // The strategy looks at the other term of multiple importance sampling alone.
+        // The strategy shows only the other MIS term.
         other_term,
     };
     Outcome outcome = Outcome::dark;
     Index light = no_index;
     Index part = 0;             // the triangle of an emissive mesh
     float choice = 0;           // probability of choosing this light
-    bool delta = false;         // a light of a point or one direction
+    bool delta = false;         // a point or directional light
     Vec3f wi{};                 // world space, towards the light
-    Ray shadow{};               // free when the light is seen
+    Ray shadow{};               // unoccluded if the light is visible
     SampledSpectrum radiance{}; // for a delta light: irradiance on a plane facing it
     SampledSpectrum f{};        // BSDF times cosine
     float light_pdf = 0;        // per solid angle, choice included; for a delta light the choice alone
@@ -68,28 +68,26 @@ struct Roulette {
 enum class PathEnd : std::uint8_t {
     left_scene,
     max_depth,
-    grazing,         // the ray lies in the plane of the shading normal's surface
-    no_direction,    // the BSDF sampled none: absorbed, or to a side of the surface that it does not send
-                     // light to
+    grazing,         // the ray lies in the plane of the shading normal
+    no_direction,    // the BSDF returned no sample: absorbed, or on a side where it is zero
     nothing_carried, // the throughput is black
-    bad_throughput,  // it is not a number, or negative: it is added to the radiance, so that the sample is
-                     // told of
+    bad_throughput,  // NaN or negative: added to the radiance, so that the sample is reported
     roulette,
 };
 
-// One ray and what is at its end.
+// One ray and the vertex at its end.
 struct PathVertex {
     Ray ray;
     SampledSpectrum throughput; // of the path up to here
     Hit hit;
-    std::optional<SurfacePoint> surface; // none where the ray left the scene
+    std::optional<SurfacePoint> surface; // empty if the ray left the scene
     std::vector<FoundLight> found;
-    std::optional<SurfaceBsdf> bsdf; // from here on: none where the path ended before
-    Vec3f wo;                        // towards the vertex before, in the frame of the shading normal
+    std::optional<SurfaceBsdf> bsdf; // this and the following are empty if the path ended before
+    Vec3f wo;                        // towards the previous vertex, in the frame of the shading normal
     std::optional<DirectLight> direct;
     std::optional<Scattering> scattering;
     std::optional<Roulette> roulette;
-    SampledSpectrum continued; // throughput of the path that leaves, after the roulette
+    SampledSpectrum continued; // throughput after scattering and roulette
 };
 
 // Refers to the scene and its tables (SurfacePoint::shape, CoatedDiffuseBsdf::table), which must outlive it.
@@ -102,22 +100,22 @@ struct PathRecord {
 // The quantity that made a path's radiance bad.
 struct BadOrigin {
     enum class Quantity : std::uint8_t {
-        found_radiance,  // of a light that the path met
+        found_radiance,  // of a light that the path hit
         found_density,   // of sampling it, or its weight
-        direct_radiance, // of a light that was sampled
+        direct_radiance, // of a sampled light
         direct_density,
         bsdf_value,
-        bsdf_weight, // of the direction in which the path went on
-        throughput,  // a product of good factors that is too large
-        product,     // a contribution that is too large, of good factors
+        bsdf_weight, // of the direction in which the path continued
+        throughput,  // a product of good factors overflowed
+        product,     // a contribution of good factors overflowed
         sum,         // of good contributions
     };
     Quantity quantity = Quantity::sum;
     std::size_t vertex = 0; // index into PathRecord::vertices
 };
 
-// Where a radiance that is not finite, or negative, became so: the first bad contribution, and in it the
-// first bad factor. Empty for a good radiance.
+// Where a radiance became NaN, infinite or negative: the first bad contribution, and in it the first bad
+// factor. Empty for a good radiance.
 std::optional<BadOrigin> origin_of_bad(const PathRecord& record);
 
 } // namespace montelux

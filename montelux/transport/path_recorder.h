@@ -1,13 +1,12 @@
-// What the path tracer tells the one who writes its path down.
+// PathRecorder: writes the path tracer's steps to a PathRecord, or nowhere.
 #pragma once
 
 #include "montelux/transport/path_record.h"
 
 namespace montelux {
 
-// Writes to a record, or stands for none: then it is false, and nothing may be told. The path tracer has one
-// copy for both cases, so that a path that is written down is to the last bit the path of the render; it must
-// not be given the chance to depend on who looks.
+// Without a record it converts to false, and no member may be called. One copy of the path tracer serves both
+// cases, so a recorded path equals the rendered one to the last bit; recording must never influence the path.
 class PathRecorder {
   public:
     explicit PathRecorder(PathRecord* record) : record_(record) {
@@ -16,11 +15,11 @@ class PathRecorder {
     }
     explicit operator bool() const { return record_ != nullptr; }
 
-    // In the order in which it happens. The ray hit a surface, or left the scene.
+    // In order of events. The ray hit a surface, or left the scene.
     [[gnu::cold]] void hit_surface(const Ray& ray, const Hit& hit, const SurfacePoint& surface,
                                    SampledSpectrum throughput) const;
     [[gnu::cold]] void left_scene(const Ray& ray, SampledSpectrum throughput) const;
-    // Contributions are for the recorder to multiply.
+    // The recorder multiplies the contributions.
     [[gnu::cold]] void found_light(FoundLight light) const;
     [[gnu::cold]] void made_bsdf(const SurfaceBsdf& bsdf, Vec3f wo) const;
     [[gnu::cold]] void sampled_light(DirectLight light) const;

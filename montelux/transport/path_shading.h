@@ -1,4 +1,4 @@
-// The templates of PathIntegrator, for use with any stream of numbers.
+// The templates of PathIntegrator, for use with any random stream.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,9 @@
 
 namespace montelux {
 
-// Directions that know nothing of the BSDF: uniform over the hemisphere of wo, or over the sphere where it
-// transmits. A delta lobe beside others gets half of the samples, since no such direction can find it.
+// Directions independent of the BSDF: uniform over the hemisphere of wo, or over the sphere if it transmits.
+// A BSDF with delta and other lobes gives half of the samples to the delta lobe, which no such direction can
+// find.
 template <BsdfModel B, RandomStream Stream>
 std::optional<BsdfSample> sample_uniform(const B& bsdf, Vec3f wo, Stream& stream) {
     float share = 1;
@@ -46,7 +47,7 @@ std::optional<BsdfSample> sample_uniform(const B& bsdf, Vec3f wo, Stream& stream
     return s;
 }
 
-// What scatters at one vertex of a path.
+// The scattering at one vertex of a path.
 template <RandomStream Stream>
 struct PathIntegrator::Vertex {
     const PathIntegrator& path;
@@ -58,14 +59,14 @@ struct PathIntegrator::Vertex {
     Vec3f wo;    // in it
     ReferencePoint here;
 
-    // Next-event estimation: one light, one point on it. Lights that scattering cannot find are sampled
-    // whatever the strategy says.
+    // Next-event estimation: one light, one point on it. Lights that scattering cannot find are sampled in
+    // every strategy.
     template <BsdfModel B>
     std::optional<ShadowRay> sample_light(const B& bsdf) const {
         using Outcome = DirectLight::Outcome;
         const LightSampler& lights = *scene.light_sampler;
         if (lights.empty()) return std::nullopt;
-        // Among few lights the choice takes the first number's leading digits and leaves the others for the
+        // With few lights the choice uses the first number's leading digits and leaves the others for the
         // point: one dimension less keeps point sets better stratified.
         const bool few = lights.size() <= 64;
         Vec2f u = stream.next_2d();
@@ -121,11 +122,11 @@ struct PathIntegrator::Vertex {
         return bsdf.sample(wo, TransportMode::radiance, stream);
     }
 
-    // Russian roulette on what the path can still carry to the film. Returns false at its end.
+    // Russian roulette on the throughput to the film. Returns false if the path ends.
     bool survives() const {
         const float strength = max_value(state.throughput) * state.eta_scale;
         if (!(strength > 0)) {
-            // What is not a number must not end unseen: the sample becomes bad with it.
+            // A NaN throughput must not end silently: it makes the sample bad.
             state.radiance += state.throughput;
             if (recorder)
                 recorder.ended(is_black(state.throughput) ? PathEnd::nothing_carried
@@ -158,7 +159,7 @@ MONTELUX_ONE_COPY std::optional<ShadowRay> PathIntegrator::shade(const SceneView
     if (hit.instance == no_index && s.shape->light != no_index)
         add_met_light(scene, state, s.shape->light, {.wi = w, .part = s.primitive, .p = s.p, .n = s.ng},
                       recorder);
-    state.alive = false; // unless the path is found to go on
+    state.alive = false; // until the path continues
     if (state.depth++ == settings_.max_depth) {
         if (recorder) recorder.ended(PathEnd::max_depth);
         return std::nullopt;

@@ -1,4 +1,4 @@
-// The accelerator as a path sees it: counts its rays and times a few of them.
+// RayTracer: the accelerator, with counts of its rays and times of a few of them.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace montelux {
 
 struct RayStatistics {
     std::uint64_t closest = 0, occlusion = 0;
-    std::uint64_t timed = 0; // rays that the clock was read for
+    std::uint64_t timed = 0; // rays that were timed
     double timed_seconds = 0;
 
     void merge(const RayStatistics& other) {
@@ -23,7 +23,7 @@ struct RayStatistics {
     std::uint64_t rays() const { return closest + occlusion; }
 };
 
-// One a thread. Every 256th ray is timed: reading the clock costs as much as a ray.
+// One per thread. Every 256th ray is timed: reading the clock costs as much as a ray.
 class RayTracer {
   public:
     explicit RayTracer(const Accelerator& accelerator) : accelerator_(&accelerator) {}
@@ -50,7 +50,7 @@ class RayTracer {
         auto begin = Clock::now();
         bool result = f();
         auto end = Clock::now();
-        // The clock's own time, read just before, is taken off. No ray takes this long: the thread was
+        // Subtracts the time of reading the clock. No ray takes longer than this limit: the thread was
         // interrupted.
         const double taken = std::max(0.0, seconds(end - begin) - seconds(begin - before));
         if (taken < 50e-6) {

@@ -12,7 +12,7 @@ from ._core import Error
 from ._names import MOST_THREADS, is_number, is_whole, settings_of, strict, strict_arguments, unknown
 from ._render import Progress, Render
 
-_MOST_SAMPLES = 1 << 24  # of a pixel, where an error or a time decides
+_MOST_SAMPLES = 1 << 24  # per pixel, with a target error or a time
 
 
 class Scene(_core.SceneBase):
@@ -20,7 +20,7 @@ class Scene(_core.SceneBase):
 
     `montelux.load` and `montelux.parse` make scenes of pbrt-v4 files. `Scene()` is empty; set `camera`, and add
     shapes and lights. Values that are read from a scene (`scene.materials[0]`, `scene.camera`) are places in
-    it: setting their attributes changes the scene. Renders that go on do not change with it.
+    it: setting their attributes changes the scene. Running renders do not change with it.
     """
 
     @strict_arguments
@@ -43,20 +43,20 @@ class Scene(_core.SceneBase):
         slice: tuple[int, int] | None = None,
         denoise: bool = False,
     ) -> Render:
-        """Starts to render, and returns the Render, which goes on by itself.
+        """Starts a render in the background, and returns the Render.
 
         It stops after `spp` samples per pixel (default: `scene.sampler.spp`); when the relative error of the
         picture is below `target_error` (0.02: two per cent), or with `target_quantile` the error of that share of
         the pixels; after `time` seconds; at `max_spp` samples per pixel, on average. With a target or a time and
-        no `spp` the scene's own number does not count. `adaptive`: more samples where the error is; on where an
-        error is asked for.
+        no `spp` the scene's own number is ignored. `adaptive`: more samples where the error is; on with
+        `target_error`.
 
-        The picture depends on scene, seed and what is asked for, and not on `threads` (0: one a processor).
+        The picture depends on scene, seed and settings, and not on `threads` (0: one per processor).
 
         progress: True shows a line on standard error while the render is waited for; a function is called with
         a Progress. every: seconds between the pictures that iterating gives. checkpoint: a file that keeps the
-        running state, written every `checkpoint_every` seconds and at the end; with `resume` the render goes on
-        from it, to the same bits.
+        running state, written every `checkpoint_every` seconds and at the end; `resume` continues from it, to
+        the same bits.
 
         slice: (k, n) takes the k-th of n parts of the samples, k from 1 to n; `montelux merge` joins the saved
         parts. denoise: the finished picture is denoised too, by Open Image Denoise (layer 'denoised'), unless it
@@ -76,7 +76,7 @@ class Scene(_core.SceneBase):
         if target_quantile is not None:
             if target_error is None:
                 raise Error(
-                    "render: target_quantile was given; expected target_error, within which that share shall be"
+                    "render: target_quantile was given; expected target_error, the error of that share"
                 )
             if not (is_number(target_quantile) and 0 < target_quantile < 1):
                 raise Error(f"render: target_quantile={target_quantile!r} was given; expected a number between 0 and 1")
@@ -118,7 +118,7 @@ class Scene(_core.SceneBase):
         )
         if job.refused_checkpoint:
             warnings.warn(
-                f"{job.refused_checkpoint}; went on from the checkpoint before it", RuntimeWarning, stacklevel=2
+                f"{job.refused_checkpoint}; resumed from the checkpoint before it", RuntimeWarning, stacklevel=2
             )
         return Render(job, progress, every)
 
@@ -131,7 +131,7 @@ class Scene(_core.SceneBase):
 
 
 def load(path: str | os.PathLike[str]) -> Scene:
-    """Reads a pbrt-v4 scene file and all files that it refers to. What it asks for and does not get is told by
+    """Reads a pbrt-v4 scene file and all files that it refers to. What it ignores is reported by
     warnings, and in `scene.warnings`."""
     scene = Scene()
     scene._load(os.fspath(path))

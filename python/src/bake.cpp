@@ -31,7 +31,7 @@ constexpr Names<RoughnessRule, 3> roughness_rules{"bake.environment, roughness",
                                                     {"filament", RoughnessRule::filament},
                                                     {"babylon", RoughnessRule::babylon}}}};
 
-// Runs a bake without Python's lock; Ctrl-C ends it.
+// Runs a bake with Python's lock released; Ctrl-C ends it.
 class Interruptible {
   public:
     const CancelFlag* cancel() const { return &cancel_; }
@@ -55,7 +55,7 @@ class Interruptible {
     CancelFlag cancel_;
 };
 
-// How a cube map stands in the world, as the options of `montelux bake` name it.
+// Orientation of a cube map in the world, named as the options of `montelux bake`.
 CubeFrame frame_of(std::string_view up, bool mirror, double turn) {
     if (!std::isfinite(turn)) throw Error("bake, turn", "expected a number of degrees");
     return {up_axes.value(up), mirror, turn};

@@ -1,8 +1,8 @@
-// The parts of the extension module montelux._core: each file binds one topic.
+// The parts of the extension module montelux._core: one file per topic.
 #pragma once
 
 #include <nanobind/nanobind.h>
-// Every file sees every conversion: one that is missing is found when the module is loaded, not when it is
+// Every file includes all type casters: a missing one shows only when the module is loaded, not when it is
 // compiled.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
@@ -19,7 +19,7 @@ namespace montelux::python {
 namespace nb = nanobind;
 using namespace nb::literals; // NOLINT(google-build-using-namespace): "name"_a in every binding
 
-// montelux.Error, which every montelux::Error becomes.
+// montelux.Error, the translation of every montelux::Error.
 void bind_error(nb::module_& m);
 void bind_domains(nb::module_& m);
 void bind_distributions(nb::module_& m);

@@ -38,7 +38,7 @@ nb::dict dict_of(const ZScores& z) {
     return d;
 }
 
-// Of crops, the pixels that both have.
+// The pixels common to two crops.
 Comparison compare_common(const Image& a, const std::string& a_name, const Image& b,
                           const std::string& b_name, const ComparisonOptions& options, PixelWindow& window) {
     const std::optional<PixelWindow> common = common_pixels(a_name, a, b_name, b);

@@ -18,7 +18,7 @@
 namespace montelux::python {
 namespace {
 
-// A function of numbers, on a number or on an array of any shape.
+// Applies a function of one number to a number or an array of any shape.
 template <typename F>
 nb::object elementwise(const nb::object& given, const char* what, const F& f) {
     const Numbers n = numbers_of(given, what);
@@ -99,7 +99,7 @@ void bind_families(nb::class_<Distribution>& c) {
         .def_static("gamma", family<GammaDistribution, double, double>(), "shape"_a, "scale"_a = 1.,
                     "Density proportional to x^(shape - 1) exp(-x / scale), x >= 0.")
         .def_static("chi_squared", family<ChiSquaredDistribution, double>(), "degrees_of_freedom"_a,
-                    "The sum of so many squared standard normal variables.")
+                    "The sum of degrees_of_freedom squared standard normal variables.")
         .def_static("beta", family<BetaDistribution, double, double>(), "a"_a, "b"_a,
                     "Density proportional to x^(a-1) (1-x)^(b-1) on [0, 1].")
         .def_static("cauchy", family<CauchyDistribution, double, double>(), "location"_a = 0., "scale"_a = 1.,

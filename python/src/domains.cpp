@@ -16,7 +16,7 @@ Domain box(const std::vector<std::pair<double, double>>& ranges) {
     return Domain(std::move(all));
 }
 
-// The centre of a ball or sphere: its coordinates, or a number of dimensions, which stands for the origin.
+// The centre of a ball or sphere: its coordinates, or a number of dimensions for the origin.
 std::vector<double> centre_of(const nb::object& centre, const std::string& what) {
     if (int dimensions = 0; nb::try_cast(centre, dimensions)) {
         if (dimensions < 1)
@@ -76,11 +76,11 @@ nb::tuple map_points(const Domain& domain, const nb::object& u) {
 
 void bind_domains(nb::module_& m) {
     nb::class_<Domain>(m, "Domain",
-                       "Where is integrated: a region of space, as a map from the unit cube onto it.\n\n"
-                       "Wherever a Domain is expected a sequence of ranges (lower, upper), one a variable, "
-                       "stands for a box.")
+                       "A region of integration, as a map from the unit cube onto it.\n\n"
+                       "Where a Domain is expected, a sequence of ranges (lower, upper), one per variable, "
+                       "means a box.")
         .def_static("box", &box, "ranges"_a,
-                    "The box of these ranges (lower, upper), one a variable; ends may be infinite.")
+                    "The box of these ranges (lower, upper), one per variable; ends may be infinite.")
         .def_static("unit_cube", &Domain::unit_cube, "dimensions"_a, "[0, 1]^dimensions.")
         .def_static("simplex", &Domain::simplex, "dimensions"_a,
                     "x_j >= 0 with sum <= 1; its volume is 1 / dimensions!.")

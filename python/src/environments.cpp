@@ -19,7 +19,7 @@ namespace {
 constexpr Names<EnvironmentSampling, 4> map_samplings{"EnvironmentSampler, sampling",
                                                       environment_sampling_names};
 
-// A map, and the way to sample it.
+// A map, and the method to sample it.
 struct SampledMap {
     Image map; // R, G, B
     EnvironmentSampler sampler;
@@ -31,7 +31,7 @@ struct SampledMap {
     std::size_t width() const { return static_cast<std::size_t>(grid().width()); }
 };
 
-// Unit vectors of what are directions of any length.
+// Directions of any length, normalised.
 std::vector<Vec3f> directions_of(const Rows& given, const std::string& what) {
     std::vector<Vec3f> w;
     for (std::size_t i = 0; i < given.count(); ++i) {
@@ -44,7 +44,7 @@ std::vector<Vec3f> directions_of(const Rows& given, const std::string& what) {
     return w;
 }
 
-// Places on the map in pixels, which are within it.
+// Positions on the map in pixels, which must be within it.
 std::vector<Vec2d> places_of(const SampledMap& m, const Rows& given, const std::string& what) {
     const auto right = static_cast<double>(m.width()), bottom = static_cast<double>(m.height());
     std::vector<Vec2d> places;
@@ -75,7 +75,7 @@ nb::tuple sample_map(const SampledMap& m, const nb::object& numbers) {
     return nb::make_tuple(directions.array, densities.array);
 }
 
-// `count` numbers for each direction, or one without a dimension of its own: of(its place on the map, out).
+// `count` numbers for each direction, or one without a dimension of its own: of(position on the map, out).
 template <typename Of>
 DoubleArray of_directions(const SampledMap& m, const nb::object& given, const std::string& name,
                           std::optional<std::size_t> count, const Of& of) {

@@ -12,7 +12,7 @@
 namespace montelux::python {
 namespace {
 
-// Of both axes, or of each.
+// One roughness for both axes, or one for each.
 using Alpha = std::variant<double, std::array<double, 2>>;
 
 Vec2d alpha_of(const Alpha& given, const char* where) {
@@ -37,7 +37,7 @@ double turns_of(double x, double y) {
 Warp ggx_normals(const Alpha& alpha) {
     const Vec2d a = alpha_of(alpha, "warp ggx_normals");
     const Ggx ggx{static_cast<float>(a.x), static_cast<float>(a.y)};
-    // Of the roughness 1; others are that one stretched.
+    // For roughness 1; others are stretched from it.
     const GgxAngleDistribution angle(1);
     return of_space(
         "ggx_normals",
@@ -59,7 +59,7 @@ Warp ggx_visible_normals(const Alpha& alpha, std::array<double, 3> direction) {
     if (!(given.z > 0 && std::isfinite(length_squared(given))))
         throw Error("warp ggx_visible_normals", "expected a direction wo above the surface, wo[2] > 0");
     const Vec3d wo = normalize(given);
-    // The view in the stretched space where the surface has the roughness 1.
+    // The view in the stretched space where the roughness is 1.
     const Vec3d view = normalize(Vec3d{wo.x * a.x, wo.y * a.y, wo.z});
     return of_space(
         "ggx_visible_normals", [=](Vec2d u) { return Vec3d(ggx.sample_visible(Vec3f(wo), Vec2f(u))); },
@@ -67,7 +67,7 @@ Warp ggx_visible_normals(const Alpha& alpha, std::array<double, 3> direction) {
             return m.z > 0 && dot(m, wo) > 0 ? static_cast<double>(ggx.visible_pdf(Vec3f(wo), Vec3f(m))) : 0;
         },
         [=](Vec3d m) {
-            // A normal there is the half vector of the view and of a direction that is uniform on a cap.
+            // A normal there is the half vector of the view and a direction uniform on a cap.
             const Vec3d h = normalize(Vec3d{m.x / a.x, m.y / a.y, m.z});
             const Vec3d on_cap = 2 * dot(h, view) * h - view;
             return Vec2d{turns_of(on_cap.x, on_cap.y), (1 - on_cap.z) / (1 + view.z)};

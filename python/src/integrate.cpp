@@ -21,7 +21,7 @@ DoubleArray history_of(const IntegrationResult& r) {
     return new_array(rows, r.history.size(), 4);
 }
 
-// log Z with its error in the first line, then what to_string says of the integration.
+// log Z with its error in the first line, then to_string of the result.
 std::string text_of(const LogIntegrationResult& r) {
     const std::string all = to_string(r.relative);
     return "log Z = " + to_string(Estimate{r.log_value, r.log_error}) + all.substr(all.find('\n'));
@@ -111,9 +111,10 @@ void bind_integrate(nb::module_& m) {
         .def_ro("relative", &LogIntegrationResult::relative)
         .def("__str__", &text_of);
 
-    bind_call(m, "integrate",
-              "montelux.integrate, with everything decided. components 0: one value a point, as shape (n,).",
-              [](auto&&... arguments) { return integrate(arguments...); });
+    bind_call(
+        m, "integrate",
+        "montelux.integrate, with everything decided. components 0: one value per point, as shape (n,).",
+        [](auto&&... arguments) { return integrate(arguments...); });
     bind_call(m, "integrate_log", "montelux.integrate_log, with everything decided, as integrate.",
               [](auto&&... arguments) { return integrate_log(arguments...); });
     m.def(

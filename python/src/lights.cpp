@@ -128,10 +128,10 @@ void bind_lights(nb::module_& m) {
     flag(area, "two_sided", &AreaLight::two_sided, "Whether the back shines as well.");
     auto point = value_class<PointLight>(m, "PointLight", "Radiant intensity from one point.");
     emission(point, "Intensity");
-    vector(point, "position", &PointLight::position, false, "Where it stands, shape (3,).");
+    vector(point, "position", &PointLight::position, false, "Position, shape (3,).");
     auto spot = value_class<SpotLight>(m, "SpotLight", "A cone of light.");
     emission(spot, "Intensity on the axis");
-    vector(spot, "position", &SpotLight::position, false, "Where it stands, shape (3,).");
+    vector(spot, "position", &SpotLight::position, false, "Position, shape (3,).");
     vector(spot, "axis", &SpotLight::axis, true, "Where it points, shape (3,).");
     angle(spot, "falloff_angle", &SpotLight::cos_falloff_start, "Full intensity within this angle, degrees.");
     angle(spot, "cone_angle", &SpotLight::cos_total_width, "Dark beyond this angle, degrees.");

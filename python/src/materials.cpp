@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* spectrum_type = "typing.Any";
 
-// The n-th parameter of a material, which is an F.
+// The n-th parameter of a material, of type F.
 template <typename F>
 struct ParameterAt {
     std::size_t n;
@@ -113,7 +113,7 @@ struct Attributes {
             "Whether alpha is the root of the roughness; else it is the roughness itself.");
     }
 
-    // eta and k, or the reflectance: what is not in force reads as None.
+    // eta and k, or the reflectance: the unused ones read as None.
     void add(const ParameterInfo& info, ParameterAt<MetalParameter> at) const {
         const auto optical = [&](const std::string& name, SpectrumParameter MetalParameter::*member,
                                  bool from_reflectance, const char* doc) {

@@ -25,7 +25,7 @@
 namespace montelux::python {
 namespace {
 
-// A class of settings, each with its default; `_method` is what the integrator takes.
+// A class of settings, each with its default; `_method` is the Method for integrate().
 template <typename S>
 nb::class_<S> method_class(nb::module_& m, const char* name, const char* doc) {
     nb::class_<S> c(m, name, doc);
@@ -119,7 +119,7 @@ void bind_vegas(nb::module_& m) {
                 "Iterations at the start that train alone.")
         .def_rw("training_evaluations", &Vegas::training_evaluations,
                 "Of each of them; 0: the method decides.")
-        .def_rw("increments", &Vegas::increments, "At most so many pieces of the map in a variable.")
+        .def_rw("increments", &Vegas::increments, "Largest number of pieces of the map per variable.")
         .def_rw("uniform_share", &Vegas::uniform_share, "Uniform points for each point of the estimate.")
         .def_rw("replicates", &Vegas::replicates, "Of Sobol' points.")
         .def_rw("map", &Vegas::map, nb::for_setter(nb::arg("map").none()),

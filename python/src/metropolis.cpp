@@ -10,7 +10,7 @@
 namespace montelux::python {
 namespace {
 
-// A function of one point, as an array of its own.
+// A function of one point, passed as a new array.
 nb::object at_point(const PythonFunction& f, std::span<const double> x) {
     PyObject* argument[] = {nullptr, nullptr};
     nb::object point = new_array(x);

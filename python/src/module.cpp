@@ -30,7 +30,7 @@ NB_MODULE(_core, m) {
     using namespace montelux::python; // NOLINT(google-build-using-namespace): the bindings of this module
     m.doc() = "The compiled part of montelux; use the names of that package.";
     m.attr("version") = MONTELUX_VERSION;
-    // Functions that distributions and methods hold live until the interpreter has ended.
+    // Functions owned by distributions and methods live until the interpreter has ended.
     nb::set_leak_warnings(false);
     import_numpy();
     bind_error(m);

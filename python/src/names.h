@@ -1,4 +1,4 @@
-// Enumerators by their names, with a sentence that offers the nearest one.
+// Enumerators by name; errors suggest the nearest one.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ struct Names {
     std::string_view what; // the argument
     std::array<std::pair<std::string_view, Enum>, n> entries;
 
-    // Throws Error for a name that is not known.
+    // Throws Error for an unknown name.
     Enum value(std::string_view name) const {
         std::vector<std::string_view> known;
         for (const auto& [text, value] : entries) {

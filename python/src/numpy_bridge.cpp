@@ -37,12 +37,12 @@ nb::object view(const double* data, std::size_t count, int columns, std::size_t 
                               const_cast<double*>(data), 0, flags, nullptr));
 }
 
-// An array of doubles of whatever was given; memory in any order.
+// An array of doubles from any argument, in any memory order.
 nb::object double_array(const nb::handle& given, int requirements, std::string_view what) {
     auto fail = [what](const std::string& sentence) -> void { throw Error(what, sentence); };
     if (given.is_none()) fail("returned None; expected an array of numbers (is there a return statement?)");
     if (PyArray_Check(given.ptr()) && !PyArray_CheckExact(given.ptr()) && nb::hasattr(given, "mask"))
-        fail("a masked array was found; say what stands for the masked values, as by y.filled(0)");
+        fail("a masked array was found; replace the masked values, for example by y.filled(0)");
     nb::object any = stolen(PyArray_FromAny(given.ptr(), nullptr, 0, 0, 0, nullptr));
     const int type = PyArray_TYPE(as_array(any));
     if (PyTypeNum_ISCOMPLEX(type))
@@ -71,8 +71,9 @@ bool is_plain(PyObject* o) {
     else
         sentence += "(" + points + ", " + std::to_string(components) + ")";
     if (PyArray_NDIM(array) == 0)
-        sentence += ": one value a point (sums over the coordinates of points need axis=1; for a function of "
-                    "a single point say batch=False)";
+        sentence +=
+            ": one value per point (sums over the coordinates of points need axis=1; for a function of "
+            "a single point say batch=False)";
     throw Error(what, sentence);
 }
 

@@ -1,4 +1,4 @@
-// NumPy arrays on memory of the library, and numbers out of what Python functions return.
+// NumPy arrays on the library's memory, and numbers from return values of Python functions.
 #pragma once
 
 #include <cstdint>
@@ -28,26 +28,26 @@ class IndexArray : public nb::object {
 // Loads NumPy's table of functions; before anything else here.
 void import_numpy();
 
-// An array on the points themselves, nothing copied: shape (n, d), or (n,) for one coordinate; read-only. Its
-// memory is the library's, and valid no longer than that.
+// An array on the points themselves without a copy: shape (n, d), or (n,) for one coordinate; read-only. The
+// memory belongs to the library and limits the array's lifetime.
 nb::object view_of(const PointBatch& points);
-// The same on values, to be written to: shape (n, m), or (n,) where `as_vector` is false and there is one.
+// The same for writable values: shape (n, m), or (n,) if there is one and `as_vector` is false.
 nb::object view_of(const ValueBatch& values, bool as_vector);
 
-// The number of references that others hold to an array of view_of (by views of it, too).
+// The number of outside references to an array of view_of, including its views.
 bool is_kept_elsewhere(const nb::object& array);
 
-// Fills `values` from what a function returned for them: shape (n,) for one value a point (or (n, m) with
-// m = 1 where `as_vector`), else (n, m). Throws Error, with a sentence that begins with `what`, for another
-// shape and for what are no real numbers.
+// Fills `values` from a function's return value: shape (n,) for one value per point (or (n, m) with m = 1 and
+// `as_vector`), else (n, m). Throws Error beginning with `what` for other shapes and for anything but real
+// numbers.
 void copy_values(const nb::object& returned, const ValueBatch& values, bool as_vector, std::string_view what);
-// The number of values a point that a function returned for n points: 0 for shape (n,), m for (n, m).
+// The number of values per point in a return value for n points: 0 for shape (n,), m for (n, m).
 int values_a_point(const nb::object& returned, std::size_t n, std::string_view what);
 
-// New arrays that own what they hold.
+// New arrays that own their memory.
 DoubleArray new_array(std::span<const double> values);
 DoubleArray new_array(std::span<const double> values, std::size_t rows, std::size_t columns);
-// A new array of doubles without contents, and where they stand (row by row).
+// A new uninitialised array of doubles, and the address of its data (row by row).
 struct NewArray {
     DoubleArray array;
     double* data;
@@ -59,13 +59,13 @@ struct NewIndexArray {
 };
 NewIndexArray new_index_array(std::span<const std::size_t> shape);
 
-// A read-only array of float32 on the memory of a picture of interleaved channels, which `owner` keeps alive:
+// A read-only array of float32 on the memory of a picture of interleaved channels, kept alive by `owner`:
 // shape (height, width, count), or (height, width) for one.
 nb::object float_view(const float* data, std::size_t height, std::size_t width, std::size_t channels,
                       std::size_t count, const nb::object& owner);
 
-// A C-contiguous array of doubles of what is given (converted where it has to be), as one run of numbers.
-// Throws Error beginning with `what` for what are no real numbers.
+// The argument as a C-contiguous array of doubles (converted if necessary), flattened. Throws Error beginning
+// with `what` for anything but real numbers.
 struct Numbers {
     nb::object array;
     std::span<const double> values;

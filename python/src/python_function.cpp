@@ -8,8 +8,8 @@
 namespace montelux::python {
 namespace {
 
-// The frames of a failed function may keep arrays on memory that is about to be used for something else, and
-// debuggers look at them: then their local variables are let go.
+// The frames of a failed function may keep arrays on memory that is about to be reused, and debuggers inspect
+// them: their local variables are cleared.
 [[noreturn]] void rethrow_without(const nb::object& x) {
     nb::python_error error;
     if (is_kept_elsewhere(x) && error.traceback().is_valid())
@@ -22,7 +22,7 @@ nb::object called(nb::handle f, PyObject** arguments, std::size_t count, const n
         PyObject_Vectorcall(f.ptr(), arguments, count | PY_VECTORCALL_ARGUMENTS_OFFSET, nullptr);
     if (!result) rethrow_without(x);
     nb::object returned = nb::steal(result);
-    // A function in C never looks at signals.
+    // A function written in C never checks for signals.
     if (PyErr_CheckSignals() != 0) rethrow_without(x);
     return returned;
 }

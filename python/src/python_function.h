@@ -1,4 +1,4 @@
-// A Python function as the library calls it: from any thread, with points and values that are not copied.
+// PythonFunction: a Python function called by the library, from any thread, without copying points or values.
 #pragma once
 
 #include <memory>
@@ -12,18 +12,18 @@ namespace montelux::python {
 
 namespace nb = nanobind;
 
-// Copies share one reference, which is given back under the interpreter's lock, whatever thread drops it.
+// Copies share one reference, which is released under the interpreter's lock, whatever thread drops it.
 class PythonFunction {
   public:
-    // `what` begins the sentences of errors ("integrand"). To be called with the lock held.
+    // `what` begins error messages ("integrand"). Requires the lock.
     PythonFunction(nb::object function, std::string what);
 
     // y = f(x) for points and values of the library; `as_vector`: f returns shape (n, m), else (n,). With
-    // `into`, f(x, y) writes to an array on the values themselves.
+    // `into`, f(x, y) writes into an array on the values themselves.
     void fill(const PointBatch& x, const ValueBatch& y, bool as_vector, bool into = false) const;
-    // A number for a number.
+    // For a function of one number.
     double operator()(double x) const;
-    // What it returns for points, under the lock that the caller holds.
+    // The return value for some points; the caller holds the lock.
     nb::object call(const PointBatch& x) const;
 
     const nb::handle function() const { return function_.get(); }
@@ -34,7 +34,7 @@ class PythonFunction {
     std::shared_ptr<const std::string> what_;
 };
 
-// f in the form that the library integrates. `components` 0: one value a point, as shape (n,).
+// f in the library's form. `components` 0: one value per point, as shape (n,).
 Integrand integrand_of(const PythonFunction& f, int components, bool into);
 
 } // namespace montelux::python

@@ -15,7 +15,7 @@
 namespace montelux::python {
 namespace {
 
-// Pixels that would be needed by a film beyond all memory are refused before they are asked for.
+// Films beyond all memory are refused before their pixels are allocated.
 void check_scene(const SceneHolder& scene) {
     if (!scene.has_camera)
         throw Error("render",
@@ -37,8 +37,7 @@ std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::ui
         description = std::move(own);
     }
     if (!checkpoint.empty() && !resume && generation_exists(checkpoint))
-        throw Error(checkpoint.string(),
-                    "the file is there already; resume=True goes on from it, or remove it");
+        throw Error(checkpoint.string(), "the file exists; pass resume=True to resume from it, or remove it");
     RenderSessionSettings settings;
     settings.target.error = target_error;
     settings.target.quantile = quantile;
@@ -53,7 +52,7 @@ std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::ui
     return std::make_unique<RenderJob>(std::move(description), std::move(settings), threads, denoise);
 }
 
-// What speaks against the finished render.
+// Warnings about the finished render.
 std::vector<std::string> warnings_of(const RenderJob& job) {
     const RenderSnapshot result = job.result();
     const RenderSession& session = job.session();
@@ -64,7 +63,7 @@ std::vector<std::string> warnings_of(const RenderJob& job) {
     return texts;
 }
 
-// Layers by the names that users know, as arrays on the picture's own memory.
+// Layers by their names in Python, as arrays on the picture's own memory.
 nb::dict layers_of(const RenderSnapshot& snapshot) {
     static constexpr std::pair<const char*, const char*> colors[] = {{"mean", "R"},
                                                                      {"standard_error", "stderr.R"},
@@ -87,7 +86,7 @@ nb::dict layers_of(const RenderSnapshot& snapshot) {
     return d;
 }
 
-// What screens and formats without layers show: the denoised picture, where there is one.
+// For screens and formats without layers: the denoised picture, if there is one.
 Image shown(const RenderSnapshot& snapshot) {
     return snapshot.image->find_channel("denoised.R") ? denoised_picture(*snapshot.image) : *snapshot.image;
 }
@@ -121,7 +120,7 @@ void bind_render(nb::module_& m) {
                 write_picture(path, *l.image, {.exposure = static_cast<float>(exposure)});
             },
             "path"_a, "exposure"_a);
-    nb::class_<RenderJob>(m, "RenderJob", "A render that goes on by itself.")
+    nb::class_<RenderJob>(m, "RenderJob", "A render in the background.")
         .def("cancel", &RenderJob::cancel)
         .def("wait", &RenderJob::wait, "seconds"_a, nb::call_guard<nb::gil_scoped_release>())
         .def("snapshot", &RenderJob::snapshot, "seconds"_a, nb::call_guard<nb::gil_scoped_release>())

@@ -7,7 +7,7 @@ namespace montelux::python {
 RenderJob::RenderJob(std::shared_ptr<const SceneDescription> description, RenderSessionSettings settings,
                      int threads, bool denoise)
     : session_(std::move(description), std::move(settings)), threads_(threads) {
-    // Told before the render that it is missing, rather than after it.
+    // A missing denoiser is reported before the render.
     if (denoise) denoiser_.emplace(Denoiser::load(threads_));
     with_threads(threads_, [&] { session_.prepare(); });
     thread_ = std::thread([this] { run(); });

@@ -1,4 +1,4 @@
-// A render that goes on by itself, in a thread that never asks for Python's lock.
+// RenderJob: a render in a background thread that never takes Python's lock.
 #pragma once
 
 #include <condition_variable>
@@ -15,8 +15,8 @@ namespace montelux::python {
 
 class RenderJob {
   public:
-    // Builds what the scene needs and starts; throws Error where the settings make no sense. The description
-    // must not change any more.
+    // Builds the scene's tables and starts; throws Error for invalid settings. The description must not
+    // change afterwards.
     RenderJob(std::shared_ptr<const SceneDescription> description, RenderSessionSettings settings,
               int threads, bool denoise);
     ~RenderJob();
@@ -24,12 +24,12 @@ class RenderJob {
     RenderJob& operator=(const RenderJob&) = delete;
 
     void cancel() { cancel_.request(); }
-    // Waits until the render has ended, but so many seconds at most; whether it has.
+    // Waits until the render has ended, at most this many seconds; returns whether it has.
     bool wait(double seconds);
     RenderProgress progress() const;
     // RenderSession::snapshot.
     std::optional<RenderSnapshot> snapshot(double seconds) { return session_.snapshot(seconds); }
-    // After the end; rethrows what ended it.
+    // After the end; rethrows the error that ended it.
     RenderSnapshot result() const;
     const RenderSession& session() const { return session_; }
 

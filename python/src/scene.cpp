@@ -14,7 +14,7 @@
 namespace montelux::python {
 namespace {
 
-// A list of places in a scene, as Python sees it. Lights of one shape are one entry.
+// A list of slots of a scene, as Python sees it. Lights of one shape are one entry.
 struct MaterialList {
     SceneRef scene;
 };
@@ -262,7 +262,7 @@ void bind_scene(nb::module_& m) {
             "Its name, in files and messages.")
         .def_prop_ro(
             "warnings", [](const SceneObject& s) { return s.holder->warnings; },
-            "What the file asked for and does not get, as sentences.")
+            "Warnings about ignored features of the file, as sentences.")
         .def_prop_rw(
             "camera",
             [](const SceneObject& s) {

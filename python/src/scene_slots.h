@@ -1,4 +1,4 @@
-// Values of a scene as Python holds them: a place in a scene that changes with it, or a value by itself.
+// Slot: a value of a scene as Python refers to it, inside a scene or detached.
 #pragma once
 
 #include <memory>
@@ -16,8 +16,8 @@ namespace montelux::python {
 
 namespace nb = nanobind;
 
-// A scene that Python changes. Renders share the description; it is copied before the next change while one
-// of them still does.
+// A scene that Python changes. Renders share the description; while one of them does, the next change copies
+// it first.
 struct SceneHolder {
     std::shared_ptr<SceneDescription> description = std::make_shared<SceneDescription>();
     bool has_camera = false;
@@ -31,7 +31,7 @@ struct SceneHolder {
     }
 };
 
-// Where values of a kind stand in a scene.
+// The location of each kind of value in a scene.
 inline Material& element(SceneDescription& d, Index i, std::type_identity<Material>) {
     return d.scene.materials.at(i);
 }
@@ -55,7 +55,7 @@ inline IntegratorSettings& element(SceneDescription& d, Index, std::type_identit
     return d.integrator;
 }
 
-// A value in a scene, or one by itself.
+// A value in a scene, or a detached one.
 template <typename V>
 class Slot {
   public:
@@ -76,7 +76,7 @@ class Slot {
     bool same_place(const Slot& other) const {
         return scene_ ? scene_ == other.scene_ && first_ == other.first_ : own_ == other.own_;
     }
-    // The scene whose textures a value by itself refers to.
+    // The scene whose textures a detached value refers to.
     std::shared_ptr<SceneHolder> textures_of;
 
   private:
@@ -114,7 +114,7 @@ T* alternative(CameraSettings& value, std::type_identity<T>) {
 template <typename T>
 using Kind = typename KindOf<T>::type;
 
-// What Python begins with: as in a scene file that says nothing more.
+// Defaults of new scenes: those of a scene file.
 template <typename T>
 T default_value() {
     return T{};
@@ -130,7 +130,7 @@ DistantLight default_value();
 template <>
 UniformInfiniteLight default_value();
 
-// A place that holds the alternative T.
+// A slot with the alternative T.
 template <typename T>
 struct Ref : Slot<Kind<T>> {
     using V = Kind<T>;
@@ -193,7 +193,7 @@ nb::object as_python(Slot<V> slot) {
         return std::visit(cast, slot.read());
 }
 
-// The slot of a Python object of any alternative of V; null where it is none.
+// The slot of a Python object of any alternative of V; null for other objects.
 template <typename V, typename Variant>
 struct SlotOf;
 template <typename V, typename... Ts>

@@ -117,7 +117,7 @@ Spectrum spectrum_of(nb::handle v, RgbMeaning meaning, const std::string& what) 
     if (one) {
         if (meaning == RgbMeaning::albedo && c[0] > 1)
             throw Error(what, "a reflectance above 1 was given; expected a number from 0 to 1");
-        // A light of the film's white, in the units of RGB.
+        // A light with the spectrum of the film's white, in the units of RGB.
         if (meaning == RgbMeaning::illuminant) return rgb(Vec3f(Vec3d{c[0], c[0], c[0]}), meaning, what);
         return Spectrum(static_cast<float>(c[0]));
     }
@@ -167,8 +167,8 @@ float photometric_scale(const Spectrum& s, const std::string& what) {
 void bind_spectra(nb::module_& m) {
     nb::class_<Spectrum>(
         m, "Spectrum",
-        "A spectrum of a material or a light. Wherever one is expected a number, three numbers R, "
-        "G, B (linear sRGB) or the name of a measured spectrum stand for one, too.")
+        "A spectrum of a material or a light. Where one is expected, a number, three numbers R, "
+        "G, B (linear sRGB) or the name of a measured spectrum is accepted, too.")
         .def(
             "__init__", [](Spectrum* s, double value) { new (s) Spectrum(static_cast<float>(value)); },
             "value"_a, "The same at every wavelength.")

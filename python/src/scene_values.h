@@ -1,4 +1,4 @@
-// Attributes of scenes: numbers, vectors, spectra and textures from Python and back, with sentences.
+// Attributes of scenes: conversion of numbers, vectors, spectra and textures from and to Python.
 #pragma once
 
 #include "python/src/numpy_bridge.h"
@@ -30,7 +30,7 @@ struct NormalMapHandle {
     Index index;
 };
 
-// All throw Error that begins with `what`.
+// All errors begin with `what`.
 double number_of(nb::handle v, const std::string& what);
 // Exactly n finite numbers.
 std::vector<double> numbers_of(nb::handle v, std::size_t n, const std::string& what);
@@ -38,7 +38,7 @@ bool boolean_of(nb::handle v, const std::string& what);
 std::int64_t whole_number_of(nb::handle v, std::int64_t least, std::int64_t most, const std::string& what);
 // A Spectrum; a number; three numbers R, G, B; or the name of a measured one.
 Spectrum spectrum_of(nb::handle v, RgbMeaning meaning, const std::string& what);
-// The same or a texture, which must be of the scene that the slot belongs to.
+// The same or a texture, which must belong to the slot's scene.
 template <typename V>
 SpectrumParameter spectrum_parameter_of(nb::handle v, RgbMeaning meaning, Slot<V>& slot,
                                         const std::string& what);
@@ -51,11 +51,11 @@ DoubleArray vector_array(Vec3f v);
 nb::object spectrum_or_texture(const SpectrumParameter& p, const std::shared_ptr<SceneHolder>& scene);
 nb::object number_or_texture(const FloatParameter& p, const std::shared_ptr<SceneHolder>& scene);
 
-// 1 over the luminance of a light's spectrum: what its scale is multiplied by, so that an RGB colour of
-// (1, 1, 1), or any other spectrum, stands for 1 in the film's units. 0 for black.
+// 1 over the luminance of a light's spectrum: the factor of its scale by which an RGB colour of (1, 1, 1), or
+// any other spectrum, gives 1 in the film's units. 0 for black.
 float photometric_scale(const Spectrum& s, const std::string& what);
 
-// Ties a value by itself to the scene of a texture, or checks that a place is of that scene.
+// Binds a detached value to the scene of a texture, or checks that a slot belongs to that scene.
 template <typename V>
 void require_scene(Slot<V>& slot, const std::shared_ptr<SceneHolder>& textures, const std::string& what) {
     const std::shared_ptr<SceneHolder>& at = slot.scene() ? slot.scene() : slot.textures_of;
@@ -83,8 +83,8 @@ FloatParameter float_parameter_of(nb::handle v, Slot<V>& slot, const std::string
     return {static_cast<float>(number_of(v, what))};
 }
 
-// An attribute of T that is read by get(value, ref) and changed by set(value, given, ref, what); `type` is
-// for the stubs.
+// An attribute of T with getter get(value, ref) and setter set(value, given, ref, what); `type` is for the
+// stubs.
 template <typename T, typename Get, typename Set>
 void attribute(nb::class_<Ref<T>>& c, const char* name, const char* type, Get get, Set set, const char* doc) {
     const std::string getter = "def " + std::string(name) + "(self, /) -> " + type;
@@ -105,7 +105,7 @@ void attribute(nb::class_<Ref<T>>& c, const char* name, const char* type, Get ge
         nb::for_setter(nb::arg("value").none()), doc);
 }
 
-// A number; `valid` says what is allowed, `expected` tells it.
+// A number; `valid` checks it, `expected` describes the valid ones.
 template <typename T, typename M, typename Valid>
 void number(nb::class_<Ref<T>>& c, const char* name, M T::*member, Valid valid, const char* expected,
             const char* doc) {
@@ -132,7 +132,7 @@ void flag(nb::class_<Ref<T>>& c, const char* name, bool T::*member, const char* 
         doc);
 }
 
-// What every class of values has: a constructor and comparison of places.
+// Common to all classes of values: a constructor and comparison of slots.
 template <typename T>
 nb::class_<Ref<T>> value_class(nb::handle m, const char* name, const char* doc) {
     nb::class_<Ref<T>> c(m, name, doc);

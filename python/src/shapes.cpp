@@ -29,7 +29,7 @@ nb::object light_of(const ShapeRef& r) {
     return as_python(Slot<Light>(r.scene(), s.light));
 }
 
-// Of an AreaLight or a spectrum.
+// From an AreaLight or a spectrum.
 AreaLight area_light_of(const nb::object& emission) {
     if (nb::isinstance<Ref<AreaLight>>(emission)) return nb::cast<const Ref<AreaLight>&>(emission).value();
     AreaLight light = default_value<AreaLight>();
@@ -44,7 +44,7 @@ void add_light(SceneDescription& d, Index shape, AreaLight light) {
     d.scene.shapes[shape].light = SceneBuilder(d.scene, messages).add_light(light);
 }
 
-// None takes the light away; an AreaLight or a spectrum gives one.
+// None removes the light; an AreaLight or a spectrum sets it.
 void set_light(const SceneRef& holder, Index shape, const nb::object& emission) {
     std::optional<AreaLight> light;
     if (!emission.is_none()) light = area_light_of(emission);
@@ -203,7 +203,7 @@ void bind_shapes(nb::module_& m) {
         [](Shape& s, nb::handle v, ShapeRef& r, const std::string& what) {
             s.alpha = float_parameter_of(v, r, what);
         },
-        "Cut-out: a point is there with this probability; a number or a texture.");
+        "Cut-out: the probability that a point is present; a number or a texture.");
 }
 
 } // namespace montelux::python

@@ -8,7 +8,7 @@ namespace montelux::python {
 
 using SceneRef = std::shared_ptr<SceneHolder>;
 
-// Each adds a shape to the world and returns it; materials that are values by themselves are added, too.
+// Each adds a shape to the world and returns it; detached materials are added, too.
 nb::object add_mesh(const SceneRef& scene, const nb::object& positions, const nb::object& triangles,
                     const nb::object& material, const nb::object& normals, const nb::object& uvs,
                     const nb::object& transform, const nb::object& emission);
@@ -17,9 +17,9 @@ nb::object add_sphere(const SceneRef& scene, double radius, const nb::object& ce
 nb::object add_disk(const SceneRef& scene, double radius, double inner_radius, double height,
                     const nb::object& material, const nb::object& transform, const nb::object& emission);
 
-// The place of a material in a scene, which is added to it where it is a value by itself.
+// The index of a material in a scene; a detached one is added to it.
 Index material_index(const SceneRef& scene, const nb::object& material, const std::string& what);
-// Lights come and go: indices of other lights are kept right.
+// Adding and removing lights updates the indices of the others.
 void erase_light(SceneDescription& d, Index light);
 
 } // namespace montelux::python

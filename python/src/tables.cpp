@@ -19,7 +19,7 @@ Numbers weights_of(const nb::object& given, const char* what) {
     return n;
 }
 
-// Indices that `draw` gives for uniform numbers of any shape; one for one.
+// Indices by `draw` for uniform numbers of any shape; one per number.
 template <typename Draw>
 nb::object indices(const nb::object& given, const char* what, const Draw& draw) {
     const Numbers u = numbers_of(given, what);

@@ -10,7 +10,7 @@
 namespace montelux::python {
 namespace {
 
-// (seconds a call, address of the points, address of the values).
+// (seconds per call, address of the points, address of the values).
 nb::tuple call_integrand(nb::object f, std::size_t points, int dimensions, int calls, bool into) {
     const Integrand g = integrand_of(PythonFunction(std::move(f), "integrand"), 0, into);
     PointBuffer x(points, dimensions);

@@ -44,7 +44,7 @@ nb::object floats(std::initializer_list<float> values) {
     return nb::tuple(l);
 }
 
-// What cameras have in common.
+// Common to all cameras.
 template <typename T>
 void placed(nb::class_<Ref<T>>& c) {
     c.def_prop_rw(
@@ -220,7 +220,7 @@ void bind_views(nb::module_& m) {
         [](SamplerSettings& s, nb::handle v, auto&, const std::string& what) {
             s.spp = static_cast<std::uint32_t>(whole_number_of(v, 1, 1 << 30, what));
         },
-        "Samples of each pixel, where nothing else is asked for.");
+        "Samples per pixel, unless render() is given a number.");
     auto integrator = value_class<IntegratorSettings>(m, "Integrator", "How light is followed.");
     attribute<IntegratorSettings>(
         integrator, "max_depth", "int",

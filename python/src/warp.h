@@ -1,4 +1,4 @@
-// Warps as Python sees them: maps of uniform numbers to points of a density, and back, on arrays.
+// Warps for Python: maps of uniform numbers to points of a density, and back, on arrays.
 #pragma once
 
 #include "python/src/bindings.h"

@@ -166,7 +166,7 @@ def test_checkpoints_go_on_to_the_same_bits(scene, tmp_path):
     whole = scene.render(spp=64).mean
     state = tmp_path / "render.state"
     assert scene.render(spp=32, checkpoint=state).stopped_by == "samples"
-    with pytest.raises(montelux.Error, match="the file is there already; resume=True"):
+    with pytest.raises(montelux.Error, match="the file exists; pass resume=True"):
         scene.render(spp=64, checkpoint=state)
     scene.materials[0].reflectance = 0.3
     with pytest.raises(montelux.Error, match="scene"):

@@ -31,7 +31,7 @@ expect 2 "--adaptive: 'maybe' was given; on or off" render ball.pbrt --adaptive 
 expect 2 "--clamp: '0' was given" render ball.pbrt --clamp 0 -o y.exr
 [ -e y.exr ] && fail "a refused command wrote a picture"
 
-# A finished render goes on to more samples, and is the same as one that was never stopped.
+# A finished render resumes to more samples, and equals an uninterrupted one.
 expect 0 "is not there yet: rendering from the start" render ball.pbrt --spp 20 --resume --checkpoint state -o a.pfm
 expect 0 "52 samples per pixel" render ball.pbrt --spp 52 --resume --checkpoint state -o a.pfm
 expect 0 "state has 52 samples per pixel already, more than the 20 asked for" render ball.pbrt --spp 20 --resume \
@@ -42,12 +42,12 @@ cmp -s a.pfm b.pfm || fail "a render that was continued differs"
 expect 1 "of another render: the sampler or seed differs" render ball.pbrt --seed 9 --resume --checkpoint state -o x.pfm
 expect 1 "the film differs" render ball.pbrt --clamp 3 --resume --checkpoint state -o x.pfm
 printf x >>state
-expect 0 "going on from the checkpoint before the last" render ball.pbrt --spp 52 --resume --checkpoint state -o c.pfm
+expect 0 "resuming from the checkpoint before the last" render ball.pbrt --spp 52 --resume --checkpoint state -o c.pfm
 cmp -s c.pfm b.pfm || fail "a render that was continued from the generation before differs"
 printf x >>state.previous
 printf x >>state
 expect 1 "state" render ball.pbrt --spp 52 --resume --checkpoint state -o x.pfm
-expect 2 "the file is there already; add --resume" render ball.pbrt --checkpoint a.pfm -o x.pfm
+expect 2 "the file exists; add --resume" render ball.pbrt --checkpoint a.pfm -o x.pfm
 expect 2 "the checkpoint has this name" render ball.pbrt --checkpoint z.pfm -o z.pfm
 expect 0 "4 samples per pixel" render ball.pbrt --checkpoint often --checkpoint-every 0 --threads 1 -o often.pfm
 expect 2 "the scene is read from this file" render ball.pbrt --checkpoint ball.pbrt -o x.pfm

@@ -124,10 +124,10 @@ TEST(Ply, SentencesOfErrors) {
     EXPECT_EQ(ply_error(replaced(ascii, "ascii", "text")),
               "mesh.ply:2: format 'text'; expected ascii, binary_little_endian or binary_big_endian");
     EXPECT_EQ(ply_error(replaced(ascii, "vertex 4", "vertex 4000000000")),
-              "mesh.ply:4: the header tells of 4000000000 rows of 'vertex', more than the file can hold");
+              "mesh.ply:4: the header declares 4000000000 rows of 'vertex', more than the file can hold");
     EXPECT_EQ(
         ply_error(replaced(ascii, "face 2", "face 18446744073709551615")),
-        "mesh.ply:8: the header tells of 18446744073709551615 rows of 'face', more than the file can hold");
+        "mesh.ply:8: the header declares 18446744073709551615 rows of 'face', more than the file can hold");
     EXPECT_EQ(ply_error(replaced(ascii, "vertex 4", "vertex -4")),
               "mesh.ply:4: element 'vertex' has the count '-4'; expected a number of 0 or more");
     EXPECT_EQ(ply_error(replaced(ascii, "float y", "quad y")), "mesh.ply:6: unknown property type 'quad'");

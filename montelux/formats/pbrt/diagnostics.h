@@ -1,4 +1,4 @@
-// Where something stands in a scene file, and how errors and warnings about it are told.
+// Diagnostics: places in a scene file, and the errors and warnings that name them.
 #pragma once
 
 #include <cstdint>

@@ -21,19 +21,17 @@ Directives::Directives(Files& files, Diagnostics& diagnostics)
       spectra_(files, diagnostics), textures_(builder_, files, spectra_, diagnostics),
       lights_(builder_, files, spectra_, diagnostics) {
     state_.color_space = &RgbColorSpace::srgb();
-    materials_.push_back({"diffuse", {}, {}}); // what shapes have before any Material directive
+    materials_.push_back({"diffuse", {}, {}}); // the material of shapes before any Material directive
 }
 
 void Directives::require_world(std::string_view directive, Location at) const {
     if (!in_world_)
-        diagnostics_.error(at,
-                           "'" + std::string(directive) + "' stands before WorldBegin; it belongs behind it");
+        diagnostics_.error(at, "'" + std::string(directive) + "' is before WorldBegin; it belongs after it");
 }
 
 void Directives::require_options(std::string_view directive, Location at) const {
     if (in_world_)
-        diagnostics_.error(at,
-                           "'" + std::string(directive) + "' stands behind WorldBegin; it belongs before it");
+        diagnostics_.error(at, "'" + std::string(directive) + "' is after WorldBegin; it belongs before it");
 }
 
 void Directives::world_begin(Location at) {
@@ -209,7 +207,7 @@ void Directives::set_accelerator(const Plugin& plugin) {
 
 namespace {
 
-// pbrt's own: '-' and '_' left out, in small letters.
+// As pbrt does: without '-' and '_', in small letters.
 std::string normalized(std::string_view name) {
     std::string result;
     for (char c : name)
@@ -242,7 +240,7 @@ void Directives::set_render_option(const Parameter& p) {
         seed_ = static_cast<std::uint32_t>(p.integers[0]);
         return;
     }
-    // The space that coordinates are computed in changes nothing here.
+    // The space of the computations does not change the picture here.
     if (option == "rendercoordsys") {
         expect_one(ParameterType::string, "string");
         constexpr std::array<std::string_view, 3> systems = {"camera", "cameraworld", "world"};
@@ -283,7 +281,7 @@ void Directives::add_defaults(std::string_view target, std::vector<Parameter> pa
     for (Parameter& p : parameters) {
         // A name may fit plugins other than those that follow, but one that fits none is a mistake.
         if (has_parameter(kind, p.name)) {
-            // One of each name and type: else a file that repeats an Attribute would fill the memory.
+            // One of each name and type: otherwise a file that repeats an Attribute would exhaust the memory.
             std::erase_if(*list, [&](const auto& old) { return old->name == p.name && old->type == p.type; });
             list->push_back(std::make_shared<const Parameter>(std::move(p)));
         } else {

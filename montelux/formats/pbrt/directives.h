@@ -1,4 +1,4 @@
-// The directives of a pbrt scene file, carried out one by one.
+// Directives: executes the directives of a pbrt scene file one by one.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@
 
 namespace montelux::pbrt {
 
-// Each function is one directive; `at` is where it stands. Geometry and lights are made at once; materials,
-// textures and instances when the file is read, since they may be named before they are declared.
+// Each function is one directive; `at` is its place. Geometry and lights are created at once; materials,
+// textures and instances at the end of the file, since they may be named before they are declared.
 class Directives {
   public:
     Directives(Files& files, Diagnostics& diagnostics);
@@ -30,7 +30,7 @@ class Directives {
     void object_begin(const std::string& name, Location at);
     void object_end(Location at);
     void object_instance(const std::string& name, Location at);
-    // What an imported file changes ends with it: begin_import gives what end_import needs.
+    // Changes by an imported file end with it: begin_import returns what end_import needs.
     struct Import {
         GraphicsState state;
         std::size_t outer_floor;
@@ -73,7 +73,7 @@ class Directives {
     void medium_interface(std::string_view inside, std::string_view outside, Location at);
 
     bool in_world() const { return in_world_; }
-    // After the last file. `end` is where it ends.
+    // After the last file. `end` is the place of its end.
     SceneDescription finish(Location end);
 
   private:
@@ -99,7 +99,7 @@ class Directives {
     void set_option(std::optional<Plugin>& option, Plugin plugin, std::string_view directive);
     void push(Block::Kind kind, Location at);
     void pop(Block::Kind kind, std::string_view directive, Location at);
-    // The transformation where it may not move.
+    // The transformation, where motion is not allowed.
     const Transform& still_transform(Location at) const;
     ParameterList with_defaults(std::vector<Parameter> own, PluginKind kind) const;
     void finish_options();

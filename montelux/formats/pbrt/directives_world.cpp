@@ -103,7 +103,7 @@ void Directives::finish_materials() {
     material_indices_.assign(materials_.size(), no_index);
     for (const MaterialUse& use : material_uses_)
         result_.scene.shapes[use.shape].material = material_index(use.material, use.at);
-    // Unused ones are read as well, so that what is wrong with them is told.
+    // Unused textures are read as well, so that their errors are reported.
     for (Index i = 1; i < materials_.size(); ++i) {
         if (material_indices_[i] != no_index) continue;
         if (is_supported_material(materials_[i], diagnostics_))

@@ -1,4 +1,4 @@
-// What is in force at a place of a pbrt scene file: transformation, material, area light, defaults.
+// GraphicsState: the current transformation, material, area light and defaults of a pbrt scene file.
 #pragma once
 
 #include <array>
@@ -24,14 +24,14 @@ struct MaterialReference {
     Index index = 0; // of the declaration, or a reference of the table of names
 };
 
-// Small, since it is copied for each AttributeBegin: large parts are shared and replaced, never changed.
+// Small, since each AttributeBegin copies it: large parts are shared and replaced, never changed.
 struct GraphicsState {
     std::shared_ptr<const TransformPair> ctm = std::make_shared<TransformPair>();
     bool start_active = true, end_active = true;
     bool reverse_orientation = false;
     const RgbColorSpace* color_space = nullptr;
     MaterialReference material;
-    std::shared_ptr<const Emission> emission; // null: shapes do not shine
+    std::shared_ptr<const Emission> emission; // null: shapes emit no light
     // From Attribute directives, by PluginKind.
     std::array<Defaults, plugin_kind_names.size()> defaults;
 };

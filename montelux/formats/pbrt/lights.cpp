@@ -40,9 +40,8 @@ Point3f place(ParameterReader& r, const Transform& world_from_light, Vec3f from)
     return Vec3f(p);
 }
 
-// What pbrt takes for the illuminance of a map on an upward-facing (+z) patch: the mean over the sphere of
-// luminance times positive cosine, times 2 pi. (That is half the illuminance; scenes are made with pbrt, so
-// its measure is kept.)
+// pbrt's illuminance of a map on an upward-facing (+z) patch: the mean over the sphere of luminance times
+// positive cosine, times 2 pi. This is half the true illuminance; kept because scenes are made with pbrt.
 double upper_illuminance(const Image& map, EnvironmentLayout layout) {
     Vec3d weights = RgbColorSpace::srgb().luminance_weights();
     const EnvironmentGrid grid(layout, map.width(), map.height());

@@ -12,8 +12,8 @@
 
 namespace montelux::pbrt {
 
-// Lights are scaled so that an RGB colour of (1, 1, 1), or any other spectrum, stands for a luminance,
-// illuminance or intensity of 1 in photometric units (Scene's film integrates against the CIE's Y).
+// Lights are scaled so that an RGB colour of (1, 1, 1), or any other spectrum, has a luminance, illuminance
+// or intensity of 1 in photometric units (the film integrates against the CIE's Y).
 class LightReader {
   public:
     LightReader(SceneBuilder& builder, Files& files, SpectrumReader& spectra, Diagnostics& diagnostics)

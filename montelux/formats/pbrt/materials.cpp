@@ -29,8 +29,7 @@ const std::vector<std::string>& supported_materials() {
     return names;
 }
 
-// Reads the parameters that a material lists (scene/material/parameter.h); each keeps its default where it is
-// not given.
+// Reads the parameters that a material lists (scene/material/parameter.h); missing ones keep their defaults.
 class MaterialMaker {
   public:
     MaterialMaker(const MaterialDeclaration& d, TextureLibrary& textures, SpectrumReader& spectra,
@@ -80,7 +79,7 @@ class MaterialMaker {
                                                  : spectra_.read(*p, RgbMeaning::unbounded);
     }
 
-    // "uroughness" and "vroughness" with the prefix, each "roughness" where it is missing.
+    // "uroughness" and "vroughness" with the prefix; "roughness" where one is missing.
     void read(const ParameterInfo& info, RoughnessParameter& p) {
         const std::string prefix = info.prefix.empty() ? std::string() : std::string(info.prefix) + '.';
         FloatParameter both = textures_.float_or(r_, name(prefix + "roughness"), 0);
@@ -109,7 +108,7 @@ class MaterialMaker {
             p.map = textures_.normal_map(*file, r_.at(parameter));
     }
 
-    // Keeps a composed parameter name alive: the reader remembers views of the names it was asked for.
+    // Keeps a composed name alive: the reader stores views of the names.
     std::string_view name(std::string composed) { return names_.emplace_back(std::move(composed)); }
 
     std::deque<std::string> names_;

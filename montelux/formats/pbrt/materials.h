@@ -13,7 +13,7 @@ struct MaterialDeclaration {
     Location at;
 };
 
-// False for a material of pbrt that Montelux does not have yet; an error for one that pbrt does not have.
+// False for a pbrt material that is not supported yet; an error for an unknown one.
 bool is_supported_material(const MaterialDeclaration& d, Diagnostics& diagnostics);
 
 // The material with pbrt-v4's defaults for what is not given.

@@ -32,7 +32,7 @@ ValueKind kind_of(ParameterType type) {
     }
 }
 
-// The type's name with pbrt-v3's spellings told apart.
+// The type of a name; accepts pbrt-v3's spellings too.
 ParameterType parse_type(std::string_view name, Location at, const Diagnostics& diagnostics) {
     auto found = std::find(type_names.begin(), type_names.end(), name);
     if (found != type_names.end()) return static_cast<ParameterType>(found - type_names.begin());
@@ -81,7 +81,7 @@ void add_value(const Token& token, Parameter& p, Diagnostics& diagnostics) {
     case ValueKind::integer:
         return add_number(token, p.integers, p, diagnostics);
     case ValueKind::boolean:
-        // "true" in quotes is pbrt-v3's way; it is still understood.
+        // pbrt-v3 puts "true" in quotes; still accepted.
         if (token.text != "true" && token.text != "false")
             diagnostics.error(token.at, "parameter " + in_quotes(p.name) + ": expected true or false, read " +
                                             describe(token));

@@ -35,8 +35,8 @@ enum class ParameterType : std::uint8_t {
 };
 std::string_view name_of(ParameterType type);
 
-// Values stand in the vector that fits the type: numbers for everything counted in floats and for spectra
-// given by values, strings for names; booleans are 0 or 1 in `integers`.
+// Values are in the vector that fits the type: `numbers` for all floating types and for spectra given by
+// values, `strings` for names; booleans are 0 or 1 in `integers`.
 struct Parameter {
     ParameterType type = ParameterType::floating;
     std::string name;
@@ -49,12 +49,12 @@ struct Parameter {
     std::size_t value_count() const { return numbers.size() + integers.size() + strings.size(); }
 };
 
-// What Attribute directives gave, in the file's order, one of each name and type. Shared: it is kept with
-// every directive that it holds for.
+// The values of Attribute directives, in the file's order, one of each name and type. Shared by all
+// directives that they apply to.
 using Defaults = std::shared_ptr<const std::vector<std::shared_ptr<const Parameter>>>;
 
-// The parameters of one directive, in the file's order, with the defaults behind them: of several with the
-// same name own ones win, and the last of each.
+// The parameters of one directive in the file's order, then the defaults. Of several with one name the
+// directive's own win, and the last of each.
 class ParameterList {
   public:
     ParameterList() = default;
@@ -64,7 +64,7 @@ class ParameterList {
         : own_(std::move(own)), defaults_(std::move(defaults)), kind_(kind) {}
 
     const std::vector<Parameter>& own() const { return own_; }
-    // Of plugins that take defaults.
+    // For plugins that take defaults.
     std::optional<PluginKind> kind() const { return kind_; }
     // Null when there is none with that name.
     const Parameter* find(std::string_view name) const;
@@ -77,8 +77,8 @@ class ParameterList {
     std::optional<PluginKind> kind_;
 };
 
-// Reads the parameters that stand at the tokenizer up to the next word. Errors: an unknown type, a missing
-// name, values of the wrong kind, a bracket that is not closed. A repeated parameter is warned of.
+// Reads parameters up to the next word. Errors: an unknown type, a missing name, values of the wrong kind, an
+// open bracket. Warns about repeated parameters.
 std::vector<Parameter> read_parameters(Tokenizer& tokens, const RgbColorSpace& color_space,
                                        Diagnostics& diagnostics);
 

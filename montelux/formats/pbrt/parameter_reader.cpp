@@ -13,7 +13,7 @@ ParameterReader::ParameterReader(const ParameterList& list, std::string plugin, 
     : list_(list), plugin_(std::move(plugin)), at_(at), diagnostics_(diagnostics) {}
 
 void ParameterReader::know(std::string_view name) {
-    // Else an Attribute that gives it would be told to be wrong.
+    // Otherwise an Attribute that sets it would be reported as an error.
     assert(!list_.kind() || has_parameter(*list_.kind(), name));
     if (std::find(known_.begin(), known_.end(), name) == known_.end()) known_.push_back(name);
 }
@@ -29,7 +29,7 @@ const Parameter* ParameterReader::any(std::string_view name, std::initializer_li
     for (const Parameter& p : list_.own()) {
         if (p.name != name) continue;
         if (std::find(types.begin(), types.end(), p.type) == types.end()) wrong_type(p, types);
-        // Of the same type twice is told where the parameters are read.
+        // Repetitions of one type are reported where the parameters are parsed.
         if (last && last->type != p.type)
             diagnostics_.warn(p.at, "parameter " + in_quotes(name) + " is given as " +
                                         std::string(name_of(last->type)) + " and as " +

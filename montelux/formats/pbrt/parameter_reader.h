@@ -1,4 +1,4 @@
-// Typed access to the parameters of one plugin, with an account of which ones it knows.
+// ParameterReader: typed access to the parameters of one plugin; reports those that no getter read.
 #pragma once
 
 #include <initializer_list>
@@ -13,16 +13,16 @@
 
 namespace montelux::pbrt {
 
-// Every getter names a parameter and gives its value or nothing. One that the directive has in another type
-// is an error ("parameter 'fov' has type integer; expected float"), and so is a wrong number of values. A
-// default of another type is passed over where another default fits: it may be meant for another plugin.
+// Every getter names a parameter and returns its value, or nothing. A parameter of the directive with another
+// type is an error ("parameter 'fov' has type integer; expected float"), and so is a wrong number of values.
+// A default of another type is skipped where another default fits: it may be meant for another plugin.
 class ParameterReader {
   public:
-    // `plugin` is what messages call it, such as "camera 'perspective'"; `at` is where its directive stands.
+    // `plugin` names it in messages, such as "camera 'perspective'"; `at` is the place of its directive.
     ParameterReader(const ParameterList& list, std::string plugin, Location at, Diagnostics& diagnostics);
 
     std::optional<float> number(std::string_view name);
-    // The number of a parameter that `any` gave.
+    // The number in a parameter that `any` returned.
     float number_of(const Parameter& p) const;
     std::optional<int> integer(std::string_view name);
     std::optional<bool> boolean(std::string_view name);
@@ -34,9 +34,9 @@ class ParameterReader {
     std::span<const float> numbers(std::string_view name, ParameterType type, std::size_t group = 1);
     std::span<const std::int32_t> integers(std::string_view name);
 
-    // The parameter if it is there with one of these types. That one has several of them is told.
+    // The parameter, if present with one of these types. Warns if it is given with several of them.
     const Parameter* any(std::string_view name, std::initializer_list<ParameterType> types);
-    // For parameters that change nothing here: known, and whether it was given.
+    // For parameters without effect here: marks them as known; returns whether one was given.
     const Parameter* ignored(std::string_view name);
 
     float number(std::string_view name, float otherwise) { return number(name).value_or(otherwise); }
@@ -45,15 +45,15 @@ class ParameterReader {
     std::string string(std::string_view name, std::string_view otherwise) {
         return string(name).value_or(std::string(otherwise));
     }
-    // A string out of a closed list; an error names the nearest valid one.
+    // A string of a closed set; an error names the nearest valid one.
     std::string_view choice(std::string_view name, std::initializer_list<std::string_view> choices,
                             std::string_view otherwise);
 
-    // Warns of the parameters that no getter asked for, once for each plugin and name.
+    // Warns about parameters that no getter has read, once for each plugin and name.
     void finish();
 
     Location at() const { return at_; }
-    // Where the parameter stands; the directive if it is not there.
+    // The place of the parameter; of the directive if it is absent.
     Location at(std::string_view name) const;
     const std::string& plugin() const { return plugin_; }
     Diagnostics& diagnostics() { return diagnostics_; }

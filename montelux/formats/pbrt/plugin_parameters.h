@@ -1,4 +1,4 @@
-// The names of all parameters that pbrt-v4's plugins have, by kind of plugin: what an Attribute may give.
+// The names of all parameters of pbrt-v4's plugins, by kind of plugin: those that an Attribute may set.
 #pragma once
 
 #include <array>
@@ -8,14 +8,14 @@
 
 namespace montelux::pbrt {
 
-// What an Attribute directive can be for.
+// The kinds of plugins that an Attribute directive addresses.
 enum class PluginKind : std::uint8_t { shape, light, material, medium, texture };
 inline constexpr std::array<std::string_view, 5> plugin_kind_names = {"shape", "light", "material", "medium",
                                                                       "texture"};
 
-// Names that fit at least one plugin of the kind, those included that Montelux does not have yet; area
-// lights count as lights. In alphabetical order, capitals first. After the plugins' sources (pbrt-v4,
-// functions Create of shapes.cpp, lights.cpp, materials.cpp, media.cpp, textures.cpp).
+// Names that fit at least one plugin of the kind, including plugins that are not supported yet; area lights
+// count as lights. In alphabetical order, capitals first. Source: the Create functions of pbrt-v4's
+// shapes.cpp, lights.cpp, materials.cpp, media.cpp, textures.cpp.
 std::span<const std::string_view> parameter_names(PluginKind kind);
 bool has_parameter(PluginKind kind, std::string_view name);
 

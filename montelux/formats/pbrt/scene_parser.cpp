@@ -9,7 +9,7 @@
 namespace montelux::pbrt {
 namespace {
 
-// Files inside one another, and files altogether: beyond it a scene is taken for a trap.
+// Limits of nested files and of files in total; a scene that exceeds them is rejected.
 constexpr std::size_t most_open_files = 64;
 constexpr std::size_t max_files = 100000;
 
@@ -78,7 +78,7 @@ Matrix4 SceneParser::matrix(const Token& directive) {
     if (v.size() != 16)
         diagnostics_.error(open.at, std::string(directive.text) + " has " + std::to_string(v.size()) +
                                         " numbers; expected 16");
-    Matrix4 m; // the file goes by columns
+    Matrix4 m; // the file is column-major
     for (std::size_t i = 0; i < 16; ++i) m.m[i % 4][i / 4] = v[i];
     return m;
 }
@@ -257,7 +257,7 @@ std::span<const SceneParser::Directive> SceneParser::directives() {
              p.builder_.attribute_begin(d.at);
          }},
         {"TransformEnd", [](P& p, const Token& d) { p.builder_.attribute_end(d.at); }},
-        // The times matter to what moves alone, and that is an error where it stands.
+        // The times affect only moving transformations, which are an error of their own.
         {"TransformTimes", [](P& p, const Token& d) { p.numbers<2>(d); }},
         {"Translate",
          [](P& p, const Token& d) {

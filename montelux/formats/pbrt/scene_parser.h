@@ -1,4 +1,4 @@
-// The grammar of pbrt scene files: reads directives with their arguments and has Directives carry them out.
+// SceneParser: the grammar of pbrt scene files; reads directives and has Directives execute them.
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@ class SceneParser {
     SceneParser(Files& files, Directives& builder, Diagnostics& diagnostics)
         : files_(files), builder_(builder), diagnostics_(diagnostics) {}
 
-    // Carries out a whole text; returns where it ends.
+    // Executes a whole text; returns the place of its end.
     Location parse(std::string_view text, std::uint32_t file);
 
-    // Tells of the main file before its text is parsed, so that a file that includes it is found out.
+    // Registers the main file before its text is parsed, so that a file that includes it is detected.
     void enter(const std::filesystem::path& path);
 
   private:

@@ -8,19 +8,19 @@
 
 namespace montelux::pbrt {
 
-// One directive that names a plugin, before its parameters are understood.
+// One directive that names a plugin, with unparsed parameters.
 struct Plugin {
     std::string name;
     ParameterList parameters;
     Location at;
 };
 
-// Each throws Error on an unknown plugin and on values that make no sense, and warns of what it ignores.
+// Each throws Error for unknown plugins and invalid values, and warns about what it ignores.
 void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& film, std::string& output_file);
 PixelFilter read_filter(const Plugin& plugin, Diagnostics& diagnostics);
 // The shutter's times set the film's exposure time.
 CameraModel read_camera(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& film);
-// `seed` counts unless the sampler has its own.
+// `seed` applies unless the sampler has its own.
 SamplerSettings read_sampler(const Plugin& plugin, Diagnostics& diagnostics, std::uint64_t seed);
 IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostics);
 

@@ -75,12 +75,11 @@ void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& fil
     film.height = read_resolution(r, "yresolution", 720);
     film.crop = read_crop(r, film.width, film.height);
     output_file = r.string("filename", "");
-    r.number("diagonal"); // millimetres; matters to realistic cameras alone
+    r.number("diagonal"); // millimetres; only realistic cameras use it
     film.iso = r.number("iso", 100);
     if (!(film.iso > 0)) r.error("iso", "parameter 'iso' must be positive");
     film.white_balance = r.number("whitebalance", 0);
-    // Far below the 4000 K where the CIE's daylight series begins its chromaticities leave the plane of
-    // colours.
+    // CIE daylight is defined from 4000 K on; its chromaticities leave the plane of colours far below that.
     if (film.white_balance != 0 && !(film.white_balance >= 2000))
         r.error(
             "whitebalance",

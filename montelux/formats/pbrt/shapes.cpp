@@ -50,7 +50,7 @@ std::vector<Vec3f> triples(std::span<const float> numbers) {
     return v;
 }
 
-// Indices as they are in the file, whole triangles, each below `vertex_count`.
+// Indices as in the file: whole triangles, each index below `vertex_count`.
 std::vector<Index> read_indices(ParameterReader& r, std::size_t vertex_count) {
     std::span<const std::int32_t> given = r.integers("indices");
     std::size_t count = given.size() - given.size() % 3;
@@ -97,7 +97,7 @@ TriangleMesh read_triangle_mesh(ParameterReader& r) {
         r.diagnostics().warn_once("trianglemesh S", r.at("S"),
                                   "vertex tangents 'S' are not supported yet: they matter to anisotropic "
                                   "materials, and the picture differs");
-    r.ignored("faceIndices"); // matters to Ptex textures alone
+    r.ignored("faceIndices"); // only Ptex textures use it
     return mesh;
 }
 

@@ -7,7 +7,7 @@
 namespace montelux::pbrt {
 namespace {
 
-// Where the sun stands in the light's space, degrees.
+// Position of the sun in the light's space, degrees.
 void read_sun(ParameterReader& r, SkySettings& settings) {
     const std::optional<float> elevation = r.number("elevation"), azimuth = r.number("azimuth");
     const std::optional<Vec3f> sun = r.vector3("sun");

@@ -42,7 +42,7 @@ Spectrum SpectrumReader::from_name(const Parameter& p) {
                                      " values; expected 1 name of a spectrum");
     const std::string& name = p.strings[0];
     if (std::optional<Spectrum> s = find_named_spectrum(name)) return *s;
-    // A name without a dot or a slash is no file: then a misspelt name is likelier.
+    // A name without a dot or a slash is more likely a misspelt name than a file.
     if (name.find_first_of("./\\") == std::string::npos)
         diagnostics_.error(p.at, "there is no spectrum named " + in_quotes(name) + " (did you mean '" +
                                      std::string(nearest_spectrum_name(name)) + "'?)");

@@ -1,4 +1,4 @@
-// Spectra from parameters: RGB colours, named spectra, spectrum files, lists of values, black bodies.
+// SpectrumReader: spectra from RGB colours, names, files, lists of values, black bodies.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@ class SpectrumReader {
 
     // The parameter is of type rgb, spectrum or blackbody. Each spectrum file is read once.
     Spectrum read(const Parameter& p, RgbMeaning meaning);
-    // A spectrum that Montelux knows by name, such as "metal-Cu-eta"; it must exist.
+    // A spectrum known by name, such as "metal-Cu-eta"; it must exist.
     static Spectrum named(std::string_view name);
 
   private:

@@ -19,10 +19,10 @@ constexpr std::array<std::string_view, 13> texture_plugins = {
     "constant", "imagemap", "scale", "mix",   "checkerboard", "bilerp",      "dots",
     "fbm",      "marble",   "ptex",  "windy", "wrinkled",     "directionmix"};
 
-// Deeper trees of textures are refused: looking one up is recursive.
+// Limit of the depth of texture trees: look-ups are recursive.
 constexpr std::size_t most_nested = 64;
-// Nor may one look-up evaluate more textures than this: a texture that two parameters refer to is evaluated
-// twice, which doubles from level to level.
+// Limit of texture evaluations per look-up: a texture that two parameters refer to is evaluated twice, which
+// doubles with each level.
 constexpr std::size_t most_evaluations = 4096;
 
 std::string label(const TextureDeclaration& d) { return "texture " + in_quotes(d.plugin); }
@@ -50,7 +50,7 @@ Transform texture_space(ParameterReader& r, const TextureDeclaration& d) {
     return d.world_from_texture.inverse();
 }
 
-// Only then does pbrt-v4 take alpha for the value of a float texture.
+// pbrt-v4 takes alpha for the value of a float texture in this case only.
 bool has_transparency(const Image& picture) {
     const auto alpha = picture.find_channel("A");
     if (!alpha || picture.color_channels().size() != 3) return false;

@@ -1,4 +1,4 @@
-// The named textures of a pbrt scene file, turned into nodes of the scene when something uses them.
+// TextureLibrary: the named textures of a pbrt scene file, added to the scene when first used.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ struct TextureDeclaration {
     Transform world_from_texture;
 };
 
-// Float and spectrum textures have names of their own. A colour in a spectrum texture means what the
-// parameter that uses the texture needs, so one declaration may give up to three nodes.
+// Float and spectrum textures have separate names. The meaning of a colour in a spectrum texture depends on
+// the parameter that uses it, so one declaration may yield up to three nodes.
 class TextureLibrary {
   public:
     TextureLibrary(SceneBuilder& builder, Files& files, SpectrumReader& spectra, Diagnostics& diagnostics)
@@ -41,10 +41,10 @@ class TextureLibrary {
         return find_spectrum(r, name, meaning).value_or(SpectrumParameter{Spectrum(otherwise)});
     }
 
-    // The picture of a file as it stands in Scene::images, read once for each encoding.
+    // The index of a file's picture in Scene::images; read once for each encoding.
     Index image(const std::string& file, const std::optional<std::string>& encoding, Location at);
 
-    // The shading normals of a picture of (n + 1) / 2, into Scene::normal_maps; looked up as in pbrt-v4.
+    // Adds a picture of normals, (n + 1) / 2, to Scene::normal_maps; filtered as in pbrt-v4.
     Index normal_map(const std::string& file, Location at);
 
     void warn_of_unused();
@@ -53,8 +53,8 @@ class TextureLibrary {
     struct Entry {
         TextureDeclaration declaration;
         std::size_t order = 0;
-        std::array<Index, 3> nodes{no_index, no_index, no_index}; // float textures use the first alone
-        std::size_t evaluations = 0; // of textures, this one included, when it is looked up once
+        std::array<Index, 3> nodes{no_index, no_index, no_index}; // float textures use only the first
+        std::size_t evaluations = 0; // textures evaluated per look-up, this one included
     };
     using Table = std::map<std::string, Entry, std::less<>>;
 
@@ -77,7 +77,7 @@ class TextureLibrary {
     std::map<Index, Index> normal_maps_; // by image
     std::size_t resolving_ = 0;          // how many textures are being resolved, one inside the other
     std::size_t resolving_order_ = 0;    // of the innermost of them
-    std::size_t evaluations_ = 0;        // what looking it up takes, as far as it is known
+    std::size_t evaluations_ = 0;        // per look-up, as far as known
 };
 
 } // namespace montelux::pbrt

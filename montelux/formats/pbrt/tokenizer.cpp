@@ -33,7 +33,7 @@ std::string describe(const Token& token) {
 Tokenizer::Tokenizer(std::string_view text, std::uint32_t file, const Diagnostics& diagnostics)
     : diagnostics_(diagnostics), position_(text.data()), end_(text.data() + text.size()),
       line_start_(text.data()), file_(file) {
-    if (text.starts_with("\xef\xbb\xbf")) { // a byte order mark is no text
+    if (text.starts_with("\xef\xbb\xbf")) { // skip a byte order mark
         position_ += 3;
         line_start_ += 3;
     }
@@ -126,7 +126,7 @@ Token Tokenizer::scan_string(Location at) {
 template <typename T>
 std::size_t Tokenizer::read_all(std::vector<T>& out) {
     std::size_t before = out.size();
-    if (peeked_) { // rewind to a word or string that was only looked at
+    if (peeked_) { // rewind to a word or string that was only peeked at
         if (peeked_->kind != Token::Kind::word) return 0;
         position_ = peeked_->text.data();
         peeked_.reset();

@@ -1,4 +1,4 @@
-// Text of a pbrt scene file to tokens: words, quoted strings, brackets and numbers.
+// Tokenizer: text of a pbrt scene file to words, quoted strings, brackets and numbers.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ struct Token {
 // How a token is named in a message.
 std::string describe(const Token& token);
 
-// Comments (# to the end of the line) and white space are skipped. Views into `text` and into the tokenizer
-// itself are handed out: both must outlive the tokens.
+// Skips comments (# to the end of the line) and white space. Tokens are views into `text` and into the
+// tokenizer: both must outlive them.
 class Tokenizer {
   public:
     Tokenizer(std::string_view text, std::uint32_t file, const Diagnostics& diagnostics);
@@ -32,8 +32,8 @@ class Tokenizer {
     Token next();
     const Token& peek();
 
-    // Appends the numbers that stand here, up to the first token that is none; returns how many. An error if
-    // that token is a word, or a number is out of the type's range.
+    // Appends the numbers up to the first token that is no number; returns their count. An error if that
+    // token is a word, or if a number is out of the type's range.
     std::size_t read_numbers(std::vector<float>& out);
     std::size_t read_numbers(std::vector<double>& out);
     std::size_t read_numbers(std::vector<std::int32_t>& out);

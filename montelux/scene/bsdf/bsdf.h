@@ -1,4 +1,4 @@
-// Bsdf: what a path meets on a surface.
+// Bsdf: the variant of all BSDFs of surfaces.
 #pragma once
 
 #include <type_traits>
@@ -12,7 +12,7 @@ namespace montelux {
 
 template <typename... B>
 std::variant<B..., TiltedBsdf> with_tilted(std::type_identity<std::variant<B...>>);
-// The BSDFs that materials make (untilted_bsdf.h) and those that a normal map or bumps have tilted.
+// The BSDFs of materials (untilted_bsdf.h), and those tilted by a normal map or bumps.
 using Bsdf = decltype(with_tilted(std::type_identity<UntiltedBsdf>{}));
 
 template <typename... B>

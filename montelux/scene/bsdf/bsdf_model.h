@@ -1,4 +1,4 @@
-// A BSDF to the renderer: the concept BsdfModel.
+// BsdfModel: the concept of a BSDF.
 #pragma once
 
 #include <concepts>
@@ -11,25 +11,24 @@
 namespace montelux {
 
 // Plain values in the local frame of the shading normal. sample and evaluate agree: E[weight over a set of
-// directions] is the integral of f |cos theta_i| over it, delta lobes apart. sample takes at most one number
-// and one pair from the stream, evaluate at most one pair.
+// directions] is the integral of f |cos theta_i| over it, without delta lobes. sample takes at most one
+// number and one pair from the stream, evaluate at most one pair.
 template <typename B>
 concept BsdfModel = std::is_trivially_copyable_v<B> && std::same_as<decltype(B::traits), const BsdfTraits> &&
     requires(const B& b, Vec3f w, TransportMode mode, PhiloxStream& stream) {
-    // What it is, and its fields as (name, value) pairs: numbers, spectra, Ggx or another BSDF.
+    // Its name, and its fields as (name, value) pairs: numbers, spectra, Ggx or another BSDF.
     { B::name } -> std::convertible_to<const char*>;
     b.visit_fields([](const char*, const auto&) {});
     // All lobes are deltas.
     { b.is_specular() } -> std::same_as<bool>;
     // Some lobe is a delta.
     { b.has_specular() } -> std::same_as<bool>;
-    // Directional albedo, perhaps approximate: a guide for denoisers, not part of an estimate.
+    // Directional albedo, possibly approximate: a feature for denoisers, not part of an estimate.
     { b.albedo(w) } -> std::same_as<SampledSpectrum>;
     { b.evaluate(w, w, mode, stream) } -> std::same_as<BsdfEvaluation>;
     { b.sample(w, mode, stream) } -> std::same_as<std::optional<BsdfSample>>;
 } &&(!B::traits.transmits || requires(const B& b, Vec3f wo) {
-    // Index of refraction on the other side of the surface over that on the side of wo: BsdfSample::eta of
-    // transmitted directions.
+    // Relative index of refraction, far side over the side of wo: BsdfSample::eta of transmitted directions.
     { b.transmitted_eta(wo) } -> std::same_as<float>;
 });
 

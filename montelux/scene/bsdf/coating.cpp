@@ -10,8 +10,8 @@ struct Integrals {
     double transmitted = 0, reflected = 0;
 };
 
-// Albedos of the interface for light from wo, each direction weighted by the absorption of the layer on its
-// way: transmitted light always crosses it, reflected light only when the interface is seen from inside.
+// Albedos of the interface for light from wo, weighted by the absorption of the layer along each direction:
+// transmitted light always crosses it, reflected light only on the inside.
 Integrals interface_integrals(const DielectricBsdf& coat, float mu, float thickness, bool from_inside) {
     Vec3f wo{std::sqrt(std::max(0.0f, 1 - mu * mu)), 0, from_inside ? -mu : mu};
     auto absorption = [&](Vec3f w) { return std::exp(-double(thickness) / std::abs(double(w.z))); };
@@ -43,7 +43,7 @@ CoatingTable::CoatingTable(float eta, float alpha, float thickness, int max_dept
     : coat_{eta, {alpha, alpha}}, base_visits_((max_depth + 1) / 2), transmittance_(table_size),
       reflectance_(table_size) {
     for (int i = 0; i < table_size; ++i) {
-        // At exactly grazing incidence the interface mirrors everything.
+        // At grazing incidence the interface reflects everything.
         float mu = std::max(static_cast<float>(i) / (table_size - 1), 1e-4f);
         Integrals outside = interface_integrals(coat_, mu, thickness, false);
         transmittance_[static_cast<std::size_t>(i)] = static_cast<float>(outside.transmitted);

@@ -1,4 +1,4 @@
-// A diffuse base under a rough or smooth dielectric coat, with all bounces between the two summed exactly.
+// CoatedDiffuseBsdf: a diffuse base under a dielectric coat; interreflections are summed in closed form.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +11,14 @@
 
 namespace montelux {
 
-// A Lambertian base forgets where light came from, so that the series of bounces under the coat factorises:
+// A Lambertian base does not depend on the incident direction, so the series of bounces under the coat
+// factorises:
 //   f(wo, wi) = f_coat(wo, wi) + T(wo) T(wi) / (pi eta^2) rho (1 + rho R + ... + (rho R)^(n-1)),
-// T(w): the fraction of light from w that reaches the base, R: the fraction of what leaves the base that the
-// coat returns to it. Both include the absorption exp(-thickness / |cos theta|) of each crossing of the
-// layer, which the random walk of Guo et al. 2018 ("Position-Free Monte Carlo Simulation for Arbitrary
-// Layered BSDFs") applies. T depends on |cos theta| alone for isotropic roughness and is tabulated; n is the
-// number of times a walk of `max_depth` crossings can meet the base.
+// T(w): the fraction of light from w that reaches the base, R: the fraction of light from the base that the
+// coat reflects back. Both include the absorption exp(-thickness / |cos theta|) of each crossing of the
+// layer, as in the random walk of Guo et al. 2018 ("Position-Free Monte Carlo Simulation for Arbitrary
+// Layered BSDFs"). For isotropic roughness T depends on |cos theta| only and is tabulated; n is the number of
+// times that a walk of `max_depth` crossings can reach the base.
 class CoatingTable {
   public:
     CoatingTable(float eta, float alpha, float thickness, int max_depth);
@@ -30,7 +31,7 @@ class CoatingTable {
     float reflectance(float mu) const { return interpolate(reflectance_, mu); }
     // The mean of T over a cosine-weighted hemisphere.
     float mean_transmittance() const { return mean_transmittance_; }
-    // R, for light that left the base cosine-weighted.
+    // R, for a cosine-weighted distribution from the base.
     float internal_reflectance() const { return internal_reflectance_; }
     // rho (1 + rho R + ...) / eta^2, n terms.
     SampledSpectrum base_albedo(SampledSpectrum rho) const {
@@ -144,7 +145,7 @@ struct CoatedDiffuseBsdf {
         float t = table->transmittance(wo.z);
         float coat = table->reflectance(wo.z);
         float base = t * table->mean_transmittance() * average(base_albedo);
-        // Neither lobe is ever left out, so that the density covers both.
+        // Neither lobe has probability 0, so the density covers both.
         float p = coat / std::max(coat + base, 1e-9f);
         return {t, std::min(std::max(p, 0.05f), base > 0 ? 0.95f : 1.0f)};
     }

@@ -1,4 +1,4 @@
-// Lambertian reflection.
+// DiffuseBsdf: Lambertian reflection.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Leaves, paper, cloth: Lambertian reflection and Lambertian transmission.
+// DiffuseTransmissionBsdf: Lambertian reflection and Lambertian transmission; leaves, paper, cloth.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace montelux {
 
-// f = reflectance / pi on the side of wo and transmittance / pi on the other one, as pbrt-v4's
-// DiffuseTransmissionBxDF. The side is chosen by the largest component of each.
+// f = reflectance / pi on the side of wo and transmittance / pi on the other, as pbrt-v4's
+// DiffuseTransmissionBxDF. The side is chosen in proportion to the largest component of each.
 struct DiffuseTransmissionBsdf {
     SampledSpectrum reflectance, transmittance;
 

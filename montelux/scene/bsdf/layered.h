@@ -1,4 +1,4 @@
-// Any base under a dielectric coat, with or without a scattering medium between: evaluated by random walks.
+// LayeredBsdf: any base under a dielectric coat, with an optional medium between, by random walks.
 #pragma once
 
 #include <algorithm>
@@ -15,15 +15,15 @@
 namespace montelux {
 
 // Guo, Hasan, Zhao 2018, "Position-Free Monte Carlo Simulation for Arbitrary Layered BSDFs": the layers are
-// flat and infinite, so that a walk is told by its depth z (base at 0, coat at `thickness`) and its direction
-// alone. `evaluate` is an unbiased estimate, not the value. Its density is not known in closed form; the pdf
-// that evaluate and sample report is a fixed positive function of the two directions, which serves in MIS
-// weights as well (the weights sum to 1 for any), and sample's weight is f |cos| over the true density.
+// flat and infinite, so the state of a walk is its depth z (base at 0, coat at `thickness`) and its
+// direction. `evaluate` is an unbiased estimate, not the value. Its density is not known in closed form.
+// evaluate and sample report as pdf a fixed positive function of the two directions; MIS weights may use it
+// (they sum to 1 for any). The weight of sample is f |cos| over the true density.
 template <typename Base>
 struct LayeredBsdf {
     DielectricBsdf coat;
     Base base;
-    Ggx proxy; // roughness of the light that comes back from the base, for the reported pdf
+    Ggx proxy;                     // roughness of light reflected by the base, for the reported pdf
     SampledSpectrum medium_albedo; // single-scattering albedo between the layers; its extinction is 1 per
                                    // unit of thickness
     float g = 0;
@@ -44,7 +44,7 @@ struct LayeredBsdf {
 
     bool is_specular() const { return coat.is_specular() && base.is_specular() && is_black(medium_albedo); }
     bool has_specular() const { return coat.is_specular(); }
-    // Without what bounces between the layers.
+    // Without interreflections between the layers.
     SampledSpectrum albedo(Vec3f wo) const {
         float r = fresnel_dielectric(abs_cos_theta(wo), coat.eta);
         return r + (1 - r) * base.albedo(wo);
@@ -119,7 +119,7 @@ struct LayeredBsdf {
     }
 
     // Follows a walk that has entered through the coat until it leaves; s becomes the whole event. After
-    // max_depth events it may still go out, as it does where `walk` looks for the exit.
+    // max_depth events it may still leave, as in `walk`.
     bool leave(BsdfSample& s, TransportMode mode, PhiloxStream& rng) const {
         SampledSpectrum beta = s.weight;
         Vec3f w = s.wi;
@@ -157,13 +157,13 @@ struct LayeredBsdf {
         return false;
     }
 
-    // The light that takes at least one trip to the base or the medium, times |cos theta_i|.
+    // Light with at least one visit to the base or the medium, times |cos theta_i|.
     SampledSpectrum walk(Vec3f wo, Vec3f wi, TransportMode mode, PhiloxStream& rng) const {
         float uc_o = rng.next_1d(), uc_i = rng.next_1d();
         Vec2f u_o = rng.next_2d();
         Vec2f u_i = rng.next_2d();
         auto in = coat.sample_lobes(wo, uc_o, u_o, mode, Lobes::transmission);
-        // The way out that ends in wi, traced backwards.
+        // The exit path that ends in wi, traced backwards.
         auto out = coat.sample_lobes(wi, uc_i, u_i, adjoint(mode), Lobes::transmission);
         if (!in || !out || in->wi.z == 0 || out->wi.z == 0) return {};
         bool rough = !coat.is_specular();
@@ -174,14 +174,14 @@ struct LayeredBsdf {
         };
         auto exit_by_chance = [&](Vec3f w, float pdf, float dz, bool delta) {
             BsdfEvaluation exit = coat.evaluate_lobes(-w, wi, mode, Lobes::transmission);
-            // The rival strategy starts from wi: its density is that of finding -w there.
+            // The competing strategy starts from wi: its density is that of sampling -w there.
             float out_pdf = coat.evaluate_lobes(wi, -w, adjoint(mode), Lobes::transmission).pdf;
             float weight = delta ? 1 : power_heuristic(1, pdf, 1, out_pdf);
             return exit.f * (absorption(dz, w) * weight);
         };
 
-        // Between two mirrors light that was scattered upwards (with density p_up of to_exit) or downwards
-        // may go up and down before it leaves, and nothing but the scattering tells where to.
+        // Between two mirrors light that scattered upwards (with density p_up of to_exit) or downwards may go
+        // up and down before it leaves; only the scattering decides the direction.
         const bool mirrors = !rough && base.is_specular();
         SampledSpectrum base_mirrors, round_trip;
         if (mirrors) {
@@ -244,7 +244,7 @@ struct LayeredBsdf {
         return sum;
     }
 
-    // Russian roulette once the walk is long and faint.
+    // Russian roulette for long walks of low throughput.
     static bool survives(int depth, SampledSpectrum& beta, PhiloxStream& rng) {
         float strength = max_value(beta);
         if (depth <= 3 || strength >= 0.25f) return true;

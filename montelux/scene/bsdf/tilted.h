@@ -1,4 +1,4 @@
-// A BSDF whose normal a map or bumps tilt against the surface: no light leaks to the surface's other side.
+// TiltedBsdf: a BSDF with a shading normal tilted by a map or bumps; no light leaks through the surface.
 #pragma once
 
 #include <optional>
@@ -7,14 +7,14 @@
 
 namespace montelux {
 
-// The base in the frame of the tilted normal, without the directions that lie above that normal's plane but
-// below the surface, and the other way round (Veach 1997, section 5.3).
+// The base in the frame of the tilted normal, zero for directions above the plane of one normal but below
+// that of the other (Veach 1997, section 5.3).
 struct TiltedBsdf {
     UntiltedBsdf base;
     Normal3f geometric_normal; // in the local frame, on the side of +z
 
     static constexpr const char* name = "by a tilted normal";
-    // Of any base.
+    // Those of any base.
     static constexpr BsdfTraits traits{.transmits = true, .uses_tangents = true, .stochastic = true};
     template <typename Visit>
     void visit_fields(Visit&& visit) const {
@@ -38,7 +38,7 @@ struct TiltedBsdf {
     }
 
   private:
-    // Compiled apart: what is not tilted keeps its code, and so its speed and its bits.
+    // Compiled separately: untilted BSDFs keep their code, and so their speed and bits.
     BsdfEvaluation evaluate(Vec3f wo, Vec3f wi, TransportMode mode, Vec2f u) const;
     std::optional<BsdfSample> sample(Vec3f wo, TransportMode mode, float uc, Vec2f u) const;
     bool is_stochastic() const;

@@ -1,4 +1,4 @@
-// BuildMessages: how a scene that is being built says what is wrong with it, and where that comes from.
+// BuildMessages: errors and warnings of a scene under construction, with their places.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace montelux {
 
-// A place in a scene file. Lines and columns count from 1; columns count bytes. Who builds gives it and
-// turns it into words; the builder keeps it for what it finds out later.
+// A place in a scene file. Lines and columns count from 1; columns count bytes. The reader creates it and
+// formats it; the builder stores it for errors found later.
 struct SourceLocation {
     std::uint32_t file = 0, line = 1, column = 1;
 };
 
-// An error that says where in the scene file it is. What reads other files or checks values by themselves
-// throws plain ones, which become located ones where the scene file is the reason.
+// An error with its place in the scene file. Code that reads other files or checks values throws plain
+// Errors, which become located ones if the scene file is the cause.
 class LocatedError : public Error {
   public:
     using Error::Error;
@@ -27,21 +27,21 @@ class LocatedError : public Error {
 class BuildMessages {
   public:
     virtual ~BuildMessages() = default;
-    // The words for a place, such as "file:line:column".
+    // A place as text, such as "file:line:column".
     virtual std::string describe(SourceLocation at) const = 0;
     // Throws LocatedError "place: sentence".
     [[noreturn]] void error(SourceLocation at, std::string_view sentence) const {
         throw LocatedError(describe(at), sentence);
     }
     virtual void warn(SourceLocation at, std::string_view sentence) = 0;
-    // Only the first of all warnings with the same key.
+    // Keeps only the first warning of each key.
     virtual void warn_once(std::string_view key, SourceLocation at, std::string_view sentence) = 0;
 };
 
-// For values that a call gives: its name stands for all places.
+// For values from a function call: its name is the place of all messages.
 class CallMessages final : public BuildMessages {
   public:
-    // `warnings`, where given, gets the warnings.
+    // `warnings`, if given, receives the warnings.
     explicit CallMessages(std::string call, std::vector<std::string>* warnings = nullptr)
         : call_(std::move(call)), warnings_(warnings) {}
 

@@ -1,4 +1,4 @@
-// What lights emit, in photometric units: spectra scaled so that the film's RGB counts luminance.
+// Emission: the emission of lights in photometric units: spectra scaled so that the film's RGB is luminance.
 #pragma once
 
 #include "montelux/scene/build/geometry.h"
@@ -6,9 +6,9 @@
 
 namespace montelux {
 
-// 1 over the luminance of a light's spectrum. Its scale is multiplied by it, so that an RGB colour of
-// (1, 1, 1), or any other spectrum, stands for a luminance, illuminance or intensity of 1 (to_photometric).
-// 0 for black. Throws Error for a spectrum without positive luminance.
+// 1 over the luminance of a light's spectrum: the factor of its scale by which an RGB colour of (1, 1, 1), or
+// any other spectrum, has a luminance, illuminance or intensity of 1 (to_photometric). 0 for black. Throws
+// Error for a spectrum without positive luminance.
 float photometric_scale(const Spectrum& spectrum);
 
 // Intensity (cd) of a point light per flux (lm).
@@ -18,12 +18,12 @@ float spot_intensity(float flux, double cos_falloff_start, double cos_total_widt
 // Luminance (cd/m^2) of a uniform sky per illuminance (lx) of a patch that faces it.
 float sky_luminance(float illuminance);
 
-// The light that a shape is given; what it emits depends on the shape where `power` is set.
+// The emission assigned to a shape; with `power` it depends on the shape.
 struct Emission {
     Spectrum spectrum;
     float scale = 1; // radiance is scale * spectrum
     bool two_sided = false;
-    float power = 0; // lm of each primitive, if positive: then scale is multiplied by power / emitted power
+    float power = 0; // lm of each primitive, if positive: scale is then multiplied by power / emitted power
 
     // The light of a shape with this geometry.
     AreaLight light(Index shape, const Geometry& geometry) const;

@@ -1,4 +1,4 @@
-// Whether places and transformations fit into the single precision that a scene is rendered in.
+// Checks that positions and transformations fit into single precision, in which scenes are rendered.
 #pragma once
 
 #include <cmath>
@@ -24,7 +24,7 @@ inline bool fits_float(const Transform& t, double most = std::numeric_limits<flo
                 if (!(std::abs(row[i]) <= most)) return false;
     return true;
 }
-// For directions, whose lengths are computed: the squares must fit, too. The translation does not matter.
+// For directions, whose lengths are computed: their squares must fit, too. Ignores the translation.
 inline bool turns_in_floats(const Transform& t) { return fits_float(t, 1e18, 3); }
 
 } // namespace montelux

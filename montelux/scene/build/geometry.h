@@ -1,4 +1,4 @@
-// The geometry of one shape before it is part of a scene, and what readers do to it.
+// Geometry: the geometry of one shape before it is part of a scene, and operations of readers on it.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,14 @@ namespace montelux {
 
 using Geometry = std::variant<TriangleMesh, Quadric>;
 
-// Triangles of a mesh; a quadric is one.
+// Number of primitives: the triangles of a mesh, or one quadric.
 std::size_t primitive_count(const Geometry& geometry);
 
-// Moves vertices and vertex normals, which are also turned around with `reverse_orientation`.
+// Transforms vertices and vertex normals; `reverse_orientation` reverses the normals.
 void transform_mesh(TriangleMesh& mesh, const Transform& t, bool reverse_orientation = false);
 
-// Throws Error, with the first triangle or vertex at fault: indices beyond the vertices or in no whole
-// triangles, normals or texture coordinates that are not one per vertex, numbers that are not finite, bounds
-// beyond single precision.
+// Throws Error, naming the first triangle or vertex at fault: indices out of range or not in whole triangles,
+// normals or texture coordinates not one per vertex, non-finite numbers, bounds beyond single precision.
 void check_geometry(const Geometry& geometry);
 
 // The area in the space of the object, before its transformation.

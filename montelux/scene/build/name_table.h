@@ -1,4 +1,4 @@
-// NameTable: things of one kind that are declared and referred to by name, in any order.
+// NameTable: objects of one kind that are declared and referenced by name, in any order.
 #pragma once
 
 #include <cstddef>
@@ -11,20 +11,20 @@
 
 namespace montelux {
 
-// Each name is looked up once where it is used, and once when all are known.
+// Each name is looked up once per use, and once when all are declared.
 class NameTable {
   public:
-    // `what` is what messages call such a thing: "object".
+    // `what` names the kind in messages: "object".
     explicit NameTable(std::string what) : what_(std::move(what)) {}
 
-    // The thing of that name is number `index`. An error where the name is taken.
+    // Declares a name for number `index`. An error if it is taken.
     void declare(const std::string& name, Index index, SourceLocation at, const BuildMessages& messages);
 
-    // A reference to the name, whether it is declared yet or not. Equal for equal names.
+    // A reference to a name, declared or not. Equal for equal names.
     Index refer(const std::string& name);
 
-    // The number of the thing that a reference means. An error, with the nearest name, where it is not
-    // declared; `by` may say what refers to it: "this shape's ".
+    // The number that a reference resolves to. An error, with the nearest name, if it is not declared; `by`
+    // may name the referrer: "this shape's ".
     Index resolve(Index reference, SourceLocation at, const BuildMessages& messages,
                   std::string_view by = {}) const;
 

@@ -1,4 +1,4 @@
-// Text of a scene file as it may stand in a message.
+// Text of a scene file, quoted for messages.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace montelux {
 
-// At most 40 bytes of UTF-8, with what cannot be printed as '?'.
+// At most 40 bytes of UTF-8; unprintable characters become '?'.
 std::string shown(std::string_view text);
 
 // "'text'"

@@ -1,4 +1,4 @@
-// SceneBuilder: puts a scene together from the values of any format: shapes with their lights, objects, maps.
+// SceneBuilder: assembles a scene from the values of any format: shapes with their lights, objects, maps.
 #pragma once
 
 #include <cstddef>
@@ -13,28 +13,27 @@
 
 namespace montelux {
 
-// What a shape is beside its geometry.
+// The attributes of a shape beside its geometry.
 struct ShapeSettings {
-    Index material = no_index; // to be set until the end
+    Index material = no_index; // must be set before the end
     FloatParameter alpha{1};
     bool flip_normal = false;           // Shape::flip_normal
-    const Emission* emission = nullptr; // null: it does not shine
+    const Emission* emission = nullptr; // null: no emission
 };
 
-// A reader calls it for each thing that it finds; `at` is where the file has it, for messages. It checks what
-// the renderer relies on, whatever the format: indices, numbers, sizes. What a file may say and how it is
-// meant is the reader's.
+// A reader calls it for each object in the file; `at` is its place, for messages. The builder checks what the
+// renderer relies on in any format: indices, numbers, sizes. The syntax and its meaning are the reader's.
 class SceneBuilder {
   public:
-    // Both outlive it. The scene may hold values already.
+    // Both must outlive it. The scene need not be empty.
     SceneBuilder(Scene& scene, BuildMessages& messages) : scene_(scene), messages_(messages) {}
 
     Scene& scene() { return scene_; }
 
-    // A shape in the world, or in the object that is open. Errors as check_geometry says.
+    // Adds a shape to the world, or to the open object. Errors as in check_geometry.
     Index add_shape(Geometry geometry, const ShapeSettings& settings, SourceLocation at = {});
 
-    // Shapes between these two are a group, which instances place by its name.
+    // Shapes between these two calls form a group that instances refer to by name.
     void begin_object(const std::string& name, SourceLocation at = {});
     void end_object() { open_object_ = no_index; }
     bool in_object() const { return open_object_ != no_index; }
@@ -42,8 +41,8 @@ class SceneBuilder {
     void add_instance(const std::string& object, const Transform& world_from_object, SourceLocation at = {});
 
     Index add_light(Light light, SourceLocation at = {});
-    // A clear sky and, if asked for and above the horizon, its sun. Luminances are multiplied by `scale`; an
-    // illuminance above zero is what both together give to the ground instead.
+    // A clear sky and, if requested and above the horizon, its sun. Luminances are multiplied by `scale`; a
+    // positive illuminance replaces that of both on the ground.
     struct SkyLights {
         SkySettings settings;
         bool sun = true;
@@ -52,14 +51,14 @@ class SceneBuilder {
     };
     void add_sky(const SkyLights& sky, SourceLocation at = {});
 
-    // A picture for image textures. Values that are not finite become 0, with a warning. Errors: it is neither
-    // RGB nor grey. `name` is what messages call it.
+    // A picture for image textures. Non-finite values become 0, with a warning. Errors: neither RGB nor grey.
+    // Messages call it `name`.
     Index add_image(Image picture, const std::string& name, SourceLocation at = {});
-    // A picture as the map of an infinite light, R, G and B linear. Negative values become 0, with a warning.
-    // Errors: neither RGB nor grey, a shape of no EnvironmentLayout, values that are not finite.
+    // A picture as the map of an infinite light; R, G and B are linear. Negative values become 0, with a
+    // warning. Errors: neither RGB nor grey, a shape of no EnvironmentLayout, non-finite values.
     Index add_environment(const Image& picture, const std::string& name, SourceLocation at = {});
 
-    // Places the instances and checks what could not be checked before. `end` is where the file ends.
+    // Resolves the instances and makes the remaining checks. `end` is the end of the file.
     void finish(SourceLocation end = {});
 
   private:

@@ -1,4 +1,4 @@
-// What a SceneBuilder takes from pictures and models: textures' images, environment maps, skies.
+// SceneBuilder's functions for pictures and models: images of textures, environment maps, skies.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -12,12 +12,12 @@
 namespace montelux {
 namespace {
 
-// Rows of the map that directions to a sky are drawn by. Radiance does not depend on it.
+// Height of the map for sampling directions to a sky. Radiance does not depend on it.
 constexpr int sky_density_rows = 256;
 
 constexpr const char* no_colors = " has neither channels R, G and B nor Y alone";
 
-// A NaN would spread to every texel that filtering joins it with.
+// A NaN would spread to all texels that filtering combines with it.
 std::size_t zero_what_is_not_finite(Image& picture) {
     std::size_t count = 0;
     if (picture.format() == PixelFormat::f32)
@@ -81,7 +81,7 @@ void SceneBuilder::add_sky(const SkyLights& sky, SourceLocation at) {
         messages_.error(at, e.what());
     }
     const SkyModel& model = *made;
-    // Luminance in cd/m^2, as of all lights that are given in photometric units.
+    // Luminance in cd/m^2, as for all lights in photometric units.
     float scale = sky.scale * static_cast<float>(luminous_efficacy);
     if (sky.illuminance > 0) {
         const SpectrumTable from_sky = model.sky_irradiance(), from_sun = model.sun_irradiance();

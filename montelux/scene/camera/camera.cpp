@@ -106,8 +106,8 @@ Camera::Footprint Camera::footprint(Point3f p, Normal3f n, float scale) const {
     Vec3f w = axis / distance;
     float width = pixel_ * scale * (kind_ == Kind::orthographic ? length(axes_[0]) : distance);
     Frame frame = Frame::from_normal_and_tangent(w, axes_[0]);
-    // A step across the line of sight, slid along it onto the tangent plane. At grazing angles the plane
-    // recedes without end: the stretch is bounded.
+    // A step across the line of sight, projected along it onto the tangent plane. At grazing angles it would
+    // be infinite: the stretch is bounded.
     float cosine = dot(w, n);
     cosine = std::copysign(std::max(std::abs(cosine), 1e-3f), cosine);
     auto slide = [&](Vec3f step) { return step - w * (dot(step, n) / cosine); };

@@ -1,4 +1,4 @@
-// From a point on the film and on the lens to a ray, and the size of a pixel out in the scene.
+// Camera: maps points on film and lens to rays, and gives the size of a pixel in the scene.
 #pragma once
 
 #include "montelux/mc/math/frame.h"
@@ -9,8 +9,7 @@ namespace montelux {
 
 class Camera {
   public:
-    // width, height: the full resolution in pixels. Throws Error on a lens or field of view that makes no
-    // sense.
+    // width, height: the full resolution in pixels. Throws Error for an invalid lens or field of view.
     Camera(const CameraSettings& settings, int width, int height);
 
     // film: pixels from the top left corner; lens: uniform in [0,1)^2. The direction has unit length.
@@ -19,7 +18,7 @@ class Camera {
     const Transform& world_from_camera() const { return world_from_camera_; }
 
     // Steps on the tangent plane at p (normal n) that correspond to one pixel to the right and one down, as
-    // seen straight from the camera; `scale` shrinks the pixel. Good enough to choose a level of detail.
+    // seen directly from the camera; `scale` shrinks the pixel. Accurate enough to choose a level of detail.
     struct Footprint {
         Vec3f dpdx, dpdy;
     };

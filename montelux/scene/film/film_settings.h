@@ -1,4 +1,4 @@
-// What the film is: resolution, crop, pixel filter and sensor.
+// FilmSettings: resolution, crop, pixel filter and sensor of the film.
 #pragma once
 
 #include <limits>
@@ -40,7 +40,7 @@ struct PixelBounds {
 
 struct FilmSettings {
     int width = 1280, height = 720;
-    PixelBounds crop{0, 0, 1280, 720}; // the pixels that are rendered
+    PixelBounds crop{0, 0, 1280, 720}; // the rendered pixels
     PixelFilter filter = GaussianFilter{};
     float iso = 100, exposure_time = 1;
     float white_balance = 0; // kelvin; 0: none

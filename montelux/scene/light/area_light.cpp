@@ -27,7 +27,7 @@ float radiance_scale(const AreaLight& light, const LightContext& context, Index 
     return area > 0 ? light.scale * (light.triangle_flux / (sides(light) * area * pi_f)) : 0;
 }
 
-// Whether the surface shines along a direction with that cosine to its normal.
+// Whether the surface emits along a direction with that cosine to its normal.
 bool shines(const AreaLight& light, float cosine) { return cosine > 0 || (light.two_sided && cosine < 0); }
 
 float size_of(Vec3d p) {
@@ -79,7 +79,7 @@ std::optional<SphereCone> cone_of(const LightContext& context, Point3f from) {
     return sphere ? SphereCone::seen_from(from, *sphere) : std::nullopt;
 }
 
-// Share of the light that leaves `point` along w, or arrives along it: holes do not shine. 1 for lights of
+// Share of the light that leaves `point` along w, or arrives along it: holes do not emit. 1 for lights of
 // alpha 0.
 float share_there(const LightContext& context, const Shape& shape, const EmissivePoint& point, Vec3f w) {
     if (!is_cut_out(shape) || constant_alpha(context.scene, shape).value_or(1) <= 0) return 1;

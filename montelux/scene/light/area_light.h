@@ -1,4 +1,4 @@
-// A shape that emits: all triangles of a mesh, or a quadric.
+// AreaLight: a shape that emits: all triangles of a mesh, or a quadric.
 #pragma once
 
 #include "montelux/scene/light/light_model.h"
@@ -7,9 +7,9 @@
 namespace montelux {
 
 // Radiance scale * spectrum, W/(m^2 sr nm), from the front (or both sides) of a shape; the front is where
-// SurfacePoint::ng points. The parts are the triangles of a mesh. A shape with holes shines with the share of
-// its points that is there (Shape::alpha); one of alpha 0 everywhere shines whole and is not seen, as in
-// pbrt-v4. Shapes inside object definitions do not shine.
+// SurfacePoint::ng points. The parts are the triangles of a mesh. A shape with holes emits only from the
+// points that are present (Shape::alpha); one with alpha 0 everywhere emits fully and is invisible, as in
+// pbrt-v4. Shapes inside object definitions do not emit.
 struct AreaLight {
     static constexpr LightKind kind = LightKind::surface;
     static constexpr std::string_view name = "area light";

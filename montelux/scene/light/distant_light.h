@@ -1,4 +1,4 @@
-// Parallel light from infinitely far away.
+// DistantLight: parallel light from infinity.
 #pragma once
 
 #include "montelux/scene/light/light_model.h"

@@ -17,8 +17,8 @@ struct EmissivePoint {
     float area_density = 0; // per area
 };
 
-// A point of a part by its area: uniform, but for quadrics under transforms that scale unevenly. Empty for
-// degenerate triangles.
+// A point of a part, uniform over its area, except for quadrics under transforms that scale unevenly. Empty
+// for degenerate triangles.
 std::optional<EmissivePoint> sample_area(const LightContext& context, Index shape, Index part, Vec2f u);
 // Density of sample_area at the point `p` of the part; 0 for degenerate triangles.
 float area_density(const LightContext& context, Index shape, Index part, Point3f p);

@@ -1,4 +1,4 @@
-// An environment map, or the part of it that comes through a portal.
+// ImageInfiniteLight: an environment map, or the part of it that enters through a portal.
 #pragma once
 
 #include "montelux/mc/math/transform.h"
@@ -8,8 +8,8 @@
 
 namespace montelux {
 
-// Radiance from a map of illuminants in linear sRGB, looked up as EnvironmentSettings say; with a portal,
-// through it alone.
+// Radiance from a map of illuminants in linear sRGB, interpolated as in EnvironmentSettings; with a portal,
+// only through it.
 struct ImageInfiniteLight {
     static constexpr LightKind kind = LightKind::infinite;
     static constexpr std::string_view name = "environment map";

@@ -1,5 +1,5 @@
-// The lights of a scene: plain values, one file a kind. Spectra are scaled so that radiance is in the units
-// of the film.
+// Light: the variant of all lights, plain values, one file per kind. Spectra are scaled so that radiance is
+// in the units of the film.
 #pragma once
 
 #include <variant>

@@ -1,4 +1,4 @@
-// What the functions of a light read: the scene, and the place of the light in it.
+// LightContext: the inputs of a light's functions: the scene, and the light's index.
 #pragma once
 
 #include "montelux/scene/view.h"

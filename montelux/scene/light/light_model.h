@@ -1,4 +1,4 @@
-// A light to the renderer: the concept LightModel, and the values that its functions exchange.
+// LightModel: the concept of a light, and the values that its functions exchange.
 #pragma once
 
 #include <concepts>
@@ -18,22 +18,22 @@ namespace montelux {
 // Scene and index of a light (light_context.h).
 struct LightContext;
 
-// Where rays can meet a light. An exhaustive list: what a path does with a light follows from it.
+// Where rays hit a light. An exhaustive list: it determines how a path treats a light.
 enum class LightKind : std::uint8_t {
     surface,   // points of shapes
     infinite,  // directions that leave the scene
-    position,  // a single point, which no ray meets
-    direction, // a single direction, which no ray meets
+    position,  // a single point, which no ray hits
+    direction, // a single direction, which no ray hits
 };
 
-// A point that light is asked for at.
+// A point to be lit.
 struct ReferencePoint {
     Point3f p{};
     Normal3f n{};    // geometric normal
     float error = 0; // as SurfacePoint::error
 };
 
-// A direction to a light, with the light that comes from there.
+// A direction to a light, with the incident light.
 struct LightSample {
     SampledSpectrum radiance; // of kinds position and direction: irradiance on a plane facing the light
     Vec3f wi;                 // unit, towards the light
@@ -43,21 +43,21 @@ struct LightSample {
     Ray shadow;               // unoccluded if the light is visible
 };
 
-// Where a ray meets a light.
+// Where a ray hits a light.
 struct LightHit {
     Vec3f wi{};     // unit, towards the light
-    Index part = 0; // this and the next ones of surfaces alone
+    Index part = 0; // this and the next ones for surfaces only
     Point3f p{};    // on the surface
-    Normal3f n{};   // geometric normal, on the side that shines
+    Normal3f n{};   // geometric normal, on the emitting side
 };
 
 // A ray that leaves a light. The flux of the light is the mean of radiance * cosine / (pdf_position *
-// pdf_direction), in W/nm for radiance in W/(m^2 sr nm); of infinite lights and kind direction, the flux
+// pdf_direction), in W/nm for radiance in W/(m^2 sr nm); for infinite lights and kind direction, the flux
 // through the disk around the scene, or through the portal.
 struct EmissionSample {
     SampledSpectrum radiance; // kind position: intensity; kind direction: irradiance across the beam
     Ray ray;                  // unit direction; starts off the surface, or outside the scene
-    Normal3f n{};             // of the side of the surface that shines; zero for other kinds
+    Normal3f n{};             // on the emitting side of the surface; zero for other kinds
     float cosine = 1;         // between n and the ray; 1 for kinds without a surface
     float pdf_position = 0;   // per area of the surface, or of a plane across the ray; 1 for kind position
     float pdf_direction = 0;  // per solid angle; 1 for kind direction
@@ -67,7 +67,7 @@ struct EmissionPdf {
     float position = 0, direction = 0;
 };
 
-// What light trees ask of a part of a light (Conty Estevez and Kulla 2018, "Importance Sampling of Many
+// Bounds of a part of a light for light trees (Conty Estevez and Kulla 2018, "Importance Sampling of Many
 // Lights with Adaptive Tree Splitting", section 4.1): all light leaves the box within the angle theta_e of a
 // normal that lies within the angle theta_o of the axis.
 struct LightBounds {
@@ -77,29 +77,28 @@ struct LightBounds {
     bool two_sided = false; // the same about -axis
 };
 
-// A light consists of parts, which are chosen one by one: the triangles of an emissive mesh; others have one.
-// Functions take random numbers in [0, 1)^2, allocate nothing and do not throw, but for `powers`.
+// A light consists of parts that are chosen individually: the triangles of an emissive mesh; other lights
+// have one. Functions take random numbers in [0, 1)^2, do not allocate, and do not throw, except `powers`.
 template <typename L>
 concept LightModel = requires(const L& light, const LightContext& context, Index part,
                               const ReferencePoint& from, const LightHit& hit, Vec3f w, Vec2f u,
                               const SampledWavelengths& lambda, std::span<double> powers) {
     { L::kind } -> std::convertible_to<LightKind>;
-    { L::name } -> std::convertible_to<std::string_view>; // for people
+    { L::name } -> std::convertible_to<std::string_view>; // for messages
     { light.part_count(context) } -> std::same_as<Index>;
-    // Incident light. Empty where the part cannot shine on the point.
+    // Incident light. Empty if the part cannot illuminate the point.
     { light.sample_li(context, part, from, u, lambda) } -> std::same_as<std::optional<LightSample>>;
     // Density of sample_li, given hit.part, per solid angle at `from`; 0 of kinds position and direction.
     { light.pdf_li(context, from, hit) } -> std::same_as<float>;
-    // That comes to `from` from the hit; black for kinds position and direction.
+    // Light that arrives at `from` from the hit; black for kinds position and direction.
     { light.radiance(context, from, hit, lambda) } -> std::same_as<SampledSpectrum>;
-    // Emission. Empty where nothing leaves, which counts as a value of 0. u is of the position, then of the
-    // direction.
+    // Emission. Empty if nothing is emitted, which counts as a value of 0. u: position, then direction.
     { light.sample_le(context, part, u, u, lambda) } -> std::same_as<std::optional<EmissionSample>>;
-    // Densities of sample_le at hit.p (surfaces alone) along w, which points away from the light.
+    // Densities of sample_le at hit.p (surfaces only) along w, which points away from the light.
     { light.pdf_le(context, hit, w) } -> std::same_as<EmissionPdf>;
-    // Estimate of the flux into the scene of each part, W/nm in the mean over the visible wavelengths.
+    // Estimate of each part's flux into the scene, W/nm averaged over the visible wavelengths.
     { light.powers(context, powers) } -> std::same_as<void>;
-    // Empty for lights without a place.
+    // Empty for lights without a position.
     { light.bounds(context, part) } -> std::same_as<std::optional<LightBounds>>;
 };
 

@@ -1,4 +1,4 @@
-// The functions of LightModel for a light of any kind in a scene.
+// The functions of LightModel for a light of any kind.
 #pragma once
 
 #include "montelux/scene/light/light_context.h"
@@ -12,12 +12,12 @@ float pdf_li(const LightContext& context, const ReferencePoint& from, const Ligh
 SampledSpectrum incident_radiance(const LightContext& context, const ReferencePoint& from,
                                   const LightHit& hit, const SampledWavelengths& lambda);
 
-// Emission, for methods that follow light from its sources.
+// Emission, for methods that trace light from its sources.
 std::optional<EmissionSample> sample_le(const LightContext& context, Index part, Vec2f u_position,
                                         Vec2f u_direction, const SampledWavelengths& lambda);
 EmissionPdf pdf_le(const LightContext& context, const LightHit& hit, Vec3f w);
 
-// What lights are chosen by.
+// The quantities by which lights are chosen.
 std::optional<LightBounds> light_bounds(const LightContext& context, Index part);
 Index part_count(const LightContext& context);
 void light_powers(const LightContext& context, std::span<double> parts);

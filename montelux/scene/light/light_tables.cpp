@@ -27,7 +27,7 @@ LightTriangle light_triangle(const TriangleMesh& mesh, const Shape& shape, std::
     return t;
 }
 
-// Above this size (64 MiB of spectra) texels are uplifted when they are looked up.
+// Above this size (64 MiB of spectra) texels are uplifted at each look-up.
 constexpr std::size_t max_precomputed_texels = std::size_t{1} << 22;
 
 std::vector<RgbUnboundedSpectrum> map_spectra(const Image& map) {
@@ -104,8 +104,8 @@ void LightTables::add_shape(const Scene& scene, Index light, const AreaLight& ar
                                       first_triangle_[light + 1] = mesh.triangle_count();
                               },
                               [&](const Quadric& quadric) {
-                                  // Through its holes the far side is seen, too, which the cone does not
-                                  // sample.
+                                  // The far side is visible through its holes, but the cone does not sample
+                                  // it.
                                   if (!is_cut_out(shape)) spheres_[light] = whole_sphere(quadric);
                                   disks_[light] = whole_disk(quadric);
                               }});

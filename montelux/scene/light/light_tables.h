@@ -1,4 +1,4 @@
-// LightTables: what is computed once for sampling the lights of a scene.
+// LightTables: the tables for sampling the lights of a scene, computed once.
 #pragma once
 
 #include <map>

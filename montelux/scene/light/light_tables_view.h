@@ -1,4 +1,4 @@
-// LightTablesView: what sampling lights looks up, in spans over the arrays of LightTables.
+// LightTablesView: the tables for sampling lights, as spans over the arrays of LightTables.
 #pragma once
 
 #include <optional>
@@ -32,7 +32,7 @@ struct LightTablesView {
     std::span<const EnvironmentSampler> environments;
     std::span<const PortalSampler> portals;
     std::span<const Index> environment_of_light; // into one of the two
-    // Spectra of the texels of each map, ready to be evaluated; empty for maps that are too large.
+    // Spectra of the texels of each map; empty for maps that are too large.
     std::span<const std::vector<RgbUnboundedSpectrum>> map_spectra;
     std::span<const Index> infinite_lights;
     std::span<const char> in_world; // one per shape: 0 or 1
@@ -57,7 +57,7 @@ struct LightTablesView {
     // Of lights that are whole ones without holes.
     const std::optional<WorldSphere>& sphere(Index light) const { return spheres[light]; }
     const std::optional<WorldDisk>& disk(Index light) const { return disks[light]; }
-    // Whether a shape is placed in the world itself, where it may emit.
+    // Whether a shape is directly in the world, where it may emit.
     bool is_in_world(Index shape) const { return in_world[shape] != 0; }
 
   private:

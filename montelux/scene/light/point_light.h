@@ -1,4 +1,4 @@
-// A light at a point that shines alike in all directions.
+// PointLight: a point that emits equally in all directions.
 #pragma once
 
 #include "montelux/scene/light/light_model.h"
@@ -19,7 +19,7 @@ struct PointLight {
 };
 static_assert(LightModel<PointLight>);
 
-// The sample of a light at a point with that intensity towards the reference. Empty at the light itself.
+// The sample of a point light with that intensity towards the reference. Empty at the light itself.
 std::optional<LightSample> sample_position(Point3f position, SampledSpectrum intensity,
                                            const ReferencePoint& from);
 

@@ -1,4 +1,4 @@
-// A rectangle that the light of an infinite light comes through, and how points see it.
+// Portal: a rectangle through which the light of an infinite light enters.
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@
 
 namespace montelux {
 
-// Light comes from the side that cross(corners[3] - corners[0], corners[1] - corners[0]) points to, and
-// reaches only points on the other one, through the rectangle: what pbrt-v4's parameter 'portal' means.
+// Light comes from the side to which cross(corners[3] - corners[0], corners[1] - corners[0]) points, and
+// reaches only points on the other side, through the rectangle: pbrt-v4's parameter 'portal'.
 //
 // Directions through the portal's plane are written as two angles, alpha = atan(x / z) and beta = atan(y / z)
-// in the frame of its edges, z to the light. From any point the portal is then a rectangle with sides along
-// the axes (Bitterli, Novak, Jarosz 2015, "Portal-Masked Environment Map Sampling").
+// in the frame of its edges, z to the light. From any point the portal is then an axis-aligned rectangle
+// (Bitterli, Novak, Jarosz 2015, "Portal-Masked Environment Map Sampling").
 class Portal {
   public:
     // In order around the rectangle, in world space. Throws Error where they make none: cosines of angles may
@@ -26,14 +26,14 @@ class Portal {
     double area() const { return width_ * height_; }
     // Of coordinates in [0, 1]^2 along the edges.
     Vec3d point(Vec2d at) const { return corner_ + x_ * (width_ * at.x) + y_ * (height_ * at.y); }
-    // Points to where the light comes from.
+    // Towards the light.
     Vec3d normal() const { return z_; }
 
-    // All directions that light may come from.
+    // The window of all directions to the light.
     static Window2D hemisphere();
-    // Angles under which `p` sees the portal; empty where no light reaches it.
+    // The window of angles in which `p` sees the portal; empty if no light reaches it.
     std::optional<Window2D> window(Point3f p) const;
-    // Of a direction; empty for those that do not point to the light's side.
+    // The angles of a direction; empty if it does not point to the light's side.
     std::optional<Vec2d> angles(Vec3d w) const;
     // The frame of the edges, z to the light.
     Vec3d to_local(Vec3d w) const { return {dot(w, x_), dot(w, y_), dot(w, z_)}; }
@@ -41,7 +41,7 @@ class Portal {
     // Unit, in that frame.
     static Vec3d local_direction(Vec2d angles);
     Vec3d direction(Vec2d angles) const { return to_world(local_direction(angles)); }
-    // Whether a ray from `p` along `w` leaves through it.
+    // Whether a ray from `p` along `w` passes through it.
     bool lets_through(Point3f p, Vec3f w) const;
     // As `p` sees it; empty where no light reaches it.
     std::optional<SphericalRectangle> seen_from(Point3f p) const;

@@ -8,7 +8,7 @@
 
 namespace montelux {
 
-// The radius is that of LightTables: flux through the disk is what powers are estimated by.
+// The radius is that of LightTables: estimates of power use the flux through the disk.
 SceneDisk::SceneDisk(const Bounds3& bounds)
     : center_(bounds.empty() ? Vec3d() : bounds.center()), radius_(std::max(bounds.radius(), 1e-30)) {}
 

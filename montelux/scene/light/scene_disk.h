@@ -1,4 +1,4 @@
-// The disk that light from infinity enters the scene through.
+// SceneDisk: the disk through which light from infinity enters the scene.
 #pragma once
 
 #include "montelux/mc/math/vec.h"
@@ -7,7 +7,7 @@
 
 namespace montelux {
 
-// A disk across the light that covers the sphere around the bounds of the scene, just outside it.
+// A disk across the beam that covers the bounding sphere of the scene, just outside it.
 class SceneDisk {
   public:
     explicit SceneDisk(const Bounds3& bounds);

@@ -5,8 +5,8 @@
 
 namespace montelux {
 
-// From off the surface at the reference to just before the point on the light, also where rounding could not
-// have moved that.
+// From an offset origin at the reference to just before the point on the light, by more than rounding can
+// move it.
 inline Ray shadow_ray(const ReferencePoint& from, Vec3f wi, Point3f to, Normal3f n, float error) {
     Point3f o = offset_origin(from.p, from.n, from.error, wi);
     Point3f end = offset_origin(to, n, error, -wi);

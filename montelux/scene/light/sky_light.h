@@ -6,7 +6,7 @@
 
 namespace montelux {
 
-// The sky and the ground below it. Radiance is the model's; the map is there to draw directions by.
+// The sky and the ground below it. The model gives the radiance; the map only serves to sample directions.
 struct SkyLight {
     static constexpr LightKind kind = LightKind::infinite;
     static constexpr std::string_view name = "sky";

@@ -1,4 +1,4 @@
-// A sphere as a point outside sees it: a cone of directions.
+// SphereCone: the cone of directions from a point outside a sphere to the sphere.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ struct SphereCone {
     double distance;
     double sin2_max;
 
-    // Empty within the sphere, and so near to it that the cone is all but a hemisphere.
+    // Empty inside the sphere, and so close to it that the cone is almost a hemisphere.
     static std::optional<SphereCone> seen_from(Point3f from, const WorldSphere& sphere) {
         Vec3d axis = sphere.center - Vec3d(from);
         double d2 = dot(axis, axis), r2 = sphere.radius * sphere.radius;

@@ -1,4 +1,4 @@
-// A light at a point that shines into a cone.
+// SpotLight: a point light that emits into a cone.
 #pragma once
 
 #include "montelux/scene/light/light_model.h"

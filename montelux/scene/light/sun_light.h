@@ -1,4 +1,4 @@
-// The disc of the sun.
+// SunLight: the disc of the sun.
 #pragma once
 
 #include "montelux/scene/light/light_model.h"
@@ -7,7 +7,7 @@
 
 namespace montelux {
 
-// Radiance scale * spectrum from all over the disc.
+// Uniform radiance scale * spectrum over the disc.
 struct SunLight {
     static constexpr LightKind kind = LightKind::infinite;
     static constexpr std::string_view name = "sun";
@@ -15,7 +15,7 @@ struct SunLight {
     Spectrum spectrum;
     float scale = 1;
     SunDisc disc;
-    Vec3f up{0, 0, 1}; // the part of the disc that is not on this side is hidden
+    Vec3f up{0, 0, 1}; // the part of the disc on the other side is hidden
 
     bool hides(Vec3f wi) const { return dot(wi, up) < 0; }
 

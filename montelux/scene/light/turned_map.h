@@ -1,4 +1,4 @@
-// An environment map's density under a transformation: directions in world space, and their densities.
+// TurnedMap: an environment map's density under a transformation, in world space.
 #pragma once
 
 #include <optional>
@@ -33,8 +33,8 @@ struct TurnedMap {
     }
     float pdf(Vec3f wi) const { return map.pdf(place(wi)) * solid_angle_change(wi); }
 
-    // For emission, which no other strategy finds: a compensated density is zero where there is light, so
-    // half of the directions are uniform then.
+    // For emission, which no other strategy finds: a compensated density is zero in places with light, so
+    // half of the directions are uniform.
     std::optional<Sample> sample_everywhere(Vec2f u) const;
     float pdf_everywhere(Vec3f wi) const;
 

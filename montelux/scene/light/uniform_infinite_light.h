@@ -1,4 +1,4 @@
-// A sky of one radiance, or the part of it that comes through a portal.
+// UniformInfiniteLight: constant radiance from all directions, or through a portal.
 #pragma once
 
 #include "montelux/scene/light/light_model.h"
@@ -7,7 +7,7 @@
 
 namespace montelux {
 
-// Radiance scale * spectrum from everywhere outside the scene, or through a portal alone.
+// Radiance scale * spectrum from everywhere outside the scene, or only through a portal.
 struct UniformInfiniteLight {
     static constexpr LightKind kind = LightKind::infinite;
     static constexpr std::string_view name = "uniform sky";

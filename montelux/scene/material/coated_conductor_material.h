@@ -31,7 +31,7 @@ struct CoatedConductorMaterial {
         const float eta = at.refractive_index(coating.eta);
         const ConductorBsdf base = at.conductor(metal, roughness, eta);
         const Ggx coat = at.roughness(coating.roughness);
-        // Light passes the coat twice: the lobes' widths add.
+        // Light crosses the coat twice: the widths of the lobes add.
         auto widen = [](float a, float b) { return std::max(std::sqrt(a * a + 2 * b * b), 2e-3f); };
         const Ggx proxy{widen(base.ggx.alpha_x, coat.alpha_x), widen(base.ggx.alpha_y, coat.alpha_y)};
         return at.layered(coating, eta, base, proxy);

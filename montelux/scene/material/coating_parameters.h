@@ -5,7 +5,7 @@
 
 namespace montelux {
 
-// `albedo` and `g` are of the medium that fills the layer.
+// `albedo` and `g` belong to the medium in the layer.
 struct CoatingParameters {
     RoughnessParameter roughness{};
     Spectrum eta{1.5f};
@@ -15,7 +15,7 @@ struct CoatingParameters {
     int max_depth = 10; // interface crossings of one walk
     int sample_count = 1;
 
-    // `prefix` is of the interface, where the base has parameters of the same names.
+    // `prefix` is the interface's, if the base has parameters of the same names.
     template <typename Self, typename Visit>
     static void visit_parameters(Self& c, Visit&& visit, std::string_view prefix) {
         visit({.prefix = prefix, .name = "roughness"}, c.roughness);

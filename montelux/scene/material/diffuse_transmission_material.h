@@ -1,4 +1,4 @@
-// DiffuseTransmissionMaterial: a thin matt sheet that light shines through.
+// DiffuseTransmissionMaterial: a thin matt translucent sheet.
 #pragma once
 
 #include "montelux/scene/bsdf/diffuse_transmission.h"

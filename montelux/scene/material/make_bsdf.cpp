@@ -7,14 +7,14 @@ namespace montelux {
 
 namespace {
 
-// `normal`: the geometric one, in the frame of the BSDF.
+// `normal`: the geometric normal in the frame of the BSDF.
 Bsdf tilted(const Bsdf& bsdf, Normal3f normal) {
     return std::visit(
         [&]<typename B>(const B& b) -> Bsdf {
             if constexpr (std::is_constructible_v<UntiltedBsdf, B>)
                 return TiltedBsdf{b, normal};
             else
-                return b; // it is tilted already
+                return b; // already tilted
         },
         bsdf);
 }

@@ -1,4 +1,4 @@
-// From a material to the BSDF at a point, with the frame that it lives in.
+// make_bsdf: the BSDF of a material at a point, with its frame.
 #pragma once
 
 #include "montelux/scene/bsdf/bsdf.h"
@@ -9,11 +9,11 @@ namespace montelux {
 
 struct SurfaceBsdf {
     Bsdf bsdf;
-    Frame frame; // its n is the shading normal, with normal map and bumps
+    Frame frame; // its n is the shading normal, with bumps and normal map
 };
 
-// `wo`: world space, to the path's vertex before. Where the index of refraction depends on the wavelength, all
-// wavelengths but the hero are terminated.
+// `wo`: world space, towards the previous vertex of the path. If the index of refraction depends on the
+// wavelength, all wavelengths but the hero are terminated.
 SurfaceBsdf make_bsdf(const SceneView& scene, const SurfacePoint& surface, Vec3f wo,
                       const TextureContext& context, SampledWavelengths& lambda);
 

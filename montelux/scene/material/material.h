@@ -1,4 +1,4 @@
-// Materials: how the parameters of a BSDF vary over a surface. One file a kind; all satisfy MaterialModel.
+// Material: the variant of all materials, one file per kind; all satisfy MaterialModel.
 #pragma once
 
 #include <variant>

@@ -62,7 +62,7 @@ bool is_anisotropic(const Material& material) {
         []<typename M>(const M& m) {
             using Made = decltype(m.bsdf(std::declval<const ParameterEvaluator&>()));
             if (!uses_tangents(std::type_identity<Made>{})) return false;
-            // Lobes that have no roughness turn with the tangents for other reasons.
+            // Lobes without roughness depend on the tangents for other reasons.
             bool has_roughness = false, differs = false;
             M::visit_parameters(m, [&](const ParameterInfo&, const auto& field) {
                 if constexpr (requires { field.is_anisotropic(); }) {

@@ -1,4 +1,4 @@
-// A material to the renderer: the concept MaterialModel, and what follows from the list of parameters.
+// MaterialModel: the concept of a material, and functions derived from its list of parameters.
 #pragma once
 
 #include <concepts>
@@ -12,16 +12,16 @@ namespace montelux {
 // An Evaluator (parameter_evaluator.h) gives the values of parameters at a point.
 template <typename M, typename Evaluator>
 concept MaterialModel = requires(const M& m, M& changed, const Evaluator& at) {
-    { M::name } -> std::convertible_to<const char*>; // in Python; in pbrt's files in small letters
+    { M::name } -> std::convertible_to<const char*>; // in Python; pbrt's files use small letters
     { M::doc } -> std::convertible_to<const char*>;
     { m.detail } -> std::same_as<const SurfaceDetail&>;
-    // Its own parameters (parameter.h), those of `detail` apart.
+    // Its own parameters (parameter.h), without those of `detail`.
     M::visit_parameters(m, [](const ParameterInfo&, const auto&) {});
     M::visit_parameters(changed, [](const ParameterInfo&, auto&) {});
     { m.bsdf(at) } -> std::convertible_to<Bsdf>;
 };
 
-// Calls f(std::type_identity<M>) for every kind of material.
+// Calls f(std::type_identity<M>) for every material.
 template <typename F>
 void for_each_material_kind(F&& f) {
     [&]<typename... M>(std::type_identity<std::variant<M...>>) {
@@ -50,7 +50,7 @@ void visit_fields(const Material& material, Visit&& visit) {
 
 // Whether making the BSDF, or its frame, looks up a texture.
 bool is_textured(const Material& material);
-// Whether making the BSDF looks up a texture: surface detail apart.
+// The same without surface detail.
 bool has_textured_bsdf(const Material& material);
 // Whether the BSDF's lobes depend on the direction of the tangents.
 bool is_anisotropic(const Material& material);

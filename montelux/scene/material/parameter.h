@@ -1,4 +1,4 @@
-// ParameterInfo: what a material says of one of its parameters beside its value; and the kinds of parameters.
+// ParameterInfo: name, range and documentation of a material's parameter; the kinds of parameters.
 #pragma once
 
 #include <limits>
@@ -11,16 +11,16 @@
 namespace montelux {
 
 // A material lists its parameters once, in a function visit_parameters(material, visit) that calls
-// visit(info, field) for each. A field is a Spectrum (an index of refraction), SpectrumParameter, FloatParameter, float, int, or
-// one of the kinds below. From the list come the readers of scene files, the Python attributes, what is
-// hashed and whether the material is textured.
+// visit(info, field) for each. A field is a Spectrum (an index of refraction), SpectrumParameter,
+// FloatParameter, float, int, or one of the kinds below. The list defines the readers of scene files, the
+// Python attributes, the hash, and whether the material is textured.
 struct ParameterInfo {
-    std::string_view prefix{}; // of the part of the material that the parameter belongs to; may be empty
+    std::string_view prefix{}; // of the parameter's part of the material; may be empty
     std::string_view name{};   // as in Python
     const char* doc = "";
     RgbMeaning meaning = RgbMeaning::albedo;                     // of R, G, B given for a spectrum
     double least = 0, most = std::numeric_limits<double>::max(); // of numbers
-    std::string_view pbrt{};                                     // where it is not the name without '_'
+    std::string_view pbrt{};                                     // if not the name without '_'
 
     // conductor_eta
     std::string python_name() const {
@@ -43,8 +43,8 @@ struct RoughnessParameter {
     bool is_anisotropic() const { return u.texture != v.texture || (u.is_constant() && u.value != v.value); }
 };
 
-// Either the complex index of refraction eta + ik, or `reflectance` at normal incidence (then k is found for
-// eta = 1).
+// Either the complex index of refraction eta + ik, or `reflectance` at normal incidence (then eta = 1, and k
+// is computed).
 struct MetalParameter {
     SpectrumParameter eta{*find_named_spectrum("metal-Cu-eta")}, k{*find_named_spectrum("metal-Cu-k")};
     SpectrumParameter reflectance{};

@@ -1,4 +1,4 @@
-// ParameterEvaluator: the values of a material's parameters at a point, and the parts of BSDFs made of them.
+// ParameterEvaluator: a material's parameters at a point, and the parts of BSDFs made of them.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace montelux {
 
-// Where an index of refraction depends on the wavelength, all wavelengths but the hero are terminated.
+// If an index of refraction depends on the wavelength, all wavelengths but the hero are terminated.
 class ParameterEvaluator {
   public:
     ParameterEvaluator(const SceneView& scene, Index material, const TextureContext& context,
@@ -27,7 +27,7 @@ class ParameterEvaluator {
             u = Ggx::alpha_from_roughness(u);
             v = Ggx::alpha_from_roughness(v);
         }
-        // A lobe narrower than this along one axis alone would overflow floats.
+        // A lobe narrower than this along one axis would overflow floats.
         Ggx ggx{u, v};
         if (!ggx.is_smooth()) ggx = {std::max(u, 1e-4f), std::max(v, 1e-4f)};
         return ggx;
@@ -39,8 +39,8 @@ class ParameterEvaluator {
         return value > 0 ? value : 1;
     }
 
-    // `outside`: index of refraction of what light comes through. Fresnel's formulae want indices relative to
-    // it, parameters are relative to vacuum.
+    // `outside`: index of refraction of the outer medium. Fresnel's formulae take relative indices;
+    // parameters are relative to vacuum.
     ConductorBsdf conductor(const MetalParameter& m, const RoughnessParameter& r, float outside) const {
         ConductorBsdf b;
         if (m.from_reflectance) {

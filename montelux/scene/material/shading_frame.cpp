@@ -9,25 +9,25 @@ namespace montelux {
 
 namespace {
 
-// Shading normal, and derivatives of the surface's points in the plane across it.
+// Shading normal, and the derivatives of position projected onto its plane.
 struct Tangents {
     Normal3f n;
     Vec3f u, v;
 };
 
-// Bound of the relative rounding error of a filtered lookup: a level map is level.
+// Bound on the relative rounding error of a filtered look-up: constant maps give no slope.
 constexpr float lookup_rounding = 1e-6f;
 
 Vec3f across(Vec3f a, Normal3f n) { return a - n * dot(n, a); }
 
 // Slope of the height along one coordinate by a forward difference over half a pixel's footprint, as
-// pbrt-v4's BumpMap; without a footprint over less than the texel of a map 8192 wide.
+// pbrt-v4's BumpMap; without a footprint over less than the texel of a map of width 8192.
 float slope(const SceneView& scene, const FloatParameter& height, float here, const TextureContext& context,
             int axis, Vec3f dp) {
     const float footprint = 0.5f * (std::abs(context.duvdx[axis]) + std::abs(context.duvdy[axis]));
     TextureContext shifted = context;
     shifted.uv[axis] += std::max(footprint, 1.0f / 8192);
-    // What the coordinate was shifted by in floats.
+    // The actual step after rounding to float.
     const float step = shifted.uv[axis] - context.uv[axis];
     shifted.p += dp * step;
     const float rise = evaluate(scene, height, shifted) - here;
@@ -35,8 +35,8 @@ float slope(const SceneView& scene, const FloatParameter& height, float here, co
     return std::abs(rise) > lookup_rounding * std::abs(here) && std::isfinite(s) ? s : 0;
 }
 
-// Returns false where the height is level. That a curved surface stretches with its height is left out: it
-// flattens slopes by 1 + height / radius of curvature.
+// Returns false where the height is constant. Omits the term height * dn/du of the tangents, which flattens
+// slopes by 1 + height / radius of curvature.
 bool add_bumps(const SceneView& scene, const FloatParameter& height, const SurfacePoint& surface,
                const TextureContext& context, Tangents& t) {
     if (height.is_constant()) return false;
@@ -53,8 +53,8 @@ bool add_bumps(const SceneView& scene, const FloatParameter& height, const Surfa
     return true;
 }
 
-// Returns false where the map says that the normal is as it is. The map's second axis is the side of dp/dv:
-// mirrored instances and coordinates show mirrored dents.
+// Returns false where the map leaves the normal unchanged. The map's second axis points to the side of dp/dv,
+// so mirrored instances and coordinates show mirrored dents.
 bool add_map(const SceneView& scene, const NormalMapParameter& map, const TextureContext& context,
              Tangents& t) {
     if (!map.is_given()) return false;
@@ -75,7 +75,7 @@ bool add_map(const SceneView& scene, const NormalMapParameter& map, const Textur
 }
 
 // Keller et al. 2017, "The Iray Light Transport Simulation and Rendering System", appendix A.3: a normal that
-// mirrors wo below the surface is replaced by the one that mirrors it just above.
+// mirrors wo below the surface is replaced by one that mirrors it just above.
 Normal3f facing(Normal3f n, Normal3f geometric, Vec3f wo) {
     constexpr float least = 1e-3f; // sine of the least angle above the surface
     const float side = dot(wo, geometric) < 0 ? -1.0f : 1.0f;

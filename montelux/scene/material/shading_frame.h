@@ -1,4 +1,4 @@
-// The frame of a shading normal that a normal map or bumps tilt.
+// tilted_frame: the frame of a shading normal tilted by bumps and a normal map.
 #pragma once
 
 #include <optional>
@@ -10,11 +10,11 @@
 namespace montelux {
 
 // Bumps are heights above the surface along its shading normal (Blinn 1978, "Simulation of Wrinkled
-// Surfaces"); the map is looked up in the frame of the surface with its bumps. `surface` comes with its
-// coordinates. Empty where the normal stays as it is, to the last bit.
+// Surfaces"); the map is applied in the frame of the surface with its bumps. `surface` must have texture
+// coordinates. Empty if the normal is unchanged, to the last bit.
 //
-// The normal is on the side of the geometric one, and is turned as little as it takes for the mirror image of
-// wo to stay above the surface.
+// The normal is on the side of the geometric one, and turned only as far as necessary for the mirror
+// direction of wo to stay above the surface.
 std::optional<Frame> tilted_frame(const SceneView& scene, const SurfaceDetail& detail,
                                   const SurfacePoint& surface, Vec3f wo, const TextureContext& context);
 

@@ -1,4 +1,4 @@
-// SurfaceDetail: what tilts the shading normal of any material.
+// SurfaceDetail: bumps and normal map of any material.
 #pragma once
 
 #include "montelux/scene/material/parameter.h"
@@ -6,7 +6,7 @@
 namespace montelux {
 
 struct SurfaceDetail {
-    // Height above the surface in units of length. A texture gives bumps; a constant changes nothing.
+    // Height above the surface in units of length. A texture gives bumps; a constant has no effect.
     FloatParameter displacement{};
     NormalMapParameter normal_map{};
 

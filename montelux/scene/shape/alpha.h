@@ -1,4 +1,4 @@
-// Alpha: the share of a surface's points that is there.
+// Alpha: the probability that a point of a surface is present.
 #pragma once
 
 #include <optional>
@@ -8,12 +8,12 @@
 
 namespace montelux {
 
-// Whether a ray that meets the shape may go through it.
+// Whether some rays may pass through the shape.
 bool is_cut_out(const Shape& shape);
-// Of a shape whose alpha is the same everywhere.
+// For a shape of constant alpha.
 std::optional<float> constant_alpha(const SceneView& scene, const Shape& shape);
 
-// At a hit of `ray`, which is in the space of the shape; not limited to [0, 1].
+// At a hit of `ray`, in the space of the shape; not limited to [0, 1].
 float alpha_at(const SceneView& scene, const Ray& ray, const Hit& hit);
 
 } // namespace montelux

@@ -1,4 +1,4 @@
-// Boxes along the axes of world space.
+// Axis-aligned boxes in world space.
 #pragma once
 
 #include "montelux/mc/math/vec.h"
@@ -13,7 +13,7 @@ struct Bounds3 {
         upper = max(upper, p);
     }
     bool empty() const { return !(lower.x <= upper.x); }
-    // i from 0 to 7.
+    // Corner i, from 0 to 7.
     Vec3d corner(int i) const {
         return {(i & 1) != 0 ? upper.x : lower.x, (i & 2) != 0 ? upper.y : lower.y,
                 (i & 4) != 0 ? upper.z : lower.z};

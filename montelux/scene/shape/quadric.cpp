@@ -37,7 +37,7 @@ ObjectRay to_object(const Transform& world_from_object, const Ray& ray) {
 std::optional<double> intersect_object(const Sphere& s, const ObjectRay& r, double t_min, double t_max) {
     double a = dot(r.d, r.d);
     if (!(a > 0)) return std::nullopt;
-    // The distance of the centre from the line instead of b^2 - ac: no cancellation far from the sphere.
+    // Uses the distance of the centre from the line instead of b^2 - ac: no cancellation far from the sphere.
     double t_mid = -dot(r.o, r.d) / a;
     Vec3d closest = r.o + t_mid * r.d;
     double h2 = double(s.radius) * double(s.radius) - dot(closest, closest);
@@ -70,7 +70,7 @@ Vec3d radial(Vec3d p) {
     return r > 0 ? Vec3d{p.x / r, p.y / r, 0} : Vec3d{1, 0, 0};
 }
 
-// The place in object space, and the change of p with it.
+// The point in object space, and its derivatives.
 struct Coordinates {
     double u = 0, v = 0;
     Vec3d dpdv;

@@ -1,4 +1,4 @@
-// Rays, and what a ray hits.
+// Rays and hits.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace montelux {
 
-// Points o + t d for t in [0, t_max]; d need not have unit length.
+// Points o + t d for t in [0, t_max]; d need not be of unit length.
 struct Ray {
     Point3f o;
     Vec3f d;
@@ -21,11 +21,11 @@ struct Hit {
     float b1 = 0, b2 = 0; // barycentric weights of a triangle's second and third vertex
     Index shape = no_index;
     Index primitive = 0;
-    Index instance = no_index; // into Scene::instances; none for shapes that stand in the world
+    Index instance = no_index; // into Scene::instances; no_index for shapes directly in the world
 };
 
-// The origin of a ray that leaves a surface: p moved off it along the unit normal, to the side of w, by
-// `error`, the bound of the distance between p and the true surface. Scale-free: the bound grows with the
+// The origin of a ray that leaves a surface: p offset along the unit normal, to the side of w, by `error`, a
+// bound on the distance between p and the true surface. Scale-free: the bound is proportional to the
 // coordinates.
 inline Point3f offset_origin(Point3f p, Normal3f n, float error, Vec3f w) {
     return p + n * std::copysign(error, dot(n, w));

@@ -1,4 +1,4 @@
-// Shapes: triangle meshes and quadrics as plain values, and what each instance of them carries.
+// Shapes: triangle meshes and quadrics as plain values, and the attributes of their instances.
 #pragma once
 
 #include <variant>
@@ -10,13 +10,13 @@
 
 namespace montelux {
 
-// Positions are in world space, or in the space of the object definition that the mesh belongs to.
-// `normals` and `uvs` are empty or one a vertex. Indices are checked by the builder.
+// Positions are in world space, or in the space of the mesh's object definition. `normals` and `uvs` are
+// empty or one per vertex. The builder checks the indices.
 struct TriangleMesh {
     std::vector<Point3f> positions;
     std::vector<Normal3f> normals;
     std::vector<Point2f> uvs;
-    std::vector<Index> indices; // three a triangle
+    std::vector<Index> indices; // three per triangle
 
     std::size_t triangle_count() const { return indices.size() / 3; }
 };
@@ -36,7 +36,7 @@ struct Disk {
 
 using Quadric = std::variant<Sphere, Disk>;
 
-// The geometry of a shape: a place in the scene's array of its kind.
+// The geometry of a shape: an index into the scene's array of its kind.
 struct MeshIndex {
     Index index = no_index; // into Scene::meshes
 };
@@ -50,10 +50,10 @@ struct Shape {
     ShapeGeometry geometry;
     Index material = no_index;
     Index light = no_index;  // its area light, into Scene::lights
-    FloatParameter alpha{1}; // cut-out: a point is there with this probability
-    // The geometric normal of the primitive is turned around. Set when the file asks for it xor its transform
-    // swaps handedness; where a mesh has vertex normals these decide the side instead (file's wish alone
-    // applied).
+    FloatParameter alpha{1}; // cut-out: the probability that a point is present
+    // The geometric normal of the primitive is reversed. Set if the file reverses orientation xor the
+    // transform swaps handedness. Vertex normals, if present, decide the side instead (reversed only by the
+    // file).
     bool flip_normal = false;
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 float largest_coordinate(Vec3f p) { return std::max(std::abs(p.x), std::max(std::abs(p.y), std::abs(p.z))); }
 
-// p(u, v) is affine on a triangle: solves for its derivatives. Degenerate uv give any tangents.
+// p(u, v) is affine on a triangle: solves for its derivatives. Degenerate uv yield arbitrary tangents.
 void triangle_derivatives(SurfacePoint& s, Vec3f e1, Vec3f e2, Vec2f duv1, Vec2f duv2) {
     float determinant = duv1.x * duv2.y - duv1.y * duv2.x;
     if (std::abs(determinant) > 1e-20f) {

@@ -15,7 +15,7 @@ Vec2f spherical(Vec3f p) {
 
 Vec2f cylindrical(Vec3f p) { return {(pi_f + std::atan2(p.y, p.x)) * inv_two_pi_f, p.z}; }
 
-// Differences across the seam of an angle go the short way round.
+// Angle differences are wrapped across the seam.
 Vec2f wrapped_difference(Vec2f a, Vec2f b, int angle) {
     Vec2f d = a - b;
     d[angle] -= std::round(d[angle]);

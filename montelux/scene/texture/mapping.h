@@ -1,4 +1,4 @@
-// From a point on a surface to the (s, t) of a 2-D texture.
+// Mappings from a point on a surface to the (s, t) of a 2-D texture.
 #pragma once
 
 #include <cmath>
@@ -9,8 +9,8 @@
 
 namespace montelux {
 
-// What a texture may look at. The footprint (duvdx, duvdy: one pixel step to the right and down) selects
-// the level of detail; zero means "no filtering".
+// The inputs of a texture. The footprint (duvdx, duvdy: one pixel step to the right and down) selects the
+// level of detail; zero means "no filtering".
 struct TextureContext {
     Point3f p; // world space
     Vec3f n;

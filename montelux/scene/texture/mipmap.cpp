@@ -19,7 +19,7 @@ int wrapped(int i, int n, TextureWrap wrap) {
     return -1;
 }
 
-// A step over an edge of an octahedral map enters through the same edge, mirrored.
+// Beyond an edge of an octahedral map, texels continue from the same edge, mirrored.
 void wrap_octahedral(int& x, int& y, int width, int height) {
     if (x < 0) {
         x = -x - 1;
@@ -127,7 +127,7 @@ Vec3f MipMap::bilinear(int l, Point2f st, TextureWrap wrap) const {
     const Image& image = level(l);
     if (l == 0 && image.format() == PixelFormat::u8 && xi >= 0 && yi >= 0 && xi + 1 < image.width() &&
         yi + 1 < image.height()) {
-        // Most lookups: inside an 8-bit image.
+        // The common case: inside an 8-bit image.
         const std::uint8_t* row0 = &image.u8()[image.index(xi, yi)];
         const std::uint8_t* row1 = row0 + image.index(0, 1);
         const int next = image.channels();

@@ -1,4 +1,4 @@
-// Image pyramids: filtered lookups into an image texture.
+// MipMap: an image pyramid for filtered look-ups into an image texture.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@ namespace montelux {
 
 // Texture coordinates: (0, 0) is the lower left corner of the image, (1, 1) the upper right. Colours are
 // linear. The finest level is the image itself, which must outlive the pyramid; coarser ones halve it by box
-// averages. Alpha is taken to be encoded as the colours are, as pbrt-v4 takes it.
+// averages. Alpha is decoded as the colours are, as in pbrt-v4.
 class MipMap {
   public:
     explicit MipMap(const Image& image, ImageChannels channels = ImageChannels::color);
 
     bool is_color() const { return channels_[1] >= 0; }
-    // dst0, dst1: the sides of a pixel in texture coordinates; only filters other than point look at them.
+    // dst0, dst1: the sides of a pixel in texture coordinates; the filter point ignores them.
     Vec3f lookup(Point2f st, Vec2f dst0, Vec2f dst1, TextureFilter filter, TextureWrap wrap,
                  float max_anisotropy) const;
 

@@ -10,7 +10,7 @@
 
 namespace montelux {
 
-// A parameter of a material: a constant, or the texture with that index if there is one.
+// A parameter of a material: a constant, or a texture by index.
 struct FloatParameter {
     float value = 0;
     Index texture = no_index;
@@ -24,13 +24,13 @@ struct SpectrumParameter {
     bool is_constant() const { return texture == no_index; }
 };
 
-// What an RGB colour stands for when it becomes a spectrum.
+// The meaning of an RGB colour when converted to a spectrum.
 enum class RgbMeaning : std::uint8_t { albedo, unbounded, illuminant };
 
 enum class TextureFilter : std::uint8_t { point, bilinear, trilinear, ewa };
 enum class TextureWrap : std::uint8_t { repeat, black, clamp, octahedral_sphere };
 
-// What a texture looks up in an image: its colours, or its channel A.
+// The channels of an image that a texture reads: its colours, or its channel A.
 enum class ImageChannels : std::uint8_t { color, alpha };
 
 // Texels are filtered first, then scaled (and 1 - x taken when `invert`), then read as a spectrum;
@@ -44,7 +44,7 @@ struct ImageTexture {
     float max_anisotropy = 8;
     float scale = 1;
     bool invert = false;
-    RgbMeaning meaning = RgbMeaning::albedo; // of spectrum textures
+    RgbMeaning meaning = RgbMeaning::albedo; // for spectrum textures
     const RgbColorSpace* color_space = &RgbColorSpace::srgb();
 };
 

@@ -123,8 +123,8 @@ TEST(PbrtErrors, SentencesInTheWorld) {
         {"ObjectBegin \"a\" ObjectInstance \"a\"",
          "scene:2:17: ObjectInstance inside an object's definition"},
         {"ObjectInstance \"tree\"", "scene:2:1: object 'tree' is not defined"},
-        {"WorldBegin", "scene:2:1: 'WorldBegin' stands behind WorldBegin; it belongs before it"},
-        {"Film \"rgb\"", "scene:2:1: 'Film' stands behind WorldBegin; it belongs before it"},
+        {"WorldBegin", "scene:2:1: 'WorldBegin' is after WorldBegin; it belongs before it"},
+        {"Film \"rgb\"", "scene:2:1: 'Film' is after WorldBegin; it belongs before it"},
         {"Attribute \"shapes\"",
          "scene:2:1: Attribute of 'shapes'; expected shape, light, material, medium or texture (did you mean "
          "'shape'?)"},
@@ -233,9 +233,9 @@ TEST(PbrtErrors, SentencesBeforeTheWorld) {
     const Case cases[] = {
         {"", "scene:1:1: the file ends before WorldBegin"},
         {"# nothing\n", "scene:2:1: the file ends before WorldBegin"},
-        {"Shape \"sphere\"", "scene:1:1: 'Shape' stands before WorldBegin; it belongs behind it"},
-        {"AttributeBegin", "scene:1:1: 'AttributeBegin' stands before WorldBegin; it belongs behind it"},
-        {"Import \"x\"", "scene:1:1: 'Import' stands before WorldBegin; it belongs behind it"},
+        {"Shape \"sphere\"", "scene:1:1: 'Shape' is before WorldBegin; it belongs after it"},
+        {"AttributeBegin", "scene:1:1: 'AttributeBegin' is before WorldBegin; it belongs after it"},
+        {"Import \"x\"", "scene:1:1: 'Import' is before WorldBegin; it belongs after it"},
         {"Film \"rgb\" \"integer xresolution\" 0 WorldBegin",
          "scene:1:12: parameter 'xresolution' is 0; expected 1 to 65536 pixels"},
         {"Film \"rgb\" \"integer yresolution\" -5 WorldBegin",

@@ -1,4 +1,4 @@
-// Sampling of an environment map that is looked up bilinearly, in proportion to its light.
+// BilinearEnvironment: samples a bilinearly interpolated environment map in proportion to its light.
 #pragma once
 
 #include <vector>
@@ -8,12 +8,11 @@
 
 namespace montelux {
 
-// MISSION C6 with a density that follows the blend between texels exactly: it is bilinear over places on the
-// map between the centres of texels, and over solid angle as well, since equal areas of a texel are equal
-// solid angles.
+// MISSION C6 with a density that follows the interpolation exactly: it is bilinear between the centres of
+// texels, and per solid angle as well, since equal areas of a texel are equal solid angles.
 class BilinearEnvironment {
   public:
-    // `light` is that of texels that are looked up alone; `grid` must outlive it.
+    // `light` holds the light of individual texels; `grid` must outlive it.
     BilinearEnvironment(const EnvironmentGrid& grid, const std::vector<float>& light)
         : grid_(&grid), table_(table_of(grid, light)) {}
 

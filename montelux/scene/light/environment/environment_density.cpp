@@ -33,7 +33,7 @@ std::vector<float> texel_light(const Image& map, const EnvironmentGrid& grid) {
         const double solid_angle = grid.solid_angle(y);
         for (std::size_t i = begin; i < end; ++i) {
             const double radiance = texel_radiance(map, i);
-            // Faint light is not to be lost, nor glaring light to become infinite.
+            // Neither underflow of faint light nor overflow of bright light.
             if (radiance > 0)
                 light[i] = static_cast<float>(
                     std::clamp(radiance * solid_angle, static_cast<double>(std::numeric_limits<float>::min()),

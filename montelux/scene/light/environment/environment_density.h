@@ -1,4 +1,4 @@
-// What the densities over an environment map have in common: their samples, and the light that they follow.
+// Common to the densities over an environment map: their samples, and the light that they follow.
 #pragma once
 
 #include <algorithm>
@@ -11,31 +11,31 @@
 
 namespace montelux {
 
-// A place on the map, and the density over solid angle with which it is drawn.
+// A position on the map, and its density per solid angle.
 struct EnvironmentPoint {
     Vec2f grid;
     float pdf = 0;
 };
 
-// A place that was drawn in a texel and rounded stays in it.
+// Rounding must not move a sampled position out of its texel.
 inline Vec2f keep_in_texel(Vec2f grid, std::uint32_t column, std::uint32_t row) {
     return {std::min(grid.x, std::nextafter(static_cast<float>(column + 1), 0.0f)),
             std::min(grid.y, std::nextafter(static_cast<float>(row + 1), 0.0f))};
 }
 
-// The mean of R, G and B, with what is negative taken for 0.
+// The mean of R, G and B; negative values count as 0.
 double texel_radiance(const Image& map, std::size_t texel);
-// Light of each texel, row by row: its radiance times its solid angle. Above zero wherever a channel is.
+// Light of each texel, row by row: radiance times solid angle. Positive wherever a channel is.
 std::vector<float> texel_light(const Image& map, const EnvironmentGrid& grid);
 double sum_of(const std::vector<float>& light);
-// The same for maps that are looked up bilinearly, from the light of texels that are looked up alone. Above
-// zero wherever something shines in the texel.
+// The same for bilinearly interpolated maps, from the light of individual texels. Positive wherever the texel
+// is not black.
 std::vector<float> blended_light(const std::vector<float>& light, const EnvironmentGrid& grid);
 
-// The light less that of a sky of its mean radiance, where that leaves something: Karlik et al. 2019, "MIS
+// The light minus that of a uniform sky of its mean radiance, clamped to 0: Karlik et al. 2019, "MIS
 // Compensation: Optimizing Sampling Techniques in Multiple Importance Sampling", for one sample of the map
-// beside one of the BSDF, which normals all over the sphere make uniform. Where less than 1 % is left, as of
-// maps that are constant, it stays what it is, and false is returned.
+// and one of the BSDF, which is uniform when averaged over normals. If less than 1 % is left, as for nearly
+// constant maps, the light is unchanged, and the result is false.
 bool compensate(std::vector<float>& light, const EnvironmentGrid& grid);
 
 } // namespace montelux

@@ -38,7 +38,7 @@ double EnvironmentGrid::texel_angle() const {
 }
 
 std::size_t EnvironmentGrid::row_at(double theta) const {
-    // What is no number goes to the last row.
+    // NaN maps to the last row.
     return static_cast<std::size_t>(std::min(static_cast<double>(height_ - 1), theta * inv_pi * height_));
 }
 
@@ -111,7 +111,7 @@ Vec2f EnvironmentGrid::locate(Vec3f w) const {
     double x = double(w.x), y = double(w.y), z = double(w.z), r2 = x * x + y * y;
     // (1 - z) / 2 keeps its digits near both poles.
     double share = z > 0 ? r2 / (2 * (1 + z)) : 1 - r2 / (2 * (1 - z));
-    // Floats know the angle to a row or so, shares tell which it is.
+    // Floats locate the angle to about one row; shares decide which.
     std::size_t row = row_at(static_cast<double>(std::atan2(std::sqrt(static_cast<float>(r2)), w.z)));
     while (row > 0 && share < edges_[row]) --row;
     while (row + 2 < edges_.size() && share >= edges_[row + 1]) ++row;

@@ -1,4 +1,4 @@
-// The texels of an environment map on the sphere: directions to places on the map and back, solid angles.
+// EnvironmentGrid: the texels of an environment map on the sphere: directions, positions, solid angles.
 #pragma once
 
 #include <array>
@@ -23,22 +23,21 @@ constexpr std::string_view name_of(EnvironmentLayout layout) {
     return layout == EnvironmentLayout::equal_area ? "equal-area" : "equirectangular";
 }
 
-// What maps of this size are: square ones equal-area, those twice as wide as high latitude-longitude, others
-// neither.
+// The layout of maps of this size: square ones are equal-area, those twice as wide as high
+// latitude-longitude; empty for others.
 constexpr std::optional<EnvironmentLayout> layout_of_size(int width, int height) {
     if (width == height) return EnvironmentLayout::equal_area;
     if (width == 2 * height) return EnvironmentLayout::equirectangular;
     return std::nullopt;
 }
 
-// Places on the map are grid points: texel (x, y) is [x, x + 1) x [y, y + 1), and within a texel equal areas
-// are equal solid angles (rows of a latitude-longitude map are linear in cos(theta) inside each texel, not in
-// theta). So whatever is constant over texels has a constant density over solid angle there, and radiance
-// that is looked up in the nearest texel is matched exactly.
+// Positions on the map are grid points: texel (x, y) is [x, x + 1) x [y, y + 1), and within a texel equal
+// areas are equal solid angles (rows of a latitude-longitude map are linear in cos(theta) inside each texel,
+// not in theta). So a density that is constant over texels is constant over solid angle there, and matches
+// radiance of the nearest texel exactly.
 class EnvironmentGrid {
   public:
-    // The texels whose centres are around a place, and their shares in a bilinear blend; one may stand
-    // several times.
+    // The texels with centres around a position, and their bilinear weights; a texel may occur several times.
     struct Blend {
         std::array<std::size_t, 4> texel;
         std::array<float, 4> share;
@@ -54,7 +53,7 @@ class EnvironmentGrid {
         return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
     }
 
-    // Unit, in the space of the map. Of float and double.
+    // Unit vector in the space of the map. For float and double.
     template <std::floating_point T = float>
     Vec3f direction(Vec2<T> grid) const;
     // Within [0, width) x [0, height). `w` has unit length.
@@ -64,21 +63,21 @@ class EnvironmentGrid {
                static_cast<std::size_t>(grid.x);
     }
 
-    // Within [0, width] x [0, height]. Beyond an edge of the map follows what lies there on the sphere: the
-    // other side of the seam, the other side of the pole, or the same edge of an octahedral map, mirrored.
+    // Within [0, width] x [0, height]. Beyond an edge the map continues as on the sphere: on the other side
+    // of the seam or the pole, or at the same edge of an octahedral map, mirrored.
     Blend blend(Vec2f grid) const;
-    // The texel at a place up to one texel beyond an edge.
+    // The texel at a position up to one texel beyond an edge.
     std::size_t texel_around(int x, int y) const;
 
-    // Of each texel of a row, in steradians.
+    // Solid angle of each texel of a row, in steradians.
     double solid_angle(int row) const {
         return layout_ == EnvironmentLayout::equal_area ? texel_solid_angle_
                                                         : solid_angles_[static_cast<std::size_t>(row)];
     }
-    // Angle across a texel where texels are largest.
+    // Angle across the largest texel.
     double texel_angle() const;
-    // Share of the map's solid angle in the rows above the line y of the grid, and the line above which that
-    // share lies. Rectangles of the grid are uniform in solid angle over (x, share).
+    // Share of the map's solid angle above the line y of the grid, and the inverse. Rectangles of the grid
+    // are uniform in solid angle over (x, share).
     double share_above(double y) const;
     double line_below(double share) const;
 

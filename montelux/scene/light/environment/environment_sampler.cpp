@@ -11,7 +11,7 @@ namespace {
 
 constexpr int most_parts = 1 << 16;
 
-// Levels of cuts that make the regions which were asked for.
+// Levels of cuts for a number of regions.
 int median_cut_levels(int regions) {
     if (regions == 0) return MedianCutEnvironment::default_levels;
     if (regions < 0 || regions > most_parts || !std::has_single_bit(static_cast<unsigned>(regions)))

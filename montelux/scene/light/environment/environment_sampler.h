@@ -1,4 +1,4 @@
-// Sampling of directions to an environment map, by the density that the settings ask for.
+// EnvironmentSampler: samples directions to an environment map by the density that the settings choose.
 #pragma once
 
 #include <memory>
@@ -16,15 +16,15 @@ namespace montelux {
 
 class EnvironmentSampler {
   public:
-    // The map has the channels R, G and B. Values that are negative count as 0; others must be finite. Throws
-    // Error for a number of parts that the density does not have.
+    // The map has the channels R, G and B. Negative values count as 0; all must be finite. Throws Error for a
+    // number of parts that the density does not support.
     EnvironmentSampler(const Image& map, EnvironmentLayout layout, const EnvironmentSettings& settings = {});
 
     const EnvironmentGrid& grid() const { return *grid_; }
     EnvironmentPoint sample(Vec2f u) const {
         return std::visit([&](const auto& d) { return d.sample(u); }, density_);
     }
-    // Over solid angle. Without compensation it is above zero wherever the map is.
+    // Per solid angle. Without compensation it is positive wherever the map is.
     float pdf(Vec2f grid) const {
         return std::visit([&](const auto& d) { return d.pdf(grid); }, density_);
     }
@@ -32,17 +32,17 @@ class EnvironmentSampler {
     using Density = std::variant<TabulatedEnvironment, WithSun<MedianCutEnvironment>,
                                  WithSun<StructuredEnvironment>, BilinearEnvironment>;
     const Density& density() const { return density_; }
-    // What was taken, where the settings left it open.
+    // The chosen density, if the settings leave it open.
     EnvironmentSampling sampling() const;
     bool compensated() const { return compensated_; }
     EnvironmentLookup lookup() const { return lookup_; }
     const Sun* sun() const;
-    // Of all but the sun; null where another density was taken.
+    // The density without the sun; null for another kind.
     const MedianCutEnvironment* median_cut() const;
     const StructuredEnvironment* structured() const;
     // Mean of R, G and B over the sphere.
     double mean_radiance() const { return mean_radiance_; }
-    // For people: "tabulated, compensated; 1024 x 1024 texels, equal-area, 4.5 MiB".
+    // For messages: "tabulated, compensated; 1024 x 1024 texels, equal-area, 4.5 MiB".
     std::string description() const;
 
   private:

@@ -1,11 +1,11 @@
-// How environment maps are looked up, and how directions to them are sampled.
+// EnvironmentSettings: interpolation of environment maps, and sampling of directions to them.
 #pragma once
 
 #include <cstdint>
 
 namespace montelux {
 
-// docs/environment-light.md says what each is, and how they compare.
+// Described and compared in docs/environment-light.md.
 enum class EnvironmentSampling : std::uint8_t {
     automatic,  // one of the others, by the map
     tabulated,  // each texel in proportion to its light (MISSION C6)
@@ -13,7 +13,7 @@ enum class EnvironmentSampling : std::uint8_t {
     structured, // strata of a hierarchical thresholding, uniform in each
 };
 
-// What a map is between the centres of its texels.
+// The radiance between the centres of texels.
 enum class EnvironmentLookup : std::uint8_t {
     nearest,  // constant over each texel, as pbrt-v4 has it
     bilinear, // blended between the four nearest centres
@@ -21,12 +21,12 @@ enum class EnvironmentLookup : std::uint8_t {
 
 struct EnvironmentSettings {
     EnvironmentSampling sampling = EnvironmentSampling::tabulated;
-    // MIS compensation: the density leaves out what BSDF sampling finds as well. It is zero where there is
-    // light, and so is for light samples that are joined with BSDF samples by multiple importance sampling.
+    // MIS compensation: the density omits what BSDF sampling finds as well. It is zero in places with light,
+    // so light samples must be combined with BSDF samples by multiple importance sampling.
     bool compensated = false;
     EnvironmentLookup lookup = EnvironmentLookup::nearest;
-    // Regions of median_cut (a power of two up to 65536) or strata of structured (about so many, up to
-    // 65536); 0: as many as are usual.
+    // Regions of median_cut (a power of two up to 65536) or approximate number of strata of structured (up to
+    // 65536); 0: the default.
     int parts = 0;
 };
 

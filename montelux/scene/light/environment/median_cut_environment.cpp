@@ -45,7 +45,7 @@ Margins margins_of(const Rectangle& r, const std::vector<float>& light, std::siz
     return m;
 }
 
-// Draws [a, b] in from the cells without light at its ends.
+// Trims the cells without light at the ends of [a, b].
 void trim(float& a, float& b, const std::vector<double>& sums, std::size_t first) {
     std::size_t begin = 0, end = sums.size();
     while (begin < end && !(sums[begin] > 0)) ++begin;
@@ -55,7 +55,7 @@ void trim(float& a, float& b, const std::vector<double>& sums, std::size_t first
     b = std::min(b, static_cast<float>(first + end));
 }
 
-// Where half of the light lies on either side.
+// The coordinate that halves the light.
 float median(double a, double b, const std::vector<double>& sums, std::size_t first) {
     double total = 0, before = 0;
     for (double s : sums) total += s;

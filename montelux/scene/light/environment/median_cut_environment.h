@@ -1,4 +1,4 @@
-// Median-cut sampling of an environment map: regions of equal light, each drawn as often as any other.
+// MedianCutEnvironment: samples an environment map by regions of equal light, with equal probability.
 #pragma once
 
 #include <algorithm>
@@ -12,18 +12,18 @@
 namespace montelux {
 
 // The map is cut into 2^levels regions as in Debevec 2005, "A Median Cut Algorithm for Light Probe Sampling":
-// each region is cut across its longer side (in angles) into two halves of equal light. Cuts fall within
-// texels where they must, so that halves are equal but for rounding. A sample picks a region and a direction
-// uniform in it, as in Mei, Jaeger, Hu 2006, "An Effective Stratified Sampling Scheme for Environment Maps
-// with Median Cut Method". Regions are drawn in from black borders, and the density is zero outside of them.
+// each region is cut across its longer side (in angles) into two halves of equal light. Cuts may pass through
+// texels, so halves are equal up to rounding. A sample picks a region and a uniform direction in it, as in
+// Mei, Jaeger, Hu 2006, "An Effective Stratified Sampling Scheme for Environment Maps with Median Cut
+// Method". Black borders of regions are trimmed; the density is zero there.
 //
-// u.x picks the region; neighbours in that order hang together at every level of the cut, so that
-// low-discrepancy points stratify over all of them.
+// u.x picks the region; neighbours in this order are connected at every level of the cut, so low-discrepancy
+// points stratify over all of them.
 class MedianCutEnvironment {
   public:
     static constexpr int default_levels = 12;
 
-    // levels in [0, 16]; `grid` must outlive it. Light that is zero everywhere is cut in the middles.
+    // levels in [0, 16]; `grid` must outlive it. A black map is cut at the midpoints.
     MedianCutEnvironment(const EnvironmentGrid& grid, const std::vector<float>& light,
                          int levels = default_levels);
 
@@ -67,7 +67,7 @@ class MedianCutEnvironment {
     friend class MedianCutter;
 
     const EnvironmentGrid* grid_;
-    std::vector<Cut> cuts_; // a heap: those of cut i are 2 i and 2 i + 1, the first is 1
+    std::vector<Cut> cuts_; // a heap: the children of cut i are 2 i and 2 i + 1, the root is 1
     std::vector<Region> regions_;
 };
 

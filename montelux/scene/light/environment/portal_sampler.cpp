@@ -39,17 +39,17 @@ WindowedPiecewise2D PortalSampler::tabulate(const Image& map, const Transform& w
         return sum;
     };
     auto centre = [&](std::int64_t k) { return -pi / 2 + side * (static_cast<double>(k) + 0.5); };
-    // How far the two sides of a cell go across the sphere: less near the horizon, more near the corners.
+    // Angular size of a cell's sides: smaller near the horizon, larger near the corners.
     auto steps = [&](std::int64_t i, std::int64_t j) {
         const double cx = std::cos(centre(i)), cy = std::cos(centre(j));
         const double n2 = cx * cx + (1 - cx * cx) * cy * cy;
         return Vec2d{side * cy / n2, side * cx / n2};
     };
-    // Points enough that no texel lies between them, but for the very corners.
+    // Enough points that no texel lies between them, except at the very corners.
     auto points_for = [&](double step) {
         return static_cast<int>(std::clamp(std::ceil(step / spacing), 2.0, 32.0));
     };
-    // Cells within two spacings, so that the tip of a texel between points is found beside them.
+    // Cells within two spacings, so that a texel's corner between points is detected by its neighbours.
     auto cells_around = [&](double step) {
         return static_cast<std::int64_t>(std::clamp(std::ceil(2 * spacing / step), 1.0, 16.0));
     };

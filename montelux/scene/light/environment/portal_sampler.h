@@ -1,4 +1,4 @@
-// Sampling of an environment map through a portal: the part of it that a point sees, and no more.
+// PortalSampler: samples the part of an environment map that a point sees through a portal.
 #pragma once
 
 #include <optional>
@@ -13,15 +13,15 @@
 
 namespace montelux {
 
-// The map's light is tabulated over the portal's plane of angles (see Portal), and directions are drawn from
-// the window under which a point sees the portal (Bitterli, Novak, Jarosz 2015). Radiance is looked up in the
-// map itself and not in the table; so the density follows it up to the size of cells, and is exact as a
-// density. A cell has the mean light of the points in it, no less than a sixteenth of the brightest radiance
-// found in and around it, so that the tip of a bright texel is not drawn too seldom, and no less than a
-// thousandth of the mean, so that nothing is left out.
+// The map's light is tabulated over the portal's plane of angles (see Portal), and directions are sampled
+// from the window in which a point sees the portal (Bitterli, Novak, Jarosz 2015). Radiance is looked up in
+// the map itself, not in the table; the density follows it up to the size of cells, and is exact as a
+// density. A cell has the mean light of its points, at least a sixteenth of the brightest radiance found in
+// and around it, so that corners of bright texels are not undersampled, and at least a thousandth of the
+// mean, so that no direction is omitted.
 class PortalSampler {
   public:
-    // The map as EnvironmentSampler has it.
+    // The map as in EnvironmentSampler.
     PortalSampler(const Image& map, EnvironmentLayout layout, const Transform& world_from_light,
                   const Portal& portal, EnvironmentLookup lookup = EnvironmentLookup::nearest);
 
@@ -31,18 +31,17 @@ class PortalSampler {
     };
     // Empty where no light reaches `p`.
     std::optional<Sample> sample(Point3f p, Vec2f u) const;
-    // Over solid angle at `p`.
+    // Per solid angle at `p`.
     float pdf(Point3f p, Vec3f wi) const;
-    // A direction to the light, whatever point of the portal it is seen through, and its density over solid
-    // angle.
+    // A direction to the light, independent of the point of the portal, and its density per solid angle.
     std::optional<Sample> sample_direction(Vec2f u) const { return sample(Portal::hemisphere(), u); }
     float direction_pdf(Vec3f wi) const { return pdf(Portal::hemisphere(), wi); }
 
     const EnvironmentGrid& grid() const { return grid_; }
-    // Mean of R, G and B that falls on each unit of the portal's area, and that without the cosine.
+    // Mean of R, G and B per area of the portal, with and without the cosine.
     double irradiance() const { return irradiance_; }
     double fluence() const { return fluence_; }
-    // For people: "portal, 1024 x 1024 cells; 1024 x 512 texels, equirectangular, 8.0 MiB".
+    // For messages: "portal, 1024 x 1024 cells; 1024 x 512 texels, equirectangular, 8.0 MiB".
     std::string description() const;
 
   private:

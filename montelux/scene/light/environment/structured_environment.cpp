@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t most_cells = std::size_t{1} << 17;
 constexpr double omega_0 = 0.01; // steradians
 
-// The map in blocks of texels, each with its light, solid angle and the direction of its middle.
+// The map in blocks of texels, each with its light, solid angle and central direction.
 struct Cells {
     std::size_t columns, rows;
     std::vector<double> light, solid_angle;
@@ -43,7 +43,7 @@ struct Cells {
     double radiance(std::size_t cell) const { return light[cell] / solid_angle[cell]; }
 };
 
-// A connected part above a threshold, less the parts above the next one.
+// A connected part above a threshold, without the parts above the next one.
 struct Part {
     int level = 0;
     std::uint32_t below = 0; // the part of the next lower level that it lies in
@@ -63,7 +63,7 @@ class StratumBuilder {
         share_out(strata);
         e_.stratum_of_.assign(cells_.size(), StructuredEnvironment::no_stratum);
         centre_of_part_.resize(parts_.size());
-        // From the brightest level down, so that centres of parts within are there.
+        // From the brightest level down, so that the centres of inner parts are known.
         for (std::size_t p = parts_.size(); p-- > 0;) stratify(p);
         list_cells();
     }
@@ -130,7 +130,7 @@ class StratumBuilder {
     void share_out(int strata) {
         double total = 0;
         for (const Part& p : parts_) total += p.importance();
-        // Parts come after the parts that they lie in.
+        // Parts follow the parts that contain them.
         for (std::size_t i = parts_.size(); i-- > 1;) {
             Part &p = parts_[i], &below = parts_[p.below];
             if (p.cells.empty() || p.importance() * strata >= 0.5 * total) continue;
@@ -150,7 +150,7 @@ class StratumBuilder {
         }
     }
 
-    // Farthest-point strata of one part; its centres and those within it go on to the part below.
+    // Farthest-point strata of one part; its centres, and those within it, pass to the part below.
     void stratify(std::size_t index) {
         Part& part = parts_[index];
         std::sort(part.cells.begin(), part.cells.end());

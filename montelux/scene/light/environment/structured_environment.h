@@ -1,4 +1,4 @@
-// Structured importance sampling of an environment map: strata by brightness and size, uniform in each.
+// StructuredEnvironment: samples an environment map by strata of brightness and size, uniform in each.
 #pragma once
 
 #include <algorithm>
@@ -13,16 +13,16 @@
 namespace montelux {
 
 // Agarwal, Ramamoorthi, Belongie, Jensen 2003, "Structured Importance Sampling of Environment Maps":
-// 1. The map is cut at thresholds i * sigma, i = 0 ... 5, of its radiance's standard deviation. What hangs
-//    together above a threshold, without what is above the next one, shares the strata by the importance
-//    Gamma = L * min(solid angle, 0.01 sr)^(1/4) of its light L. Above threshold 0 there is one part.
-// 2. Within a part the centres of its strata are spread by the farthest-point rule of Hochbaum and Shmoys
-//    1985, "A Best Possible Heuristic for the k-Center Problem", from the centres of brighter parts within
-//    it on; each cell goes to the nearest centre.
-// 3. Used with jitter: u.x picks a stratum, all alike, and the direction is uniform in it.
-// A part whose importance is less than half a stratum's is left to the part that it lies in, and every part
-// has a stratum, so their number may differ from the one asked for. Maps of more than 2^17 texels are
-// worked on in square blocks of texels. Where the map is black the density is zero.
+// 1. The map is thresholded at i * sigma, i = 0 ... 5, sigma the standard deviation of its radiance. Each
+//    connected part above a threshold, without the parts above the next one, gets strata in proportion to
+//    its importance Gamma = L * min(solid angle, 0.01 sr)^(1/4), L its light. Above 0 there is one part.
+// 2. Within a part the centres of the strata are placed by the farthest-point rule of Hochbaum and Shmoys
+//    1985, "A Best Possible Heuristic for the k-Center Problem", starting with the centres of brighter parts
+//    within it; each cell belongs to the nearest centre.
+// 3. Used with jitter: u.x picks a stratum, all with equal probability, and the direction is uniform in it.
+// A part with an importance of less than half a stratum is merged with the part around it, and every part has
+// a stratum, so their number may differ from the requested one. Maps of more than 2^17 texels are processed
+// in square blocks of texels. The density is zero where the map is black.
 class StructuredEnvironment {
   public:
     static constexpr int default_strata = 1024;
@@ -33,7 +33,7 @@ class StructuredEnvironment {
                           int strata = default_strata);
 
     std::size_t strata() const { return pdf_.size(); }
-    // The threshold that the part of a stratum lies above, and the middle of the cell that it grew from.
+    // The threshold of the part of a stratum, and the centre of the cell that it grew from.
     int level_of(std::size_t stratum) const { return level_[stratum]; }
     Vec2f centre_of(std::size_t stratum) const;
     static constexpr std::uint32_t no_stratum = 0xffffffff;

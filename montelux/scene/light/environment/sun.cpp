@@ -11,8 +11,8 @@ namespace {
 constexpr double largest_sun = 0.01; // steradians
 constexpr double least_share = 0.1;
 
-// The texels around the brightest one that reach a share of its radiance and hang together with it; empty
-// where they fill too much.
+// The texels connected with the brightest one that reach a share of its radiance; empty if their solid angle
+// is too large.
 std::vector<std::size_t> bright_part(const std::vector<float>& light, const EnvironmentGrid& grid,
                                      std::size_t brightest, double radiance) {
     const auto width = static_cast<std::size_t>(grid.width());
@@ -50,7 +50,7 @@ std::optional<Sun> Sun::take_from(std::vector<float>& light, const EnvironmentGr
     }
     if (!(highest > 0)) return std::nullopt;
     std::vector<std::size_t> part;
-    // With as much of its rim as fits.
+    // As much of its rim as fits.
     for (double level : {0.01, 0.1, 0.5}) {
         part = bright_part(light, grid, brightest, level * highest);
         if (!part.empty()) break;

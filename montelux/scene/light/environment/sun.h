@@ -1,4 +1,4 @@
-// The sun of an environment map: a small bright part that is sampled by itself.
+// The sun of an environment map: a small bright part with a density of its own.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,12 @@
 
 namespace montelux {
 
-// Texels that hang together with the brightest one, hold at least a tenth of the light and fill at most
-// 0.01 sr (the eye sees the sun in 0.00007 sr), and are sampled in proportion to their light.
+// Texels connected with the brightest one that contain at least a tenth of the light, fill at most 0.01 sr
+// (the sun's disc: 0.00007 sr), and are sampled in proportion to their light.
 class Sun {
   public:
-    // Takes the sun's light out of `light`; empty where there is none. A sun that lies across the edge of the
-    // map is found on one side of it. `grid` must outlive it.
+    // Removes the sun's light from `light`; empty if there is no sun. A sun across the edge of the map is
+    // found on one side of it only. `grid` must outlive it.
     static std::optional<Sun> take_from(std::vector<float>& light, const EnvironmentGrid& grid);
 
     // Of the light that it was taken from.
@@ -31,7 +31,7 @@ class Sun {
                 static_cast<float>(double(s.pdf) / grid_->solid_angle(static_cast<int>(row)))};
     }
     float pdf(Vec2f grid) const {
-        // What lies on its far edges belongs to the texels beyond.
+        // Points on its far edges belong to the next texels.
         if (!(double(grid.x) < table_.upper().x && double(grid.y) < table_.upper().y)) return 0;
         return static_cast<float>(double(table_.pdf(grid)) / grid_->solid_angle(static_cast<int>(grid.y)));
     }
@@ -46,13 +46,13 @@ class Sun {
     PiecewiseConstant2D table_; // of the rectangle around it, in grid points
 };
 
-// A density for all but the sun, and the sun: u.x picks one of them by its light.
+// A density for everything but the sun, and the sun's: u.x picks one of them by its light.
 template <typename Density>
 class WithSun {
   public:
     WithSun(std::optional<Sun> sun, Density rest)
         : sun_(std::move(sun)), rest_(std::move(rest)),
-          // Whatever else shines keeps a share.
+          // The rest keeps a share if it is not black.
           share_(!sun_ ? 0.0f
                  : sun_->share() == 1
                      ? 1.0f
@@ -62,7 +62,7 @@ class WithSun {
         if (!(share_ > 0)) return rest_.sample(u);
         if (u.x < share_) {
             EnvironmentPoint p = sun_->sample({std::min(u.x / share_, largest_below_one<float>), u.y});
-            // Regions of the rest may reach over the sun.
+            // Regions of the rest may overlap the sun.
             p.pdf = share_ * p.pdf + (1 - share_) * rest_.pdf(p.grid);
             return p;
         }

@@ -1,4 +1,4 @@
-// Sampling of an environment map texel by texel, in proportion to their light.
+// TabulatedEnvironment: samples an environment map texel by texel, in proportion to their light.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// The parts of all lights in one row.
+// LightParts: the parts of all lights in one sequence.
 #pragma once
 
 #include <algorithm>
@@ -14,13 +14,13 @@ struct LightChoice {
     Index light = no_index;
     Index part = 0;
     float probability = 0;
-    double remapped = 0; // a fresh uniform number in [0, 1), of fewer bits than the one that was given
+    double remapped = 0; // a fresh uniform number in [0, 1), of fewer bits than the argument
 };
 
 class LightParts {
   public:
     LightParts() = default;
-    // Of lights with these numbers of parts. Throws Error for 2^32 - 1 parts and more.
+    // For lights with these numbers of parts. Throws Error for 2^32 - 1 parts and more.
     explicit LightParts(std::span<const Index> counts);
 
     Index size() const { return first_.back(); }

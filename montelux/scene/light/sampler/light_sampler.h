@@ -1,4 +1,4 @@
-// Choosing one light among many: the concept, its models, and the one that a scene uses.
+// LightSampler: chooses one light among many: the concept, its models, and the variant.
 #pragma once
 
 #include <concepts>
@@ -9,10 +9,9 @@
 
 namespace montelux {
 
-// Chooses a part of a light for a point that asks for light. `probability` is that with which `sample`
-// chooses it for the same point; the probabilities of all parts add up to 1. `sample` must not be called
-// without parts. It takes a number in [0, 1), as finely resolved as SampleStream::refined where there are
-// many.
+// Chooses a part of a light for a reference point. `probability` is that of `sample` for the same point; the
+// probabilities of all parts sum to 1. `sample` must not be called without parts. It takes a number in [0,
+// 1), as finely resolved as SampleStream::refined if there are many parts.
 template <typename S>
 concept LightSamplerModel = requires(const S& sampler, const ReferencePoint& from, double u, Index light,
                                      Index part) {

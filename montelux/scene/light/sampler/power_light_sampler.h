@@ -9,10 +9,10 @@
 
 namespace montelux {
 
-// Parts without power are never chosen, unless none has any: then all have the same probability.
+// Parts of power 0 are never chosen, unless all are: then all have the same probability.
 class PowerLightSampler {
   public:
-    // `powers` are those of LightModel::powers, one a part, none negative or infinite.
+    // `powers` are those of LightModel::powers, one per part, finite and not negative.
     PowerLightSampler(LightParts parts, std::span<const double> powers) : parts_(std::move(parts)) {
         if (!powers.empty()) table_.emplace(powers);
     }

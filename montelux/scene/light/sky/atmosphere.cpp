@@ -20,7 +20,7 @@ double ozone_density(double height) {
     return std::max(0.0, height < 25 ? (height - 10) / 15 : (40 - height) / 15);
 }
 
-// Distances along a path are clustered at its begin, where the air is dense: s = d t^3.
+// Distances along a path are clustered at its start, where the air is dense: s = d t^3.
 const std::vector<QuadratureNode>& path_rule() {
     static const std::vector<QuadratureNode> rule = gauss_legendre_rule(128);
     return rule;
@@ -105,7 +105,7 @@ double Atmosphere::height_of_row(int row) {
     return atmosphere_height * x * x;
 }
 
-// Columns are even in the distance to space, which is what paths mostly follow (Bruneton and Neyret 2008,
+// Columns are uniform in the distance to space, which determines most paths (Bruneton and Neyret 2008,
 // "Precomputed Atmospheric Scattering"), from the zenith to the horizon.
 double Atmosphere::cosine_of_column(double height, int column) {
     const double r = earth_radius + height;
@@ -131,7 +131,7 @@ Constituents Atmosphere::integrate_to_space(double height, double mu) const {
         return sum;
     };
     if (mu >= 0) return rising(height, mu);
-    // Down to the lowest point and up again: twice the path from there, less what lies beyond the begin.
+    // Down to the lowest point and up again: twice the path from there, less the part beyond the start.
     const double tangent = std::max(0.0, r * std::sqrt(std::max(0.0, 1 - mu * mu)) - earth_radius);
     return 2 * rising(tangent, 0) + -1 * rising(height, -mu);
 }

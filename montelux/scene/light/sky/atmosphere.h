@@ -1,4 +1,4 @@
-// The clear atmosphere of the earth: what air, aerosol and ozone scatter and absorb, and along which paths.
+// Atmosphere: scattering and absorption by air, aerosol and ozone of a clear sky, and paths through them.
 #pragma once
 
 #include <vector>
@@ -68,8 +68,8 @@ class Atmosphere {
         const double f = at - static_cast<double>(i);
         return (1 - f) * density_[i] + f * density_[i + 1];
     }
-    // What lies between a height and space in a direction; mu is the cosine to the zenith there. The path
-    // must not meet the ground: below horizon_cosine the path at the horizon is given.
+    // The amounts between a height and space in a direction; mu is the cosine to the zenith there. The path
+    // must not reach the ground: below horizon_cosine the path at the horizon is returned.
     Constituents path_to_space(double height, double mu) const;
     static double horizon_cosine(double height) {
         const double r = earth_radius / (earth_radius + height);
@@ -92,10 +92,10 @@ class Atmosphere {
         b.add(static_cast<float>(c.ozone), ozone_);
         return b;
     }
-    // Share of light that passes along a path.
+    // Transmittance of a path.
     Bands transmittance(const Constituents& path) const { return exp(-1.0f * extinction(path)); }
-    // Of the sun: transmittance to its centre, times the part of its disc above the horizon. mu is the cosine
-    // of the centre to the zenith.
+    // For the sun: transmittance to its centre, times the part of its disc above the horizon. mu is the
+    // cosine of the centre to the zenith.
     Bands sunlight(double height, double mu) const;
     static double visible_part_of_sun(double height, double mu);
 

@@ -1,4 +1,4 @@
-// Values at the wavelengths that the sky is computed for: 360, 370, ... 830 nm.
+// Bands: values at the wavelengths of the sky model: 360, 370, ... 830 nm.
 #pragma once
 
 #include <algorithm>

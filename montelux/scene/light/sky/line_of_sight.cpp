@@ -29,7 +29,7 @@ std::vector<LineOfSight> look(const Atmosphere& atmosphere, const ScatteredLight
         const auto step = static_cast<float>(end - begin);
         begin = end;
 
-        // The place, in the plane of the zenith and the line.
+        // The position, in the plane of the zenith and the line.
         const double along = middle * sin_view, up = earth_radius + middle * mu;
         const double r = std::hypot(along, up), height = r - earth_radius;
         const double mu_view = std::clamp((along * sin_view + up * mu) / r, -1.0, 1.0);
@@ -60,7 +60,7 @@ std::vector<LineOfSight> look(const Atmosphere& atmosphere, const ScatteredLight
             seen[a].aureole += aerosol * from_sun;
         }
     }
-    // Harmonics that end may be a little below zero where there is no light.
+    // Truncated harmonics may be slightly negative in darkness.
     for (LineOfSight& line : seen)
         for (Float4& v : line.smooth.v) v = max(v, Float4{});
     return seen;

@@ -12,13 +12,13 @@ namespace {
 
 constexpr int most_scatterings = 200;
 constexpr float convergence = 1e-4f;
-// Below this zenith angle of the sun (radians) light changes slowly with it.
+// Below this zenith angle of the sun (radians) light varies slowly with it.
 constexpr double high_sun = 75 * pi / 180;
 
 double air_phase(double mu, double) { return rayleigh_phase(mu); }
 
-// 1 - e^-a and what of a linear source reaches the near end of a path of optical thickness a: weights of the
-// source at the far and at the near end.
+// 1 - e^-a, and the weights of a linear source at the far and the near end of a path of optical thickness a,
+// as seen from the near end.
 struct Passage {
     Bands transmittance, far, near;
 
@@ -36,7 +36,7 @@ struct Passage {
 
 } // namespace
 
-// What all columns have in common.
+// Tables common to all columns.
 struct ScatteredLight::Layers {
     std::vector<QuadratureNode> cosines;
     std::vector<std::vector<double>> up, down; // harmonics of the streams
@@ -120,7 +120,7 @@ void ScatteredLight::solve(const Layers& layers, const Atmosphere& atmosphere, c
                                 : layers.down[static_cast<std::size_t>(stream - streams)];
     };
 
-    // Sources over the extinction, [m][level][stream]; streams that look up, then those that look down.
+    // Sources over the extinction, [m][level][stream]; upward streams, then downward ones.
     constexpr std::size_t per_order = static_cast<std::size_t>(levels) * sides;
     std::vector<Bands> from_sun((sky_order + 1) * per_order);
     std::vector<Bands> sun(levels);
@@ -147,11 +147,11 @@ void ScatteredLight::solve(const Layers& layers, const Atmosphere& atmosphere, c
 
     const Bands direct = static_cast<float>(std::max(0.0, mu_sun)) * sun[0];
     std::vector<Bands> source(per_order);
-    // Orders in azimuth know nothing of one another.
+    // Azimuthal orders are independent.
     for (int m = 0; m <= sky_order; ++m) {
         Bands ground = static_cast<float>(inv_pi) * ground_albedo * direct;
         for (int scatterings = 0; scatterings < most_scatterings; ++scatterings) {
-            // What light there is is scattered ...
+            // The present light is scattered ...
             for (int level = 0; level < levels; ++level) {
                 const auto i = static_cast<std::size_t>(level);
                 const Bands* held = light(column, level);
@@ -171,7 +171,7 @@ void ScatteredLight::solve(const Layers& layers, const Atmosphere& atmosphere, c
                     source[at] = b;
                 }
             }
-            // ... and passes on to the other levels, where its harmonics are taken.
+            // ... and passes on to the other levels, where its harmonics are computed.
             std::vector<Bands> next(static_cast<std::size_t>(levels * (sky_order + 1)));
             const float circle = static_cast<float>(m == 0 ? 2 * pi : pi);
             Bands onto_ground;
@@ -205,7 +205,7 @@ void ScatteredLight::solve(const Layers& layers, const Atmosphere& atmosphere, c
                 }
             }
             ground = static_cast<float>(inv_pi) * ground_albedo * (direct + onto_ground);
-            // The share of all light that this scattering changed.
+            // Relative change of the light by this order.
             Float4 change{};
             for (int level = 0; level < levels; ++level) {
                 Bands* held = light(column, level);
@@ -261,7 +261,7 @@ Bands ScatteredLight::Source::operator()(double sun_zenith, double cos_azimuth) 
     const int side = light_->side_columns_;
     const double x = side * (1 + std::copysign(std::sqrt(std::abs(offset)), offset));
     const int c = std::min(static_cast<int>(x), 2 * side - 1);
-    // Between columns light is linear in the angle.
+    // Between columns light is interpolated linearly in the angle.
     const double from = light_->column_angle(c), to = light_->column_angle(c + 1);
     const auto across =
         static_cast<float>(to > from ? std::clamp((sun_zenith - from) / (to - from), 0.0, 1.0) : 0.0);

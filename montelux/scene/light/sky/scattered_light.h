@@ -1,4 +1,4 @@
-// Light that is scattered more than once, by discrete ordinates in columns of air under different suns.
+// ScatteredLight: multiply scattered light, by discrete ordinates in columns of air under different suns.
 #pragma once
 
 #include <array>
@@ -9,27 +9,25 @@
 
 namespace montelux {
 
-// In each column the air is taken for flat, and so for the same at all distances (discrete ordinates,
-// Chandrasekhar 1960, "Radiative Transfer", solved by successive orders of scattering); sunlight reaches it
-// around the curved earth (pseudo-spherical approximation, Dahlback and Stamnes 1991). What is kept is the
-// light at each height in spherical harmonics, from which the last scattering towards the eye is taken along
-// the curved path: Rozanov et al. 2001, "Limb scattering measurements: combined differential-integral
-// approach". So curvature is left out only between the first and the last scattering.
+// In each column the air is assumed flat, and so the same at all distances (discrete ordinates, Chandrasekhar
+// 1960, "Radiative Transfer", solved by successive orders of scattering); sunlight reaches it around the
+// curved earth (pseudo-spherical approximation, Dahlback and Stamnes 1991). The light at each height is
+// stored in spherical harmonics; the last scattering towards the eye is integrated along the curved path:
+// Rozanov et al. 2001, "Limb scattering measurements: combined differential-integral approach". So curvature
+// is neglected only between the first and the last scattering.
 class ScatteredLight {
     static constexpr int levels = 44, most_side_columns = 8, most_columns = 2 * most_side_columns + 1;
 
   public:
-    // Columns whose sun stands within `range` radians of the angle `sun_zenith`. Ground of Lambert's law.
+    // Columns whose sun is within `range` radians of the angle `sun_zenith`. Lambertian ground.
     ScatteredLight(const Atmosphere& atmosphere, const Bands& ground_albedo, double sun_zenith, double range);
 
-    // Light that is scattered per km towards an eye, for sunlight of irradiance 1 outside, without that which
-    // comes straight from the sun. For one place and all azimuths: at a height, looking with cosine mu to the
-    // zenith there.
+    // Light scattered per km towards an eye, for sunlight of irradiance 1 outside, without direct sunlight.
+    // For one position and all azimuths: at a height, looking with cosine mu to the zenith there.
     class Source {
       public:
         Source(const ScatteredLight& light, double height, double mu, const Constituents& density);
-        // Where the sun stands at a zenith angle and at an azimuth of this cosine from that of the eye's
-        // direction.
+        // The sun at a zenith angle and at an azimuth of this cosine from that of the eye's direction.
         Bands operator()(double sun_zenith, double cos_azimuth);
 
       private:

@@ -1,4 +1,4 @@
-// Measured data behind the sky: sunlight outside the atmosphere, and what ozone takes of it.
+// Measured data of the sky: sunlight outside the atmosphere, and absorption by ozone.
 #pragma once
 
 #include <array>

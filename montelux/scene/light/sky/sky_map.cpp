@@ -23,7 +23,7 @@ Vec3f direction(const EnvironmentGrid& grid, int x, int y, float u, float v) {
     return grid.direction({static_cast<float>(x) + u, static_cast<float>(y) + v});
 }
 
-// Points of the disc, spread evenly, bring their share to the texels that they fall in.
+// Evenly spread points of the disc add their share to the texels that contain them.
 void add_sun(Image& picture, const EnvironmentGrid& grid, const SkyModel& sky) {
     const SunDisc disc = SunDisc::of_radius(sky.sun_direction(), sun_angular_radius);
     constexpr int per_side = 512;

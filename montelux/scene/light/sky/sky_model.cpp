@@ -21,7 +21,7 @@ void check(const char* name, double value, double low, double high) {
     throw Error("sky", text);
 }
 
-// A value between the bands at either side of a wavelength.
+// Interpolates between the bands around a wavelength.
 struct BandPlace {
     std::size_t i;
     float f;
@@ -36,7 +36,7 @@ struct BandPlace {
     }
 };
 
-// What integrals against f of sunlight through the bands amount to, as weights of the bands.
+// Integrals against f of sunlight through the bands, as weights of the bands.
 template <typename F>
 Bands integral_weights(const F& f) {
     std::array<double, Bands::count> weights{};
@@ -58,7 +58,7 @@ double dot(const Bands& a, const Bands& b) {
     return sum;
 }
 
-// How far a direction's row is from the horizon: rows are dense there, where the sky changes fastest.
+// Row of a direction relative to the horizon: rows are dense there, where the sky changes fastest.
 float row_of(float elevation) { return std::sqrt(std::max(elevation, 0.0f) * static_cast<float>(2 / pi)); }
 
 } // namespace
@@ -91,7 +91,7 @@ SkyModel::SkyModel(const SkySettings& settings)
                     integral_weights([](std::size_t i) { return static_cast<double>(cie_z[i]); })};
 
     const Atmosphere atmosphere(a);
-    // How far around the earth a line of sight reaches before it leaves the atmosphere.
+    // How far around the earth a line of sight extends before it leaves the atmosphere.
     const double range = std::acos(earth_radius / atmosphere_radius);
     const ScatteredLight scattered(atmosphere, albedo, zenith, range);
     smooth_.resize(static_cast<std::size_t>(rows) * columns);
@@ -141,7 +141,7 @@ SkyModel::Place SkyModel::place(Vec3f w) const {
     const float y = row_of(std::atan2(w.z, std::sqrt(along * along + across * across))) * (rows - 1);
     const float x = std::atan2(std::abs(across), along) * static_cast<float>((columns - 1) / pi);
     Place p;
-    // What is no number goes to the first.
+    // NaN maps to the first row.
     const std::size_t row = y >= 0 ? std::min<std::size_t>(static_cast<std::size_t>(y), rows - 2) : 0;
     const std::size_t column = x >= 0 ? std::min<std::size_t>(static_cast<std::size_t>(x), columns - 2) : 0;
     p.first = row * columns + column;

@@ -1,4 +1,4 @@
-// The clear sky of a place on earth: spectral radiance from all directions, and the sun's.
+// SkyModel: the clear sky of the earth: spectral radiance from all directions, and the sun's.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace montelux {
 
-// Where the sun may stand, degrees above the horizon; below it the light that is left is that of dusk.
+// Range of the sun's elevation, degrees above the horizon; below it only twilight is left.
 inline constexpr double lowest_sun = -6, highest_sun = 90;
-// Of AtmosphereSettings::turbidity: pure air, and dense haze.
+// Range of AtmosphereSettings::turbidity: pure air to dense haze.
 inline constexpr double least_turbidity = 1, most_turbidity = 10;
 
 struct SkySettings {
@@ -21,9 +21,9 @@ struct SkySettings {
     Spectrum ground_albedo{0.2f};
 };
 
-// Seen from sea level; +z is up. All light that air, aerosol, ozone and the ground scatter, any number of
-// times, without polarisation and refraction; docs/environment-light.md says how it is computed and how far
-// that is off. Below the horizon is the ground, as bright as sun and sky make it.
+// Seen from sea level; +z is up. All light scattered by air, aerosol, ozone and the ground, any number of
+// times, without polarisation and refraction; docs/environment-light.md describes the computation and its
+// accuracy. Below the horizon is the ground, lit by sun and sky.
 class SkyModel {
   public:
     // Takes some tenths of a second. Throws Error for settings out of their ranges.
@@ -41,8 +41,8 @@ class SkyModel {
     // functions: times luminous_efficacy, Y is luminance in cd/m^2.
     double mean_radiance(Vec3f w) const;
     Vec3d tristimulus(Vec3f w) const;
-    // Of the sun's disc, through the air towards its centre (or to the horizon, where that is below it). The
-    // disc shines alike all over; its lower part may be below the horizon.
+    // Radiance of the sun's disc, through the air towards its centre (or to the horizon, if the centre is
+    // below it). Uniform over the disc, whose lower part may be below the horizon.
     const SpectrumTable& sun_radiance() const { return sun_radiance_; }
     // Irradiance on the horizontal ground, W/(m^2 nm).
     SpectrumTable sky_irradiance() const { return in_sunlight(sky_irradiance_); }

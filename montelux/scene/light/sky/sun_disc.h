@@ -1,4 +1,4 @@
-// The sun as it is seen: a disc infinitely far away.
+// SunDisc: the visible sun, a disc at infinity.
 #pragma once
 
 #include <algorithm>
@@ -10,11 +10,10 @@
 
 namespace montelux {
 
-// Of the sun as seen from the earth, radians.
+// Angular radius of the sun from the earth, radians.
 inline constexpr double sun_angular_radius = 0.2666 * pi / 180;
 
-// Part of a small disc that is above a horizon, whose centre is `above` over it and radius `radius` (both
-// radians).
+// Part of a small disc above a horizon; its centre is `above` over it, its radius is `radius` (both radians).
 inline double part_above_horizon(double above, double radius) {
     const double x = above / radius;
     if (x >= 1) return 1;
@@ -40,7 +39,7 @@ struct SunDisc {
         const double s = std::sin(radius);
         return {centre, static_cast<float>(versine_from_sin_squared(s * s))};
     }
-    // |w - centre|^2 = 2 (1 - cos), which has all its digits where the cosine has none.
+    // |w - centre|^2 = 2 (1 - cos), without the cancellation of the cosine.
     bool contains(Vec3f w) const { return length_squared(w - centre) < 2 * versine; }
     double solid_angle() const { return 2 * pi * static_cast<double>(versine); }
     float pdf() const { return uniform_cone_pdf_from_versine(versine); }
