@@ -1,4 +1,4 @@
-// Comparing vectors by component.
+// Matchers that compare vectors by component.
 #pragma once
 
 #include <concepts>

@@ -3,8 +3,8 @@
 
 namespace montelux {
 
-// A p-value below it fails. Seeds are fixed, so that a test that passed once always does; the level bounds
-// what new tests, and changes of the order of random numbers, may fail of by chance.
+// Smaller p-values fail. Seeds are fixed, so a test that has passed always passes; the level bounds the false
+// alarms of new tests and of changes in the order of random numbers.
 inline constexpr double significance = 1e-6;
 
 } // namespace montelux

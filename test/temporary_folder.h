@@ -1,4 +1,4 @@
-// A folder of a test's own that goes away with it; tests run at once, so that no two may share a file.
+// TemporaryFolder: a folder of one test, removed at its end; tests run in parallel and must not share files.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// A scene with its accelerator, random rays, and ray intersection without any acceleration to compare with.
+// Fixtures for rays: a scene with its accelerator, random rays, and brute-force intersection.
 #pragma once
 
 #include <cmath>
@@ -81,7 +81,7 @@ inline TriangleMesh soup(Draws& draws, int triangles, float size) {
     return mesh;
 }
 
-// An octahedron whose faces have been split in four `levels` times and pushed out to the sphere; vertices are
+// An octahedron whose faces are split in four `levels` times and projected onto the sphere; vertices are
 // shared.
 inline TriangleMesh geodesic_sphere(int levels, Vec3f center, float radius) {
     std::vector<Vec3d> p{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -108,8 +108,8 @@ inline TriangleMesh geodesic_sphere(int levels, Vec3f center, float radius) {
     return mesh;
 }
 
-// The closest hit, found by trying everything in double precision. `margin`: how far, in units of the shape,
-// the hit is from an edge that rounding may put on either side.
+// The closest hit by brute force in double precision. `margin`: distance of the hit from an edge that
+// rounding may put on either side, in units of the shape.
 struct ReferenceHit {
     double t = 1e300;
     Index shape = no_index, primitive = 0, instance = no_index;
@@ -134,7 +134,7 @@ class BruteForce {
         if (best_.shape == no_index) return std::nullopt;
         return best_;
     }
-    // Of the last ray: the margin by which it just hit or just missed anything.
+    // Of the last ray: the margin by which it hit or missed.
     double closest_call() const { return closest_miss_; }
 
   private:

@@ -1,5 +1,5 @@
-// Rays against the scene, compared with trying every primitive in double precision. Nothing here is left to
-// chance: draws are fixed, and rays that pass within rounding of an edge are told apart and counted.
+// Rays against the scene, compared with brute force in double precision. Nothing here is random: draws are
+// fixed, and rays that pass within rounding of an edge are excluded and counted.
 #include "test/accel/accel_testing.h"
 #include <gtest/gtest.h>
 
@@ -100,7 +100,7 @@ TEST(Intersect, PartialAndTransformedQuadrics) {
 TEST(Intersect, InstancesOfMeshesAndQuadrics) {
     Draws draws(7);
     Scene scene;
-    add_shape(scene, soup(draws, 20, 0.3f)); // stands in the world itself
+    add_shape(scene, soup(draws, 20, 0.3f)); // in the world itself
     for (int object = 0; object < 2; ++object) {
         ObjectDefinition definition;
         definition.shapes.push_back(add_shape(scene, soup(draws, 12, 0.5f), false));

@@ -210,7 +210,7 @@ TEST(Robust, ClosedMeshesHaveNoHoles) {
         }
 }
 
-// A ray that enters a sphere leaves it on the far side: the offset goes the way of the ray.
+// A ray that enters a sphere leaves it on the far side: the offset is along the ray.
 TEST(Robust, RaysCrossClosedShapes) {
     Draws draws(29);
     for (float size : {1e-3f, 1.0f, 1e4f})
@@ -292,8 +292,7 @@ TEST(Robust, ShadowRaysReachTheirLights) {
                     if (hit.shape != 0) continue; // from within the lamp
                     SurfacePoint s = surface_point(world.tables.view(), ray, hit, false);
                     Vec2f u = draws.uniform_2d();
-                    auto sample =
-                        sample_li({world.tables.view(), 0}, 0, {s.p, s.ng, s.error}, u, lambda);
+                    auto sample = sample_li({world.tables.view(), 0}, 0, {s.p, s.ng, s.error}, u, lambda);
                     if (!sample) continue;
                     // A partial sphere hides some of its own points, and what lies under the floor is hidden.
                     if (dot(sample->wi, s.ng) < 1e-3f) continue;

@@ -1,4 +1,4 @@
-// However many ranks share a render, and however it is broken off, it ends with the bits of one process.
+// A render shared by any number of ranks, interrupted or not, ends with the bits of one process.
 #include "test/cluster/local_job.h"
 #include "test/render/mixed_scene.h"
 #include <atomic>
@@ -87,7 +87,7 @@ TEST(SharedRender, AnyNumberOfRanksGivesTheSameBits) {
         }
 }
 
-// Stopped after some thousand samples and gone on with by another number of ranks, none of which knows the
+// Interrupted after some thousand samples and resumed by another number of ranks, none of which knows the
 // pixels.
 TEST(SharedRender, BrokenRendersEndWithTheSameBits) {
     for (bool adaptive : {false, true}) {
@@ -120,7 +120,7 @@ TEST(SharedRender, BrokenRendersEndWithTheSameBits) {
     }
 }
 
-// The film is looked at between the rounds, and tiles are told of as they come home.
+// Snapshots between the rounds, and finished tiles reported as they arrive.
 TEST(SharedRender, CanBeLookedAt) {
     const SceneBuilder b = scene(SamplerKind::independent, 600);
     RenderState whole(b.description.film), state(b.description.film);
@@ -190,8 +190,8 @@ TEST(SharedRender, AnotherRankCanBeAskedToEnd) {
     EXPECT_GT(samples, 10'000u);
 }
 
-// A rank says hello and is never heard of again: the render ends, what the others did is there, and going on
-// from it gives the bits of a render that nothing happened to.
+// A rank falls silent after its first message: the render ends with the work of the others, and resumes to
+// the bits of an undisturbed one.
 TEST(SharedRender, SilentRanksAreGivenUp) {
     const SceneBuilder b = scene(SamplerKind::independent, 400);
     RenderState whole(b.description.film), state(b.description.film), saved(b.description.film);

@@ -1,5 +1,5 @@
-// What the programs of docs/integration.md, made into a test by page_examples.awk, have beside their own
-// text.
+// Declarations that the programs of docs/integration.md need in addition to their own text; page_examples.awk
+// makes a test of them.
 #pragma once
 
 #include "test/temporary_folder.h"
@@ -34,7 +34,7 @@
 
 namespace montelux::page {
 
-// Collects what goes to std::cout from its making to `end`.
+// Captures std::cout from construction to `end`.
 class Printed {
   public:
     explicit Printed(int line) : line_(line), before_(std::cout.rdbuf(text_.rdbuf())) {}
@@ -56,7 +56,7 @@ class Printed {
     std::streambuf* before_;
 };
 
-// Programs write files: into a folder of their own, which is removed.
+// Programs write files: into a temporary folder.
 class PageExamples : public testing::Test {
   protected:
     void SetUp() override { std::filesystem::current_path(folder_.path()); }
@@ -67,8 +67,7 @@ class PageExamples : public testing::Test {
     TemporaryFolder folder_;
 };
 
-// Names that programs use and the page leaves to the reader: an integrand, one that resembles it, a family, a
-// density.
+// Names that the page leaves to the reader: an integrand, one that resembles it, a family, a density.
 inline const Domain domain{{0, std::numbers::pi / 2}, {0, 1}};
 inline const Method method;
 inline const Budget budget{.evaluations = 20'000};

@@ -1,4 +1,4 @@
-// A library for LD_PRELOAD, or linked into a test, that makes one call on files go wrong. Never installed.
+// A library for LD_PRELOAD, or linked into a test, that makes one file operation fail. Never installed.
 //
 // Counted are the calls of this process and its children that open, write, truncate, synchronise, close,
 // rename or link something below a folder. From the environment:

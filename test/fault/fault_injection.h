@@ -1,9 +1,9 @@
-// Control of the fault injection by the process that it is linked into.
+// Controls the fault injection from within the process that it is linked into.
 #pragma once
 
 namespace montelux::fault {
 
-// Reads the environment anew and counts from 0 again.
+// Reads the environment again and restarts the count.
 void restart();
 // Calls on the folder so far.
 long count();

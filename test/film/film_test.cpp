@@ -186,7 +186,7 @@ TEST(Film, DevelopsTheCropWithItsLayers) {
             EXPECT_EQ(value("samples", x, y), 2);
             EXPECT_EQ(value("replicates", x, y), 2);
             EXPECT_FLOAT_EQ(value("outlier", x, y), 0.5f);
-            EXPECT_EQ(value("warning", x, y), 3); // nobody can tell from two replicates
+            EXPECT_EQ(value("warning", x, y), 3); // two replicates are too few to decide
             EXPECT_FLOAT_EQ(value("albedo.R", x, y), 0.1f * static_cast<float>(x + 3));
             EXPECT_FLOAT_EQ(value("albedo.B", x, y), 0.3f);
             EXPECT_FLOAT_EQ(value("N.Y", x, y), 0.5f);

@@ -58,7 +58,7 @@ MergedSlices merge_all(int slices, int replicates) {
     return merge(pictures, names);
 }
 
-// Of many replicates and few, of different lengths; one replicate tells no spread of its own.
+// With many replicates and few, of different lengths; one replicate has no spread.
 TEST(MergeSlices, AllLayersAreThoseOfTheWhole) {
     const int replicates = 40;
     const Film film = slice_film(0, 1, replicates);

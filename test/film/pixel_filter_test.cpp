@@ -1,6 +1,6 @@
-// Pixel filters: values, and samples whose weights stand in for them. Sums of random samples are compared at
-// 5.5 standard errors (one false alarm in 26 million) and those of single cells at 6.5 (one in 12 billion):
-// below 3e-6 for the whole file.
+// Pixel filters: values, and weights of their samples. Sums of random samples are compared at 5.5 standard
+// errors (one false alarm in 26 million) and those of single cells at 6.5 (one in 12 billion): below 3e-6 for
+// the whole file.
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>

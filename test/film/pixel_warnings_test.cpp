@@ -51,7 +51,7 @@ TEST(PixelWarnings, ErrorsThatAreNotKnownSayNothing) {
     EXPECT_FALSE(pixel_spread(2, 16, 16, 0.49).bright_replicate);
 }
 
-// Pixels that nobody can judge must not look like reliable ones.
+// Pixels with too few replicates must not look like reliable ones.
 TEST(PixelWarnings, TooFewReplicatesAreReported) {
     Film film({.width = 2, .height = 1, .crop = {0, 0, 2, 1}});
     PhiloxStream random(3);

@@ -1,4 +1,4 @@
-// A scene that was read once can be read again from what was kept.
+// A scene can be read again from the recorded files.
 #include "test/temporary_folder.h"
 #include <filesystem>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The format of a scene is known by the file's content; other files are told for what they look like.
+// Scene formats are recognised by content; files of other kinds are named in the error.
 #include "test/formats/gzip.h"
 #include "test/temporary_folder.h"
 #include <filesystem>

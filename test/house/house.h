@@ -1,4 +1,4 @@
-// The table of rooms as CMakeLists.txt states it, and the rules that every source file is held to.
+// The table of rooms in CMakeLists.txt, and the rules for all source files.
 #pragma once
 
 #include <filesystem>
@@ -10,12 +10,12 @@
 
 namespace montelux::house {
 
-// From a room to the rooms that it may include, in the order of declaration.
+// Maps a room to the rooms that it may include, in the order of declaration.
 struct RoomTable {
     std::vector<std::string> order;
     std::map<std::string, std::vector<std::string>> uses;
 
-    // The room that a path below montelux/ lies in (the longest name that fits); empty where there is none.
+    // The room of a path below montelux/ (the longest name that fits); empty if there is none.
     std::string room_of(std::string_view path) const;
     bool may_include(const std::string& from, const std::string& to) const;
 };
@@ -38,27 +38,26 @@ struct Include {
 };
 std::vector<Include> includes_of(const SourceFile& file);
 
-// Each returns one sentence for each offence, "path:line: ...", and nothing for a house in order.
+// Each returns one sentence per offence, "path:line: ...", and nothing if there is none.
 std::vector<std::string> wrong_rooms(const RoomTable& rooms, const std::vector<SourceFile>& files);
 std::vector<std::string> circular_rooms(const RoomTable& rooms);
 std::vector<std::string> circular_headers(const std::vector<SourceFile>& files);
 std::vector<std::string> fenced_libraries(const std::vector<SourceFile>& files);
 std::vector<std::string> headers_without_purpose(const std::vector<SourceFile>& files);
-// Headers at the top of a folder that files of one of its subfolders alone include: they belong there.
+// Headers at the top of a folder that only files of one of its subfolders include: they belong there.
 std::vector<std::string> misplaced_headers(const std::vector<SourceFile>& files, const std::string& folder);
-// Files of more than `limit` lines; tables of measured data (*_data.*, *_table_data.*) are left out.
+// Files of more than `limit` lines, except tables of measured data (*_data.*, *_table_data.*).
 std::vector<std::string> long_files(const std::vector<SourceFile>& files, std::size_t limit);
-// Paths of files in `backticks` on a page, from the root or below montelux/, of which there is no file; a path
-// with NAME in it is a pattern.
+// Paths of files in `backticks` on a page, from the root or below montelux/, that do not exist; a path with
+// NAME in it is a pattern.
 std::vector<std::string> missing_paths(const SourceFile& page, const std::filesystem::path& root);
-// What a page of documentation names in `backticks` but does not exist among these files: headers (`mc/a/b.h`
-// below montelux/), test files (`mc/a/b_test.cpp` below test/), and behind such a file, until the end of the
-// line, its tests: `Suite.Name`, `Suite.*`, `.Name` of the suite before, `Prefix/Suite.Name/...`.
+// Names in `backticks` on a page that do not exist among these files: headers (`mc/a/b.h` below montelux/),
+// test files (`mc/a/b_test.cpp` below test/), and after such a file, until the end of the line, its tests:
+// `Suite.Name`, `Suite.*`, `.Name` of the suite before, `Prefix/Suite.Name/...`.
 std::vector<std::string> missing_names(const SourceFile& page, const std::vector<SourceFile>& files);
 SourceFile read_page(const std::string& path, const std::filesystem::path& root);
-// Links and pictures of these Markdown pages, [text](target), that lead nowhere: a path (relative to the page) of
-// which there is no file below `root`, or a #heading that the page does not have. Addresses with a scheme and what
-// stands in code are left out.
+// Broken links and pictures of these Markdown pages, [text](target): a path (relative to the page) without a
+// file below `root`, or a #heading that the page does not have. Ignores addresses with a scheme, and code.
 std::vector<std::string> broken_links(const std::vector<SourceFile>& pages,
                                       const std::filesystem::path& root);
 

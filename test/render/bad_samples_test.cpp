@@ -1,4 +1,4 @@
-// Samples that are not numbers, infinite or negative: counted, told, replayed; stopping early; clamping.
+// Samples that are NaN, infinite or negative: counted, reported, replayed; stopping early; clamping.
 #include "test/render/mixed_scene.h"
 #include <gtest/gtest.h>
 #include <limits>
@@ -98,8 +98,7 @@ TEST(BadSamples, ReportsMergeInAnyOrder) {
     EXPECT_EQ(*with_none.first, low);
 }
 
-// Whenever it is told to stop, every pixel holds whole samples, and those that it has are those of a full
-// run.
+// Whenever it is stopped, every pixel holds whole samples, equal to those of a full run.
 TEST(Cancel, LeavesAValidFilm) {
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol})
         for (std::uint64_t after : {std::uint64_t{1}, std::uint64_t{2000}}) {

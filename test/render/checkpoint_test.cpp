@@ -1,4 +1,4 @@
-// Renders that are stopped, saved and continued end with the bits of one that never was.
+// An interrupted and resumed render ends with the bits of an uninterrupted one.
 #include "test/render/mixed_scene.h"
 #include "test/temporary_folder.h"
 #include <filesystem>
@@ -24,7 +24,7 @@ void expect_same(const Film& a, const Film& b) {
     EXPECT_EQ(differing, 0);
 }
 
-// Breaks the render off after some more samples each time, and goes on from the file.
+// Interrupts the render after some more samples each time, and resumes it from the file.
 TEST_F(Checkpoint, BrokenRendersEndWithTheSameBits) {
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol, SamplerKind::stratified})
         for (bool adaptive : {false, true}) {

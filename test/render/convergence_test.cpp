@@ -1,5 +1,5 @@
-// Are the errors that pixels claim honest, do they fall as they should, and do all strategies agree? The
-// z-tests of sums stand at 5.5 standard errors (4e-8), the binomial tests of calibration at 1e-7.
+// Whether pixel errors are calibrated and fall at the right rate, and all strategies agree. z-tests of sums
+// are at 5.5 standard errors (4e-8), the binomial tests of calibration at 1e-7.
 #include "test/render/mixed_scene.h"
 #include <algorithm>
 #include <gtest/gtest.h>

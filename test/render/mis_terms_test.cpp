@@ -1,5 +1,5 @@
-// The two terms of multiple importance sampling, as pictures of their own: they follow the paths of the
-// strategy mis, and add up to its picture.
+// The two terms of multiple importance sampling as separate pictures: they follow the paths of the strategy
+// mis, and sum to its picture.
 #include "test/render/mixed_scene.h"
 #include <gtest/gtest.h>
 

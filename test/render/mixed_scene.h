@@ -9,8 +9,8 @@ inline RoughnessParameter alpha_of(float alpha) {
     return {FloatParameter{alpha}, FloatParameter{alpha}, false};
 }
 
-// A coloured box, open in front, with a rough conductor, a coated ball and one of glass, under two area
-// lights and an environment; `scale` is its unit of length.
+// A coloured box, open in front, that contains a rough conductor, a coated ball and a glass ball, with two
+// area lights and an environment; `scale` is its unit of length.
 inline SceneBuilder mixed_scene(double scale = 1, int width = 16, int height = 16) {
     SceneBuilder b;
     b.description.film.width = width;

@@ -1,4 +1,4 @@
-// Emissive meshes whose shining side is not obvious: every strategy finds the same light. Each comparison is
+// Emissive meshes whose emitting side is not obvious: every strategy finds the same light. Each comparison is
 // at 5 standard errors (a false alarm in 1.7 million) plus rounding.
 #include "test/render/scene_testing.h"
 #include <gtest/gtest.h>

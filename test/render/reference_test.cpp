@@ -1,5 +1,5 @@
-// The ground scenes against converged pictures of pbrt-v4, where they are at hand. Every pixel of both has a
-// known error, so the differences can be told from noise.
+// The reference scenes against converged pictures of pbrt-v4, if available. Every pixel of both has a known
+// error, so differences can be distinguished from noise.
 #include <algorithm>
 #include <filesystem>
 #include <gtest/gtest.h>

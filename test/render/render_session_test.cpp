@@ -1,4 +1,4 @@
-// Sessions: resumed, looked at while they run, told of tile by tile, and denoised by whoever can.
+// RenderSession: resuming, snapshots, finished tiles, denoising.
 #include "test/render/mixed_scene.h"
 #include "test/temporary_folder.h"
 #include <algorithm>
@@ -97,7 +97,7 @@ TEST(FinishedTiles, EachIsToldOfOncePerRound) {
         }
 }
 
-// A resumed render tells of the tiles that its interrupted round had finished as well.
+// A resumed render reports the tiles that its interrupted round had finished as well.
 TEST(FinishedTiles, AreToldOfAfterAResumeInTheMiddleOfARound) {
     const auto d = described(SamplerKind::independent, 64);
     const Renderer renderer(*d);
@@ -147,7 +147,7 @@ TEST(Snapshots, ChangeNoBitAndAreBetweenSamples) {
     EXPECT_EQ(header_of(*result.image), header_of(*whole.image));
     ASSERT_GT(seen.size(), 5u);
 
-    // A pixel of a snapshot is that of a render of so many samples.
+    // A pixel of a snapshot equals that of a render with this number of samples.
     std::map<int, Image> renders;
     auto rendered = [&](int spp) -> const Image& {
         const auto known = renders.find(spp);
@@ -177,7 +177,7 @@ TEST(Snapshots, ChangeNoBitAndAreBetweenSamples) {
     EXPECT_EQ(differing, 0) << "of " << compared;
 }
 
-// Threads that look at once each get a copy; one that does not wait gets none or a whole one.
+// Concurrent snapshots each get a copy; one that does not wait gets none or a complete one.
 TEST(Snapshots, ManyMayLookAtOnce) {
     const auto d = described(SamplerKind::sobol, 200);
     RenderSession session(d, {});
@@ -246,7 +246,7 @@ TEST_F(Sessions, SettingsThatMakeNoSenseAreRefused) {
     EXPECT_THROW(slice.prepare(), Error);
 }
 
-// The render goes on, and says so.
+// The render continues, and reports it.
 TEST_F(Sessions, CheckpointsThatFailCostNothingElse) {
     const auto d = described(SamplerKind::independent, 16);
     RenderSession plain(d, {}),

@@ -1,5 +1,5 @@
-// One sample, traced again: it is the sample of the render to the last bit, its record adds up, and what made
-// it bad is named.
+// Replayed samples equal those of the render to the last bit; their records add up, and name what made a
+// sample bad.
 #include "test/render/mixed_scene.h"
 #include <gtest/gtest.h>
 #include <limits>
@@ -69,7 +69,7 @@ TEST(Replay, IsTheSampleOfEveryStrategy) {
 
 float largest_of(SampledSpectrum s) { return max_value(max(s, -s)); }
 
-// Each vertex goes on with the throughput that the one before left it, and the contributions are the
+// Each vertex starts with the throughput that the previous one left, and the contributions sum to the
 // radiance.
 TEST(Replay, TheRecordAddsUp) {
     for (Strategy strategy : all_strategies) {

@@ -1,4 +1,4 @@
-// Which samples per pixel takes, and how many next.
+// Sample indices of each pixel, and the sample counts of the next round.
 #include "test/render/mixed_scene.h"
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -15,7 +15,7 @@ inline constexpr SamplerKind samplers[] = {SamplerKind::independent, SamplerKind
                                            SamplerKind::halton,      SamplerKind::hammersley,
                                            SamplerKind::sobol,       SamplerKind::sobol_blue_noise};
 
-// The spectrum of an RGB light that gives film RGB (1, 1, 1), and the scale that goes with it.
+// The spectrum of an RGB light with film RGB (1, 1, 1), and its scale.
 inline Spectrum white_light() { return Spectrum(RgbIlluminantSpectrum(RgbColorSpace::srgb(), {1, 1, 1})); }
 inline float white_scale() { return photometric_scale(white_light()); }
 
@@ -40,7 +40,7 @@ class SceneBuilder {
         description.sampler.spp = 64;
         description.integrator.max_depth = 5;
     }
-    // `scene` of a copy refers into the copy.
+    // In a copy, `scene` refers to the copy.
     SceneBuilder(const SceneBuilder& other) : description(other.description) {}
     SceneBuilder& operator=(const SceneBuilder&) = delete;
 
@@ -91,7 +91,7 @@ inline PictureMean picture_mean(const Film& film, int channel = 1) {
     return {sum / n, std::sqrt(variance) / n};
 }
 
-// To the last bit.
+// Equal to the last bit.
 inline bool same_pixel(const Pixel& a, const Pixel& b) {
     auto same = [](Vec3f v, Vec3f w) { return v.x == w.x && v.y == w.y && v.z == w.z; };
     for (int c = 0; c < 3; ++c)

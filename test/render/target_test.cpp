@@ -1,4 +1,4 @@
-// Renders that are asked for an error or a time: they reach it, without bias, and say what stopped them.
+// Renders with a target error or a time limit: they reach it, without bias, and report why they stopped.
 #include "test/render/mixed_scene.h"
 #include <cmath>
 #include <gtest/gtest.h>
@@ -32,8 +32,8 @@ TEST(Target, ErrorIsReachedAndNotOvershot) {
         }
 }
 
-// A picture so small that its error is made of few replicates: looked at after each, one that is small by
-// chance would end the render far too early. The targets are shares of the error that 16 samples leave.
+// A picture so small that its error is computed from few replicates: checked after each, an error that is
+// small by chance would end the render far too early. The targets are shares of the error after 16 samples.
 TEST(Target, FewReplicatesAreNotBelieved) {
     SceneBuilder b;
     b.description.film.width = b.description.film.height = 1;
@@ -164,9 +164,9 @@ TEST(Target, ATimeThatIsNotUsedUpChangesNothing) {
     }
 }
 
-// Adaptive allocation looks at the samples and must not lean on them: the mean over many seeds is that of
-// renders with equal numbers. Pixels that take few samples because their first ones were dark would show here
-// at once.
+// Adaptive allocation depends on the samples and must not bias the picture: the mean over many seeds equals
+// that of renders with equal counts. Pixels that stop early because their first samples were dark would show
+// here at once.
 void expect_unbiased(const SamplerSettings& sampler, int size, std::uint64_t seeds) {
     RunningMoments adaptive, equal;
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {

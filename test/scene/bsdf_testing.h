@@ -1,4 +1,4 @@
-// BSDFs to test, and the streams that feed them.
+// BSDFs to test, and streams of random numbers for them.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace montelux::testing {
 
-// Any two numbers are drawn one after the other, whatever the pair is for.
+// Numbers are drawn in sequence, for pairs as well.
 class TestStream {
   public:
     explicit TestStream(std::uint64_t seed) : uniforms_(seed) {}
@@ -23,7 +23,7 @@ class TestStream {
     TestUniforms uniforms_;
 };
 
-// The first numbers are given.
+// The first numbers are prescribed.
 class FixedStream {
   public:
     FixedStream(Vec2f u, float uc) : u_(u), uc_(uc) {}
@@ -43,7 +43,7 @@ inline Vec3f direction(double theta_degrees, double phi_degrees = 0) {
 
 struct BsdfCase {
     std::string name;
-    std::function<Bsdf()> make; // called by the test alone: tables of coatings take a second under sanitizers
+    std::function<Bsdf()> make; // called within the test: coating tables take a second under sanitizers
     bool exact_pdf = true;      // the reported pdf is the sampled density
 };
 
@@ -75,7 +75,7 @@ inline LayeredBsdf<ConductorBsdf> layered_conductor(float coat_alpha, float base
     return b;
 }
 
-// With a medium that scatters between coat and base.
+// With a scattering medium between coat and base.
 template <typename Base>
 LayeredBsdf<Base> in_fog(LayeredBsdf<Base> b, int max_depth) {
     b.medium_albedo = SampledSpectrum(0.5f, 0.7f, 0.9f, 1.0f);

@@ -95,7 +95,7 @@ TEST(Camera, EqualAreaMap) {
                                                 pinhole)
                                   .d);
     EXPECT_LT(length(sum) / (n * n), 1e-3);
-    // Filters reach over the edges: there the map goes on with what lies beyond on the sphere.
+    // Filters extend over the edges: there the map continues as on the sphere.
     for (float along : {0.0f, 11.3f, 128.0f, 200.7f, 256.0f})
         for (int side = 0; side < 4; ++side) {
             auto direction = [&](float out) {

@@ -1,4 +1,4 @@
-// Lights of every kind with their flux, for the tests of what they emit.
+// Lights of every kind with their flux, for the tests of emission.
 #pragma once
 
 #include "test/scene/portal_testing.h"
@@ -24,7 +24,7 @@ struct Case {
     std::string name;
     Scene scene;
     std::vector<double> flux; // of each part, at the first wavelength
-    // Where in the unit square, uniformly, a position lies; empty for points.
+    // The position's coordinates in the unit square, uniform; empty for points.
     std::function<Vec2d(const EmissionSample&, Index part)> place;
     EnvironmentSettings settings{};
     double tolerance = 1e-4; // of the flux given
@@ -87,7 +87,7 @@ inline void add_meshes(std::vector<Case>& cases) {
         });
     add("triangles of alpha 0.25", {0.5 * pi * a0, 0.5 * pi * a1}, false, 0,
         [](TriangleMesh&, Shape& s) { s.alpha = {0.25f}; });
-    // As in pbrt-v4 they shine whole.
+    // As in pbrt-v4 they emit fully.
     add("triangles of alpha 0", {2 * pi * a0, 2 * pi * a1}, false, 0,
         [](TriangleMesh&, Shape& s) { s.alpha = {0.0f}; });
 }
@@ -216,7 +216,7 @@ inline void add_infinite(std::vector<Case>& cases) {
         c.settings.compensated = compensated;
         c.tolerance = 1e-3; // of the uplift
     }
-    // Flux through a portal: the map's light in its hemisphere, by the cosine.
+    // Flux through a portal: the map's light in its hemisphere, weighted by the cosine.
     double irradiance = 0;
     const EnvironmentGrid grid(EnvironmentLayout::equal_area, 16, 16);
     for (int i = 0; i < 256 * 256; ++i) {

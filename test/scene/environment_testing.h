@@ -1,4 +1,4 @@
-// Small environment maps for the tests of how they are sampled and looked up.
+// Small environment maps for the tests of sampling and interpolation.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ struct MapCase {
     Image map;
 };
 
-// f(map, sampler) for every way to sample each map in both layouts, compensated ones too.
+// f(map, sampler) for every density on each map in both layouts, with and without compensation.
 void for_each_sampler(const std::vector<MapCase>& cases, EnvironmentLookup lookup, const auto& f) {
     for (const MapCase& c : cases)
         for (EnvironmentLayout layout : environment_layouts)

@@ -11,8 +11,8 @@
 namespace montelux {
 namespace {
 
-// A point, a mesh of four triangles, a black mesh of two, an empty mesh, a mesh that stands in an object
-// alone, and a point.
+// A point, a mesh of four triangles, a black mesh of two, an empty mesh, a mesh only inside an object, and a
+// point.
 Scene scene_of_lights() {
     Scene scene;
     scene.lights.push_back(PointLight{Spectrum(1.0f), 0.1f, {0, 0, 0}});

@@ -1,4 +1,4 @@
-// Sampling of lights: directions follow the reported densities, and what a sample says is what a ray finds.
+// Sampling of lights: directions follow the reported densities, and samples agree with what rays find.
 // Chi-squared tests at 1e-8 each, sums at 5.5 standard errors (4e-8): below 2e-6 for the file.
 #include <cmath>
 #include <gtest/gtest.h>
@@ -128,7 +128,7 @@ TEST(AreaLights, DirectionsFollowTheirDensity) {
             for (const SurfacePoint& s : points_along(c.scene, light, {origin.p, w}))
                 if (light.two_sided || dot(s.ng, w) < 0)
                     sum += pdf_li({tables.view(), 0}, origin, {.wi = w, .p = s.p, .n = s.ng});
-            // A whole sphere's visible half stands for all of it.
+            // The visible half of a whole sphere represents all of it.
             if (light.two_sided && tables.view().light_tables.sphere(0)) sum *= 0.5f;
             return sum;
         };

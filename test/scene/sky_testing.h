@@ -9,8 +9,8 @@
 
 namespace montelux::testing {
 
-// At one band, for sunlight of irradiance 1 outside. Distances by null collisions, light from the sun's
-// centre at each scattering, absorption by weights, Russian roulette.
+// In one band, for sunlight of irradiance 1 outside. Distances by null collisions, next-event estimation to
+// the sun's centre, absorption by weights, Russian roulette.
 class SkyWalk {
   public:
     SkyWalk(const Atmosphere& atmosphere, int band, double ground_albedo, double elevation,
@@ -45,7 +45,7 @@ class SkyWalk {
             if (next() * rayleigh_phase(1) < rayleigh_phase(mu)) return mu;
         }
     }
-    // Henyey and Greenstein's, of which 1 + mu^2 makes Cornette and Shanks'.
+    // Henyey and Greenstein's phase function; times 1 + mu^2 it is that of Cornette and Shanks.
     double aerosol_deflection() {
         const double g = atmosphere_.settings().aerosol_g;
         for (;;) {

@@ -1,4 +1,4 @@
-// Textures against values that can be told by hand. Nothing here is random but for fixed draws.
+// Textures against values computed by hand. Nothing here is random except fixed draws.
 #include <cmath>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// A path is a state and a step: whoever drives it, with whatever stream, it is the same path.
+// PathIntegrator by states and steps: any driver and any stream give the same path.
 #include "test/render/mixed_scene.h"
 #include <cstring>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Directives and defaults: what ends up in the scene.
+// Directives and defaults: the resulting scene.
 #include "test/formats/pbrt/parse.h"
 #include "test/near.h"
 #include <cmath>
@@ -90,7 +90,7 @@ TEST(PbrtOptions, FilmCameraSamplerIntegratorFilter) {
     EXPECT_EQ(d.integrator.max_depth, 3);
 }
 
-// pbrt leaves out '-' and '_' and does not look at capitals.
+// pbrt ignores '-', '_' and capitals.
 TEST(PbrtOptions, SpellingsOfOptions) {
     EXPECT_EQ(parse("Option \"integer Seed\" 7 WorldBegin").sampler.seed, 7u);
     EXPECT_EQ(parse("Option \"integer se-e_d\" 7 WorldBegin").sampler.seed, 7u);
@@ -114,7 +114,7 @@ TEST(PbrtOptions, SpellingsOfOptions) {
               "scene:1:8: unknown option 'Sed' (did you mean 'seed'?)");
 }
 
-// Whatever is read but changes nothing is told.
+// Everything that is read but has no effect gives a warning.
 TEST(PbrtOptions, LightSamplers) {
     const auto sampling = [](const std::string& name) {
         return parse("Integrator \"path\" \"string lightsampler\" \"" + name + "\"\nWorldBegin\n")
@@ -301,8 +301,8 @@ TEST(PbrtAttributes, DefaultsOfShapesMaterialsLights) {
     EXPECT_NEAR(light.scale * to_photometric(light.spectrum), 2, 1e-5);
 }
 
-// A name that fits some plugin of the kind is for those that follow; one that fits none is a mistake, told
-// like an unknown parameter of a plugin, once.
+// A name that fits some plugin of the kind applies to later directives; one that fits none is a mistake,
+// reported once like an unknown parameter of a plugin.
 TEST(PbrtAttributes, NamesThatFitNoPluginAreTold) {
     Warnings told;
     SceneDescription d = parse_world(R"(LightSource "infinite"

@@ -1,4 +1,4 @@
-// What a broken scene file is told: the place and the sentence.
+// Error messages of broken scene files: the place and the sentence.
 #include "test/formats/pbrt/parse.h"
 #include "test/temporary_folder.h"
 #include <filesystem>

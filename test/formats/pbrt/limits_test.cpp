@@ -1,4 +1,4 @@
-// What a small file may ask for: memory, time, and how far away.
+// Limits on what a small file may demand: memory, time, distances.
 #include "test/formats/pbrt/parse.h"
 #include "test/image/bounded_run.h"
 #include <gtest/gtest.h>
@@ -81,7 +81,7 @@ TEST(PbrtLimits, SubdividedTriangles) {
               sentence("scene:2:20", 2000000000));
 }
 
-// What stands beyond the numbers of single precision.
+// Positions beyond single precision.
 TEST(PbrtLimits, PlacesBeyondFloats) {
     struct FarCase {
         const char *world, *error;

@@ -1,4 +1,4 @@
-// Whatever a scene file says, the answer is a scene or a sentence.
+// Any scene file yields a scene or an error message.
 #include "test/formats/pbrt/parse.h"
 #include <gtest/gtest.h>
 #include <random>

@@ -62,7 +62,7 @@ TEST(PbrtParameters, OfSeveralTypesInOneDirectiveTheLastCounts) {
             "scene:4:46: parameter 'reflectance' is given as rgb and as texture; the last one counts"}));
 }
 
-// Plugins ask for different types, so that a default may stand there once for each.
+// Plugins use different types, so a default may be given once for each.
 TEST(PbrtParameters, OfSeveralDefaultsTheLastThatFitsCounts) {
     const std::string number = "\"float eta\" 2 ", spectrum = "\"spectrum eta\" \"glass-BK7\" ";
     auto eta_of_glass = [](const std::string& defaults) {

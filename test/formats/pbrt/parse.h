@@ -1,4 +1,4 @@
-// Helpers of the pbrt tests: scenes from text, and the sentence that a broken one gives.
+// Fixtures of the pbrt tests: scenes from text, and the error message of a broken one.
 #pragma once
 
 #include <string>
@@ -14,12 +14,12 @@ inline SceneDescription parse(std::string_view text, Warnings* told = nullptr) {
     return parse_pbrt(text, "scene", ".", told ? *told : warnings);
 }
 
-// The scene with `world` behind WorldBegin, which stands on line 1.
+// The scene with `world` after WorldBegin, which is on line 1.
 inline SceneDescription parse_world(std::string_view world, Warnings* told = nullptr) {
     return parse("WorldBegin\n" + std::string(world), told);
 }
 
-// What the parser says; empty if it finds nothing wrong.
+// The parser's error message; empty if there is none.
 inline std::string error_of(std::string_view text) {
     try {
         parse(text);

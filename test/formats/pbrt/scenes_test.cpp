@@ -58,7 +58,7 @@ TEST(PbrtScenes, Counts) {
     }
 }
 
-// Scenes with parts that are not there yet give a sentence that tells which and where.
+// Scenes with unsupported parts give an error that names the part and its place.
 TEST(PbrtScenes, WhatComesLaterIsNamed) {
     if (!std::filesystem::exists(folder())) GTEST_SKIP() << "no shared files";
     struct Later {

@@ -1,4 +1,4 @@
-// The light "sky" of scene files: where its sun stands, how bright it is, and what is said of mistakes.
+// The light "sky" of scene files: position of the sun, brightness, and error messages.
 #include "test/formats/pbrt/parse.h"
 #include <gtest/gtest.h>
 #include <string>

@@ -1,4 +1,4 @@
-// The builder of scenes: what it makes of values, what it refuses, and where it says that it stands.
+// SceneBuilder: the scene it makes, the errors it gives, and their places.
 #include <array>
 #include <cmath>
 #include <functional>
