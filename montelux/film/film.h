@@ -116,7 +116,7 @@ class Film {
     std::span<Pixel> pixels() { return pixels_; }
     std::span<const Pixel> pixels() const { return pixels_; }
 
-    // Ends the open replicate of every pixel, of replicates that have so many points when they are whole.
+    // Ends the open replicate of every pixel; whole replicates have this many points.
     void end_replicates(std::uint32_t points = 1) {
         for (Pixel& p : pixels_) p.end_last_replicate(points);
     }

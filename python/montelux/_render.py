@@ -34,7 +34,7 @@ class Progress:
 
 
 class Render(Picture):
-    """A render of a scene, which goes on by itself from the moment that `Scene.render` returns it.
+    """A render of a scene, which runs in the background from the moment that `Scene.render` returns it.
 
     Whatever is asked of it (`mean`, `save`, ...) waits for the end. Iterating gives a `Picture` of what there
     is, every second or `every` so many seconds, and at last the finished one. Ctrl-C while it is waited for

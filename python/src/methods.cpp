@@ -273,7 +273,7 @@ void bind_densities(nb::module_& m) {
             "controls"_a, "integrals"_a, nb::kw_only(), "components"_a = 0,
             "controls: a batch function as an integrand is; one control as shape (n,), m of them "
             "(components=m) "
-            "as (n, m). integrals: over the domain, one a control.")
+            "as (n, m). integrals: over the domain, one per control.")
         .def_rw("integrals", &ControlVariate::integrals, "Of the controls over the domain.");
 }
 

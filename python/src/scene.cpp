@@ -312,7 +312,7 @@ void bind_scene(nb::module_& m) {
             "uvs"_a = nb::none(), "transform"_a = nb::none(), "light"_a = nb::none(),
             "Triangles: positions of shape (n, 3), triangles of shape (m, 3) indices into them; normals (n, "
             "3) and "
-            "uvs (n, 2) are one a position. transform: a matrix of shape (4, 4). light: an AreaLight or a "
+            "uvs (n, 2) are one per position. transform: a matrix of shape (4, 4). light: an AreaLight or a "
             "spectrum. "
             "Returns the Shape.")
         .def(

@@ -27,7 +27,7 @@ Technique functions(int uniforms, int dimensions, nb::object sample, nb::object 
 void bind_techniques(nb::module_& m) {
     nb::class_<Technique>(m, "Technique",
                           "Points that follow a density, for Importance and MultipleImportance.\n\n"
-                          "A Distribution, or a list of them (one a coordinate), is a technique by itself.")
+                          "A Distribution, or a list of them (one per coordinate), is a technique by itself.")
         .def(nb::init_implicit<Distribution>())
         .def(nb::init_implicit<std::vector<Distribution>>())
         .def_static(

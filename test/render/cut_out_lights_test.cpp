@@ -60,7 +60,7 @@ TEST(CutOutLights, HolesAreDark) {
     expect_radiance(b, floor_albedo * 4 * 1.0 / 10, "a ring");
 }
 
-// As in pbrt-v4: with alpha 0 a light shines whole, and nothing meets it.
+// As in pbrt-v4: with alpha 0 a light emits fully, and no ray hits it.
 TEST(CutOutLights, OfAlphaZeroShineAndAreNotSeen) {
     const Disk disc{.radius = 2, .world_from_object = Transform::translate({0, 0, 3})};
     SceneBuilder b = floor_below(disc, {0});

@@ -1,4 +1,4 @@
-// The picture depends on the scene and the seed alone: not on threads, tiles, or the unit of length.
+// The picture depends only on the scene and the seed: not on threads, tiles, or the unit of length.
 #include "test/render/mixed_scene.h"
 #include <cstring>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 namespace montelux::testing {
 namespace {
 
-// The many shine away from the floor. With 24 bits for the choice the lamp would be 8 % too dark: 8 standard
+// The many emit away from the floor. With 24 bits for the choice the lamp would be 8 % too dark: 8 standard
 // errors and more; the comparison is at 5 (a false alarm in 1.7 million).
 TEST(ManyLights, OneAmongThemIsAsBrightAsAlone) {
     constexpr int many = 1 << 18;

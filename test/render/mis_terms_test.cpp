@@ -89,7 +89,7 @@ TEST(MisTerms, FollowThePathsOfMis) {
     EXPECT_GT(sampled, 20);
 }
 
-// What one way alone can find is all in that way's term.
+// Light that only one technique can find is entirely in that technique's term.
 TEST(MisTerms, LampsThatNothingMeetsAndLightThatTheCameraSees) {
     auto mean = [](SceneBuilder b, Strategy strategy) {
         b.description.integrator.strategy = strategy;

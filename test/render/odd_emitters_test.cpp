@@ -67,7 +67,7 @@ double agreed(TriangleMesh mesh, const char* what, bool flip = false, bool two_s
 
 constexpr Normal3f up{0, 0, 1}, down{0, 0, -1};
 
-// The interpolated normal says at each point which side shines.
+// The interpolated normal decides at each point which side emits.
 TEST(OddEmitters, VertexNormalsOfBothSides) {
     const double whole = agreed(facing_down(), "no vertex normals");
     EXPECT_GT(whole, 0.2);
@@ -78,7 +78,7 @@ TEST(OddEmitters, VertexNormalsOfBothSides) {
     const double part = agreed(with_normals(facing_down(), {down, down, up}), "one up");
     EXPECT_GT(part, 0.2 * whole);
     EXPECT_LT(part, 0.95 * whole);
-    // The rest of the triangle shines where the normals are turned around.
+    // The rest of the triangle emits where the normals are reversed.
     const double rest = agreed(with_normals(facing_down(), {up, up, down}), "two up");
     EXPECT_GT(rest, 0.05 * whole);
     EXPECT_NEAR(part + rest, whole, 0.03 * whole);

@@ -123,7 +123,7 @@ TEST(Replay, TheRecordAddsUp) {
     }
 }
 
-// Dispersion is not the path's affair alone: the record says which wavelengths are left.
+// Dispersion: the record contains the wavelengths that are left.
 TEST(Replay, WavelengthsThatEnded) {
     SceneBuilder b;
     b.add_uniform_light(1);

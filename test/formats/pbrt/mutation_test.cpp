@@ -33,7 +33,7 @@ Shape "loopsubdiv" "integer levels" 1 "point3 P" [ 0 0 0 1 0 0 0 1 0 0 0 1 ] "in
 ObjectInstance "o" ConcatTransform [ 1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1 ] ObjectInstance "o"
 )";
 
-// Errors alone may come out, and a scene that is accepted refers to nothing that is not there.
+// Only Errors may be thrown, and an accepted scene contains no dangling reference.
 void expect_sound(const std::string& text) {
     SceneDescription d;
     try {
