@@ -21,7 +21,7 @@ struct FilmError {
 };
 FilmError error_of(const Film& film);
 
-// Of linear sRGB (IEC 61966-2-1).
+// Luminance of linear sRGB (IEC 61966-2-1).
 inline constexpr Vec3d luminance_weight{0.2126, 0.7152, 0.0722};
 // Standard error of a pixel's luminance, bounded by the triangle inequality; channels are strongly
 // correlated, so the bound is tight. Infinite below two replicates.

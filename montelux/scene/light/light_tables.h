@@ -26,7 +26,7 @@ class LightTables {
     void add_environment(const Scene& scene, Index light, Index map, EnvironmentLayout layout,
                          const EnvironmentSettings& settings);
 
-    // As in LightTablesView.
+    // Described in LightTablesView.
     EnvironmentLookup lookup_;
     std::vector<LightTriangle> triangles_;
     std::vector<std::size_t> first_triangle_;
@@ -42,7 +42,7 @@ class LightTables {
     Bounds3 bounds_;
 };
 
-// Of everything in the world, instances included.
+// Bounds of all shapes in the world, instances included.
 Bounds3 bounds_of(const Scene& scene);
 
 } // namespace montelux

@@ -24,37 +24,37 @@ struct LightTriangle {
 struct LightTablesView {
     EnvironmentLookup lookup{};
     std::span<const LightTriangle> triangles;
-    std::span<const std::size_t> first_triangle; // of each light, and the number of all
+    std::span<const std::size_t> first_triangle; // of each light; at the end the total
     std::span<const std::optional<WorldSphere>> spheres;
     std::span<const std::optional<WorldDisk>> disks;
     std::span<const Image> maps; // Scene::environments
-    // Of all maps without portals and of skies, each layout of a map once; those with portals.
+    // Samplers of all skies and maps without portals, one per map and layout; then those of maps with portals.
     std::span<const EnvironmentSampler> environments;
     std::span<const PortalSampler> portals;
-    std::span<const Index> environment_of_light; // into one of the two
+    std::span<const Index> environment_of_light; // into `environments` or `portals`
     // Spectra of the texels of each map; empty for maps that are too large.
     std::span<const std::vector<RgbUnboundedSpectrum>> map_spectra;
     std::span<const Index> infinite_lights;
     std::span<const char> in_world; // one per shape: 0 or 1
     Bounds3 scene_bounds;
 
-    // Of every environment map.
+    // The colour space of all environment maps.
     static const RgbColorSpace& map_color_space() { return RgbColorSpace::srgb(); }
     static RgbUnboundedSpectrum texel_spectrum(const Image& map, std::size_t texel);
-    // Of a light on a mesh in the world.
+    // For a light on a mesh in the world.
     const LightTriangle& triangle(Index light, Index primitive) const {
         return triangles[first_triangle[light] + primitive];
     }
-    // Radiance of an environment map at a place of its grid, before Light::scale.
+    // Radiance of an environment map at a position on its grid, before Light::scale.
     SampledSpectrum map_radiance(const ImageInfiniteLight& light, const EnvironmentGrid& grid, Vec2f place,
                                  const SampledWavelengths& lambda) const;
-    // Of an infinite light with a map, and no portal.
+    // For an infinite light with a map and no portal.
     const EnvironmentSampler& environment(Index light) const {
         return environments[environment_of_light[light]];
     }
-    // Of an infinite light with both.
+    // For an infinite light with a map and a portal.
     const PortalSampler& portal(Index light) const { return portals[environment_of_light[light]]; }
-    // Of lights that are whole ones without holes.
+    // For lights that are whole spheres or discs without holes.
     const std::optional<WorldSphere>& sphere(Index light) const { return spheres[light]; }
     const std::optional<WorldDisk>& disk(Index light) const { return disks[light]; }
     // Whether a shape is directly in the world, where it may emit.

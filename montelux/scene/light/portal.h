@@ -18,13 +18,13 @@ namespace montelux {
 // (Bitterli, Novak, Jarosz 2015, "Portal-Masked Environment Map Sampling").
 class Portal {
   public:
-    // In order around the rectangle, in world space. Throws Error where they make none: cosines of angles may
-    // be off by 0.001, and two corners lie on the diagonal exactly.
+    // In order around the rectangle, in world space. Throws Error if they form no rectangle; the cosines of
+    // its angles may deviate by 0.001. Two corners, on a diagonal, are kept exactly.
     explicit Portal(const std::array<Point3f, 4>& corners);
 
     const std::array<Point3f, 4>& corners() const { return corners_; }
     double area() const { return width_ * height_; }
-    // Of coordinates in [0, 1]^2 along the edges.
+    // The point at coordinates in [0, 1]^2 along the edges.
     Vec3d point(Vec2d at) const { return corner_ + x_ * (width_ * at.x) + y_ * (height_ * at.y); }
     // Towards the light.
     Vec3d normal() const { return z_; }
@@ -43,7 +43,7 @@ class Portal {
     Vec3d direction(Vec2d angles) const { return to_world(local_direction(angles)); }
     // Whether a ray from `p` along `w` passes through it.
     bool lets_through(Point3f p, Vec3f w) const;
-    // As `p` sees it; empty where no light reaches it.
+    // The rectangle as seen from `p`; empty if no light reaches `p`.
     std::optional<SphericalRectangle> seen_from(Point3f p) const;
 
     // Solid angle per area of the plane of angles, in a direction of unit length to the light's side. With

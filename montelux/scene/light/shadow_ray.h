@@ -5,8 +5,7 @@
 
 namespace montelux {
 
-// From an offset origin at the reference to just before the point on the light, by more than rounding can
-// move it.
+// From an offset origin at the reference to just before the point on the light, even if that point is exact.
 inline Ray shadow_ray(const ReferencePoint& from, Vec3f wi, Point3f to, Normal3f n, float error) {
     Point3f o = offset_origin(from.p, from.n, from.error, wi);
     Point3f end = offset_origin(to, n, error, -wi);

@@ -20,7 +20,7 @@ class Sun {
     // found on one side of it only. `grid` must outlive it.
     static std::optional<Sun> take_from(std::vector<float>& light, const EnvironmentGrid& grid);
 
-    // Of the light that it was taken from.
+    // The sun's share of the map's light.
     double share() const { return share_; }
     std::size_t texels() const { return texels_; }
     EnvironmentPoint sample(Vec2f u) const {

@@ -17,7 +17,7 @@ struct SkySettings {
     // Degrees: above the horizon, and from +x towards +y.
     double elevation = 45, azimuth = 0;
     AtmosphereSettings atmosphere;
-    // Of Lambertian ground; between 0 and 1.
+    // The ground is Lambertian; between 0 and 1.
     Spectrum ground_albedo{0.2f};
 };
 
