@@ -119,7 +119,7 @@ class Directives {
     std::size_t block_floor_ = 0; // blocks below it belong to the file that imports this one
     bool in_world_ = false;
     std::map<std::string, std::shared_ptr<const TransformPair>> coordinate_systems_;
-    // What the imported files that are being read have put something else for; null where there was nothing.
+    // Previous values that the imported files being read have replaced; null if there was none.
     std::vector<std::pair<std::string, std::shared_ptr<const TransformPair>>> replaced_systems_;
     std::size_t open_imports_ = 0;
     std::optional<Plugin> camera_, film_, filter_, sampler_, integrator_;
