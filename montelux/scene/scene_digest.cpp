@@ -56,6 +56,14 @@ class SceneHasher {
         std::visit([this](const auto& v) { add(v); }, value);
     }
 
+    // Any other struct.
+    template <typename T>
+    requires std::is_class_v<T>
+    void add(const T&) {
+        static_assert(sizeof(T) == 0,
+                      "write an overload of SceneHasher::add that adds all values of this type");
+    }
+
     // Numbers.
     template <typename T>
     void add(const Vec2<T>& v) {

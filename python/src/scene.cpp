@@ -9,6 +9,7 @@
 #include "montelux/formats/load_scene.h"
 #include "montelux/formats/pbrt/load_pbrt.h"
 #include "montelux/image/image_read.h"
+#include "montelux/mc/math/overloaded.h"
 #include "montelux/scene/build/scene_builder.h"
 
 namespace montelux::python {
@@ -38,26 +39,25 @@ Light plain_light(const nb::object& o) {
     if (!given)
         throw Error("lights", "an object of type '" + std::string(nb::type_name(o.type()).c_str()) +
                                   "' was given; expected a light, such as PointLight()");
-    struct Check {
-        void operator()(const AreaLight&) const {
-            throw Error("lights", "an AreaLight belongs to a shape; set the light of that shape");
-        }
-        void operator()(const ImageInfiniteLight&) const {
-            throw Error("lights",
-                        "an EnvironmentLight refers to a map of its scene; make one by add_environment()");
-        }
-        void operator()(const SkyLight&) const { refuse_sky(); }
-        void operator()(const SunLight&) const { refuse_sky(); }
-        void operator()(const PointLight&) const {}
-        void operator()(const SpotLight&) const {}
-        void operator()(const DistantLight&) const {}
-        void operator()(const UniformInfiniteLight&) const {}
-
-        [[noreturn]] static void refuse_sky() {
-            throw Error("lights", "a SkyLight or SunLight belongs to the sky of its scene file");
-        }
+    const auto refuse_sky = [] {
+        throw Error("lights", "a SkyLight or SunLight belongs to the sky of its scene file");
     };
-    std::visit(Check{}, given->read());
+    std::visit(
+        Overloaded{[](const AreaLight&) {
+                       throw Error("lights", "an AreaLight belongs to a shape; set the light of that shape");
+                   },
+                   [](const ImageInfiniteLight&) {
+                       throw Error(
+                           "lights",
+                           "an EnvironmentLight refers to a map of its scene; make one by add_environment()");
+                   },
+                   [&](const SkyLight&) { refuse_sky(); }, [&](const SunLight&) { refuse_sky(); },
+                   [](const PointLight&) {}, [](const SpotLight&) {}, [](const DistantLight&) {},
+                   [](const UniformInfiniteLight&) {},
+                   []<typename L>(const L&) {
+                       static_assert(sizeof(L) == 0, "say whether scene.lights takes this light from Python");
+                   }},
+        given->read());
     return given->read();
 }
 

@@ -71,26 +71,20 @@ LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings
     for (const Index shape : scene.world_shapes) in_world_[shape] = 1;
     for (Index i = 0; i < scene.lights.size(); ++i) {
         if (kind_of(scene.lights[i]) == LightKind::infinite) infinite_lights_.push_back(i);
-        struct Tabulate {
-            LightTables& tables;
-            const Scene& scene;
-            const EnvironmentSettings& settings;
-            Index light;
-
-            void operator()(const AreaLight& l) const { tables.add_shape(scene, light, l); }
-            void operator()(const ImageInfiniteLight& l) const { tables.add_map(scene, light, l, settings); }
-            void operator()(const SkyLight& l) const {
-                tables.add_environment(scene, light, l.environment, EnvironmentLayout::equirectangular,
-                                       settings);
-            }
-            // Sampled in closed form.
-            void operator()(const PointLight&) const {}
-            void operator()(const SpotLight&) const {}
-            void operator()(const DistantLight&) const {}
-            void operator()(const UniformInfiniteLight&) const {}
-            void operator()(const SunLight&) const {}
-        };
-        std::visit(Tabulate{*this, scene, settings, i}, scene.lights[i]);
+        std::visit(Overloaded{[&](const AreaLight& l) { add_shape(scene, i, l); },
+                              [&](const ImageInfiniteLight& l) { add_map(scene, i, l, settings); },
+                              [&](const SkyLight& l) {
+                                  add_environment(scene, i, l.environment, EnvironmentLayout::equirectangular,
+                                                  settings);
+                              },
+                              // Sampled in closed form.
+                              [](const PointLight&) {}, [](const SpotLight&) {}, [](const DistantLight&) {},
+                              [](const UniformInfiniteLight&) {}, [](const SunLight&) {},
+                              []<typename L>(const L&) {
+                                  static_assert(sizeof(L) == 0,
+                                                "say what LightTables computes for this light, or nothing");
+                              }},
+                   scene.lights[i]);
     }
     add_triangles(scene);
 }
