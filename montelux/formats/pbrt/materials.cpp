@@ -55,15 +55,21 @@ class MaterialMaker {
         if (auto given = textures_.find_spectrum(r_, name(info.pbrt_name()), info.meaning)) p = *given;
     }
     void read(const ParameterInfo& info, FloatParameter& p) {
-        if (auto given = textures_.find_float(r_, name(info.pbrt_name()))) p = *given;
+        const std::string_view parameter = name(info.pbrt_name());
+        const std::optional<FloatParameter> given = textures_.find_float(r_, parameter);
+        if (!given) return;
+        p = *given;
+        check_range(info, parameter, p);
     }
-    void read(const ParameterInfo& info, float& x) { x = r_.number(name(info.pbrt_name()), x); }
+    void read(const ParameterInfo& info, float& x) {
+        const std::string_view parameter = name(info.pbrt_name());
+        x = r_.number(parameter, x);
+        check_range(info, parameter, static_cast<double>(x));
+    }
     void read(const ParameterInfo& info, int& n) {
         const std::string_view parameter = name(info.pbrt_name());
         n = r_.integer(parameter, n);
-        if (n < info.least)
-            r_.error(parameter, "parameter " + in_quotes(parameter) + " is below " +
-                                    std::to_string(static_cast<int>(info.least)));
+        check_range(info, parameter, n);
     }
 
     // An index of refraction: a number or a spectrum.
@@ -82,9 +88,15 @@ class MaterialMaker {
     // "uroughness" and "vroughness" with the prefix; "roughness" where one is missing.
     void read(const ParameterInfo& info, RoughnessParameter& p) {
         const std::string prefix = info.prefix.empty() ? std::string() : std::string(info.prefix) + '.';
-        FloatParameter both = textures_.float_or(r_, name(prefix + "roughness"), 0);
-        p.u = textures_.find_float(r_, name(prefix + "uroughness")).value_or(both);
-        p.v = textures_.find_float(r_, name(prefix + "vroughness")).value_or(both);
+        const auto read = [&](const char* what, const FloatParameter& otherwise) {
+            const std::string_view parameter = name(prefix + what);
+            const std::optional<FloatParameter> given = textures_.find_float(r_, parameter);
+            if (given) check_range(info, parameter, *given);
+            return given.value_or(otherwise);
+        };
+        const FloatParameter both = read("roughness", {});
+        p.u = read("uroughness", both);
+        p.v = read("vroughness", both);
         p.remap = r_.boolean("remaproughness", p.remap);
     }
 
@@ -106,6 +118,17 @@ class MaterialMaker {
         const std::string_view parameter = name(info.pbrt_name());
         if (std::optional<std::string> file = r_.string(parameter))
             p.map = textures_.normal_map(*file, r_.at(parameter));
+    }
+
+    // Values of textures are not known before they are evaluated: a material limits these itself.
+    void check_range(const ParameterInfo& info, std::string_view parameter, const FloatParameter& p) {
+        if (p.is_constant()) check_range(info, parameter, static_cast<double>(p.value));
+    }
+    void check_range(const ParameterInfo& info, std::string_view parameter, double x) {
+        if (x >= info.least && x <= info.most) return;
+        const bool below = x < info.least;
+        r_.error(parameter, "parameter " + in_quotes(parameter) + (below ? " is below " : " is above ") +
+                                std::to_string(static_cast<int>(below ? info.least : info.most)));
     }
 
     // Keeps a composed name alive: the reader stores views of the names.

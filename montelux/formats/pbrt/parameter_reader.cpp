@@ -14,7 +14,7 @@ ParameterReader::ParameterReader(const ParameterList& list, std::string plugin, 
 
 void ParameterReader::know(std::string_view name) {
     // Otherwise an Attribute that sets it would be reported as an error.
-    assert(!list_.kind() || has_parameter(*list_.kind(), name));
+    assert((!list_.kind() || has_parameter(*list_.kind(), name)) && "to be added to plugin_parameters.cpp");
     if (std::find(known_.begin(), known_.end(), name) == known_.end()) known_.push_back(name);
 }
 

@@ -153,6 +153,11 @@ TEST(PbrtErrors, SentencesInTheWorld) {
          "scene:2:22: 'reflectance' together with 'eta' or 'k'; expected one or the other"},
         {"Material \"dielectric\" \"float eta\" 0",
          "scene:2:23: parameter 'eta' is no index of refraction; expected 1 positive number"},
+        {"Material \"coateddiffuse\" \"float g\" 1.5", "scene:2:26: parameter 'g' is above 1"},
+        {"Material \"coateddiffuse\" \"float thickness\" -0.5",
+         "scene:2:26: parameter 'thickness' is below 0"},
+        {"Material \"conductor\" \"float vroughness\" -0.5", "scene:2:22: parameter 'vroughness' is below 0"},
+        {"Material \"diffusetransmission\" \"float scale\" -1", "scene:2:32: parameter 'scale' is below 0"},
         {"Material \"coateddiffuse\" \"integer maxdepth\" 0", "scene:2:26: parameter 'maxdepth' is below 1"},
         // Textures.
         {"Texture \"t\" \"color\" \"imagemap\"",

@@ -6,8 +6,10 @@
 #include <numbers>
 #include <string>
 
+#include "montelux/formats/pbrt/plugin_parameters.h"
 #include "montelux/image/image_write.h"
 #include "montelux/scene/light/light_sampling.h"
+#include "montelux/scene/material/material_model.h"
 #include "montelux/scene/scene_tables.h"
 #include "montelux/spectrum/named_spectra.h"
 #include "montelux/spectrum/rgb_colorspace.h"
@@ -95,6 +97,20 @@ TEST(PbrtMaterials, DiffuseTransmission) {
     EXPECT_FLOAT_EQ(m.transmittance.value(500), 0.4f);
     EXPECT_EQ(m.reflectance.value(500), 0.25f);
     EXPECT_EQ(m.scale, 0.5f);
+}
+
+// Else Attribute "material" would ignore it with a warning.
+TEST(PbrtMaterials, AttributesKnowTheParametersOfEachMaterial) {
+    for_each_material_kind([]<typename M>(std::type_identity<M>) {
+        M m;
+        visit_parameters(m, []<typename Field>(const ParameterInfo& info, const Field&) {
+            if constexpr (!std::is_same_v<Field, RoughnessParameter> &&
+                          !std::is_same_v<Field, MetalParameter>) {
+                EXPECT_TRUE(pbrt::has_parameter(pbrt::PluginKind::material, info.pbrt_name()))
+                    << M::name << ' ' << info.pbrt_name() << ": to be added to plugin_parameters.cpp";
+            }
+        });
+    });
 }
 
 const char* const all_materials[] = {
