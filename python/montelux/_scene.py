@@ -184,14 +184,7 @@ def _represent(value: Any) -> str:
 
 VALUES = (
     *_core.MATERIALS,
-    _core.AreaLight,
-    _core.PointLight,
-    _core.SpotLight,
-    _core.DistantLight,
-    _core.UniformInfiniteLight,
-    _core.EnvironmentLight,
-    _core.SkyLight,
-    _core.SunLight,
+    *_core.LIGHTS,
     _core.PerspectiveCamera,
     _core.OrthographicCamera,
     _core.SphericalCamera,

@@ -87,38 +87,20 @@ void portal(nb::class_<Ref<T>>& c) {
         "everywhere.");
 }
 
-template <typename T>
-T white() {
-    T light;
-    light.spectrum = spectrum_of(nb::float_(1), RgbMeaning::illuminant, "");
-    light.scale = photometric_scale(light.spectrum, "");
-    return light;
-}
-
 } // namespace
 
-template <>
-AreaLight default_value() {
-    return white<AreaLight>();
+void make_white(Spectrum& spectrum, float& scale) {
+    spectrum = spectrum_of(nb::float_(1), RgbMeaning::illuminant, "");
+    scale = photometric_scale(spectrum, "");
 }
-template <>
-PointLight default_value() {
-    return white<PointLight>();
-}
+
 template <>
 SpotLight default_value() {
-    auto light = white<SpotLight>();
+    SpotLight light;
+    make_white(light.spectrum, light.scale);
     light.cos_falloff_start = static_cast<float>(std::cos(25 * std::numbers::pi / 180));
     light.cos_total_width = static_cast<float>(std::cos(30 * std::numbers::pi / 180));
     return light;
-}
-template <>
-DistantLight default_value() {
-    return white<DistantLight>();
-}
-template <>
-UniformInfiniteLight default_value() {
-    return white<UniformInfiniteLight>();
 }
 
 void bind_lights(nb::module_& m) {
@@ -162,6 +144,17 @@ void bind_lights(nb::module_& m) {
     auto sun = value_class<SunLight>(m, "SunLight", "The sun's disc, from a scene file.");
     number(sun, "scale", &SunLight::scale, not_negative, "a number that is not negative",
            "Multiplies the sun; 683 is luminance in cd/m^2.");
+
+    nb::list kinds;
+    const auto add = [&]<typename L>(std::type_identity<L>) {
+        const nb::handle kind = nb::type<Ref<L>>();
+        if (!kind) throw Error(std::string(L::name), "this light has no class in python/src/lights.cpp");
+        kinds.append(kind);
+    };
+    [&]<typename... L>(std::type_identity<std::variant<L...>>) {
+        (add(std::type_identity<L>()), ...);
+    }(std::type_identity<Light>());
+    m.attr("LIGHTS") = nb::tuple(kinds);
 }
 
 } // namespace montelux::python

@@ -100,6 +100,21 @@ struct KindOf<T> {
     using type = Material;
 };
 template <typename T>
+requires is_alternative_of<T, Light>
+struct KindOf<T> {
+    using type = Light;
+};
+template <typename T>
+requires is_alternative_of<T, CameraModel>
+struct KindOf<T> {
+    using type = CameraSettings;
+};
+template <typename T>
+requires is_alternative_of<T, PixelFilter>
+struct KindOf<T> {
+    using type = PixelFilter;
+};
+template <typename T>
 T* alternative(T& value, std::type_identity<T>) {
     return &value;
 }
@@ -114,21 +129,19 @@ T* alternative(CameraSettings& value, std::type_identity<T>) {
 template <typename T>
 using Kind = typename KindOf<T>::type;
 
-// Defaults of new scenes: those of a scene file.
+// Luminance 1, under the spectrum of R, G, B = 1, 1, 1.
+void make_white(Spectrum& spectrum, float& scale);
+
+// Defaults of new scenes: those of a scene file. Lights are white.
 template <typename T>
 T default_value() {
-    return T{};
+    T value{};
+    if constexpr (is_alternative_of<T, Light> && requires { value.spectrum; })
+        make_white(value.spectrum, value.scale);
+    return value;
 }
 template <>
-AreaLight default_value();
-template <>
-PointLight default_value();
-template <>
 SpotLight default_value();
-template <>
-DistantLight default_value();
-template <>
-UniformInfiniteLight default_value();
 
 // A slot with the alternative T.
 template <typename T>
@@ -160,29 +173,6 @@ struct Ref : Slot<Kind<T>> {
         return *found;
     }
 };
-
-#define MONTELUX_KIND(T, V)                                                                                  \
-    template <>                                                                                              \
-    struct KindOf<T> {                                                                                       \
-        using type = V;                                                                                      \
-    }
-MONTELUX_KIND(AreaLight, Light);
-MONTELUX_KIND(PointLight, Light);
-MONTELUX_KIND(SpotLight, Light);
-MONTELUX_KIND(DistantLight, Light);
-MONTELUX_KIND(UniformInfiniteLight, Light);
-MONTELUX_KIND(ImageInfiniteLight, Light);
-MONTELUX_KIND(SkyLight, Light);
-MONTELUX_KIND(SunLight, Light);
-MONTELUX_KIND(PerspectiveCamera, CameraSettings);
-MONTELUX_KIND(OrthographicCamera, CameraSettings);
-MONTELUX_KIND(SphericalCamera, CameraSettings);
-MONTELUX_KIND(BoxFilter, PixelFilter);
-MONTELUX_KIND(TriangleFilter, PixelFilter);
-MONTELUX_KIND(GaussianFilter, PixelFilter);
-MONTELUX_KIND(MitchellFilter, PixelFilter);
-MONTELUX_KIND(LanczosFilter, PixelFilter);
-#undef MONTELUX_KIND
 
 template <typename V>
 nb::object as_python(Slot<V> slot) {

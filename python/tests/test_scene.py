@@ -240,6 +240,16 @@ def test_every_value_can_be_made_and_read():
             kind(wrong=1)
 
 
+def test_every_value_and_method_is_in_the_package():
+    from montelux import _core
+    from montelux._scene import VALUES
+
+    methods = {kind for kind in vars(_core).values() if hasattr(kind, "_method")}
+    assert methods == set(montelux.METHODS.values())
+    for kind in (*VALUES, *methods):
+        assert kind.__name__ in montelux.__all__ and getattr(montelux, kind.__name__) is kind
+
+
 # Mistakes.
 
 
