@@ -143,6 +143,7 @@ TEST(IncidentLight, OfInfiniteLightsFollowsItsDensity) {
     const ReferencePoint from{.p = Point3f{1, 0, 0}};
     for_each_part([&](const Case& c, const LightContext& context, Index part) {
         if (kind_of_light(c) != LightKind::infinite) return;
+        if (c.name == "sun") return; // half of it is hidden: sky_light_test.cpp
         int samples = 0, differing = 0;
         auto sample = [&](Vec2f u) -> std::optional<Vec3f> {
             const auto s = sample_li(context, part, from, u, wavelengths);
