@@ -18,7 +18,7 @@ struct ParameterInfo {
     std::string_view prefix{}; // of the parameter's part of the material; may be empty
     std::string_view name{};   // as in Python
     const char* doc = "";
-    RgbMeaning meaning = RgbMeaning::albedo; // of R, G, B given for a spectrum given for a spectrum
+    RgbMeaning meaning = RgbMeaning::albedo; // of R, G, B given for a spectrum
     // Of numbers and integers; readers refuse others. Not of textures: a material limits their values itself.
     double least = 0, most = std::numeric_limits<double>::max();
     std::string_view pbrt{}; // if not the name without '_'
