@@ -69,7 +69,7 @@ print(scene)
 # %% [markdown]
 # ## Render
 #
-# `render` returns at once and goes on by itself on all processors; whatever you ask of it waits for the end. A notebook shows
+# `render` returns at once and continues in the background on all processors; whatever you ask of it waits for the end. A notebook shows
 # the picture by itself.
 
 # %%
