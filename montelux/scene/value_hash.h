@@ -19,7 +19,9 @@ class ValueHash {
     requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void add(T value) {
         add_bytes(&value, sizeof value);
     }
+    // `data` may be null where there is none.
     void add_bytes(const void* data, std::size_t size) {
+        if (size == 0) return;
         if (size > buffer_.size() - used_) return add_slowly(data, size);
         std::memcpy(buffer_.data() + used_, data, size);
         used_ += size;
