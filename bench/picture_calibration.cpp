@@ -215,13 +215,13 @@ void print_own_coverage(const Options& o, const std::string& name, SceneDescript
                 Renderer(d, {.adaptive = adaptive}).render(film);
                 const std::vector<PixelWarning> warnings = pixel_warnings(film);
                 for (std::size_t i = 0; i < pixels; ++i)
-                    for (std::size_t c = 0; c < 3; ++c) {
+                    for (int c = 0; c < 3; ++c) {
                         const auto& u = film.pixels()[i].replicates();
                         const double n = static_cast<double>(u.count());
                         renders.push_back({static_cast<float>(u.mean(c)),
                                            static_cast<float>(std::sqrt(u.variance(c) / n)),
                                            static_cast<float>(n), marks_unreliable_error(warnings[i])});
-                        truth[3 * i + c].add(u.mean(c));
+                        truth[3 * i + static_cast<std::size_t>(c)].add(u.mean(c));
                     }
             }
             const double others = o.renders - 1;
@@ -231,12 +231,13 @@ void print_own_coverage(const Options& o, const std::string& name, SceneDescript
             for (std::size_t j = 0; j < renders.size(); ++j) {
                 const Channel& r = renders[j];
                 const RunningMoments& t = truth[j % truth.size()];
-                const double mean = (t.mean() * o.renders - r.mean) / others;
-                const double va = static_cast<double>(r.error) * r.error, vb = t.variance() / others;
+                const double own = static_cast<double>(r.mean), error = static_cast<double>(r.error);
+                const double mean = (t.mean() * o.renders - own) / others;
+                const double va = error * error, vb = t.variance() / others;
                 warned += r.warned_pixel;
                 if (va + vb > 0) {
-                    const double z = (r.mean - mean) / std::sqrt(va + vb),
-                                 freedom = welch(va, r.replicates - 1, vb, others - 1);
+                    const double z = (own - mean) / std::sqrt(va + vb),
+                                 freedom = welch(va, static_cast<double>(r.replicates) - 1, vb, others - 1);
                     all.add(z, freedom);
                     if (!r.warned_pixel) sure.add(z, freedom);
                 }

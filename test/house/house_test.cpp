@@ -178,10 +178,10 @@ TEST(HouseRules, BrokenLinksAreFound) {
     auto wrong = [&](const std::vector<std::string>& lines) {
         return joined(broken_links({{"docs/a.md", lines}}, root));
     };
-    EXPECT_EQ(
-        wrong({"# One, `two`: [3](a:b) 4", "[a](../README.md#licence), ![b](images/demo.png) [c](#one-two-3-4)",
-               "[d](https://a.b/c), `[e](none.md)`", "```", "[f](none.md)", "# g", "```"}),
-        "");
+    EXPECT_EQ(wrong({"# One, `two`: [3](a:b) 4",
+                     "[a](../README.md#licence), ![b](images/demo.png) [c](#one-two-3-4)",
+                     "[d](https://a.b/c), `[e](none.md)`", "```", "[f](none.md)", "# g", "```"}),
+              "");
     EXPECT_EQ(wrong({"see [a](none.md), ![b](../docs/images/none.png)"}),
               "docs/a.md:1: there is no docs/none.md\ndocs/a.md:1: there is no docs/images/none.png\n");
     EXPECT_EQ(
