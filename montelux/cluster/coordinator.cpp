@@ -129,7 +129,7 @@ void Coordinator::deal() {
             const auto pick = schedule_.next(r);
             if (!pick) break;
             Tile& t = tiles_[index(*pick)];
-            if (t.holder != r && t.holder != TileSchedule::nobody) ++traffic_.moved_tiles;
+            if (t.holder != r && t.holder != TileSchedule::no_rank) ++traffic_.moved_tiles;
             if (t.home || t.holder == r) {
                 assign(r, *pick, message);
                 continue;
@@ -139,7 +139,7 @@ void Coordinator::deal() {
             out.put(static_cast<std::uint32_t>(*pick));
             // The holder forgets the tile, even if the round ends before the tile reaches the rank that needs
             // it.
-            send(std::exchange(t.holder, TileSchedule::nobody), protocol::release, out.take());
+            send(std::exchange(t.holder, TileSchedule::no_rank), protocol::release, out.take());
         }
         if (!message.empty()) send(r, protocol::assign, std::move(message));
     }
@@ -264,9 +264,9 @@ void Coordinator::take_tiles(const Message& message) {
             in.get_all(pixels.subspan(first, count));
         });
         t.home = true;
-        if (t.wanted_by == TileSchedule::nobody) continue;
+        if (t.wanted_by == TileSchedule::no_rank) continue;
         std::vector<std::uint8_t> assignment;
-        const int rank = std::exchange(t.wanted_by, TileSchedule::nobody);
+        const int rank = std::exchange(t.wanted_by, TileSchedule::no_rank);
         assign(rank, static_cast<int>(header.tile), assignment);
         send(rank, protocol::assign, std::move(assignment));
     }
@@ -278,7 +278,7 @@ void Coordinator::gather() {
             ranks_[index(r)].gathering = true;
             send(r, protocol::gather, {});
         }
-    for (Tile& t : tiles_) t.wanted_by = TileSchedule::nobody;
+    for (Tile& t : tiles_) t.wanted_by = TileSchedule::no_rank;
     const Clock::time_point begin = Clock::now();
     while (std::ranges::any_of(ranks_, [](const Rank& r) { return r.gathering; })) {
         if (!listen()) worker_->wait(std::chrono::microseconds(100));

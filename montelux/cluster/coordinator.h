@@ -63,11 +63,11 @@ class Coordinator final : public RoundExecutor {
         Clock::time_point last_heard;
     };
     struct Tile {
-        double seconds_per_sample = 0;        // CPU time; 0 where it is not known
-        int holder = TileSchedule::nobody;    // rank with its newest pixels, unless only the film has them
-        int wanted_by = TileSchedule::nobody; // rank for which they are being fetched
-        bool home = true;                     // the film has its newest pixels
-        bool goals_known = false;             // to its holder, those of this round
+        double seconds_per_sample = 0;         // CPU time; 0 where it is not known
+        int holder = TileSchedule::no_rank;    // rank with its newest pixels, unless only the film has them
+        int wanted_by = TileSchedule::no_rank; // rank for which they are being fetched
+        bool home = true;                      // the film has its newest pixels
+        bool goals_known = false;              // to its holder, those of this round
         double luminance = 0, squared_error = 0;
         bool summed = false; // those two are known
     };

@@ -14,7 +14,7 @@ namespace montelux {
 // turns come first, and of those the ones with the most work.
 class TileSchedule {
   public:
-    static constexpr int nobody = -1;
+    static constexpr int no_rank = -1;
 
     TileSchedule(int ranks, int tiles);
 
@@ -32,7 +32,7 @@ class TileSchedule {
   private:
     enum class State : std::uint8_t { finished, waiting, in_work };
     struct Tile {
-        int holder = nobody;
+        int holder = no_rank;
         std::uint32_t turns = 0;
         double work = 0;
         State state = State::finished;
@@ -55,7 +55,7 @@ class TileSchedule {
     };
 
     static std::size_t index(int i) { return static_cast<std::size_t>(i); }
-    Queue& queue_of(int holder) { return holder == nobody ? home_ : ranks_[index(holder)]; }
+    Queue& queue_of(int holder) { return holder == no_rank ? home_ : ranks_[index(holder)]; }
     void enqueue(int tile);
     void dequeue(int tile);
 

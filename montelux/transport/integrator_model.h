@@ -12,6 +12,8 @@
 
 namespace montelux {
 
+struct PathRecord;
+
 struct CameraSample {
     Ray ray;
     SampledWavelengths lambda;
@@ -35,12 +37,13 @@ struct FilmContribution {
 // Stateless between samples: `estimate` is a function of the scene, the camera sample and the numbers of the
 // stream. Its mean over streams of independent uniform numbers is the radiance along the ray. The tracer
 // counts rays.
+// `record`, unless null, gets the path; the contribution is the same to the last bit.
 template <typename I, typename Stream>
 concept IntegratorModel = RandomStream<Stream> &&
     requires(const I& integrator, const SceneView& scene, RayTracer& tracer, const CameraSample& camera,
-             Stream& stream) {
+             Stream& stream, PathRecord* record) {
     { I::name } -> std::convertible_to<std::string_view>; // for messages
-    { integrator.estimate(scene, tracer, camera, stream) } -> std::same_as<FilmContribution>;
+    { integrator.estimate(scene, tracer, camera, stream, record) } -> std::same_as<FilmContribution>;
 };
 
 } // namespace montelux

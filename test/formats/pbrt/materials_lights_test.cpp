@@ -123,15 +123,15 @@ TEST(PbrtMaterials, EachHasNormalMapAndBumps) {
     for (int c = 0; c < 3; ++c) normals.u8()[static_cast<std::size_t>(c)] = c == 2 ? 255 : 51;
     write_image(folder / "n.png", normals);
     for (const char* name : all_materials) {
-        Warnings told;
+        Warnings warnings;
         const SceneDescription d =
             parse_pbrt("WorldBegin LightSource \"point\"\n"
                        "Texture \"h\" \"float\" \"checkerboard\"\nMaterial \"" +
                            std::string(name) +
                            "\" \"string normalmap\" \"n.png\" \"texture displacement\" "
                            "\"h\"\nShape \"sphere\" Shape \"disk\"",
-                       "scene", folder.path(), told);
-        EXPECT_TRUE(told.messages().empty()) << told.messages()[0];
+                       "scene", folder.path(), warnings);
+        EXPECT_TRUE(warnings.messages().empty()) << warnings.messages()[0];
         ASSERT_EQ(d.scene.materials.size(), 1u);
         const SurfaceDetail detail = std::visit([](const auto& m) { return m.detail; }, d.scene.materials[0]);
         EXPECT_EQ(detail.displacement.texture, 0u) << name;
@@ -149,10 +149,10 @@ TEST(PbrtMaterials, NormalMapsThatAreNoneSayWhere) {
               "scene:3:1:");
     TemporaryFolder folder;
     write_image(folder / "gray.png", Image(1, 1, {"Y"}, PixelFormat::u8, ColorEncoding::srgb()));
-    Warnings told;
+    Warnings warnings;
     try {
         parse_pbrt("WorldBegin Material \"diffuse\" \"string normalmap\" \"gray.png\" Shape \"sphere\"",
-                   "scene", folder.path(), told);
+                   "scene", folder.path(), warnings);
         FAIL();
     } catch (const Error& e) {
         EXPECT_EQ(std::string(e.what()), "scene:1:31: normal map 'gray.png' has no channels R, G and B");
@@ -160,14 +160,14 @@ TEST(PbrtMaterials, NormalMapsThatAreNoneSayWhere) {
 }
 
 TEST(PbrtMaterials, NamedOnesMayComeLaterAndUnusedOnesAreTold) {
-    Warnings told;
+    Warnings warnings;
     SceneDescription d = parse_world(
         "LightSource \"point\" NamedMaterial \"a\" Shape \"sphere\" Shape \"disk\" MakeNamedMaterial "
         "\"a\" \"string type\" \"dielectric\"\nMaterial \"hair\"",
-        &told);
+        &warnings);
     EXPECT_EQ(d.scene.materials.size(), 1u);
     EXPECT_TRUE(std::holds_alternative<DielectricMaterial>(d.scene.materials[d.scene.shapes[1].material]));
-    EXPECT_EQ(told.messages(),
+    EXPECT_EQ(warnings.messages(),
               std::vector<std::string>{"scene:3:1: material 'hair' is not supported yet; no shape uses it"});
 }
 
@@ -212,7 +212,7 @@ TEST(PbrtTextures, PicturesAreReadOnceForEachEncoding) {
     TemporaryFolder folder;
     Image picture(4, 4, {"R", "G", "B"}, PixelFormat::u8, ColorEncoding::srgb());
     write_image(folder / "a.png", picture);
-    Warnings told;
+    Warnings warnings;
     SceneDescription d = parse_pbrt(R"(WorldBegin
         LightSource "point"
         Texture "a" "spectrum" "imagemap" "string filename" "a.png" "bool invert" true "float scale" 2
@@ -223,7 +223,7 @@ TEST(PbrtTextures, PicturesAreReadOnceForEachEncoding) {
         Texture "unused" "float" "imagemap" "string filename" "none.png"
         Material "coateddiffuse" "texture reflectance" "a" "texture roughness" "b" "texture thickness" "c"
         Shape "sphere" "texture alpha" "d")",
-                                    "scene", folder.path(), told);
+                                    "scene", folder.path(), warnings);
     ASSERT_EQ(d.scene.images.size(), 3u);
     const auto& m = std::get<CoatedDiffuseMaterial>(d.scene.materials[d.scene.shapes[0].material]);
     const auto& a = std::get<ImageTexture>(d.scene.spectrum_textures[m.reflectance.texture]);
@@ -244,7 +244,7 @@ TEST(PbrtTextures, PicturesAreReadOnceForEachEncoding) {
     EXPECT_EQ(d.scene.images[e.image].encoding(), ColorEncoding::gamma(2.2f));
     EXPECT_EQ(e.mapping.kind, TextureMapping::Kind::planar);
     EXPECT_EQ(e.mapping.vs, Vec3f(0, 0, 2));
-    EXPECT_EQ(told.messages(),
+    EXPECT_EQ(warnings.messages(),
               std::vector<std::string>{"scene:8:9: texture 'unused' is not used and was not read"});
 }
 
@@ -257,7 +257,7 @@ TEST(PbrtTextures, NumbersFromPicturesWithAlpha) {
     leaf.u8()[leaf.index(1, 1, 3)] = 0;
     write_image(folder / "opaque.png", opaque);
     write_image(folder / "leaf.png", leaf);
-    Warnings told;
+    Warnings warnings;
     SceneDescription d = parse_pbrt(R"(WorldBegin
         Texture "leaf" "float" "imagemap" "string filename" "leaf.png"
         Texture "opaque" "float" "imagemap" "string filename" "opaque.png"
@@ -265,7 +265,7 @@ TEST(PbrtTextures, NumbersFromPicturesWithAlpha) {
         Material "diffuse" "texture reflectance" "leaf"
         Shape "sphere" "texture alpha" "leaf"
         Shape "sphere" "texture alpha" "opaque")",
-                                    "scene", folder.path(), told);
+                                    "scene", folder.path(), warnings);
     auto channels = [&](std::size_t shape) {
         return std::get<ImageTexture>(d.scene.float_textures[d.scene.shapes[shape].alpha.texture]).channels;
     };
@@ -362,17 +362,17 @@ TEST(PbrtLights, EnvironmentMaps) {
     Image wide(64, 32, {"R", "G", "B"});
     for (float& v : wide.f32()) v = 1;
     write_image(folder / "wide.exr", wide);
-    auto load = [&](const std::string& text, Warnings& told) {
-        return parse_pbrt("WorldBegin\n" + text, "scene", folder.path(), told);
+    auto load = [&](const std::string& text, Warnings& warnings) {
+        return parse_pbrt("WorldBegin\n" + text, "scene", folder.path(), warnings);
     };
-    Warnings told;
+    Warnings warnings;
     SceneDescription d =
         load("Rotate 90 0 1 0 LightSource \"infinite\" \"string filename\" \"map.exr\" \"float scale\" 3 "
              "LightSource \"infinite\" \"string filename\" \"map.exr\" \"float illuminance\" 10",
-             told);
+             warnings);
     ASSERT_EQ(d.scene.environments.size(), 1u);
     EXPECT_EQ(d.scene.environments[0].value(0, 0, 0), 0);
-    EXPECT_EQ(told.messages().size(), 1u);
+    EXPECT_EQ(warnings.messages().size(), 1u);
     const auto& l = std::get<ImageInfiniteLight>(d.scene.lights[0]);
     EXPECT_EQ(l.environment, 0u);
     double white = to_photometric(Spectrum(RgbColorSpace::srgb().illuminant()));
@@ -384,7 +384,7 @@ TEST(PbrtLights, EnvironmentMaps) {
     d = load("Scale 2 2 2 Rotate 90 0 1 0 LightSource \"infinite\" \"string filename\" \"map.exr\" "
              "\"point3 portal\" [0 0 3 0 2 3 4 2 3 4 0 3] "
              "LightSource \"infinite\" \"rgb L\" [1 1 1] \"point3 portal\" [0 0 3 4 0 3 4 2 3 0 2 3]",
-             told);
+             warnings);
     // In world space, whatever turns the map.
     const auto& through = std::get<ImageInfiniteLight>(d.scene.lights[0]).portal;
     ASSERT_TRUE(through);
@@ -402,7 +402,7 @@ TEST(PbrtLights, EnvironmentMaps) {
     EXPECT_EQ(of_wide.messages().size(), 1u);
     EXPECT_NEAR(w.scale * white, 10 / (pi / 2), 0.02);
     try {
-        load("LightSource \"infinite\" \"string filename\" \"odd.exr\"", told);
+        load("LightSource \"infinite\" \"string filename\" \"odd.exr\"", warnings);
         ADD_FAILURE() << "a map that is neither square nor twice as wide as high was accepted";
     } catch (const Error& e) {
         EXPECT_EQ(std::string(e.what()),
