@@ -105,6 +105,35 @@ TEST_P(EveryBsdf, SamplesAreAsTheTraitsSay) {
     EXPECT_EQ(transmitted > 0, std::visit([](const auto& b) { return b.traits.transmits; }, bsdf)) << c.name;
 }
 
+// Tilted BSDFs hand on one number and one pair, and no pair to evaluate what is not stochastic.
+TEST_P(EveryBsdf, TakesNoMoreNumbersThanTheConceptSays) {
+    struct Counted {
+        TestStream source{31};
+        int numbers = 0, pairs = 0;
+        float next_1d() {
+            ++numbers;
+            return source.next_1d();
+        }
+        Vec2f next_2d() {
+            ++pairs;
+            return source.next_2d();
+        }
+    };
+    for (Vec3f wo : directions_out)
+        for (Vec3f wi : directions_out)
+            std::visit(
+                [&]<typename B>(const B& b) {
+                    Counted sampling, evaluation;
+                    b.sample(wo, TransportMode::radiance, sampling);
+                    EXPECT_LE(sampling.numbers, 1) << c.name;
+                    EXPECT_LE(sampling.pairs, 1) << c.name;
+                    b.evaluate(wo, wi, TransportMode::radiance, evaluation);
+                    EXPECT_EQ(evaluation.numbers, 0) << c.name;
+                    EXPECT_LE(evaluation.pairs, B::traits.stochastic ? 1 : 0) << c.name;
+                },
+                bsdf);
+}
+
 // Without a tangent in its traits a BSDF does not see that wo and wi are turned about the normal.
 TEST_P(EveryBsdf, TurnsWithTheTangentsOnlyIfItSaysSo) {
     if (is_specular(bsdf) || std::visit([](const auto& b) { return b.traits.uses_tangents; }, bsdf))

@@ -1,0 +1,158 @@
+// Lights with pbrt-v4's defaults and units.
+#include "test/formats/pbrt/parse.h"
+#include "test/temporary_folder.h"
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <string>
+
+#include "montelux/image/image_write.h"
+#include "montelux/scene/light/light_sampling.h"
+#include "montelux/scene/scene_tables.h"
+#include "montelux/spectrum/rgb_colorspace.h"
+
+namespace montelux {
+namespace {
+
+using test::parse_world;
+
+constexpr double pi = std::numbers::pi;
+
+template <typename T>
+T light(const std::string& directive) {
+    SceneDescription d = parse_world(directive);
+    return std::get<T>(d.scene.lights.at(0));
+}
+template <typename T>
+double photometric(const T& l) {
+    return l.scale * to_photometric(l.spectrum);
+}
+
+TEST(PbrtLights, UnitsOfEveryKind) {
+    auto point = light<PointLight>("Translate 1 0 0 LightSource \"point\" \"point3 from\" [ 0 2 0 ]");
+    EXPECT_EQ(point.position, Vec3f(1, 2, 0));
+    EXPECT_NEAR(photometric(point), 1, 1e-5);
+    EXPECT_NEAR(photometric(light<PointLight>("LightSource \"point\" \"float power\" 100 \"float scale\" 2")),
+                2 * 100 / (4 * pi), 1e-4);
+    // An RGB colour counts on top of its white.
+    auto red = light<PointLight>("LightSource \"point\" \"rgb I\" [ 2 2 2 ]");
+    double y = 0;
+    for (float lambda = 360; lambda <= 830; lambda += 1)
+        y += red.spectrum(lambda) * cie_y[static_cast<std::size_t>(lambda - 360)];
+    EXPECT_NEAR(red.scale * y, 2, 2e-3);
+    EXPECT_NEAR(
+        photometric(light<PointLight>("LightSource \"point\" \"blackbody I\" 3000 \"float scale\" 7")), 7,
+        1e-4);
+    EXPECT_EQ(photometric(light<PointLight>("LightSource \"point\" \"spectrum I\" [ 400 0 700 0 ]")), 0);
+
+    auto spot =
+        light<SpotLight>("LightSource \"spot\" \"point3 to\" [ 0 3 0 ] \"float coneangle\" 60 \"float "
+                         "conedeltaangle\" 15 \"float power\" 10");
+    EXPECT_FLOAT_EQ(spot.cos_total_width, 0.5f);
+    EXPECT_FLOAT_EQ(spot.cos_falloff_start, std::sqrt(0.5f));
+    EXPECT_EQ(spot.axis, Vec3f(0, 1, 0));
+    EXPECT_NEAR(photometric(spot), 10 / (2 * pi * ((1 - std::sqrt(0.5)) + (std::sqrt(0.5) - 0.5) / 2)), 1e-4);
+    auto usual = light<SpotLight>("LightSource \"spot\"");
+    EXPECT_FLOAT_EQ(usual.cos_total_width, std::cos(30 * static_cast<float>(pi) / 180));
+
+    auto distant = light<DistantLight>("Rotate 90 1 0 0 LightSource \"distant\" \"float illuminance\" 30");
+    EXPECT_LT(length(distant.to_light - Vec3f(0, 1, 0)), 1e-6f);
+    EXPECT_NEAR(photometric(distant), 30, 1e-4);
+    EXPECT_NEAR(photometric(light<UniformInfiniteLight>("LightSource \"infinite\" \"float illuminance\" 30")),
+                30 / pi, 1e-4);
+    EXPECT_NEAR(photometric(light<UniformInfiniteLight>("LightSource \"infinite\" \"rgb L\" [ 9 9 9 ]")), 1,
+                1e-5);
+}
+
+TEST(PbrtLights, AreaLightsOfShapes) {
+    SceneDescription d = parse_world(R"(
+        LightSource "point"
+        AttributeBegin
+        AreaLightSource "diffuse" "rgb L" [ 5 5 5 ] "bool twosided" true "float power" 12
+        Scale 2 2 2
+        Shape "trianglemesh" "point3 P" [ 0 0 0 1 0 0 0 1 0 0 4 0 ] "integer indices" [ 0 1 2 0 1 3 ]
+        Shape "sphere" "float radius" 3
+        AttributeEnd
+        Shape "disk")");
+    ASSERT_EQ(d.scene.lights.size(), 3u);
+    EXPECT_EQ(d.scene.shapes[0].light, 1u);
+    EXPECT_EQ(d.scene.shapes[1].light, 2u);
+    EXPECT_EQ(d.scene.shapes[2].light, no_index);
+    const SceneTables tables(d.scene);
+    const SampledWavelengths lambda = SampledWavelengths::sample_visible(0.3f);
+    const double areas[] = {2, 8, 4 * pi * 9};
+    for (Index i = 0; i < 3; ++i) {
+        const Index index = 1 + i / 2;
+        const auto& l = std::get<AreaLight>(d.scene.lights[index]);
+        EXPECT_TRUE(l.two_sided);
+        EXPECT_EQ(l.shape, i / 2);
+        EXPECT_EQ(part_count({tables.view(), index}), index == 1 ? 2u : 1u);
+        const LightHit hit{.wi = {0, 0, -1}, .part = i % 2, .n = {0, 0, 1}};
+        const float radiance = incident_radiance({tables.view(), index}, {}, hit, lambda)[0];
+        EXPECT_NEAR(radiance / l.spectrum.sample(lambda)[0] * to_photometric(l.spectrum),
+                    12 / (2 * areas[i] * pi), 1e-5);
+    }
+}
+
+TEST(PbrtLights, EnvironmentMaps) {
+    TemporaryFolder folder;
+    Image map(64, 64, {"R", "G", "B"});
+    for (float& v : map.f32()) v = 1;
+    map.set(0, 0, 0, -1); // counts as 0
+    write_image(folder / "map.exr", map);
+    write_image(folder / "odd.exr", Image(16, 9, {"R", "G", "B"}));
+    Image wide(64, 32, {"R", "G", "B"});
+    for (float& v : wide.f32()) v = 1;
+    write_image(folder / "wide.exr", wide);
+    auto load = [&](const std::string& text, Warnings& warnings) {
+        return parse_pbrt("WorldBegin\n" + text, "scene", folder.path(), warnings);
+    };
+    Warnings warnings;
+    SceneDescription d =
+        load("Rotate 90 0 1 0 LightSource \"infinite\" \"string filename\" \"map.exr\" \"float scale\" 3 "
+             "LightSource \"infinite\" \"string filename\" \"map.exr\" \"float illuminance\" 10",
+             warnings);
+    ASSERT_EQ(d.scene.environments.size(), 1u);
+    EXPECT_EQ(d.scene.environments[0].value(0, 0, 0), 0);
+    EXPECT_EQ(warnings.messages().size(), 1u);
+    const auto& l = std::get<ImageInfiniteLight>(d.scene.lights[0]);
+    EXPECT_EQ(l.environment, 0u);
+    double white = to_photometric(Spectrum(RgbColorSpace::srgb().illuminant()));
+    EXPECT_NEAR(l.scale * white, 3, 1e-5);
+    EXPECT_LT(length(l.world_from_light.vector(Vec3f(0, 0, 1)) - Vec3f(1, 0, 0)), 1e-6f);
+    // pbrt takes pi / 2 for the illuminance of a map of 1.
+    EXPECT_NEAR(std::get<ImageInfiniteLight>(d.scene.lights[1]).scale * white, 10 / (pi / 2), 0.02);
+    EXPECT_EQ(l.layout, EnvironmentLayout::equal_area);
+    d = load("Scale 2 2 2 Rotate 90 0 1 0 LightSource \"infinite\" \"string filename\" \"map.exr\" "
+             "\"point3 portal\" [0 0 3 0 2 3 4 2 3 4 0 3] "
+             "LightSource \"infinite\" \"rgb L\" [1 1 1] \"point3 portal\" [0 0 3 4 0 3 4 2 3 0 2 3]",
+             warnings);
+    // In world space, whatever turns the map.
+    const auto& through = std::get<ImageInfiniteLight>(d.scene.lights[0]).portal;
+    ASSERT_TRUE(through);
+    EXPECT_EQ(through->area(), 8);
+    EXPECT_LT(length(through->normal() - Vec3d{0, 0, 1}), 1e-12);
+    EXPECT_TRUE(through->lets_through({1, 1, 2}, {0, 0, 1}));
+    const auto& uniform = std::get<UniformInfiniteLight>(d.scene.lights[1]);
+    ASSERT_TRUE(uniform.portal);
+    EXPECT_LT(length(uniform.portal->normal() - Vec3d{0, 0, -1}), 1e-12);
+    EXPECT_NEAR(photometric(uniform), 1, 1e-5);
+    Warnings of_wide;
+    d = load("LightSource \"infinite\" \"string filename\" \"wide.exr\" \"float illuminance\" 10", of_wide);
+    const auto& w = std::get<ImageInfiniteLight>(d.scene.lights[0]);
+    EXPECT_EQ(w.layout, EnvironmentLayout::equirectangular);
+    EXPECT_EQ(of_wide.messages().size(), 1u);
+    EXPECT_NEAR(w.scale * white, 10 / (pi / 2), 0.02);
+    try {
+        load("LightSource \"infinite\" \"string filename\" \"odd.exr\"", warnings);
+        ADD_FAILURE() << "a map that is neither square nor twice as wide as high was accepted";
+    } catch (const Error& e) {
+        EXPECT_EQ(std::string(e.what()),
+                  "scene:2:24: " + (folder / "odd.exr").string() +
+                      " has 16 x 9 pixels; an environment map must be square (equal-area "
+                      "octahedral), or twice as wide as high (latitude-longitude)");
+    }
+}
+
+} // namespace
+} // namespace montelux
