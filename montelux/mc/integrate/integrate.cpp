@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -14,10 +13,11 @@
 #include "montelux/mc/integrate/integrand_scale.h"
 #include "montelux/mc/integrate/integrate_log.h"
 #include "montelux/mc/integrate/interruptible.h"
+#include "montelux/mc/integrate/iteration_history.h"
+#include "montelux/mc/integrate/problem_fingerprint.h"
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/special.h"
-#include "montelux/mc/random/hash.h"
 
 namespace montelux {
 namespace {
@@ -82,7 +82,7 @@ class Run {
     IntegrationResult operator()() {
         if (!options_.checkpoint.empty()) {
             check_generation_writable(options_.checkpoint); // before the work, not after it
-            fingerprint_ = fingerprint();
+            fingerprint_ = problem_fingerprint(f_, evaluator_, method_, options_);
             if (options_.resume && generation_exists(options_.checkpoint)) restore();
         }
         Clock::time_point saved = Clock::now();
@@ -123,7 +123,7 @@ class Run {
             limit_ += made;
             granted_ += made;
         }
-        history_.clear();
+        history_ = {};
         make_estimator();
     }
 
@@ -267,14 +267,8 @@ class Run {
     void record() {
         const Tally tally = estimator_->tally();
         if (tally.value.empty()) return;
-        history_.push_back({tally.evaluations + lost_, in_unit(tally.value.at(0), 0),
-                            in_unit(tally.standard_error.at(0), 0), elapsed()});
-        // Bounds the memory of long runs: drops every second of the older records.
-        constexpr std::size_t most = 4096;
-        if (history_.size() < most) return;
-        std::size_t kept = 0;
-        for (std::size_t i = 1; i < history_.size(); i += 2) history_[kept++] = history_[i];
-        history_.resize(kept);
+        history_.add({tally.evaluations + lost_, in_unit(tally.value.at(0), 0),
+                      in_unit(tally.standard_error.at(0), 0), elapsed()});
     }
 
     IntegrationResult result(StopReason stop) const {
@@ -297,7 +291,7 @@ class Run {
         r.evaluations = tally.evaluations + lost_;
         r.non_finite = tally.non_finite.count;
         r.first_non_finite_point = std::move(tally.non_finite.first_point);
-        r.history = history_;
+        r.history = history_.records();
         r.chi_squared = tally.chi_squared;
         r.degrees_of_freedom = tally.degrees_of_freedom;
         if (tally.degrees_of_freedom > 0)
@@ -327,29 +321,6 @@ class Run {
         return r;
     }
 
-    // A state belongs to a problem and a method; values of the integrand at a few points identify it.
-    std::uint64_t fingerprint() const {
-        std::uint64_t key = hash_key(options_.seed, evaluator_.dimensions(), evaluator_.components(),
-                                     options_.full_covariance);
-        auto mix = [&key](double v) { key = hash_key(key, std::bit_cast<std::uint64_t>(v)); };
-        for (char c : method_ + evaluator_.domain().description())
-            key = hash_key(key, static_cast<std::uint64_t>(c));
-        PointBuffer u(4, evaluator_.dimensions()), x(4, evaluator_.domain().dimensions());
-        for (std::size_t i = 0; i < u.count(); ++i)
-            for (int d = 0; d < u.dimensions(); ++d)
-                u(i, d) = 0.1 + 0.2 * static_cast<double>(i) + 0.05 * (d % 3);
-        std::vector<double> volume(u.count(), 1.0);
-        evaluator_.domain().map(u, x, volume);
-        for (double v : volume) mix(v);
-        for (int d = 0; d < x.dimensions(); ++d)
-            for (double v : x.coordinate(d)) mix(v);
-        ValueBuffer g(u.count(), evaluator_.components());
-        f_(x, g);
-        for (int c = 0; c < g.components(); ++c)
-            for (double v : std::as_const(g).component(c)) mix(v);
-        return key;
-    }
-
     void save() const {
         StateWriter state;
         state.put(fingerprint_);
@@ -357,13 +328,7 @@ class Run {
         state.put(lost_);
         state.put(granted_);
         scale_.save(state);
-        state.put(static_cast<std::uint64_t>(history_.size()));
-        for (const IterationRecord& h : history_) {
-            state.put(h.evaluations);
-            state.put(h.value);
-            state.put(h.standard_error);
-            state.put(h.seconds);
-        }
+        history_.save(state);
         estimator_->save(state);
         write_state(options_.checkpoint, "integration", state);
     }
@@ -380,13 +345,7 @@ class Run {
         if (limit_ != no_limit) limit_ += granted_;
         scale_.load(state);
         make_estimator();
-        history_.resize(std::min<std::uint64_t>(state.get_word(), 1 << 16));
-        for (IterationRecord& h : history_) {
-            h.evaluations = state.get_word();
-            h.value = state.get_double();
-            h.standard_error = state.get_double();
-            h.seconds = state.get_double();
-        }
+        history_.load(state);
         try {
             estimator_->load(state);
         } catch (const Error& error) {
@@ -412,7 +371,7 @@ class Run {
     std::uint64_t fingerprint_ = 0;
     std::string checkpoint_refused_because_;
     std::unique_ptr<Estimator> estimator_;
-    std::vector<IterationRecord> history_;
+    IterationHistory history_;
     double seconds_before_ = 0; // in earlier parts of a run that was resumed
     Clock::time_point start_ = Clock::now();
 };
