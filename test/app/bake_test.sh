@@ -1,5 +1,5 @@
 #!/bin/sh
-# Baking: files, options, messages, odd maps, and that nothing half is left.
+# Baking: files, options, messages, odd maps; no partial files are left.
 . "$(dirname "$0")/common.sh"
 half='\000\000\000\077' two='\000\000\000\100' infinite='\000\000\200\177'
 pfm sky.pfm 4 2 "$one" "$half" "$two" "$one" "$one" "$one" "$two" "$half" "$one" "$zero" "$half" "$one" \
@@ -145,7 +145,7 @@ expect 0 "texels" bake environment sky.pfm --size 4 --levels 2 -o both.exr -o bo
 [ $? -eq 1 ] || fail "a full disk: exit code is not 1: $(cat out)"
 grep -q "montelux: error: lost.exr: cannot be written: writing: File too large" out || fail "a full disk: $(cat out)"
 [ -e lost.exr ] && fail "a full disk left a file"
-[ -s kept.json ] || fail "a file that failed took the one after it along"
+[ -s kept.json ] || fail "the output after a failed one was not written"
 
 # The report.
 expect 0 "split - full" bake report sky.pfm --roughness 0.3,1 --n-dot-v 0.5 --orientations 4 -o r.exr --sphere-size 8
@@ -160,6 +160,6 @@ sleep 1
 kill -INT $pid
 wait $pid
 [ $? -eq 130 ] || fail "an interrupted bake: exit code is not 130"
-grep -q "interrupted, nothing was written" out || fail "it is not told that nothing was written: $(cat out)"
+grep -q "interrupted, nothing was written" out || fail "no message that nothing was written: $(cat out)"
 ls | grep -q '^\.\|stopped' && fail "an interrupted bake left a file: $(ls)"
 finish

@@ -46,16 +46,16 @@ expect 2 "expected a name that ends in .png" compare a.pfm b.pfm --difference d.
 expect 1 "standard errors" compare a.pfm b.pfm --set-aside 1
 expect 1 "standard errors" compare a.pfm b.pfm --difference d.png --difference-of z
 
-# What is compared is not written over, under whatever name.
+# An input of compare is never overwritten, under any of its names.
 cp d.png e.png && ln -s e.png link.png && ln e.png hard.png && cp e.png kept.png
 for name in e.png ./e.png link.png hard.png "$PWD/e.png"; do
     expect 2 "this file is read; what is written needs another name" compare d.png e.png --difference "$name"
     expect 2 "this file is read" compare e.png d.png --difference "$name"
     expect 2 "this file is read" compare d.png d.png --stderr-b e.png --difference "$name"
 done
-cmp -s e.png kept.png || fail "compare wrote over what it reads"
+cmp -s e.png kept.png || fail "compare overwrote its input"
 
-# Values that are not finite: their number is told, the others have minimum, mean and maximum.
+# Non-finite values are counted; minimum, mean and maximum are of the finite ones.
 infinite='\000\000\200\177'
 pfm infinite.pfm 2 1 "$one" "$infinite" "$one" "$one" "$infinite" "$not_a_number"
 "$montelux" info infinite.pfm >out || fail "info of infinite values: exit code $?"

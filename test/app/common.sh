@@ -30,12 +30,12 @@ expect() {
         fail "montelux $*: '$text' is missing in:"
         cat out
     elif [ "$code" -eq 1 ] && [ "$(grep -c 'montelux: error: ' out)" -ne 1 ]; then
-        fail "montelux $*: not exactly one error is told"
+        fail "montelux $*: not exactly one error message"
         cat out
     fi
 }
 
-# scene NAME WORLD [WIDTH HEIGHT [SPP]]: NAME.pbrt, which asks for NAME.exr. The world begins in line 6.
+# scene NAME WORLD [WIDTH HEIGHT [SPP]]: NAME.pbrt, whose output is NAME.exr. The world begins in line 6.
 scene() {
     printf '%s\n' "Film \"rgb\" \"integer xresolution\" ${3:-8} \"integer yresolution\" ${4:-6}" \
         "  \"string filename\" \"$1.exr\"" \

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Crops keep their place in EXR files: compare, merge, denoise and resumed renders know it.
+# Crops keep their place in EXR files: compare, merge, denoise and resumed renders use it.
 . "$(dirname "$0")/common.sh"
 scene ball "$sky Material \"diffuse\" Shape \"sphere\"" 64 48
 render() { "$montelux" render ball.pbrt --quiet --sampler independent --spp 16 "$@" >out 2>&1 || fail "render $*: $(cat out)"; }

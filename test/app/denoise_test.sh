@@ -1,11 +1,11 @@
 #!/bin/sh
-# Denoising: what is told without the library, and with it what is in the files.
+# Denoising: messages without the library; file contents with it.
 . "$(dirname "$0")/common.sh"
 scene ok "$sky Material \"diffuse\" Shape \"sphere\"" 32 24 4
 scene long "$sky Shape \"sphere\"" 2000 2000 1000000
 expect 0 "ok.exr" render ok.pbrt
 
-# Without the library: told before the render, which would take hours, and nothing is written.
+# Without the library: an error before the render, which would take hours, and no file.
 (
     MONTELUX_OIDN_LIBRARY=$folder/no.so
     export MONTELUX_OIDN_LIBRARY
@@ -28,14 +28,14 @@ expect 0 "MONTELUX_OIDN_LIBRARY" denoise --help
 expect 0 "--denoise" render --help
 
 if ! "$montelux" denoise ok.exr -o denoised.exr --quiet 2>err; then
-    grep -q "pip install pyoidn" err || fail "the message does not tell how to get the library: $(cat err)"
+    grep -q "pip install pyoidn" err || fail "the message does not say how to get the library: $(cat err)"
     rm -f denoised.exr
     [ $failures -ne 0 ] || { cat err && exit 77; }
     finish
 fi
 
 expect 0 "denoised by Open Image Denoise" render ok.pbrt --denoise -o both.exr -o both.pfm -o both.png
-grep -q "the error bars are those of the picture before denoising" out || fail "the error bars are not told of"
+grep -q "the error bars are those of the picture before denoising" out || fail "no message about the error bars"
 expect 0 '"denoiser" = "Open Image Denoise' info both.exr
 for channel in R stderr.R albedo.R N.X denoised.R denoised.G denoised.B; do
     grep -q "^$channel " out || fail "both.exr lacks the channel $channel"
@@ -64,5 +64,5 @@ sleep 2
 kill -INT $pid
 wait $pid
 [ $? -eq 130 ] || fail "an interrupted render: exit code is not 130"
-grep -q "stopped before the end, not denoised" out || fail "it is not told that the picture is not denoised: $(cat out)"
+grep -q "stopped before the end, not denoised" out || fail "no message that the picture is not denoised: $(cat out)"
 finish

@@ -11,19 +11,19 @@ honest() {
     shift
     timeout 60 "$montelux" integrate "$@" --json --quiet >json 2>err </dev/null
     code=$?
-    told="montelux integrate $*: $(field value) with an error of $(field standard_error), instead of $truth"
+    result="montelux integrate $*: $(field value) with an error of $(field standard_error), instead of $truth"
     case $code in
     0) ;;
     3) return ;;
     *)
-        fail "$told: exit code $code: $(cat err)"
+        fail "$result: exit code $code: $(cat err)"
         return
         ;;
     esac
     grep -q '"warnings": \[\]' json || return
     # Where the error is unknown (null) nothing is claimed.
     awk -v v="$(field value)" -v e="$(field standard_error)" -v t="$truth" \
-        'BEGIN { d = v - t; if (d < 0) d = -d; exit !(e == "null" || d <= 4 * e) }' || fail "$told"
+        'BEGIN { d = v - t; if (d < 0) d = -d; exit !(e == "null" || d <= 4 * e) }' || fail "$result"
 }
 # exact TRUTH TOLERANCE MOST arguments...: the value, after MOST evaluations at most.
 exact() {
@@ -69,12 +69,12 @@ for method in auto adaptive vegas basic; do
             --evaluations 1M --method $method --seed $seed
     done
 done
-# What a sample hardly ever meets: the error of equal values is not zero.
+# Rarely hit features: the error of equal values is not zero.
 for method in basic quasi stratified vegas; do
     honest 0.999879 'x>0.000121' --over x=0:1 --method $method --evaluations 2000
 done
 
-# A target below rounding ends at once with the best there is.
+# A target below rounding ends at once with the best value.
 exact 0.45969769413186028 1e-15 100000 'sin(x)' --over x=0:1 --relative-error 1e-16
 exact 0.45969769413186028 1e-15 100000 'sin(x)' --over x=0:1 --absolute-error 1e-30
 exact 1.7182818284590452 4e-15 100000 'exp(x)' --over x=0:1 --relative-error 1e-16

@@ -1,5 +1,5 @@
 #!/bin/sh
-# montelux integrate: results, files, limits, and an answer to every mistake.
+# montelux integrate: results, files, limits, messages for mistakes.
 . "$(dirname "$0")/common.sh"
 
 # field NAME: a number of the JSON in the file `json`, in one line.
@@ -39,7 +39,7 @@ for count in 3000=3k 3000=3e3 2500=2.5k 100000=.1M 1000000=1M 2000000=0.002G; do
     "$montelux" integrate x --over x=0:1 --method basic --evaluations "${count#*=}" >out 2>&1
     grep -q "^${count%=*} evaluations" out || fail "--evaluations ${count#*=}: $(cat out)"
 done
-# Without a target, the method of choice does not throw away what it has.
+# Without a target, auto keeps the samples that it has.
 value 1 1e-6 'exp(-x)' --over x=0:inf --evaluations 1e5
 value 0.25 1e-6 'x*y' --over x,y=0:1 --evaluations 1e5
 # A pole in the middle, where its sides cancel, is no convergence; a single value that is missing costs nothing.
@@ -123,7 +123,7 @@ log_value -1998.162122933590 '-2000-(x^2+y^2)/2' --over x,y=-inf:inf --relative-
 log_value -2001.609437912434 'x<0 ? -inf : -2000-5*x' --over x=-1:9 --relative-error 1e-3 --method quasi
 log_value -8001.609437912434 '-8000-5*x' --over x=0:inf --density 'x=exp(-5*x)' --method basic --relative-error 1e-3
 log_value -898.567588041694 '-900' --domain ball --over x,y,z --relative-error 1e-6
-grep -q '^  "value"' json && fail "a relative value stands for Z: $(cat json)"
+grep -q '^  "value"' json && fail "a relative value is printed as Z: $(cat json)"
 expect 0 "log Z = -4999.08106" integrate --log -5000-x^2/2 --over x=-inf:inf --relative-error 1e-6
 expect 3 "stopped at the number of evaluations" integrate --log -5000-x^2/2 --over x=-inf:inf --relative-error 1e-6 --method basic --evaluations 10k
 expect 0 "log Z = -inf" integrate --log 'log(0*x)' --over x=0:1 --method basic --evaluations 1000
@@ -131,13 +131,13 @@ expect 2 "--log: 2 formulas were given; expected one" integrate --log x 1 --over
 expect 2 "expected --relative-error, which is the error of log Z" integrate --log x --over x=0:1 --absolute-error 1
 expect 2 "leave out one of --log and --plot" integrate --log x --over x=0:1 --plot plot.svg
 expect 1 "is zero where '-5*x-8000' is not" integrate --log -5*x-8000 --over x=-1:1 --density 'x=x<0 ? 0 : exp(-5*x)'
-# A run of logarithms that was killed goes on to the same digits.
+# A killed run of logarithms resumes to the same digits.
 log_run="--log x*y-3000 --over x,y=0:1 --method basic --evaluations 5M --quiet"
-"$montelux" integrate $log_run --json | grep -v seconds >unbroken
+"$montelux" integrate $log_run --json | grep -v seconds >uninterrupted
 rm -f log log.previous
 timeout -s KILL 0.2 "$montelux" integrate $log_run --checkpoint log --checkpoint-every 0 >/dev/null 2>&1
 "$montelux" integrate $log_run --checkpoint log --resume --json | grep -v seconds >resumed
-cmp -s unbroken resumed || fail "log Z of a resumed run: $(head -n 3 resumed) instead of $(head -n 3 unbroken)"
+cmp -s uninterrupted resumed || fail "log Z of a resumed run: $(head -n 3 resumed) instead of $(head -n 3 uninterrupted)"
 
 # Threads make their parsers at the same time.
 formulas=$(seq -f '1.5*x+%g.5' 200)
@@ -167,8 +167,8 @@ if command -v python3 >/dev/null; then
     python3 -c 'import xml.etree.ElementTree as e; e.parse("plot.svg")' || fail "the plot is no XML"
 fi
 
-# Checkpoints: what is continued has the digits of what was not broken; killed at any moment, too.
-"$montelux" integrate 'sin(x)*y' --over x,y=0:1 --method basic --evaluations 3e7 --quiet --json | grep -v seconds >unbroken
+# Checkpoints: a resumed run has the digits of an uninterrupted one, also after a kill at any moment.
+"$montelux" integrate 'sin(x)*y' --over x,y=0:1 --method basic --evaluations 3e7 --quiet --json | grep -v seconds >uninterrupted
 for wait in 0.05 0.2 0.4; do
     rm -f state state.previous
     "$montelux" integrate 'sin(x)*y' --over x,y=0:1 --method basic --evaluations 3e7 --quiet --checkpoint state \
@@ -179,13 +179,13 @@ for wait in 0.05 0.2 0.4; do
     wait $pid 2>/dev/null
     "$montelux" integrate 'sin(x)*y' --over x,y=0:1 --method basic --evaluations 3e7 --quiet --checkpoint state --resume \
         --json | grep -v seconds >resumed
-    cmp -s unbroken resumed || fail "killed after $wait s, the resumed run has other digits"
+    cmp -s uninterrupted resumed || fail "killed after $wait s, the resumed run has other digits"
 done
 expect 2 "exists already; add --resume" integrate 'sin(x)*y' --over x,y=0:1 --checkpoint state
-# The generation before alone is a checkpoint, too.
+# The previous generation by itself is a checkpoint.
 cp state alone.previous
 expect 2 "exists already; add --resume" integrate 'sin(x)*y' --over x,y=0:1 --checkpoint alone
-cmp -s state alone.previous || fail "a refused run replaced the generation before"
+cmp -s state alone.previous || fail "a refused run replaced the previous generation"
 expect 0 "" integrate 'sin(x)*y' --over x,y=0:1 --method basic --evaluations 3e7 --checkpoint alone --resume
 expect 1 "belongs to another integrand, domain, method or seed" integrate x --over x=0:1 --method basic --checkpoint state --resume
 head -c 100 state >cut
@@ -193,11 +193,11 @@ expect 1 "is cut short" integrate 'sin(x)*y' --over x,y=0:1 --method basic --che
 cp state cut.previous
 expect 0 "is cut short" integrate 'sin(x)*y' --over x,y=0:1 --method basic --checkpoint cut --resume
 expect 0 "" integrate 'sin(x)*y' --over x,y=0:1 --method basic --checkpoint cut --resume
-grep -q warning out && fail "a whole checkpoint is warned of: $(cat out)"
+grep -q warning out && fail "a warning about an undamaged checkpoint: $(cat out)"
 echo hello >text
 expect 1 "is not a saved state" integrate x --over x=0:1 --checkpoint text --resume
 
-# Ctrl-C prints what there is.
+# Ctrl-C prints the result so far.
 "$montelux" integrate x --over x=0:1 --method basic --relative-error 1e-12 --quiet --json >json 2>err &
 pid=$!
 sleep 0.5

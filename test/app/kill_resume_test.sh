@@ -1,5 +1,5 @@
 #!/bin/sh
-# Killed by SIGKILL at random moments and resumed until it ends, a run gives the bits of an unbroken one. Half
+# A run that is killed by SIGKILL at random moments and resumed equals an uninterrupted one bit for bit. Half
 # of the kills come after a random time, half at a random call on a file: in the middle of writing a checkpoint.
 # MONTELUX_KILLS: how often each case is killed; MONTELUX_KILL_SEED: other moments.
 . "$(dirname "$0")/common.sh"
@@ -24,7 +24,7 @@ launch() {
     (
         cd "$where" || exit 1
         MONTELUX_FAULT_FOLDER=$PWD MONTELUX_FAULT_CALL=$call MONTELUX_FAULT_KIND=kill-before LD_PRELOAD=$preload \
-            exec "$montelux" "$@" >printed 2>told </dev/null
+            exec "$montelux" "$@" >printed 2>messages </dev/null
     ) &
     pid=$!
     case $kill in time*) sleep "${kill#time }" && kill -KILL $pid 2>/dev/null ;; esac
@@ -33,15 +33,15 @@ launch() {
 }
 
 # survives NAME "OUTPUTS" CALLS command...: kills it until it was killed often enough, and compares the OUTPUTS of
-# each run that ended with those of the unbroken one. The command resumes where there is something to go on
-# from; a run makes about CALLS calls on files. Lines that tell the time are left out.
+# each run that ended with those of the uninterrupted one. The command resumes if there is a checkpoint; a run
+# makes about CALLS calls on files. Lines with times are left out.
 survives() {
     name=$1 outputs=$2 calls=$3
     shift 3
     rm -rf unbroken broken && mkdir unbroken broken
     begin=$(now)
     launch unbroken never "$@"
-    [ $code -eq 0 ] || { fail "$name: exit code $code: $(cat unbroken/told)" && return; }
+    [ $code -eq 0 ] || { fail "$name: exit code $code: $(cat unbroken/messages)" && return; }
     seconds=$(scaled 1e-9 $(($(now) - begin)))
     killed=0 ended=0 resumed=0 tries=0
     random $((20 * kills + 20)) >moments
@@ -56,8 +56,8 @@ survives() {
         fi
         before=$killed
         launch broken "$kill" "$@"
-        # Whatever the moment, the newest checkpoint is a whole one.
-        grep -q 'montelux: \(warning\|error\)' broken/told && fail "$name, killed $killed times, last $kill: $(cat broken/told)"
+        # The newest checkpoint is never damaged.
+        grep -q 'montelux: \(warning\|error\)' broken/messages && fail "$name, killed $killed times, last $kill: $(cat broken/messages)"
         case $code in
         137) killed=$((killed + 1)) ;;
         0)
@@ -65,16 +65,16 @@ survives() {
             for output in $outputs; do
                 grep -av seconds "unbroken/$output" >a
                 grep -av seconds "broken/$output" >b
-                cmp -s a b || fail "$name, killed $killed times: $output differs from that of an unbroken run"
+                cmp -s a b || fail "$name, killed $killed times: $output differs from that of an uninterrupted run"
             done
             [ "$kill" = never ] && break
             rm -rf broken && mkdir broken
             ;;
-        *) fail "$name, $kill: exit code $code: $(cat broken/told)" && break ;;
+        *) fail "$name, $kill: exit code $code: $(cat broken/messages)" && break ;;
         esac
         [ $killed -gt $before ] && [ -e broken/state ] && resumed=$((resumed + 1))
     done <moments
-    [ "$kill" = never ] || fail "$name: killed $killed times in $tries tries, which is too seldom"
+    [ "$kill" = never ] || fail "$name: killed only $killed times in $tries tries"
     # Kills before the first checkpoint would show nothing.
     [ $((2 * resumed)) -ge "$kills" ] || fail "$name: only $resumed of $killed kills left a checkpoint"
     [ -z "${MONTELUX_VERBOSE-}" ] ||

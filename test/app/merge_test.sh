@@ -1,5 +1,5 @@
 #!/bin/sh
-# Slices join to the whole, and what does not fit is refused with a sentence.
+# Slices join to the whole; slices that do not fit are refused with a message.
 . "$(dirname "$0")/common.sh"
 scene ball "$sky Material \"diffuse\" Shape \"sphere\"" 16 12
 for sampler in independent sobol; do

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Renders that the ranks of an MPI job share: the picture of one process, to the bit, whatever happens to a rank.
+# Renders by MPI ranks are bit-identical to those of one process, also after a rank was killed and the job resumed.
 . "$(dirname "$0")/common.sh"
 command -v mpirun >/dev/null || { echo "skipped: there is no mpirun" && exit 77; }
 "$montelux" --version | grep -q MPI || { echo "skipped: built without MPI" && exit 77; }
@@ -13,16 +13,16 @@ ranks() {
     timeout 60 mpirun --oversubscribe --bind-to none -n "$n" "$montelux" "$@" >out 2>&1 </dev/null
     code=$?
 }
-# same NAME A B: two EXR files, but for the time of rendering that their headers tell.
+# same NAME A B: two EXR files are equal, except for the render time in their headers.
 same() {
     [ "$(wc -c <"$2")" = "$(wc -c <"$3")" ] && [ "$(cmp -l "$2" "$3" | wc -l)" -le 4 ] ||
         fail "$1: the pictures differ in $(cmp -l "$2" "$3" | wc -l) bytes"
 }
-# told_once NAME CODE TEXT: and all ranks ended of themselves.
-told_once() {
+# prints_once NAME CODE TEXT: of the last job; also checks that no rank was killed.
+prints_once() {
     [ $code -eq "$2" ] || fail "$1: exit code $code instead of $2: $(cat out)"
-    [ "$(grep -cF -- "$3" out)" -eq 1 ] || fail "$1: '$3' is not told once: $(cat out)"
-    [ "$(grep -c 'montelux: error: ' out)" -le 1 ] || fail "$1: more than one error is told: $(cat out)"
+    [ "$(grep -cF -- "$3" out)" -eq 1 ] || fail "$1: '$3' is not printed once: $(cat out)"
+    [ "$(grep -c 'montelux: error: ' out)" -le 1 ] || fail "$1: more than one error message: $(cat out)"
     ! grep -q 'MPI_ABORT\|interrupted, nothing' out || fail "$1: ranks were killed: $(cat out)"
 }
 
@@ -30,11 +30,11 @@ light='AttributeBegin Translate 0 3 1 AreaLightSource "diffuse" "rgb L" [9 9 9] 
 scene ball "$sky $light Material \"diffuse\" Shape \"sphere\" Translate 1 0 0 Material \"conductor\" Shape \"sphere\"" 70 50
 
 for options in '--spp 40 --sampler independent' '--spp 40' '--target-error 4% --sampler independent' '--spp 30 --adaptive on --seed 7'; do
-    "$montelux" render ball.pbrt $options --quiet --threads 7 -o one.exr 2>told || fail "one process: $(cat told)"
+    "$montelux" render ball.pbrt $options --quiet --threads 7 -o one.exr 2>messages || fail "one process: $(cat messages)"
     for n in 1 2 3 4; do
         [ $n -eq 1 ] || [ $n -eq 4 ] || [ "$options" = '--spp 40' ] || continue
         ranks $n render ball.pbrt $options --threads 1 -o many.exr
-        told_once "$options on $n ranks" 0 'many.exr: 70 x 50 pixels'
+        prints_once "$options on $n ranks" 0 'many.exr: 70 x 50 pixels'
         same "$options on $n ranks" one.exr many.exr
     done
 done
@@ -49,39 +49,39 @@ done
 "$montelux" compare merged.exr one.exr >out 2>&1
 awk '/^[RGB] / && $4 ~ /%/ { seen++; if (!($6 < 1e-6)) bad = 1 } END { exit bad || seen != 3 }' out || fail "slices: $(cat out)"
 
-# What cannot be done is told once, ends with the code of a single process, and keeps nobody waiting.
+# Mistakes give one message and the exit code of a single process, without delay.
 ranks 3 render missing.pbrt
-told_once "missing scene" 1 "montelux: error: missing.pbrt"
+prints_once "missing scene" 1 "montelux: error: missing.pbrt"
 scene bad 'Shape "spher"'
 ranks 3 render bad.pbrt
-told_once "bad scene" 1 "montelux: error: bad.pbrt:6:"
+prints_once "bad scene" 1 "montelux: error: bad.pbrt:6:"
 ranks 3 render ball.pbrt --spp none
-told_once "bad option" 2 "'none' was given"
-# Rank 0 is heard even where it comes last: a launcher ends the job with the first rank that makes a mistake.
+prints_once "bad option" 2 "'none' was given"
+# The message of rank 0 is printed even if it is the last: launchers end the job with the first rank that fails.
 for mistake in 'render ball.pbrt --spp none' 'integrate x* --over x=0:1'; do
     timeout 60 mpirun --oversubscribe --bind-to none -n 3 sh -c \
         '[ "$OMPI_COMM_WORLD_RANK" = 1 ] || sleep 2; exec "$@"' - "$montelux" $mistake >out 2>&1 </dev/null
     code=$?
     "$montelux" $mistake >alone 2>&1
     [ $code -eq $? ] || fail "$mistake: exit code $code: $(cat out)"
-    told_once "$mistake, rank 0 late" $code "$(head -n 1 alone)"
+    prints_once "$mistake, rank 0 late" $code "$(head -n 1 alone)"
 done
-# Mistakes that every rank could tell of; and one that a rank other than 0 meets alone, when it builds the scene.
+# Mistakes that every rank finds; and one that only another rank than 0 finds, when it builds the scene.
 ranks 3 render ball.pbrt --spp 4 --slice 5/9
-told_once "empty slice" 2 "montelux: error: --slice: there are fewer"
+prints_once "empty slice" 2 "montelux: error: --slice: there are fewer"
 timeout 60 mpirun --oversubscribe --bind-to none -n 3 sh -c \
     '[ "$OMPI_COMM_WORLD_RANK" != 1 ] || set -- "$@" --crop 0.5001,0.5002,0,1; exec "$@"' - \
     "$montelux" render ball.pbrt --spp 40 -o alone.exr >out 2>&1 </dev/null
 code=$?
-told_once "a mistake of rank 1 alone" 1 "montelux: error: rank 1: "
+prints_once "a mistake of rank 1 alone" 1 "montelux: error: rank 1: "
 ranks 3 render ball.pbrt --crop 0.5001,0.5002,0,1
-told_once "empty crop" 2 "no pixel"
+prints_once "empty crop" 2 "no pixel"
 ranks 3 render ball.pbrt --debug-sample 35,25,3
-told_once "one sample" 0 "vertex 1:"
+prints_once "one sample" 0 "vertex 1:"
 ranks 2 info one.exr
-told_once "what cannot be shared" 0 "70 x 50 pixels"
+prints_once "what cannot be shared" 0 "70 x 50 pixels"
 ranks 2 render ball.pbrt --spp 40 --stats -o many.exr
-told_once "statistics" 0 "ranks              2, with"
+prints_once "statistics" 0 "ranks              2, with"
 
 # background N arguments...: starts the job; `job` is mpirun.
 background() {
@@ -123,13 +123,13 @@ for victim in 0 2; do
     kill -KILL "$(rank $victim)" || fail "there is no rank $victim"
     ended "rank $victim killed" 10
     [ $code -ne 0 ] || fail "rank $victim killed: exit code 0"
-    grep -q "signal 9" out || fail "rank $victim killed: it is not told: $(cat out)"
+    grep -q "signal 9" out || fail "rank $victim killed: no message: $(cat out)"
     ranks 2 $whole --threads 1 --quiet -o many.exr --checkpoint state --resume
-    # The one that was killed may have been further.
-    [ $code -eq 0 ] || fail "rank $victim killed: going on: exit code $code: $(cat out)"
+    # The killed rank may have been further.
+    [ $code -eq 0 ] || fail "rank $victim killed: resumed: exit code $code: $(cat out)"
 done
-# The same with goals that both share: killed as soon as there is a checkpoint, and gone on with to the same bits. A
-# render that ends before is no use.
+# The same with a target: killed as soon as there is a checkpoint, and resumed to the same bits. A render that ends
+# before the kill is repeated.
 for try in 1 2 3 4 5; do
     rm -f state* many.exr
     background 3 $whole --threads 1 -o many.exr --checkpoint state --checkpoint-every 0.05
@@ -140,8 +140,8 @@ for try in 1 2 3 4 5; do
     [ $try -lt 5 ] || fail "the render had ended before rank 1 was killed"
 done
 ranks 4 $whole --threads 1 --quiet -o many.exr --checkpoint state --resume
-[ $code -eq 0 ] || fail "going on after a kill: $(cat out)"
-same "going on after a kill" one.exr many.exr
+[ $code -eq 0 ] || fail "resumed after a kill: $(cat out)"
+same "resumed after a kill" one.exr many.exr
 
 # Integrals: the digits of one process.
 for options in 'sin(x)*y+exp(-40*(z-0.5)^2) --method basic' '1/(x+y+z) --method vegas' 'x*y*z --method cubature'; do
@@ -152,7 +152,7 @@ for options in 'sin(x)*y+exp(-40*(z-0.5)^2) --method basic' '1/(x+y+z) --method 
     done
 done
 ranks 3 integrate 'x*' --over x=0:1
-told_once "bad formula" 2 "montelux: error: "
+prints_once "bad formula" 2 "montelux: error: "
 
 # A signal to mpirun, as from Ctrl-C, and to a single rank: the picture and the checkpoint are written.
 for target in mpirun 0 1; do
@@ -168,7 +168,7 @@ for target in mpirun 0 1; do
     [ -e state ] || fail "a signal to $target: there is no checkpoint"
 done
 
-# A rank that hangs is given up.
+# A hanging rank ends the job.
 rm -f state* many.exr
 background 3 $whole --spp 100000 --threads 1 -o many.exr --checkpoint state --checkpoint-every 0.3 --rank-timeout 2
 wait_for_file state
@@ -178,7 +178,7 @@ ended "a rank hangs" 10
 grep -q "error: rank 1 has said nothing for" out || fail "a rank hangs: $(cat out)"
 expect 0 '"interrupted" = 1' info many.exr
 
-# So is one that hangs before it has built the scene. Rank 0 has read it before the others get it, and renders first.
+# So does one that hangs before it has built the scene, which rank 0 reads first.
 scene slow "$sky $(yes 'Shape "sphere" "float radius" 0.01' | head -n 250000)" 70 50
 rm -f state* many.exr
 background 2 render slow.pbrt --spp 1000000 --adaptive on --threads 1 -o many.exr --checkpoint state --checkpoint-every 0.05 \
@@ -186,9 +186,9 @@ background 2 render slow.pbrt --spp 1000000 --adaptive on --threads 1 -o many.ex
 wait_for_file state
 begin=$(now)
 kill -STOP "$(rank 1)"
-ended "a rank hangs before its beginning" 10
-[ $code -eq 1 ] || fail "a rank hangs before its beginning: exit code $code: $(cat out)"
-grep -q "error: rank 1 has said nothing for" out || fail "a rank hangs before its beginning: $(cat out)"
+ended "a rank hangs while it builds the scene" 10
+[ $code -eq 1 ] || fail "a rank hangs while it builds the scene: exit code $code: $(cat out)"
+grep -q "error: rank 1 has said nothing for" out || fail "a rank hangs while it builds the scene: $(cat out)"
 expect 0 '"interrupted" = 1' info many.exr
 expect 0 'many.exr: 70 x 50' render slow.pbrt --spp 1 --adaptive on -o many.exr --checkpoint state --resume
 finish

@@ -3,7 +3,7 @@
 . "$(dirname "$0")/common.sh"
 scene ok "$sky Shape \"sphere\""
 
-# What cannot be written is told before the render: this one would take hours.
+# Outputs are checked before the render: this one would take hours.
 scene long "$sky Shape \"sphere\"" 2000 2000 1000000
 expect 1 "nowhere/x.exr: cannot be written" render long.pbrt -o nowhere/x.exr
 expect 1 "cannot be written" render long.pbrt -o long.pbrt/x.exr
@@ -21,7 +21,7 @@ expect 1 "it is a folder" render long.pbrt -o x.exr --checkpoint folder.exr
 mkdir locked && chmod 500 locked
 if [ "$(id -u)" -ne 0 ]; then expect 1 "Permission denied" render long.pbrt -o locked/x.exr; fi
 
-# What is no scene is told for what it looks like.
+# A file that is not a scene: the message names its kind.
 expect 0 "8 x 6 pixels" render ok.pbrt -o picture.exr --checkpoint ok.state
 expect 1 "picture.exr: looks like an OpenEXR picture; expected a scene of pbrt-v4 (.pbrt or .pbrt.gz)" render picture.exr
 expect 1 "ok.state: looks like a checkpoint of Montelux; expected a scene" render ok.state
@@ -42,7 +42,7 @@ grep -q "limited.exr: cannot be written: writing: File too large" out || fail "a
 [ $? -eq 1 ] || fail "a full disk: exit code is not 1"
 [ "$(grep -c 'montelux: error: ' out)" -eq 1 ] || fail "a full disk: not one error: $(cat out)"
 grep -q "error: limited.exr: .*File too large; big.pfm: .*File too large" out || fail "a full disk: $(cat out)"
-grep -q '^limited.exr: 300' out && fail "a file that was not written is told of: $(cat out)"
+grep -q '^limited.exr: 300' out && fail "a file that was not written is reported as written: $(cat out)"
 expect 0 "300 x 200 pixels" info small.png
 expect 0 "300 x 200 pixels" info small.hdr
 find . -name '.montelux-*' | grep -q . && fail "a temporary file was left behind"
@@ -50,7 +50,7 @@ find . -name '.montelux-*' | grep -q . && fail "a temporary file was left behind
 # Messages must not get into a picture that is opened while the standard streams are closed.
 "$montelux" render ok.pbrt -o closed.exr >&- 2>&- <&-
 expect 0 "8 x 6 pixels" info closed.exr
-# Nor may a reader of the messages that goes away stop the render.
+# A closed reader of the messages does not stop the render.
 rm -f ok.exr
 "$montelux" render ok.pbrt --spp 64 2>&1 | true
 [ -e ok.exr ] || fail "a closed pipe stopped the render"
@@ -94,7 +94,7 @@ with environment grey.pfm
 expect 0 "" render picture.pbrt -o b.pfm
 cmp -s a.pfm b.pfm || fail "a grey environment is not a white one"
 
-# The picture must not replace what the scene is made of.
+# The picture must not overwrite files of the scene.
 with texture one.pfm
 expect 2 "one.pfm: the scene is read from this file" render picture.pbrt -o one.pfm
 expect 0 "1 x 1 pixels" info one.pfm

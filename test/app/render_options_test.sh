@@ -1,5 +1,5 @@
 #!/bin/sh
-# Options of the render command: what is refused, and what they change in the picture.
+# Options of the render command: refused values, and effects on the picture.
 . "$(dirname "$0")/common.sh"
 scene ok "$sky
 LightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [2 2 3]

@@ -1,5 +1,5 @@
 #!/bin/sh
-# One sample traced again: what is refused, what is printed, and that a left-out sample says how to be replayed.
+# Replayed samples: refused arguments, the printed record, and the option that the message on bad samples gives.
 . "$(dirname "$0")/common.sh"
 scene ok "$sky Material \"coateddiffuse\" Shape \"sphere\"" 64 48
 
@@ -18,7 +18,7 @@ expect 0 "strategy mis-bsdf with the power heuristic" render ok.pbrt --strategy 
 scene lamp 'LightSource "point" "point3 from" [0 0 3] Shape "sphere"' 64 48
 expect 0 "to the term mis-light, which is left out" render lamp.pbrt --strategy mis-bsdf --debug-sample 32,24,0
 expect 0 "to the term mis-bsdf, which is left out" render ok.pbrt --strategy mis-light --debug-sample 0,0,0
-# A lamp that nothing can meet, and yet no point: its radiance has a density.
+# A lamp that no path can hit, but not a point light: its radiance has a density.
 scene hidden 'AttributeBegin AreaLightSource "diffuse" "bool twosided" true Translate 0 0 3 Shape "disk" "float alpha" 0 AttributeEnd
     Shape "sphere"' 64 48
 expect 0 "per steradian; weight 1" render hidden.pbrt --strategy bsdf --debug-sample 32,20,0
@@ -35,10 +35,10 @@ grep -q warning out && fail "--quiet printed a warning"
 "$montelux" render ok.pbrt --quiet --spp 1 --crop 0.5,0.51,0.5,0.51 -o one.pfm || fail "render"
 "$montelux" render ok.pbrt --quiet --spp 1 --debug-sample 32,24,0 >record || fail "replay"
 pixel=$(od -A n -t f4 -j $(($(wc -c <one.pfm) - 12)) one.pfm | awk '{ printf "%.5g %.5g %.5g", $1, $2, $3 }')
-told=$(awk '/the pixel gets/ { printf "%.5g %.5g %.5g", $4, $5, $6 }' record)
-[ -n "$told" ] && [ "$pixel" = "$told" ] || fail "the pixel is $pixel, the replay says $told"
+replayed=$(awk '/the pixel gets/ { printf "%.5g %.5g %.5g", $4, $5, $6 }' record)
+[ -n "$replayed" ] && [ "$pixel" = "$replayed" ] || fail "the pixel is $pixel, the replay says $replayed"
 
-# A metal whose index overflows is not a number. The message's own option shows where it came in.
+# A metal whose index overflows is not a number. The option in the message shows where it first occurs.
 scene bad "$sky Material \"conductor\" \"spectrum eta\" [300 1e30 900 1e30] \"spectrum k\" [300 1 900 1]
     \"float roughness\" 0.3 Shape \"sphere\""
 expect 0 "not a number, is sample" render bad.pbrt
@@ -46,7 +46,7 @@ option=$(grep -o -- '--debug-sample [0-9,]*$' out)
 [ -n "$option" ] || fail "the message does not end with the option that replays: $(cat out)"
 expect 0 "left out: it is not a number, first at vertex 1, in the value of the BSDF" render bad.pbrt $option
 
-# The same metal where one sample in 1e5 meets it: the picture ends, whole, and says how many were left out.
+# The same metal, hit by one sample in 1e5: the render completes and reports how many samples were left out.
 metal='Material "conductor" "spectrum eta" [300 1e30 900 1e30] "spectrum k" [300 1 900 1] "float roughness" 0.3'
 scene rare "$sky Material \"diffuse\" Shape \"disk\" \"float radius\" 9 \"float height\" -1
     $metal Translate 0.6 0 0 Shape \"sphere\" \"float radius\" 0.006" 64 48 200

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Scenes that are wrong, and scenes that are merely odd.
+# Scenes that are invalid, and valid ones that are unusual.
 . "$(dirname "$0")/common.sh"
 
 # broken TEXT WORLD: rendering must end with TEXT and leave no picture.
@@ -63,7 +63,7 @@ expect 1 "it is a folder" render .
 expect 1 "looks like a program; expected a scene of pbrt-v4" render "$montelux"
 expect 1 "cannot be opened" render ''
 
-# Odd, but scenes.
+# Unusual, but valid.
 scene none 'Shape "sphere"'
 expect 0 "none.pbrt:7:1: the scene has no light; its picture is black" render none.pbrt
 printf 'WorldBegin\n' >bare.pbrt
@@ -83,8 +83,8 @@ printf 'Shape "sphere"' >'a ü/ball.pbrt'
 (cd 'a ü/deep' && "$montelux" render ../main.pbrt -o '../ö .pfm' --quiet) || fail "relative paths"
 cp 'a ü/ö .pfm' same.pfm && same "a file beside the scene"
 
-# Every warning once.
+# Each warning is printed once.
 scene warned 'Shape "sphere" "float raduis" 2 Shape "sphere" "float raduis" 2'
 expect 0 "did you mean 'radius'?" render warned.pbrt
-[ "$(grep -c raduis out)" -eq 1 ] || fail "a warning was told twice"
+[ "$(grep -c raduis out)" -eq 1 ] || fail "a warning was printed twice"
 finish

@@ -1,5 +1,5 @@
 #!/bin/sh
-# A signal saves what there is; progress on a terminal and elsewhere.
+# A signal saves the picture so far; progress on a terminal and elsewhere.
 . "$(dirname "$0")/common.sh"
 scene long "$sky Material \"diffuse\" Shape \"sphere\"" 400 300 1000000
 
@@ -54,8 +54,8 @@ grep -q "the errors are unknown: fewer than two replicates of 62500 samples per 
     fail "without errors: $(cat out)"
 "$montelux" info none.exr --json | grep -q '"relativeError": null' || fail "an unknown error in JSON is not null"
 
-# Paths in a sphere that takes no light away are long, and the first signal waits for those of a pixel. Another one
-# ends the program at once, but not one of the same second. Checkpoints stay.
+# Paths in a sphere without absorption are long, and the first signal waits for those of a pixel. A second signal
+# ends the program at once, but not within the same second. Checkpoints stay.
 scene furnace 'Material "diffuse" "spectrum reflectance" [200 1 900 1] Shape "sphere" "float radius" 5' 2 2
 furnace="render furnace.pbrt --sampler sobol --spp 1000 --adaptive on --max-depth 1000000 --checkpoint furnace.state"
 expect 0 "time is up" $furnace --time 0.1
@@ -74,12 +74,12 @@ begin=$(now)
 kill -INT $pid
 wait_for $pid
 milliseconds=$((($(now) - begin) / 1000000))
-[ $code -eq 130 ] || fail "a signal after another: exit code $code instead of 130"
-[ $milliseconds -lt 1000 ] || fail "a signal after another: it took $milliseconds ms to end"
+[ $code -eq 130 ] || fail "a second signal: exit code $code instead of 130"
+[ $milliseconds -lt 1000 ] || fail "a second signal: it took $milliseconds ms to end"
 grep -q "ended at once by another signal: no result was written; checkpoints are as they were" out ||
-    fail "a signal after another: $(cat out)"
-[ -e furnace.exr ] && fail "a signal after another: a picture was written"
-cmp -s furnace.state furnace.expected || fail "a signal after another: the checkpoint is another"
+    fail "a second signal: $(cat out)"
+[ -e furnace.exr ] && fail "a second signal: a picture was written"
+cmp -s furnace.state furnace.expected || fail "a second signal: the checkpoint has changed"
 
 # While the scene is being read there is nothing to save.
 (cat long.pbrt && yes 'AttributeBegin AttributeEnd' | head -n 3000000) >slow.pbrt

@@ -38,12 +38,12 @@ expect 0 "state has 52 samples per pixel already, more than the 20 asked for" re
     --checkpoint state -o less.pfm
 cmp -s a.pfm less.pfm || fail "a render that had more samples than asked for changed"
 expect 0 "" render ball.pbrt --spp 52 -o b.pfm
-cmp -s a.pfm b.pfm || fail "a render that was continued differs"
+cmp -s a.pfm b.pfm || fail "a resumed render differs"
 expect 1 "of another render: the sampler or seed differs" render ball.pbrt --seed 9 --resume --checkpoint state -o x.pfm
 expect 1 "the film differs" render ball.pbrt --clamp 3 --resume --checkpoint state -o x.pfm
 printf x >>state
 expect 0 "resuming from the checkpoint before the last" render ball.pbrt --spp 52 --resume --checkpoint state -o c.pfm
-cmp -s c.pfm b.pfm || fail "a render that was continued from the generation before differs"
+cmp -s c.pfm b.pfm || fail "a render that was resumed from the previous checkpoint differs"
 printf x >>state.previous
 printf x >>state
 expect 1 "state" render ball.pbrt --spp 52 --resume --checkpoint state -o x.pfm

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Whichever call on a file fails, or is the last one before the program is killed: under its final name each
-# output is the old file or the new one, whole. Every call of each command below is made to go wrong once.
+# If any call on a file fails, or the program is killed after it, each output is the complete old file or the
+# complete new one. Every call of each command below is made to fail once.
 # MONTELUX_FAULT_KINDS="ENOSPC EIO ..." (test/fault/fault_injection.cpp) chooses what happens; "all": everything.
 . "$(dirname "$0")/common.sh"
 library=$(dirname "$montelux")/libmontelux_fault_injection.so
@@ -21,7 +21,7 @@ with_fault() {
         exit $?) 2>killed
 }
 
-# whole FILE WANTED: is FILE what a run without faults made? Files that tell the time are read instead.
+# whole FILE WANTED: is FILE what a run without faults made? Files with times are read instead.
 whole() {
     cmp -s "$1" "$2" && return
     case $1 in
@@ -32,7 +32,7 @@ whole() {
 
 # begin_case prepares `work` for the next run: files that are there before. Replaced by the cases.
 begin_case() { :; }
-# A case may ask more of what is left, after the fault that it is told: check_case KIND CODE.
+# A case may check more after each fault: check_case KIND CODE.
 check_case() { :; }
 
 # faults NAME "OUTPUTS" command...: the loop over kinds and calls. OUTPUTS are names in `work`.
@@ -81,9 +81,9 @@ faults() {
                 elif [ $code -ne 0 ]; then
                     fail "$where: exit code $code: $(cat out)"
                 fi
-                # What the first failure was, even where a library swallows it.
+                # The first failure is named, even where a library swallows it.
                 [ "$kind" != ENOSPC ] || [ $code -ne 1 ] || grep -q 'No space left on device' out ||
-                    fail "$where: the reason is not told: $(cat out)"
+                    fail "$where: the message lacks the reason: $(cat out)"
                 # Probes and what is only read may fail to open or close; nothing else goes unnoticed.
                 case $kind in ENOSPC | EIO | EDQUOT | full-disk)
                     [ $code -eq 1 ] || grep -q 'montelux: warning: ' out || head -n 1 report | grep -q 'fault \(open\|close\)' ||
@@ -100,7 +100,7 @@ faults() {
             check_case "$kind" $code
             [ $call -lt 400 ] || { fail "$name, $kind: no end of faults" && break; }
         done
-        # A case that meets no fault would test nothing.
+        # A case without faults would test nothing.
         [ $call -gt 5 ] || fail "$name, $kind: only $((call - 1)) calls were counted"
         [ -z "${MONTELUX_VERBOSE-}" ] || echo "$name, $kind: $((call - 1)) calls"
     done
@@ -119,30 +119,30 @@ faults plot "plot.svg" integrate 'x*y' --over x,y=0:1 --method midpoint --evalua
 begin_case() { printf 'old' >work/points.csv; }
 faults samples "points.csv" sample --set sobol --n 2000 --dim 3 -o points.csv
 
-# Checkpoints hold the time that the run has taken: not their bytes but what is gone on from them is compared.
+# Checkpoints contain elapsed times, so resumed results are compared instead of their bytes.
 integral="integrate x*y --over x,y=0:1 --method basic --quiet --json --checkpoint state --checkpoint-every 0"
 # A step ends there in the longer run, too.
 "$montelux" $integral --evaluations 16384 >/dev/null
 mkdir saved && mv state* saved
-"$montelux" integrate 'x*y' --over x,y=0:1 --method basic --quiet --json --evaluations 50000 | grep -v seconds >unbroken
+"$montelux" integrate 'x*y' --over x,y=0:1 --method basic --quiet --json --evaluations 50000 | grep -v seconds >uninterrupted
 begin_case() { cp saved/* work; }
 check_case() {
     (cd work && "$montelux" $integral --evaluations 50000 --resume) >resumed 2>warnings ||
-        fail "$where: cannot be gone on from: $(cat warnings)"
+        fail "$where: cannot be resumed: $(cat warnings)"
     grep -q warning warnings && fail "$where: $(cat warnings)"
-    grep -v seconds resumed | cmp -s - unbroken || fail "$where: goes on to other digits"
+    grep -v seconds resumed | cmp -s - uninterrupted || fail "$where: resumes to other digits"
 }
 faults checkpoint "" $integral --evaluations 50000 --resume
 
 picture="render ../tiny.pbrt --seed 1 --quiet --checkpoint state"
 rm -rf saved && mkdir saved && (cd saved && "$montelux" $picture --spp 3 -o x.pfm && "$montelux" $picture --spp 5 -o x.pfm --resume)
-"$montelux" render tiny.pbrt --seed 1 --quiet --spp 9 -o unbroken.pfm
+"$montelux" render tiny.pbrt --seed 1 --quiet --spp 9 -o uninterrupted.pfm
 begin_case() { cp saved/* work; }
 check_case() {
     (cd work && "$montelux" $picture --spp 9 -o y.pfm --resume) >out 2>warnings ||
-        fail "$where: cannot be gone on from: $(cat warnings)"
+        fail "$where: cannot be resumed: $(cat warnings)"
     grep -q warning warnings && fail "$where: $(cat warnings)"
-    cmp -s work/y.pfm unbroken.pfm || fail "$where: goes on to another picture"
+    cmp -s work/y.pfm uninterrupted.pfm || fail "$where: resumes to another picture"
 }
 faults "render checkpoint" x.pfm $picture --spp 7 -o x.pfm --resume
 finish
