@@ -16,7 +16,7 @@
 namespace montelux::app {
 namespace {
 
-// Whoever sent a signal is in a hurry, and everything is written.
+// Seconds. After a signal everything is already written, so do not wait longer.
 constexpr double patience_when_interrupted = 2;
 
 int own_stderr = STDERR_FILENO;
@@ -40,14 +40,14 @@ void silence_other_ranks() {
     ::close(nowhere);
 }
 
-void speak_up(const std::string& message) {
+void print_rank_error(const std::string& message) {
     const std::string line = "montelux: error: " + message + "\n";
     if (::write(own_stderr, line.data(), line.size()) < 0) std::fputs(line.c_str(), stderr);
 }
 
-void wait_for_the_speaker(const std::string& message) {
+void wait_for_rank_0(const std::string& message) {
     std::this_thread::sleep_for(std::chrono::seconds(5));
-    speak_up(message);
+    print_rank_error(message);
 }
 
 Communicator* join_job(double patience_seconds) {
@@ -65,10 +65,10 @@ void leave_job(int exit_code) {
         patience = exit_code == exit_interrupted ? std::min(patience_with_others, patience_when_interrupted)
                                                  : patience_with_others;
     if (!the_job->leave(patience)) {
-        // Where the work went wrong, that was told, and is enough.
+        // A failure was already reported.
         if (exit_code != exit_failed && exit_code != exit_usage)
             std::fprintf(stderr,
-                         "montelux: warning: a rank does not come to its end, and is not waited for\n");
+                         "montelux: warning: a rank has not ended in time; the job ends without it\n");
         end_job(exit_code);
     }
     the_job.reset();

@@ -1,4 +1,4 @@
-// The program as one rank of an MPI job: who speaks, who leads, and how the others get the scene.
+// The program as one rank of an MPI job: which rank prints, which leads, and how the job ends.
 #pragma once
 
 #include <string>
@@ -9,29 +9,29 @@ class Communicator;
 
 namespace montelux::app {
 
-// Seconds. A leader that writes a checkpoint to a slow disk says nothing meanwhile.
+// Seconds. A leader that writes a checkpoint to a slow disk does not answer meanwhile.
 inline constexpr double patience_with_leader = 600;
-// Of the leader with the others, where no option says otherwise.
+// Default timeout of the leader for the others.
 inline constexpr double patience_with_ranks = 60;
 
-// Is this one of several processes that mpirun or srun started, and not the one that speaks, rank 0?
+// Whether this process was started by mpirun or srun and is not rank 0, which alone prints.
 bool is_silent_rank();
-// Sends what a silent rank prints nowhere: every rank says the same. Call it before anything is printed.
+// Discards the output of silent ranks, which repeats that of rank 0. Call it before anything is printed.
 void silence_other_ranks();
-// Says something all the same, on the standard error that the process was started with.
-void speak_up(const std::string& message);
-// For a silent rank that cannot begin: rank 0 cannot either, says why, and its end ends the job. Launchers
-// kill all ranks when one ends with a mistake, so this one waits; should it be the only one, it speaks up
-// after all.
-void wait_for_the_speaker(const std::string& message);
+// Prints an error even from a silent rank, on the standard error that the process was started with.
+void print_rank_error(const std::string& message);
+// For a silent rank that cannot start. Rank 0 normally fails too, prints the reason and ends the job.
+// Launchers kill all ranks when one fails, so this one waits; if rank 0 did not fail, it prints the message
+// itself.
+void wait_for_rank_0(const std::string& message);
 
 // The job, where there is one: null for a program that was started alone. It lasts until leave_job(). Throws
 // Error.
 Communicator* join_job(double patience_seconds);
-// The end of a rank that has said its last word. Rank 0 waits for the others for the patience that it joined
-// with, and then ends the job with its exit code: ranks that hang must not keep what is done from its end.
+// Call at the end of a rank. Rank 0 waits for the others for `patience_seconds`, and then ends the job with
+// its exit code, so that hanging ranks cannot keep a finished job running.
 void leave_job(int exit_code);
-// Ends the job at once, for there are ranks that cannot be waited for.
+// Ends the job at once, without waiting for ranks that do not answer.
 [[noreturn]] void end_job(int exit_code);
 
 } // namespace montelux::app

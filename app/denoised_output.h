@@ -1,4 +1,4 @@
-// Denoised pictures of the commands render and denoise: made and told about.
+// What the commands render and denoise print about a denoised picture.
 #pragma once
 
 #include <string>

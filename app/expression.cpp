@@ -84,7 +84,7 @@ std::string unknown_name(const std::string& name, bool called, bool word, const 
     if (!called) {
         known = variables;
         for (const auto& [constant_name, value] : parser.GetConst())
-            if (!std::isnan(value)) known.push_back(constant_name); // which nobody means
+            if (!std::isnan(value)) known.push_back(constant_name); // not worth suggesting
     }
     for (const auto& [function_name, callback] : parser.GetFunDef()) known.push_back(function_name);
     const std::vector<std::string_view> views(known.begin(), known.end());
@@ -251,7 +251,7 @@ double constant(const std::string& text, const std::string& option) {
 void check_variable_name(const std::string& name, const std::string& option) {
     if (name.empty() || name_at(name, 0) != name)
         throw UsageError(option, "'" + name +
-                                     "' is no name of a variable; expected letters, digits and '_', the "
+                                     "' is not a name of a variable; expected letters, digits and '_', the "
                                      "first no digit");
     const mu::Parser parser = make_parser({});
     if (parser.GetFunDef().contains(name))

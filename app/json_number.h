@@ -6,7 +6,7 @@
 
 namespace montelux::app {
 
-// null for NaN and infinities: whoever reads it meets one type and that.
+// null for NaN and infinities.
 inline nlohmann::ordered_json json_number(double v) {
     if (!std::isfinite(v)) return nullptr;
     return v;

@@ -46,11 +46,11 @@ std::string version() {
     return text;
 }
 
-// Tells what went wrong. Of a job's ranks only the first is heard, and so it must be the first to end.
+// Prints the error. Only rank 0 of a job prints, so the others wait for it to end first.
 int give_up(const std::string& message, int exit_code) {
     std::fprintf(stderr, "montelux: error: %s\n", message.c_str());
 #ifdef MONTELUX_WITH_RENDER
-    if (is_silent_rank()) wait_for_the_speaker(message);
+    if (is_silent_rank()) wait_for_rank_0(message);
 #endif
     return exit_code;
 }

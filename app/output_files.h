@@ -1,4 +1,4 @@
-// The files that a command writes: which names it may not be given, and what happens where one fails.
+// The files that a command writes: names that are refused, and failures of single files.
 #pragma once
 
 #include <functional>
@@ -9,13 +9,13 @@
 namespace montelux::app {
 
 // Throws UsageError where one of the outputs is a file that is read (under this name, by a link or under
-// another name of the same file), and where two of them have one name. Empty names stand for no file.
+// another name of the same file), and where two of them have one name. Empty names are ignored.
 void check_output_names(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs);
 
-// Throws the Error of a name that ends in none of the extensions, in whatever case.
+// Throws Error for a name that ends in none of the extensions; case does not matter.
 void check_extension(const std::string& path, const std::vector<std::string_view>& extensions);
 
-// Writes one file after the other: one that fails does not cost the others.
+// Writes one file after the other; a failure does not stop the others.
 class OutputFiles {
   public:
     // Calls `write`; what it throws is kept until throw_failures().

@@ -5,10 +5,10 @@
 
 namespace montelux::app {
 
-// Mean luminances: what clamping took away, and what is left.
+// Mean luminances: removed by clamping, and remaining.
 void print_clamped(double samples, double lost, double left);
 
-// Says so where the error sits in few pixels, and where errors are rough or too young to tell.
+// Prints if few pixels carry most of the error, and if error bars are unreliable or have too few samples.
 void print_outliers(const OutlierReport& outliers);
 
 } // namespace montelux::app

@@ -11,7 +11,7 @@ class ProgressLine {
 
     // Whether it is time for another line; `seconds` is the time since the work began.
     bool due(double seconds);
-    // `what` stands before the text where there is no terminal.
+    // `what` precedes the text where there is no terminal.
     void show(const char* what, const std::string& text);
     // Ends the line, if one is being drawn.
     void finish();

@@ -11,7 +11,7 @@
 namespace montelux::app {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "numbers are written as they stand in memory");
+static_assert(std::endian::native == std::endian::little, "numbers are written as they are in memory");
 
 // RFC 4180: quotes around what holds a comma or a quote.
 std::string csv_field(const std::string& text) {
@@ -82,7 +82,7 @@ void TableWriter::flush() {
 }
 
 void check_output(const std::string& path) {
-    // Creates and removes the temporary file: permission bits alone do not tell.
+    // Creates and removes the temporary file: permission bits alone do not suffice.
     AtomicFile probe(path);
 }
 

@@ -47,7 +47,7 @@ void add_numbered(const std::string& text, std::size_t dots, const std::string& 
     const std::optional<int> a = number(first), b = number(last);
     constexpr int most = 100'000;
     if (!a || !b || *a > *b || *b - *a >= most)
-        throw UsageError(option, "'" + text + "' is no run of names; expected one such as x1..x8");
+        throw UsageError(option, "'" + text + "' is not a range of names; expected one such as x1..x8");
     for (int i = *a; i <= *b; ++i) names.push_back(stem + std::to_string(i));
 }
 
@@ -69,7 +69,7 @@ std::vector<std::string> read_names(const std::string& text, const std::string& 
 Range read_range(const std::string& text, const std::string& option) {
     const std::size_t colon = find_outside_brackets(text, ':');
     if (colon == std::string::npos || find_outside_brackets(text, ':', colon + 1) != std::string::npos)
-        throw UsageError(option, "'" + text + "' is no range; expected LOWER:UPPER, for example 0:pi/2");
+        throw UsageError(option, "'" + text + "' is not a range; expected LOWER:UPPER, for example 0:pi/2");
     const std::string ends[2] = {trimmed(std::string_view(text).substr(0, colon)),
                                  trimmed(std::string_view(text).substr(colon + 1))};
     double values[2];

@@ -13,7 +13,7 @@ namespace montelux::app {
 
 struct Variables {
     std::vector<std::string> names;
-    std::vector<Range> ranges; // empty where the domain is no box
+    std::vector<Range> ranges; // empty unless the domain is a box
     // Importance densities; empty where none is given for any variable, else one a variable.
     std::vector<std::optional<Distribution>> densities;
 };
@@ -29,8 +29,8 @@ void read_densities(const std::vector<std::string>& densities, Variables& variab
 // 1 / density, so that uniform numbers become samples of the density for every method.
 Domain box_domain(const Variables& variables);
 
-// Throws Error where a density is zero in places in which a formula is not, for the integral would then be
-// wrong without a trace. Looks at 4096 points. `logarithm`: the formulas are those of log f.
+// Throws Error where a density is zero and a formula is not, since the integral would then be silently
+// wrong. Checks 4096 points. `logarithm`: the formulas are those of log f.
 void check_densities(const Variables& variables, const Formulas& formulas, bool logarithm);
 
 } // namespace montelux::app

@@ -262,7 +262,7 @@ constexpr const char* usage =
     "  --sampler A,B  independent, sobol\n"
     "  --adaptive A,B on, off\n"
     "  --spp N        samples per pixel, for the shares of pixels within their errors [256]\n"
-    "  --target X,Y   errors to be asked for, instead of these shares\n"
+    "  --target X,Y   target errors, instead of these shares\n"
     "  --time S       seconds for each of these at most\n"
     "  --renders N    measure by the spread of N renders, not by the reference\n"
     "  --width N      of these, in pixels [160]\n"

@@ -1,4 +1,4 @@
-"""What the Python package costs beside the library: microseconds a call of an integrand, and per cent of a render.
+"""What the Python package costs beside the library: microseconds per call of an integrand, and per cent of a render.
 
 Usage: PYTHONPATH=BUILD/python python3 bench/python_overhead.py [BUILD/montelux]
 """
@@ -21,7 +21,7 @@ SCENE = Path(__file__).resolve().parents[1] / "scenes/demo/studio.pbrt"
 
 def integrands() -> None:
     """A call of a function that does nothing, and one that returns an array, less an empty call from Python."""
-    print("microseconds a call of an integrand")
+    print("microseconds per call of an integrand")
     for points in (8, 1024):
         for dimensions in (1, 4):
             values = np.zeros(points)

@@ -62,7 +62,7 @@ Image flat(const CubeMap& map, const BakeFileOptions& options, int face) {
     return lay_out(map, *cube_layout_named(options.layout));
 }
 
-void tell(const std::string& path, const TexelLosses& losses, TexelFormat format) {
+void warn_of(const std::string& path, const TexelLosses& losses, TexelFormat format) {
     if (losses.any())
         std::fprintf(stderr, "montelux: warning: %s: %s\n", path.c_str(), losses.sentence(format).c_str());
 }
@@ -131,10 +131,10 @@ void write_cube_file(const std::string& path, const BakeFileOptions& options, co
     texture.format = format_of(options);
     texture.rgbm = options.rgbm;
     const Kind kind = kind_of(path);
-    if (kind == Kind::dds) return tell(path, write_dds(path, baked.value, texture), texture.format);
+    if (kind == Kind::dds) return warn_of(path, write_dds(path, baked.value, texture), texture.format);
     texture.notes = notes;
-    if (kind == Kind::ktx2) return tell(path, write_ktx2(path, baked.value, texture), texture.format);
-    if (kind == Kind::ktx1) return tell(path, write_ktx1(path, baked.value, texture), texture.format);
+    if (kind == Kind::ktx2) return warn_of(path, write_ktx2(path, baked.value, texture), texture.format);
+    if (kind == Kind::ktx1) return warn_of(path, write_ktx1(path, baked.value, texture), texture.format);
 
     WriteOptions writing;
     writing.exposure = options.exposure;
@@ -152,7 +152,7 @@ void write_cube_file(const std::string& path, const BakeFileOptions& options, co
         }
         write_image(picture.path, image, writing);
     }
-    tell(path, losses, texture.format);
+    warn_of(path, losses, texture.format);
 }
 
 } // namespace montelux::app

@@ -1,4 +1,4 @@
-// Files that baked cube maps go to, told by their extensions.
+// Output files of baked cube maps; the extension chooses the format.
 #pragma once
 
 #include "app/usage_error.h"
@@ -24,16 +24,16 @@ struct BakeFileOptions {
 
 void declare(CLI::App& command, BakeFileOptions& options);
 
-// Throws UsageError for options that do not go together.
+// Throws UsageError for options that contradict each other.
 void check(const BakeFileOptions& options);
-// The names of the files that `path` stands for.
+// The names of the files that are written for `path`.
 std::vector<std::string> cube_file_names(const std::string& path, const BakeFileOptions& options,
                                          std::size_t levels);
-// Throws Error or UsageError for what writing would fail at later.
+// Throws Error or UsageError if writing would fail later.
 void check_cube_file(const std::string& path, const BakeFileOptions& options, std::size_t levels);
-// .ktx2, .ktx, .dds: one file with all levels. .exr, .hdr, .pfm, .png: a picture a level (and a face, with
-// the layout faces); .exr with the standard errors. `notes` go into .ktx2 and .ktx. Tells of values that the
-// format cannot hold.
+// .ktx2, .ktx, .dds: one file with all levels. .exr, .hdr, .pfm, .png: a picture per level (and per face, with
+// the layout faces); .exr with the standard errors. `notes` are written to .ktx2 and .ktx. Warns of values
+// that the format cannot represent.
 void write_cube_file(const std::string& path, const BakeFileOptions& options, const BakedCubes& baked,
                      const std::map<std::string, std::string>& notes);
 

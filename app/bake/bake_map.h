@@ -20,7 +20,7 @@ struct BakeMapOptions {
 
 void declare(CLI::App& command, BakeMapOptions& options);
 CubeFrame frame_of(const BakeMapOptions& options);
-// Tells of what had to be changed or guessed, unless `quiet`. Errors name the file.
+// Warns of changes and guesses unless `quiet`. Errors name the file.
 EnvironmentMap read_map(const BakeMapOptions& options, bool quiet);
 
 } // namespace montelux::app

@@ -1,4 +1,4 @@
-// montelux bake report: the split sum beside the integral that it stands for.
+// montelux bake report: the split sum compared with the integral that it approximates.
 #include "app/bake/bake.h"
 #include "app/bake/bake_map.h"
 #include "app/bake/bake_run.h"

@@ -19,11 +19,11 @@ struct BakeRunOptions {
     bool json = false, quiet = false;
 };
 
-// --threads, --json and --quiet; `run` is called with so many threads, and its result is the exit code.
+// --threads, --json and --quiet; `run` runs with that number of threads and returns the exit code.
 void declare(CLI::App& command, BakeRunOptions& options);
 void on_command(CLI::App& command, const BakeRunOptions& options, int& exit_code, std::function<int()> run);
 
-// Begins with the work and lives as long as it.
+// Lives as long as the work.
 class BakeRun {
   public:
     // `whole` is what the progress line has a share of: "the texels".
@@ -32,8 +32,8 @@ class BakeRun {
     double seconds() const;
     const CancelFlag* cancel() const { return cancel_; }
     std::function<void(double)> progress();
-    // To be asked when the work has ended: whether a signal broke it off, which is told. If not, files can
-    // be written, and no signal leaves a part of one behind.
+    // Call when the work has ended: returns whether a signal interrupted it, and reports that. If not, files
+    // can be written, and signals leave no partial file.
     bool interrupted(bool cancelled);
 
   private:

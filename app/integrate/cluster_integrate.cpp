@@ -12,7 +12,7 @@
 namespace montelux::app {
 namespace {
 
-// For there is a rank that cannot be waited for.
+// Without waiting for the ranks that do not answer.
 [[noreturn]] void end_job_with(const std::exception& e) {
     std::fprintf(stderr, "montelux: error: %s\n", e.what());
     end_job(exit_failed);
@@ -43,7 +43,7 @@ SharedIntegration::SharedIntegration(const IntegrationTask& task, bool alone) {
     try {
         serve_integrand(*job, task.formulas, components, threads, &follow_on_signals(), patience_with_leader);
     } catch (const std::exception& e) {
-        speak_up(e.what());
+        print_rank_error(e.what());
         end_job(exit_failed);
     }
 }

@@ -11,11 +11,11 @@ namespace montelux::app {
 
 class SharedIntegration {
   public:
-    // Joins the job. On a rank other than 0 it helps until the integration is over. `alone`: nothing is to be
-    // shared, and rank 0 does everything.
+    // Joins the job. Ranks other than 0 evaluate until the integration has ended. `alone`: rank 0 does
+    // everything.
     SharedIntegration(const IntegrationTask& task, bool alone);
 
-    // Has this rank only helped? Then there is nothing else for it to do.
+    // Whether this rank only evaluated for rank 0; it then has nothing else to do.
     bool helped() const { return helped_; }
     // Calls work(integrand, options) with an integrand that the job evaluates, and with the task's options
     // but for the number of threads.

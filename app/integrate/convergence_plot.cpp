@@ -95,7 +95,7 @@ std::vector<Tick> linear_ticks(double low, double high) {
                                                        : 10);
     std::vector<Tick> ticks;
     const double largest = std::max(std::abs(low), std::abs(high));
-    // As many digits as tell neighbours apart.
+    // Enough digits to distinguish neighbours.
     const int digits = std::clamp(static_cast<int>(std::ceil(std::log10(largest / step))) + 1, 1, 17);
     for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) {
         const double v = k == 0 ? 0 : k * step;
@@ -200,7 +200,7 @@ void draw_value(Picture& picture, const std::vector<IterationRecord>& records, c
         low = std::min(low, r.value - 2.2 * r.standard_error);
         high = std::max(high, r.value + 2.2 * r.standard_error);
     }
-    // No narrower than a billionth of the value, so that the numbers at the axis can be told apart.
+    // No narrower than a billionth of the value, so that the numbers at the axis differ.
     const double margin =
         std::max({0.05 * (high - low), 1e-9 * std::max(std::abs(low), std::abs(high)), 1e-300});
     const Axis y{low - margin, high + margin, 320, 44, false};

@@ -177,7 +177,7 @@ void declare(CLI::App& c, IntegrateOptions& o) {
          "E");
     text("--evaluations", o.evaluations,
          "Maximum number of evaluations, for example 50000, 50k, 1M or 1e6. Default: 1e6 where neither an "
-         "error nor a time is asked for",
+         "error nor a time is given",
          "N");
     text("--time", o.time, "Stop after this time, for example 90, 90s, 10m or 1h30m", "TIME");
     text("--seed", o.seed, "Seed of all random numbers. Default: 0", "N");

@@ -1,4 +1,4 @@
-// What `montelux integrate` is asked for: flags as typed, and what they mean.
+// Options of `montelux integrate`: flags as typed, and the task that they describe.
 #pragma once
 
 #include "app/expression.h"

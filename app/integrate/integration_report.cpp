@@ -42,7 +42,7 @@ std::string report_text(const IntegrationTask& task, const IntegrationResult& r)
     std::string text;
     for (std::size_t c = 0; c < r.value.size(); ++c) {
         Estimate one = r.estimate(static_cast<int>(c));
-        one.non_finite = 0; // a warning tells
+        one.non_finite = 0; // reported by a warning
         if (r.value.size() > 1) text += task.formulas.texts()[c] + ": ";
         text += to_string(one) + "\n";
     }

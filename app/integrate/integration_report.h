@@ -13,7 +13,7 @@ namespace montelux::app {
 std::string report_text(const IntegrationTask& task, const IntegrationResult& result);
 std::string report_text(const LogIntegrationResult& result);
 
-// Scalars for one formula; arrays (the covariance: of rows) for several. null stands for what is unknown or
+// Scalars for one formula; arrays (the covariance: of rows) for several. null means unknown or
 // infinite.
 nlohmann::ordered_json report_json(const IntegrationTask& task, const IntegrationResult& result);
 // log_value, log_error and log_reference, to which the history is relative, in the place of the values.

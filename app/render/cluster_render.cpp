@@ -80,7 +80,7 @@ void help_with(std::vector<std::uint8_t> bytes, Communicator& job, const RenderO
 } // namespace
 
 SharedRender::~SharedRender() {
-    if (job_ == nullptr || told_) return;
+    if (job_ == nullptr || started_) return;
     std::vector<std::uint8_t> nothing_to_do;
     try {
         job_->broadcast(nothing_to_do, patience_seconds_);
@@ -101,7 +101,7 @@ RoundExecutor* SharedRender::begin(const SceneDescription& description, const Sa
     out.put_bytes(files_.bundle().to_bytes());
     files_ = {};
     std::vector<std::uint8_t> bytes = out.take();
-    told_ = true;
+    started_ = true;
     job_->broadcast(bytes, patience_seconds_);
     coordinator_ = std::make_unique<Coordinator>(*job_, description.film.crop, settings, request_cancel);
     return coordinator_.get();
@@ -157,10 +157,10 @@ void help_rendering(Communicator& job, const RenderOptions& options, int threads
             serve_failure(e.what(), job, patience_with_leader);
         }
     } catch (const std::bad_alloc&) {
-        speak_up(this_rank + ": " + no_memory);
+        print_rank_error(this_rank + ": " + no_memory);
         end_job(exit_failed);
     } catch (const std::exception& e) {
-        speak_up(e.what());
+        print_rank_error(e.what());
         end_job(exit_failed);
     }
 }

@@ -38,7 +38,7 @@ class SharedRender {
     int threads_;
     double patience_seconds_; // timeout for silent ranks
     RecordedFiles files_;
-    bool told_ = false; // the others have been notified
+    bool started_ = false; // scene and settings were sent
     std::unique_ptr<Coordinator> coordinator_;
 };
 

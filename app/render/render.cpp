@@ -168,7 +168,7 @@ int replay(const RenderOptions& options, const SceneDescription& description, co
     return exit_done;
 }
 
-void tell_of_beginning(const RenderSession& session, bool quiet) {
+void print_resume_notices(const RenderSession& session, bool quiet) {
     const std::string file = session.settings().checkpoint.string();
     if (!session.refused_checkpoint().empty())
         std::fprintf(stderr, "montelux: warning: resuming from the checkpoint before the last: %s\n",
@@ -178,7 +178,7 @@ void tell_of_beginning(const RenderSession& session, bool quiet) {
         std::fprintf(stderr, "montelux: %s is not there yet: rendering from the start\n", file.c_str());
     const std::uint32_t spp = session.description().sampler.spp;
     if (session.settings().target.slice.count == 1 && session.samples_before() > spp)
-        std::fprintf(stderr, "montelux: %s has %.7g samples per pixel already, more than the %u asked for\n",
+        std::fprintf(stderr, "montelux: %s has %.7g samples per pixel already, more than the requested %u\n",
                      file.c_str(), session.samples_before(), spp);
 }
 
@@ -205,7 +205,7 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     RenderSession session(std::make_shared<const SceneDescription>(std::move(description)),
                           {target, std::filesystem::path(options.scene).filename().string(),
                            options.checkpoint, options.checkpoint_every, options.resume});
-    tell_of_beginning(session, options.quiet);
+    print_resume_notices(session, options.quiet);
     const SamplerSettings sampler = session.sampler();
     check_slice_option(sampler, target);
     RenderCompany company;

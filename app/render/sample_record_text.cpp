@@ -211,7 +211,7 @@ const char* sentence_of(PathEnd end) {
     case PathEnd::no_direction:
         return "the BSDF sampled no direction";
     case PathEnd::nothing_carried:
-        return "the path carries nothing any more";
+        return "the throughput of the path is zero";
     case PathEnd::bad_throughput:
         return "the throughput is bad; it is added to the radiance, so that the sample is reported";
     case PathEnd::roulette:

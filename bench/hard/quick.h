@@ -9,7 +9,7 @@ namespace montelux::bench {
 // the count is.
 struct QuickLimit {
     std::string_view method;
-    int silent; // at most so many silent failures
+    int silent; // most silent failures allowed
 };
 
 // What is run: seeds 0, ..., quick_seeds - 1 of every family at each target.

@@ -114,7 +114,7 @@ void Coordinator::run(const TileRenderer& renderer, RenderState& state, const Ro
         deal();
         const bool heard = listen();
         check_silence();
-        if (seconds_between(last_told_, Clock::now()) > 0.2) tell();
+        if (seconds_between(last_report_, Clock::now()) > 0.2) report_progress();
         pause = heard ? shortest : std::min(2 * pause, longest);
         if (!heard) worker_->wait(pause);
     }
@@ -300,7 +300,7 @@ void Coordinator::check_silence() {
         if (silent <= settings_.patience_seconds) continue;
         someone_is_silent_ = true;
         char text[80];
-        std::snprintf(text, sizeof text, " has said nothing for %.0f s and is given up", silent);
+        std::snprintf(text, sizeof text, " has not answered for %.0f s; the job ends", silent);
         give_up(r, text);
     }
 }
@@ -311,8 +311,8 @@ void Coordinator::give_up(int rank, const std::string& why) {
     if (!failure_) failure_ = "rank " + std::to_string(rank) + why + "; what the others did is saved";
 }
 
-void Coordinator::tell() {
-    last_told_ = Clock::now();
+void Coordinator::report_progress() {
+    last_report_ = Clock::now();
     double luminance = 0, squared_error = 0;
     bool known = true;
     for (const Tile& t : tiles_) {

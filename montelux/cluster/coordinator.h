@@ -85,7 +85,7 @@ class Coordinator final : public RoundExecutor {
     void check_silence();
     void give_up(int rank, const std::string& why);
     void send(int rank, protocol::Tag tag, std::vector<std::uint8_t> bytes);
-    void tell();
+    void report_progress();
     double work_of(int tile, std::uint64_t samples) const;
     std::uint32_t step_of(int tile) const;
 
@@ -110,7 +110,7 @@ class Coordinator final : public RoundExecutor {
     bool something_done_ = false;
     double known_seconds_ = 0; // sum over tiles whose cost is known, and their number
     int known_costs_ = 0;
-    Clock::time_point last_told_, paused_; // no message was received since
+    Clock::time_point last_report_, paused_; // no message was received since
 };
 
 } // namespace montelux

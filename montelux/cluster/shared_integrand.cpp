@@ -236,7 +236,7 @@ void SharedIntegrand::check_silence() {
         const double silent = std::chrono::duration<double>(now - ranks_[r].last_heard).count();
         if (silent <= patience_seconds_) continue;
         char text[96];
-        std::snprintf(text, sizeof text, "rank %zu has said nothing for %.0f s and is given up", r, silent);
+        std::snprintf(text, sizeof text, "rank %zu has not answered for %.0f s; the job ends", r, silent);
         fail(text);
     }
 }
@@ -269,7 +269,7 @@ void serve_integrand(Mailbox& mailbox, const BatchFunction& f, int components, i
     mailbox.send(leading_rank, hello, out.take());
     Clock::time_point last_heard = Clock::now(), last_sent = last_heard;
     std::chrono::microseconds pause = shortest_pause;
-    bool wish_told = false;
+    bool cancel_sent = false;
     for (;;) {
         bool heard = false;
         while (auto message = mailbox.receive()) {
@@ -294,9 +294,9 @@ void serve_integrand(Mailbox& mailbox, const BatchFunction& f, int components, i
             mailbox.send(leading_rank, alive, {});
             last_sent = now;
         }
-        if (!wish_told && cancel != nullptr && cancel->requested()) {
+        if (!cancel_sent && cancel != nullptr && cancel->requested()) {
             mailbox.send(leading_rank, wish, {});
-            wish_told = true;
+            cancel_sent = true;
         }
         if (std::chrono::duration<double>(now - last_heard).count() > patience_seconds)
             throw Error("rank " + std::to_string(mailbox.rank()),

@@ -216,7 +216,7 @@ void TileWorker::wait(std::chrono::microseconds longest) {
 void serve_tiles(const TileRenderer& renderer, const PixelBounds& crop, int tile_size, int threads,
                  Mailbox& mailbox, const CancelFlag* cancel, double patience_seconds) {
     TileWorker worker(renderer, tiles_of(crop, tile_size), threads, mailbox);
-    bool wish_told = false;
+    bool cancel_sent = false;
     Clock::time_point last_heard = Clock::now();
     std::chrono::microseconds pause = shortest_poll;
     while (!worker.ended()) {
@@ -227,9 +227,9 @@ void serve_tiles(const TileRenderer& renderer, const PixelBounds& crop, int tile
         }
         if (heard) last_heard = Clock::now();
         worker.report();
-        if (!wish_told && cancel != nullptr && cancel->requested()) {
+        if (!cancel_sent && cancel != nullptr && cancel->requested()) {
             mailbox.send(leading_rank, protocol::wish, {});
-            wish_told = true;
+            cancel_sent = true;
         }
         check_leader(mailbox, last_heard, patience_seconds);
         pause = heard ? shortest_poll : std::min(2 * pause, longest_poll);

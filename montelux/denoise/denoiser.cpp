@@ -69,7 +69,7 @@ Denoiser::Denoiser(OidnApi api, int threads)
     api_->commit_device(device_.get());
     check("the device could not be started");
     int version = api_->get_device_int(device_.get(), "version");
-    check("the version is not told");
+    check("the version is unknown");
     name_ = "Open Image Denoise " + std::to_string(version / 10000) + "." +
             std::to_string(version / 100 % 100) + "." + std::to_string(version % 100);
     if (version < 10400) throw Error(api_->file, "this is " + name_ + "; 1.4 or newer is expected");
@@ -80,7 +80,7 @@ void Denoiser::check(const char* what) const {
     int code = api_->get_device_error(device_.get(), &message);
     if (code == OidnApi::no_error) return;
     throw Error(api_->file, std::string("Open Image Denoise failed, ") + what + ": " +
-                                (message && *message ? message : "no reason is told") + " (error " +
+                                (message && *message ? message : "no reason is given") + " (error " +
                                 std::to_string(code) + ")");
 }
 

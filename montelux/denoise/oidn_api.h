@@ -13,7 +13,7 @@ struct OidnDevice; // known to the library alone
 struct OidnFilter;
 
 // The C interface, the same in 1.4 and 2.x but for three names (api documentation, "Small API Changes").
-// The library keeps errors until get_device_error asks for them.
+// The library keeps errors until get_device_error reads them.
 struct OidnApi {
     static constexpr int cpu_device = 1, float3_format = 3, no_error = 0;
 

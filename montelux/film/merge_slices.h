@@ -29,7 +29,7 @@ struct MergedSlices {
 // attributes `renderHash` and `slice` identify the render and the slice.
 class SliceMerger {
   public:
-    // Throws Error, naming the picture, if it is no slice, belongs to another render than those before, or
+    // Throws Error, naming the picture, if it is not a slice, belongs to another render than those before, or
     // repeats a slice. `name` is for messages.
     void add(const Image& slice, const std::string& name);
     // The joined picture; throws Error if none was added.

@@ -52,7 +52,7 @@ class HeaderParser {
     HeaderParser(std::string_view text, std::string_view name) : text_(text), name_(name) {}
 
     Header parse() {
-        if (next_line() != "ply") fail("expected 'ply' on the first line: this is no PLY file");
+        if (next_line() != "ply") fail("expected 'ply' on the first line: this is not a PLY file");
         bool have_format = false;
         for (;;) {
             std::vector<std::string_view> words = split(next_line());

@@ -1,4 +1,4 @@
-// Colour encodings: how a stored number in [0,1] stands for a linear amount of light, and back.
+// Colour encodings: stored numbers in [0,1] to linear amounts of light, and back.
 #pragma once
 
 #include <array>

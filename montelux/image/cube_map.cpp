@@ -77,7 +77,7 @@ CubeTexel cube_texel(Vec3d direction, int size) {
 }
 
 double cube_texel_solid_angle(int x, int y, int size) {
-    // Symmetric in sign, so that texels that are mirror images agree to the last bit.
+    // Symmetric in sign, so that mirrored texels are bit-identical.
     auto edge = [size](int i) { return static_cast<double>(2 * i - size) / size; };
     const double x0 = edge(x), x1 = edge(x + 1), y0 = edge(y), y1 = edge(y + 1);
     return corner_solid_angle(x0, y0) - corner_solid_angle(x0, y1) - corner_solid_angle(x1, y0) +

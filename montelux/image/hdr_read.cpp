@@ -89,7 +89,7 @@ class LineReader {
             }
     }
 
-    // Whole pixels; (1, 1, 1, n) repeats the one before, and several in a row are the digits of a count.
+    // Whole pixels; (1, 1, 1, n) repeats the previous one, and several in a row are the digits of a count.
     void read_pixels(std::vector<Rgbe>& line) {
         int shift = 0;
         for (std::size_t i = 0; i < line.size();) {

@@ -17,7 +17,7 @@
 
 namespace montelux {
 
-// Integers stand for v / 255 and v / 65535. A texture keeps its 8 bits: a quarter of the memory of floats.
+// Integers mean v / 255 and v / 65535. A texture keeps its 8 bits: a quarter of the memory of floats.
 enum class PixelFormat { u8, u16, f16, f32 };
 std::size_t bytes_per_sample(PixelFormat format);
 std::string_view name_of(PixelFormat format);

@@ -21,7 +21,7 @@ struct Sample {
     int offset, bits;           // in the texel, from its least significant bit
     std::uint32_t channel;      // 0 R, 1 G, 2 B, 15 A
     std::uint32_t qualifiers;   // of the numbers below
-    std::uint32_t lower, upper; // what stands for 0 (or -1) and 1
+    std::uint32_t lower, upper; // the stored values of 0 (or -1) and 1
 };
 constexpr std::uint32_t is_float = 0x80, is_signed = 0x40, is_exponent = 0x20;
 constexpr std::uint32_t alpha = 15;
@@ -139,7 +139,7 @@ TexelLosses write_levels(const std::filesystem::path& path, const Levels& levels
     head.put(std::uint64_t{0}); // no supercompression, no global data for it
     head.put(std::uint64_t{0});
 
-    // The levels stand in the file smallest first, each at a multiple of `alignment`.
+    // Levels are stored smallest first, each at a multiple of `alignment`.
     const std::uint64_t alignment = std::lcm(texel_bytes, std::size_t{4});
     std::vector<std::uint64_t> offsets(levels.size());
     std::uint64_t end = notes_at + notes.size();

@@ -9,7 +9,7 @@
 namespace montelux {
 
 // "Portable FloatMap Image Format" (pauldebevec.com/Research/HDR/PFM): "PF" colour or "Pf" grey, width,
-// height, a scale whose sign tells the byte order (negative: little-endian) and whose size multiplies the
+// height, a scale whose sign gives the byte order (negative: little-endian) and whose size multiplies the
 // samples; then rows from the bottom up.
 Image decode_pfm(const EncodedImage& file) {
     TextCursor cursor(file.bytes);

@@ -21,7 +21,7 @@ struct RestoredRender {
     RenderState state;
     // Of the saved render; the resumed one keeps it, although another number of samples may imply another.
     std::uint32_t replicate_points = 0;
-    // Why the newest file was not used but the generation before it; empty if it was used.
+    // Why the newest file was not used but the previous generation; empty if it was used.
     std::string newest_refused_because;
 };
 

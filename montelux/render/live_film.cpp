@@ -51,11 +51,11 @@ std::optional<LiveCopy> LiveFilm::copy(double seconds) {
     using Clock = std::chrono::steady_clock;
     const auto deadline =
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-    struct Looking {
+    struct Waiting {
         std::atomic<int>& count;
-        explicit Looking(std::atomic<int>& c) : count(c) { ++count; }
-        ~Looking() { --count; }
-    } looking(looking_);
+        explicit Waiting(std::atomic<int>& c) : count(c) { ++count; }
+        ~Waiting() { --count; }
+    } waiting(waiting_snapshots_);
     const std::unique_lock all(film_, deadline);
     if (!all.owns_lock() || state_ == nullptr) return std::nullopt;
     LiveCopy copy{Film(state_->film.settings()), report_()};

@@ -48,7 +48,7 @@ class LiveFilm {
     }
     // Locked while other processes change pixels.
     std::unique_lock<std::timed_mutex> hold_all() { return std::unique_lock(film_); }
-    bool is_wanted() const { return looking_.load(std::memory_order_relaxed) > 0; }
+    bool is_wanted() const { return waiting_snapshots_.load(std::memory_order_relaxed) > 0; }
     // Gives waiting snapshots time for their copies. Not while the film is locked.
     void wait_for_copies() const;
 
@@ -68,7 +68,7 @@ class LiveFilm {
     std::unique_ptr<Tile[]> tiles_;
     std::size_t tile_count_ = 0;
     Film* into_ = nullptr; // the copy in progress
-    std::atomic<int> looking_{0};
+    std::atomic<int> waiting_snapshots_{0};
 };
 
 } // namespace montelux

@@ -59,7 +59,7 @@ class RenderSession {
     bool resumed() const { return replicate_points_ != 0; }
     // Mean samples per pixel of the checkpoint.
     double samples_before() const { return samples_before_; }
-    // Why the newest checkpoint was not resumed but the one before it; empty if it was.
+    // Why the newest checkpoint was not resumed but the previous one; empty if it was.
     const std::string& refused_checkpoint() const { return refused_checkpoint_; }
 
     // Builds the scene's tables; render() does so if this was not called.

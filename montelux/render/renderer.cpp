@@ -161,7 +161,7 @@ class RenderLoop {
             control_.executor->run(tile_renderer_, state_, watch);
         }
         samples_beyond_ = 0;
-        for (std::size_t t = 0; t < tiles_.size(); ++t) tell_if_finished(t);
+        for (std::size_t t = 0; t < tiles_.size(); ++t) report_if_finished(t);
         if (live != nullptr) live->wait_for_copies();
     }
 
@@ -190,7 +190,7 @@ class RenderLoop {
                                       return stopped();
                                   });
         }
-        tell_if_finished(index);
+        report_if_finished(index);
         std::lock_guard lock(mutex_);
         tally.add_to(state_.report);
         // Only after some samples: short intervals must not stop progress.
@@ -198,7 +198,7 @@ class RenderLoop {
         if (seconds_since(last_progress_) > 0.2) report_progress(std::nullopt);
     }
 
-    void tell_if_finished(std::size_t index) {
+    void report_if_finished(std::size_t index) {
         if (!control_.tile || finished_[index] != 0) return;
         const PixelBounds& film = state_.film.bounds();
         const PixelBounds& tile = tiles_[index];

@@ -72,11 +72,11 @@ def metropolis(
 
     log_density(x) takes one point, shape (d,), and returns the logarithm, -inf where the density is zero.
     observables(x) returns the number or the numbers whose means over the density are wanted; without it the
-    coordinates are. starts: one point for all chains, shape (d,), or one for each, shape (chains, d); where
-    they are spread widely R-hat has something to say.
+    coordinates are. starts: one point for all chains, shape (d,), or one for each, shape (chains, d); R-hat
+    is informative if they are spread widely.
 
-    The walk y = x + step * scale * z, z standard normal, adapts step and scale during the burn-in, unless told
-    not to; step 0: 2.38 / sqrt(d). `samples` is the number of states of each chain after it.
+    The walk y = x + step * scale * z, z standard normal, adapts step and scale during the burn-in, unless
+    switched off; step 0: 2.38 / sqrt(d). `samples` is the number of states of each chain after it.
     """
     for name, number, least in (
         ("chains", chains, 1),

@@ -49,7 +49,7 @@ _REQUIRED = {
 
 
 def as_domain(domain: Ranges) -> Domain:
-    """A Domain of what stands for one: ranges (lower, upper), one a variable, or a single range."""
+    """A Domain from a Domain, ranges (lower, upper), one per variable, or a single range."""
     if isinstance(domain, Domain):
         return domain
     try:
@@ -66,7 +66,7 @@ def as_domain(domain: Ranges) -> Domain:
 
 
 def as_method(method: Any, settings: dict[str, Any], arguments: Sequence[str]) -> _core.Method:
-    """The method that a name, a class or an object of settings stands for; `arguments`: the caller's own."""
+    """The method of a name, a class or an object of settings; `arguments`: the caller's own."""
     if isinstance(method, str):
         if method not in METHODS:
             raise Error("method: " + unknown("method", method, METHODS))

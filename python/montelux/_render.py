@@ -1,4 +1,4 @@
-"""Renders that go on by themselves, give pictures meanwhile, and stop with what they have."""
+"""Renders that run in the background, give snapshots, and can be stopped early."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ class Progress:
 class Render(Picture):
     """A render of a scene, which runs in the background from the moment that `Scene.render` returns it.
 
-    Whatever is asked of it (`mean`, `save`, ...) waits for the end. Iterating gives a `Picture` of what there
-    is, every second or `every` so many seconds, and at last the finished one. Ctrl-C while it is waited for
-    ends the render with what there is: `stopped_by` is then 'cancelled'. The interpreter's lock is free.
+    Reading a result (`mean`, `save`, ...) waits for the end. Iterating gives a `Picture` of the render so far
+    every second (or every `every` seconds), and at last the finished one. Ctrl-C during a wait ends the render
+    with the result so far: `stopped_by` is then 'cancelled'. The interpreter's lock is released.
     """
 
     def __init__(
@@ -70,7 +70,7 @@ class Render(Picture):
         return self._snapshot().stop
 
     def stop(self) -> Render:
-        """Ends it now, with what there is."""
+        """Ends it now, with the result so far."""
         self._job.cancel()
         return self.wait()
 

@@ -62,13 +62,13 @@ class Result:
     #: Wall time.
     seconds: float
     history: History
-    #: Why the newest checkpoint could not be resumed and the one before it was; else empty.
+    #: Why the newest checkpoint could not be resumed and the previous one was; else empty.
     checkpoint_refused_because: str = ""
     _text: str = field(default="", compare=False)
 
     @property
     def converged(self) -> bool:
-        """The targets were met, and nothing speaks against the result."""
+        """The targets were met without a warning."""
         return self.stop == "error_target" and not self.warnings
 
     @property
@@ -80,7 +80,7 @@ class Result:
 
     def __float__(self) -> float:
         if np.ndim(self.value) > 0 and np.size(self.value) != 1:
-            raise TypeError(f"the integral has {np.size(self.value)} components and is no single number; see .value")
+            raise TypeError(f"the integral has {np.size(self.value)} components, not a single number; see .value")
         return float(np.asarray(self.value).reshape(()))
 
     def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
@@ -122,7 +122,7 @@ class Result:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class LogResult:
-    """log Z with its error; `float(result)` is log Z. What `relative` says of the run can be asked of it directly."""
+    """log Z with its error; `float(result)` is log Z. Attributes of `relative` can be read from it directly."""
 
     #: Natural logarithm of the integral; -inf where that is zero.
     log_value: float
@@ -135,7 +135,7 @@ class LogResult:
 
     @property
     def converged(self) -> bool:
-        """The target was met, and nothing speaks against the result."""
+        """The target was met without a warning."""
         return self.relative.converged
 
     @property

@@ -159,7 +159,7 @@ class Row:
 
 @dataclass(frozen=True, eq=False)
 class Report:
-    """How far the split sum lies from the integral that it stands for."""
+    """How far the split sum is from the integral that it approximates."""
 
     roughness: tuple[float, ...]
     rows: tuple[Row, ...]

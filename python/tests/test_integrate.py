@@ -37,7 +37,7 @@ def test_every_method_finds_the_value(name):
     assert not r.statistical or 0 < r.standard_error < 0.02
 
 
-def test_target_is_reached_and_told():
+def test_target_is_reached_and_reported():
     r = montelux.integrate(sine_times_y, BOX, "adaptive", relative_error=1e-4, seed=1)
     assert r.converged and r.stop == "error_target" and r.relative_error <= 1e-4
     assert abs(float(r) - 0.5) < 6e-4
@@ -275,7 +275,7 @@ def test_results_format_compare_and_hash():
 
 
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="exceptions have no notes")
-def test_functions_of_one_point_are_told_about_batches():
+def test_functions_of_one_point_get_a_hint_about_batches():
     for f in (math.sin, lambda x, y: x):
         with pytest.raises(TypeError) as caught:
             montelux.integrate(f, (0, 1))
@@ -287,7 +287,7 @@ def test_unknown_errors_are_null_in_json():
     assert r.standard_error == math.inf and r.to_dict()["standard_error"] is None
 
 
-def test_progress_is_told():
+def test_progress_is_reported():
     seen = []
     montelux.integrate(sine_times_y, BOX, "quasi", evaluations=50_000, progress=seen.append)
     assert len(seen) > 3 and all(isinstance(r, montelux.Result) for r in seen)

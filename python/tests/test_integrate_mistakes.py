@@ -120,14 +120,14 @@ def test_unknown_attributes_are_answered_with_the_nearest():
         (lambda x: np.array([object()] * len(x)), "not all numbers"),
     ],
 )
-def test_wrong_returns_are_answered(f, sentence):
+def test_wrong_returns_give_a_message(f, sentence):
     with pytest.raises(montelux.Error, match="integrand: .*" + sentence):
         montelux.integrate(f, [(0, 1), (0, 1)], evaluations=1000)
-    with pytest.raises(montelux.Error, match="integrand: "):  # without the look ahead
+    with pytest.raises(montelux.Error, match="integrand: "):  # without the call before the run
         montelux.integrate(f, [(0, 1), (0, 1)], evaluations=1000, components=0)
 
 
-def test_a_shape_that_changes_is_answered():
+def test_a_shape_that_changes_gives_a_message():
     calls = []
 
     def f(x):
@@ -138,7 +138,7 @@ def test_a_shape_that_changes_is_answered():
         montelux.integrate(f, (0, 1), "basic", evaluations=100_000)
 
 
-def test_values_that_are_not_finite_are_counted_and_doubted():
+def test_values_that_are_not_finite_are_counted_and_give_a_warning():
     with np.errstate(all="ignore"):
         r = montelux.integrate(lambda x: np.where(x < 0.01, np.nan, 1.0), (0, 1), "basic", evaluations=10_000, seed=1)
         assert 0 < r.non_finite < 300 and r.first_non_finite_point[0] < 0.01

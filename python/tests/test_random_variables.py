@@ -303,5 +303,5 @@ def test_chains_print():
         chains.means
 
 
-def test_distributions_tell_what_they_are():
+def test_distributions_describe_themselves():
     assert repr(montelux.Distribution.exponential(1)) == "Distribution(lower=0, upper=inf, median=0.693147)"

@@ -91,7 +91,7 @@ def test_iterating_gives_pictures_meanwhile(scene):
     assert np.median(np.abs(seen.mean - whole)) < 0.1 and not np.array_equal(seen.mean, whole)
 
 
-def test_progress_is_told(scene, capsys):
+def test_progress_is_reported(scene, capsys):
     scene.film.resolution = 64, 48
     seen = []
     scene.render(spp=256, progress=seen.append).wait()

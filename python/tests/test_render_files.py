@@ -82,7 +82,7 @@ def test_wrong_slices_are_answered(arguments, sentence):
         montelux.parse(TEXT).render(**arguments)
 
 
-def test_a_denoiser_that_is_missing_is_told_before_the_render(monkeypatch, tmp_path):
+def test_a_missing_denoiser_is_an_error_before_the_render(monkeypatch, tmp_path):
     monkeypatch.setenv("MONTELUX_OIDN_LIBRARY", str(tmp_path / "no.so"))
     with pytest.raises(montelux.Error, match="Open Image Denoise cannot be loaded"):
         montelux.parse(TEXT).render(denoise=True)

@@ -89,7 +89,7 @@ def test_numbers_of_numpy_are_numbers(scene):
     assert np.array_equal(render.mean, scene.render(spp=4).mean)
 
 
-def test_an_unknown_error_is_told(scene):
+def test_an_unknown_error_is_reported(scene):
     assert "error not known yet" in repr(scene.render(spp=1).wait())
     with pytest.raises(montelux.Error, match=r"look_at=5 was given; expected \(eye, target\)"):
         montelux.PerspectiveCamera(look_at=5)
@@ -325,7 +325,7 @@ def test_indices_beyond_the_end(scene):
     assert [type(m).__name__ for m in scene.materials] == ["Diffuse"] * len(scene.materials)
 
 
-def test_files_that_are_no_scenes_are_told_for_what_they_look_like(tmp_path):
+def test_messages_name_the_kind_of_files_that_are_not_scenes(tmp_path):
     for name, content, kind in [
         ("model.gltf", '{"asset": {"version": "2.0"}, "scenes": []}', r"a glTF scene \(JSON\)"),
         ("bunny.pbrt", "ply\nformat ascii 1.0\n", "a PLY mesh"),

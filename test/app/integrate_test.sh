@@ -229,10 +229,10 @@ expect 2 "the range is reversed" integrate x --over x=1:0
 expect 2 "the range is empty" integrate x --over x=1:1
 expect 2 "the upper end 'nan' is not a number" integrate x --over x=0:nan
 expect 2 "the lower end '0/0' is not a number" integrate x --over x=0/0:1
-expect 2 "is no range" integrate x --over x=0
+expect 2 "is not a range" integrate x --over x=0
 expect 2 "the range has no upper end" integrate x --over x=0:
 expect 2 "no range is given" integrate x --over x
-expect 2 "is no name of a variable" integrate x --over 2x=0:1
+expect 2 "is not a name of a variable" integrate x --over 2x=0:1
 expect 2 "'sin' is a function" integrate x --over sin=0:1
 expect 2 "is given twice" integrate x --over x=0:1 --over x=0:2
 expect 2 "there is no variable 'z'" integrate 'x*z' --over x=0:1

@@ -175,7 +175,7 @@ wait_for_file state
 begin=$(now)
 kill -STOP "$(rank 1)"
 ended "a rank hangs" 10
-grep -q "error: rank 1 has said nothing for" out || fail "a rank hangs: $(cat out)"
+grep -q "error: rank 1 has not answered for" out || fail "a rank hangs: $(cat out)"
 expect 0 '"interrupted" = 1' info many.exr
 
 # So does one that hangs before it has built the scene, which rank 0 reads first.
@@ -188,7 +188,7 @@ begin=$(now)
 kill -STOP "$(rank 1)"
 ended "a rank hangs while it builds the scene" 10
 [ $code -eq 1 ] || fail "a rank hangs while it builds the scene: exit code $code: $(cat out)"
-grep -q "error: rank 1 has said nothing for" out || fail "a rank hangs while it builds the scene: $(cat out)"
+grep -q "error: rank 1 has not answered for" out || fail "a rank hangs while it builds the scene: $(cat out)"
 expect 0 '"interrupted" = 1' info many.exr
 expect 0 'many.exr: 70 x 50' render slow.pbrt --spp 1 --adaptive on -o many.exr --checkpoint state --resume
 finish

@@ -215,7 +215,7 @@ TEST(Prefilter, SameBitsOnAnyNumberOfThreads) {
     EXPECT_TRUE(prefilter_environment(map, 8, {0, 0.4, 1}, settings).cancelled);
 }
 
-TEST(Prefilter, SourceMipsAreNearAndTellOfTheirSamples) {
+TEST(Prefilter, SourceMipsAreNearAndReportTheirSamples) {
     const Image image = random_map(64, 32, 100);
     const EnvironmentMap map(image, EnvironmentLayout::equirectangular);
     BakeSettings settings;

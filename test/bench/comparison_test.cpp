@@ -56,11 +56,11 @@ TEST(BenchSummary, HonestWhereTheTrueErrorsAreAboutTheTarget) {
 TEST(BenchSummary, ALostPeakIsSilentUnlessThereIsAWarning) {
     const Cell silent = cell_of({{-500, 0.9}, {0, 0.9}});
     EXPECT_EQ(silent.silent, 1);
-    const Cell told = cell_of({{-500, 0.9, 100, true}, {0, 0.9}, {0, 0.9}});
-    EXPECT_EQ(told.silent, 0);
-    EXPECT_EQ(told.silent_warnings_ignored, 1);
-    EXPECT_EQ(told.warned, 1);
-    EXPECT_TRUE(told.honest);
+    const Cell with_warning = cell_of({{-500, 0.9, 100, true}, {0, 0.9}, {0, 0.9}});
+    EXPECT_EQ(with_warning.silent, 0);
+    EXPECT_EQ(with_warning.silent_warnings_ignored, 1);
+    EXPECT_EQ(with_warning.warned, 1);
+    EXPECT_TRUE(with_warning.honest);
 }
 
 TEST(BenchSummary, MedianCountsRunsWithoutAnAnswerAsInfinite) {

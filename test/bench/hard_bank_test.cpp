@@ -28,7 +28,7 @@ std::string name_of(const HardProblem& problem) {
     return problem.name() + " seed " + std::to_string(problem.seed()) + " (" + problem.parameters() + ")";
 }
 
-// The first seeds of a family whose integrals have so many variables and parameters that contain `text`.
+// The first seeds of a family whose integrals have that many variables and parameters that contain `text`.
 std::vector<HardProblem> some_of(const char* family, std::size_t count, int least, int most,
                                  const std::string& text = "") {
     std::vector<HardProblem> found;
@@ -313,8 +313,8 @@ TEST(HardBank, ExactValuesAgreeWithPlainMonteCarlo) {
         int count = 0;
         for (std::uint64_t seed = 0; seed < 60 && count < 5; ++seed) {
             const HardProblem f(family, seed);
-            const PlainMean look = plain_mean(f, 500, 1);
-            if (!(look.effective > 20)) continue;
+            const PlainMean pilot = plain_mean(f, 500, 1);
+            if (!(pilot.effective > 20)) continue;
             const PlainMean mean = plain_mean(f, 20000, 2);
             EXPECT_LT(std::abs(mean.mean - 1), 5.5 * mean.error + 1e-4 * (family.name == "nearly_constant"))
                 << name_of(f);

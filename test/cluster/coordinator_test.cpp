@@ -43,7 +43,7 @@ class PlayedRank {
         mailbox_.send(leading_rank, protocol::tiles, out.take());
     }
     std::optional<Message> hear() { return mailbox_.receive(); }
-    // What it was assigned since it last listened.
+    // Assigned since it last received.
     std::vector<Assignment> hear_assignments() {
         std::vector<Assignment> heard;
         while (auto message = hear())
@@ -118,7 +118,7 @@ TEST_F(CoordinatorTest, TilesInTransitAtTheEndOfARoundAreNotForgotten) {
     });
     ASSERT_TRUE(moved);
 
-    // Nothing else is left to do, and ranks are asked in their order.
+    // Nothing else is left to do, and ranks are polled in their order.
     state_.target_samples.assign(state_.film.pixels().size(), 0);
     for (int y = 0; y < edge; ++y)
         for (int x = 0; x < edge; ++x)
@@ -153,7 +153,7 @@ TEST_F(CoordinatorTest, RanksThatNeverSayHelloAreGivenUp) {
     }
     ASSERT_TRUE(coordinator.failed());
     EXPECT_GT(rounds, 2);
-    EXPECT_NE(coordinator.failure()->find("rank 1 has said nothing"), std::string::npos);
+    EXPECT_NE(coordinator.failure()->find("rank 1 has not answered"), std::string::npos);
     EXPECT_TRUE(coordinator.someone_hangs());
 }
 

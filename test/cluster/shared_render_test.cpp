@@ -89,7 +89,7 @@ TEST(SharedRender, AnyNumberOfRanksGivesTheSameBits) {
 
 // Interrupted after some thousand samples and resumed by another number of ranks, none of which knows the
 // pixels.
-TEST(SharedRender, BrokenRendersEndWithTheSameBits) {
+TEST(SharedRender, InterruptedRendersEndWithTheSameBits) {
     for (bool adaptive : {false, true}) {
         const SceneBuilder b = scene(SamplerKind::independent, 100);
         const RenderTarget target{.adaptive = adaptive};
@@ -121,7 +121,7 @@ TEST(SharedRender, BrokenRendersEndWithTheSameBits) {
 }
 
 // Snapshots between the rounds, and finished tiles reported as they arrive.
-TEST(SharedRender, CanBeLookedAt) {
+TEST(SharedRender, GivesSnapshots) {
     const SceneBuilder b = scene(SamplerKind::independent, 600);
     RenderState whole(b.description.film), state(b.description.film);
     Renderer(b.description).render(whole);
@@ -167,7 +167,7 @@ TEST(SharedRender, TilesMoveToWhomHasNone) {
     EXPECT_EQ(state.report.samples, whole.report.samples);
 }
 
-TEST(SharedRender, AnotherRankCanBeAskedToEnd) {
+TEST(SharedRender, AnotherRankCanBeCancelled) {
     const SceneBuilder b = scene(SamplerKind::independent, 1u << 24);
     LocalJob job(3);
     const Renderer renderer(b.description);
@@ -209,7 +209,7 @@ TEST(SharedRender, SilentRanksAreGivenUp) {
         control.checkpoint = [&](const RenderState& s) { saved = s; };
         renderer.render(state, control);
         EXPECT_TRUE(coordinator.failed());
-        EXPECT_NE(coordinator.failure()->find("rank 1 has said nothing"), std::string::npos);
+        EXPECT_NE(coordinator.failure()->find("rank 1 has not answered"), std::string::npos);
         EXPECT_TRUE(state.report.cancelled());
         EXPECT_GT(saved.report.samples, 0u);
         EXPECT_LT(saved.report.samples, whole.report.samples);

@@ -53,7 +53,7 @@ TEST(DenoiseImage, AddsLayersAndKeepsTheOthers) {
     EXPECT_EQ(image.value(2, 2, 0), before.value(2, 2, 0));
 }
 
-TEST(DenoiseImage, GuidesThatAreMissingAreTold) {
+TEST(DenoiseImage, MissingGuidesAreReported) {
     StandIn stand_in;
     const Denoiser denoiser(api_of(stand_in));
     Image bare = picture({"R", "G", "B"}), half = picture({"R", "G", "B"}, PixelFormat::f16),

@@ -83,10 +83,10 @@ class RealDenoiser : public ::testing::Test {
     std::optional<Denoiser> denoiser_;
 };
 
-// What a stand-in for the library is to do, and what it was asked.
+// What a stand-in for the library does, and the calls that it received.
 struct StandIn {
     int version = 20501;
-    std::string fail_at; // the name of the call whose error is told next
+    std::string fail_at; // the name of the call that fails next
     bool no_device = false, no_filter = false;
     float output = 0.25f;
 

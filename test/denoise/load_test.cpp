@@ -1,4 +1,4 @@
-// Finding the library, and telling what is wrong where it is not found.
+// Finding the library; messages where it is not found.
 #include "test/denoise/denoise_testing.h"
 #include "test/temporary_folder.h"
 #include <cstdlib>
@@ -55,7 +55,7 @@ TEST(OidnLibrary, ALibraryWithoutTheFunctionsIsRefused) {
               "libm.so.6: this is not Open Image Denoise 1.4 or newer: it has no function oidnNewDevice");
 }
 
-TEST(OidnLibrary, WithoutItTheErrorTellsHowToGetIt) {
+TEST(OidnLibrary, WithoutItTheErrorSaysHowToGetIt) {
     WithLibrary unset(""); // counts as not set
     std::string message = error_of([] { load_oidn(); });
     if (message.empty())

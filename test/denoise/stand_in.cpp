@@ -59,10 +59,10 @@ OidnApi api_of(StandIn& stand_in) {
     api.get_device_int = [](OidnDevice*, const char*) { return current->version; };
     api.commit_device = [](OidnDevice*) { called("commit_device"); };
     api.get_device_error = [](OidnDevice*, const char** message) {
-        static std::string told;
-        told = std::exchange(current->error, "");
-        if (told.empty()) return 0;
-        *message = told.c_str();
+        static std::string last;
+        last = std::exchange(current->error, "");
+        if (last.empty()) return 0;
+        *message = last.c_str();
         return 2;
     };
     api.new_filter = [](OidnDevice*, const char* type) -> OidnFilter* {

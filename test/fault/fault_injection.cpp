@@ -8,7 +8,7 @@
 //                          full-disk: it and all that follow fail with ENOSPC, but for closing
 //                          short: it writes half of what it was asked for; other calls do as they do
 //                          kill-before, kill-after: the process ends by SIGKILL
-//   MONTELUX_FAULT_REPORT  a file that tells, a line each: `fault CALL PATH` where a call went wrong, and
+//   MONTELUX_FAULT_REPORT  a file with a line each: `fault CALL PATH` where a call went wrong, and
 //                          `unseen PATH` where something is opened for writing by the streams of C or C++,
 //                          whose writes cannot be reached from here
 #include "test/fault/fault_injection.h"

@@ -196,7 +196,7 @@ TEST(Film, DevelopsTheCropWithItsLayers) {
     EXPECT_EQ(image.color_channels("stderr.").size(), 3u);
 }
 
-TEST(Film, TellsTheSkewnessOfTheMean) {
+TEST(Film, ReportsTheSkewnessOfTheMean) {
     Film film(settings(1, 1, {0, 0, 1, 1}));
     // 0, 0, 0, 4: deviations -1, -1, -1, 3; m2 = 3, m3 = 6.
     for (float v : {0.0f, 0.0f, 4.0f, 0.0f}) {

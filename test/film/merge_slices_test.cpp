@@ -144,7 +144,7 @@ TEST(MergeSlices, OneWholePictureStaysWhatItIs) {
     }
 }
 
-TEST(MergeSlices, MissingOnesAreTold) {
+TEST(MergeSlices, MissingOnesAreReported) {
     const std::vector<Image> slices{picture(3, 4, 40)};
     const std::vector<std::string> names{"d"};
     EXPECT_EQ(merge(slices, names).missing, (std::vector<int>{1, 2, 3}));

@@ -69,7 +69,7 @@ TEST(PixelWarnings, TooFewReplicatesAreReported) {
     EXPECT_EQ(outliers_of(film).pixels, 2u);
 }
 
-// On the left all samples tell of the whole light, on the right one in 150 meets most of it: a sixth of the
+// On the left all samples see the whole light, on the right one in 150 hits most of it: a sixth of the
 // pixels there never do in 256 samples, and are far too sure. The bounds are five standard deviations away
 // from what many seeds give.
 TEST(PixelWarnings, TheOthersErrorsHold) {

@@ -120,7 +120,7 @@ std::string replaced(std::string s, const std::string& from, const std::string& 
 
 TEST(Ply, SentencesOfErrors) {
     EXPECT_EQ(ply_error(""), "mesh.ply:1: the header has no end; expected 'end_header'");
-    EXPECT_EQ(ply_error("OFF\n"), "mesh.ply:1: expected 'ply' on the first line: this is no PLY file");
+    EXPECT_EQ(ply_error("OFF\n"), "mesh.ply:1: expected 'ply' on the first line: this is not a PLY file");
     EXPECT_EQ(ply_error(replaced(ascii, "ascii", "text")),
               "mesh.ply:2: format 'text'; expected ascii, binary_little_endian or binary_big_endian");
     EXPECT_EQ(ply_error(replaced(ascii, "vertex 4", "vertex 4000000000")),

@@ -156,7 +156,7 @@ TEST(ImageWrite, AFullDiskIsAnErrorAndLeavesNothing) {
     }
 }
 
-TEST(CheckWritable, SaysNowWhatWouldFailLater) {
+TEST(CheckWritable, ReportsBeforehandWhatWouldFailLater) {
     TemporaryFolder folder;
     write_bytes(folder / "there.exr", "old");
     check_writable(folder / "there.exr");

@@ -94,7 +94,7 @@ TEST(Metrics, ScoresOfHonestErrorsAreStandardNormal) {
     EXPECT_NEAR(r.z.within[2], ZScores::expected_within[2], 6 * 0.00021);
     for (const ChannelComparison& c : r.channels)
         EXPECT_LT(std::abs(c.mean_a - c.mean_b), 5 * c.mean_difference_error);
-    // Errors that are said to be half of what they are give scores twice as wide.
+    // Errors reported at half of their size give scores twice as wide.
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
             for (int c = 3; c < 6; ++c) {

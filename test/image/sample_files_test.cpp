@@ -256,7 +256,7 @@ TEST(ExrKinds, LevelsAndLineOrders) {
     expect_samples(read_sample(make_exr({.compression = 4, .decreasing_lines = true})), 0, "decreasing");
 }
 
-TEST(ExrKinds, WhatIsNotReadIsToldInASentence) {
+TEST(ExrKinds, UnsupportedKindsGiveAMessage) {
     expect_error([] { read_sample(make_subsampled_exr()); }, {"sample.exr", "'RY'", "subsampled", "2 x 2"});
     expect_error([] { read_sample(make_deep_exr()); }, {"sample.exr", "deep"});
     std::string good = make_exr({});

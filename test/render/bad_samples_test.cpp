@@ -22,7 +22,7 @@ SceneBuilder half_bad(float emission) {
     return b;
 }
 
-TEST(BadSamples, AreCountedAndToldOfAndReplayed) {
+TEST(BadSamples, AreCountedReportedAndReplayed) {
     const float infinity = std::numeric_limits<float>::infinity();
     const std::pair<float, BadSample::Kind> cases[] = {
         {std::numeric_limits<float>::quiet_NaN(), BadSample::Kind::nan},

@@ -25,7 +25,7 @@ void expect_same(const Film& a, const Film& b) {
 }
 
 // Interrupts the render after some more samples each time, and resumes it from the file.
-TEST_F(Checkpoint, BrokenRendersEndWithTheSameBits) {
+TEST_F(Checkpoint, InterruptedRendersEndWithTheSameBits) {
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol, SamplerKind::stratified})
         for (bool adaptive : {false, true}) {
             SceneBuilder b = mixed_scene(1, 16, 12);
@@ -137,7 +137,7 @@ TEST_F(Checkpoint, OtherRendersAreRefusedWithTheReason) {
                 d.film.crop = {0, 0, 4, 4};
             }),
             {}, "film");
-    // Damage is found by the file (generation_file_test); the one before is taken.
+    // Damage is found by the file (generation_file_test); the previous one is used.
     save_checkpoint(path_, renderer, RenderState(b.description.film));
     std::filesystem::resize_file(path_, 1000);
     EXPECT_FALSE(load_checkpoint(path_, b.description, {}).newest_refused_because.empty());

@@ -45,7 +45,7 @@ Attributes header_of(const Image& image) {
     return attributes;
 }
 
-TEST(FinishedTiles, EachIsToldOfOncePerRound) {
+TEST(FinishedTiles, EachIsReportedOncePerRound) {
     for (const bool adaptive : {false, true})
         for (const double checkpoint_seconds : {1e9, 0.001}) {
             // Pauses for checkpoints cut tiles short, which are finished later in the round.
@@ -98,7 +98,7 @@ TEST(FinishedTiles, EachIsToldOfOncePerRound) {
 }
 
 // A resumed render reports the tiles that its interrupted round had finished as well.
-TEST(FinishedTiles, AreToldOfAfterAResumeInTheMiddleOfARound) {
+TEST(FinishedTiles, AreReportedAfterAResumeInTheMiddleOfARound) {
     const auto d = described(SamplerKind::independent, 64);
     const Renderer renderer(*d);
     RenderState state(d->film);
@@ -178,7 +178,7 @@ TEST(Snapshots, ChangeNoBitAndAreBetweenSamples) {
 }
 
 // Concurrent snapshots each get a copy; one that does not wait gets none or a complete one.
-TEST(Snapshots, ManyMayLookAtOnce) {
+TEST(Snapshots, ManyThreadsAtOnce) {
     const auto d = described(SamplerKind::sobol, 200);
     RenderSession session(d, {});
     session.prepare();

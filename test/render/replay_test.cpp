@@ -1,4 +1,4 @@
-// Replayed samples equal those of the render to the last bit; their records add up, and name what made a
+// Replayed samples are bit-identical to those of the render; their records add up, and name what made a
 // sample bad.
 #include "test/render/mixed_scene.h"
 #include <gtest/gtest.h>

@@ -136,7 +136,7 @@ TEST(NeymanAllocation, GoesAsFarAsTheTargetNeedsInWholeReplicates) {
     EXPECT_TRUE(neyman_allocation(film, SampleOrder(s, {}), {.error = 1e-4}).empty());
 }
 
-TEST(NeymanAllocation, BlackPicturesAndSinglePixelsGoOn) {
+TEST(NeymanAllocation, BlackPicturesAndSinglePixelsContinue) {
     SamplerSettings s{SamplerKind::independent, 0, 1u << 20};
     Film black({.width = 4, .height = 4, .crop = {0, 0, 4, 4}});
     for (Pixel& p : black.pixels())

@@ -91,7 +91,7 @@ inline PictureMean picture_mean(const Film& film, int channel = 1) {
     return {sum / n, std::sqrt(variance) / n};
 }
 
-// Equal to the last bit.
+// Bit-identical.
 inline bool same_pixel(const Pixel& a, const Pixel& b) {
     auto same = [](Vec3f v, Vec3f w) { return v.x == w.x && v.y == w.y && v.z == w.z; };
     for (int c = 0; c < 3; ++c)

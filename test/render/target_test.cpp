@@ -116,7 +116,7 @@ TEST(Target, BlackPicturesAreNotDoneAtOnce) {
     }
 }
 
-// Intervals too short for anything to be done between two checkpoints; times too short for a first look.
+// Intervals too short for anything to be done between two checkpoints; times too short for a first check.
 TEST(Target, ShortIntervalsAndTimesDoNotStopTheWork) {
     SceneBuilder b = mixed_scene(1, 40, 40);
     b.description.sampler.spp = 2;
@@ -147,7 +147,7 @@ TEST(Target, TimeIsHeldFromTheFirstSampleOn) {
         }
 }
 
-// Nobody sees from the picture whether a time was given that was not used up.
+// A time limit that is not reached does not change the picture.
 TEST(Target, ATimeThatIsNotUsedUpChangesNothing) {
     SceneBuilder b = mixed_scene(1, 12, 12);
     b.description.sampler.spp = 100;
@@ -187,7 +187,7 @@ void expect_unbiased(const SamplerSettings& sampler, int size, std::uint64_t see
 
 TEST(TargetSlowTest, AdaptiveIsUnbiased) { expect_unbiased({SamplerKind::independent, 0, 64}, 40, 64); }
 
-// In the replicates that a target asks for: the first errors are made of four of them. Pixels of blue noise
+// In the replicates that a target needs: the first errors are made of four of them. Pixels of blue noise
 // lean on those around them, from which their numbers of samples come.
 TEST(TargetSlowTest, AdaptiveIsUnbiasedWithSobol) {
     expect_unbiased({SamplerKind::sobol, 0, 128, 1, 8}, 56, 40);

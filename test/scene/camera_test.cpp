@@ -40,7 +40,7 @@ TEST(Camera, WindowAndAspectRatio) {
     expect_vec(wide.generate_ray({100, 0}, pinhole).d, normalize(Vec3d{2, 1, 1}));
 }
 
-TEST(Camera, StandsWhereItsTransformSays) {
+TEST(Camera, IsPlacedByItsTransform) {
     Transform t = *Transform::look_at({1, 2, 3}, {4, 6, 3}, {0, 0, 1});
     Camera camera({PerspectiveCamera{.fov = 90}, t.inverse()}, 100, 100);
     Ray middle = camera.generate_ray({50, 50}, pinhole);
@@ -180,7 +180,7 @@ TEST(Camera, FootprintStaysFinite) {
     EXPECT_TRUE(is_finite(at_the_eye.dpdx) && is_finite(at_the_eye.dpdy));
 }
 
-TEST(Camera, RefusesWhatMakesNoSense) {
+TEST(Camera, RefusesInvalidSettings) {
     for (float fov : {0.0f, -5.0f, 180.0f, std::nanf("")})
         EXPECT_THROW(Camera({PerspectiveCamera{.fov = fov}, {}}, 8, 8), Error) << fov;
     EXPECT_THROW(Camera({PerspectiveCamera{.lens_radius = -1}, {}}, 8, 8), Error);

@@ -301,7 +301,7 @@ TEST(EnvironmentSamplers, StructuredStrataAreSharedOutByImportance) {
     EXPECT_NEAR(static_cast<double>(in_lamp), std::min(16.0, 256 * lamp / (lamp + sky)), 1.0);
 }
 
-TEST(EnvironmentSamplers, AsManyPartsAsAreAskedFor) {
+TEST(EnvironmentSamplers, TheRequestedNumberOfParts) {
     using enum EnvironmentSampling;
     const Image map = map_of(64, 32, [](int x, int y) { return 1 + (x * 13 + y * 7) % 23; });
     auto made = [&](EnvironmentSampling kind, int parts) {

@@ -301,7 +301,7 @@ TEST_F(FloatTextures, ImagesScaleAndInvert) {
 }
 
 // pbrt-v4 undoes the encoding for alpha, too.
-TEST_F(FloatTextures, TakeTheAlphaWhereTheyAreToldTo) {
+TEST_F(FloatTextures, TakeTheAlphaIfRequested) {
     for (PixelFormat format : {PixelFormat::u8, PixelFormat::u16}) {
         scene_.images.clear();
         Image& leaf = scene_.images.emplace_back(2, 2, std::vector<std::string>{"R", "G", "B", "A"}, format,

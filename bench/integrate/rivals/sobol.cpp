@@ -100,7 +100,7 @@ Answer sobol8(const CountedIntegrand& f, const Request& request) {
     });
 }
 
-// A stronger form: each replicate goes on where it stopped, to twice its points, so that nothing is thrown
+// A stronger form: each replicate continues from where it stopped, to twice its points, so that nothing is thrown
 // away.
 Answer sobol8_doubling(const CountedIntegrand& f, const Request& request) {
     std::vector<Replicate> sequences;

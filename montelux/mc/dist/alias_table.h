@@ -40,11 +40,11 @@ class AliasTable {
 
   private:
     struct Bin {
-        // Share of the bin that stands for its own index. A double: an index that many bins stand for has the
+        // Share of the bin that returns its own index. A double: an index that many bins return has the
         // sum of their rests, each of them the small difference from 1.
         double threshold;
         float probability;   // of its own index
-        std::uint32_t alias; // the index that the rest of the bin stands for
+        std::uint32_t alias; // the index that the rest of the bin returns
     };
     template <typename T>
     void build(std::span<const T> weights);

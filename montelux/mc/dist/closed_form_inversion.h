@@ -17,7 +17,7 @@
 
 namespace montelux {
 
-// Stands for an inverse that is not given.
+// Placeholder for an inverse that is not given.
 struct NoInverse {};
 
 // f >= 0 on [a, b] (either end may be infinite) and an antiderivative F, whose value at an infinite end is
@@ -95,7 +95,7 @@ class ClosedFormInversion : public SampledByInversion<ClosedFormInversion<Densit
     static double largest(double sign) { return std::copysign(std::numeric_limits<double>::max(), sign); }
 
     void build() {
-        // Where F falls again, no quantile leads: so points all over the interval are asked as well.
+        // Where F falls again, no quantile leads: so points all over the interval are checked as well.
         for (std::size_t i = 1; i < parts; ++i) {
             double x = point_inside(a_, b_, static_cast<double>(i) / parts);
             require_rising(x, f_(x), antiderivative_(x), at_a_, at_b_);

@@ -30,7 +30,7 @@ struct InversionOptions {
 // c = F(b) - F(a); then P(x) = (F(x) - F(a)) / c, the density is f / c, and X = P^-1(xi) by bisection over
 // the panels and safeguarded Newton steps within one. a may be -infinity and b infinity. f may jump, and be
 // infinite at a, at b and at break points as long as it is integrable there: next to a point x0, f is only
-// told apart down to distances of |x0| epsilon, so put strong singularities at 0. Found without help are
+// resolved down to distances of |x0| epsilon, so put strong singularities at 0. Found without help are
 // features wider than a 256th of the interval and, next to 0, finite ends and break points, at scales from
 // 1e-7 to 1e7; give narrower peaks a break point. Satisfies TwoTailedDistribution1D; the error of P is
 // absolute, about the tolerance.

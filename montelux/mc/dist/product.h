@@ -60,7 +60,7 @@ class ProductDistribution {
     std::tuple<Ds...> factors_;
 };
 
-// The same with factors of one type, as many as a program's input asks for; with Distribution as that type
+// The same with factors of one type, their number known at run time; with Distribution as that type
 // each may be of another family. Points and uniform numbers are spans of dimensions() doubles; `x` and `xi`
 // may be the same memory.
 template <Distribution1D D = Distribution>

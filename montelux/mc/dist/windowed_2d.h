@@ -1,4 +1,4 @@
-// A tabulated density on a rectangle, restricted to any window of it that a sample asks for.
+// A tabulated density on a rectangle, restricted to a window that each sample chooses.
 #pragma once
 
 #include <cstddef>

@@ -101,7 +101,7 @@ class AutoEstimator final : public Estimator {
                           request.max_evaluations > spent;
         if (spent > 0 && !open) return outcome;
         if (outcome == StepOutcome::finished && targeted && is_indistinct_from_zero(rule, request)) {
-            reason_ = "the value cannot be told from zero, and no relative error can be met";
+            reason_ = "the value cannot be distinguished from zero, so no relative error can be met";
             return outcome;
         }
         if (outcome == StepOutcome::finished && rule.at_limit) {

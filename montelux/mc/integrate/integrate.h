@@ -41,7 +41,7 @@ struct IntegrationOptions {
     const CancelFlag* cancel = nullptr;
     // File of the running state, written every `checkpoint_every` and at the end; an existing file becomes
     // CHECKPOINT.previous. With `resume` the run continues from it if it exists, or from the previous one if
-    // it is damaged. Empty: none. Four extra evaluations of the integrand tell other integrands apart.
+    // it is damaged. Empty: none. Four extra evaluations of the integrand detect a different integrand.
     std::string checkpoint = {};
     std::chrono::duration<double> checkpoint_every{60};
     bool resume = false;

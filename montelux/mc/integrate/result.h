@@ -53,7 +53,7 @@ struct IntegrationResult {
     StopReason stop = StopReason::finished;
     // Reasons why the value or its error may be wrong, as sentences. Normally empty.
     std::vector<std::string> warnings;
-    // Why the newest checkpoint could not be resumed and the one before it was; else empty.
+    // Why the newest checkpoint could not be resumed and the previous one was; else empty.
     std::string checkpoint_refused_because;
     double seconds = 0; // wall time
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t max_bytes = std::size_t{1} << 32;
 
-static_assert(std::endian::native == std::endian::little, "state files are written as they stand in memory");
+static_assert(std::endian::native == std::endian::little, "state files are written as they are in memory");
 
 std::uint64_t text_word(std::string_view text) {
     std::uint64_t word = 0;

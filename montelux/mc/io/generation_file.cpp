@@ -123,13 +123,13 @@ std::filesystem::path before_its_renaming(const std::filesystem::path& previous)
     return previous.string() + ".tmp";
 }
 
-// Gives the present file the name of the generation before, and keeps its own.
+// Gives the present file the name of the previous generation as well as its own.
 void keep_as_previous(const std::filesystem::path& present, const std::filesystem::path& previous,
                       const std::filesystem::path& path) {
     // They are the same file if a process ended between the two renamings; rename() would then do nothing.
     if (are_one_file(present, previous)) return;
     auto fail = [&](int error_number) {
-        throw Error(path.string(), "cannot be written: the generation before could not be kept as '" +
+        throw Error(path.string(), "cannot be written: the previous generation could not be kept as '" +
                                        previous.string() + "': " + std::strerror(error_number));
     };
     // Linking cannot replace a name that is taken, renaming can.
@@ -141,7 +141,7 @@ void keep_as_previous(const std::filesystem::path& present, const std::filesyste
         ::unlink(second.c_str());
         fail(error_number);
     }
-    // File systems without hard links: for a moment the generation before is the only one.
+    // File systems without hard links: for a moment the previous generation is the only one.
     if (errno != EPERM && errno != EOPNOTSUPP && errno != ENOSYS && errno != EMLINK) fail(errno);
     if (::rename(present.c_str(), previous.c_str()) != 0) fail(errno);
 }

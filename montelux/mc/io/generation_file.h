@@ -12,7 +12,7 @@
 
 namespace montelux {
 
-// The name of the generation before: PATH.previous. A symbolic link is followed, as in writing.
+// The name of the previous generation: PATH.previous. A symbolic link is followed, as in writing.
 std::filesystem::path previous_generation(const std::filesystem::path& path);
 
 // Is there a file of either generation, whole or not?
@@ -22,7 +22,7 @@ bool generation_exists(const std::filesystem::path& path);
 // every moment, even after the end of the process or a loss of power, at least one whole generation exists if
 // there was one. `kind` names the payload, in 1 to 31 bytes. Throws Error. A failure leaves the present file
 // unchanged, except a failure to make the new names permanent, which leaves the new file; the previous
-// generation is then the present file or the one before.
+// generation is then the present file or the previous one.
 void write_generation(const std::filesystem::path& path, std::string_view kind,
                       std::span<const std::uint8_t> payload);
 
@@ -38,7 +38,7 @@ struct Generation {
 
 // The newest generation that is whole. Throws Error with the reasons if neither is: missing, not such a file,
 // of another version or kind, cut short, lengthened, damaged, or of more than `max_bytes` of payload, which
-// is found before memory is asked for. A file damaged at random passes with a probability of 2^-128.
+// is found before memory is allocated. A file damaged at random passes with a probability of 2^-128.
 Generation read_generation(const std::filesystem::path& path, std::string_view kind, std::size_t max_bytes);
 
 } // namespace montelux

@@ -5,7 +5,7 @@
 
 namespace montelux {
 
-static_assert(std::endian::native == std::endian::little, "words are read as they stand in memory");
+static_assert(std::endian::native == std::endian::little, "words are read as they are in memory");
 
 SipHash128::SipHash128(std::uint64_t key0, std::uint64_t key1)
     : state_{key0 ^ 0x736f6d6570736575, key1 ^ 0x646f72616e646f6d ^ 0xee, key0 ^ 0x6c7967656e657261,

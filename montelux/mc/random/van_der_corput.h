@@ -43,7 +43,7 @@ constexpr double permuted_radical_inverse(std::uint32_t index, const PrimeBase& 
 // strata kept. Every digit goes through d -> (a d + c) mod base with a, c hashed from the digits before it.
 // Such permutations are pairwise as random as all permutations, which is all that the variance of a scrambled
 // net depends on (Matousek 1998, "On the L2-discrepancy for anchored boxes", section 2). Beyond the digits
-// that tell indices below `count` apart, a full scramble is independent noise, and is drawn as such.
+// that distinguish indices below `count`, a full scramble is independent noise, and is drawn as such.
 constexpr double scrambled_radical_inverse(std::uint32_t index, const PrimeBase& base, std::uint64_t key,
                                            std::uint32_t count) {
     const std::uint32_t b = base.base;

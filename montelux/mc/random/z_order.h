@@ -42,7 +42,7 @@ constexpr std::uint64_t shuffle_quads(std::uint64_t index, int bits, std::uint64
     int shift = bits;
     while (shift >= 2) {
         shift -= 2;
-        // The sentinel bit tells equal prefixes of different lengths apart.
+        // The sentinel bit distinguishes equal prefixes of different lengths.
         std::uint64_t h =
             ((index >> (shift + 2) | std::uint64_t{1} << (bits - shift - 2)) ^ key) * golden_gamma;
         h = (h ^ h >> 32) * 0xbf58476d1ce4e5b9u;

@@ -1,7 +1,7 @@
 """The lab: every figure by which Monte Carlo integration is taught, drawn from the library itself.
 
 `python -m montelux.lab --out DIR` writes a report that a browser shows without a network. Each figure is made by a
-function that samples and integrates by `montelux` (its source stands in the report), and gives numbers with their
+function that samples and integrates by `montelux` (the report shows its source), and gives numbers with their
 errors beside the exact ones. docs/lab.md is the guide.
 """
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import montelux
 
-#: Measured numbers may lie so many standard errors from the exact ones; a right one does not once in 2.6e7 times.
+#: Largest distance from the exact number, in standard errors; a correct number exceeds it once in 2.6e7 times.
 LIMIT = 5.5
 #: The probability of that, on one side.
 _TAIL = 1.899e-8

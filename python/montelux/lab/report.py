@@ -21,7 +21,7 @@ GROUPS = {"A": "Estimating integrals", "B": "Random variables", "C": "Light"}
 
 @dataclass(frozen=True)
 class Made:
-    """A figure that stands in the report."""
+    """A figure of the report."""
 
     figure: Figure
     outcome: Outcome
@@ -34,7 +34,7 @@ class Made:
 
 
 def make_report(
-    figures: Sequence[Figure], folder: Path, told: Callable[[str], None] = lambda line: None, png: bool = False
+    figures: Sequence[Figure], folder: Path, progress: Callable[[str], None] = lambda line: None, png: bool = False
 ) -> list[Made]:
     """Computes and draws the figures, and writes folder/index.html with its files beside it."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -44,7 +44,7 @@ def make_report(
         outcome = figure.compute()
         section = _section(figure, outcome, folder, png)
         made.append(Made(figure, outcome, time.perf_counter() - begin, section))
-        told(f"{figure.key:28} {made[-1].seconds:6.1f} s  {len(outcome.numbers)} numbers")
+        progress(f"{figure.key:28} {made[-1].seconds:6.1f} s  {len(outcome.numbers)} numbers")
     (folder / "index.html").write_text(_page(made), encoding="utf-8")
     return made
 
@@ -53,7 +53,7 @@ def _section(figure: Figure, outcome: Outcome, folder: Path, png: bool) -> str:
     parts = [f'<section id="{figure.key}">', f"<h3><span>{figure.row}</span> {html.escape(figure.title)}</h3>"]
     parts.append(f'<p class="see">{html.escape(figure.see)}</p>')
     if figure.formulas:
-        # Parts that stand apart go below each other where the page is narrow.
+        # Separate parts wrap below each other on narrow pages.
         parts_of_lines = (re.split(r"(?<=,)\s*\\q?quad\s*", tex) for tex in figure.formulas)
         lines = "".join(f"<div>{''.join(map(formula_svg, line))}</div>" for line in parts_of_lines)
         parts.append(f'<div class="formulas">{lines}</div>')
@@ -137,11 +137,11 @@ def _page(made: Sequence[Made]) -> str:
 <header>
 <h1>The lab</h1>
 <p>Monte Carlo integration in figures, from a sum of rectangles to pictures of light. Every sample, density, estimate
-and picture comes from <b>Montelux {html.escape(montelux.__version__)}</b>, and the code that makes it stands below each
+and picture comes from <b>Montelux {html.escape(montelux.__version__)}</b>, and the code that computes it is below each
 figure.</p>
-<p>{count} numbers are measured here and stand beside the exact ones: {verdict}. Digits in brackets are the standard
-error of the last digits shown, 1.234(56) is 1.234 ± 0.056. A right number lies more than {LIMIT:g} errors off (or as
-improbably far, where few replicates know the error) once in 26 million times. Numbers of rules without chance have a
+<p>{count} measured numbers are compared with exact ones: {verdict}. Digits in brackets are the standard error of the last
+digits shown: 1.234(56) is 1.234 ± 0.056. A correct number is more than {LIMIT:g} errors off (or the equally improbable
+distance, where the error comes from few replicates) once in 26 million times. Numbers of deterministic rules have a
 bound instead.</p>
 </header>
 {_contents(made)}

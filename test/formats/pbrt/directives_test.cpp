@@ -20,8 +20,8 @@ const Sphere& sphere(const SceneDescription& d, std::size_t i = 0) {
 }
 
 TEST(PbrtDefaults, OfAnEmptyScene) {
-    Warnings told;
-    SceneDescription d = parse("WorldBegin", &told);
+    Warnings warnings;
+    SceneDescription d = parse("WorldBegin", &warnings);
     EXPECT_EQ(d.film.width, 1280);
     EXPECT_EQ(d.film.height, 720);
     EXPECT_EQ(d.film.crop, (PixelBounds{0, 0, 1280, 720}));
@@ -41,7 +41,7 @@ TEST(PbrtDefaults, OfAnEmptyScene) {
     EXPECT_EQ(d.sampler.kind, SamplerKind::sobol_blue_noise);
     EXPECT_EQ(d.integrator.max_depth, 5);
     EXPECT_EQ(d.integrator.strategy, Strategy::mis);
-    EXPECT_EQ(told.messages(),
+    EXPECT_EQ(warnings.messages(),
               std::vector<std::string>{"scene:1:11: the scene has no light; its picture is black"});
 }
 
@@ -94,13 +94,13 @@ TEST(PbrtOptions, FilmCameraSamplerIntegratorFilter) {
 TEST(PbrtOptions, SpellingsOfOptions) {
     EXPECT_EQ(parse("Option \"integer Seed\" 7 WorldBegin").sampler.seed, 7u);
     EXPECT_EQ(parse("Option \"integer se-e_d\" 7 WorldBegin").sampler.seed, 7u);
-    Warnings told;
+    Warnings warnings;
     parse("Option \"bool disable-pixel-jitter\" true Option \"bool disablePixelJitter\" true\n"
           "Option \"string render_coord_sys\" \"camera\" Option \"string rendercoordsys\" \"world\"\n"
           "Option \"string RenderCoordSys\" \"cameraworld\" WorldBegin LightSource \"point\"",
-          &told);
+          &warnings);
     EXPECT_EQ(
-        told.messages(),
+        warnings.messages(),
         std::vector<std::string>{"scene:1:8: option 'disable-pixel-jitter' is not supported; it is ignored"});
     EXPECT_EQ(error_of("Option \"float Seed\" 7 WorldBegin"),
               "scene:1:8: option 'Seed' has type float; expected 1 integer");
@@ -126,8 +126,8 @@ TEST(PbrtOptions, LightSamplers) {
     EXPECT_THROW(sampling("tree"), Error);
 }
 
-TEST(PbrtOptions, WhatIsLeftOutIsTold) {
-    Warnings told;
+TEST(PbrtOptions, IgnoredOptionsGiveAWarning) {
+    Warnings warnings;
     parse(R"(ColorSpace "rec2020"
 Film "gbuffer" "bool savefp16" true "string coordinatesystem" "camera"
 Accelerator "bvh" "integer maxnodeprims" 4
@@ -136,7 +136,7 @@ Sampler "sobol" "string randomization" "none"
 Option "bool disablepixeljitter" true
 WorldBegin TransformBegin TransformEnd LightSource "point"
 WorldEnd)",
-          &told);
+          &warnings);
     const char* expected[] = {
         "scene:2:1: the film's colour space is sRGB",
         "scene:3:1: 'Accelerator' is ignored",
@@ -152,9 +152,9 @@ WorldEnd)",
         "scene:7:12: TransformBegin is deprecated",
         "scene:8:1: WorldEnd belongs to pbrt-v3",
     };
-    ASSERT_EQ(told.messages().size(), std::size(expected));
+    ASSERT_EQ(warnings.messages().size(), std::size(expected));
     for (std::size_t i = 0; i < std::size(expected); ++i)
-        EXPECT_EQ(told.messages()[i].substr(0, std::string(expected[i]).size()), expected[i]);
+        EXPECT_EQ(warnings.messages()[i].substr(0, std::string(expected[i]).size()), expected[i]);
 }
 
 TEST(PbrtTransforms, OrderAndStack) {
@@ -238,18 +238,18 @@ TEST(PbrtShapes, MeshesGoToTheWorld) {
 }
 
 TEST(PbrtShapes, WhatDoesNotFitAMeshIsLeftOut) {
-    Warnings told;
+    Warnings warnings;
     SceneDescription d = parse_world(
         "LightSource \"point\" Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"point2 uv\" [0 0] "
         "\"normal N\" [0 0 1] \"integer indices\" [0 1 2 0]",
-        &told);
-    EXPECT_EQ(told.messages().size(), 3u);
+        &warnings);
+    EXPECT_EQ(warnings.messages().size(), 3u);
     EXPECT_EQ(d.scene.meshes[0].indices.size(), 3u);
     EXPECT_TRUE(d.scene.meshes[0].normals.empty() && d.scene.meshes[0].uvs.empty());
 }
 
 TEST(PbrtObjects, DefinitionsAndInstances) {
-    Warnings told;
+    Warnings warnings;
     SceneDescription d = parse_world(R"(
         ObjectInstance "thing"
         Translate 1 0 0
@@ -262,7 +262,7 @@ TEST(PbrtObjects, DefinitionsAndInstances) {
         Shape "sphere"
         Scale 2 2 2
         ObjectInstance "thing")",
-                                     &told);
+                                     &warnings);
     ASSERT_EQ(d.scene.objects.size(), 1u);
     EXPECT_EQ(d.scene.objects[0].shapes, (std::vector<Index>{0, 1}));
     EXPECT_EQ(d.scene.world_shapes, std::vector<Index>{2});
@@ -274,7 +274,7 @@ TEST(PbrtObjects, DefinitionsAndInstances) {
     expect_near(d.scene.instances[1].world_from_object.point(Vec3f(1, 1, 1)), {3, 2, 2});
     EXPECT_TRUE(d.scene.lights.empty());
     EXPECT_EQ(d.scene.shapes[0].light, no_index);
-    EXPECT_EQ(told.messages().size(), 2u); // area light in an object, no light at all
+    EXPECT_EQ(warnings.messages().size(), 2u); // area light in an object, no light at all
 }
 
 TEST(PbrtAttributes, DefaultsOfShapesMaterialsLights) {
@@ -303,8 +303,8 @@ TEST(PbrtAttributes, DefaultsOfShapesMaterialsLights) {
 
 // A name that fits some plugin of the kind applies to later directives; one that fits none is a mistake,
 // reported once like an unknown parameter of a plugin.
-TEST(PbrtAttributes, NamesThatFitNoPluginAreTold) {
-    Warnings told;
+TEST(PbrtAttributes, NamesThatFitNoPluginGiveAWarning) {
+    Warnings warnings;
     SceneDescription d = parse_world(R"(LightSource "infinite"
         Attribute "shape" "float radios" 3
         Attribute "shape" "float radios" 4 "float innerradius" 0.5 "string basis" "bspline"
@@ -313,9 +313,9 @@ TEST(PbrtAttributes, NamesThatFitNoPluginAreTold) {
         Attribute "medium" "float gg" 0.5 "float g" 0.5
         Attribute "texture" "string encodin" "linear" "float octaves" 2
         Shape "sphere")",
-                                     &told);
+                                     &warnings);
     EXPECT_EQ(
-        told.messages(),
+        warnings.messages(),
         (std::vector<std::string>{
             "scene:3:27: no shape has a parameter 'radios' (did you mean 'radius'?); it is ignored",
             "scene:5:27: no light has a parameter 'scaale' (did you mean 'scale'?); it is ignored",

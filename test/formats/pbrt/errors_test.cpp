@@ -368,13 +368,13 @@ TEST(PbrtErrors, TextureTreesAreBounded) {
 }
 
 TEST(PbrtWarnings, UnknownParametersOnceForEachPluginAndName) {
-    Warnings told;
+    Warnings warnings;
     parse_world("LightSource \"point\"\n"
                 "Shape \"sphere\" \"float raduis\" 1\nShape \"sphere\" \"float raduis\" 2\n"
                 "Shape \"disk\" \"float raduis\" 1\nMaterial \"diffuse\" \"float roughness\" 1\n",
-                &told);
+                &warnings);
     EXPECT_EQ(
-        told.messages(),
+        warnings.messages(),
         (std::vector<std::string>{
             "scene:3:16: shape 'sphere' has no parameter 'raduis' (did you mean 'radius'?); it is ignored",
             "scene:5:14: shape 'disk' has no parameter 'raduis' (did you mean 'radius'?); it is ignored",

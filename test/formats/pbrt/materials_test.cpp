@@ -156,7 +156,7 @@ TEST(PbrtMaterials, NormalMapsThatAreNoneSayWhere) {
     }
 }
 
-TEST(PbrtMaterials, NamedOnesMayComeLaterAndUnusedOnesAreTold) {
+TEST(PbrtMaterials, NamedOnesMayFollowAndUnusedOnesGiveAWarning) {
     Warnings warnings;
     SceneDescription d = parse_world(
         "LightSource \"point\" NamedMaterial \"a\" Shape \"sphere\" Shape \"disk\" MakeNamedMaterial "

@@ -43,12 +43,12 @@ TEST(PbrtParameters, OwnOnesOfAWrongTypeAreErrors) {
 }
 
 TEST(PbrtParameters, OfSeveralTypesInOneDirectiveTheLastCounts) {
-    Warnings told;
+    Warnings warnings;
     const std::string texture = "\"texture reflectance\" \"t\" ", rgb = "\"rgb reflectance\" [1 0 0] ";
     SceneDescription d = parse_world(
-        with_light + green_texture + "Material \"diffuse\" " + texture + rgb + "Shape \"sphere\"", &told);
+        with_light + green_texture + "Material \"diffuse\" " + texture + rgb + "Shape \"sphere\"", &warnings);
     EXPECT_TRUE(diffuse_of(d).reflectance.is_constant());
-    EXPECT_EQ(told.messages(),
+    EXPECT_EQ(warnings.messages(),
               (std::vector<std::string>{
                   "scene:4:46: parameter 'reflectance' is given as texture and as rgb; the last one counts",
                   "scene:3:1: texture 't' is not used and was not read"}));
@@ -74,18 +74,18 @@ TEST(PbrtParameters, OfSeveralDefaultsTheLastThatFitsCounts) {
     EXPECT_EQ(eta_of_glass(number + spectrum), (*find_named_spectrum("glass-BK7"))(500));
     EXPECT_EQ(
         eta_of_glass(number + "Attribute \"material\" " + spectrum + "Attribute \"material\" " + number), 2);
-    Warnings told;
+    Warnings warnings;
     SceneDescription d = parse_world(with_light + "Attribute \"material\" " + spectrum + number +
                                          "Material \"conductor\" Shape \"sphere\"",
-                                     &told);
+                                     &warnings);
     EXPECT_EQ(std::get<ConductorMaterial>(d.scene.materials.at(0)).metal.eta.value(500),
               (*find_named_spectrum("glass-BK7"))(500));
-    EXPECT_TRUE(told.messages().empty());
+    EXPECT_TRUE(warnings.messages().empty());
 }
 
 TEST(PbrtParameters, AlphaAsNumberOrTexture) {
-    auto alpha = [](const std::string& text, Warnings* told = nullptr) {
-        return parse_world(with_light + half_texture + text, told).scene.shapes.at(0).alpha;
+    auto alpha = [](const std::string& text, Warnings* warnings = nullptr) {
+        return parse_world(with_light + half_texture + text, warnings).scene.shapes.at(0).alpha;
     };
     EXPECT_FALSE(alpha("Shape \"sphere\" \"texture alpha\" \"a\"").is_constant());
     EXPECT_EQ(alpha("Shape \"sphere\" \"float alpha\" 0.25").value, 0.25f);
@@ -96,11 +96,11 @@ TEST(PbrtParameters, AlphaAsNumberOrTexture) {
         alpha("Attribute \"shape\" \"texture alpha\" \"a\" Shape \"sphere\" \"float alpha\" 0.25");
     EXPECT_TRUE(number.is_constant());
     EXPECT_EQ(number.value, 0.25f);
-    Warnings told;
-    number = alpha("Shape \"sphere\" \"texture alpha\" \"a\" \"float alpha\" 0.25", &told);
+    Warnings warnings;
+    number = alpha("Shape \"sphere\" \"texture alpha\" \"a\" \"float alpha\" 0.25", &warnings);
     EXPECT_TRUE(number.is_constant());
     EXPECT_EQ(number.value, 0.25f);
-    EXPECT_EQ(told.messages(),
+    EXPECT_EQ(warnings.messages(),
               (std::vector<std::string>{
                   "scene:4:36: parameter 'alpha' is given as texture and as float; the last one counts",
                   "scene:3:1: texture 'a' is not used and was not read"}));

@@ -9,14 +9,14 @@
 
 namespace montelux::test {
 
-inline SceneDescription parse(std::string_view text, Warnings* told = nullptr) {
-    Warnings warnings;
-    return parse_pbrt(text, "scene", ".", told ? *told : warnings);
+inline SceneDescription parse(std::string_view text, Warnings* warnings = nullptr) {
+    Warnings ignored;
+    return parse_pbrt(text, "scene", ".", warnings ? *warnings : ignored);
 }
 
 // The scene with `world` after WorldBegin, which is on line 1.
-inline SceneDescription parse_world(std::string_view world, Warnings* told = nullptr) {
-    return parse("WorldBegin\n" + std::string(world), told);
+inline SceneDescription parse_world(std::string_view world, Warnings* warnings = nullptr) {
+    return parse("WorldBegin\n" + std::string(world), warnings);
 }
 
 // The parser's error message; empty if there is none.

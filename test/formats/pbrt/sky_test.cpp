@@ -75,9 +75,9 @@ TEST(PbrtSky, MistakesGetASentence) {
         } catch (const Error& e) {
             EXPECT_NE(std::string(e.what()).find(sentence), std::string::npos) << e.what();
         }
-    Warnings told;
-    parse_world("LightSource \"sky\" \"float elevation\" -6 \"float turbidty\" 2", &told);
-    ASSERT_EQ(told.messages().size(), 1u);
+    Warnings warnings;
+    parse_world("LightSource \"sky\" \"float elevation\" -6 \"float turbidty\" 2", &warnings);
+    ASSERT_EQ(warnings.messages().size(), 1u);
 }
 
 } // namespace

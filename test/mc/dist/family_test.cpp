@@ -40,7 +40,7 @@ TEST_P(FamilyTest, ValuesComputedElsewhere) {
 TEST_P(FamilyTest, QuantileUndoesCdfInBothTails) {
     for (double p : {1e-300, 1e-100, 1e-30, 1e-12, 1e-6, 0.01, 0.2, 0.4999, 0.5, 0.75, 0.999}) {
         double low = d().quantile(p), high = d().quantile_complement(p);
-        // What half an ulp of x does to the probability; nothing is asked where x has run into an end, or out
+        // What half an ulp of x does to the probability; nothing is checked where x has run into an end, or out
         // of the normal numbers.
         auto slack = [&](double x) { return 4 * epsilon * std::abs(x) * d().pdf(x); };
         auto usable = [&](double x) {
@@ -134,7 +134,7 @@ TEST_P(FamilyTest, EndsAreWhatTheySay) {
 INSTANTIATE_TEST_SUITE_P(All, FamilyTest, testing::ValuesIn(family_cases()),
                          [](const auto& family) { return family.param.name; });
 
-TEST(Families, BadParametersGetASentence) {
+TEST(Families, BadParametersGiveAMessage) {
     EXPECT_EQ(
         message_of([] { NormalDistribution(0, -1); }),
         "NormalDistribution: mean = 0, deviation = -1; expected a finite mean and a finite deviation above "

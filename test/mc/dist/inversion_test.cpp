@@ -36,7 +36,7 @@ TEST(NumericalInversion, ReproducesTheClosedForms) {
     EXPECT_EQ(linear.cdf(5), 1);
 }
 
-// Both tails of laws on the whole line and on half lines, at scales that nothing tells the recipe of.
+// Both tails of laws on the whole line and on half lines, at scales that the recipe is not given.
 TEST(NumericalInversion, InfiniteRanges) {
     NumericalInversion bell([](double x) { return std::exp(-0.5 * x * x); }, -infinity, infinity);
     NormalDistribution normal;

@@ -37,7 +37,7 @@ TEST(ProductDistribution, DensityIsTheProductInOrder) {
     expect_follows(ProductDistribution{CosineDistribution(), UniformDistribution()}, {0, 0}, {pi / 2, 1});
 }
 
-// As many factors as the input asks for: the same numbers as the fixed product gives.
+// A number of factors known at run time: the same numbers as the fixed product gives.
 TEST(RuntimeProduct, AgreesWithTheFixedProduct) {
     ProductDistribution fixed(CosineDistribution(), NormalDistribution(1, 2), ExponentialDistribution(3));
     RuntimeProduct<> runtime({CosineDistribution(), NormalDistribution(1, 2), ExponentialDistribution(3)});

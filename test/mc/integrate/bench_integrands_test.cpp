@@ -100,7 +100,7 @@ TEST(BenchIntegrands, ProductsHaveTheIntegralsOfTheirAxes) {
                     for (double& x : through) x *= 0.5;
                 EXPECT_LT(relative_difference(product_of_axes(f, through), f.exact()), 1e-12)
                     << line_name(f.line()) << " seed " << seed;
-                // They are products indeed: the axes through another point tell the same.
+                // They are products indeed: the axes through another point give the same.
                 for (double& x : through) x *= 0.9;
                 EXPECT_LT(relative_difference(product_of_axes(f, through), f.exact()), 1e-11)
                     << line_name(f.line()) << " seed " << seed;

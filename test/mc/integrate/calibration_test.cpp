@@ -77,7 +77,7 @@ Coverage measure(const Method& method, Line line, std::uint64_t evaluations, int
     return coverage;
 }
 
-// Where the error of a method falls short, and why; told apart in the table, and not asserted.
+// Where the error of a method is too small, and why: marked in the table, not asserted.
 std::string_view falls_short(std::string_view method, Line line) {
     using bench::Family;
     if (method == "auto" || method == "adaptive") return "";

@@ -98,13 +98,13 @@ inline void expect_same_bits_for_any_threads(const KnownIntegral& problem, const
     expect_equal_bits(one, run(7));
 }
 
-// Broken off after some of the steps, saved, loaded by a fresh estimator and continued; and a step that
+// Interrupted after some of the steps, saved, loaded by a fresh estimator and continued; and a step that
 // is cancelled changes nothing.
 inline void expect_same_bits_after_resume(const KnownIntegral& problem, const Method& method,
                                           std::uint64_t evaluations) {
     const Evaluator evaluator(problem.f, problem.domain);
-    auto unbroken = method.estimator({evaluator, 3});
-    const int steps = advance(*unbroken, evaluations);
+    auto uninterrupted = method.estimator({evaluator, 3});
+    const int steps = advance(*uninterrupted, evaluations);
     EXPECT_GE(steps, 1);
     for (int cut : std::set<int>{0, 1, 2, steps / 2, steps - 1, steps}) {
         auto first = method.estimator({evaluator, 3});
@@ -125,7 +125,7 @@ inline void expect_same_bits_after_resume(const KnownIntegral& problem, const Me
         EXPECT_TRUE(reader.at_end());
         expect_equal_bits(first->tally(), second->tally());
         advance(*second, evaluations);
-        expect_equal_bits(second->tally(), unbroken->tally());
+        expect_equal_bits(second->tally(), uninterrupted->tally());
     }
 }
 

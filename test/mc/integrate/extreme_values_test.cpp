@@ -15,8 +15,8 @@ ExtremeValues of(const std::vector<double>& values) {
     return extremes;
 }
 bool warns_of_tail(const IntegrationResult& r) {
-    for (const std::string& doubt : r.warnings)
-        if (doubt.find("Pareto tail") != std::string::npos) return true;
+    for (const std::string& warning : r.warnings)
+        if (warning.find("Pareto tail") != std::string::npos) return true;
     return false;
 }
 
@@ -57,7 +57,7 @@ TEST(ExtremeValues, SavesAndLoadsItsBits) {
     EXPECT_THROW(wrong.load(second), Error);
 }
 
-// A hole of one thousandth: whether a point meets it or not, the error tells of it.
+// A hole of one thousandth: whether a point hits it or not, the error accounts for it.
 TEST(ExtremeValues, ComplementsOfRareEventsHaveAnError) {
     auto f = [](std::span<const double> x) {
         return std::hypot(x[0] - 0.3, x[1] - 0.6) < 0.0062 ? 0.0 : 1.0;
@@ -86,7 +86,7 @@ TEST(ExtremeValues, ConstantsHaveAnError) {
     }
 }
 
-TEST(ExtremeValues, InfiniteVarianceIsDoubted) {
+TEST(ExtremeValues, InfiniteVarianceGivesAWarning) {
     auto f = [](std::span<const double> x) {
         const double sum = x[0] + x[1] + x[2];
         return std::pow(sum - std::floor(sum) + 1e-300, -0.85);
@@ -105,7 +105,7 @@ TEST(ExtremeValues, InfiniteVarianceIsDoubted) {
                 warns_of_tail(integrate(f, Domain::unit_cube(3), Method::named(name), budget, options));
             finite += warns_of_tail(integrate(g, Domain::unit_cube(3), Method::named(name), budget, options));
         }
-        // Few strata tell less.
+        // Few strata reveal less.
         const bool strata = std::string(name) == "stratified" || std::string(name) == "recursive";
         EXPECT_GE(infinite, strata ? 2 : 6) << name;
         EXPECT_EQ(finite, 0) << name;

@@ -1,4 +1,4 @@
-// Checkpoints of integrations: resumed runs have the bits of unbroken ones, wrong files are refused.
+// Checkpoints of integrations: resumed runs equal uninterrupted ones bit for bit, wrong files are refused.
 #include "test/mc/integrate/integrate_testing.h"
 #include "test/temporary_folder.h"
 #include <atomic>
@@ -30,13 +30,13 @@ class CheckpointFile {
     TemporaryFolder folder_;
 };
 
-TEST(IntegrateCheckpoint, ResumedRunHasTheBitsOfAnUnbrokenOne) {
+TEST(IntegrateCheckpoint, ResumedRunHasTheBitsOfAnUninterruptedOne) {
     const Budget budget{.evaluations = 400'000};
     const Integrand f = Integrand::vector_valued(2, [](std::span<const double> x, std::span<double> y) {
         y[0] = product(x);
         y[1] = x[0] < 0.001 ? std::numeric_limits<double>::quiet_NaN() : x[1];
     });
-    const IntegrationResult unbroken = integrate(f, Domain::unit_cube(2), basic, budget, {.seed = 3});
+    const IntegrationResult uninterrupted = integrate(f, Domain::unit_cube(2), basic, budget, {.seed = 3});
     for (std::uint64_t stop_at : {1u, 10'000u, 100'000u, 250'000u}) {
         const CheckpointFile file;
         CancelFlag cancel;
@@ -50,14 +50,14 @@ TEST(IntegrateCheckpoint, ResumedRunHasTheBitsOfAnUnbrokenOne) {
         const IntegrationResult rest =
             integrate(f, Domain::unit_cube(2), basic, budget,
                       {.seed = 3, .threads = 3, .checkpoint = file.path(), .resume = true});
-        EXPECT_TRUE(same_but_for_time(rest, unbroken)) << "stopped at " << stop_at;
+        EXPECT_TRUE(same_but_for_time(rest, uninterrupted)) << "stopped at " << stop_at;
         // The state was saved with the time until then; writing it may take longer than all the rest.
         ASSERT_FALSE(part.history.empty());
         EXPECT_GE(rest.seconds, part.history.back().seconds);
         // Once more from the end: nothing is left to do.
         const IntegrationResult end = integrate(f, Domain::unit_cube(2), basic, budget,
                                                 {.seed = 3, .checkpoint = file.path(), .resume = true});
-        EXPECT_TRUE(same_but_for_time(end, unbroken));
+        EXPECT_TRUE(same_but_for_time(end, uninterrupted));
     }
 }
 // Cancelled in the middle of a step, by the integrand itself, at calls of all kinds: pilots, training,
@@ -69,8 +69,9 @@ TEST(IntegrateCheckpoint, EveryMethodResumesToTheSameBits) {
     const Budget budget{.evaluations = 60'000};
     for (std::string_view name : Method::names()) {
         const Method method = Method::named(name);
-        const IntegrationResult unbroken = integrate(peak, Domain::unit_cube(2), method, budget, {.seed = 4});
-        EXPECT_LE(unbroken.evaluations, budget.evaluations) << name;
+        const IntegrationResult uninterrupted =
+            integrate(peak, Domain::unit_cube(2), method, budget, {.seed = 4});
+        EXPECT_LE(uninterrupted.evaluations, budget.evaluations) << name;
         for (int stop_at : {500, 5000, 20'000, 45'000}) {
             const CheckpointFile file;
             CancelFlag cancel;
@@ -85,11 +86,11 @@ TEST(IntegrateCheckpoint, EveryMethodResumesToTheSameBits) {
             if (part.stop != StopReason::cancelled) continue; // had done all it wanted
             const IntegrationResult rest = integrate(peak, Domain::unit_cube(2), method, budget,
                                                      {.seed = 4, .checkpoint = file.path(), .resume = true});
-            EXPECT_TRUE(same_but_for_time(rest, unbroken)) << name << " stopped at " << stop_at;
+            EXPECT_TRUE(same_but_for_time(rest, uninterrupted)) << name << " stopped at " << stop_at;
         }
     }
 }
-TEST(IntegrateCheckpoint, IsWrittenWhileTheRunGoesOn) {
+TEST(IntegrateCheckpoint, IsWrittenDuringTheRun) {
     const CheckpointFile file;
     std::size_t times = 0;
     IntegrationOptions options{.checkpoint = file.path(), .checkpoint_every = duration<double>(0)};
@@ -146,22 +147,22 @@ TEST(IntegrateCheckpoint, DamagedFilesAreRefused) {
     file.replace(whole);
     EXPECT_NO_THROW(run());
 }
-TEST(IntegrateCheckpoint, ADamagedFileIsToldAndTheOneBeforeServes) {
+TEST(IntegrateCheckpoint, ADamagedFileGivesAWarningAndThePreviousOneIsUsed) {
     const CheckpointFile file;
     const IntegrationOptions begin{.checkpoint = file.path()};
     const IntegrationOptions resume{.checkpoint = file.path(), .resume = true};
     const Domain square = Domain::unit_cube(2);
-    const IntegrationResult unbroken = integrate(product, square, basic, {.evaluations = 90'000});
+    const IntegrationResult uninterrupted = integrate(product, square, basic, {.evaluations = 90'000});
     integrate(product, square, basic, {.evaluations = 16'384}, begin);
     EXPECT_EQ(integrate(product, square, basic, {.evaluations = 32'768}, resume).checkpoint_refused_because,
               "");
     file.replace(file.bytes().substr(0, 200));
     const IntegrationResult rest = integrate(product, square, basic, {.evaluations = 90'000}, resume);
-    EXPECT_EQ(rest.value, unbroken.value);
-    EXPECT_EQ(rest.standard_error, unbroken.standard_error);
+    EXPECT_EQ(rest.value, uninterrupted.value);
+    EXPECT_EQ(rest.standard_error, uninterrupted.standard_error);
     EXPECT_EQ(rest.checkpoint_refused_because.find(file.path() + ": is cut short"), 0U);
 }
-TEST(IntegrateCheckpoint, UnwritableFileIsToldBeforeTheWork) {
+TEST(IntegrateCheckpoint, UnwritableFileIsAnErrorBeforeTheRun) {
     std::atomic<int> calls{0};
     auto f = [&](double x) {
         ++calls;

@@ -71,7 +71,7 @@ TEST(IntegrateStop, EvaluationsAreNeverMoreThanAllowed) {
         EXPECT_FALSE(r.converged());
     }
 }
-TEST(IntegrateStop, AMillionEvaluationsWhereNothingIsAskedFor) {
+TEST(IntegrateStop, AMillionEvaluationsWithoutATarget) {
     const IntegrationResult r = integrate([](double x) { return x; }, Domain::interval(0, 1), basic);
     EXPECT_EQ(r.evaluations, 1'000'000u);
     EXPECT_EQ(r.stop, StopReason::evaluations);

@@ -62,7 +62,7 @@ TEST(IntegrateHistory, IsBounded) {
     EXPECT_EQ(r.history.back().evaluations, 100'000u);
 }
 
-TEST(IntegrateNonFinite, SkippedCountedAndTold) {
+TEST(IntegrateNonFinite, SkippedCountedAndReported) {
     // NaN on a quarter of the square.
     auto f = [](std::span<const double> x) {
         return x[0] < 0.5 && x[1] < 0.5 ? std::numeric_limits<double>::quiet_NaN() : 1.0;

@@ -81,14 +81,14 @@ TEST_P(GenerationFileFaults, LeaveAWholeGeneration) {
             ASSERT_EQ(end, End::written) << n;
         }
 
-        // The newest is whole, not only the one before it.
+        // The newest is complete, not only the previous one.
         const Generation newest = read_generation(path_, "test", 1 << 20);
         ASSERT_FALSE(newest.previous) << n << ": " << newest.newest_refused_because;
         ASSERT_TRUE(newest.payload == payload(2) || newest.payload == payload(3)) << n;
         if (end == End::written) {
             ASSERT_EQ(newest.payload, payload(3)) << n;
         }
-        // Without it there is the one before, still or already.
+        // Without it the previous one exists.
         fs::remove(path_);
         const Generation before = read_generation(path_, "test", 1 << 20);
         ASSERT_TRUE(before.payload == payload(1) || before.payload == payload(2)) << n;
@@ -101,7 +101,7 @@ TEST_P(GenerationFileFaults, LeaveAWholeGeneration) {
                 << "call " << n << " left " << fs::directory_iterator(folder_.path())->path();
         }
 
-        // What was left behind stops nobody.
+        // Left-over files do no harm.
         write_generation(path_, "test", payload(4));
         write_generation(path_, "test", payload(5));
         ASSERT_EQ(read_generation(path_, "test", 1 << 20).payload, payload(5));
@@ -114,7 +114,7 @@ TEST_P(GenerationFileFaults, LeaveAWholeGeneration) {
     if (kills) {
         EXPECT_EQ(ends[static_cast<int>(End::killed)], n - 2);
     }
-    // All but opening a file without a name, for which one with a name stands in; opening and closing the
+    // All but opening a file without a name, for which a named one is used instead; opening and closing the
     // present file, which is not kept then; and closing the folder.
     if (kind == "ENOSPC" || kind == "EIO" || kind == "EDQUOT") {
         EXPECT_EQ(ends[static_cast<int>(End::refused)], n - 2 - 4);

@@ -1,4 +1,4 @@
-// Generation files: what is written comes back, what is damaged is told and the generation before is used.
+// Generation files: contents survive, damage is reported and the previous generation is used.
 #include "test/temporary_folder.h"
 #include <algorithm>
 #include <fstream>
@@ -43,8 +43,8 @@ class GenerationFile : public testing::Test {
     fs::path path_ = folder_ / "state";
 };
 
-// The generation before has a longer name than the newest.
-TEST_F(GenerationFile, SaysNowWhatWouldFailLater) {
+// The previous generation has a longer name than the newest.
+TEST_F(GenerationFile, ReportsBeforehandWhatWouldFailLater) {
     check_generation_writable(path_);
     EXPECT_EQ(folder_.file_count(), 0);
     EXPECT_THROW(check_generation_writable(folder_.path()), Error);
@@ -55,7 +55,7 @@ TEST_F(GenerationFile, SaysNowWhatWouldFailLater) {
     EXPECT_THROW(check_generation_writable(longest.string() + "x"), Error);
 }
 
-TEST_F(GenerationFile, HoldsWhatWasWrittenAndTheOneBefore) {
+TEST_F(GenerationFile, ContainsWhatWasWrittenAndThePreviousOne) {
     EXPECT_FALSE(generation_exists(path_));
     for (std::size_t size : {0UL, 1UL, 7UL, 8UL, 4097UL, 3UL << 20}) {
         const Bytes first = payload(size, 1), second = payload(size + 1, 2);
@@ -96,7 +96,7 @@ TEST_F(GenerationFile, KeepsAWholeGenerationRatherThanADamagedOne) {
     EXPECT_EQ(read_generation(path_, "test", limit).payload, first);
 }
 
-TEST_F(GenerationFile, GoesOnAfterAnEndBetweenTheTwoRenamings) {
+TEST_F(GenerationFile, ResumesAfterAnEndBetweenTheTwoRenamings) {
     write_generation(path_, "test", payload(100, 1));
     fs::create_hard_link(path_, previous_generation(path_));
     overwrite(previous_generation(path_).string() + ".tmp", payload(10, 1)); // or before the first

@@ -85,7 +85,7 @@ TEST(RectangleChiSquared, SeesACorrelationThatMarginalsHide) {
     EXPECT_FALSE(rectangle_chi_squared_test(independent, correlated, {0, 0}, {1, 1}).passes(significance));
 }
 
-TEST(SphericalChiSquared, TellsCosineFromUniformAndFindsDiscontinuities) {
+TEST(SphericalChiSquared, DistinguishesCosineFromUniformAndFindsDiscontinuities) {
     auto cosine = [](Vec2f u) {
         float z = std::sqrt(u.x), r = std::sqrt(1 - u.x), phi = two_pi_f * u.y;
         return Vec3f(r * std::cos(phi), r * std::sin(phi), z);

@@ -42,7 +42,7 @@ TEST(SkewMoments, SaysNothingFromTooFewSamples) {
 }
 
 // Means of 64 exponential samples (skewness 2): plain scores lean to the negative side by 2 / (2 * 8),
-// corrected ones do not. 20,000 means tell 0.125 from 0 at 17 standard errors; the bounds are 5 wide.
+// corrected ones do not. 20,000 means distinguish 0.125 from 0 at 17 standard errors; the bounds are 5 wide.
 TEST(SkewMoments, CorrectedScoresAreCentred) {
     TestUniforms u(2);
     RunningMoments plain, corrected;

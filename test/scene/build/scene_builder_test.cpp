@@ -244,7 +244,7 @@ TEST_F(SceneBuilding, SkiesBringTheirSun) {
     EXPECT_EQ(error_of([&] { builder_.add_sky(sky, line(3)); }).substr(0, 7), "line 3:");
 }
 
-TEST_F(SceneBuilding, SkiesGiveTheIlluminanceAskedFor) {
+TEST_F(SceneBuilding, SkiesGiveTheRequestedIlluminance) {
     for (const bool sun : {false, true}) {
         Scene scene;
         SceneBuilder(scene, messages_)

@@ -187,7 +187,7 @@ class AdaptiveEstimator final : public Estimator {
     std::uint64_t first_sample() const {
         return problem_.evaluator.dimensions() == 1 ? explored_ : std::max(least_explored, explored_ / 2);
     }
-    // Values of one size, with a possible spike elsewhere: only more points can tell.
+    // Values of one size, with a possible spike elsewhere: only more points can decide.
     bool plateau() const {
         return problem_.evaluator.dimensions() > 1 && trainer_.effective_share() > even_values;
     }

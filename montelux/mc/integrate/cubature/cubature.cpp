@@ -349,14 +349,14 @@ class CubatureEstimator final : public Estimator {
         if (!verification_.warning().empty()) tally.warnings.push_back(verification_.warning());
         if (equal_values() && evaluations_ >= most_equal_values)
             tally.warnings.push_back("the integrand was the same at each of " + std::to_string(evaluations_) +
-                                     " points; the error is a bound on what they did not meet");
+                                     " points; the error is a bound on what they missed");
         for (std::size_t c = 0; c < components(); ++c) {
             if (totals_.inflation[c] < 4) continue;
             std::ostringstream text;
             text.precision(2);
-            text << "the errors of regions halved of late were " << totals_.inflation[c]
-                 << " times too small, and were enlarged by as much; the integrand is rougher than the rules "
-                    "can tell";
+            text << "the errors of recently halved regions were " << totals_.inflation[c]
+                 << " times too small, and were enlarged by that factor; the integrand is rougher than the "
+                    "rules assume";
             tally.warnings.push_back(text.str());
             break;
         }

@@ -17,7 +17,7 @@ class CubatureRegions {
         std::uint8_t axis = 0;      // to halve it along
         bool rough = false;         // the integrand is not smooth at its scale
         bool exhausted = false;     // its errors are only rounding
-        bool indivisible = false;   // its halves could not be told apart in floating point
+        bool indivisible = false;   // its halves are equal in floating point
         std::uint8_t face_axis = 0; // the face that face_error() is about
         bool face_upper = false;
     };

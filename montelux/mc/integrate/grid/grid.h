@@ -13,7 +13,7 @@ namespace montelux {
 // n^d points of the tensor grid. They are baselines for other methods: for smooth integrands the error falls
 // as N^(-order / d) with the number N of points, the curse of dimensionality.
 //
-// With cells = 0 the grid is refined, by doubling `cells` in each step while an error is asked for, and at
+// With cells = 0 the grid is refined, by doubling `cells` in each step while a target is set, and at
 // last by the largest grid that the evaluations left allow. Left Riemann sums and trapezoids use the points
 // of the grid before again where they double. The error is then |I_k - I_(k-1)| / (r^order - 1) (Richardson
 // 1911; r the ratio of the numbers of cells), or the one predicted by the level before if that is larger: an

@@ -304,7 +304,7 @@ AdaptiveMap AdaptiveMap::load(StateReader& state) {
     const std::vector<double> all = state.get_doubles();
     const std::size_t stride = static_cast<std::size_t>(increments) + 1;
     if (all.size() != stride * static_cast<std::size_t>(dimensions))
-        throw Error("AdaptiveMap", "the saved map has another number of edges than its shape asks for");
+        throw Error("AdaptiveMap", "the saved map has another number of edges than its shape requires");
     std::vector<std::vector<double>> edges;
     for (std::size_t at = 0; at < all.size(); at += stride)
         edges.emplace_back(all.begin() + static_cast<std::ptrdiff_t>(at),

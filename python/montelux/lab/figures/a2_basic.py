@@ -85,9 +85,8 @@ FIGURES = (
         "A2",
         "basic",
         "Basic Monte Carlo",
-        "Each random point stands for a strip of the same width and the height of the function there; strips overlap"
-        " and leave gaps, and yet their sum is right on average. Four times the points halve the error, whatever the"
-        " function.",
+        "Each random point contributes a strip of equal width and the height of the function there. Strips overlap"
+        " and leave gaps, but their sum is right on average. Four times the points halve the error of any function.",
         (r"\langle F^N \rangle = \frac{b - a}{N} \sum_{i=1}^{N} f(X_i), \qquad X_i \sim \mathrm{uniform\ on}\ [a, b)",),
         basic,
         draw_basic,

@@ -30,12 +30,12 @@ def general() -> Outcome:
     for name, density in DENSITIES.items():
         r = montelux.integrate(np.sin, (0, np.pi / 2), "importance", technique=density, evaluations=200_000, seed=5)
         numbers.append(of(f"{name} density", r, 1))
-    # A density that is zero where the function is not: the estimate misses that part, and says so.
+    # A density that is zero where the function is not: the estimate misses that part and has a warning.
     half = montelux.Distribution.uniform(0, np.pi / 4)
     r = montelux.integrate(np.sin, (0, np.pi / 2), "importance", technique=half, evaluations=200_000, seed=5)
     numbers.append(of("uniform on [0, π/4) alone (with a warning)", r, 1 - np.sqrt(0.5), "1 − √½"))
     points = DENSITIES["falling"].draw(16, seed=2)
-    return Outcome(numbers, {"points": points, "doubt": r.warnings[0] if r.warnings else ""})
+    return Outcome(numbers, {"points": points, "warning": r.warnings[0] if r.warnings else ""})
 
 
 def draw_general(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, Any]) -> None:
@@ -71,9 +71,9 @@ FIGURES = (
         "A3",
         "general",
         "General Monte Carlo",
-        "Points may follow any density that is not zero where the function is not: where they are rare, each counts for"
-        " more, by its weight 1/p, which is the width of its strip. A density that leaves a part out misses that part"
-        " of the integral, which the library looks for and tells.",
+        "Points may follow any density that is not zero where the function is not. Where they are rare, each has a"
+        " larger weight 1/p, the width of its strip. A density that omits a part misses that part of the integral; the"
+        " library checks for this and warns.",
         (r"\langle F^N \rangle = \frac{1}{N} \sum_{i=1}^{N} \frac{f(X_i)}{p(X_i)}, \qquad X_i \sim p",),
         general,
         draw_general,

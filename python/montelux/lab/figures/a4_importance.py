@@ -134,9 +134,8 @@ FIGURES = (
         "A4",
         "importance",
         "Importance sampling",
-        "Both estimators cover the area with sixteen strips, whose widths 1/(N p) are shown by colour. Where the"
-        " density is high for high values, all strips have nearly the same area, and so hardly any of them is a"
-        " surprise.",
+        "Both estimators cover the area with sixteen strips, whose widths 1/(N p) are shown by colour. If the density"
+        " is high where the values are high, all strips have nearly the same area, so the variance is small.",
         (r"X = P^{-1}(\xi), \quad P(x) = \int_a^x p(t)\,dt, \qquad \mathrm{ideal:}\ \ p(x) = f(x) / \int f",),
         importance,
         draw_importance,

@@ -27,7 +27,7 @@ def smooth(x):  # type: ignore[no-untyped-def]
 
 
 def variance(strata: int, samples: int) -> float:
-    """The variance of its estimate with so many strata along each side, and samples in each, in closed form."""
+    """The variance of its estimate with this number of strata along each side, and of samples in each, in closed form."""
     h = 1 / strata
     squares = ((np.e**2 - 1) / 2) ** 2
     squared_means = h**2 * (np.expm1(h) / h) ** 4 * ((np.e**2 - 1) / np.expm1(2 * h)) ** 2
@@ -104,7 +104,7 @@ def draw_jittered(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, A
 
 
 def peaked(x):  # type: ignore[no-untyped-def]
-    """Flat nearly everywhere: the strata differ in how much there is to learn in them."""
+    """Flat nearly everywhere: the variance differs between strata."""
     return np.exp(-0.5 * ((x - 0.3) / 0.04) ** 2)
 
 
@@ -159,9 +159,9 @@ FIGURES = (
         "A5",
         "jittered",
         "Stratified sampling",
-        "One random point in each cell of a grid cannot clump, and so its error on a smooth function of two variables"
-        " falls with the number of samples itself instead of its square root. Strata of equal shares never make the"
-        " variance larger.",
+        "One random point in each cell of a grid cannot clump, so the error on a smooth function of two variables"
+        " falls with the number of samples instead of its square root. Strata of equal shares never increase the"
+        " variance.",
         (
             (
                 r"\langle F \rangle = \sum_k \frac{V_k}{N_k} \sum_{j=1}^{N_k} f(X_{kj}), \qquad \mathrm{Var} = \sum_k"
@@ -177,9 +177,9 @@ FIGURES = (
     Figure(
         "A5",
         "neyman",
-        "Where to look: Neyman's allocation",
-        "Left, every stratum gets as many samples, though most have nothing to tell. Right, after a short pilot in"
-        " each, the samples go where the function varies (the line is the function, at its own scale).",
+        "Where to sample: Neyman's allocation",
+        "Left, every stratum gets the same number of samples, although the function is flat in most. Right, after a"
+        " short pilot in each, the samples go where the function varies (the line is the function, at its own scale).",
         (r"N_k \;\propto\; V_k\,\sigma_k",),
         neyman,
         draw_neyman,

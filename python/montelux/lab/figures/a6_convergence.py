@@ -118,10 +118,10 @@ FIGURES = (
         "A6",
         "convergence",
         "Error against samples",
-        "Random points keep their slope of one half in every dimension; strata and point sets are far better in one and"
-        " two variables, and only a little in five. The adaptive method (VEGAS on Sobol' points) spends its first"
-        " evaluations to learn where the bump is, and is about ten times better than all others in five variables once"
-        " it knows.",
+        "Random points keep their slope of one half in every dimension; strata and point sets are far better in one"
+        " and two variables, and a little better in five. The adaptive method (VEGAS on Sobol' points) spends its"
+        " first evaluations on locating the bump; after that it is about ten times better than all others in five"
+        " variables.",
         (r"f(x) = \prod_{k=1}^{d} e^{-32 (x_k - 0.4)^2}, \qquad x \in [0,1]^d",),
         convergence,
         draw_convergence,

@@ -104,9 +104,9 @@ FIGURES = (
         "A6",
         "points",
         "Point sets",
-        "256 random points clump and leave holes; the others know of one another and keep apart. The star discrepancy,"
-        " the largest difference between the share of points in a box at the corner and its area, is a fifth of the"
-        " random one's or less.",
+        "256 random points clump and leave holes; points of the other sets keep apart. The star discrepancy, the"
+        " largest difference between the share of points in a box at the corner and its area, is at most a fifth of"
+        " that of random points.",
         (r"D^* = \sup_{a \in [0,1]^2} \left| \frac{\#\{x_i \in [0, a)\}}{N} - a_1 a_2 \right|",),
         plain,
         draw_sets,
@@ -118,8 +118,8 @@ FIGURES = (
         "A6",
         "randomised",
         "Point sets, randomised",
-        "A shift, a permutation of the digits or a scramble makes each single point uniform and leaves the set even. So"
-        " the estimates are unbiased, and several randomisations tell their error by their spread.",
+        "A shift, a permutation of the digits or a scramble makes each single point uniform and leaves the set even."
+        " So the estimates are unbiased, and the spread of several randomisations gives their error.",
         (
             (
                 r"x_i \mapsto (x_i + \Delta)\ \mathrm{mod}\ 1, \qquad \mathrm{error}^2 = \frac{1}{R (R - 1)}"

@@ -85,8 +85,8 @@ FIGURES = (
         "A7",
         "weights",
         "Multiple importance sampling",
-        "Two densities, each good at one lobe; the weights say who is believed where (below the line the wide one,"
-        " above it the narrow one) and always sum to one. Every choice is unbiased: what differs is the noise.",
+        "Two densities, each good at one lobe. The weights distribute each point between them (below the line the"
+        " wide one, above it the narrow one) and always sum to one. Every choice is unbiased; only the noise differs.",
         (
             (
                 r"F = \sum_i \frac{1}{n_i} \sum_{j=1}^{n_i} w_i(X_{ij})\,\frac{f(X_{ij})}{p_i(X_{ij})}, \qquad \sum_i"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def target(x):  # type: ignore[no-untyped-def]
-    """exp(-x^2) (2 + sin 5x + sin 2x): three lobes; its integral, 2 sqrt(pi), is not told to the chain."""
+    """exp(-x^2) (2 + sin 5x + sin 2x): three lobes; the chain does not know its integral, 2 sqrt(pi)."""
     return np.exp(-x * x) * (2 + np.sin(5 * x) + np.sin(2 * x))
 
 
@@ -76,9 +76,9 @@ FIGURES = (
         "A8",
         "chain",
         "A Metropolis chain",
-        "The chain proposes a step, takes it always where the target grows and sometimes where it falls, and stays"
-        " otherwise; only quotients of the target are used, so its integral need not be known. Its states follow the"
-        " target (line), though neighbouring ones are alike: that is what the autocorrelation time counts.",
+        "The chain proposes a step, accepts it always where the target grows and sometimes where it falls, and stays"
+        " otherwise. Only ratios of the target are used, so its integral need not be known. The states follow the"
+        " target (line), but neighbouring ones are correlated, as the autocorrelation time measures.",
         (
             (
                 r"a(x \to y) = \min\left(1,\ \frac{f(y)\,T(y \to x)}{f(x)\,T(x \to y)}\right), \qquad f(x) = e^{-x^2}"

@@ -40,7 +40,7 @@ def calibration() -> Outcome:
     sigma = np.sqrt((np.pi**2 / 8 - 1) / 1024)
     numbers.append(
         Number(
-            "mean of the errors told",
+            "mean of the reported errors",
             errors.mean(),
             errors.std() / np.sqrt(len(z)) + sigma / 8192,
             sigma,
@@ -70,9 +70,9 @@ FIGURES = (
         "A9",
         "calibration",
         "What an error means",
-        "Each run knows only its own samples and yet says how far it may be off: about one in three of the bars"
-        " (orange, with squares) misses the exact line, as it should. Over 4000 runs the distances in errors follow the"
-        " normal law.",
+        "Each run estimates its error from its own samples: about one in three of the bars (orange, with squares)"
+        " misses the exact line, as expected. Over 4000 runs the distances in units of the error follow the normal"
+        " law.",
         (r"s^2 = \frac{1}{N - 1} \sum_{i=1}^{N} (f(X_i) - \bar{f})^2, \qquad \mathrm{error} = \frac{s}{\sqrt{N}}",),
         calibration,
         draw_calibration,

@@ -100,10 +100,10 @@ FIGURES = (
         "B1",
         "discrete",
         "A discrete variable, three ways",
-        "A uniform number goes right until it meets the staircase of the sums, and the step it meets is the index: walking"
-        " tries step after step, bisection halves the stairs. The alias table has six bins of equal width and cuts each"
-        " between its own index and one other, so that a bin and a comparison are enough; how often each index was drawn"
-        " stands beside its probability.",
+        "A uniform number goes right until it meets the staircase of the sums; the step that it meets is the index."
+        " Walking tries step after step, bisection halves the stairs. The alias table has six bins of equal width and"
+        " splits each between its own index and one other, so one bin and one comparison suffice. The bars show how"
+        " often each index was drawn, beside its probability.",
         (
             r"P_k = \sum_{i \leq k} p_i, \qquad X = \min\{k : \xi < P_k\}",
             r"i = \lfloor n\xi \rfloor, \qquad X = i \ \mathrm{if}\ n\xi - i < q_i, \ \ \mathrm{else}\ a_i",

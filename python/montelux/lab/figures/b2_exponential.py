@@ -58,8 +58,8 @@ FIGURES = (
         "B2",
         "exponential",
         "The exponential law",
-        "10 000 uniform numbers become exponential ones by one logarithm; the bars follow the density 5 exp(−5x). "
-        "Beside them is Python's own random.expovariate, which cannot be told apart.",
+        "10 000 uniform numbers become exponential ones by one logarithm; the bars follow the density 5 exp(−5x)."
+        " Python's own random.expovariate, on the right, has the same distribution.",
         (r"p(x) = \lambda e^{-\lambda x}, \qquad P(x) = 1 - e^{-\lambda x}, \qquad X = -\frac{\ln(1 - \xi)}{\lambda}",),
         exponential,
         draw_exponential,

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def cosine() -> Outcome:
-    """1500 points (asin xi_1, xi_2) to look at, 100 000 to measure."""
+    """1500 points (asin xi_1, xi_2) to draw, 100 000 to measure."""
     law = montelux.Distribution.cosine()
     u = montelux.points("independent", 100_000, 2, seed=5)
     x, y = law.sample(u[:, 0]), u[:, 1]

@@ -88,10 +88,9 @@ FIGURES = (
         "B6",
         "inversion",
         "The inversion method",
-        "Any function that is not negative is a density after division by its area c; the running area P turns a"
-        " uniform number into a sample when it is read from the vertical axis to the horizontal one. Where no inverse"
-        " is known it is found numerically; where only values in a table are known, constant or linear pieces stand for"
-        " the function.",
+        "Any function that is not negative is a density after division by its area c. The running area P, read from"
+        " the vertical axis to the horizontal one, turns a uniform number into a sample. An unknown inverse is"
+        " computed numerically; a table of values is interpolated by constant or linear pieces.",
         (r"c = \int_a^b f, \qquad P(x) = \frac{1}{c} \int_a^x f(t)\,dt, \qquad X = P^{-1}(\xi)",),
         inversion,
         draw_inversion,

@@ -165,9 +165,9 @@ FIGURES = (
         "B7",
         "tabulated",
         "A table of two variables",
-        "The sums of the rows pick a row, and the sums along that row a cell; within it points are uniform. Points of the"
-        " table stand where the function is high, and what the table misses within its cells their weights put right: its"
-        " integral comes out exact, with a far smaller error than that of uniform points.",
+        "The sums of the rows select a row, the sums along that row a cell; within it points are uniform. Points"
+        " gather where the function is high, and their weights correct for its variation within the cells: the"
+        " integral is unbiased, with a far smaller error than that of uniform points.",
         (
             r"p(y) = \frac{\sum_j f_{ij}}{\sum_{ij} f_{ij}}\,n_y, \qquad p(x \mid y) ="
             r" \frac{f_{ij}}{\sum_j f_{ij}}\,n_x",

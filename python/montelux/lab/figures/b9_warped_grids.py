@@ -95,8 +95,8 @@ FIGURES = (
         "B9",
         "grids",
         "Density is change of area",
-        "The grid of the unit square, 8 by 8, as each warp carries it over. Where the cells of the image are small the"
-        " density is high: the area of a cell, times the number of cells, is 1/p.",
+        "The 8 by 8 grid of the unit square, mapped by each warp. Where the cells of the image are small the density"
+        " is high: the area of a cell times the number of cells is 1/p.",
         (
             (
                 r"\frac{1}{p(x)} = \left| \frac{\partial x}{\partial \xi} \right| = \lim"
@@ -112,8 +112,8 @@ FIGURES = (
         "B9",
         "areas",
         "Areas of cells against 1/p",
-        "Each mark is a cell of one warp: its measured area against the mean of 1/p over it. All of them lie on the"
-        " diagonal; those of uniform densities sit in one point.",
+        "Each mark is a cell of one warp: its measured area against the mean of 1/p over it. All lie on the diagonal;"
+        " those of a uniform density coincide.",
         (),
         areas,
         draw_areas,

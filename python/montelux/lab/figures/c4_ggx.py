@@ -180,9 +180,9 @@ FIGURES = (
         "C4",
         "visible",
         "GGX: the normals that are seen",
-        "Looked at from the right, 20 degrees above the surface, a good part of all facets faces away (crosses), and"
-        " facets that are turned to the eye cover more of the view than their number tells. Drawn as they are seen, none is"
-        " lost, and the weights never exceed one: their variance is far less.",
+        "Seen from the right, 20 degrees above the surface, many facets face away (crosses), and facets that are"
+        " turned to the eye cover more of the view than their share of the number. Sampling the visible ones wastes"
+        " none, and the weights never exceed one, so their variance is far smaller.",
         (
             r"p(m) = \frac{G_1(\omega_o)\, \max(0, \omega_o \cdot m)\, D(m)}{\cos\theta_o}, \qquad G_1 ="
             r" \frac{1}{1 + \Lambda(\omega_o)}",

@@ -28,7 +28,7 @@ def plates() -> Outcome:
     return Outcome(numbers, {}, pictures)
 
 
-#: Red and green of Okabe and Ito (2008), which the colour-blind can tell apart.
+#: Red and green of Okabe and Ito (2008), which colour-blind readers can distinguish.
 RED, GREEN = np.array([0.67, 0.11, 0.0]), np.array([0.0, 0.34, 0.17])  # linear
 
 
@@ -64,8 +64,8 @@ FIGURES = (
         "plates",
         "Four plates, four lamps",
         "Directions of the material find the large lamp in the smooth plates and miss the small one in the rough"
-        " plates; points on the lamps do the reverse. Both together, each believed where it is good, are good"
-        " everywhere; all are right on average.",
+        " plates; points on the lamps do the reverse. Both together, weighted, are good everywhere. All are right on"
+        " average.",
         (
             (
                 r"w_i = \frac{p_i}{p_1 + p_2}\ \ \mathrm{(balance)}, \qquad w_i = \frac{p_i^2}{p_1^2 +"
@@ -80,9 +80,9 @@ FIGURES = (
         "C5",
         "weights",
         "Who finds the light",
-        "The picture is the sum of two: what directions of the material found, times its weight, in red, and what points on"
-        " the lamps found, times its weight, in green. Large lamps in smooth plates are red, small lamps in rough plates and"
-        " on the walls are green; lamps that the camera sees are red, for nothing else finds those.",
+        "The picture is the sum of two terms: the weighted light found by directions of the material, in red, and by"
+        " points on the lamps, in green. Large lamps in smooth plates are red, small lamps in rough plates and on the"
+        " walls are green. Lamps that the camera sees are red, since only directions find them.",
         (
             (
                 r"\langle I \rangle = w_{bsdf}\,\frac{f\,L}{p_{bsdf}}"

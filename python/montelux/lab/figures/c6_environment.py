@@ -80,7 +80,7 @@ def draw_samples(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, An
 
 
 def overlaps(begin, end, count):  # type: ignore[no-untyped-def]
-    """How much of [begin, end] lies in each of so many cells of length one."""
+    """How much of [begin, end] lies in each of this number of cells of length one."""
     i = np.arange(count)
     return np.clip(np.minimum(end, i + 1) - np.maximum(begin, i), 0, None)
 
@@ -219,9 +219,9 @@ FIGURES = (
         "C6",
         "samples",
         "Where directions to a sky go",
-        "Uniform directions hardly find the sun. Tabulated ones fall on each pixel as its light does; compensated, they"
-        " leave what is dimmer than the mean to the directions of the surface. Median-cut and structured directions are"
-        " uniform within regions, and the sun is sampled by itself.",
+        "Uniform directions hardly ever find the sun. Tabulated ones fall on each pixel in proportion to its light;"
+        " compensated ones leave pixels that are dimmer than the mean to the directions of the surface. Median-cut and"
+        " structured directions are uniform within regions, and the sun is sampled separately.",
         (
             r"p(\omega) = \frac{L(\omega)}{\int L\,d\omega}\ \ \mathrm{(tabulated)}, \qquad p(\omega) \;\propto\;"
             r" \max(0, L(\omega) - \bar{L})\ \ \mathrm{(compensated)}",
@@ -237,8 +237,8 @@ FIGURES = (
         "median-cut",
         "Median cut: regions of equal light",
         "Each region is cut across its longer side into two of equal light: small ones cover the lamp and the bright"
-        " sky, large ones the ground. One direction is drawn in each region, so that nearly all of the noise is left to the"
-        " contrast within them; the sun has been taken out before.",
+        " sky, large ones the ground. One direction is drawn in each region, so nearly all of the noise comes from the"
+        " contrast within regions. The sun was removed before.",
         (
             r"p(\omega) = \frac{1}{n\,|\Omega_k|}, \qquad \int_{\Omega_k} L\,d\omega = \frac{1}{n} \int L\,d\omega",
             r"\mathrm{Var} = \sum_k \left( |\Omega_k| \int_{\Omega_k} L^2 d\omega - \left( \int_{\Omega_k} L\,d\omega"
@@ -254,9 +254,9 @@ FIGURES = (
         "C6",
         "structured",
         "Structured importance sampling: thresholds and strata",
-        "The map is cut at multiples of its standard deviation, and what hangs together above a threshold gets strata by"
-        " its light and by the fourth root of its size. Their centres are spread so that each is as far from the others as"
-        " can be, and each pixel belongs to the nearest one; the sun has been taken out before.",
+        "The map is cut at multiples of its standard deviation. Each connected part above a threshold gets strata in"
+        " proportion to its light and the fourth root of its size. Their centres are as far apart as possible, and"
+        " each pixel belongs to the nearest one. The sun was removed before.",
         (
             r"\Gamma = L\,\min(\Delta\omega, \Delta\omega_0)^{1/4}, \qquad L = \int_{\mathrm{part}} L\,d\omega, \qquad"
             r" \Delta\omega_0 = 0.01",

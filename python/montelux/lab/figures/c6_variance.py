@@ -160,10 +160,10 @@ FIGURES = (
         "C6",
         "variance",
         "How noisy each way is",
-        "Light reflected by a surface under this sky: neither directions of the surface nor those to the light are good"
-        " alone for the glossy one, and both together are. Compensation (filled marks) takes the directions to the light from"
-        " where the surface's own ones go anyway. The first row is by quadrature: its directions meet the sun too seldom to"
-        " know their own noise.",
+        "Light reflected by a surface under this sky. For the glossy one neither directions of the surface nor those"
+        " to the light are good alone, but both together are. Compensation (filled marks) removes directions to the"
+        " light where the surface's own ones go anyway. The first row is by quadrature: its directions hit the sun too"
+        " rarely to measure their noise.",
         (
             r"F = \frac{f(\omega_1)}{p(\omega_1) + q(\omega_1)} + \frac{f(\omega_2)}{p(\omega_2) + q(\omega_2)},"
             r" \qquad \omega_1 \sim p,\ \omega_2 \sim q",

@@ -235,9 +235,9 @@ FIGURES = (
         "C7",
         "table",
         "The table of the split sum",
-        "A rough mirror whose reflectance along the normal is F₀ reflects F₀ times the red channel plus the green one of"
-        " an even light. Seen steeply scale is near one and bias near nothing; towards grazing views, on the left, bias"
-        " takes over, the more the smoother the surface is.",
+        "In uniform light, a rough mirror whose reflectance along the normal is F₀ reflects F₀ times the red channel"
+        " plus the green one. Seen steeply, scale is near one and bias near zero; towards grazing views, on the left,"
+        " bias dominates, the more so the smoother the surface is.",
         (
             r"\int f_r\,(n \cdot l)\,dl = F_0\,\mathrm{scale} + \mathrm{bias}",
             r"\mathrm{scale} = \int \frac{f_r}{F} (1 - F_c)\,(n \cdot l)\,dl, \qquad \mathrm{bias} = \int"
@@ -268,10 +268,10 @@ FIGURES = (
         "C7",
         "split-sum",
         "The split sum against the full integral",
-        "Metal spheres under the sky, from smooth to rough: the product of the blurred map and the table comes close where"
-        " the surface faces the eye. Towards the rim the true reflection is stretched and leans to the horizon, of which the"
-        " round lobe of the split sum knows nothing; over random views of grazing angle the difference is of the size of the"
-        " reflection itself.",
+        "Metal spheres under the sky, from smooth to rough: the product of the blurred map and the table is close"
+        " where the surface faces the eye. Towards the rim the true reflection is stretched towards the horizon, which"
+        " the round lobe of the split sum cannot represent; over random grazing views the difference is as large as"
+        " the reflection itself.",
         (r"\int f_r\,L\,(n \cdot l)\,dl \;\approx\; \bar{L}(r)\,(F_0\,\mathrm{scale} + \mathrm{bias})",),
         split_sum,
         draw_split_sum,

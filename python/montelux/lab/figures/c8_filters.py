@@ -45,7 +45,7 @@ def formula(name, x):  # type: ignore[no-untyped-def]
 
 
 def lamps():  # type: ignore[no-untyped-def]
-    """Where they stand: each a twentieth of a pixel farther than the one before."""
+    """Their positions: each a twentieth of a pixel farther than the previous one."""
     return (np.arange(LAMPS) + 0.5) * APART + np.arange(LAMPS) / LAMPS
 
 
@@ -183,10 +183,10 @@ FIGURES = (
         "C8",
         "filters",
         "Pixel filters",
-        "A pixel's value is an integral over the film, weighted by a filter about its middle: each mark is the value of"
-        " a pixel that is so far from a thin bright lamp, and the line is the filter. Mitchell's and Lanczos'"
-        " filters sharpen by negative lobes (squares): points are drawn as the filter's magnitude, and those in such a"
-        " lobe count negative.",
+        "A pixel's value is an integral over the film, weighted by a filter about its centre: each mark is the value"
+        " of a pixel at that distance from a thin bright lamp, and the line is the filter. Mitchell's and Lanczos'"
+        " filters sharpen by negative lobes (squares): points are drawn in proportion to the filter's magnitude, and"
+        " those in such a lobe have negative weights.",
         (r"I = \int f(x, y)\,L(x, y)\,dx\,dy, \qquad p \;\propto\; |f|, \qquad w = f / p",),
         filters,
         draw_filters,
@@ -199,9 +199,9 @@ FIGURES = (
         "C8",
         "draws",
         "Points drawn from a pixel filter",
-        "Points on the film are drawn as the filter's magnitude (broken line), each for one pixel alone, so that pixels"
-        " share no noise. Times their weights (filled) they make the filter itself, negative lobes too; the offset along"
-        " x is shown, over all offsets along y.",
+        "Points on the film are drawn in proportion to the filter's magnitude (broken line), each for one pixel only,"
+        " so pixels share no noise. Times their weights (filled) they reproduce the filter, including negative lobes."
+        " The offset along x is shown, over all offsets along y.",
         (r"p = \frac{|f|}{\int |f|}, \qquad w = \frac{f / \int f}{p}, \qquad E[w] = 1",),
         draws,
         draw_draws,

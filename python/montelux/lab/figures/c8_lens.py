@@ -62,9 +62,9 @@ FIGURES = (
         "C8",
         "lens",
         "The thin lens",
-        "Five lamps stand 2, 3, 4, 6 and 12 metres away, and the lens is focused at 4: each of the others becomes a"
-        " disc of the lens's own shape. Through a pinhole all are points; the light of a disc is spread, so that the"
-        " first picture is shown forty times brighter.",
+        "Five lamps are 2, 3, 4, 6 and 12 metres away, and the lens is focused at 4: each of the others becomes a"
+        " disc of the lens's shape. Through a pinhole all are points. The light of a disc is spread out, so the first"
+        " picture is shown forty times brighter.",
         (r"R = A\,\frac{|d - f|}{d} \quad \mathrm{on\ the\ plane\ in\ focus}, \qquad \mathrm{E}\,r^2 = \frac{R^2}{2}",),
         lens,
         slow=True,

@@ -38,9 +38,9 @@ FIGURES = (
         "C9",
         "five",
         "Five samples per pixel",
-        "The same room with the same number of samples: what differs is where they look. Uniform directions hardly ever"
-        " find the lamp; points on the lamp light the walls smoothly and leave the glossy ball noisy; together they do"
-        " both.",
+        "The same room with the same number of samples in different directions. Uniform directions hardly ever find"
+        " the lamp; points on the lamp light the walls smoothly but leave the glossy ball noisy; both together,"
+        " weighted, render both well.",
         (r"L_o = \frac{1}{N} \sum_{i=1}^{N} \frac{f_r\,L_i \cos\theta_i}{p(\omega_i)}",),
         five,
         slow=True,

@@ -93,7 +93,7 @@ std::set<std::uint64_t> check_every_step(const KnownIntegral& problem, const Ste
     return phases;
 }
 
-TEST(Adaptive, EveryPhaseResumesWithTheSameBitsAndCanBeBrokenOff) {
+TEST(Adaptive, EveryPhaseResumesWithTheSameBitsAndCanBeInterrupted) {
     // explore 0, search 1, train 2, weighted 3, uniform 4
     EXPECT_EQ(check_every_step(two_peaks(6, 300), {60'000}), (std::set<std::uint64_t>{0, 1, 2, 3}));
     EXPECT_EQ(check_every_step(discontinuous(), {60'000, 1e-4}), (std::set<std::uint64_t>{0, 2, 3}));

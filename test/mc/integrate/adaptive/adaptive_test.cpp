@@ -15,8 +15,8 @@
 namespace montelux {
 namespace {
 
-// Doubted runs are left out of the shares, but not of the mean.
-void expect_unbiased_and_honest(const KnownIntegral& problem, int most_doubted) {
+// Runs with a warning count in the mean, but not in the shares.
+void expect_unbiased_and_honest(const KnownIntegral& problem, int most_warned) {
     const int seeds = 200;
     RunningMoments values;
     int one = 0, two = 0, judged = 0;
@@ -34,7 +34,7 @@ void expect_unbiased_and_honest(const KnownIntegral& problem, int most_doubted) 
     }
     const TestResult bias = unbiasedness_test(values, problem.truth[0]);
     EXPECT_TRUE(bias.passes(significance)) << bias.description;
-    EXPECT_LE(seeds - judged, most_doubted);
+    EXPECT_LE(seeds - judged, most_warned);
     expect_honest_errors(one, two, judged);
 }
 
@@ -96,7 +96,7 @@ TEST(Adaptive, FindsNarrowPeaksInEightDimensions) {
     }
 }
 
-// No run may be wrong without a doubt, and most must arrive.
+// No run may be wrong without a warning, and most must converge.
 void expect_found(const KnownIntegral& problem, int seeds, int least_converged) {
     int converged = 0;
     for (int seed = 1; seed <= seeds; ++seed) {
@@ -152,7 +152,7 @@ TEST(Adaptive, SpikesOnAPlateauAreSeldomMissed) {
     expect_found({f, Domain::unit_cube(2), {2}}, 4, 3);
 }
 
-TEST(Adaptive, ZeroIntegrandIsDoubted) {
+TEST(Adaptive, ZeroIntegrandGivesAWarning) {
     auto zero = [](std::span<const double>) { return 0.0; };
     const IntegrationResult r = integrate(zero, Domain::unit_cube(3), Adaptive{},
                                           {.relative_error = 1e-3, .evaluations = 50'000}, {.threads = 1});
@@ -163,20 +163,20 @@ TEST(Adaptive, ZeroIntegrandIsDoubted) {
 }
 
 // (x_1 + x_2 + x_3 mod 1)^-0.8 has mean 5 and no variance; it follows no coordinate, so that no map helps.
-TEST(Adaptive, HeavyTailsAreDoubted) {
+TEST(Adaptive, HeavyTailsGiveAWarning) {
     auto f = [](std::span<const double> x) {
         const double sum = x[0] + x[1] + x[2];
         return std::pow(sum - std::floor(sum) + 1e-300, -0.8);
     };
-    int doubted = 0, wrong = 0;
+    int warned = 0, wrong = 0;
     const int seeds = 20;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         const IntegrationResult r = integrate(f, Domain::unit_cube(3), Adaptive{}, {.evaluations = 50'000},
                                               {.seed = seed, .threads = 1});
-        doubted += !r.warnings.empty();
+        warned += !r.warnings.empty();
         wrong += r.warnings.empty() && std::abs(r.value[0] - 5) > 4 * r.standard_error[0];
     }
-    EXPECT_GE(doubted, seeds / 2);
+    EXPECT_GE(warned, seeds / 2);
     EXPECT_LE(wrong, seeds / 4);
 }
 

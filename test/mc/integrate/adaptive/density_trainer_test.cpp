@@ -12,7 +12,7 @@ namespace {
 
 struct Stopped {};
 
-// A problem whose evaluations are counted, and that throws Stopped when told to.
+// A problem whose evaluations are counted, and that throws Stopped on request.
 struct Watched {
     explicit Watched(Integrand f, int dimensions)
         : evaluator(f.with_function([this, f](const PointBatch& x, ValueBatch y) {
@@ -54,7 +54,7 @@ std::vector<std::uint64_t> words_of(const DensityTrainer& trainer) {
     return {state.words().begin(), state.words().end()};
 }
 
-TEST(DensityTrainer, LooksAtTheExploration) {
+TEST(DensityTrainer, UsesTheExploration) {
     const Watched half([](std::span<const double> x) { return x[0] < 0.5 ? -3.0 : 0.0; }, 2);
     DensityTrainer trainer(half.problem(), 4);
     explore(trainer, half);
@@ -166,7 +166,7 @@ TEST(DensityTrainer, CancelledOrInterruptedStepsChangeNothing) {
     EXPECT_EQ(words_of(trainer), before);
 }
 
-TEST(DensityTrainer, LoadedOneGoesOnWithTheSameBits) {
+TEST(DensityTrainer, LoadedOneResumesWithTheSameBits) {
     const Watched watched([](std::span<const double> x) { return peak(x, 0.4, 300); }, 3);
     DensityTrainer trainer(watched.problem(), 4);
     explore(trainer, watched);

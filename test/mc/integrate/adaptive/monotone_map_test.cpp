@@ -197,7 +197,7 @@ TEST(FitMonotoneMap, IdentityWhereNothingWasSeen) {
     EXPECT_EQ(fit_monotone_map({}, {}).bins(), 1);
 }
 
-TEST(FitMonotoneMap, BinsAreNoMoreThanAskedFor) {
+TEST(FitMonotoneMap, BinsAreAtMostTheRequestedNumber) {
     auto f = [](double x) { return std::exp(-30 * x); };
     EXPECT_LE(fitted(f, 20'000, {.bins = 5}).bins(), 5);
     EXPECT_LE(fitted(f, 100, {.bins = 64, .points_per_bin = 24}).bins(), 4);

@@ -210,7 +210,7 @@ TEST(Cubature, AllComponentsReachTheirTargets) {
     EXPECT_LT(r.evaluations, 20'000u);
 }
 
-TEST(Cubature, DoubtsThatAnIntegrandIsZeroEverywhere) {
+TEST(Cubature, WarnsOfAnIntegrandThatSeemsZeroEverywhere) {
     auto needle = [](std::span<const double> x) {
         return std::abs(x[0] - 0.123) < 1e-4 && std::abs(x[1] - 0.456) < 1e-4 ? 1.0 : 0.0;
     };

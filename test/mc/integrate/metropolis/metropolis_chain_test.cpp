@@ -135,7 +135,7 @@ TEST(MetropolisChain, WalkAdaptsToScalesThatDifferALot) {
     EXPECT_GT(fixed.acceptance_rate, 0.5);
 }
 
-TEST(MetropolisChain, ChainsThatDisagreeAreDoubted) {
+TEST(MetropolisChain, ChainsThatDisagreeGiveAWarning) {
     // Two peaks that a small step does not cross.
     const auto two = [](Point x) {
         return std::log(std::exp(-0.5 * (x[0] - 20) * (x[0] - 20)) +

@@ -81,7 +81,7 @@ TEST(Metropolis, InfiniteRangesAreWalkedThroughTheirMap) {
 }
 
 // Chains that start in either peak never cross between them.
-TEST(Metropolis, PeaksThatChainsDoNotConnectAreDoubted) {
+TEST(Metropolis, PeaksThatChainsDoNotConnectGiveAWarning) {
     const Integrand f = [](Point x) {
         return std::exp(-8000 * (x[0] - 0.1) * (x[0] - 0.1)) - std::exp(-8000 * (x[0] - 0.9) * (x[0] - 0.9));
     };
@@ -121,7 +121,7 @@ TEST(Metropolis, SavedAndRestoredRunEndsWithTheSameBits) {
     }
 }
 
-TEST(Metropolis, NothingToWalkOnIsSaid) {
+TEST(Metropolis, ZeroDensityGivesAWarning) {
     const auto r =
         integrate([](Point) { return 0.0; }, Domain::unit_cube(2), Metropolis{}, {.evaluations = 100000});
     EXPECT_FALSE(r.warnings.empty());

@@ -141,7 +141,7 @@ TEST(Quasi, TargetsAreMet) {
     EXPECT_LE(silent, runs / 100) << "of " << runs;
 }
 
-TEST(Quasi, DoubtsWhatOneReplicateSaw) {
+TEST(Quasi, WarnsOfWhatOneReplicateSaw) {
     // A spike that about one of 16 * 64 points sees.
     auto spike = [](std::span<const double> x) { return x[0] < 0.03 && x[1] < 0.03 ? 1000.0 : 1.0; };
     int warnings = 0;
@@ -167,7 +167,7 @@ TEST(QuasiSlowTest, ADoublingInSeveralStepsIsResumedAmidst) {
                                   1 << 22);
 }
 
-TEST(Quasi, MistakesAreAnsweredWithASentence) {
+TEST(Quasi, MistakesGiveAMessage) {
     auto one = [](std::span<const double>) { return 1.0; };
     EXPECT_THROW(integrate(one, Domain::unit_cube(2), Quasi{.replicates = 1}), Error);
     EXPECT_THROW(integrate(one, Domain::unit_cube(2), Quasi{.replicates = -4}), Error);

@@ -76,7 +76,7 @@ TEST(ControlVariate, AnyDomain) {
                                    {.evaluations = 4000}, 500);
 }
 
-TEST(ControlVariate, WrongIntegralsAreDoubtedAndMistakesAnswered) {
+TEST(ControlVariate, WrongIntegralsGiveWarningsAndMistakesErrors) {
     const IntegrationResult wrong =
         integrate(exponential.f, unit, ControlVariate{identity, {0.6}}, {.evaluations = 20000});
     ASSERT_EQ(wrong.warnings.size(), 1u);

@@ -161,7 +161,7 @@ TEST(Importance, DensityThatMissesTheIntegrandIsFoundByProbes) {
         400u);
 }
 
-TEST(Importance, MistakesAreAnsweredWithASentence) {
+TEST(Importance, MistakesGiveAMessage) {
     auto density = [](double p) {
         return Importance{Technique::functions([](double u) { return u; }, [p](double) { return p; })};
     };

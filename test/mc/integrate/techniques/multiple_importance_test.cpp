@@ -112,7 +112,7 @@ TEST(MultipleImportance, OptimalWeightsAreNoWorseThanBalance) {
     // 2x is what one technique of three_techniques samples: much to gain.
     EXPECT_LT(mean_variance(integrands[2], MultipleImportance{three_techniques, OptimalWeights{}}, 100000),
               1e-6 * mean_variance(integrands[2], MultipleImportance{three_techniques}, 100000));
-    // A technique that is of no use harms the balance heuristic alone.
+    // A useless technique harms only the balance heuristic.
     const std::vector<WeightedTechnique> idle{{UniformDistribution(0, 1), 1}, {root, 9}};
     auto bump = [](double x) { return std::exp(-3 * x) * x; };
     EXPECT_LT(mean_variance(bump, MultipleImportance{idle, OptimalWeights{}}, 100000),
@@ -143,7 +143,7 @@ TEST(MultipleImportance, VectorValuedWithCovariance) {
     }
 }
 
-TEST(MultipleImportance, PlacesThatNoTechniqueReachesAreDoubted) {
+TEST(MultipleImportance, PlacesThatNoTechniqueReachesGiveAWarning) {
     for (const Method& m :
          all_weights({{UniformDistribution(0, 0.4), 1}, {UniformDistribution(0.5, 1), 1}})) {
         const IntegrationResult r =
@@ -157,7 +157,7 @@ TEST(MultipleImportance, PlacesThatNoTechniqueReachesAreDoubted) {
             .warnings.empty());
 }
 
-TEST(MultipleImportance, MistakesAreAnsweredWithASentence) {
+TEST(MultipleImportance, MistakesGiveAMessage) {
     auto one = [](std::span<const double>) { return 1.0; };
     EXPECT_THROW(integrate(one, unit_interval, MultipleImportance{}), Error);
     EXPECT_THROW(integrate(one, unit_interval, MultipleImportance{{{uniform, 0}}}), Error);

@@ -12,7 +12,7 @@
 namespace montelux {
 namespace {
 
-// What n equidistant points in each coordinate tell of f(x_1) in the first and 1 in the others.
+// Training data of n equidistant points in each coordinate for f(x_1) in the first and 1 in the others.
 template <typename F>
 MapTraining train(const AdaptiveMap& map, const F& f, std::size_t n = 1 << 14) {
     PointBuffer y(n, map.dimensions()), x(n, map.dimensions());

@@ -198,7 +198,7 @@ TEST(Vegas, TrainedMapCanBeSavedAndUsedAgain) {
 }
 
 // The map knows the left peak alone; the right one is wide enough for uniform points to find.
-TEST(Vegas, LostPeakIsDoubted) {
+TEST(Vegas, LostPeakGivesAWarning) {
     const auto left = [](Point x) { return gaussian(x, 0.2, 400); };
     const Integrand both = [&](Point x) { return gaussian(x, 0.2, 400) + gaussian(x, 0.8, 100); };
     const AdaptiveMap map = train_map(Evaluator(left, Domain::unit_cube(4)), 200000);
@@ -214,7 +214,7 @@ TEST(Vegas, LostPeakIsDoubted) {
     }
 }
 
-TEST(Vegas, HeavyTailIsDoubted) {
+TEST(Vegas, HeavyTailGivesAWarning) {
     // Infinite variance along the diagonal, where no map of single coordinates helps.
     const Integrand f = [](Point x) { return std::pow(std::abs(x[0] - x[1]) + 1e-15, -0.95); };
     const auto r = integrate(f, Domain::unit_cube(2), Vegas{}, {.evaluations = 100000});
