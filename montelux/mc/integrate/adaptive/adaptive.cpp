@@ -32,7 +32,7 @@ constexpr double peaky = 0.1; // effective share of exploring points below which
 constexpr double narrow_peaks = 0.01;        // the same, where the search is thorough
 constexpr double trusted_exploration = 0.05; // the same, above which the error of uniform points is believed
 constexpr double flat = 0.6; // the same, of integrands that uniform points are likely to be best for
-constexpr double uniform_reach = 32768; // evaluations within which uniform points may be expected to arrive
+constexpr double uniform_reach = 32768; // evaluations within which uniform points may be expected to converge
 // Uniform points behind a claim in several variables: all of them miss a region of 1/5000 of the cube in 4 %
 // of cases.
 constexpr std::uint64_t plateau_evaluations = 16384;
@@ -194,7 +194,7 @@ class AdaptiveEstimator final : public Estimator {
     // Does training begin by a search for peaks?
     Phase first_training() const { return trainer_.effective_share() < peaky ? Phase::search : Phase::train; }
 
-    // Are uniform points expected to arrive soon? Their error falls faster than 1 / n for what is smooth.
+    // Are uniform points expected to converge soon? Their error falls faster than 1 / n for what is smooth.
     bool uniform_will_do(const StepRequest& request) const {
         if (!targeted(request) || trainer_.effective_share() < trusted_exploration) return false;
         const bool even = trainer_.effective_share() > flat;

@@ -7,7 +7,7 @@ namespace montelux {
 namespace {
 
 constexpr std::uint64_t points_per_step = 1'000'000;
-// One variable's seven points are believed only where they see far more smoothness than was asked for.
+// Factor on the errors of one variable's seven points, which are otherwise trusted too early.
 constexpr double caution_with_few_points = 16;
 
 } // namespace
