@@ -34,7 +34,7 @@ expect 2 "--clamp: '0' was given" render ball.pbrt --clamp 0 -o y.exr
 # A finished render resumes to more samples, and equals an uninterrupted one.
 expect 0 "is not there yet: rendering from the start" render ball.pbrt --spp 20 --resume --checkpoint state -o a.pfm
 expect 0 "52 samples per pixel" render ball.pbrt --spp 52 --resume --checkpoint state -o a.pfm
-expect 0 "state has 52 samples per pixel already, more than the 20 asked for" render ball.pbrt --spp 20 --resume \
+expect 0 "state has 52 samples per pixel already, more than the requested 20" render ball.pbrt --spp 20 --resume \
     --checkpoint state -o less.pfm
 cmp -s a.pfm less.pfm || fail "a render that had more samples than asked for changed"
 expect 0 "" render ball.pbrt --spp 52 -o b.pfm
