@@ -10,26 +10,38 @@ namespace montelux {
 
 namespace {
 
-// (x, y) such that a = x dpdu + y dpdv in the least-squares sense.
-Vec2f in_tangents(Vec3f a, Vec3f dpdu, Vec3f dpdv) {
-    float uu = dot(dpdu, dpdu), uv = dot(dpdu, dpdv), vv = dot(dpdv, dpdv);
-    float determinant = uu * vv - uv * uv;
-    if (!(std::abs(determinant) > 0)) return {0, 0};
-    float au = dot(a, dpdu), av = dot(a, dpdv), inv = 1 / determinant;
-    Vec2f d{(vv * au - uv * av) * inv, (uu * av - uv * au) * inv};
-    return std::isfinite(d.x) && std::isfinite(d.y) ? d : Vec2f{0, 0};
-}
+// Finds (x, y) such that a = x dpdu + y dpdv in the least-squares sense; zero for degenerate tangents.
+class TangentSolver {
+  public:
+    TangentSolver(Vec3f dpdu, Vec3f dpdv)
+        : dpdu_(dpdu), dpdv_(dpdv), uu_(dot(dpdu, dpdu)), uv_(dot(dpdu, dpdv)), vv_(dot(dpdv, dpdv)) {
+        const float determinant = uu_ * vv_ - uv_ * uv_;
+        inverse_ = std::abs(determinant) > 0 ? 1 / determinant : 0;
+    }
+
+    Vec2f operator()(Vec3f a) const {
+        const float au = dot(a, dpdu_), av = dot(a, dpdv_);
+        const Vec2f d{(vv_ * au - uv_ * av) * inverse_, (uu_ * av - uv_ * au) * inverse_};
+        return std::isfinite(d.x) && std::isfinite(d.y) ? d : Vec2f{0, 0};
+    }
+
+  private:
+    Vec3f dpdu_, dpdv_;
+    float uu_, uv_, vv_, inverse_;
+};
 
 } // namespace
 
 TextureContext PathIntegrator::texture_context(const SurfacePoint& s) const {
-    TextureContext c{.p = s.p, .n = s.ns, .uv = s.uv, .dpdx = {}, .dpdy = {}, .duvdx = {}, .duvdy = {}};
-    Camera::Footprint footprint = camera_->footprint(s.p, s.ng, footprint_scale_);
-    c.dpdx = footprint.dpdx;
-    c.dpdy = footprint.dpdy;
-    c.duvdx = in_tangents(c.dpdx, s.dpdu, s.dpdv);
-    c.duvdy = in_tangents(c.dpdy, s.dpdu, s.dpdv);
-    return c;
+    const Camera::Footprint footprint = camera_->footprint(s.p, s.ng, footprint_scale_);
+    const TangentSolver in_tangents(s.dpdu, s.dpdv);
+    return {.p = s.p,
+            .n = s.ns,
+            .uv = s.uv,
+            .dpdx = footprint.dpdx,
+            .dpdy = footprint.dpdy,
+            .duvdx = in_tangents(footprint.dpdx),
+            .duvdy = in_tangents(footprint.dpdy)};
 }
 
 float PathIntegrator::hit_weight(float bsdf_pdf, float light_pdf) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 #include "montelux/mc/warp/hemisphere.h"
 #include "montelux/mc/warp/sphere.h"
@@ -55,17 +56,17 @@ struct PathIntegrator::Vertex {
     PathState& state;
     Stream& stream;
     PathRecorder recorder;
-    Frame frame; // of the BSDF
-    Vec3f wo;    // in it
-    ReferencePoint here;
+    const Frame& frame; // of the BSDF
+    Vec3f wo;           // in it
 
     // Next-event estimation: one light, one point on it. Lights that scattering cannot find are sampled in
     // every strategy.
     template <BsdfModel B>
-    std::optional<ShadowRay> sample_light(const B& bsdf) const {
+    void sample_light(const B& bsdf, std::optional<ShadowRay>& shadow) const {
         using Outcome = DirectLight::Outcome;
         const LightSampler& lights = *scene.light_sampler;
-        if (lights.empty()) return std::nullopt;
+        if (lights.empty()) return;
+        const ReferencePoint& here = state.previous;
         // With few lights the choice uses the first number's leading digits and leaves the others for the
         // point: one dimension less keeps point sets better stratified.
         const bool few = lights.size() <= 64;
@@ -80,7 +81,7 @@ struct PathIntegrator::Vertex {
                                         .light = chosen.light,
                                         .part = chosen.part,
                                         .choice = choice});
-            return std::nullopt;
+            return;
         }
         const BsdfEvaluation e =
             bsdf.evaluate(wo, frame.to_local(light->wi), TransportMode::radiance, stream);
@@ -102,17 +103,19 @@ struct PathIntegrator::Vertex {
         };
         if (is_black(e.f) || is_black(light->radiance)) {
             record(Outcome::no_transport, 0);
-            return std::nullopt;
+            return;
         }
         const Strategy strategy = path.settings_.strategy;
         const float weight =
             light->invisible || strategy == Strategy::light ? 1 : path.weight(light_pdf, e.pdf);
         if (strategy == Strategy::mis_bsdf) {
             record(Outcome::other_term, weight);
-            return std::nullopt;
+            return;
         }
         record(Outcome::counted, weight);
-        return ShadowRay{light->shadow, state.throughput * e.f * light->radiance * (weight / light_pdf)};
+        ShadowRay& ray = shadow.emplace();
+        ray.ray = light->shadow;
+        ray.contribution = state.throughput * e.f * light->radiance * (weight / light_pdf);
     }
 
     template <BsdfModel B>
@@ -150,6 +153,7 @@ template <RandomStream Stream>
 MONTELUX_ONE_COPY std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState& state,
                                                                  const Hit& hit, Stream& stream,
                                                                  PathRecorder recorder) const {
+    std::optional<ShadowRay> shadow; // returned by every return statement: built in place
     const Vec3f w = state.ray.d;
     const Index material = scene.shapes[hit.shape].material;
     const bool textured = scene.is_textured(material);
@@ -162,11 +166,10 @@ MONTELUX_ONE_COPY std::optional<ShadowRay> PathIntegrator::shade(const SceneView
     state.alive = false; // until the path continues
     if (state.depth++ == settings_.max_depth) {
         if (recorder) recorder.ended(PathEnd::max_depth);
-        return std::nullopt;
+        return shadow;
     }
 
-    TextureContext context;
-    if (textured) context = texture_context(s);
+    const TextureContext context = textured ? texture_context(s) : TextureContext();
     const SurfaceBsdf surface = make_bsdf(scene, s, -w, context, state.lambda);
     const Vec3f wo = surface.frame.to_local(-w);
     if (recorder) recorder.made_bsdf(surface, wo);
@@ -177,15 +180,14 @@ MONTELUX_ONE_COPY std::optional<ShadowRay> PathIntegrator::shade(const SceneView
                        .found = true};
     if (wo.z == 0) {
         if (recorder) recorder.ended(PathEnd::grazing);
-        return std::nullopt;
+        return shadow;
     }
 
-    const Vertex<Stream> vertex{*this,    scene,         state, stream,
-                                recorder, surface.frame, wo,    {s.p, s.ng, s.error}};
-    std::optional<ShadowRay> shadow;
+    state.previous = {s.p, s.ng, s.error};
+    const Vertex<Stream> vertex{*this, scene, state, stream, recorder, surface.frame, wo};
     const std::optional<BsdfSample> scattered = std::visit(
         [&](const BsdfModel auto& bsdf) {
-            if (!bsdf.is_specular()) shadow = vertex.sample_light(bsdf);
+            if (!bsdf.is_specular()) vertex.sample_light(bsdf, shadow);
             return vertex.sample_direction(bsdf);
         },
         surface.bsdf);
@@ -196,11 +198,12 @@ MONTELUX_ONE_COPY std::optional<ShadowRay> PathIntegrator::shade(const SceneView
     state.throughput *= scattered->weight;
     state.bsdf_pdf = scattered->pdf;
     state.sees_lights = scattered->specular;
-    state.previous = vertex.here;
     if (scattered->transmission) state.eta_scale *= scattered->eta * scattered->eta;
     const Vec3f wi = surface.frame.to_world(scattered->wi);
     if (recorder) recorder.scattered({*scattered, wi});
-    state.ray = {offset_origin(s.p, s.ng, s.error, wi), wi};
+    state.ray.o = offset_origin(s.p, s.ng, s.error, wi);
+    state.ray.d = wi;
+    state.ray.t_max = std::numeric_limits<float>::infinity();
     state.alive = vertex.survives();
     return shadow;
 }

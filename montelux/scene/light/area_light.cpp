@@ -34,22 +34,6 @@ float size_of(Vec3d p) {
     return static_cast<float>(std::max(std::abs(p.x), std::max(std::abs(p.y), std::abs(p.z))));
 }
 
-std::optional<LightSample> sample_surface(const AreaLight& light, const LightContext& context,
-                                          const EmissivePoint& point, const ReferencePoint& from,
-                                          const SampledWavelengths& lambda) {
-    Vec3f d = point.p - from.p;
-    float d2 = length_squared(d);
-    if (!(d2 > 0)) return std::nullopt;
-    LightSample s;
-    s.wi = d / std::sqrt(d2);
-    const float cosine = -dot(point.n, s.wi);
-    if (!shines(light, cosine)) return std::nullopt;
-    s.radiance = light.spectrum.sample(lambda) * radiance_scale(light, context, point.hit.primitive);
-    s.pdf = point.area_density * d2 / std::abs(cosine);
-    s.shadow = shadow_ray(from, s.wi, point.p, point.n, point.error);
-    return s;
-}
-
 std::optional<LightSample> sample_sphere(const AreaLight& light, const WorldSphere& sphere,
                                          const SphereCone& cone, bool flipped, const ReferencePoint& from,
                                          Vec2f u, const SampledWavelengths& lambda) {
@@ -88,6 +72,30 @@ float share_there(const LightContext& context, const Shape& shape, const Emissiv
 
 bool is_invisible(const LightContext& context, const Shape& shape) {
     return is_cut_out(shape) && constant_alpha(context.scene, shape).value_or(1) <= 0;
+}
+
+std::optional<LightSample> sample_surface(const AreaLight& light, const LightContext& context, Index part,
+                                          const ReferencePoint& from, Vec2f u,
+                                          const SampledWavelengths& lambda) {
+    std::optional<LightSample> result;
+    const auto point = sample_area(context, light.shape, part, u);
+    if (!point) return result;
+    const Vec3f d = point->p - from.p;
+    const float d2 = length_squared(d);
+    if (!(d2 > 0)) return result;
+    const Vec3f wi = d / std::sqrt(d2);
+    const float cosine = -dot(point->n, wi);
+    if (!shines(light, cosine)) return result;
+    const Shape& shape = context.scene.shapes[light.shape];
+    const float share = share_there(context, shape, *point, wi);
+    if (!(share > 0)) return result;
+    LightSample& s = result.emplace();
+    s.radiance = light.spectrum.sample(lambda) * radiance_scale(light, context, part) * share;
+    s.wi = wi;
+    s.pdf = point->area_density * d2 / std::abs(cosine);
+    s.invisible = is_invisible(context, shape);
+    s.shadow = shadow_ray(from, wi, point->p, point->n, point->error);
+    return result;
 }
 
 LightBounds triangle_bounds(const TriangleMesh& mesh, const LightTriangle& t, Index part) {
@@ -134,15 +142,7 @@ std::optional<LightSample> AreaLight::sample_li(const LightContext& context, Ind
     if (const auto cone = cone_of(context, from.p))
         return sample_sphere(*this, *context.tables().sphere(context.light), *cone, s.flip_normal, from, u,
                              lambda);
-    const auto point = sample_area(context, shape, part, u);
-    if (!point) return std::nullopt;
-    auto sample = sample_surface(*this, context, *point, from, lambda);
-    if (!sample || !is_cut_out(s)) return sample;
-    sample->invisible = is_invisible(context, s);
-    const float share = share_there(context, s, *point, sample->wi);
-    if (!(share > 0)) return std::nullopt;
-    sample->radiance *= share;
-    return sample;
+    return sample_surface(*this, context, part, from, u, lambda);
 }
 
 float AreaLight::pdf_li(const LightContext& context, const ReferencePoint& from, const LightHit& hit) const {

@@ -10,8 +10,9 @@ namespace {
 
 std::optional<EmissivePoint> sample_triangle(const TriangleMesh& mesh, const LightTriangle& t, Index part,
                                              Vec2f u) {
-    if (!(t.area > 0)) return std::nullopt;
-    EmissivePoint s;
+    std::optional<EmissivePoint> point;
+    if (!(t.area > 0)) return point;
+    EmissivePoint& s = point.emplace();
     const Vec3f b = sample_uniform_triangle(u);
     s.hit.b1 = b.y;
     s.hit.b2 = b.z;
@@ -23,28 +24,30 @@ std::optional<EmissivePoint> sample_triangle(const TriangleMesh& mesh, const Lig
     }
     s.error = t.error;
     s.area_density = 1 / t.area;
-    return s;
+    return point;
 }
 
-EmissivePoint sample_disk(const WorldDisk& disk, bool flip_normal, Vec2f u) {
-    EmissivePoint s;
+std::optional<EmissivePoint> sample_disk(const WorldDisk& disk, bool flip_normal, Vec2f u) {
+    std::optional<EmissivePoint> point;
+    EmissivePoint& s = point.emplace();
     const Vec2f d = sample_uniform_disk_concentric(u);
     s.p = disk.center + d.x * disk.s + d.y * disk.t;
     s.n = flip_normal ? -disk.n : disk.n;
     const Vec3f reach = abs(disk.center) + abs(disk.s) + abs(disk.t);
     s.error = coordinate_error(disk.n, reach);
     s.area_density = 1 / disk.area;
-    return s;
+    return point;
 }
 
-EmissivePoint sample_quadric(const Quadric& quadric, bool flip_normal, Vec2f u) {
-    EmissivePoint s;
+std::optional<EmissivePoint> sample_quadric(const Quadric& quadric, bool flip_normal, Vec2f u) {
+    std::optional<EmissivePoint> point;
+    EmissivePoint& s = point.emplace();
     const QuadricAreaSample q = sample_area(quadric, u);
     s.p = Vec3f(q.point.p);
     s.n = Vec3f(flip_normal ? -q.point.n : q.point.n);
     s.error = coordinate_error(s.n, abs(s.p));
     s.area_density = static_cast<float>(q.pdf);
-    return s;
+    return point;
 }
 
 } // namespace
@@ -56,7 +59,7 @@ std::optional<EmissivePoint> sample_area(const LightContext& context, Index inde
                                            return sample_triangle(
                                                mesh, context.tables().triangle(context.light, part), part, u);
                                        },
-                                       [&](const Quadric& quadric) -> std::optional<EmissivePoint> {
+                                       [&](const Quadric& quadric) {
                                            const auto& disk = context.tables().disk(context.light);
                                            return disk ? sample_disk(*disk, shape.flip_normal, u)
                                                        : sample_quadric(quadric, shape.flip_normal, u);

@@ -32,23 +32,23 @@ Index ImageInfiniteLight::part_count(const LightContext&) const { return 1; }
 std::optional<LightSample> ImageInfiniteLight::sample_li(const LightContext& context, Index,
                                                          const ReferencePoint& from, Vec2f u,
                                                          const SampledWavelengths& lambda) const {
+    std::optional<LightSample> result;
+    const auto add = [&](const EnvironmentGrid& grid, Vec2f at, Vec3f wi, float pdf) {
+        LightSample& l = result.emplace();
+        l.radiance = radiance_at(context, *this, grid, at, lambda);
+        l.wi = wi;
+        l.pdf = pdf;
+        l.shadow = shadow_ray_to_infinity(from, wi);
+    };
     if (portal) {
         const PortalSampler& through = context.tables().portal(context.light);
-        const auto s = through.sample(from.p, u);
-        if (!s) return std::nullopt;
-        const Vec2f at = place(through.grid(), *this, s->wi);
-        return LightSample{.radiance = radiance_at(context, *this, through.grid(), at, lambda),
-                           .wi = s->wi,
-                           .pdf = s->pdf,
-                           .shadow = shadow_ray_to_infinity(from, s->wi)};
+        if (const auto s = through.sample(from.p, u))
+            add(through.grid(), place(through.grid(), *this, s->wi), s->wi, s->pdf);
+    } else {
+        const TurnedMap map = turned_map(context, *this);
+        if (const auto s = map.sample(u)) add(map.map.grid(), s->grid, s->wi, s->pdf);
     }
-    const TurnedMap map = turned_map(context, *this);
-    const auto s = map.sample(u);
-    if (!s) return std::nullopt;
-    return LightSample{.radiance = radiance_at(context, *this, map.map.grid(), s->grid, lambda),
-                       .wi = s->wi,
-                       .pdf = s->pdf,
-                       .shadow = shadow_ray_to_infinity(from, s->wi)};
+    return result;
 }
 
 float ImageInfiniteLight::pdf_li(const LightContext& context, const ReferencePoint& from,

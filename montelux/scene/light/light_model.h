@@ -79,6 +79,7 @@ struct LightBounds {
 
 // A light consists of parts that are chosen individually: the triangles of an emissive mesh; other lights
 // have one. Functions take random numbers in [0, 1)^2, do not allocate, and do not throw, except `powers`.
+// Samples are large: where every return statement names the same variable, it is built in place.
 template <typename L>
 concept LightModel = requires(const L& light, const LightContext& context, Index part,
                               const ReferencePoint& from, const LightHit& hit, Vec3f w, Vec2f u,

@@ -10,17 +10,18 @@ namespace montelux {
 
 std::optional<LightSample> sample_position(Point3f position, SampledSpectrum intensity,
                                            const ReferencePoint& from) {
+    std::optional<LightSample> result;
     Vec3f d = position - from.p;
     float d2 = length_squared(d);
-    if (!(d2 > 0)) return std::nullopt;
-    LightSample s;
+    if (!(d2 > 0)) return result;
+    LightSample& s = result.emplace();
     s.wi = d / std::sqrt(d2);
     s.radiance = intensity / d2;
     s.pdf = 1;
     s.delta = s.invisible = true;
     Point3f o = offset_origin(from.p, from.n, from.error, s.wi);
     s.shadow = {o, position - o, 1};
-    return s;
+    return result;
 }
 
 Index PointLight::part_count(const LightContext&) const { return 1; }

@@ -7,6 +7,12 @@ namespace montelux {
 
 namespace {
 
+Frame plain_frame(const SceneView& scene, const SurfacePoint& surface) {
+    return scene.frame_follows_tangents(surface.shape->material)
+               ? Frame::from_normal_and_tangent(surface.ns, surface.dpdu)
+               : Frame::from_normal(surface.ns);
+}
+
 // `normal`: the geometric normal in the frame of the BSDF.
 Bsdf tilted(const Bsdf& bsdf, Normal3f normal) {
     return std::visit(
@@ -25,16 +31,12 @@ SurfaceBsdf make_bsdf(const SceneView& scene, const SurfacePoint& surface, Vec3f
                       const TextureContext& context, SampledWavelengths& lambda) {
     const Index index = surface.shape->material;
     const ParameterEvaluator at(scene, index, context, lambda);
-    const Frame plain = scene.frame_follows_tangents(index)
-                            ? Frame::from_normal_and_tangent(surface.ns, surface.dpdu)
-                            : Frame::from_normal(surface.ns);
     return std::visit(
         [&](const auto& m) -> SurfaceBsdf {
-            SurfaceBsdf made{m.bsdf(at), plain};
-            if (m.detail.is_flat()) return made;
-            if (auto frame = tilted_frame(scene, m.detail, surface, wo, context))
-                made = {tilted(made.bsdf, frame->to_local(surface.ng)), *frame};
-            return made;
+            if (!m.detail.is_flat())
+                if (auto frame = tilted_frame(scene, m.detail, surface, wo, context))
+                    return {tilted(m.bsdf(at), frame->to_local(surface.ng)), *frame};
+            return {m.bsdf(at), plain_frame(scene, surface)};
         },
         scene.materials[index]);
 }
