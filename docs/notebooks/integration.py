@@ -37,7 +37,7 @@ montelux.integrate(lambda x: np.sin(x), (0, np.pi), relative_error=1e-10)
 r = montelux.integrate(lambda x: np.sin(x), (0, np.pi), relative_error=1e-10)
 print("value          ", r.value)
 print("standard_error ", r.standard_error)
-print("converged      ", r.converged, "- the target was met, and nothing speaks against the value")
+print("converged      ", r.converged, "- the target was met, and there are no warnings")
 print("warnings       ", r.warnings)
 print("statistical    ", r.statistical, "- a deterministic rule: its error is an estimate, no standard deviation")
 
@@ -322,8 +322,8 @@ print("equal, to the last bit:", one.value == two.value, "- another seed:", one.
 # %% [markdown]
 # ## Long runs: keep the state, go on later
 #
-# A checkpoint is written every minute and at the end. A run that was killed goes on from it and ends with **the same bits**;
-# a finished run goes on to a smaller error. `to_dict` is ready for JSON.
+# A checkpoint is written every minute and at the end. A killed run resumes from it and ends with **the same bits**;
+# a finished run can be resumed for a smaller error. `to_dict` is ready for JSON.
 
 # %%
 first = montelux.integrate(bump, cube, "quasi", relative_error=1e-2, seed=3, checkpoint="run.state")

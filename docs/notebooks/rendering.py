@@ -188,7 +188,7 @@ for picture in scene.render(spp=32, every=0.2):
 # %% [markdown]
 # ## Change something
 #
-# What is read from a scene is a place in it: set an attribute, and the scene has changed. A render that goes on does not.
+# Objects read from a scene refer to it: setting an attribute changes the scene. Renders in progress do not change.
 
 # %%
 clay.material.reflectance = (0.1, 0.35, 0.6)
