@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "montelux/image/image.h"
@@ -10,6 +11,7 @@
 #include "montelux/scene/light/light.h"
 #include "montelux/scene/light/sky/sky_model.h"
 #include "montelux/scene/material/material.h"
+#include "montelux/scene/scene_spectrum.h"
 #include "montelux/scene/shape/shape.h"
 #include "montelux/scene/texture/texture.h"
 
@@ -32,6 +34,7 @@ struct Scene {
     std::vector<ObjectDefinition> objects;
     std::vector<Instance> instances;
 
+    std::vector<Spectrum> spectra; // of materials, textures and lights; their order has no meaning
     std::vector<Material> materials;
     std::vector<FloatTexture> float_textures;
     std::vector<SpectrumTexture> spectrum_textures;
@@ -43,5 +46,9 @@ struct Scene {
     std::vector<Light> lights;
     CameraSettings camera;
 };
+
+inline SceneSpectrum add_spectrum(Scene& scene, Spectrum spectrum) {
+    return add_spectrum(scene.spectra, std::move(spectrum));
+}
 
 } // namespace montelux

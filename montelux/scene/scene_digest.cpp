@@ -16,6 +16,8 @@ namespace {
 // Structured bindings list every member: a new one does not compile until it is hashed here.
 class SceneHasher {
   public:
+    explicit SceneHasher(std::span<const Spectrum> spectra = {}) : spectra_(spectra) {}
+
     // Values one after the other.
     template <typename... T>
     void all(const T&... values) {
@@ -79,7 +81,8 @@ class SceneHasher {
     }
     void add(const Transform& t) { all(t.matrix(), t.inverse_matrix()); }
 
-    // Spectra.
+    // Spectra: by value, wherever they are in Scene::spectra.
+    void add(SceneSpectrum s) { add(spectrum_of(s, spectra_)); }
     void add(const Spectrum& s) { add(s.kind()); }
     void add(const ConstantSpectrum& s) {
         const auto& [value] = s;
@@ -269,12 +272,13 @@ class SceneHasher {
         all(model, world_from_camera);
     }
 
+    std::span<const Spectrum> spectra_;
     ValueHash hash_;
 };
 
 template <typename... T>
-ContentDigest digest_of_all(const T&... values) {
-    SceneHasher hasher;
+ContentDigest digest_of_all(const Scene& scene, const T&... values) {
+    SceneHasher hasher(scene.spectra);
     hasher.all(values...);
     return hasher.value();
 }
@@ -291,11 +295,19 @@ ContentDigest SceneDigest::whole() const {
 }
 
 SceneDigest digest_of(const Scene& scene) {
-    const auto& [meshes, quadrics, shapes, world_shapes, objects, instances, materials, float_textures,
-                 spectrum_textures, normal_maps, images, environments, skies, lights, camera] = scene;
-    return {digest_of_all(meshes, quadrics, shapes, world_shapes, objects, instances),
-            digest_of_all(materials), digest_of_all(float_textures, spectrum_textures, normal_maps, images),
-            digest_of_all(lights, environments, skies), digest_of_all(camera)};
+    const auto& [meshes, quadrics, shapes, world_shapes, objects, instances, spectra, materials,
+                 float_textures, spectrum_textures, normal_maps, images, environments, skies, lights,
+                 camera] = scene;
+    return {digest_of_all(scene, meshes, quadrics, shapes, world_shapes, objects, instances),
+            digest_of_all(scene, materials),
+            digest_of_all(scene, float_textures, spectrum_textures, normal_maps, images),
+            digest_of_all(scene, lights, environments, skies), digest_of_all(scene, camera)};
+}
+
+ContentDigest digest_of(const Spectrum& spectrum) {
+    SceneHasher hasher;
+    hasher.all(spectrum);
+    return hasher.value();
 }
 
 } // namespace montelux

@@ -19,7 +19,10 @@ struct SceneDigest {
 };
 
 // Values only: addresses, file names, comments and the order of calls have no effect. The order of values
-// counts, since they refer to one another by index. About 10 GB/s.
+// counts, since they refer to one another by index, but not that of Scene::spectra. About 10 GB/s.
 SceneDigest digest_of(const Scene& scene);
+
+// Equal for spectra of the same kind and values.
+ContentDigest digest_of(const Spectrum& spectrum);
 
 } // namespace montelux

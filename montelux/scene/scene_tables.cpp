@@ -19,17 +19,18 @@ using CoatingKey = std::tuple<float, float, float, int>; // eta, alpha, thicknes
 
 // The coating's parameters if CoatingTable's closed form applies: constant over the surface, isotropic, with
 // a clear layer and no dispersion.
-std::optional<CoatingKey> closed_form(const Material& material) {
+std::optional<CoatingKey> closed_form(const SceneView& scene, const Material& material) {
     const auto* m = std::get_if<CoatedDiffuseMaterial>(&material);
     if (m == nullptr) return std::nullopt;
     const CoatingParameters& c = m->coating;
     bool constant = c.roughness.u.is_constant() && c.roughness.v.is_constant() && c.thickness.is_constant() &&
-                    c.albedo.is_constant() && c.eta.is_constant();
-    if (!constant || c.roughness.u.value != c.roughness.v.value || c.albedo.value.max_value() > 0)
+                    c.albedo.is_constant() && scene.is_constant(c.eta);
+    if (!constant || c.roughness.u.value != c.roughness.v.value ||
+        scene.spectrum(c.albedo.value).max_value() > 0)
         return std::nullopt;
     float alpha = c.roughness.u.value;
     if (c.roughness.remap) alpha = Ggx::alpha_from_roughness(alpha);
-    float eta = c.eta(550);
+    float eta = scene.spectrum(c.eta)(550);
     if (!(eta > 0)) return std::nullopt;
     return CoatingKey{eta, alpha, std::max(c.thickness.value, 0.0f), c.max_depth};
 }
@@ -94,7 +95,7 @@ void SceneTables::add_materials(const Scene& scene) {
         textured_.push_back(is_textured(material) ? 1 : 0);
         follows_tangents_.push_back(has_textured_bsdf(material) || is_anisotropic(material) ? 1 : 0);
         Index table = no_index;
-        if (auto key = closed_form(material)) {
+        if (auto key = closed_form(SceneView(scene), material)) {
             auto [found, inserted] = index_of.try_emplace(*key, static_cast<Index>(keys.size()));
             if (inserted) keys.push_back(*key);
             table = found->second;

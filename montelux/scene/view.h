@@ -22,6 +22,7 @@ struct SceneView {
     std::span<const ObjectDefinition> objects;
     std::span<const Instance> instances;
 
+    std::span<const Spectrum> spectra;
     std::span<const Material> materials;
     std::span<const char> textured, follows_tangents; // one per material: 0 or 1
     std::span<const Index> coating_of_material;       // no_index: the random walk is used
@@ -43,10 +44,16 @@ struct SceneView {
     explicit SceneView(const Scene& scene)
         : meshes(scene.meshes), quadrics(scene.quadrics), shapes(scene.shapes),
           world_shapes(scene.world_shapes), objects(scene.objects), instances(scene.instances),
-          materials(scene.materials), float_textures(scene.float_textures),
+          spectra(scene.spectra), materials(scene.materials), float_textures(scene.float_textures),
           spectrum_textures(scene.spectrum_textures), normal_maps(scene.normal_maps), lights(scene.lights),
           skies(scene.skies) {}
 
+    SampledSpectrum sample(SceneSpectrum s, const SampledWavelengths& lambda) const {
+        return s.is_constant() ? SampledSpectrum(s.constant) : spectra[s.index].sample(lambda);
+    }
+    // A copy, for tables.
+    Spectrum spectrum(SceneSpectrum s) const { return spectrum_of(s, spectra); }
+    bool is_constant(SceneSpectrum s) const { return s.is_constant() || spectra[s.index].is_constant(); }
     // The material's parameters use textures, so coordinates and footprints are needed.
     bool is_textured(Index material) const { return textured[material] != 0; }
     // The BSDF's frame is aligned with the tangents: its lobes depend on them, or its textures need them

@@ -16,10 +16,12 @@ void emission(nb::class_<Ref<T>>& c, const char* quantity) {
         ": a number, R, G, B (linear sRGB), a name or a Spectrum; setting it gives the light "
         "the luminance 1 for (1, 1, 1), and for any other spectrum that is no RGB.";
     attribute<T>(
-        c, "spectrum", "typing.Any", [](const T& t, const auto&) { return nb::cast(t.spectrum); },
-        [](T& t, nb::handle v, auto&, const std::string& what) {
-            t.spectrum = spectrum_of(v, RgbMeaning::illuminant, what);
-            t.scale = photometric_scale(t.spectrum, what);
+        c, "spectrum", "typing.Any",
+        [](const T& t, const Ref<T>& r) { return nb::cast(spectrum_of(t.spectrum, r.spectra())); },
+        [](T& t, nb::handle v, Ref<T>& r, const std::string& what) {
+            const Spectrum spectrum = spectrum_of(v, RgbMeaning::illuminant, what);
+            t.scale = photometric_scale(spectrum, what);
+            t.spectrum = r.add_spectrum(spectrum);
         },
         doc.c_str());
     number(c, "scale", &T::scale, not_negative, "a number that is not negative",
@@ -89,15 +91,16 @@ void portal(nb::class_<Ref<T>>& c) {
 
 } // namespace
 
-void make_white(Spectrum& spectrum, float& scale) {
-    spectrum = spectrum_of(nb::float_(1), RgbMeaning::illuminant, "");
-    scale = photometric_scale(spectrum, "");
+void make_white(SceneSpectrum& spectrum, float& scale, std::vector<Spectrum>& spectra) {
+    const Spectrum white = spectrum_of(nb::float_(1), RgbMeaning::illuminant, "");
+    spectrum = add_spectrum(spectra, white);
+    scale = photometric_scale(white, "");
 }
 
 template <>
-SpotLight default_value() {
+SpotLight default_value(std::vector<Spectrum>& spectra) {
     SpotLight light;
-    make_white(light.spectrum, light.scale);
+    make_white(light.spectrum, light.scale, spectra);
     light.cos_falloff_start = static_cast<float>(std::cos(25 * std::numbers::pi / 180));
     light.cos_total_width = static_cast<float>(std::cos(30 * std::numbers::pi / 180));
     return light;

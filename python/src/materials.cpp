@@ -31,11 +31,6 @@ struct ParameterAt {
     }
 };
 
-template <typename M>
-std::shared_ptr<SceneHolder> scene_of_textures(const Ref<M>& r) {
-    return r.scene() ? r.scene() : r.textures_of;
-}
-
 // The attributes of one parameter of the material M.
 template <typename M>
 struct Attributes {
@@ -45,7 +40,7 @@ struct Attributes {
         const RgbMeaning meaning = info.meaning;
         attribute<M>(
             c, info.python_name().c_str(), spectrum_type,
-            [at](const M& m, const Ref<M>& r) { return spectrum_or_texture(at(m), scene_of_textures(r)); },
+            [at](const M& m, const Ref<M>& r) { return spectrum_or_texture(at(m), r); },
             [at, meaning](M& m, nb::handle v, Ref<M>& r, const std::string& what) {
                 at(m) = spectrum_parameter_of(v, meaning, r, what);
             },
@@ -54,12 +49,12 @@ struct Attributes {
     void add(const ParameterInfo& info, ParameterAt<FloatParameter> at) const {
         add_number(info.python_name(), at, info.least, info.most, info.doc);
     }
-    void add(const ParameterInfo& info, ParameterAt<Spectrum> at) const {
+    void add(const ParameterInfo& info, ParameterAt<SceneSpectrum> at) const {
         attribute<M>(
             c, info.python_name().c_str(), spectrum_type,
-            [at](const M& m, const auto&) { return nb::cast(at(m)); },
-            [at](M& m, nb::handle v, auto&, const std::string& what) {
-                at(m) = spectrum_of(v, RgbMeaning::unbounded, what);
+            [at](const M& m, const Ref<M>& r) { return nb::cast(spectrum_of(at(m), r.spectra())); },
+            [at](M& m, nb::handle v, Ref<M>& r, const std::string& what) {
+                at(m) = r.add_spectrum(spectrum_of(v, RgbMeaning::unbounded, what));
             },
             "Index of refraction: a number above zero, a Spectrum, or a name such as 'glass-BK7'.");
     }
@@ -121,7 +116,7 @@ struct Attributes {
                 c, name.c_str(), spectrum_type,
                 [=](const M& m, const Ref<M>& r) -> nb::object {
                     if (at(m).from_reflectance != from_reflectance) return nb::none();
-                    return spectrum_or_texture(at(m).*member, scene_of_textures(r));
+                    return spectrum_or_texture(at(m).*member, r);
                 },
                 [=](M& m, nb::handle v, Ref<M>& r, const std::string& what) {
                     const RgbMeaning meaning = from_reflectance ? RgbMeaning::albedo : RgbMeaning::unbounded;

@@ -34,7 +34,7 @@ std::size_t checked(std::int64_t i, std::size_t count, const char* what) {
     return static_cast<std::size_t>(at);
 }
 
-Light plain_light(const nb::object& o) {
+Light plain_light(const SceneRef& scene, const nb::object& o) {
     const Slot<Light>* given = light_slot(o);
     if (!given)
         throw Error("lights", "an object of type '" + std::string(nb::type_name(o.type()).c_str()) +
@@ -58,7 +58,7 @@ Light plain_light(const nb::object& o) {
                        static_assert(sizeof(L) == 0, "say whether scene.lights takes this light from Python");
                    }},
         given->read());
-    return given->read();
+    return value_for(scene, *given);
 }
 
 void bind_lists(nb::module_& m) {
@@ -96,7 +96,7 @@ void bind_lists(nb::module_& m) {
                  const std::size_t at = checked(i, l.scene->read().scene.lights.size(), "light");
                  if (std::holds_alternative<AreaLight>(l.scene->read().scene.lights[at]))
                      throw Error("lights", "this light belongs to a shape; set the light of that shape");
-                 const Light light = plain_light(o);
+                 const Light light = plain_light(l.scene, o);
                  l.scene->edit().scene.lights[at] = light;
              })
         .def("__delitem__",
@@ -107,7 +107,7 @@ void bind_lists(nb::module_& m) {
         .def(
             "append",
             [](const LightList& l, const nb::object& o) {
-                const Light light = plain_light(o);
+                const Light light = plain_light(l.scene, o);
                 std::vector<Light>& all = l.scene->edit().scene.lights;
                 all.push_back(light);
                 return as_python(Slot<Light>(l.scene, static_cast<Index>(all.size() - 1)));
@@ -189,13 +189,16 @@ NormalMapHandle normal_map(const SceneObject& s, const nb::object& image, const 
 
 SpectrumTextureHandle checkerboard(const SceneObject& s, const nb::object& a, const nb::object& b, double su,
                                    double sv) {
+    const Spectrum first = spectrum_of(a, RgbMeaning::albedo, "checkerboard_texture"),
+                   second = spectrum_of(b, RgbMeaning::albedo, "checkerboard_texture");
+    Scene& scene = s.holder->edit().scene;
     CheckerboardTexture<SpectrumParameter> t;
-    t.values = {SpectrumParameter{spectrum_of(a, RgbMeaning::albedo, "checkerboard_texture")},
-                SpectrumParameter{spectrum_of(b, RgbMeaning::albedo, "checkerboard_texture")}};
+    t.values = {SpectrumParameter{add_spectrum(scene, first)},
+                SpectrumParameter{add_spectrum(scene, second)}};
     t.mapping.su = static_cast<float>(su);
     t.mapping.sv = static_cast<float>(sv);
-    std::vector<SpectrumTexture>& all = s.holder->edit().scene.spectrum_textures;
-    all.emplace_back(std::move(t));
+    std::vector<SpectrumTexture>& all = scene.spectrum_textures;
+    all.emplace_back(t);
     return {s.holder, static_cast<Index>(all.size() - 1)};
 }
 

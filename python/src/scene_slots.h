@@ -4,12 +4,14 @@
 #include <memory>
 #include <nanobind/nanobind.h>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "montelux/mc/math/error.h"
+#include "montelux/scene/material/material_model.h"
 #include "montelux/scene/render_settings.h"
 
 namespace montelux::python {
@@ -55,21 +57,29 @@ inline IntegratorSettings& element(SceneDescription& d, Index, std::type_identit
     return d.integrator;
 }
 
-// A value in a scene, or a detached one.
+// A value in a scene, or a detached one, which has its own spectra.
 template <typename V>
 class Slot {
   public:
-    explicit Slot(V own) : own_(std::make_shared<V>(std::move(own))) {}
+    explicit Slot(V own, std::vector<Spectrum> spectra = {})
+        : own_(std::make_shared<Own>(std::move(own), std::move(spectra))) {}
     explicit Slot(std::shared_ptr<SceneHolder> scene, Index first = 0)
         : scene_(std::move(scene)), first_(first) {}
 
     const V& read() const {
-        return own_ ? *own_ : element(*scene_->description, first_, std::type_identity<V>());
+        return own_ ? own_->value : element(*scene_->description, first_, std::type_identity<V>());
     }
     template <typename Change>
     void edit(const Change& change) {
-        if (own_) return change(*own_);
+        if (own_) return change(own_->value);
         change(element(scene_->edit(), first_, std::type_identity<V>()));
+    }
+    // The spectra that the value refers to.
+    const std::vector<Spectrum>& spectra() const {
+        return own_ ? own_->spectra : scene_->read().scene.spectra;
+    }
+    SceneSpectrum add_spectrum(const Spectrum& spectrum) {
+        return montelux::add_spectrum(own_ ? own_->spectra : scene_->edit().scene.spectra, spectrum);
     }
     const std::shared_ptr<SceneHolder>& scene() const { return scene_; }
     Index first() const { return first_; }
@@ -80,10 +90,45 @@ class Slot {
     std::shared_ptr<SceneHolder> textures_of;
 
   private:
+    struct Own {
+        Own(V v, std::vector<Spectrum> s) : value(std::move(v)), spectra(std::move(s)) {}
+        V value;
+        std::vector<Spectrum> spectra;
+    };
     std::shared_ptr<SceneHolder> scene_;
     Index first_ = 0;
-    std::shared_ptr<V> own_;
+    std::shared_ptr<Own> own_;
 };
+
+// visit(spectrum) for each SceneSpectrum of a material or light.
+template <typename Visit>
+void visit_spectra(Material& material, const Visit& visit) {
+    visit_fields(material, [&]<typename Field>(std::string_view, Field& field) {
+        if constexpr (std::is_same_v<Field, SceneSpectrum>)
+            visit(field);
+        else if constexpr (std::is_same_v<Field, SpectrumParameter>)
+            visit(field.value);
+    });
+}
+template <typename Visit>
+void visit_spectra(Light& light, const Visit& visit) {
+    std::visit(
+        [&](auto& l) {
+            if constexpr (requires { l.spectrum; }) visit(l.spectrum);
+        },
+        light);
+}
+
+// The value of a slot for a place in `scene`, to which its spectra are added where it is not of that scene.
+template <typename V>
+V value_for(const std::shared_ptr<SceneHolder>& scene, const Slot<V>& slot) {
+    V value = slot.read();
+    if (slot.scene() != scene)
+        visit_spectra(value, [&](SceneSpectrum& s) {
+            s = add_spectrum(scene->edit().scene, spectrum_of(s, slot.spectra()));
+        });
+    return value;
+}
 
 // The kind of value that an alternative T belongs to.
 template <typename T>
@@ -130,18 +175,20 @@ template <typename T>
 using Kind = typename KindOf<T>::type;
 
 // Luminance 1, under the spectrum of R, G, B = 1, 1, 1.
-void make_white(Spectrum& spectrum, float& scale);
+void make_white(SceneSpectrum& spectrum, float& scale, std::vector<Spectrum>& spectra);
 
-// Defaults of new scenes: those of a scene file. Lights are white.
+// Defaults of new scenes: those of a scene file. Lights are white. `spectra` receives those of the value.
 template <typename T>
-T default_value() {
+T default_value(std::vector<Spectrum>& spectra) {
+    if constexpr (is_alternative_of<T, Material>)
+        return default_material<T>([&](const Spectrum& s) { return add_spectrum(spectra, s); });
     T value{};
     if constexpr (is_alternative_of<T, Light> && requires { value.spectrum; })
-        make_white(value.spectrum, value.scale);
+        make_white(value.spectrum, value.scale, spectra);
     return value;
 }
 template <>
-SpotLight default_value();
+SpotLight default_value(std::vector<Spectrum>& spectra);
 
 // A slot with the alternative T.
 template <typename T>
@@ -157,11 +204,13 @@ struct Ref : Slot<Kind<T>> {
     }
 
   private:
-    static V initial() {
+    static Slot<V> initial() {
+        std::vector<Spectrum> spectra;
+        T value = default_value<T>(spectra);
         if constexpr (std::is_same_v<V, CameraSettings>)
-            return CameraSettings{default_value<T>(), {}};
+            return Slot<V>(CameraSettings{std::move(value), {}});
         else
-            return V(default_value<T>());
+            return Slot<V>(V(std::move(value)), std::move(spectra));
     }
     static T& held(V& v) {
         T* found = nullptr;

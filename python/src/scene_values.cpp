@@ -146,11 +146,6 @@ DoubleArray vector_array(Vec3f v) {
     return new_array(c);
 }
 
-nb::object spectrum_or_texture(const SpectrumParameter& p, const std::shared_ptr<SceneHolder>& scene) {
-    if (p.is_constant()) return nb::cast(p.value);
-    return nb::cast(SpectrumTextureHandle{scene, p.texture});
-}
-
 nb::object number_or_texture(const FloatParameter& p, const std::shared_ptr<SceneHolder>& scene) {
     if (p.is_constant()) return nb::float_(static_cast<double>(p.value));
     return nb::cast(FloatTextureHandle{scene, p.texture});

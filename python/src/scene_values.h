@@ -48,7 +48,16 @@ FloatParameter float_parameter_of(nb::handle v, Slot<V>& slot, const std::string
 Transform transform_of(nb::handle v, const std::string& what);
 DoubleArray matrix_array(const Transform& t);
 DoubleArray vector_array(Vec3f v);
-nb::object spectrum_or_texture(const SpectrumParameter& p, const std::shared_ptr<SceneHolder>& scene);
+// The scene whose textures a value refers to.
+template <typename V>
+const std::shared_ptr<SceneHolder>& scene_of_textures(const Slot<V>& slot) {
+    return slot.scene() ? slot.scene() : slot.textures_of;
+}
+template <typename V>
+nb::object spectrum_or_texture(const SpectrumParameter& p, const Slot<V>& slot) {
+    if (p.is_constant()) return nb::cast(spectrum_of(p.value, slot.spectra()));
+    return nb::cast(SpectrumTextureHandle{scene_of_textures(slot), p.texture});
+}
 nb::object number_or_texture(const FloatParameter& p, const std::shared_ptr<SceneHolder>& scene);
 
 // 1 over the luminance of a light's spectrum: the factor of its scale by which an RGB colour of (1, 1, 1), or
@@ -58,7 +67,7 @@ float photometric_scale(const Spectrum& s, const std::string& what);
 // Binds a detached value to the scene of a texture, or checks that a slot belongs to that scene.
 template <typename V>
 void require_scene(Slot<V>& slot, const std::shared_ptr<SceneHolder>& textures, const std::string& what) {
-    const std::shared_ptr<SceneHolder>& at = slot.scene() ? slot.scene() : slot.textures_of;
+    const std::shared_ptr<SceneHolder>& at = scene_of_textures(slot);
     if (at && at != textures) throw Error(what, "the texture belongs to another scene");
     if (!slot.scene()) slot.textures_of = textures;
 }
@@ -71,7 +80,7 @@ SpectrumParameter spectrum_parameter_of(nb::handle v, RgbMeaning meaning, Slot<V
         require_scene(slot, texture.scene, what);
         return {{}, texture.index};
     }
-    return {spectrum_of(v, meaning, what)};
+    return {slot.add_spectrum(spectrum_of(v, meaning, what))};
 }
 template <typename V>
 FloatParameter float_parameter_of(nb::handle v, Slot<V>& slot, const std::string& what) {
@@ -95,11 +104,7 @@ void attribute(nb::class_<Ref<T>>& c, const char* name, const char* type, Get ge
         [set, what](Ref<T>& r, nb::object given) {
             T changed = r.value();
             set(changed, given, r, what);
-            r.change([&](T& value) {
-                T next = value;
-                set(next, given, r, what);
-                value = std::move(next);
-            });
+            r.change([&](T& value) { value = std::move(changed); });
         },
         nb::for_getter(nb::sig(getter.c_str())), nb::for_setter(nb::sig(setter.c_str())),
         nb::for_setter(nb::arg("value").none()), doc);

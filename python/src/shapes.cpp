@@ -29,13 +29,13 @@ nb::object light_of(const ShapeRef& r) {
     return as_python(Slot<Light>(r.scene(), s.light));
 }
 
-// From an AreaLight or a spectrum.
-AreaLight area_light_of(const nb::object& emission) {
-    if (nb::isinstance<Ref<AreaLight>>(emission)) return nb::cast<const Ref<AreaLight>&>(emission).value();
-    AreaLight light = default_value<AreaLight>();
-    light.spectrum = spectrum_of(emission, RgbMeaning::illuminant, "Shape.light");
-    light.scale = photometric_scale(light.spectrum, "Shape.light");
-    return light;
+// From an AreaLight or a spectrum, which is added to the scene.
+AreaLight area_light_of(const SceneRef& scene, const nb::object& emission) {
+    if (nb::isinstance<Ref<AreaLight>>(emission))
+        return std::get<AreaLight>(value_for<Light>(scene, nb::cast<const Ref<AreaLight>&>(emission)));
+    const Spectrum spectrum = spectrum_of(emission, RgbMeaning::illuminant, "Shape.light");
+    const float scale = photometric_scale(spectrum, "Shape.light");
+    return {add_spectrum(scene->edit().scene, spectrum), scale};
 }
 
 void add_light(SceneDescription& d, Index shape, AreaLight light) {
@@ -47,7 +47,7 @@ void add_light(SceneDescription& d, Index shape, AreaLight light) {
 // None removes the light; an AreaLight or a spectrum sets it.
 void set_light(const SceneRef& holder, Index shape, const nb::object& emission) {
     std::optional<AreaLight> light;
-    if (!emission.is_none()) light = area_light_of(emission);
+    if (!emission.is_none()) light = area_light_of(holder, emission);
     SceneDescription& d = holder->edit();
     if (const Index before = d.scene.shapes[shape].light; before != no_index) erase_light(d, before);
     if (light) add_light(d, shape, *light);
@@ -56,7 +56,7 @@ void set_light(const SceneRef& holder, Index shape, const nb::object& emission) 
 nb::object added(const SceneRef& holder, const char* call, Geometry geometry, bool flip_normal,
                  const nb::object& material, const nb::object& emission) {
     std::optional<AreaLight> light;
-    if (!emission.is_none()) light = area_light_of(emission);
+    if (!emission.is_none()) light = area_light_of(holder, emission);
     ShapeSettings settings;
     settings.material = material_index(holder, material, "material of a shape");
     settings.flip_normal = flip_normal;
@@ -101,9 +101,9 @@ Index material_index(const SceneRef& scene, const nb::object& material, const st
         throw Error(what, "an object of type '" + std::string(nb::type_name(material.type()).c_str()) +
                               "' was given; expected a material, such as Diffuse()");
     if (slot->scene() == scene) return slot->first();
-    if (slot->textures_of && slot->textures_of != scene)
+    if (slot->scene() ? is_textured(slot->read()) : slot->textures_of && slot->textures_of != scene)
         throw Error(what, "its textures belong to another scene");
-    const Material value = slot->read();
+    const Material value = value_for(scene, *slot);
     SceneDescription& d = scene->edit();
     d.scene.materials.push_back(value);
     return static_cast<Index>(d.scene.materials.size() - 1);

@@ -126,6 +126,37 @@ def test_a_running_render_does_not_change_with_the_scene(scene):
 # Built in Python.
 
 
+def test_values_bring_their_spectra_into_scenes(scene):
+    warm, red = montelux.Spectrum.blackbody(3000), montelux.Spectrum.rgb(0.6, 0.2, 0.1)
+    material = montelux.Dielectric(eta="glass-BK7")
+    metal = montelux.CoatedConductor(conductor_eta="metal-Au-eta", interface_eta=red)
+    light = montelux.PointLight(spectrum=warm)
+    other = montelux.Scene()
+    other.materials.append(montelux.Conductor())
+    for s in (scene, other):
+        placed = [s.materials.append(material), s.materials.append(metal), s.lights.append(light)]
+        assert placed[0].eta(550) == montelux.Spectrum.named("glass-BK7")(550)
+        assert placed[1].conductor_eta(550) == montelux.Spectrum.named("metal-Au-eta")(550)
+        assert placed[1].conductor_k(550) == montelux.Spectrum.named("metal-Cu-k")(550)
+        assert placed[1].interface_eta(550) == red(550)
+        assert placed[2].spectrum(550) == warm(550)
+    # From scene to scene.
+    shape = other.add_sphere(1, scene.materials[-1], light=warm)
+    assert shape.material.conductor_eta(600) == montelux.Spectrum.named("metal-Au-eta")(600)
+    scene.shapes[1].light = shape.light
+    assert scene.shapes[1].light.spectrum(600) == warm(600)
+    scene.materials[0] = shape.material
+    assert scene.materials[0].interface_eta(500) == red(500)
+    # A change stays where it is made.
+    material.eta = 2
+    placed[0].eta = warm
+    assert [m.eta(550) for m in (material, scene.materials[-2], placed[0])] == [
+        2,
+        montelux.Spectrum.named("glass-BK7")(550),
+        warm(550),
+    ]
+
+
 def test_a_scene_built_in_python_equals_the_file_s():
     built = montelux.Scene()
     built.camera = montelux.PerspectiveCamera(fov=40, look_at=((0, -4, 0), (0, 0, 0), (0, 0, 1)))
@@ -167,6 +198,8 @@ def test_meshes_textures_and_environments():
     other = montelux.Scene()
     with pytest.raises(montelux.Error, match="another scene"):
         other.add_sphere(1, material)
+    with pytest.raises(montelux.Error, match="another scene"):
+        other.add_sphere(1, shape.material)
 
 
 def test_every_material_has_bumps_and_normal_maps():

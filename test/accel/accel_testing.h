@@ -26,7 +26,7 @@ struct World {
 };
 
 inline Index add_material(Scene& scene) {
-    scene.materials.push_back(DiffuseMaterial{{Spectrum(0.5f), no_index}});
+    scene.materials.push_back(DiffuseMaterial{{0.5f}});
     return static_cast<Index>(scene.materials.size() - 1);
 }
 inline Index add_shape(Scene& scene, Geometry geometry, bool in_world = true) {

@@ -279,7 +279,7 @@ TEST(Robust, ShadowRaysReachTheirLights) {
                     light = add_shape(scene, std::move(lamp));
                 }
                 scene.shapes[light].light = 0;
-                scene.lights.push_back(AreaLight{Spectrum(1.0f), 1, false, light});
+                scene.lights.push_back(AreaLight{1.0f, 1, false, light});
                 World world(std::move(scene));
                 SampledWavelengths lambda = SampledWavelengths::sample_visible(0.3f);
                 int blocked = 0, sampled = 0;

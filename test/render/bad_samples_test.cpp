@@ -16,7 +16,7 @@ SceneBuilder half_bad(float emission) {
     Index black = b.add(DiffuseMaterial{gray(0)});
     b.add_mesh(square(Transform::translate({-1, 0, 0}) * Transform::rotate(90, {1, 0, 0})), black, 1);
     for (Light& light : b.scene.lights)
-        if (auto* area = std::get_if<AreaLight>(&light)) *area = {Spectrum(emission), 1, true, area->shape};
+        if (auto* area = std::get_if<AreaLight>(&light)) *area = {emission, 1, true, area->shape};
     b.look({0, -3, 0}, {0, 0, 0}, 30);
     b.description.sampler.spp = 16;
     return b;

@@ -54,20 +54,16 @@ TEST(KnownAnswers, DepthCutsTheSeries) {
 // What neither absorbs nor emits cannot be seen against uniform light.
 TEST(KnownAnswers, WhiteFurnaceOfEachLosslessMaterial) {
     RoughnessParameter smooth{FloatParameter{0}, FloatParameter{0}, false};
-    CoatingParameters clear{.roughness = smooth,
-                            .eta = Spectrum(1.5f),
-                            .thickness = {0},
-                            .albedo = gray(0),
-                            .g = {0},
-                            .max_depth = 400};
+    CoatingParameters clear{
+        .roughness = smooth, .eta = 1.5f, .thickness = {0}, .albedo = gray(0), .g = {0}, .max_depth = 400};
     ConductorMaterial mirror{.metal = {.reflectance = gray(1), .from_reflectance = true},
                              .roughness = smooth};
     const std::pair<const char*, Material> cases[] = {
         {"diffuse", DiffuseMaterial{gray(1)}},
         {"leaf", DiffuseTransmissionMaterial{gray(0.7f), gray(0.3f)}},
         {"mirror", mirror},
-        {"glass", DielectricMaterial{Spectrum(1.5f), smooth}},
-        {"thin glass", ThinDielectricMaterial{Spectrum(1.5f)}},
+        {"glass", DielectricMaterial{1.5f, smooth}},
+        {"thin glass", ThinDielectricMaterial{1.5f}},
         {"coated diffuse", CoatedDiffuseMaterial{gray(1), clear}},
         {"coated conductor", CoatedConductorMaterial{mirror.metal, smooth, clear}},
     };
@@ -98,7 +94,7 @@ TEST(KnownAnswers, WhiteFurnaceOfRoughMaterials) {
         const Material cases[] = {
             ConductorMaterial{.metal = {.reflectance = gray(1), .from_reflectance = true},
                               .roughness = rough},
-            DielectricMaterial{Spectrum(1.5f), rough}};
+            DielectricMaterial{1.5f, rough}};
         for (const Material& material : cases) {
             SceneBuilder b;
             b.add_quadric(Sphere{}, b.add(material));
@@ -124,20 +120,21 @@ SceneBuilder floor_scene(float rho) {
 TEST(KnownAnswers, PointSpotAndDistantLights) {
     const double rho = 0.6;
     SceneBuilder point = floor_scene(0.6f);
-    point.scene.lights.push_back(PointLight{white_light(), 3 * white_scale(), {3, 0, 4}});
+    point.scene.lights.push_back(PointLight{white_light(point.scene), 3 * white_scale(), {3, 0, 4}});
     double expected = rho / pi * 3 * 0.8 / 25;
     for (Strategy s : strategies) {
         point.description.integrator.strategy = s;
         expect_picture(point.description, expected, "point");
     }
     SceneBuilder spot = floor_scene(0.6f);
-    spot.scene.lights.push_back(
-        SpotLight{white_light(), 3 * white_scale(), {3, 0, 4}, normalize(Vec3f{-3, 0, -4}), 0.99f, 0.9f});
+    spot.scene.lights.push_back(SpotLight{
+        white_light(spot.scene), 3 * white_scale(), {3, 0, 4}, normalize(Vec3f{-3, 0, -4}), 0.99f, 0.9f});
     expect_picture(spot.description, expected, "spot");
     std::get<SpotLight>(spot.scene.lights[0]).axis = {0, 0, -1};
     expect_picture(spot.description, 0, "outside the cone");
     SceneBuilder distant = floor_scene(0.6f);
-    distant.scene.lights.push_back(DistantLight{white_light(), 2 * white_scale(), normalize(Vec3f{1, 0, 1})});
+    distant.scene.lights.push_back(
+        DistantLight{white_light(distant.scene), 2 * white_scale(), normalize(Vec3f{1, 0, 1})});
     expect_picture(distant.description, rho / pi * 2 * std::sqrt(0.5), "distant");
 }
 

@@ -19,7 +19,7 @@ TEST(ManyLights, OneAmongThemIsAsBrightAsAlone) {
     // A tenth of the power is its.
     const double intensity = heap_power / 9 / (4 * pi);
     b.scene.lights.push_back(
-        PointLight{white_light(), static_cast<float>(intensity) * white_scale(), {0, 0, 10}});
+        PointLight{white_light(b.scene), static_cast<float>(intensity) * white_scale(), {0, 0, 10}});
     b.description.integrator.max_depth = 1;
     b.description.sampler.spp = 4096;
     b.look({0, -0.1, 5}, {0, 0, 0}, 0.05f);

@@ -101,7 +101,7 @@ TEST(MisTerms, LampsThatNothingMeetsAndLightThatTheCameraSees) {
     };
     SceneBuilder lamp;
     lamp.add_mesh(square(Transform::scale({100, 100, 1})), lamp.add(DiffuseMaterial{gray(0.6f)}));
-    lamp.scene.lights.push_back(PointLight{white_light(), white_scale(), {0, 0, 3}});
+    lamp.scene.lights.push_back(PointLight{white_light(lamp.scene), white_scale(), {0, 0, 3}});
     lamp.look({0, -0.5, 5}, {0, 0, 0}, 20);
     lamp.description.integrator.max_depth = 1;
     EXPECT_EQ(mean(lamp, Strategy::mis_bsdf), 0);

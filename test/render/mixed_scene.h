@@ -18,8 +18,8 @@ inline SceneBuilder mixed_scene(double scale = 1, int width = 16, int height = 1
     b.description.film.crop = {0, 0, width, height};
     Transform unit = Transform::scale({scale, scale, scale});
     auto wall = [&](const Transform& t, Vec3f rgb) {
-        SpectrumParameter color{Spectrum(RgbAlbedoSpectrum(RgbColorSpace::srgb(), rgb)), no_index};
-        b.add_mesh(square(unit * t), b.add(DiffuseMaterial{color}));
+        const SceneSpectrum color = add_spectrum(b.scene, RgbAlbedoSpectrum(RgbColorSpace::srgb(), rgb));
+        b.add_mesh(square(unit * t), b.add(DiffuseMaterial{{color}}));
     };
     wall(Transform::translate({0, 0, -1}), {0.7f, 0.7f, 0.7f});
     wall(Transform::translate({0, 0, 1}) * Transform::rotate(180, {1, 0, 0}), {0.6f, 0.6f, 0.6f});
@@ -34,11 +34,10 @@ inline SceneBuilder mixed_scene(double scale = 1, int width = 16, int height = 1
     ball({-0.5, 0.2, -0.65}, 0.35,
          ConductorMaterial{.metal = {.eta = gray(0.2f), .k = gray(3)}, .roughness = alpha_of(0.3f)});
     ball({0.1, 0.5, -0.7}, 0.3,
-         CoatedDiffuseMaterial{gray(0.6f), CoatingParameters{.roughness = alpha_of(0.2f),
-                                                             .eta = Spectrum(1.5f),
-                                                             .albedo = gray(0),
-                                                             .g = {0}}});
-    ball({0.5, -0.1, -0.65}, 0.35, DielectricMaterial{Spectrum(1.5f), alpha_of(0)});
+         CoatedDiffuseMaterial{
+             gray(0.6f),
+             CoatingParameters{.roughness = alpha_of(0.2f), .eta = 1.5f, .albedo = gray(0), .g = {0}}});
+    ball({0.5, -0.1, -0.65}, 0.35, DielectricMaterial{1.5f, alpha_of(0)});
 
     Index black = b.add(DiffuseMaterial{gray(0)});
     b.add_mesh(square(unit * Transform::translate({0.2, 0.1, 0.95}) * Transform::rotate(180, {1, 0, 0}) *

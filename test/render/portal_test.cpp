@@ -65,7 +65,7 @@ TEST(Portals, RoomIsTheSameWithEachStrategyAndWithoutThem) {
             std::optional<Portal> portal;
             if (c.portal) portal = window;
             if (kind == 0) {
-                b.scene.lights.push_back(UniformInfiniteLight{white_light(), white_scale(), portal});
+                b.scene.lights.push_back(UniformInfiniteLight{white_light(b.scene), white_scale(), portal});
             } else {
                 Image map(kind == 1 ? 8 : 16, 8, {"R", "G", "B"});
                 for (int i = 0; i < map.width() * 8; ++i)
@@ -106,7 +106,7 @@ TEST(Portals, FloorUnderAnOpeningIsKnown) {
         b.look({3, 1, 0.9}, {0, 0, 0}, 0.01f);
         const auto fx = static_cast<float>(x), fy = static_cast<float>(y), fh = static_cast<float>(h);
         b.scene.lights.push_back(
-            UniformInfiniteLight{white_light(), static_cast<float>(radiance) * white_scale(),
+            UniformInfiniteLight{white_light(b.scene), static_cast<float>(radiance) * white_scale(),
                                  Portal({Point3f{0, 0, fh}, {0, fy, fh}, {fx, fy, fh}, {fx, 0, fh}})});
         b.description.integrator.strategy = strategy;
         b.description.sampler.spp = 512;
@@ -123,7 +123,7 @@ TEST(Portals, CameraSeesTheLightThroughThem) {
     for (auto [eye, share] : {std::pair(0.0, 0.25), {0.5, 1.0}, {2.0, 0.0}}) {
         SceneBuilder b;
         b.look({0, 0, eye}, {0, 0, eye < 1 ? 9. : -9.}, 90);
-        b.scene.lights.push_back(UniformInfiniteLight{white_light(), white_scale(), Portal(corners)});
+        b.scene.lights.push_back(UniformInfiniteLight{white_light(b.scene), white_scale(), Portal(corners)});
         b.description.sampler.spp = 16;
         const PictureMean m = picture_mean(render(b.description));
         EXPECT_NEAR(m.mean, share, 5 * m.standard_error + 2e-4) << eye;

@@ -127,8 +127,8 @@ TEST(Replay, TheRecordAddsUp) {
 TEST(Replay, WavelengthsThatEnded) {
     SceneBuilder b;
     b.add_uniform_light(1);
-    Spectrum dispersive(PiecewiseLinear(std::vector<float>{360, 830}, std::vector<float>{1.6f, 1.4f}));
-    b.add_quadric(Sphere{}, b.add(DielectricMaterial{dispersive, alpha_of(0)}));
+    const Spectrum dispersive(PiecewiseLinear(std::vector<float>{360, 830}, std::vector<float>{1.6f, 1.4f}));
+    b.add_quadric(Sphere{}, b.add(DielectricMaterial{add_spectrum(b.scene, dispersive), alpha_of(0)}));
     b.look({0, -3, 0}, {0, 0, 0}, 30);
     const SampleRecord r = Renderer(b.description).replay(4, 4, 0);
     EXPECT_FALSE(r.lambda.secondary_terminated());
@@ -177,7 +177,7 @@ ConductorMaterial metal(float k, float alpha) {
 }
 const DiffuseMaterial half{gray(0.5f)};
 
-PointLight lamp(float intensity) { return {Spectrum(intensity), 1, {0, -2, 0}}; }
+PointLight lamp(float intensity) { return {intensity, 1, {0, -2, 0}}; }
 
 // A rough surface shows it where it is lit, a mirror in the throughput that it leaves.
 TEST(Replay, NamesTheMaterialThatIsNotANumber) {
@@ -203,8 +203,7 @@ TEST(Replay, NamesTheLightThatIsBad) {
         TwoWalls(half, half).light(lamp(emission)).expect(kind, BadOrigin::Quantity::direct_radiance, 0);
         TwoWalls seen(metal(3, 0), half);
         seen.b.description.integrator.strategy = Strategy::bsdf;
-        seen.light(UniformInfiniteLight{Spectrum(emission), 1})
-            .expect(kind, BadOrigin::Quantity::found_radiance, 2);
+        seen.light(UniformInfiniteLight{emission, 1}).expect(kind, BadOrigin::Quantity::found_radiance, 2);
     }
 }
 

@@ -15,11 +15,12 @@ inline constexpr SamplerKind samplers[] = {SamplerKind::independent, SamplerKind
                                            SamplerKind::halton,      SamplerKind::hammersley,
                                            SamplerKind::sobol,       SamplerKind::sobol_blue_noise};
 
-// The spectrum of an RGB light with film RGB (1, 1, 1), and its scale.
-inline Spectrum white_light() { return Spectrum(RgbIlluminantSpectrum(RgbColorSpace::srgb(), {1, 1, 1})); }
-inline float white_scale() { return photometric_scale(white_light()); }
+// The spectrum of an RGB light with film RGB (1, 1, 1), added to the scene, and its scale.
+inline Spectrum white_spectrum() { return Spectrum(RgbIlluminantSpectrum(RgbColorSpace::srgb(), {1, 1, 1})); }
+inline SceneSpectrum white_light(Scene& scene) { return add_spectrum(scene, white_spectrum()); }
+inline float white_scale() { return photometric_scale(white_spectrum()); }
 
-inline SpectrumParameter gray(float value) { return {Spectrum(value), no_index}; }
+inline SpectrumParameter gray(float value) { return {value}; }
 
 // A square of side 2 around the origin of the plane z = 0 of `t`, normal +z.
 inline TriangleMesh square(const Transform& t) {
@@ -58,7 +59,7 @@ class SceneBuilder {
         return add_shape(quadric, material, emission, flip);
     }
     void add_uniform_light(float radiance) {
-        scene.lights.push_back(UniformInfiniteLight{white_light(), white_scale() * radiance});
+        scene.lights.push_back(UniformInfiniteLight{white_light(scene), white_scale() * radiance});
     }
     void look(Vec3d from, Vec3d to, float fov) {
         Vec3d up = std::abs(normalize(to - from).z) > 0.9 ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
@@ -68,7 +69,7 @@ class SceneBuilder {
 
   private:
     Index add_shape(Geometry geometry, Index material, float emission, bool flip) {
-        const Emission light{white_light(), emission * white_scale()};
+        const Emission light{white_light(scene), emission * white_scale()};
         CallMessages messages("scene of a test");
         return montelux::SceneBuilder(scene, messages)
             .add_shape(std::move(geometry), {material, {1}, flip, emission > 0 ? &light : nullptr});

@@ -19,7 +19,10 @@ SceneBuilder ball_in_the_sun() {
     b.scene.environments.push_back(sky_density_map(sky, 64));
     b.scene.lights.push_back(SkyLight{.sky = 0, .environment = 0, .scale = 3, .world_from_light = {}});
     const double wider = 0.3;
-    SunLight sun{Spectrum(sky.sun_radiance()), 3, SunDisc::of_radius(sky.sun_direction(), wider), {0, 0, 1}};
+    SunLight sun{add_spectrum(b.scene, Spectrum(sky.sun_radiance())),
+                 3,
+                 SunDisc::of_radius(sky.sun_direction(), wider),
+                 {0, 0, 1}};
     sun.scale *= static_cast<float>(SunDisc::of_radius({0, 0, 1}, sun_angular_radius).solid_angle() /
                                     sun.disc.solid_angle());
     b.scene.lights.push_back(sun);
@@ -56,7 +59,7 @@ TEST(SkyPictures, GroundHasTheIlluminanceOfTheModel) {
     const SkyModel& sky = b.scene.skies[0];
     b.scene.environments.push_back(sky_density_map(sky, 64));
     b.scene.lights.push_back(SkyLight{.sky = 0, .environment = 0, .scale = 683, .world_from_light = {}});
-    b.scene.lights.push_back(SunLight{Spectrum(sky.sun_radiance()),
+    b.scene.lights.push_back(SunLight{add_spectrum(b.scene, Spectrum(sky.sun_radiance())),
                                       683,
                                       SunDisc::of_radius(sky.sun_direction(), sun_angular_radius),
                                       {0, 0, 1}});

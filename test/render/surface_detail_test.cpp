@@ -35,7 +35,7 @@ std::vector<Material> materials() {
         DiffuseTransmissionMaterial{gray(0.4f), gray(0.5f)},
         ConductorMaterial{.metal = {}, .roughness = rough(0.2f, 0.2f)},
         ConductorMaterial{.metal = {}, .roughness = rough(0.1f, 0.4f)},
-        DielectricMaterial{Spectrum(1.5f), rough(0.1f, 0.1f)},
+        DielectricMaterial{1.5f, rough(0.1f, 0.1f)},
         CoatedDiffuseMaterial{gray(0.6f), CoatingParameters{.roughness = rough(0.2f, 0.2f)}},
         CoatedConductorMaterial{{}, rough(0.3f, 0.3f), CoatingParameters{.roughness = rough(0.1f, 0.1f)}}};
 }
@@ -73,7 +73,7 @@ SceneBuilder floor_under_lamp(const Material& material, Vec3f vertex_normal) {
     floor.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     if (length(vertex_normal) > 0) floor.normals.assign(4, normalize(vertex_normal));
     b.add_mesh(std::move(floor), b.add(material));
-    b.scene.lights.push_back(PointLight{white_light(), 10 * white_scale(), {1, 0.5f, 3}});
+    b.scene.lights.push_back(PointLight{white_light(b.scene), 10 * white_scale(), {1, 0.5f, 3}});
     b.look({0.2, 0.1, 4}, {0, 0, 0}, 30);
     b.description.integrator.max_depth = 1;
     b.description.sampler.spp = 16;
@@ -139,8 +139,8 @@ TEST(NormalMap, WhiteFurnaceGainsNothing) {
                               DiffuseTransmissionMaterial{gray(0.6f), gray(0.4f)},
                               ConductorMaterial{mirror, rough(0, 0)},
                               ConductorMaterial{mirror, rough(0.3f, 0.3f)},
-                              DielectricMaterial{Spectrum(1.5f), rough(0, 0)},
-                              DielectricMaterial{Spectrum(1.5f), rough(0.2f, 0.2f)}};
+                              DielectricMaterial{1.5f, rough(0, 0)},
+                              DielectricMaterial{1.5f, rough(0.2f, 0.2f)}};
     for (const Material& material : cases)
         for (float spread : {0.3f, 1.5f}) {
             SceneBuilder b;
@@ -161,7 +161,7 @@ TEST(NormalMap, StrategiesAgree) {
     const Material cases[] = {DiffuseMaterial{gray(0.7f)},
                               DiffuseTransmissionMaterial{gray(0.4f), gray(0.5f)},
                               ConductorMaterial{.metal = {}, .roughness = rough(0.5f, 0.5f)},
-                              DielectricMaterial{Spectrum(1.5f), rough(0.5f, 0.5f)}};
+                              DielectricMaterial{1.5f, rough(0.5f, 0.5f)}};
     for (const Material& material : cases) {
         std::vector<PictureMean> means;
         for (Strategy s : {Strategy::mis, Strategy::light, Strategy::bsdf, Strategy::uniform}) {
@@ -194,7 +194,7 @@ TEST(NormalMap, OpaqueSheetsDoNotLeak) {
         Material mapped = material;
         std::visit([&](auto& m) { m.detail.normal_map.map = map; }, mapped);
         b.add_mesh(square(Transform::scale({20, 20, 1})), b.add(mapped));
-        b.scene.lights.push_back(PointLight{white_light(), white_scale(), {0.5f, 0.5f, -1}});
+        b.scene.lights.push_back(PointLight{white_light(b.scene), white_scale(), {0.5f, 0.5f, -1}});
         b.add_mesh(square(Transform::translate({0, 0, -2})), b.add(DiffuseMaterial{gray(0)}), 1);
         b.look({0, -3, 1.5}, {0, 0, 0}, 40);
         EXPECT_EQ(picture_mean(render(b.description)).mean, 0) << material.index();
@@ -208,7 +208,8 @@ TEST(DiffuseTransmission, SheetsShineOnBothSides) {
             SceneBuilder b;
             b.add_mesh(square(Transform::scale({4, 4, 1})),
                        b.add(DiffuseTransmissionMaterial{gray(0.5f), gray(0.25f), scale}));
-            b.scene.lights.push_back(PointLight{white_light(), white_scale(), {0, 0, behind ? -2.0f : 2.0f}});
+            b.scene.lights.push_back(
+                PointLight{white_light(b.scene), white_scale(), {0, 0, behind ? -2.0f : 2.0f}});
             b.look({0, 0, 3}, {0, 0, 0}, 0.5);
             b.description.integrator.max_depth = 3;
             const double truth = (behind ? 0.25 : 0.5) * double(scale) / pi / 4;

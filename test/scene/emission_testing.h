@@ -39,7 +39,7 @@ inline Shape add_shape(Scene& scene, Shape shape) {
 inline void add_area_light(Scene& scene, Shape shape, bool two_sided, float triangle_flux = 0) {
     shape.light = static_cast<Index>(scene.lights.size());
     scene.lights.push_back(
-        AreaLight{Spectrum(1.0f), 2, two_sided, static_cast<Index>(scene.shapes.size()), triangle_flux});
+        AreaLight{1.0f, 2, two_sided, static_cast<Index>(scene.shapes.size()), triangle_flux});
     add_shape(scene, shape);
 }
 
@@ -138,15 +138,14 @@ inline void add_quadrics(std::vector<Case>& cases) {
 
 inline void add_deltas(std::vector<Case>& cases) {
     Case point{.name = "point", .scene = {}, .flux = {4 * pi * 3}, .place = {}};
-    point.scene.lights.push_back(PointLight{Spectrum(1.0f), 3, {1, 2, 3}});
+    point.scene.lights.push_back(PointLight{1.0f, 3, {1, 2, 3}});
     cases.push_back(point);
     for (const float start : {0.9f, 0.7f}) {
         Case spot{.name = "spot",
                   .scene = {},
                   .flux = {2 * pi * 3 * (1 - double(start) + 0.5 * double(start - 0.6f))},
                   .place = {}};
-        spot.scene.lights.push_back(
-            SpotLight{Spectrum(1.0f), 3, {1, 2, 3}, normalize(Vec3f{1, -2, 2}), start, 0.6f});
+        spot.scene.lights.push_back(SpotLight{1.0f, 3, {1, 2, 3}, normalize(Vec3f{1, -2, 2}), start, 0.6f});
         cases.push_back(spot);
     }
 }
@@ -186,8 +185,8 @@ inline void add_infinite(std::vector<Case>& cases) {
         cases.push_back(std::move(c));
         return cases.back();
     };
-    add("distant", DistantLight{Spectrum(1.0f), 3, normalize(Vec3f{1, 2, 2})}, 3 * cross_section);
-    add("uniform sky", UniformInfiniteLight{Spectrum(1.0f), 3}, 4 * pi * 3 * cross_section);
+    add("distant", DistantLight{1.0f, 3, normalize(Vec3f{1, 2, 2})}, 3 * cross_section);
+    add("uniform sky", UniformInfiniteLight{1.0f, 3}, 4 * pi * 3 * cross_section);
 
     const std::array<Point3f, 4> rectangle =
         portals::corners_of(-1, -1, 2, 1.5f, 3, Transform::rotate(30, {1, 2, 0.4}));
@@ -199,7 +198,7 @@ inline void add_infinite(std::vector<Case>& cases) {
         const Vec3d q = Vec3d(s.ray.o) + t * Vec3d(s.ray.d) - c;
         return Vec2d{dot(q, x) / dot(x, x), dot(q, y) / dot(y, y)};
     };
-    add("uniform sky through a portal", UniformInfiniteLight{Spectrum(1.0f), 3, portal}, pi * 3 * 7.5).place =
+    add("uniform sky through a portal", UniformInfiniteLight{1.0f, 3, portal}, pi * 3 * 7.5).place =
         on_portal;
 
     const double white =
@@ -254,7 +253,7 @@ inline void add_infinite(std::vector<Case>& cases) {
 
     // Half below the horizon.
     const Vec3f up = normalize(Vec3f{1, 2, 2}), side = Frame::from_normal(up).s;
-    Case& sun = add("sun", SunLight{Spectrum(1.0f), 3, SunDisc::of_radius(side, 0.3), up},
+    Case& sun = add("sun", SunLight{1.0f, 3, SunDisc::of_radius(side, 0.3), up},
                     3 * pi * (1 - std::cos(0.3)) * cross_section);
     sun.tolerance = 1e-3;
 }

@@ -15,7 +15,7 @@ namespace {
 // point.
 Scene scene_of_lights() {
     Scene scene;
-    scene.lights.push_back(PointLight{Spectrum(1.0f), 0.1f, {0, 0, 0}});
+    scene.lights.push_back(PointLight{1.0f, 0.1f, {0, 0, 0}});
     auto add_mesh = [&](std::vector<Index> indices, float radiance, bool in_world) {
         const auto shape = static_cast<Index>(scene.shapes.size());
         Shape s;
@@ -27,13 +27,13 @@ Scene scene_of_lights() {
         scene.meshes.push_back(std::move(mesh));
         scene.shapes.push_back(s);
         if (in_world) scene.world_shapes.push_back(shape);
-        scene.lights.push_back(AreaLight{Spectrum(1.0f), radiance, false, shape});
+        scene.lights.push_back(AreaLight{1.0f, radiance, false, shape});
     };
     add_mesh({0, 1, 2, 0, 1, 3, 0, 0, 1, 0, 2, 1}, 1, true); // the third has no area
     add_mesh({0, 1, 2, 0, 1, 3}, 0, true);
     add_mesh({}, 1, true);
     add_mesh({0, 1, 2}, 1, false);
-    scene.lights.push_back(PointLight{Spectrum(1.0f), 0.2f, {0, 0, 0}});
+    scene.lights.push_back(PointLight{1.0f, 0.2f, {0, 0, 0}});
     return scene;
 }
 constexpr std::pair<Index, Index> parts[] = {{0, 0}, {1, 0}, {1, 1}, {1, 2}, {1, 3}, {2, 0}, {2, 1}, {5, 0}};
@@ -79,8 +79,7 @@ TEST(LightSamplers, ByPower) {
 TEST(LightSamplers, InfinitePowerIsMuch) {
     Scene scene;
     constexpr float infinite = std::numeric_limits<float>::infinity();
-    for (float scale : {infinite, 1.0f, infinite})
-        scene.lights.push_back(PointLight{Spectrum(1.0f), scale, {0, 0, 0}});
+    for (float scale : {infinite, 1.0f, infinite}) scene.lights.push_back(PointLight{1.0f, scale, {0, 0, 0}});
     const SceneTables tables(scene);
     const LightSampler& lights = *tables.view().light_sampler;
     EXPECT_EQ(lights.probability({}, 0, 0), 0.5f);
@@ -92,7 +91,7 @@ TEST(LightSamplers, WithoutLights) {
     for (const LightSampling sampling : {LightSampling::uniform, LightSampling::power}) {
         Scene scene;
         EXPECT_TRUE(SceneTables(scene, {}, sampling).view().light_sampler->empty());
-        scene.lights.push_back(PointLight{Spectrum(0.0f), 1, {0, 0, 0}});
+        scene.lights.push_back(PointLight{0.0f, 1, {0, 0, 0}});
         const SceneTables black(scene, {}, sampling);
         EXPECT_EQ(black.view().light_sampler->size(), 1u);
         EXPECT_EQ(black.view().light_sampler->probability({}, 0, 0), 1);

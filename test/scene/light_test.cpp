@@ -20,7 +20,7 @@ const SampledWavelengths wavelengths = SampledWavelengths::sample_visible(0.37f)
 Index add_light(Scene& scene, Shape shape, bool two_sided, float radiance = 2) {
     shape.light = static_cast<Index>(scene.lights.size());
     auto index = static_cast<Index>(scene.shapes.size());
-    scene.lights.push_back(AreaLight{Spectrum(1.0f), radiance, two_sided, index});
+    scene.lights.push_back(AreaLight{1.0f, radiance, two_sided, index});
     scene.shapes.push_back(shape);
     scene.world_shapes.push_back(index);
     return shape.light;
@@ -201,7 +201,7 @@ TEST(InfiniteLights, DirectionsFollowTheirDensity) {
     for (int which : {0, 1, 2, 3}) {
         Scene scene;
         if (which == 0) {
-            scene.lights.push_back(UniformInfiniteLight{Spectrum(1.0f), 3});
+            scene.lights.push_back(UniformInfiniteLight{1.0f, 3});
         } else {
             Image map(16, 16, {"R", "G", "B"});
             for (int i = 0; i < 256; ++i)
@@ -276,10 +276,10 @@ TEST(InfiniteLights, MapsIntegrateToTheirMean) {
 
 TEST(PointLights, InverseSquareAndFalloff) {
     Scene scene;
-    scene.lights.push_back(PointLight{Spectrum(1.0f), 5, {0, 3, 4}});
+    scene.lights.push_back(PointLight{1.0f, 5, {0, 3, 4}});
     const float cos_start = std::cos(0.3f), cos_end = std::cos(0.6f);
-    scene.lights.push_back(SpotLight{Spectrum(1.0f), 5, {0, 0, 2}, {0, 0, -1}, cos_start, cos_end});
-    scene.lights.push_back(DistantLight{Spectrum(1.0f), 5, normalize(Vec3f{1, 2, 2})});
+    scene.lights.push_back(SpotLight{1.0f, 5, {0, 0, 2}, {0, 0, -1}, cos_start, cos_end});
+    scene.lights.push_back(DistantLight{1.0f, 5, normalize(Vec3f{1, 2, 2})});
     SceneTables tables(scene);
     auto at = [&](Index light, Point3f p) {
         return sample_li({tables.view(), light}, 0, {p, {0, 0, 1}, 0}, {0.3f, 0.8f}, wavelengths);
@@ -313,11 +313,11 @@ TEST(LightTables, ProbabilitiesArePowers) {
     add_light(scene, Quadric(Sphere{.world_from_object = {}}));             // area 4 pi, radiance 2
     add_light(scene, Vec3f{0, 0, 0}, Vec3f{1, 0, 0}, Vec3f{0, 1, 0});       // area 1/2
     add_light(scene, Vec3f{0, 0, 0}, Vec3f{1, 0, 0}, Vec3f{0, 1, 0}, true); // both sides
-    scene.lights.push_back(PointLight{Spectrum(1.0f), 3, {0, 0, 0}});
-    scene.lights.push_back(SpotLight{Spectrum(1.0f), 3, {0, 0, 0}, {0, 0, 1}, 0.9f, 0.7f});
-    scene.lights.push_back(DistantLight{Spectrum(1.0f), 0.5f, {0, 0, 1}});
-    scene.lights.push_back(UniformInfiniteLight{Spectrum(1.0f), 0.25f});
-    scene.lights.push_back(PointLight{Spectrum(0.0f), 3, {0, 0, 0}});
+    scene.lights.push_back(PointLight{1.0f, 3, {0, 0, 0}});
+    scene.lights.push_back(SpotLight{1.0f, 3, {0, 0, 0}, {0, 0, 1}, 0.9f, 0.7f});
+    scene.lights.push_back(DistantLight{1.0f, 0.5f, {0, 0, 1}});
+    scene.lights.push_back(UniformInfiniteLight{1.0f, 0.25f});
+    scene.lights.push_back(PointLight{0.0f, 3, {0, 0, 0}});
     SceneTables tables(scene);
     const LightSampler& lights = *tables.view().light_sampler;
     double r = tables.view().light_tables.scene_bounds.radius(), cross_section = pi * r * r;
@@ -360,8 +360,8 @@ TEST(LightTables, AMapHasThePowerOfItsMean) {
     std::fill(map.f32().begin(), map.f32().end(), 0.5f);
     scene.environments.push_back(map);
     scene.lights.push_back(ImageInfiniteLight{.environment = 0, .scale = 3, .world_from_light = {}});
-    scene.lights.push_back(
-        UniformInfiniteLight{Spectrum(RgbIlluminantSpectrum(RgbColorSpace::srgb(), {1, 1, 1})), 1.5f});
+    scene.lights.push_back(UniformInfiniteLight{
+        add_spectrum(scene, RgbIlluminantSpectrum(RgbColorSpace::srgb(), {1, 1, 1})), 1.5f});
     SceneTables tables(scene);
     EXPECT_NEAR(double(tables.view().light_sampler->probability({}, 1, 0)),
                 double(tables.view().light_sampler->probability({}, 2, 0)), 1e-4);

@@ -61,10 +61,9 @@ TEST(Portals, NoCornerOfATexelIsLeftOut) {
 // Chosen by the flux through the portal, but by no more than what the scene can catch.
 TEST(Portals, PowerIsTheFluxThroughThem) {
     Scene scene;
-    scene.lights.push_back(UniformInfiniteLight{Spectrum(1.0f), 3, Portal(corners_of(0, 0, 2, 3))});
-    scene.lights.push_back(
-        UniformInfiniteLight{Spectrum(1.0f), 3, Portal(corners_of(-1e3f, -1e3f, 1e3f, 1e3f))});
-    scene.lights.push_back(PointLight{Spectrum(1.0f), 1, {0, 0, 0}});
+    scene.lights.push_back(UniformInfiniteLight{1.0f, 3, Portal(corners_of(0, 0, 2, 3))});
+    scene.lights.push_back(UniformInfiniteLight{1.0f, 3, Portal(corners_of(-1e3f, -1e3f, 1e3f, 1e3f))});
+    scene.lights.push_back(PointLight{1.0f, 1, {0, 0, 0}});
     scene.quadrics.push_back(Quadric(Sphere{.world_from_object = Transform::scale({4, 4, 4})}));
     Shape shape;
     shape.geometry = QuadricIndex{0};

@@ -60,7 +60,7 @@ EnvironmentSettings settings_of(int kind) {
 Scene scene_with(int kind, const std::optional<Portal>& portal) {
     Scene scene;
     if (kind == 0) {
-        scene.lights.push_back(UniformInfiniteLight{Spectrum(1.0f), 3, portal});
+        scene.lights.push_back(UniformInfiniteLight{1.0f, 3, portal});
         return scene;
     }
     scene.environments.push_back(kind == 1 ? test_map(16, 16) : test_map(32, 16));

@@ -1,4 +1,5 @@
 // Digests of scenes: every value counts, by itself and in its part; addresses and origins do not.
+#include "test/scene/light_testing.h"
 #include <array>
 #include <functional>
 #include <gtest/gtest.h>
@@ -13,12 +14,7 @@
 namespace montelux {
 namespace {
 
-template <typename L>
-L with_spectrum(const Spectrum& spectrum) {
-    L light;
-    light.spectrum = spectrum;
-    return light;
-}
+using testing::with_spectrum;
 
 // A scene with one of every kind of value.
 Scene scene_of_all_kinds() {
@@ -35,11 +31,11 @@ Scene scene_of_all_kinds() {
     s.world_shapes = {0, 1};
     s.objects = {{{2}}};
     s.instances = {{0, Transform::translate({1, 2, 3})}};
-    const SpectrumParameter gray{Spectrum(0.5f), no_index};
+    const SpectrumParameter gray{0.5f};
     s.materials = {DiffuseMaterial{gray},
                    ConductorMaterial{{gray, gray, gray, false}},
-                   DielectricMaterial{Spectrum(1.5f), {}},
-                   ThinDielectricMaterial{Spectrum(1.5f)},
+                   DielectricMaterial{1.5f, {}},
+                   ThinDielectricMaterial{1.5f},
                    CoatedDiffuseMaterial{gray, {}},
                    CoatedConductorMaterial{{gray, gray, gray, true}},
                    DiffuseTransmissionMaterial{gray, gray}};
@@ -53,14 +49,14 @@ Scene scene_of_all_kinds() {
     s.environments.emplace_back(8, 8, std::vector<std::string>{"R", "G", "B"});
     s.skies.emplace_back();
     const Portal portal(std::array<Point3f, 4>{{{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}}});
-    s.lights = {AreaLight{Spectrum(1.0f), 1, false, 0},
-                with_spectrum<PointLight>(Spectrum(1.0f)),
-                with_spectrum<SpotLight>(Spectrum(1.0f)),
-                with_spectrum<DistantLight>(Spectrum(1.0f)),
-                UniformInfiniteLight{Spectrum(1.0f), 1, portal},
+    s.lights = {AreaLight{1.0f, 1, false, 0},
+                with_spectrum<PointLight>(1.0f),
+                with_spectrum<SpotLight>(1.0f),
+                with_spectrum<DistantLight>(1.0f),
+                UniformInfiniteLight{1.0f, 1, portal},
                 ImageInfiniteLight{.environment = 0, .world_from_light = {}},
                 SkyLight{.sky = 0, .environment = 0, .world_from_light = {}},
-                with_spectrum<SunLight>(Spectrum(1.0f))};
+                with_spectrum<SunLight>(1.0f)};
     return s;
 }
 
@@ -71,7 +67,7 @@ template <typename T>
 Change change_spectrum_of_light(const Spectrum& to) {
     return [to](Scene& s) {
         for (Light& l : s.lights)
-            if (auto* found = std::get_if<T>(&l)) found->spectrum = to;
+            if (auto* found = std::get_if<T>(&l)) found->spectrum = add_spectrum(s, to);
     };
 }
 
@@ -134,32 +130,31 @@ TEST(SceneDigest, MaterialsCount) {
     using Conductor = std::type_identity<ConductorMaterial>;
     using Coated = std::type_identity<CoatedDiffuseMaterial>;
     using CoatedMetal = std::type_identity<CoatedConductorMaterial>;
-    expect_changes(
-        &SceneDigest::materials,
-        {[=](Scene& s) { at(s, std::type_identity<DiffuseMaterial>()).reflectance.value = Spectrum(0.1f); },
-         [=](Scene& s) { at(s, std::type_identity<DiffuseMaterial>()).reflectance.value = Spectrum(0.9f); },
-         [=](Scene& s) { at(s, std::type_identity<DiffuseMaterial>()).reflectance.texture = 0; },
-         [=](Scene& s) { at(s, Conductor()).metal.k.value = Spectrum(0.1f); },
-         [=](Scene& s) { at(s, Conductor()).metal.from_reflectance = true; },
-         [=](Scene& s) { at(s, Conductor()).roughness.u.value = 0.1f; },
-         [=](Scene& s) { at(s, Conductor()).roughness.v.value = 0.1f; },
-         [=](Scene& s) { at(s, Conductor()).roughness.remap = false; },
-         [=](Scene& s) { at(s, std::type_identity<DielectricMaterial>()).eta = Spectrum(1.6f); },
-         [=](Scene& s) { at(s, std::type_identity<ThinDielectricMaterial>()).eta = Spectrum(1.6f); },
-         [=](Scene& s) { at(s, Coated()).coating.thickness.value = 1; },
-         [=](Scene& s) { at(s, Coated()).coating.albedo.value = Spectrum(1.0f); },
-         [=](Scene& s) { at(s, Coated()).coating.g.value = 0.5f; },
-         [=](Scene& s) { at(s, Coated()).coating.max_depth = 3; },
-         [=](Scene& s) { at(s, Coated()).coating.sample_count = 3; },
-         [=](Scene& s) { at(s, CoatedMetal()).metal.eta.texture = 1; },
-         [=](Scene& s) { at(s, CoatedMetal()).coating.eta = Spectrum(1.1f); },
-         [](Scene& s) { std::swap(s.materials[0], s.materials[1]); },
-         [](Scene& s) { s.materials.pop_back(); }});
+    expect_changes(&SceneDigest::materials,
+                   {[=](Scene& s) { at(s, std::type_identity<DiffuseMaterial>()).reflectance.value = 0.1f; },
+                    [=](Scene& s) { at(s, std::type_identity<DiffuseMaterial>()).reflectance.value = 0.9f; },
+                    [=](Scene& s) { at(s, std::type_identity<DiffuseMaterial>()).reflectance.texture = 0; },
+                    [=](Scene& s) { at(s, Conductor()).metal.k.value = 0.1f; },
+                    [=](Scene& s) { at(s, Conductor()).metal.from_reflectance = true; },
+                    [=](Scene& s) { at(s, Conductor()).roughness.u.value = 0.1f; },
+                    [=](Scene& s) { at(s, Conductor()).roughness.v.value = 0.1f; },
+                    [=](Scene& s) { at(s, Conductor()).roughness.remap = false; },
+                    [=](Scene& s) { at(s, std::type_identity<DielectricMaterial>()).eta = 1.6f; },
+                    [=](Scene& s) { at(s, std::type_identity<ThinDielectricMaterial>()).eta = 1.6f; },
+                    [=](Scene& s) { at(s, Coated()).coating.thickness.value = 1; },
+                    [=](Scene& s) { at(s, Coated()).coating.albedo.value = 1; },
+                    [=](Scene& s) { at(s, Coated()).coating.g.value = 0.5f; },
+                    [=](Scene& s) { at(s, Coated()).coating.max_depth = 3; },
+                    [=](Scene& s) { at(s, Coated()).coating.sample_count = 3; },
+                    [=](Scene& s) { at(s, CoatedMetal()).metal.eta.texture = 1; },
+                    [=](Scene& s) { at(s, CoatedMetal()).coating.eta = 1.1f; },
+                    [](Scene& s) { std::swap(s.materials[0], s.materials[1]); },
+                    [](Scene& s) { s.materials.pop_back(); }});
 }
 
 // Changes a simple field of a material.
 struct ChangeField {
-    void operator()(Spectrum& x) const { x = Spectrum(0.123f); }
+    void operator()(SceneSpectrum& x) const { x = 0.123f; }
     void operator()(SpectrumParameter& x) const { x.texture = 7; }
     void operator()(FloatParameter& x) const { x.texture = 7; }
     void operator()(NormalMapParameter& x) const { x.map = 7; }
@@ -225,7 +220,7 @@ TEST(SceneDigest, TexturesCount) {
                     [](Scene& s) { std::get<2>(s.float_textures[1]).scale.texture = 0; },
                     [](Scene& s) { std::get<3>(s.spectrum_textures[1]).amount.value = 0; },
                     [](Scene& s) { std::get<4>(s.spectrum_textures[2]).dimension = 3; },
-                    [](Scene& s) { std::get<4>(s.spectrum_textures[2]).values[1].value = Spectrum(0.1f); }});
+                    [](Scene& s) { std::get<4>(s.spectrum_textures[2]).values[1].value = 0.1f; }});
 }
 
 TEST(SceneDigest, LightsCount) {
@@ -290,9 +285,47 @@ TEST(SceneDigest, EveryKindOfSpectrumCounts) {
     expect_changes(&SceneDigest::lights, changes);
     // Data in two places with the same values.
     Scene a, b;
-    a.lights = {with_spectrum<PointLight>(Spectrum(PiecewiseLinear(lambda, values)))};
-    b.lights = {with_spectrum<PointLight>(Spectrum(PiecewiseLinear(lambda, values)))};
+    for (Scene* s : {&a, &b})
+        s->lights = {with_spectrum<PointLight>(add_spectrum(*s, Spectrum(PiecewiseLinear(lambda, values))))};
     EXPECT_EQ(digest_of(a), digest_of(b));
+}
+
+// A material, a texture and a light with one spectrum each.
+Scene scene_of_spectra(SceneSpectrum material, SceneSpectrum texture, SceneSpectrum light,
+                       std::vector<Spectrum> spectra) {
+    Scene s;
+    s.spectra = std::move(spectra);
+    s.materials = {DielectricMaterial{material}};
+    s.spectrum_textures = {ConstantTexture<SpectrumParameter>{{texture}}};
+    s.lights = {with_spectrum<PointLight>(light)};
+    return s;
+}
+
+TEST(SceneDigest, SpectraCountByTheirValues) {
+    const auto at = [](Index i) { return SceneSpectrum::at(i); };
+    const Spectrum warm(BlackbodySpectrum(3000)), cold(BlackbodySpectrum(9000)), two(2.0f);
+    const SceneDigest expected = digest_of(scene_of_spectra(at(0), at(1), 2, {warm, cold}));
+    EXPECT_EQ(digest_of(scene_of_spectra(at(1), at(0), 2, {cold, warm})), expected);
+    EXPECT_EQ(digest_of(scene_of_spectra(at(3), at(2), at(1), {two, two, cold, warm, cold})), expected);
+    EXPECT_NE(digest_of(scene_of_spectra(at(1), at(0), 2, {warm, cold})), expected);
+}
+
+TEST(SceneDigest, ASpectrumCountsWhereItIsUsed) {
+    const Spectrum other(BlackbodySpectrum(9000));
+    const Scene scene = scene_of_spectra(SceneSpectrum::at(0), SceneSpectrum::at(1), SceneSpectrum::at(2),
+                                         std::vector<Spectrum>(4, Spectrum(BlackbodySpectrum(3000))));
+    const SceneDigest before = digest_of(scene);
+    const Part users[] = {&SceneDigest::materials, &SceneDigest::textures, &SceneDigest::lights};
+    for (std::size_t i = 0; i < 4; ++i) {
+        Scene changed = scene;
+        changed.spectra[i] = other;
+        SceneDigest after = digest_of(changed);
+        if (i < 3) {
+            EXPECT_NE(after.*users[i], before.*users[i]) << i;
+            after.*users[i] = before.*users[i];
+        }
+        EXPECT_EQ(after, before) << i;
+    }
 }
 
 TEST(SceneDigest, TheCameraCounts) {

@@ -25,7 +25,7 @@ Scene sky_scene(double elevation, const Transform& t) {
     scene.skies.emplace_back(settings);
     const SkyModel& sky = scene.skies[0];
     scene.environments.push_back(sky_density_map(sky, 32));
-    SunLight sun{Spectrum(sky.sun_radiance()), 3,
+    SunLight sun{add_spectrum(scene, Spectrum(sky.sun_radiance())), 3,
                  SunDisc::of_radius(normalize(t.vector(sky.sun_direction())), sun_angular_radius),
                  normalize(t.vector(Vec3f(0, 0, 1)))};
     scene.lights.push_back(sun);

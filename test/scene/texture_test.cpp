@@ -361,16 +361,14 @@ TEST(SpectrumTextures, AreReadAsTheyAreMeant) {
         t.meaning = meaning;
         scene.spectrum_textures.assign(1, t);
         scene.spectrum_textures.push_back(
-            ScaleTexture<SpectrumParameter>{SpectrumParameter{Spectrum(), 0}, FloatParameter{2}});
+            ScaleTexture<SpectrumParameter>{SpectrumParameter{{}, 0}, FloatParameter{2}});
         SceneTables tables(scene);
         SampledSpectrum expected = meaning == RgbMeaning::albedo ? RgbAlbedoSpectrum(srgb, rgb).sample(lambda)
                                    : meaning == RgbMeaning::unbounded
                                        ? RgbUnboundedSpectrum(srgb, rgb).sample(lambda)
                                        : RgbIlluminantSpectrum(srgb, rgb).sample(lambda);
-        SampledSpectrum v =
-            evaluate(tables.view(), SpectrumParameter{Spectrum(), 0}, at({0.5f, 0.5f}), lambda);
-        SampledSpectrum twice =
-            evaluate(tables.view(), SpectrumParameter{Spectrum(), 1}, at({0.5f, 0.5f}), lambda);
+        SampledSpectrum v = evaluate(tables.view(), SpectrumParameter{{}, 0}, at({0.5f, 0.5f}), lambda);
+        SampledSpectrum twice = evaluate(tables.view(), SpectrumParameter{{}, 1}, at({0.5f, 0.5f}), lambda);
         for (int i = 0; i < 4; ++i) {
             EXPECT_NEAR(v[i], expected[i], 1e-5f * (1 + expected[i]));
             EXPECT_NEAR(twice[i], 2 * expected[i], 2e-5f * (1 + expected[i]));

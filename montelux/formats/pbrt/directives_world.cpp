@@ -93,7 +93,7 @@ Index Directives::material_index(const MaterialReference& reference, Location at
     Index& index = material_indices_[declaration];
     if (index == no_index) {
         result_.scene.materials.push_back(
-            make_material(materials_[declaration], textures_, spectra_, diagnostics_));
+            make_material(materials_[declaration], builder_, textures_, spectra_, diagnostics_));
         index = static_cast<Index>(result_.scene.materials.size() - 1);
     }
     return index;

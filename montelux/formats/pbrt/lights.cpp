@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 #include <variant>
 
 #include "montelux/image/image_read.h"
@@ -61,11 +60,12 @@ double upper_illuminance(const Image& map, EnvironmentLayout layout) {
 LightReader::Source LightReader::source(ParameterReader& r, std::string_view name,
                                         const RgbColorSpace& color_space) {
     const Parameter* p = r.any(name, {ParameterType::rgb, ParameterType::spectrum, ParameterType::blackbody});
-    Source s;
-    s.spectrum = p ? spectra_.read(*p, RgbMeaning::illuminant) : Spectrum(color_space.illuminant());
+    const Spectrum spectrum =
+        p ? spectra_.read(*p, RgbMeaning::illuminant) : Spectrum(color_space.illuminant());
+    Source s{builder_.add_spectrum(spectrum)};
     s.scale = r.number("scale", 1);
     if (s.scale < 0) r.error("scale", "parameter 'scale' is negative");
-    s.scale *= photometric_scale(s.spectrum, r);
+    s.scale *= photometric_scale(spectrum, r);
     return s;
 }
 
@@ -132,7 +132,7 @@ void LightReader::read(const Plugin& plugin, const Transform& world_from_light,
     if (auto* sky = std::get_if<SceneBuilder::SkyLights>(&light))
         builder_.add_sky(*sky, plugin.at);
     else
-        builder_.add_light(std::move(std::get<Light>(light)), plugin.at);
+        builder_.add_light(std::get<Light>(light), plugin.at);
 }
 
 // Corners are in world space, whatever the transformation that turns the map.

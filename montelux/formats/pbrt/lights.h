@@ -25,7 +25,7 @@ class LightReader {
 
   private:
     struct Source {
-        Spectrum spectrum;
+        SceneSpectrum spectrum;
         float scale = 1;
     };
     Source source(ParameterReader& r, std::string_view name, const RgbColorSpace& color_space);

@@ -32,18 +32,18 @@ const std::vector<std::string>& supported_materials() {
 // Reads the parameters that a material lists (scene/material/parameter.h); missing ones keep their defaults.
 class MaterialMaker {
   public:
-    MaterialMaker(const MaterialDeclaration& d, TextureLibrary& textures, SpectrumReader& spectra,
-                  Diagnostics& diagnostics)
-        : r_(d.parameters, "material " + in_quotes(d.type), d.at, diagnostics), textures_(textures),
-          spectra_(spectra) {}
+    MaterialMaker(const MaterialDeclaration& d, SceneBuilder& builder, TextureLibrary& textures,
+                  SpectrumReader& spectra, Diagnostics& diagnostics)
+        : r_(d.parameters, "material " + in_quotes(d.type), d.at, diagnostics), builder_(builder),
+          textures_(textures), spectra_(spectra) {}
 
     Material make(std::string_view type) {
         Material material;
         for_each_material_kind([&]<typename M>(std::type_identity<M>) {
             if (type_name(M::name) != type) return;
-            M m;
+            M m = default_material<M>([&](const Spectrum& s) { return builder_.add_spectrum(s); });
             visit_parameters(m, [&](const ParameterInfo& info, auto& field) { read(info, field); });
-            material = std::move(m);
+            material = m;
         });
         r_.ignored("type");
         r_.finish();
@@ -73,7 +73,7 @@ class MaterialMaker {
     }
 
     // An index of refraction: a number or a spectrum.
-    void read(const ParameterInfo& info, Spectrum& eta) {
+    void read(const ParameterInfo& info, SceneSpectrum& eta) {
         const std::string_view parameter = name(info.pbrt_name());
         const Parameter* p = r_.any(parameter, {ParameterType::floating, ParameterType::spectrum,
                                                 ParameterType::rgb, ParameterType::blackbody});
@@ -81,8 +81,10 @@ class MaterialMaker {
         if (p->type == ParameterType::floating && (p->numbers.size() != 1 || !(p->numbers[0] > 0)))
             r_.error(parameter, "parameter " + in_quotes(parameter) +
                                     " is no index of refraction; expected 1 positive number");
-        eta = p->type == ParameterType::floating ? Spectrum(p->numbers[0])
-                                                 : spectra_.read(*p, RgbMeaning::unbounded);
+        if (p->type == ParameterType::floating)
+            eta = p->numbers[0];
+        else
+            eta = builder_.add_spectrum(spectra_.read(*p, RgbMeaning::unbounded));
     }
 
     // "uroughness" and "vroughness" with the prefix; "roughness" where one is missing.
@@ -136,6 +138,7 @@ class MaterialMaker {
 
     std::deque<std::string> names_;
     ParameterReader r_;
+    SceneBuilder& builder_;
     TextureLibrary& textures_;
     SpectrumReader& spectra_;
 };
@@ -153,11 +156,11 @@ bool is_supported_material(const MaterialDeclaration& d, Diagnostics& diagnostic
     return false;
 }
 
-Material make_material(const MaterialDeclaration& d, TextureLibrary& textures, SpectrumReader& spectra,
-                       Diagnostics& diagnostics) {
+Material make_material(const MaterialDeclaration& d, SceneBuilder& builder, TextureLibrary& textures,
+                       SpectrumReader& spectra, Diagnostics& diagnostics) {
     if (!is_supported_material(d, diagnostics))
         diagnostics.error(d.at, "material " + in_quotes(d.type) + " is not supported yet");
-    return MaterialMaker(d, textures, spectra, diagnostics).make(d.type);
+    return MaterialMaker(d, builder, textures, spectra, diagnostics).make(d.type);
 }
 
 } // namespace montelux::pbrt

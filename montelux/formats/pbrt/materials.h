@@ -17,7 +17,7 @@ struct MaterialDeclaration {
 bool is_supported_material(const MaterialDeclaration& d, Diagnostics& diagnostics);
 
 // The material with pbrt-v4's defaults for what is not given.
-Material make_material(const MaterialDeclaration& d, TextureLibrary& textures, SpectrumReader& spectra,
-                       Diagnostics& diagnostics);
+Material make_material(const MaterialDeclaration& d, SceneBuilder& builder, TextureLibrary& textures,
+                       SpectrumReader& spectra, Diagnostics& diagnostics);
 
 } // namespace montelux::pbrt

@@ -7,12 +7,6 @@
 
 namespace montelux::pbrt {
 
-Spectrum SpectrumReader::named(std::string_view name) {
-    std::optional<Spectrum> s = find_named_spectrum(name);
-    if (!s) throw Error("SpectrumReader::named", "there is no spectrum named " + in_quotes(name));
-    return *s;
-}
-
 Spectrum SpectrumReader::from_rgb(const Parameter& p, RgbMeaning meaning) const {
     if (p.numbers.size() != 3)
         diagnostics_.error(p.at, "parameter " + in_quotes(p.name) + " has " +

@@ -17,8 +17,6 @@ class SpectrumReader {
 
     // The parameter is of type rgb, spectrum or blackbody. Each spectrum file is read once.
     Spectrum read(const Parameter& p, RgbMeaning meaning);
-    // A spectrum known by name, such as "metal-Cu-eta"; it must exist.
-    static Spectrum named(std::string_view name);
 
   private:
     Spectrum from_rgb(const Parameter& p, RgbMeaning meaning) const;

@@ -116,7 +116,7 @@ std::optional<SpectrumParameter> TextureLibrary::find_spectrum(ParameterReader& 
     if (!p) return std::nullopt;
     if (p->type == ParameterType::texture)
         return SpectrumParameter{{}, resolve_spectrum(look_up(*p, spectrum_, float_, "spectrum"), meaning)};
-    return SpectrumParameter{spectra_.read(*p, meaning)};
+    return SpectrumParameter{builder_.add_spectrum(spectra_.read(*p, meaning))};
 }
 
 Index TextureLibrary::resolve_float(Entry& entry) {

@@ -38,7 +38,7 @@ class TextureLibrary {
     }
     SpectrumParameter spectrum_or(ParameterReader& r, std::string_view name, RgbMeaning meaning,
                                   float otherwise) {
-        return find_spectrum(r, name, meaning).value_or(SpectrumParameter{Spectrum(otherwise)});
+        return find_spectrum(r, name, meaning).value_or(SpectrumParameter{otherwise});
     }
 
     // The index of a file's picture in Scene::images; read once for each encoding.

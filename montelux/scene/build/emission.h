@@ -20,7 +20,7 @@ float sky_luminance(float illuminance);
 
 // The emission assigned to a shape; with `power` it depends on the shape.
 struct Emission {
-    Spectrum spectrum;
+    SceneSpectrum spectrum;
     float scale = 1; // radiance is scale * spectrum
     bool two_sided = false;
     float power = 0; // lm of each primitive, if positive: scale is then multiplied by power / emitted power

@@ -4,7 +4,9 @@
 
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/overloaded.h"
+#include "montelux/scene/build/check_references.h"
 #include "montelux/scene/build/float_range.h"
+#include "montelux/scene/scene_digest.h"
 
 namespace montelux {
 namespace {
@@ -81,10 +83,22 @@ void SceneBuilder::add_instance(const std::string& object, const Transform& worl
     instances_.push_back({objects_.refer(object), world_from_object, at});
 }
 
-Index SceneBuilder::add_light(Light light, SourceLocation at) {
+Index SceneBuilder::add_light(const Light& light, SourceLocation at) {
     if (scene_.lights.size() >= no_index) messages_.error(at, "more than 2^32 lights");
-    scene_.lights.push_back(std::move(light));
+    try {
+        check_light(scene_, light);
+    } catch (const Error& e) {
+        messages_.error(at, e.what());
+    }
+    scene_.lights.push_back(light);
     return static_cast<Index>(scene_.lights.size() - 1);
+}
+
+SceneSpectrum SceneBuilder::add_spectrum(const Spectrum& spectrum) {
+    if (spectrum.is_constant()) return montelux::add_spectrum(scene_, spectrum);
+    const auto [known, is_new] = spectra_.try_emplace(digest_of(spectrum));
+    if (is_new) known->second = montelux::add_spectrum(scene_, spectrum);
+    return known->second;
 }
 
 void SceneBuilder::place_instances() {
@@ -109,6 +123,12 @@ void SceneBuilder::finish(SourceLocation end) {
             messages_.error(end, "shape " + std::to_string(i) + " has no material");
         if (!shape.alpha.is_constant() && shape.alpha.texture >= scene_.float_textures.size())
             messages_.error(end, "the alpha of shape " + std::to_string(i) + " has no texture");
+    }
+    try {
+        check_textures(scene_);
+        check_materials(scene_);
+    } catch (const Error& e) {
+        messages_.error(end, e.what());
     }
     if (scene_.lights.empty()) messages_.warn(end, "the scene has no light; its picture is black");
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "montelux/scene/build/emission.h"
 #include "montelux/scene/build/geometry.h"
 #include "montelux/scene/build/name_table.h"
+#include "montelux/scene/content_digest.h"
 #include "montelux/scene/scene.h"
 
 namespace montelux {
@@ -40,7 +42,7 @@ class SceneBuilder {
     // The object may be declared later.
     void add_instance(const std::string& object, const Transform& world_from_object, SourceLocation at = {});
 
-    Index add_light(Light light, SourceLocation at = {});
+    Index add_light(const Light& light, SourceLocation at = {});
     // A clear sky and, if requested and above the horizon, its sun. Luminances are multiplied by `scale`; a
     // positive illuminance replaces that of both on the ground.
     struct SkyLights {
@@ -51,6 +53,8 @@ class SceneBuilder {
     };
     void add_sky(const SkyLights& sky, SourceLocation at = {});
 
+    // Equal spectra share an entry of Scene::spectra.
+    SceneSpectrum add_spectrum(const Spectrum& spectrum);
     // A picture for image textures. Non-finite values become 0, with a warning. Errors: neither RGB nor grey.
     // Messages call it `name`.
     Index add_image(Image picture, const std::string& name, SourceLocation at = {});
@@ -75,6 +79,7 @@ class SceneBuilder {
     NameTable objects_{"object"};
     Index open_object_ = no_index;
     std::vector<InstanceUse> instances_;
+    std::map<ContentDigest, SceneSpectrum> spectra_; // added so far
     std::size_t emissive_primitives_ = 0;
 };
 

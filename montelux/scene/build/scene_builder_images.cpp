@@ -91,7 +91,7 @@ void SceneBuilder::add_sky(const SkyLights& sky, SourceLocation at) {
                                      })));
     }
     if (sky.sun && model.sun_radiance().max_value() > 0)
-        add_light(SunLight{Spectrum(model.sun_radiance()), scale,
+        add_light(SunLight{add_spectrum(Spectrum(model.sun_radiance())), scale,
                            SunDisc::of_radius(normalize(sky.world_from_light.vector(model.sun_direction())),
                                               sun_angular_radius),
                            normalize(sky.world_from_light.normal(Vec3f(0, 0, 1)))},

@@ -34,9 +34,10 @@ float size_of(Vec3d p) {
     return static_cast<float>(std::max(std::abs(p.x), std::max(std::abs(p.y), std::abs(p.z))));
 }
 
-std::optional<LightSample> sample_sphere(const AreaLight& light, const WorldSphere& sphere,
-                                         const SphereCone& cone, bool flipped, const ReferencePoint& from,
-                                         Vec2f u, const SampledWavelengths& lambda) {
+std::optional<LightSample> sample_sphere(const AreaLight& light, const LightContext& context,
+                                         const WorldSphere& sphere, const SphereCone& cone, bool flipped,
+                                         const ReferencePoint& from, Vec2f u,
+                                         const SampledWavelengths& lambda) {
     // Inside out: the visible side is dark.
     if (flipped && !light.two_sided) return std::nullopt;
     double one_minus_cos = double(u.x) * cone.one_minus_cos_max();
@@ -47,7 +48,7 @@ std::optional<LightSample> sample_sphere(const AreaLight& light, const WorldSphe
     s.wi = Frame::from_normal(cone.axis).to_world(
         {sin_theta * std::cos(phi), sin_theta * std::sin(phi), cos_theta});
     s.pdf = cone.pdf();
-    s.radiance = light.spectrum.sample(lambda) * light.scale;
+    s.radiance = context.scene.sample(light.spectrum, lambda) * light.scale;
     // The near intersection.
     double t = cone.distance * (1 - one_minus_cos) -
                std::sqrt(std::max(0.0, sphere.radius * sphere.radius - cone.distance * cone.distance * sin2));
@@ -90,7 +91,7 @@ std::optional<LightSample> sample_surface(const AreaLight& light, const LightCon
     const float share = share_there(context, shape, *point, wi);
     if (!(share > 0)) return result;
     LightSample& s = result.emplace();
-    s.radiance = light.spectrum.sample(lambda) * radiance_scale(light, context, part) * share;
+    s.radiance = context.scene.sample(light.spectrum, lambda) * radiance_scale(light, context, part) * share;
     s.wi = wi;
     s.pdf = point->area_density * d2 / std::abs(cosine);
     s.invisible = is_invisible(context, shape);
@@ -140,8 +141,8 @@ std::optional<LightSample> AreaLight::sample_li(const LightContext& context, Ind
                                                 const SampledWavelengths& lambda) const {
     const Shape& s = context.scene.shapes[shape];
     if (const auto cone = cone_of(context, from.p))
-        return sample_sphere(*this, *context.tables().sphere(context.light), *cone, s.flip_normal, from, u,
-                             lambda);
+        return sample_sphere(*this, context, *context.tables().sphere(context.light), *cone, s.flip_normal,
+                             from, u, lambda);
     return sample_surface(*this, context, part, from, u, lambda);
 }
 
@@ -157,7 +158,7 @@ float AreaLight::pdf_li(const LightContext& context, const ReferencePoint& from,
 SampledSpectrum AreaLight::radiance(const LightContext& context, const ReferencePoint&, const LightHit& hit,
                                     const SampledWavelengths& lambda) const {
     if (!shines(*this, -dot(hit.n, hit.wi))) return {};
-    return spectrum.sample(lambda) * radiance_scale(*this, context, hit.part);
+    return context.scene.sample(spectrum, lambda) * radiance_scale(*this, context, hit.part);
 }
 
 std::optional<EmissionSample> AreaLight::sample_le(const LightContext& context, Index part, Vec2f u_position,
@@ -177,7 +178,7 @@ std::optional<EmissionSample> AreaLight::sample_le(const LightContext& context, 
     const float share = share_there(context, context.scene.shapes[shape], *point, w);
     if (!(share > 0)) return std::nullopt;
     EmissionSample s;
-    s.radiance = spectrum.sample(lambda) * (radiance_scale(*this, context, part) * share);
+    s.radiance = context.scene.sample(spectrum, lambda) * (radiance_scale(*this, context, part) * share);
     s.ray = {offset_origin(point->p, n, point->error, w), w};
     s.n = n;
     s.cosine = local.z;
@@ -195,7 +196,7 @@ EmissionPdf AreaLight::pdf_le(const LightContext& context, const LightHit& hit, 
 void AreaLight::powers(const LightContext& context, std::span<double> parts) const {
     const Shape& s = context.scene.shapes[shape];
     const float alpha = constant_alpha(context.scene, s).value_or(1);
-    const double brightness = visible_mean(spectrum);
+    const double brightness = visible_mean(context.scene.spectrum(spectrum));
     auto power = [&](double area, float factor) {
         if (alpha > 0 && alpha < 1) area *= double(alpha);
         return pi * area * (two_sided ? 2 : 1) * double(factor) * brightness;

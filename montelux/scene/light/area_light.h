@@ -2,7 +2,7 @@
 #pragma once
 
 #include "montelux/scene/light/light_model.h"
-#include "montelux/spectrum/spectrum.h"
+#include "montelux/scene/scene_spectrum.h"
 
 namespace montelux {
 
@@ -14,7 +14,7 @@ struct AreaLight {
     static constexpr LightKind kind = LightKind::surface;
     static constexpr std::string_view name = "area light";
 
-    Spectrum spectrum;
+    SceneSpectrum spectrum;
     float scale = 1;
     bool two_sided = false;
     Index shape = no_index;

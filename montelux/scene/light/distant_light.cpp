@@ -9,9 +9,10 @@ namespace montelux {
 
 Index DistantLight::part_count(const LightContext&) const { return 1; }
 
-std::optional<LightSample> DistantLight::sample_li(const LightContext&, Index, const ReferencePoint& from,
-                                                   Vec2f, const SampledWavelengths& lambda) const {
-    return LightSample{.radiance = spectrum.sample(lambda) * scale,
+std::optional<LightSample> DistantLight::sample_li(const LightContext& context, Index,
+                                                   const ReferencePoint& from, Vec2f,
+                                                   const SampledWavelengths& lambda) const {
+    return LightSample{.radiance = context.scene.sample(spectrum, lambda) * scale,
                        .wi = to_light,
                        .pdf = 1,
                        .delta = true,
@@ -30,7 +31,7 @@ std::optional<EmissionSample> DistantLight::sample_le(const LightContext& contex
                                                       const SampledWavelengths& lambda) const {
     const SceneDisk disk(context.tables().scene_bounds);
     EmissionSample s;
-    s.radiance = spectrum.sample(lambda) * scale;
+    s.radiance = context.scene.sample(spectrum, lambda) * scale;
     s.ray = disk.sample(-to_light, u);
     s.pdf_position = disk.pdf();
     s.pdf_direction = 1;
@@ -42,7 +43,8 @@ EmissionPdf DistantLight::pdf_le(const LightContext& context, const LightHit&, V
 }
 
 void DistantLight::powers(const LightContext& context, std::span<double> parts) const {
-    parts[0] = SceneDisk(context.tables().scene_bounds).area() * (double(scale) * visible_mean(spectrum));
+    parts[0] = SceneDisk(context.tables().scene_bounds).area() *
+               (double(scale) * visible_mean(context.scene.spectrum(spectrum)));
 }
 
 std::optional<LightBounds> DistantLight::bounds(const LightContext&, Index) const { return std::nullopt; }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "montelux/scene/light/light_model.h"
-#include "montelux/spectrum/spectrum.h"
+#include "montelux/scene/scene_spectrum.h"
 
 namespace montelux {
 
@@ -11,7 +11,7 @@ struct DistantLight {
     static constexpr LightKind kind = LightKind::direction;
     static constexpr std::string_view name = "distant light";
 
-    Spectrum spectrum;
+    SceneSpectrum spectrum;
     float scale = 1;
     Vec3f to_light{0, 0, 1};
 

@@ -2,6 +2,7 @@
 // in the units of the film.
 #pragma once
 
+#include <type_traits>
 #include <variant>
 
 #include "montelux/scene/light/area_light.h"
@@ -17,6 +18,7 @@ namespace montelux {
 
 using Light = std::variant<AreaLight, PointLight, SpotLight, DistantLight, UniformInfiniteLight,
                            ImageInfiniteLight, SkyLight, SunLight>;
+static_assert(std::is_trivially_copyable_v<Light>);
 
 inline LightKind kind_of(const Light& light) {
     return std::visit([](const auto& l) { return l.kind; }, light);

@@ -26,9 +26,10 @@ std::optional<LightSample> sample_position(Point3f position, SampledSpectrum int
 
 Index PointLight::part_count(const LightContext&) const { return 1; }
 
-std::optional<LightSample> PointLight::sample_li(const LightContext&, Index, const ReferencePoint& from,
-                                                 Vec2f, const SampledWavelengths& lambda) const {
-    return sample_position(position, spectrum.sample(lambda) * scale, from);
+std::optional<LightSample> PointLight::sample_li(const LightContext& context, Index,
+                                                 const ReferencePoint& from, Vec2f,
+                                                 const SampledWavelengths& lambda) const {
+    return sample_position(position, context.scene.sample(spectrum, lambda) * scale, from);
 }
 
 float PointLight::pdf_li(const LightContext&, const ReferencePoint&, const LightHit&) const { return 0; }
@@ -38,10 +39,10 @@ SampledSpectrum PointLight::radiance(const LightContext&, const ReferencePoint&,
     return {};
 }
 
-std::optional<EmissionSample> PointLight::sample_le(const LightContext&, Index, Vec2f, Vec2f u,
+std::optional<EmissionSample> PointLight::sample_le(const LightContext& context, Index, Vec2f, Vec2f u,
                                                     const SampledWavelengths& lambda) const {
     EmissionSample s;
-    s.radiance = spectrum.sample(lambda) * scale;
+    s.radiance = context.scene.sample(spectrum, lambda) * scale;
     s.ray = {position, sample_uniform_sphere(u)};
     s.pdf_position = 1;
     s.pdf_direction = inv_four_pi_f;
@@ -52,8 +53,8 @@ EmissionPdf PointLight::pdf_le(const LightContext&, const LightHit&, Vec3f) cons
     return {0, inv_four_pi_f};
 }
 
-void PointLight::powers(const LightContext&, std::span<double> parts) const {
-    parts[0] = 4 * pi * (double(scale) * visible_mean(spectrum));
+void PointLight::powers(const LightContext& context, std::span<double> parts) const {
+    parts[0] = 4 * pi * (double(scale) * visible_mean(context.scene.spectrum(spectrum)));
 }
 
 std::optional<LightBounds> PointLight::bounds(const LightContext&, Index) const {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "montelux/scene/light/light_model.h"
-#include "montelux/spectrum/spectrum.h"
+#include "montelux/scene/scene_spectrum.h"
 
 namespace montelux {
 
@@ -11,7 +11,7 @@ struct PointLight {
     static constexpr LightKind kind = LightKind::position;
     static constexpr std::string_view name = "point light";
 
-    Spectrum spectrum;
+    SceneSpectrum spectrum;
     float scale = 1;
     Point3f position;
 

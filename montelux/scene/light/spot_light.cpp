@@ -18,11 +18,12 @@ float SpotLight::falloff(Vec3f w) const {
 
 Index SpotLight::part_count(const LightContext&) const { return 1; }
 
-std::optional<LightSample> SpotLight::sample_li(const LightContext&, Index, const ReferencePoint& from, Vec2f,
+std::optional<LightSample> SpotLight::sample_li(const LightContext& context, Index,
+                                                const ReferencePoint& from, Vec2f,
                                                 const SampledWavelengths& lambda) const {
     const float share = falloff(normalize(from.p - position));
     if (share == 0) return std::nullopt;
-    return sample_position(position, spectrum.sample(lambda) * (scale * share), from);
+    return sample_position(position, context.scene.sample(spectrum, lambda) * (scale * share), from);
 }
 
 float SpotLight::pdf_li(const LightContext&, const ReferencePoint&, const LightHit&) const { return 0; }
@@ -33,14 +34,14 @@ SampledSpectrum SpotLight::radiance(const LightContext&, const ReferencePoint&, 
 }
 
 // Uniform over the cone: at least half of the flux is where the density would have to be highest.
-std::optional<EmissionSample> SpotLight::sample_le(const LightContext&, Index, Vec2f, Vec2f u,
+std::optional<EmissionSample> SpotLight::sample_le(const LightContext& context, Index, Vec2f, Vec2f u,
                                                    const SampledWavelengths& lambda) const {
     const float versine = 1 - cos_total_width;
     if (!(versine > 0)) return std::nullopt;
     const Vec3f w =
         normalize(Frame::from_normal(normalize(axis)).to_world(sample_uniform_cone_from_versine(u, versine)));
     EmissionSample s;
-    s.radiance = spectrum.sample(lambda) * (scale * falloff(w));
+    s.radiance = context.scene.sample(spectrum, lambda) * (scale * falloff(w));
     s.ray = {position, w};
     s.pdf_position = 1;
     s.pdf_direction = uniform_cone_pdf_from_versine(versine);
@@ -52,8 +53,8 @@ EmissionPdf SpotLight::pdf_le(const LightContext&, const LightHit&, Vec3f w) con
     return {0, uniform_cone_pdf_from_versine(1 - cos_total_width)};
 }
 
-void SpotLight::powers(const LightContext&, std::span<double> parts) const {
-    const double flux = double(scale) * visible_mean(spectrum);
+void SpotLight::powers(const LightContext& context, std::span<double> parts) const {
+    const double flux = double(scale) * visible_mean(context.scene.spectrum(spectrum));
     parts[0] =
         2 * pi * flux *
         ((1 - double(cos_falloff_start)) + 0.5 * (double(cos_falloff_start) - double(cos_total_width)));

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "montelux/scene/light/light_model.h"
-#include "montelux/spectrum/spectrum.h"
+#include "montelux/scene/scene_spectrum.h"
 
 namespace montelux {
 
@@ -12,7 +12,7 @@ struct SpotLight {
     static constexpr LightKind kind = LightKind::position;
     static constexpr std::string_view name = "spot light";
 
-    Spectrum spectrum;
+    SceneSpectrum spectrum;
     float scale = 1;
     Point3f position;
     Vec3f axis{0, 0, 1};

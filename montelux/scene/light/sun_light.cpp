@@ -12,11 +12,11 @@ namespace montelux {
 
 Index SunLight::part_count(const LightContext&) const { return 1; }
 
-std::optional<LightSample> SunLight::sample_li(const LightContext&, Index, const ReferencePoint& from,
+std::optional<LightSample> SunLight::sample_li(const LightContext& context, Index, const ReferencePoint& from,
                                                Vec2f u, const SampledWavelengths& lambda) const {
     const Vec3f wi = disc.sample(u);
     if (hides(wi)) return std::nullopt;
-    return LightSample{.radiance = spectrum.sample(lambda) * scale,
+    return LightSample{.radiance = context.scene.sample(spectrum, lambda) * scale,
                        .wi = wi,
                        .pdf = disc.pdf(),
                        .shadow = shadow_ray_to_infinity(from, wi)};
@@ -26,10 +26,10 @@ float SunLight::pdf_li(const LightContext&, const ReferencePoint&, const LightHi
     return disc.contains(hit.wi) ? disc.pdf() : 0;
 }
 
-SampledSpectrum SunLight::radiance(const LightContext&, const ReferencePoint&, const LightHit& hit,
+SampledSpectrum SunLight::radiance(const LightContext& context, const ReferencePoint&, const LightHit& hit,
                                    const SampledWavelengths& lambda) const {
     if (!disc.contains(hit.wi) || hides(hit.wi)) return {};
-    return spectrum.sample(lambda) * scale;
+    return context.scene.sample(spectrum, lambda) * scale;
 }
 
 std::optional<EmissionSample> SunLight::sample_le(const LightContext& context, Index, Vec2f u_position,
@@ -38,7 +38,7 @@ std::optional<EmissionSample> SunLight::sample_le(const LightContext& context, I
     if (hides(wi)) return std::nullopt;
     const SceneDisk disk(context.tables().scene_bounds);
     EmissionSample s;
-    s.radiance = spectrum.sample(lambda) * scale;
+    s.radiance = context.scene.sample(spectrum, lambda) * scale;
     s.ray = disk.sample(-wi, u_position);
     s.pdf_position = disk.pdf();
     s.pdf_direction = disc.pdf();
@@ -52,8 +52,9 @@ EmissionPdf SunLight::pdf_le(const LightContext& context, const LightHit&, Vec3f
 
 void SunLight::powers(const LightContext& context, std::span<double> parts) const {
     const double above = std::asin(std::clamp(double(dot(disc.centre, up)), -1.0, 1.0));
-    parts[0] = SceneDisk(context.tables().scene_bounds).area() * double(scale) * visible_mean(spectrum) *
-               disc.solid_angle() * part_above_horizon(above, std::sqrt(2 * double(disc.versine)));
+    parts[0] = SceneDisk(context.tables().scene_bounds).area() * double(scale) *
+               visible_mean(context.scene.spectrum(spectrum)) * disc.solid_angle() *
+               part_above_horizon(above, std::sqrt(2 * double(disc.versine)));
 }
 
 std::optional<LightBounds> SunLight::bounds(const LightContext&, Index) const { return std::nullopt; }

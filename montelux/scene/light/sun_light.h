@@ -3,7 +3,7 @@
 
 #include "montelux/scene/light/light_model.h"
 #include "montelux/scene/light/sky/sun_disc.h"
-#include "montelux/spectrum/spectrum.h"
+#include "montelux/scene/scene_spectrum.h"
 
 namespace montelux {
 
@@ -12,7 +12,7 @@ struct SunLight {
     static constexpr LightKind kind = LightKind::infinite;
     static constexpr std::string_view name = "sun";
 
-    Spectrum spectrum;
+    SceneSpectrum spectrum;
     float scale = 1;
     SunDisc disc;
     Vec3f up{0, 0, 1}; // the part of the disc on the other side is hidden

@@ -14,7 +14,7 @@ namespace montelux {
 
 Index UniformInfiniteLight::part_count(const LightContext&) const { return 1; }
 
-std::optional<LightSample> UniformInfiniteLight::sample_li(const LightContext&, Index,
+std::optional<LightSample> UniformInfiniteLight::sample_li(const LightContext& context, Index,
                                                            const ReferencePoint& from, Vec2f u,
                                                            const SampledWavelengths& lambda) const {
     LightSample s;
@@ -27,7 +27,7 @@ std::optional<LightSample> UniformInfiniteLight::sample_li(const LightContext&, 
         s.wi = sample_uniform_sphere(u);
         s.pdf = inv_four_pi_f;
     }
-    s.radiance = spectrum.sample(lambda) * scale;
+    s.radiance = context.scene.sample(spectrum, lambda) * scale;
     s.shadow = shadow_ray_to_infinity(from, s.wi);
     return s;
 }
@@ -40,10 +40,10 @@ float UniformInfiniteLight::pdf_li(const LightContext&, const ReferencePoint& fr
     return seen ? seen->pdf() : 0;
 }
 
-SampledSpectrum UniformInfiniteLight::radiance(const LightContext&, const ReferencePoint& from,
+SampledSpectrum UniformInfiniteLight::radiance(const LightContext& context, const ReferencePoint& from,
                                                const LightHit& hit, const SampledWavelengths& lambda) const {
     if (portal && !portal->lets_through(from.p, hit.wi)) return {};
-    return spectrum.sample(lambda) * scale;
+    return context.scene.sample(spectrum, lambda) * scale;
 }
 
 std::optional<EmissionSample> UniformInfiniteLight::sample_le(const LightContext& context, Index,
@@ -64,7 +64,7 @@ std::optional<EmissionSample> UniformInfiniteLight::sample_le(const LightContext
         s.pdf_position = disk.pdf();
         s.pdf_direction = inv_four_pi_f;
     }
-    s.radiance = spectrum.sample(lambda) * scale;
+    s.radiance = context.scene.sample(spectrum, lambda) * scale;
     return s;
 }
 
@@ -78,7 +78,7 @@ EmissionPdf UniformInfiniteLight::pdf_le(const LightContext& context, const Ligh
 
 void UniformInfiniteLight::powers(const LightContext& context, std::span<double> parts) const {
     const double cross_section = SceneDisk(context.tables().scene_bounds).area();
-    const double flux = double(scale) * visible_mean(spectrum);
+    const double flux = double(scale) * visible_mean(context.scene.spectrum(spectrum));
     parts[0] =
         portal ? flux * std::min(pi * portal->area(), 2 * pi * cross_section) : 4 * pi * cross_section * flux;
 }

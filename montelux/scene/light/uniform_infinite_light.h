@@ -3,7 +3,7 @@
 
 #include "montelux/scene/light/light_model.h"
 #include "montelux/scene/light/portal.h"
-#include "montelux/spectrum/spectrum.h"
+#include "montelux/scene/scene_spectrum.h"
 
 namespace montelux {
 
@@ -12,7 +12,7 @@ struct UniformInfiniteLight {
     static constexpr LightKind kind = LightKind::infinite;
     static constexpr std::string_view name = "uniform sky";
 
-    Spectrum spectrum;
+    SceneSpectrum spectrum;
     float scale = 1;
     std::optional<Portal> portal{};
 

@@ -11,7 +11,7 @@ struct CoatedDiffuseMaterial {
     static constexpr const char* name = "CoatedDiffuse";
     static constexpr const char* doc = "A matt surface under a clear coat.";
 
-    SpectrumParameter reflectance{Spectrum(0.5f)};
+    SpectrumParameter reflectance{0.5f};
     CoatingParameters coating{};
     SurfaceDetail detail{};
 

@@ -8,7 +8,7 @@ namespace montelux {
 // `albedo` and `g` belong to the medium in the layer.
 struct CoatingParameters {
     RoughnessParameter roughness{};
-    Spectrum eta{1.5f};
+    SceneSpectrum eta{1.5f};
     FloatParameter thickness{0.01f};
     SpectrumParameter albedo{};
     FloatParameter g{};

@@ -10,7 +10,7 @@ struct DielectricMaterial {
     static constexpr const char* name = "Dielectric";
     static constexpr const char* doc = "Glass, water: refracts and reflects.";
 
-    Spectrum eta{1.5f};
+    SceneSpectrum eta{1.5f};
     RoughnessParameter roughness{};
     SurfaceDetail detail{};
 

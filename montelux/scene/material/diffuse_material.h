@@ -10,7 +10,7 @@ struct DiffuseMaterial {
     static constexpr const char* name = "Diffuse";
     static constexpr const char* doc = "Lambert's matt surface.";
 
-    SpectrumParameter reflectance{Spectrum(0.5f)};
+    SpectrumParameter reflectance{0.5f};
     SurfaceDetail detail{};
 
     template <typename Self, typename Visit>

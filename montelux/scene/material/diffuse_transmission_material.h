@@ -10,7 +10,7 @@ struct DiffuseTransmissionMaterial {
     static constexpr const char* name = "DiffuseTransmission";
     static constexpr const char* doc = "A thin matt sheet that light shines through: a leaf, paper, cloth.";
 
-    SpectrumParameter reflectance{Spectrum(0.25f)}, transmittance{Spectrum(0.25f)};
+    SpectrumParameter reflectance{0.25f}, transmittance{0.25f};
     float scale = 1; // of both
     SurfaceDetail detail{};
 

@@ -1,6 +1,7 @@
 // Material: the variant of all materials, one file per kind; all satisfy MaterialModel.
 #pragma once
 
+#include <type_traits>
 #include <variant>
 
 #include "montelux/scene/material/coated_conductor_material.h"
@@ -15,5 +16,6 @@ namespace montelux {
 
 using Material = std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, ThinDielectricMaterial,
                               CoatedDiffuseMaterial, CoatedConductorMaterial, DiffuseTransmissionMaterial>;
+static_assert(std::is_trivially_copyable_v<Material>);
 
 } // namespace montelux

@@ -31,7 +31,7 @@ struct FindTexture {
     void operator()(std::string_view, const FloatParameter& p) const { found |= !p.is_constant(); }
     void operator()(std::string_view, const SpectrumParameter& p) const { found |= !p.is_constant(); }
     void operator()(std::string_view, const NormalMapParameter& p) const { found |= p.is_given(); }
-    void operator()(std::string_view, const Spectrum&) const {}
+    void operator()(std::string_view, const SceneSpectrum&) const {}
     void operator()(std::string_view, float) const {}
     void operator()(std::string_view, int) const {}
     void operator()(std::string_view, bool) const {}

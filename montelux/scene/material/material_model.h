@@ -6,6 +6,7 @@
 
 #include "montelux/scene/bsdf/bsdf.h"
 #include "montelux/scene/material/material.h"
+#include "montelux/spectrum/named_spectra.h"
 
 namespace montelux {
 
@@ -36,14 +37,28 @@ void visit_parameters(M& m, Visit&& visit) {
     SurfaceDetail::visit_parameters(m.detail, visit);
 }
 
+// A material with the defaults of scene files, among them measured spectra. `add` puts a Spectrum into the
+// scene and returns its SceneSpectrum.
+template <typename M, typename AddSpectrum>
+M default_material(const AddSpectrum& add) {
+    M material;
+    visit_parameters(material, [&]<typename Field>(const ParameterInfo&, Field& field) {
+        if constexpr (std::is_same_v<Field, MetalParameter>) {
+            field.eta.value = add(*find_named_spectrum(Field::default_eta));
+            field.k.value = add(*find_named_spectrum(Field::default_k));
+        }
+    });
+    return material;
+}
+
 // visit(name, field) for every simple field of a material (parameter.h, visit_leaves).
-template <typename Visit>
-void visit_fields(const Material& material, Visit&& visit) {
+template <typename M, typename Visit>
+requires std::same_as<std::remove_const_t<M>, Material>
+void visit_fields(M& material, Visit&& visit) {
     std::visit(
-        [&](const auto& m) {
-            visit_parameters(m, [&](const ParameterInfo& info, const auto& field) {
-                visit_leaves(info.name, field, visit);
-            });
+        [&](auto& m) {
+            visit_parameters(
+                m, [&](const ParameterInfo& info, auto& field) { visit_leaves(info.name, field, visit); });
         },
         material);
 }

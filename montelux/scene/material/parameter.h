@@ -6,12 +6,11 @@
 #include <string_view>
 
 #include "montelux/scene/texture/texture.h"
-#include "montelux/spectrum/named_spectra.h"
 
 namespace montelux {
 
 // A material lists its parameters once, in a function visit_parameters(material, visit) that calls
-// visit(info, field) for each. A field is a Spectrum (an index of refraction), SpectrumParameter,
+// visit(info, field) for each. A field is a SceneSpectrum (an index of refraction), SpectrumParameter,
 // FloatParameter, float, int, or one of the kinds below. The list defines the readers of scene files, the
 // Python attributes, the hash, and whether the material is textured.
 struct ParameterInfo {
@@ -47,7 +46,11 @@ struct RoughnessParameter {
 // Either the complex index of refraction eta + ik, or `reflectance` at normal incidence (then eta = 1, and k
 // is computed).
 struct MetalParameter {
-    SpectrumParameter eta{*find_named_spectrum("metal-Cu-eta")}, k{*find_named_spectrum("metal-Cu-k")};
+    // The metal of scene files that name none: copper. Its spectra need a scene (default_material).
+    static constexpr std::string_view default_eta = "metal-Cu-eta", default_k = "metal-Cu-k";
+
+    // Grey: aluminium at 550 nm.
+    SpectrumParameter eta{0.96f}, k{6.69f};
     SpectrumParameter reflectance{};
     bool from_reflectance = false;
 };
@@ -59,8 +62,8 @@ struct NormalMapParameter {
     bool is_given() const { return map != no_index; }
 };
 
-// The simple fields of a parameter: visit(name, field) of Spectrum, SpectrumParameter, FloatParameter, float,
-// int, bool or NormalMapParameter.
+// The simple fields of a parameter: visit(name, field) of SceneSpectrum, SpectrumParameter, FloatParameter,
+// float, int, bool or NormalMapParameter.
 template <typename Field, typename Visit>
 void visit_leaves(std::string_view name, Field& field, Visit&& visit) {
     if constexpr (requires { field.remap; }) {

@@ -33,9 +33,9 @@ class ParameterEvaluator {
         return ggx;
     }
 
-    float refractive_index(const Spectrum& eta) const {
-        float value = eta.sample(lambda_)[0];
-        if (!eta.is_constant()) lambda_.terminate_secondary();
+    float refractive_index(SceneSpectrum eta) const {
+        float value = scene_.sample(eta, lambda_)[0];
+        if (!scene_.is_constant(eta)) lambda_.terminate_secondary();
         return value > 0 ? value : 1;
     }
 

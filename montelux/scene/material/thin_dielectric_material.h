@@ -10,7 +10,7 @@ struct ThinDielectricMaterial {
     static constexpr const char* name = "ThinDielectric";
     static constexpr const char* doc = "A thin pane, which does not refract.";
 
-    Spectrum eta{1.5f};
+    SceneSpectrum eta{1.5f};
     SurfaceDetail detail{};
 
     template <typename Self, typename Visit>

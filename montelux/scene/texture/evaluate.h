@@ -17,7 +17,7 @@ inline float evaluate(const SceneView& scene, const FloatParameter& parameter,
 
 inline SampledSpectrum evaluate(const SceneView& scene, const SpectrumParameter& parameter,
                                 const TextureContext& context, const SampledWavelengths& lambda) {
-    if (parameter.is_constant()) return parameter.value.sample(lambda);
+    if (parameter.is_constant()) return scene.sample(parameter.value, lambda);
     return evaluate_texture(scene, scene.spectrum_textures[parameter.texture], context, lambda);
 }
 

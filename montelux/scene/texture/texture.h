@@ -2,11 +2,12 @@
 #pragma once
 
 #include <array>
+#include <type_traits>
 #include <variant>
 
-#include "montelux/scene/index.h"
+#include "montelux/mc/math/overloaded.h"
+#include "montelux/scene/scene_spectrum.h"
 #include "montelux/scene/texture/mapping.h"
-#include "montelux/spectrum/spectrum.h"
 
 namespace montelux {
 
@@ -18,7 +19,7 @@ struct FloatParameter {
     bool is_constant() const { return texture == no_index; }
 };
 struct SpectrumParameter {
-    Spectrum value;
+    SceneSpectrum value;
     Index texture = no_index;
 
     bool is_constant() const { return texture == no_index; }
@@ -77,5 +78,27 @@ using TextureNode = std::variant<ConstantTexture<Parameter>, ImageTexture, Scale
                                  MixTexture<Parameter>, CheckerboardTexture<Parameter>>;
 using FloatTexture = TextureNode<FloatParameter>;
 using SpectrumTexture = TextureNode<SpectrumParameter>;
+static_assert(std::is_trivially_copyable_v<FloatTexture> && std::is_trivially_copyable_v<SpectrumTexture>);
+
+// visit(name, input) for everything that a texture refers to: parameters, or itself if it reads an image.
+template <typename Parameter, typename Visit>
+void visit_inputs(const TextureNode<Parameter>& texture, Visit&& visit) {
+    std::visit(Overloaded{[&](const ConstantTexture<Parameter>& t) { visit("value", t.value); },
+                          [&](const ImageTexture& t) { visit("image", t); },
+                          [&](const ScaleTexture<Parameter>& t) {
+                              visit("texture", t.texture);
+                              visit("scale", t.scale);
+                          },
+                          [&](const MixTexture<Parameter>& t) {
+                              visit("first", t.first);
+                              visit("second", t.second);
+                              visit("amount", t.amount);
+                          },
+                          [&](const CheckerboardTexture<Parameter>& t) {
+                              visit("first value", t.values[0]);
+                              visit("second value", t.values[1]);
+                          }},
+               texture);
+}
 
 } // namespace montelux

@@ -298,7 +298,7 @@ TEST(PbrtAttributes, DefaultsOfShapesMaterialsLights) {
     EXPECT_EQ(m.roughness.u.value, 0.5f);
     EXPECT_FALSE(m.roughness.remap);
     const auto& light = std::get<PointLight>(d.scene.lights[0]);
-    EXPECT_NEAR(light.scale * to_photometric(light.spectrum), 2, 1e-5);
+    EXPECT_NEAR(light.scale * to_photometric(spectrum_of(light.spectrum, d.scene.spectra)), 2, 1e-5);
 }
 
 // A name that fits some plugin of the kind applies to later directives; one that fits none is a mistake,

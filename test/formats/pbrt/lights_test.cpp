@@ -4,6 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <span>
 #include <string>
 
 #include "montelux/image/image_write.h"
@@ -15,17 +16,22 @@ namespace montelux {
 namespace {
 
 using test::parse_world;
+using test::WithSpectra;
 
 constexpr double pi = std::numbers::pi;
 
 template <typename T>
-T light(const std::string& directive) {
+WithSpectra<T> light(const std::string& directive) {
     SceneDescription d = parse_world(directive);
-    return std::get<T>(d.scene.lights.at(0));
+    return {std::get<T>(d.scene.lights.at(0)), d.scene.spectra};
 }
 template <typename T>
-double photometric(const T& l) {
-    return l.scale * to_photometric(l.spectrum);
+double photometric(const T& l, std::span<const Spectrum> spectra) {
+    return l.scale * to_photometric(spectrum_of(l.spectrum, spectra));
+}
+template <typename T>
+double photometric(const WithSpectra<T>& l) {
+    return photometric<T>(l, l.spectra);
 }
 
 TEST(PbrtLights, UnitsOfEveryKind) {
@@ -38,7 +44,7 @@ TEST(PbrtLights, UnitsOfEveryKind) {
     auto red = light<PointLight>("LightSource \"point\" \"rgb I\" [ 2 2 2 ]");
     double y = 0;
     for (float lambda = 360; lambda <= 830; lambda += 1)
-        y += red.spectrum(lambda) * cie_y[static_cast<std::size_t>(lambda - 360)];
+        y += red.of(red.spectrum)(lambda) * cie_y[static_cast<std::size_t>(lambda - 360)];
     EXPECT_NEAR(red.scale * y, 2, 2e-3);
     EXPECT_NEAR(
         photometric(light<PointLight>("LightSource \"point\" \"blackbody I\" 3000 \"float scale\" 7")), 7,
@@ -89,7 +95,8 @@ TEST(PbrtLights, AreaLightsOfShapes) {
         EXPECT_EQ(part_count({tables.view(), index}), index == 1 ? 2u : 1u);
         const LightHit hit{.wi = {0, 0, -1}, .part = i % 2, .n = {0, 0, 1}};
         const float radiance = incident_radiance({tables.view(), index}, {}, hit, lambda)[0];
-        EXPECT_NEAR(radiance / l.spectrum.sample(lambda)[0] * to_photometric(l.spectrum),
+        EXPECT_NEAR(radiance / tables.view().sample(l.spectrum, lambda)[0] *
+                        to_photometric(tables.view().spectrum(l.spectrum)),
                     12 / (2 * areas[i] * pi), 1e-5);
     }
 }
@@ -136,7 +143,7 @@ TEST(PbrtLights, EnvironmentMaps) {
     const auto& uniform = std::get<UniformInfiniteLight>(d.scene.lights[1]);
     ASSERT_TRUE(uniform.portal);
     EXPECT_LT(length(uniform.portal->normal() - Vec3d{0, 0, -1}), 1e-12);
-    EXPECT_NEAR(photometric(uniform), 1, 1e-5);
+    EXPECT_NEAR(photometric(uniform, d.scene.spectra), 1, 1e-5);
     Warnings of_wide;
     d = load("LightSource \"infinite\" \"string filename\" \"wide.exr\" \"float illuminance\" 10", of_wide);
     const auto& w = std::get<ImageInfiniteLight>(d.scene.lights[0]);

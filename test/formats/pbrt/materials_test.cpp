@@ -17,11 +17,12 @@ namespace montelux {
 namespace {
 
 using test::parse_world;
+using test::WithSpectra;
 
 template <typename T>
-T material(const std::string& directive) {
+WithSpectra<T> material(const std::string& directive) {
     SceneDescription d = parse_world(directive + " Shape \"sphere\"");
-    return std::get<T>(d.scene.materials.at(d.scene.shapes.at(0).material));
+    return {std::get<T>(d.scene.materials.at(d.scene.shapes.at(0).material)), d.scene.spectra};
 }
 
 void expect_same(const Spectrum& a, const Spectrum& b) {
@@ -29,26 +30,26 @@ void expect_same(const Spectrum& a, const Spectrum& b) {
 }
 
 TEST(PbrtMaterials, Defaults) {
-    EXPECT_EQ(material<DiffuseMaterial>("").reflectance.value(500), 0.5f);
+    EXPECT_EQ(material<DiffuseMaterial>("").reflectance.value.constant, 0.5f);
     auto coated = material<CoatedDiffuseMaterial>("Material \"coateddiffuse\"");
-    EXPECT_EQ(coated.reflectance.value(500), 0.5f);
+    EXPECT_EQ(coated.of(coated.reflectance.value)(500), 0.5f);
     EXPECT_EQ(coated.coating.thickness.value, 0.01f);
-    EXPECT_EQ(coated.coating.eta(500), 1.5f);
+    EXPECT_EQ(coated.of(coated.coating.eta)(500), 1.5f);
     EXPECT_EQ(coated.coating.g.value, 0);
-    EXPECT_EQ(coated.coating.albedo.value(500), 0);
+    EXPECT_EQ(coated.of(coated.coating.albedo.value)(500), 0);
     EXPECT_EQ(coated.coating.max_depth, 10);
     EXPECT_EQ(coated.coating.sample_count, 1);
     EXPECT_EQ(coated.coating.roughness.u.value, 0);
     EXPECT_TRUE(coated.coating.roughness.remap);
     auto metal = material<ConductorMaterial>("Material \"conductor\"");
-    expect_same(metal.metal.eta.value, *find_named_spectrum("metal-Cu-eta"));
-    expect_same(metal.metal.k.value, *find_named_spectrum("metal-Cu-k"));
+    expect_same(metal.of(metal.metal.eta.value), *find_named_spectrum("metal-Cu-eta"));
+    expect_same(metal.of(metal.metal.k.value), *find_named_spectrum("metal-Cu-k"));
     EXPECT_FALSE(metal.metal.from_reflectance);
-    EXPECT_EQ(material<DielectricMaterial>("Material \"dielectric\"").eta(500), 1.5f);
-    EXPECT_EQ(material<ThinDielectricMaterial>("Material \"thindielectric\"").eta(500), 1.5f);
+    EXPECT_EQ(material<DielectricMaterial>("Material \"dielectric\"").eta.constant, 1.5f);
+    EXPECT_EQ(material<ThinDielectricMaterial>("Material \"thindielectric\"").eta.constant, 1.5f);
     auto both = material<CoatedConductorMaterial>("Material \"coatedconductor\"");
-    expect_same(both.metal.eta.value, *find_named_spectrum("metal-Cu-eta"));
-    EXPECT_EQ(both.coating.eta(500), 1.5f);
+    expect_same(both.of(both.metal.eta.value), *find_named_spectrum("metal-Cu-eta"));
+    EXPECT_EQ(both.of(both.coating.eta)(500), 1.5f);
     EXPECT_EQ(both.coating.thickness.value, 0.01f);
 }
 
@@ -63,7 +64,7 @@ TEST(PbrtMaterials, RoughnessAndPrefixes) {
         "\"glass-BK7\" "
         "\"float conductor.uroughness\" 0.4 \"rgb reflectance\" [ 0.5 0.25 0.125 ]");
     EXPECT_EQ(c.coating.roughness.v.value, 0.2f);
-    expect_same(c.coating.eta, *find_named_spectrum("glass-BK7"));
+    expect_same(c.of(c.coating.eta), *find_named_spectrum("glass-BK7"));
     EXPECT_EQ(c.roughness.u.value, 0.4f);
     EXPECT_EQ(c.roughness.v.value, 0);
     EXPECT_TRUE(c.metal.from_reflectance);
@@ -73,26 +74,26 @@ TEST(PbrtMaterials, MeaningOfColours) {
     auto m =
         material<ConductorMaterial>("Material \"conductor\" \"rgb eta\" [ 3 2 1 ] \"rgb k\" [ 3.9 2.4 2.1 ]");
     const RgbColorSpace& srgb = RgbColorSpace::srgb();
-    expect_same(m.metal.eta.value, Spectrum(RgbUnboundedSpectrum(srgb, {3, 2, 1})));
+    expect_same(m.of(m.metal.eta.value), Spectrum(RgbUnboundedSpectrum(srgb, {3, 2, 1})));
     auto d = material<DiffuseMaterial>("Material \"diffuse\" \"rgb reflectance\" [ 0.1 0.2 0.3 ]");
-    expect_same(d.reflectance.value, Spectrum(RgbAlbedoSpectrum(srgb, {0.1f, 0.2f, 0.3f})));
+    expect_same(d.of(d.reflectance.value), Spectrum(RgbAlbedoSpectrum(srgb, {0.1f, 0.2f, 0.3f})));
     d = material<DiffuseMaterial>(
         "ColorSpace \"rec2020\" Material \"diffuse\" \"rgb reflectance\" [ 0.1 0.2 0.3 ]");
-    expect_same(d.reflectance.value,
+    expect_same(d.of(d.reflectance.value),
                 Spectrum(RgbAlbedoSpectrum(RgbColorSpace::rec2020(), {0.1f, 0.2f, 0.3f})));
     d = material<DiffuseMaterial>("Material \"diffuse\" \"spectrum reflectance\" [ 400 0.2 600 0.6 ]");
-    EXPECT_FLOAT_EQ(d.reflectance.value(500), 0.4f);
+    EXPECT_FLOAT_EQ(d.of(d.reflectance.value)(500), 0.4f);
 }
 
 TEST(PbrtMaterials, DiffuseTransmission) {
     auto m = material<DiffuseTransmissionMaterial>("Material \"diffusetransmission\"");
-    EXPECT_EQ(m.reflectance.value(500), 0.25f);
-    EXPECT_EQ(m.transmittance.value(500), 0.25f);
+    EXPECT_EQ(m.of(m.reflectance.value)(500), 0.25f);
+    EXPECT_EQ(m.of(m.transmittance.value)(500), 0.25f);
     EXPECT_EQ(m.scale, 1);
     m = material<DiffuseTransmissionMaterial>("Material \"diffusetransmission\" \"spectrum transmittance\" "
                                               "[ 400 0.2 600 0.6 ] \"float scale\" 0.5");
-    EXPECT_FLOAT_EQ(m.transmittance.value(500), 0.4f);
-    EXPECT_EQ(m.reflectance.value(500), 0.25f);
+    EXPECT_FLOAT_EQ(m.of(m.transmittance.value)(500), 0.4f);
+    EXPECT_EQ(m.of(m.reflectance.value)(500), 0.25f);
     EXPECT_EQ(m.scale, 0.5f);
 }
 
@@ -186,10 +187,10 @@ TEST(PbrtTextures, NodesAndDefaults) {
     EXPECT_EQ(c.mapping.su, 20);
     EXPECT_EQ(c.mapping.sv, 1);
     EXPECT_EQ(c.mapping.dv, 0.5f);
-    EXPECT_EQ(c.values[1].value(500), 0);
+    EXPECT_EQ(c.values[1].value.constant, 0);
     const auto& mix = std::get<MixTexture<SpectrumParameter>>(d.scene.spectrum_textures[c.values[0].texture]);
-    EXPECT_EQ(mix.first.value(500), 0);
-    EXPECT_NEAR(mix.second.value(500), 0.5f, 1e-3f);
+    EXPECT_EQ(spectrum_of(mix.first.value, d.scene.spectra)(500), 0);
+    EXPECT_NEAR(spectrum_of(mix.second.value, d.scene.spectra)(500), 0.5f, 1e-3f);
     const auto& scale = std::get<ScaleTexture<FloatParameter>>(d.scene.float_textures[mix.amount.texture]);
     EXPECT_EQ(scale.scale.value, 3);
     EXPECT_EQ(

@@ -26,8 +26,8 @@ TEST(PbrtParameters, OwnOnesWinOverDefaultsOfAnotherType) {
         parse_world(green_texture + "Attribute \"material\" \"texture reflectance\" \"t\" "
                                     "Material \"diffuse\" \"rgb reflectance\" [1 0 0] Shape \"sphere\"");
     EXPECT_TRUE(diffuse_of(d).reflectance.is_constant());
-    EXPECT_GT(diffuse_of(d).reflectance.value(650), 0.5f);
-    EXPECT_LT(diffuse_of(d).reflectance.value(530), 0.5f);
+    EXPECT_GT(spectrum_of(diffuse_of(d).reflectance.value, d.scene.spectra)(650), 0.5f);
+    EXPECT_LT(spectrum_of(diffuse_of(d).reflectance.value, d.scene.spectra)(530), 0.5f);
     d = parse_world(green_texture + "Attribute \"material\" \"rgb reflectance\" [1 0 0] "
                                     "Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\"");
     EXPECT_FALSE(diffuse_of(d).reflectance.is_constant());
@@ -68,7 +68,7 @@ TEST(PbrtParameters, OfSeveralDefaultsTheLastThatFitsCounts) {
     auto eta_of_glass = [](const std::string& defaults) {
         SceneDescription d =
             parse_world("Attribute \"material\" " + defaults + "Material \"dielectric\" Shape \"sphere\"");
-        return std::get<DielectricMaterial>(d.scene.materials.at(0)).eta(500);
+        return spectrum_of(std::get<DielectricMaterial>(d.scene.materials.at(0)).eta, d.scene.spectra)(500);
     };
     EXPECT_EQ(eta_of_glass(spectrum + number), 2);
     EXPECT_EQ(eta_of_glass(number + spectrum), (*find_named_spectrum("glass-BK7"))(500));
@@ -78,8 +78,8 @@ TEST(PbrtParameters, OfSeveralDefaultsTheLastThatFitsCounts) {
     SceneDescription d = parse_world(with_light + "Attribute \"material\" " + spectrum + number +
                                          "Material \"conductor\" Shape \"sphere\"",
                                      &warnings);
-    EXPECT_EQ(std::get<ConductorMaterial>(d.scene.materials.at(0)).metal.eta.value(500),
-              (*find_named_spectrum("glass-BK7"))(500));
+    const SceneSpectrum eta = std::get<ConductorMaterial>(d.scene.materials.at(0)).metal.eta.value;
+    EXPECT_EQ(spectrum_of(eta, d.scene.spectra)(500), (*find_named_spectrum("glass-BK7"))(500));
     EXPECT_TRUE(warnings.messages().empty());
 }
 

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "montelux/formats/pbrt/load_pbrt.h"
 #include "montelux/mc/math/error.h"
@@ -18,6 +19,14 @@ inline SceneDescription parse(std::string_view text, Warnings* warnings = nullpt
 inline SceneDescription parse_world(std::string_view world, Warnings* warnings = nullptr) {
     return parse("WorldBegin\n" + std::string(world), warnings);
 }
+
+// A material or light of type T, with the spectra of its scene.
+template <typename T>
+struct WithSpectra : T {
+    std::vector<Spectrum> spectra;
+
+    Spectrum of(SceneSpectrum s) const { return spectrum_of(s, spectra); }
+};
 
 // The parser's error message; empty if there is none.
 inline std::string error_of(std::string_view text) {

@@ -31,7 +31,7 @@ TEST(PbrtSky, SunAndSkyOfTheModel) {
     EXPECT_EQ(s.atmosphere.turbidity, 3);
     EXPECT_EQ(s.ground_albedo(500), 0.4f);
     EXPECT_EQ(d.scene.environments[sky.environment].width(), 512);
-    EXPECT_EQ(sun.spectrum(500), d.scene.skies[sky.sky].sun_radiance()(500));
+    EXPECT_EQ(spectrum_of(sun.spectrum, d.scene.spectra)(500), d.scene.skies[sky.sky].sun_radiance()(500));
 }
 
 TEST(PbrtSky, VectorToTheSun) {

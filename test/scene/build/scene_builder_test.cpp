@@ -95,7 +95,7 @@ TEST_F(SceneBuilding, TransformsMoveNormalsAsWell) {
 
 // Lambertian flux is pi times area times luminance.
 TEST_F(SceneBuilding, AreaLightsHaveTheirPower) {
-    const Emission emission{Spectrum(1.0f), 2, false, 12}, both{Spectrum(1.0f), 2, true, 12};
+    const Emission emission{1.0f, 2, false, 12}, both{1.0f, 2, true, 12};
     builder_.add_shape(Sphere{.world_from_object = {}}, {.alpha = {1}, .emission = &emission});
     builder_.add_shape(Disk{.radius = 2, .inner_radius = 1, .world_from_object = {}},
                        {.alpha = {1}, .emission = &both});
@@ -131,7 +131,7 @@ TEST_F(SceneBuilding, PhotometricUnits) {
 }
 
 TEST_F(SceneBuilding, ObjectsAreKnownByName) {
-    const Emission emission{Spectrum(1.0f)};
+    const Emission emission{1.0f};
     const Transform moved = Transform::translate({1, 0, 0});
     builder_.add_instance("tree", moved, line(2)); // which comes later
     for (const char* name : {"stone", "tree"}) {

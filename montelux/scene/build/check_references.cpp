@@ -1,0 +1,148 @@
+#include "montelux/scene/build/check_references.h"
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "montelux/mc/math/error.h"
+#include "montelux/scene/material/material_model.h"
+
+namespace montelux {
+namespace {
+
+std::string numbered(std::string_view what, std::size_t number) {
+    return std::string(what) + ' ' + std::to_string(number);
+}
+
+// Checks the fields of one light, material or texture, which messages call `owner`.
+class FieldCheck {
+  public:
+    FieldCheck(const Scene& scene, std::string owner) : scene_(scene), owner_(std::move(owner)) {}
+
+    void index(std::string_view field, std::string_view kind, Index index, std::size_t count) const {
+        if (index < count) return;
+        throw Error(owner_ + ", " + std::string(field) + ": there is no " + numbered(kind, index) +
+                    "; the scene has " + std::to_string(count));
+    }
+
+    void operator()(std::string_view field, const SceneSpectrum& s) const {
+        if (!s.is_constant()) index(field, "spectrum", s.index, scene_.spectra.size());
+    }
+    void operator()(std::string_view field, const SpectrumParameter& p) const {
+        if (p.is_constant())
+            (*this)(field, p.value);
+        else
+            index(field, "spectrum texture", p.texture, scene_.spectrum_textures.size());
+    }
+    void operator()(std::string_view field, const FloatParameter& p) const {
+        if (!p.is_constant()) index(field, "float texture", p.texture, scene_.float_textures.size());
+    }
+    void operator()(std::string_view field, const NormalMapParameter& p) const {
+        if (p.is_given()) index(field, "normal map", p.map, scene_.normal_maps.size());
+    }
+    void operator()(std::string_view field, const ImageTexture& t) const {
+        index(field, "image", t.image, scene_.images.size());
+    }
+    void operator()(std::string_view, float) const {}
+    void operator()(std::string_view, int) const {}
+    void operator()(std::string_view, bool) const {}
+
+  private:
+    const Scene& scene_;
+    std::string owner_;
+};
+
+std::string name_of_texture(const Scene& scene, std::size_t node) {
+    const std::size_t floats = scene.float_textures.size();
+    return node < floats ? numbered("float texture", node) : numbered("spectrum texture", node - floats);
+}
+
+// The textures that each texture looks up; spectrum textures are numbered after the float textures.
+std::vector<std::vector<std::size_t>> texture_inputs(const Scene& scene) {
+    std::vector<std::vector<std::size_t>> inputs;
+    const auto add = [&](const auto& texture) {
+        inputs.emplace_back();
+        visit_inputs(texture, [&]<typename Input>(std::string_view, const Input& input) {
+            if constexpr (requires { input.texture; })
+                if (!input.is_constant())
+                    inputs.back().push_back(
+                        input.texture +
+                        (std::is_same_v<Input, SpectrumParameter> ? scene.float_textures.size() : 0));
+        });
+    };
+    for (const FloatTexture& t : scene.float_textures) add(t);
+    for (const SpectrumTexture& t : scene.spectrum_textures) add(t);
+    return inputs;
+}
+
+// A depth-first search with its own stack: a chain of textures may be long.
+void check_cycles(const Scene& scene) {
+    enum class State : char { unseen, open, done };
+    const std::vector<std::vector<std::size_t>> inputs = texture_inputs(scene);
+    std::vector<State> state(inputs.size(), State::unseen);
+    std::vector<std::pair<std::size_t, std::size_t>> path; // texture and number of its next input
+    const auto enter = [&](std::size_t texture) {
+        state[texture] = State::open;
+        path.emplace_back(texture, 0);
+    };
+    for (std::size_t start = 0; start < inputs.size(); ++start) {
+        if (state[start] == State::unseen) enter(start);
+        while (!path.empty()) {
+            const std::size_t texture = path.back().first;
+            if (path.back().second == inputs[texture].size()) {
+                state[texture] = State::done;
+                path.pop_back();
+                continue;
+            }
+            const std::size_t input = inputs[texture][path.back().second++];
+            if (state[input] == State::open)
+                throw Error(name_of_texture(scene, input) + " depends on itself");
+            if (state[input] == State::unseen) enter(input);
+        }
+    }
+}
+
+} // namespace
+
+void check_light(const Scene& scene, const Light& light) {
+    std::visit(
+        [&](const auto& l) {
+            const FieldCheck check(scene,
+                                   numbered("light", scene.lights.size()) + " (" + std::string(l.name) + ')');
+            if constexpr (requires { l.spectrum; }) check("spectrum", l.spectrum);
+            if constexpr (requires { l.shape; }) check.index("shape", "shape", l.shape, scene.shapes.size());
+            if constexpr (requires { l.environment; })
+                check.index("environment", "environment map", l.environment, scene.environments.size());
+            if constexpr (requires { l.sky; }) check.index("sky", "sky", l.sky, scene.skies.size());
+        },
+        light);
+}
+
+void check_materials(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.materials.size(); ++i)
+        std::visit(
+            [&](const auto& m) {
+                const FieldCheck check(scene, numbered("material", i) + " (" + m.name + ')');
+                visit_parameters(m, [&](const ParameterInfo& info, const auto& field) {
+                    visit_leaves(info.name, field, [&](std::string_view leaf, const auto& value) {
+                        check(ParameterInfo{.prefix = info.prefix, .name = leaf}.python_name(), value);
+                    });
+                });
+            },
+            scene.materials[i]);
+}
+
+void check_textures(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.float_textures.size(); ++i)
+        visit_inputs(scene.float_textures[i], FieldCheck(scene, numbered("float texture", i)));
+    for (std::size_t i = 0; i < scene.spectrum_textures.size(); ++i)
+        visit_inputs(scene.spectrum_textures[i], FieldCheck(scene, numbered("spectrum texture", i)));
+    for (std::size_t i = 0; i < scene.normal_maps.size(); ++i)
+        FieldCheck(scene, numbered("normal map", i))("image", scene.normal_maps[i]);
+    check_cycles(scene);
+}
+
+} // namespace montelux

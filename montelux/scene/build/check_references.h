@@ -1,0 +1,16 @@
+// Checks that the indices in lights, materials and textures are those of values of the scene.
+#pragma once
+
+#include "montelux/scene/scene.h"
+
+namespace montelux {
+
+// Each throws Error: "material 3 (Diffuse), reflectance: there is no spectrum texture 7; the scene has 2".
+
+// `light` is about to be added.
+void check_light(const Scene& scene, const Light& light);
+void check_materials(const Scene& scene);
+// Normal maps as well. No texture may depend on itself: look-ups are recursive.
+void check_textures(const Scene& scene);
+
+} // namespace montelux

@@ -1,0 +1,212 @@
+// SceneBuilder: spectra are shared, and indices that lead nowhere are refused.
+#include "test/scene/light_testing.h"
+#include <functional>
+#include <gtest/gtest.h>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "montelux/scene/build/scene_builder.h"
+#include "montelux/scene/material/material_model.h"
+
+namespace montelux {
+namespace {
+
+using testing::with_spectrum;
+
+// The error of a scene with two materials, one texture of each kind and one spectrum after the change.
+std::string finish_error(const std::function<void(Scene&)>& change) {
+    Scene scene;
+    scene.spectra = {Spectrum(BlackbodySpectrum(3000))};
+    scene.float_textures = {ConstantTexture<FloatParameter>{{1}}};
+    scene.spectrum_textures = {ConstantTexture<SpectrumParameter>{{SceneSpectrum::at(0)}}};
+    scene.images.emplace_back(1, 1, std::vector<std::string>{"R", "G", "B"});
+    scene.normal_maps = {ImageTexture{.image = 0, .mapping = {}}};
+    scene.materials = {DiffuseMaterial{{{}, 0}}, DielectricMaterial{SceneSpectrum::at(0)}};
+    change(scene);
+    CallMessages messages("test");
+    try {
+        SceneBuilder(scene, messages).finish();
+    } catch (const LocatedError& e) {
+        return e.what();
+    }
+    return {};
+}
+
+std::string error_of_material(const Material& material) {
+    return finish_error([&](Scene& s) { s.materials.push_back(material); });
+}
+std::string error_of_texture(const FloatTexture& texture) {
+    return finish_error([&](Scene& s) { s.float_textures.push_back(texture); });
+}
+std::string error_of_texture(const SpectrumTexture& texture) {
+    return finish_error([&](Scene& s) { s.spectrum_textures.push_back(texture); });
+}
+
+const SceneSpectrum no_spectrum = SceneSpectrum::at(1);
+const FloatParameter no_float{0, 2};
+const SpectrumParameter no_color{{}, 3};
+
+TEST(SceneReferences, WhatIsThereIsTaken) {
+    EXPECT_EQ(finish_error([](Scene&) {}), "");
+    EXPECT_EQ(error_of_material(DiffuseMaterial{.reflectance = {SceneSpectrum::at(0)},
+                                                .detail = {.displacement = {0, 0}, .normal_map = {0}}}),
+              "");
+    // A texture replaces the value.
+    EXPECT_EQ(error_of_material(DiffuseMaterial{.reflectance = {no_spectrum, 0}}), "");
+    EXPECT_EQ(error_of_texture(MixTexture<SpectrumParameter>{{{}, 0}, {{}, 0}, {0, 0}}), "");
+}
+
+TEST(SceneReferences, MaterialsNameTheParameter) {
+    EXPECT_EQ(error_of_material(DielectricMaterial{no_spectrum}),
+              "test: material 2 (Dielectric), eta: there is no spectrum 1; the scene has 1");
+    EXPECT_EQ(error_of_material(DiffuseMaterial{{no_spectrum}}),
+              "test: material 2 (Diffuse), reflectance: there is no spectrum 1; the scene has 1");
+    EXPECT_EQ(error_of_material(DiffuseMaterial{no_color}),
+              "test: material 2 (Diffuse), reflectance: there is no spectrum texture 3; the scene has 1");
+    EXPECT_EQ(error_of_material(ConductorMaterial{.metal = {.k = no_color}}),
+              "test: material 2 (Conductor), k: there is no spectrum texture 3; the scene has 1");
+    EXPECT_EQ(error_of_material(CoatedConductorMaterial{.coating = {.roughness = {.v = no_float}}}),
+              "test: material 2 (CoatedConductor), interface_roughness_v: there is no float texture 2; the "
+              "scene has 1");
+    EXPECT_EQ(error_of_material(DiffuseMaterial{.detail = {.displacement = no_float}}),
+              "test: material 2 (Diffuse), displacement: there is no float texture 2; the scene has 1");
+    EXPECT_EQ(error_of_material(DiffuseMaterial{.detail = {.normal_map = {1}}}),
+              "test: material 2 (Diffuse), normal_map: there is no normal map 1; the scene has 1");
+}
+
+// Every parameter of every material that has an index.
+TEST(SceneReferences, NoParameterIsForgotten) {
+    struct Break {
+        void operator()(SceneSpectrum& s) const { s = no_spectrum; }
+        void operator()(SpectrumParameter& p) const { p = no_color; }
+        void operator()(FloatParameter& p) const { p = no_float; }
+        void operator()(NormalMapParameter& p) const { p.map = 1; }
+    };
+    for_each_material_kind([]<typename M>(std::type_identity<M>) {
+        std::size_t i = 0;
+        for (std::size_t n = 0; n <= i; ++n) {
+            M m;
+            i = 0;
+            visit_parameters(m, [&](const ParameterInfo& info, auto& field) {
+                visit_leaves(info.name, field, [&](std::string_view, auto& leaf) {
+                    if constexpr (std::is_invocable_v<Break, decltype(leaf)>)
+                        if (i++ == n) Break{}(leaf);
+                });
+            });
+            EXPECT_EQ(error_of_material(m).empty(), n == i) << M::name << ' ' << n;
+        }
+        EXPECT_GE(i, 3u) << M::name;
+    });
+}
+
+TEST(SceneReferences, TexturesNameTheirInputs) {
+    EXPECT_EQ(error_of_texture(ConstantTexture<FloatParameter>{no_float}),
+              "test: float texture 1, value: there is no float texture 2; the scene has 2");
+    EXPECT_EQ(error_of_texture(ConstantTexture<SpectrumParameter>{{no_spectrum}}),
+              "test: spectrum texture 1, value: there is no spectrum 1; the scene has 1");
+    EXPECT_EQ(error_of_texture(ScaleTexture<SpectrumParameter>{no_color, {1}}),
+              "test: spectrum texture 1, texture: there is no spectrum texture 3; the scene has 2");
+    EXPECT_EQ(error_of_texture(ScaleTexture<SpectrumParameter>{{}, no_float}),
+              "test: spectrum texture 1, scale: there is no float texture 2; the scene has 1");
+    EXPECT_EQ(error_of_texture(MixTexture<FloatParameter>{no_float, {}, {}}),
+              "test: float texture 1, first: there is no float texture 2; the scene has 2");
+    EXPECT_EQ(error_of_texture(MixTexture<FloatParameter>{{}, no_float, {}}),
+              "test: float texture 1, second: there is no float texture 2; the scene has 2");
+    EXPECT_EQ(error_of_texture(MixTexture<SpectrumParameter>{{}, {}, no_float}),
+              "test: spectrum texture 1, amount: there is no float texture 2; the scene has 1");
+    EXPECT_EQ(error_of_texture(CheckerboardTexture<SpectrumParameter>{2, {}, {{no_color, {}}}}),
+              "test: spectrum texture 1, first value: there is no spectrum texture 3; the scene has 2");
+    EXPECT_EQ(error_of_texture(CheckerboardTexture<SpectrumParameter>{2, {}, {{{}, no_color}}}),
+              "test: spectrum texture 1, second value: there is no spectrum texture 3; the scene has 2");
+    const ImageTexture no_image{.image = 1, .mapping = {}};
+    EXPECT_EQ(error_of_texture(FloatTexture(no_image)),
+              "test: float texture 1, image: there is no image 1; the scene has 1");
+    EXPECT_EQ(error_of_texture(SpectrumTexture(no_image)),
+              "test: spectrum texture 1, image: there is no image 1; the scene has 1");
+    EXPECT_EQ(finish_error([&](Scene& s) { s.normal_maps.push_back(no_image); }),
+              "test: normal map 1, image: there is no image 1; the scene has 1");
+}
+
+TEST(SceneReferences, NoTextureDependsOnItself) {
+    using Floats = std::vector<FloatTexture>;
+    using Colors = std::vector<SpectrumTexture>;
+    auto error = [](const Floats& floats, const Colors& colors) {
+        return finish_error([&](Scene& s) {
+            s.float_textures = floats;
+            s.spectrum_textures = colors;
+        });
+    };
+    const auto scaled = [](Index texture) { return ScaleTexture<FloatParameter>{{0, texture}, {1}}; };
+    const auto color = [](Index texture) { return ConstantTexture<SpectrumParameter>{{{}, texture}}; };
+    const ConstantTexture<SpectrumParameter> red{};
+    EXPECT_EQ(error({scaled(0)}, {red}), "test: float texture 0 depends on itself");
+    EXPECT_EQ(error({scaled(1), scaled(2), scaled(1)}, {red}), "test: float texture 1 depends on itself");
+    EXPECT_EQ(error({}, {color(1), color(2), color(1)}), "test: spectrum texture 1 depends on itself");
+    EXPECT_EQ(error({ScaleTexture<FloatParameter>{{1}, {0, 0}}}, {red}),
+              "test: float texture 0 depends on itself");
+    // A texture may be used twice, by later and by earlier ones.
+    const ConstantTexture<FloatParameter> one{{1}};
+    EXPECT_EQ(error({MixTexture<FloatParameter>{{0, 2}, {0, 1}, {0, 1}}, scaled(2), one}, {color(1), red}),
+              "");
+    // A spectrum texture has the number of the float texture that it uses.
+    EXPECT_EQ(error({one}, {MixTexture<SpectrumParameter>{{}, {}, {0, 0}}}), "");
+    // Longer than the stack would hold.
+    Floats chain;
+    for (Index i = 1; i < 300'000; ++i) chain.emplace_back(scaled(i));
+    chain.emplace_back(one);
+    EXPECT_EQ(error(chain, {red}), "");
+    chain.back() = scaled(0);
+    EXPECT_EQ(error(chain, {red}), "test: float texture 0 depends on itself");
+}
+
+TEST(SceneReferences, LightsAreCheckedWhenAdded) {
+    Scene scene;
+    scene.spectra = {Spectrum(BlackbodySpectrum(3000))};
+    CallMessages messages("test");
+    SceneBuilder builder(scene, messages);
+    auto error = [&](const Light& light) -> std::string {
+        try {
+            builder.add_light(light);
+        } catch (const LocatedError& e) {
+            return e.what();
+        }
+        return {};
+    };
+    EXPECT_EQ(error(with_spectrum<PointLight>(SceneSpectrum::at(0))), "");
+    EXPECT_EQ(error(with_spectrum<PointLight>(no_spectrum)),
+              "test: light 1 (point light), spectrum: there is no spectrum 1; the scene has 1");
+    EXPECT_EQ(error(with_spectrum<SunLight>(no_spectrum)),
+              "test: light 1 (sun), spectrum: there is no spectrum 1; the scene has 1");
+    EXPECT_EQ(error(AreaLight{1, 1, false, 4}),
+              "test: light 1 (area light), shape: there is no shape 4; the scene has 0");
+    EXPECT_EQ(error(ImageInfiniteLight{.environment = 0, .world_from_light = {}}),
+              "test: light 1 (environment map), environment: there is no environment map 0; the scene has 0");
+    scene.environments.emplace_back(2, 2, std::vector<std::string>{"R", "G", "B"});
+    EXPECT_EQ(error(SkyLight{.sky = 0, .environment = 0, .world_from_light = {}}),
+              "test: light 1 (sky), sky: there is no sky 0; the scene has 0");
+    EXPECT_EQ(scene.lights.size(), 1u);
+}
+
+TEST(SceneSpectra, EqualOnesShareAnEntry) {
+    Scene scene;
+    CallMessages messages("test");
+    SceneBuilder builder(scene, messages);
+    const float lambda[] = {400, 500, 600}, values[] = {1, 2, 3}, others[] = {1, 2, 3.5f};
+    const SceneSpectrum a = builder.add_spectrum(Spectrum(PiecewiseLinear(lambda, values)));
+    const SceneSpectrum b = builder.add_spectrum(Spectrum(PiecewiseLinear(lambda, others)));
+    const SceneSpectrum again = builder.add_spectrum(Spectrum(PiecewiseLinear(lambda, values)));
+    EXPECT_EQ(scene.spectra.size(), 2u);
+    EXPECT_EQ(again.index, a.index);
+    EXPECT_NE(b.index, a.index);
+    EXPECT_EQ(spectrum_of(a, scene.spectra)(600), 3);
+    EXPECT_EQ(spectrum_of(b, scene.spectra)(600), 3.5f);
+    // A constant needs no entry.
+    const SceneSpectrum two = builder.add_spectrum(Spectrum(2.0f));
+    EXPECT_TRUE(two.is_constant());
+    EXPECT_EQ(two.constant, 2);
+    EXPECT_EQ(scene.spectra.size(), 2u);
+}
+
+} // namespace
+} // namespace montelux
