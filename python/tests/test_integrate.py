@@ -305,7 +305,7 @@ def test_time_limit():
     assert r.stop == "time" and time.monotonic() - begin < 2
 
 
-def test_checkpoints_go_on_to_the_same_bits(tmp_path):
+def test_resumed_runs_have_the_same_bits(tmp_path):
     f = lambda x: np.exp(-x[:, 0]) * x[:, 1]  # noqa: E731
     whole = montelux.integrate(f, BOX, "quasi", absolute_error=2e-6, seed=2)
     state = tmp_path / "run.state"
@@ -331,7 +331,7 @@ def test_settings_as_arguments_and_as_objects():
 # The interpreter's lock and signals.
 
 
-def test_other_threads_go_on_meanwhile():
+def test_other_threads_run_meanwhile():
     done = threading.Event()
     counted = []
 

@@ -100,7 +100,7 @@ def test_progress_is_reported(scene, capsys):
     assert capsys.readouterr().out == ""
 
 
-def test_other_threads_go_on_meanwhile(scene):
+def test_other_threads_run_meanwhile(scene):
     scene.film.resolution = 64, 48
     done, counted = threading.Event(), []
 
@@ -120,7 +120,7 @@ def test_other_threads_go_on_meanwhile(scene):
     assert after - before > 20
 
 
-def test_stop_gives_what_there_is(scene):
+def test_stop_returns_the_samples_so_far(scene):
     scene.film.resolution = 160, 120
     render = scene.render(spp=1 << 20)
     assert not render.finished and "going on" in repr(render)
@@ -162,7 +162,7 @@ def test_a_program_may_end_in_the_middle_of_a_render():
     assert done.returncode == 0 and done.stdout == "end\n" and done.stderr == ""
 
 
-def test_checkpoints_go_on_to_the_same_bits(scene, tmp_path):
+def test_resumed_runs_have_the_same_bits(scene, tmp_path):
     whole = scene.render(spp=64).mean
     state = tmp_path / "render.state"
     assert scene.render(spp=32, checkpoint=state).stopped_by == "samples"
