@@ -1,5 +1,6 @@
 #include "montelux/scene/build/check_references.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -78,11 +79,15 @@ std::vector<std::vector<std::size_t>> texture_inputs(const Scene& scene) {
     return inputs;
 }
 
+// A look-up calls itself for each level.
+constexpr int most_levels = 64;
+
 // A depth-first search with its own stack: a chain of textures may be long.
-void check_cycles(const Scene& scene) {
+void check_nesting(const Scene& scene) {
     enum class State : char { unseen, open, done };
     const std::vector<std::vector<std::size_t>> inputs = texture_inputs(scene);
     std::vector<State> state(inputs.size(), State::unseen);
+    std::vector<int> levels(inputs.size(), 1);             // of a texture and those below it
     std::vector<std::pair<std::size_t, std::size_t>> path; // texture and number of its next input
     const auto enter = [&](std::size_t texture) {
         state[texture] = State::open;
@@ -93,6 +98,12 @@ void check_cycles(const Scene& scene) {
         while (!path.empty()) {
             const std::size_t texture = path.back().first;
             if (path.back().second == inputs[texture].size()) {
+                for (const std::size_t input : inputs[texture])
+                    levels[texture] = std::max(levels[texture], levels[input] + 1);
+                if (levels[texture] > most_levels)
+                    throw Error(name_of_texture(scene, texture) +
+                                ": textures refer to one another more than " + std::to_string(most_levels) +
+                                " levels deep");
                 state[texture] = State::done;
                 path.pop_back();
                 continue;
@@ -142,7 +153,7 @@ void check_textures(const Scene& scene) {
         visit_inputs(scene.spectrum_textures[i], FieldCheck(scene, numbered("spectrum texture", i)));
     for (std::size_t i = 0; i < scene.normal_maps.size(); ++i)
         FieldCheck(scene, numbered("normal map", i))("image", scene.normal_maps[i]);
-    check_cycles(scene);
+    check_nesting(scene);
 }
 
 } // namespace montelux

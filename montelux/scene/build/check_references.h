@@ -10,7 +10,8 @@ namespace montelux {
 // `light` is about to be added.
 void check_light(const Scene& scene, const Light& light);
 void check_materials(const Scene& scene);
-// Normal maps as well. No texture may depend on itself: look-ups are recursive.
+// Normal maps as well. No texture may depend on itself or on more than 63 levels of others: look-ups are
+// recursive.
 void check_textures(const Scene& scene);
 
 } // namespace montelux

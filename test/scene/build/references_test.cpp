@@ -128,7 +128,7 @@ TEST(SceneReferences, TexturesNameTheirInputs) {
               "test: normal map 1, image: there is no image 1; the scene has 1");
 }
 
-TEST(SceneReferences, NoTextureDependsOnItself) {
+TEST(SceneReferences, NoTextureDependsOnItselfOrOnTooManyLevels) {
     using Floats = std::vector<FloatTexture>;
     using Colors = std::vector<SpectrumTexture>;
     auto error = [](const Floats& floats, const Colors& colors) {
@@ -151,13 +151,19 @@ TEST(SceneReferences, NoTextureDependsOnItself) {
               "");
     // A spectrum texture has the number of the float texture that it uses.
     EXPECT_EQ(error({one}, {MixTexture<SpectrumParameter>{{}, {}, {0, 0}}}), "");
+    const auto chain = [&](Index levels) {
+        Floats textures;
+        for (Index i = 1; i < levels; ++i) textures.emplace_back(scaled(i));
+        textures.emplace_back(one);
+        return textures;
+    };
+    EXPECT_EQ(error(chain(64), {red}), "");
+    EXPECT_EQ(error(chain(65), {red}),
+              "test: float texture 0: textures refer to one another more than 64 levels deep");
     // Longer than the stack would hold.
-    Floats chain;
-    for (Index i = 1; i < 300'000; ++i) chain.emplace_back(scaled(i));
-    chain.emplace_back(one);
-    EXPECT_EQ(error(chain, {red}), "");
-    chain.back() = scaled(0);
-    EXPECT_EQ(error(chain, {red}), "test: float texture 0 depends on itself");
+    Floats ring = chain(300'000);
+    ring.back() = scaled(0);
+    EXPECT_EQ(error(ring, {red}), "test: float texture 0 depends on itself");
 }
 
 TEST(SceneReferences, LightsAreCheckedWhenAdded) {
