@@ -9,7 +9,7 @@
 namespace montelux {
 namespace {
 
-constexpr std::chrono::microseconds between_looks{100};
+constexpr std::chrono::microseconds poll_interval{100};
 
 } // namespace
 
@@ -30,7 +30,7 @@ void LiveFilm::close() {
 
 void LiveFilm::wait_for_copies() const {
     // At most 20 ms: frequent snapshots must not delay the render.
-    for (int i = 0; i < 200 && is_wanted(); ++i) std::this_thread::sleep_for(between_looks);
+    for (int i = 0; i < 200 && is_wanted(); ++i) std::this_thread::sleep_for(poll_interval);
 }
 
 void LiveFilm::copy_tile(const Tile& tile, Film& into) const {
@@ -80,7 +80,7 @@ std::optional<LiveCopy> LiveFilm::copy(double seconds) {
         });
         if (held.empty()) return copy;
         if (Clock::now() >= deadline) break;
-        std::this_thread::sleep_for(between_looks);
+        std::this_thread::sleep_for(poll_interval);
     }
     for (Tile* t : held) {
         std::lock_guard wish(t->wish);

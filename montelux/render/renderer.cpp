@@ -148,8 +148,8 @@ class RenderLoop {
     void let_executor_take_samples() {
         LiveFilm* const live = control_.live;
         const RoundWatch watch{[&](bool something_done) {
-                                   const bool looked_at = live != nullptr && live->is_wanted();
-                                   return cancelled() || (something_done && (pause_is_due() || looked_at));
+                                   const bool copy_wanted = live != nullptr && live->is_wanted();
+                                   return cancelled() || (something_done && (pause_is_due() || copy_wanted));
                                },
                                [this](std::uint64_t samples, const std::optional<FilmError>& error) {
                                    samples_beyond_ = samples;

@@ -173,17 +173,6 @@ inline BsdfEvaluation evaluate(const Bsdf& bsdf, Vec3f wo, Vec3f wi, auto& strea
                                TransportMode mode = TransportMode::radiance) {
     return std::visit([&](const auto& b) { return b.evaluate(wo, wi, mode, stream); }, bsdf);
 }
-// 1 where nothing is transmitted.
-inline float transmitted_eta(const Bsdf& bsdf, Vec3f wo) {
-    return std::visit(
-        [&]<typename B>(const B& b) {
-            if constexpr (B::traits.transmits)
-                return b.transmitted_eta(wo);
-            else
-                return 1.0f;
-        },
-        bsdf);
-}
 inline bool is_specular(const Bsdf& bsdf) {
     return std::visit([](const auto& b) { return b.is_specular(); }, bsdf);
 }

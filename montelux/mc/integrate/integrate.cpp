@@ -15,6 +15,7 @@
 #include "montelux/mc/integrate/interruptible.h"
 #include "montelux/mc/integrate/iteration_history.h"
 #include "montelux/mc/integrate/problem_fingerprint.h"
+#include "montelux/mc/integrate/tally_checks.h"
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/special.h"
@@ -232,31 +233,9 @@ class Run {
         return seconds_before_ + std::chrono::duration<double>(Clock::now() - start_).count();
     }
 
-    // All values were zero: either the function is zero, or no point has hit its peaks.
-    static bool nothing_found(const Tally& tally) {
-        if (!tally.statistical || tally.evaluations == 0) return false;
-        for (std::size_t c = 0; c < tally.value.size(); ++c)
-            if (tally.value[c] == 0 && tally.standard_error[c] == 0) return true;
-        return false;
-    }
-
-    // Errors below the resolution of doubles.
-    static bool is_rounding(const Tally& tally) {
-        for (std::size_t c = 0; c < tally.value.size(); ++c)
-            if (tally.value[c] == 0 || !(tally.standard_error[c] <=
-                                         std::numeric_limits<double>::epsilon() * std::abs(tally.value[c])))
-                return false;
-        return true;
-    }
-
     bool reached(const Tally& tally) const {
         if (nothing_found(tally) && tally.evaluations < default_evaluations) return false;
-        for (std::size_t c = 0; c < tally.value.size(); ++c) {
-            const double target =
-                std::max(absolute_error_, budget_.relative_error * std::abs(tally.value[c]));
-            if (!(tally.standard_error[c] <= target)) return false;
-        }
-        return true;
+        return meets(tally, budget_.relative_error, absolute_error_);
     }
 
     // In the unit of f; of logarithms, relative to 2^exponent().

@@ -4,6 +4,7 @@
 #include <concepts>
 #include <optional>
 #include <type_traits>
+#include <variant>
 
 #include "montelux/mc/random/philox_stream.h"
 #include "montelux/scene/bsdf/bsdf_types.h"
@@ -31,5 +32,18 @@ concept BsdfModel = std::is_trivially_copyable_v<B> && std::same_as<decltype(B::
     // Relative index of refraction, far side over the side of wo: BsdfSample::eta of transmitted directions.
     { b.transmitted_eta(wo) } -> std::same_as<float>;
 });
+
+// BsdfModel::transmitted_eta of the BSDF in a variant; 1 if it does not transmit.
+template <typename... B>
+float transmitted_eta(const std::variant<B...>& bsdf, Vec3f wo) {
+    return std::visit(
+        [&]<typename T>(const T& b) {
+            if constexpr (T::traits.transmits)
+                return b.transmitted_eta(wo);
+            else
+                return 1.0f;
+        },
+        bsdf);
+}
 
 } // namespace montelux

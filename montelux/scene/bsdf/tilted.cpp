@@ -1,6 +1,6 @@
 #include "montelux/scene/bsdf/tilted.h"
 
-#include <type_traits>
+#include "montelux/scene/bsdf/bsdf_model.h"
 
 namespace montelux {
 
@@ -26,16 +26,7 @@ bool TiltedBsdf::has_specular() const {
 bool TiltedBsdf::is_stochastic() const {
     return std::visit([](const auto& b) { return b.traits.stochastic; }, base);
 }
-float TiltedBsdf::transmitted_eta(Vec3f wo) const {
-    return std::visit(
-        [&]<typename B>(const B& b) {
-            if constexpr (B::traits.transmits)
-                return b.transmitted_eta(wo);
-            else
-                return 1.0f;
-        },
-        base);
-}
+float TiltedBsdf::transmitted_eta(Vec3f wo) const { return montelux::transmitted_eta(base, wo); }
 SampledSpectrum TiltedBsdf::albedo(Vec3f wo) const {
     return std::visit([&](const auto& b) { return b.albedo(wo); }, base);
 }

@@ -64,15 +64,15 @@ std::optional<SphereCone> cone_of(const LightContext& context, Point3f from) {
     return sphere ? SphereCone::seen_from(from, *sphere) : std::nullopt;
 }
 
+bool is_invisible(const LightContext& context, const Shape& shape) {
+    return is_cut_out(shape) && constant_alpha(context.scene, shape).value_or(1) <= 0;
+}
+
 // Share of the light that leaves `point` along w, or arrives along it: holes do not emit. 1 for lights of
 // alpha 0.
 float share_there(const LightContext& context, const Shape& shape, const EmissivePoint& point, Vec3f w) {
-    if (!is_cut_out(shape) || constant_alpha(context.scene, shape).value_or(1) <= 0) return 1;
+    if (!is_cut_out(shape) || is_invisible(context, shape)) return 1;
     return std::clamp(alpha_at(context.scene, {point.p, w}, point.hit), 0.0f, 1.0f);
-}
-
-bool is_invisible(const LightContext& context, const Shape& shape) {
-    return is_cut_out(shape) && constant_alpha(context.scene, shape).value_or(1) <= 0;
 }
 
 std::optional<LightSample> sample_surface(const AreaLight& light, const LightContext& context, Index part,
