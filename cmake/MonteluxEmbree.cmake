@@ -4,5 +4,4 @@ if(EMBREE_VERSION VERSION_LESS 3.12 OR EMBREE_VERSION VERSION_GREATER_EQUAL 5)
     message(FATAL_ERROR "Embree ${EMBREE_VERSION} was found in ${embree_DIR}; expected 3.12 or newer, or 4. "
         "-D embree_DIR=FOLDER names the folder of another version's embree-config.cmake.")
 endif()
-set_source_files_properties(montelux/accel/accelerator.cpp PROPERTIES
-    COMPILE_DEFINITIONS MONTELUX_EMBREE=${EMBREE_VERSION_MAJOR})
+set(MONTELUX_EMBREE_DEFINITION MONTELUX_EMBREE=${EMBREE_VERSION_MAJOR})

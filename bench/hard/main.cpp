@@ -6,6 +6,7 @@
 #include "bench/integrate/montelux_methods.h"
 #include "bench/integrate/rivals/rivals.h"
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -71,7 +72,19 @@ void list(const HardOptions& options) {
     for (const Method& method : methods_of(every)) std::cout << "method " << method.name << "\n";
 }
 
-// The exit code: 1 where a method has more silent failures than it may.
+// Prints how many of the runs that converged have their truth within `errors` claimed errors. False if they
+// are fewer than the share predicted by Student's law allows.
+bool covers(std::string_view method, int within, int converged, double share, int errors) {
+    const double n = converged;
+    const double least = n * share - quick_deviations * std::sqrt(n * share * (1 - share));
+    const bool enough = within >= least;
+    std::cout << (enough ? "passed " : "FAILED ") << method << ": " << within << " of " << converged
+              << " converged runs within " << errors << " claimed errors, at least "
+              << static_cast<int>(std::ceil(least)) << " expected\n";
+    return enough;
+}
+
+// The exit code: 1 where a method has more silent failures than it may, or errors that are too small.
 int judge(const HardPlan& plan, const std::vector<HardRun>& runs) {
     int code = 0;
     for (const QuickLimit& limit : quick_limits) {
@@ -83,6 +96,8 @@ int judge(const HardPlan& plan, const std::vector<HardRun>& runs) {
                   << " silent failures in " << cell.runs << " runs, at most " << limit.silent << " allowed; "
                   << cell.honest << " converged honestly\n";
         if (exceeded) code = 1;
+        if (!covers(limit.method, cell.within_one, cell.converged, quick_within_one, 1)) code = 1;
+        if (!covers(limit.method, cell.within_two, cell.converged, quick_within_two, 2)) code = 1;
     }
     return code;
 }

@@ -9,6 +9,8 @@
 
 namespace montelux {
 
+class EmbreeScene;
+
 // Built once from an immutable scene, whose arrays must outlive it; all members may be called from any
 // thread.
 class Accelerator {
@@ -27,8 +29,7 @@ class Accelerator {
     const Bounds3& bounds() const;
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    std::unique_ptr<EmbreeScene> scene_;
 };
 
 } // namespace montelux

@@ -1,6 +1,7 @@
 // A render shared by any number of ranks, interrupted or not, ends with the bits of one process.
 #include "test/cluster/local_job.h"
 #include "test/render/mixed_scene.h"
+#include "test/sanitized.h"
 #include <atomic>
 #include <chrono>
 #include <gtest/gtest.h>
@@ -72,7 +73,7 @@ TEST(SharedRender, AnyNumberOfRanksGivesTheSameBits) {
         for (const RenderTarget& target :
              {RenderTarget{}, RenderTarget{.adaptive = true}, RenderTarget{.error = 0.2, .adaptive = true},
               RenderTarget{.error = 0.25}, RenderTarget{.slice = {1, 3}}}) {
-            const SceneBuilder b = scene(kind, 72);
+            const SceneBuilder b = scene(kind, under_sanitizers ? 24 : 72);
             RenderState whole(b.description.film);
             Renderer(b.description, target).render(whole);
             // Every number of ranks with every sampler, in turns to save time.

@@ -1,6 +1,7 @@
 // Runs something in a child process that may use only so much memory and time.
 #pragma once
 
+#include "test/sanitized.h"
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -10,14 +11,6 @@
 #include <unistd.h>
 
 #include "montelux/mc/math/error.h"
-
-#if defined(__SANITIZE_ADDRESS__)
-#define MONTELUX_ADDRESS_SANITIZER 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define MONTELUX_ADDRESS_SANITIZER 1
-#endif
-#endif
 
 namespace montelux {
 
@@ -37,10 +30,8 @@ BoundedRun bounded_run(Action action, unsigned seconds = 10) {
     pid_t child = ::fork();
     if (child == 0) {
         ::close(pipe_ends[0]);
-#if !defined(MONTELUX_ADDRESS_SANITIZER)
-        rlimit memory{rlim_t{1536} << 20, rlim_t{1536} << 20};
-        ::setrlimit(RLIMIT_AS, &memory);
-#endif
+        const rlimit memory{rlim_t{1536} << 20, rlim_t{1536} << 20};
+        if (!testing::under_sanitizers) ::setrlimit(RLIMIT_AS, &memory);
         rlimit core{0, 0};
         ::setrlimit(RLIMIT_CORE, &core);
         ::alarm(seconds);

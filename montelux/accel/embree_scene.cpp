@@ -1,0 +1,137 @@
+#include "montelux/accel/embree_scene.h"
+
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/math/overloaded.h"
+#include "montelux/scene/shape/alpha.h"
+
+namespace montelux {
+
+EmbreeScene::EmbreeScene(const SceneView& scene, bool robust) : scene_(scene), robust_(robust) {
+    try {
+        build();
+    } catch (...) {
+        release();
+        throw;
+    }
+}
+
+EmbreeScene::~EmbreeScene() { release(); }
+
+void EmbreeScene::release() {
+    if (world_ != nullptr) rtcReleaseScene(world_);
+    for (RTCScene s : objects_) rtcReleaseScene(s);
+    if (device_ != nullptr) rtcReleaseDevice(device_);
+}
+
+void EmbreeScene::check() const {
+    if (!error_.empty()) throw Error("Embree", error_);
+}
+
+void EmbreeScene::build() {
+    device_ = rtcNewDevice(nullptr);
+    if (device_ == nullptr) throw Error("Embree", "no device could be made");
+    rtcSetDeviceErrorFunction(
+        device_,
+        [](void* user, RTCError, const char* text) {
+            auto& message = *static_cast<std::string*>(user);
+            if (message.empty()) message = text != nullptr ? text : "unknown error";
+        },
+        &error_);
+    data_.resize(scene_.shapes.size());
+    for (std::size_t i = 0; i < scene_.shapes.size(); ++i) {
+        const Shape& shape = scene_.shapes[i];
+        data_[i].scene = &scene_;
+        data_[i].shape = static_cast<Index>(i);
+        data_[i].cut_out = is_cut_out(shape);
+        data_[i].quadric = quadric_of(scene_, shape);
+        if (data_[i].quadric != nullptr) data_[i].sphere = whole_sphere(*data_[i].quadric);
+    }
+
+    for (const ObjectDefinition& object : scene_.objects) {
+        RTCScene s = objects_.emplace_back(new_scene());
+        for (std::size_t i = 0; i < object.shapes.size(); ++i)
+            attach_shape(s, static_cast<unsigned>(i), object.shapes[i]);
+        rtcCommitScene(s);
+        check();
+    }
+    world_ = new_scene();
+    unsigned id = 0;
+    for (Index shape : scene_.world_shapes) attach_shape(world_, id++, shape);
+    for (const Instance& instance : scene_.instances) attach_instance(id++, instance);
+    rtcCommitScene(world_);
+    check();
+
+    if (id > 0) {
+        RTCBounds b{};
+        rtcGetSceneBounds(world_, &b);
+        if (b.lower_x <= b.upper_x) {
+            bounds_.add({double(b.lower_x), double(b.lower_y), double(b.lower_z)});
+            bounds_.add({double(b.upper_x), double(b.upper_y), double(b.upper_z)});
+        }
+    }
+}
+
+RTCScene EmbreeScene::new_scene() const {
+    RTCScene s = rtcNewScene(device_);
+    rtcSetSceneFlags(s, robust_ ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    rtcSetSceneBuildQuality(s, RTC_BUILD_QUALITY_HIGH);
+    return s;
+}
+
+RTCGeometry EmbreeScene::mesh_geometry(const TriangleMesh& mesh, bool cut_out) const {
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    // Embree reads 16 bytes per vertex: a buffer of its own pads the last one.
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
+    if (vertices != nullptr)
+        for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+            vertices[3 * i] = mesh.positions[i].x;
+            vertices[3 * i + 1] = mesh.positions[i].y;
+            vertices[3 * i + 2] = mesh.positions[i].z;
+        }
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(), 0,
+                               3 * sizeof(Index), mesh.triangle_count());
+    if (cut_out) {
+        rtcSetGeometryIntersectFilterFunction(geometry, filter_triangle);
+        rtcSetGeometryOccludedFilterFunction(geometry, filter_triangle);
+    }
+    return geometry;
+}
+
+RTCGeometry EmbreeScene::quadric_geometry() const {
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, 1);
+    rtcSetGeometryBoundsFunction(geometry, fill_quadric_bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, intersect_quadric);
+    rtcSetGeometryOccludedFunction(geometry, occlude_quadric);
+    return geometry;
+}
+
+void EmbreeScene::attach_shape(RTCScene to, unsigned id, Index shape_index) {
+    const Shape& shape = scene_.shapes[shape_index];
+    const bool cut_out = data_[shape_index].cut_out;
+    RTCGeometry geometry =
+        visit_geometry(scene_, shape,
+                       Overloaded{[&](const TriangleMesh& mesh) { return mesh_geometry(mesh, cut_out); },
+                                  [&](const Quadric&) { return quadric_geometry(); }});
+    rtcSetGeometryUserData(geometry, &data_[shape_index]);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(to, geometry, id);
+    rtcReleaseGeometry(geometry);
+}
+
+void EmbreeScene::attach_instance(unsigned id, const Instance& instance) const {
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, objects_[instance.object]);
+    rtcSetGeometryTimeStepCount(geometry, 1);
+    float m[12];
+    for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column < 4; ++column)
+            m[3 * column + row] = static_cast<float>(instance.world_from_object.matrix().m[row][column]);
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(world_, geometry, id);
+    rtcReleaseGeometry(geometry);
+}
+
+} // namespace montelux
