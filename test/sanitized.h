@@ -9,7 +9,7 @@
 #endif
 #endif
 
-namespace montelux::testing {
+namespace montelux {
 
 #if defined(MONTELUX_ADDRESS_SANITIZER)
 inline constexpr bool under_sanitizers = true;
@@ -17,4 +17,4 @@ inline constexpr bool under_sanitizers = true;
 inline constexpr bool under_sanitizers = false;
 #endif
 
-} // namespace montelux::testing
+} // namespace montelux

@@ -43,7 +43,7 @@ RecordedRays::RecordedRays(const Renderer& renderer, std::uint32_t spp, std::siz
         for (int y = tile.y0; y < tile.y1; ++y)
             for (int x = tile.x0; x < tile.x1; ++x)
                 for (std::uint32_t i = 0; i < spp; ++i) {
-                    add_path(context.record(tracer, x, y, i).path, sample++);
+                    add_path(context.record(tracer, {x, y, i}).path, sample++);
                     for (RayKind kind : ray_kinds)
                         if (count(kind) >= most) return;
                 }

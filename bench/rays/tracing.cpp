@@ -1,10 +1,11 @@
 #include "bench/rays/tracing.h"
 
-#include "bench/rays/packets.h"
 #include <algorithm>
 #include <bit>
 #include <ctime>
 #include <limits>
+
+#include "montelux/accel/packets.h"
 
 namespace montelux::bench {
 
@@ -16,19 +17,26 @@ double cpu_seconds() {
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-// Calls traced(first, count) for groups of rays that lie in the caches, so that filling and reading packets
-// is not timed.
+std::vector<const Ray*> pointers_to(const std::vector<Ray>& rays) {
+    std::vector<const Ray*> pointers;
+    pointers.reserve(rays.size());
+    for (const Ray& ray : rays) pointers.push_back(&ray);
+    return pointers;
+}
+
+// In groups of rays that lie in the caches, so that filling and reading packets is not timed.
 template <std::size_t K>
 double trace_packets(RTCScene scene, bool closest, const std::vector<Ray>& rays, bool coherent,
                      std::vector<BareHit>& hits) {
     std::vector<Packet<K>> packets;
     packets.reserve(RecordedRays::batch / K);
+    const std::vector<const Ray*> pointers = pointers_to(rays);
     QueryContext context(coherent);
     double seconds = 0;
     for (std::size_t first = 0; first < rays.size(); first += RecordedRays::batch) {
         const std::size_t end = std::min(rays.size(), first + RecordedRays::batch);
         packets.clear();
-        for (std::size_t i = first; i < end; i += K) packets.emplace_back(&rays[i], std::min(K, end - i));
+        for (std::size_t i = first; i < end; i += K) packets.emplace_back(std::span(pointers).subspan(i, std::min(K, end - i)));
         const double begin = cpu_seconds();
         if (closest)
             for (Packet<K>& p : packets) p.closest(scene, context);
@@ -50,13 +58,13 @@ double trace_streams(RTCScene scene, bool closest, const std::vector<Ray>& rays,
     for (std::size_t first = 0; first < rays.size(); first += RecordedRays::batch) {
         const std::size_t end = std::min(rays.size(), first + RecordedRays::batch);
         stream.clear();
-        for (std::size_t i = first; i < end; ++i) stream.emplace_back(&rays[i], 1);
+        for (std::size_t i = first; i < end; ++i) stream.emplace_back(rays[i]);
         const auto count = static_cast<unsigned>(stream.size());
         const double begin = cpu_seconds();
         if (closest)
-            rtcIntersect1M(scene, &context.context, &stream[0].ray, count, sizeof stream[0]);
+            rtcIntersect1M(scene, &context.context, &stream[0].embree, count, sizeof stream[0]);
         else
-            rtcOccluded1M(scene, &context.context, &stream[0].ray.ray, count, sizeof stream[0]);
+            rtcOccluded1M(scene, &context.context, &stream[0].embree.ray, count, sizeof stream[0]);
         seconds += cpu_seconds() - begin;
         for (std::size_t i = first; i < end; ++i) hits[i] = stream[i - first].hit(0);
     }

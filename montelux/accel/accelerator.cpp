@@ -1,24 +1,38 @@
 #include "montelux/accel/accelerator.h"
 
+#include <algorithm>
+
 #include "montelux/accel/embree_scene.h"
+#include "montelux/accel/packets.h"
 
 namespace montelux {
 
 namespace {
 
-RTCRay embree_ray(const Ray& ray) {
-    return {.org_x = ray.o.x,
-            .org_y = ray.o.y,
-            .org_z = ray.o.z,
-            .tnear = 0,
-            .dir_x = ray.d.x,
-            .dir_y = ray.d.y,
-            .dir_z = ray.d.z,
-            .time = 0,
-            .tfar = ray.t_max,
-            .mask = ~0u,
-            .id = 0,
-            .flags = 0};
+constexpr std::size_t closest_width = 8, any_width = 16; // the fastest ones (docs/measurements/rays.md)
+
+// False for a miss.
+bool to_hit(const SceneView& scene, const BareHit& bare, Hit& hit) {
+    if (bare.shape == RTC_INVALID_GEOMETRY_ID) return false;
+    hit.t = bare.t;
+    hit.b1 = bare.u;
+    hit.b2 = bare.v;
+    hit.primitive = bare.primitive;
+    if (bare.instance == RTC_INVALID_GEOMETRY_ID) {
+        hit.instance = no_index;
+        hit.shape = scene.world_shapes[bare.shape];
+    } else {
+        hit.instance = bare.instance - static_cast<Index>(scene.world_shapes.size());
+        hit.shape = scene.objects[scene.instances[hit.instance].object].shapes[bare.shape];
+    }
+    return true;
+}
+
+// Calls f with packets of at most K consecutive rays, and the index of the first.
+template <std::size_t K, typename F>
+void for_packets(std::span<const Ray* const> rays, const F& f) {
+    for (std::size_t first = 0; first < rays.size(); first += K)
+        f(rays.subspan(first, std::min(K, rays.size() - first)), first);
 }
 
 } // namespace
@@ -31,31 +45,36 @@ Accelerator& Accelerator::operator=(Accelerator&&) noexcept = default;
 const Bounds3& Accelerator::bounds() const { return scene_->bounds(); }
 
 bool Accelerator::intersect(const Ray& ray, Hit& hit) const {
-    RTCRayHit r;
-    r.ray = embree_ray(ray);
-    r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    closest_hit(scene_->world(), r);
-    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    hit.t = r.ray.tfar;
-    hit.b1 = r.hit.u;
-    hit.b2 = r.hit.v;
-    hit.primitive = r.hit.primID;
-    const SceneView& scene = scene_->scene();
-    if (r.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
-        hit.instance = no_index;
-        hit.shape = scene.world_shapes[r.hit.geomID];
-    } else {
-        hit.instance = r.hit.instID[0] - static_cast<Index>(scene.world_shapes.size());
-        hit.shape = scene.objects[scene.instances[hit.instance].object].shapes[r.hit.geomID];
-    }
-    return true;
+    QueryContext context;
+    Packet<1> r(ray);
+    r.closest(scene_->world(), context);
+    return to_hit(scene_->scene(), r.hit(), hit);
 }
 
 bool Accelerator::occluded(const Ray& ray) const {
-    RTCRay r = embree_ray(ray);
-    any_hit(scene_->world(), r);
-    return r.tfar < 0;
+    QueryContext context;
+    Packet<1> r(ray);
+    r.any(scene_->world(), context);
+    return r.embree.ray.tfar < 0;
+}
+
+void Accelerator::intersect(std::span<const Ray* const> rays, std::span<Hit> hits) const {
+    QueryContext context;
+    for_packets<closest_width>(rays, [&](std::span<const Ray* const> some, std::size_t first) {
+        Packet<closest_width> packet(some);
+        packet.closest(scene_->world(), context);
+        for (std::size_t i = 0; i < some.size(); ++i)
+            if (!to_hit(scene_->scene(), packet.hit(i), hits[first + i])) hits[first + i].shape = no_index;
+    });
+}
+
+void Accelerator::occluded(std::span<const Ray* const> rays, std::span<bool> results) const {
+    QueryContext context;
+    for_packets<any_width>(rays, [&](std::span<const Ray* const> some, std::size_t first) {
+        Packet<any_width> packet(some);
+        packet.any(scene_->world(), context);
+        for (std::size_t i = 0; i < some.size(); ++i) results[first + i] = packet.embree.ray.tfar[i] < 0;
+    });
 }
 
 } // namespace montelux

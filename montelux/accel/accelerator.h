@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "montelux/scene/shape/quadric.h"
 #include "montelux/scene/shape/ray.h"
@@ -25,6 +26,10 @@ class Accelerator {
     bool intersect(const Ray& ray, Hit& hit) const;
     // Whether anything lies within (0, t_max).
     bool occluded(const Ray& ray) const;
+    // The same for many rays, in packets; `hits` and `results` have their size. Each answer is that of the ray
+    // alone, to the last bit. A ray that hits nothing gets a hit with shape == no_index.
+    void intersect(std::span<const Ray* const> rays, std::span<Hit> hits) const;
+    void occluded(std::span<const Ray* const> rays, std::span<bool> results) const;
     // Bounds of all surfaces, in world space.
     const Bounds3& bounds() const;
 

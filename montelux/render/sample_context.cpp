@@ -38,35 +38,31 @@ SampleContext::SampleContext(const SceneDescription& description, const SamplerS
       white_scale_(static_cast<float>(1 / integrate_luminance(white_))) {}
 
 MONTELUX_ONE_COPY
-SampleContext::Result SampleContext::trace(RayTracer& tracer, int x, int y, std::uint64_t index,
-                                           SampleRecord* record) const {
-    SampleStream stream(sampler_, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), index);
-    Vec2f u_film = stream.next_2d();
-    float u_lambda = stream.next_1d();
-    Vec2f u_lens = camera_.has_lens() ? stream.next_2d() : Vec2f{0.5f, 0.5f};
-    FilterSample point = filter_.sample(u_film);
-    Point2f film{static_cast<float>(x) + 0.5f + point.offset.x,
-                 static_cast<float>(y) + 0.5f + point.offset.y};
-    const CameraSample camera{camera_.generate_ray(film, u_lens),
-                              SampledWavelengths::sample_visible(u_lambda)};
-    PathRecord* path_record = record != nullptr ? &record->path : nullptr;
-    const FilmContribution path = std::visit(
-        [&](const auto& integrator) {
-            return integrator.estimate(scene_, tracer, camera, stream, path_record);
-        },
-        integrator_);
+PathStart<SampleStream> SampleContext::begin(const Key& key, FilmPoint& point) const {
+    SampleStream stream(sampler_, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y),
+                        key.index);
+    const Vec2f u_film = stream.next_2d();
+    const float u_lambda = stream.next_1d();
+    point.lens = camera_.has_lens() ? stream.next_2d() : Vec2f{0.5f, 0.5f};
+    point.filter = filter_.sample(u_film);
+    point.film = {static_cast<float>(key.x) + 0.5f + point.filter.offset.x,
+                  static_cast<float>(key.y) + 0.5f + point.filter.offset.y};
+    return {{camera_.generate_ray(point.film, point.lens), SampledWavelengths::sample_visible(u_lambda)},
+            stream};
+}
 
+MONTELUX_ONE_COPY
+SampleContext::Result SampleContext::finish(const FilmContribution& path, const SampledWavelengths& lambda,
+                                            const FilterSample& filter, SampleRecord* record) const {
     Result result;
     const Vec3f sensor_rgb = sensor_.to_rgb(path.radiance, path.lambda);
     const float largest = max_component(sensor_rgb);
     const float clamp = largest > max_component_value_ ? max_component_value_ / largest : 1;
-    const Vec3f rgb = sensor_rgb * clamp * point.weight;
+    const Vec3f rgb = sensor_rgb * clamp * filter.weight;
     result.bad = badness(rgb, path.radiance);
     if (record != nullptr) [[unlikely]] {
-        record->filter = point;
-        record->film = film;
-        record->lens = u_lens;
-        record->lambda = camera.lambda;
+        record->filter = filter;
+        record->lambda = lambda;
         record->lambda_end = path.lambda;
         record->sensor_rgb = sensor_rgb;
         record->clamp = clamp;
@@ -77,22 +73,51 @@ SampleContext::Result SampleContext::trace(RayTracer& tracer, int x, int y, std:
     result.film.radiance = rgb;
     if (clamp < 1) [[unlikely]]
         result.clamped =
-            static_cast<float>(dot(Vec3d(sensor_rgb), luminance_weight)) * (1 - clamp) * point.weight;
+            static_cast<float>(dot(Vec3d(sensor_rgb), luminance_weight)) * (1 - clamp) * filter.weight;
     if (const FirstHit& first = path.first; first.found) {
         result.film.albedo =
-            albedo_sensor_.to_rgb(first.albedo * white_.sample(camera.lambda) * white_scale_, camera.lambda);
+            albedo_sensor_.to_rgb(first.albedo * white_.sample(lambda) * white_scale_, lambda);
         result.film.normal = first.normal;
         result.film.depth = first.depth;
     }
     return result;
 }
 
-SampleRecord SampleContext::record(RayTracer& tracer, int x, int y, std::uint64_t index) const {
+void SampleContext::take(RayTracer& tracer, std::span<const Key> keys, Batch& batch,
+                         std::span<Result> results) const {
+    batch.points.resize(keys.size());
+    batch.paths.resize(keys.size());
+    batch.starts.clear();
+    batch.starts.reserve(keys.size());
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const auto beginning = [&] { return begin(keys[i], batch.points[i]); };
+        batch.starts.emplace_back(InPlace(beginning));
+    }
+    std::visit(
+        [&](const auto& integrator) {
+            integrator.estimate(scene_, tracer, std::span(batch.starts), batch.integrator,
+                                std::span(batch.paths));
+        },
+        integrator_);
+    for (std::size_t i = 0; i < keys.size(); ++i)
+        results[i] = finish(batch.paths[i], batch.starts[i].camera.lambda, batch.points[i].filter);
+}
+
+SampleRecord SampleContext::record(RayTracer& tracer, const Key& key) const {
     SampleRecord record;
-    record.x = x;
-    record.y = y;
-    record.index = index;
-    record.contribution = trace(tracer, x, y, index, &record).film;
+    FilmPoint point;
+    PathStart<SampleStream> start = begin(key, point);
+    const FilmContribution path = std::visit(
+        [&](const auto& integrator) {
+            return integrator.estimate(scene_, tracer, start.camera, start.stream, &record.path);
+        },
+        integrator_);
+    record.x = key.x;
+    record.y = key.y;
+    record.index = key.index;
+    record.film = point.film;
+    record.lens = point.lens;
+    record.contribution = finish(path, start.camera.lambda, point.filter, &record).film;
     return record;
 }
 

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "montelux/film/film.h"
 #include "montelux/film/pixel_filter.h"
@@ -26,19 +28,33 @@ class SampleContext {
         float clamped = 0; // luminance removed by the film's limit, filter weight applied
     };
 
+    // A sample of a pixel, by its index.
+    struct Key {
+        int x = 0, y = 0;
+        std::uint64_t index = 0;
+    };
+    // The memory for many samples at once; allocated once and used again.
+    struct Batch;
+
     // All arguments must outlive the context.
     SampleContext(const SceneDescription& description, const SamplerSettings& sampler, const SceneView& scene,
                   const Camera& camera);
 
-    // A pure function of the pixel and the index (the tracer counts rays).
-    Result take(RayTracer& tracer, int x, int y, std::uint64_t index) const {
-        return trace(tracer, x, y, index, nullptr);
-    }
-    // The same sample with every step of its path.
-    SampleRecord record(RayTracer& tracer, int x, int y, std::uint64_t index) const;
+    // Each result is a pure function of its key (the tracer counts rays); `results` has the size of `keys`.
+    void take(RayTracer& tracer, std::span<const Key> keys, Batch& batch, std::span<Result> results) const;
+    // One sample by itself, with every step of its path; the contribution is the same to the last bit.
+    SampleRecord record(RayTracer& tracer, const Key& key) const;
 
   private:
-    Result trace(RayTracer& tracer, int x, int y, std::uint64_t index, SampleRecord* record) const;
+    // Where a sample lies on film and lens.
+    struct FilmPoint {
+        FilterSample filter;
+        Point2f film;
+        Vec2f lens;
+    };
+    PathStart<SampleStream> begin(const Key& key, FilmPoint& point) const;
+    Result finish(const FilmContribution& path, const SampledWavelengths& lambda, const FilterSample& filter,
+                  SampleRecord* record = nullptr) const;
 
     const SamplerSettings& sampler_;
     float max_component_value_;
@@ -51,6 +67,13 @@ class SampleContext {
     // Spectrum of the white light of albedos.
     const SpectrumTable& white_;
     float white_scale_;
+};
+
+struct SampleContext::Batch {
+    std::vector<FilmPoint> points;
+    std::vector<PathStart<SampleStream>> starts;
+    std::vector<FilmContribution> paths;
+    PathBatch integrator;
 };
 
 } // namespace montelux

@@ -26,4 +26,32 @@ void TileTally::add_to(RenderReport& report) const {
     report.clamped_samples += clamped_samples;
 }
 
+TileRenderer::SampleBatch& TileRenderer::batch_of_this_thread() {
+    thread_local SampleBatch batch; // its memory is allocated once
+    return batch;
+}
+
+void TileRenderer::take(RayTracer& tracer, SampleBatch& batch, TileTally& tally) const {
+    batch.results.resize(batch.keys.size());
+    context_.take(tracer, batch.keys, batch.memory, batch.results);
+    for (std::size_t k = 0; k < batch.keys.size(); ++k) {
+        const SampleContext::Result& r = batch.results[k];
+        const SampleContext::Key& key = batch.keys[k];
+        Pixel& pixel = *batch.places[k].pixel;
+        if (r.bad) {
+            pixel.count_bad();
+            tally.bad.add({*r.bad, key.x, key.y, key.index});
+        } else {
+            pixel.add_sample(r.film);
+        }
+        if (r.clamped != 0) {
+            ++tally.clamped_samples;
+            pixel.add_clamped(r.clamped);
+        }
+        if (order_.closed(batch.places[k].number + 1)) pixel.end_replicate();
+    }
+    tally.samples += batch.keys.size();
+    batch.clear();
+}
+
 } // namespace montelux

@@ -54,29 +54,40 @@ class TileRenderer {
     const SampleOrder& order() const { return order_; }
 
     // Adds its statistics to `tally`. Stops early when stop(), called before each pixel, or check(), called
-    // every few samples, returns true. Stops only between samples, so pixels are always consistent.
+    // after each full batch of samples, returns true. Pixels are always consistent: a batch is added whole.
     template <typename Stop, typename Check>
     void render(const TileView& tile, TileTally& tally, const Stop& stop, const Check& check) const {
         const double begin = thread_cpu_seconds();
         RayTracer tracer(accelerator_);
-        for (int y = tile.bounds.y0; y < tile.bounds.y1; ++y)
-            for (int x = tile.bounds.x0; x < tile.bounds.x1; ++x) {
-                if (stop()) break;
+        SampleBatch& batch = batch_of_this_thread();
+        batch.clear();
+        bool stopped = false;
+        for (int y = tile.bounds.y0; y < tile.bounds.y1 && !stopped; ++y)
+            for (int x = tile.bounds.x0; x < tile.bounds.x1 && !stopped; ++x) {
+                if (stop()) {
+                    stopped = true;
+                    break;
+                }
                 const auto row = static_cast<std::size_t>(y - tile.bounds.y0);
                 const auto column = static_cast<std::size_t>(x - tile.bounds.x0);
                 Pixel& pixel = tile.pixels[row * tile.stride + column];
                 const std::uint64_t target =
                     std::min<std::uint64_t>(tile.target_samples[row * tile.target_stride + column],
                                             std::uint64_t{pixel.samples()} + tile.most);
-                render_pixel(tracer, pixel, x, y, target, tally, check);
+                for (std::uint64_t i = pixel.samples(); i < target && !stopped; ++i) {
+                    batch.add(pixel, i, {x, y, order_.index(i)});
+                    if (batch.full()) {
+                        take(tracer, batch, tally);
+                        stopped = check();
+                    }
+                }
             }
+        if (!stopped && !batch.empty()) take(tracer, batch, tally);
         tally.rays.merge(tracer.statistics);
         tally.cpu_seconds += thread_cpu_seconds() - begin;
     }
 
   private:
-    static constexpr std::uint64_t samples_between_checks = 1024;
-
     // CPU time of the calling thread: other programs do not affect it.
     static double thread_cpu_seconds() {
         timespec t{};
@@ -84,27 +95,32 @@ class TileRenderer {
         return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
     }
 
-    template <typename Check>
-    void render_pixel(RayTracer& tracer, Pixel& pixel, int x, int y, std::uint64_t target, TileTally& tally,
-                      const Check& check) const {
-        for (std::uint64_t i = pixel.samples(); i < target; ++i) {
-            if (tally.samples % samples_between_checks == samples_between_checks - 1 && check()) return;
-            const std::uint64_t index = order_.index(i);
-            const SampleContext::Result r = context_.take(tracer, x, y, index);
-            if (r.bad) {
-                pixel.count_bad();
-                tally.bad.add({*r.bad, x, y, index});
-            } else {
-                pixel.add_sample(r.film);
-            }
-            if (r.clamped != 0) {
-                ++tally.clamped_samples;
-                pixel.add_clamped(r.clamped);
-            }
-            if (order_.closed(i + 1)) pixel.end_replicate();
-            ++tally.samples;
+    // Samples that are computed together, and the pixels that they are added to. More would leave the caches.
+    struct SampleBatch {
+        static constexpr std::size_t capacity = 256;
+        struct Place {
+            Pixel* pixel = nullptr;
+            std::uint64_t number = 0; // of the sample among the pixel's
+        };
+        std::vector<Place> places;
+        std::vector<SampleContext::Key> keys;
+        std::vector<SampleContext::Result> results;
+        SampleContext::Batch memory;
+
+        bool empty() const { return keys.empty(); }
+        bool full() const { return keys.size() == capacity; }
+        void clear() {
+            places.clear();
+            keys.clear();
         }
-    }
+        void add(Pixel& pixel, std::uint64_t number, const SampleContext::Key& key) {
+            places.push_back({&pixel, number});
+            keys.push_back(key);
+        }
+    };
+    static SampleBatch& batch_of_this_thread();
+
+    void take(RayTracer& tracer, SampleBatch& batch, TileTally& tally) const;
 
     const SampleContext& context_;
     const Accelerator& accelerator_;

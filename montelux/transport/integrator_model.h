@@ -2,6 +2,7 @@
 #pragma once
 
 #include <concepts>
+#include <span>
 #include <string_view>
 
 #include "montelux/mc/random/stream.h"
@@ -17,6 +18,13 @@ struct PathRecord;
 struct CameraSample {
     Ray ray;
     SampledWavelengths lambda;
+};
+
+// A sample before its path: the stream has given the camera's numbers.
+template <RandomStream Stream>
+struct PathStart {
+    CameraSample camera;
+    Stream stream;
 };
 
 // Features of the first surface; zero without one.
@@ -37,13 +45,16 @@ struct FilmContribution {
 // Stateless between samples: `estimate` is a function of the scene, the camera sample and the numbers of the
 // stream. Its mean over streams of independent uniform numbers is the radiance along the ray. The tracer
 // counts rays.
-// `record`, unless null, gets the path; the contribution is the same to the last bit.
+// `record`, unless null, gets the path; the contribution is the same to the last bit. So is that of each of
+// many samples that are estimated together, in the memory of a `Batch`.
 template <typename I, typename Stream>
 concept IntegratorModel = RandomStream<Stream> &&
     requires(const I& integrator, const SceneView& scene, RayTracer& tracer, const CameraSample& camera,
-             Stream& stream, PathRecord* record) {
+             Stream& stream, PathRecord* record, std::span<PathStart<Stream>> starts,
+             typename I::Batch& batch, std::span<FilmContribution> results) {
     { I::name } -> std::convertible_to<std::string_view>; // for messages
     { integrator.estimate(scene, tracer, camera, stream, record) } -> std::same_as<FilmContribution>;
+    integrator.estimate(scene, tracer, starts, batch, results);
 };
 
 } // namespace montelux

@@ -85,5 +85,7 @@ void PathIntegrator::escape(const SceneView& scene, PathState& state, PathRecord
 
 template FilmContribution PathIntegrator::estimate(const SceneView&, RayTracer&, const CameraSample&,
                                                    SampleStream&, PathRecord*) const;
+template void PathIntegrator::estimate(const SceneView&, RayTracer&, std::span<PathStart<SampleStream>>,
+                                       PathBatch&, std::span<FilmContribution>) const;
 
 } // namespace montelux

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "montelux/mc/integrate/mis.h"
 #include "montelux/scene/camera/camera.h"
 #include "montelux/scene/render_settings.h"
+#include "montelux/transport/path_batch.h"
 #include "montelux/transport/path_recorder.h"
 #include "montelux/transport/path_state.h"
 
@@ -33,6 +35,13 @@ class PathIntegrator {
     template <RandomStream Stream>
     FilmContribution estimate(const SceneView& scene, RayTracer& tracer, const CameraSample& camera,
                               Stream& stream, PathRecord* record = nullptr) const;
+
+    // The same for many samples: all rays of one depth are traced together. `results` has the size of
+    // `starts`, whose streams are used up.
+    using Batch = PathBatch;
+    template <RandomStream Stream>
+    void estimate(const SceneView& scene, RayTracer& tracer, std::span<PathStart<Stream>> starts,
+                  PathBatch& batch, std::span<FilmContribution> results) const;
 
     // The state's ray hit a surface: adds emission, and scatters. The caller traces the shadow ray, if any,
     // before reading the radiance.

@@ -231,4 +231,48 @@ FilmContribution PathIntegrator::estimate(const SceneView& scene, RayTracer& tra
     return {state.radiance, state.lambda, state.first};
 }
 
+template <RandomStream Stream>
+void PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer, std::span<PathStart<Stream>> starts,
+                              PathBatch& batch, std::span<FilmContribution> results) const {
+    batch.reset(starts.size());
+    for (const PathStart<Stream>& start : starts) {
+        batch.alive.push_back(static_cast<Index>(batch.states.size()));
+        batch.states.emplace_back(start.camera);
+    }
+    while (!batch.alive.empty()) {
+        batch.rays.clear();
+        for (Index i : batch.alive) batch.rays.push_back(&batch.states[i].ray);
+        tracer.intersect(batch.rays, std::span(batch.hits).first(batch.rays.size()));
+
+        batch.shadows.clear();
+        batch.shadow_owners.clear();
+        for (std::size_t k = 0; k < batch.alive.size(); ++k) {
+            const Index i = batch.alive[k];
+            PathState& state = batch.states[i];
+            const Hit& hit = batch.hits[k];
+            if (hit.shape == no_index) {
+                escape(scene, state);
+                continue;
+            }
+            const auto shading = [&] { return shade(scene, state, hit, starts[i].stream); };
+            if (batch.shadows.emplace_back(InPlace(shading)))
+                batch.shadow_owners.push_back(i);
+            else
+                batch.shadows.pop_back();
+        }
+
+        batch.rays.clear();
+        for (const std::optional<ShadowRay>& shadow : batch.shadows) batch.rays.push_back(&shadow->ray);
+        const std::span<bool> occluded(batch.occluded.get(), batch.rays.size());
+        if (!batch.rays.empty()) tracer.occluded(batch.rays, occluded);
+        for (std::size_t k = 0; k < occluded.size(); ++k)
+            if (!occluded[k]) batch.states[batch.shadow_owners[k]].radiance += batch.shadows[k]->contribution;
+        std::erase_if(batch.alive, [&](Index i) { return !batch.states[i].alive; });
+    }
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+        const PathState& state = batch.states[i];
+        results[i] = {state.radiance, state.lambda, state.first};
+    }
+}
+
 } // namespace montelux

@@ -1,9 +1,11 @@
-// RayTracer: the accelerator, with counts of its rays and times of a few of them.
+// RayTracer: the accelerator, with counts and times of its rays.
 #pragma once
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "montelux/accel/accelerator.h"
 
@@ -23,7 +25,7 @@ struct RayStatistics {
     std::uint64_t rays() const { return closest + occlusion; }
 };
 
-// One per thread. Every 256th ray is timed: reading the clock costs as much as a ray.
+// One per thread. Of rays traced one by one every 256th is timed: reading the clock costs as much as a ray.
 class RayTracer {
   public:
     explicit RayTracer(const Accelerator& accelerator) : accelerator_(&accelerator) {}
@@ -35,6 +37,15 @@ class RayTracer {
     bool occluded(const Ray& ray) {
         ++statistics.occlusion;
         return timed([&] { return accelerator_->occluded(ray); });
+    }
+    // Many rays at once, as Accelerator; all of them are timed.
+    void intersect(std::span<const Ray* const> rays, std::span<Hit> hits) {
+        statistics.closest += rays.size();
+        time_all(rays.size(), [&] { accelerator_->intersect(rays, hits); });
+    }
+    void occluded(std::span<const Ray* const> rays, std::span<bool> results) {
+        statistics.occlusion += rays.size();
+        time_all(rays.size(), [&] { accelerator_->occluded(rays, results); });
     }
 
     RayStatistics statistics;
@@ -50,14 +61,21 @@ class RayTracer {
         auto begin = Clock::now();
         bool result = f();
         auto end = Clock::now();
-        // Subtracts the time of reading the clock. No ray takes longer than this limit: the thread was
-        // interrupted.
-        const double taken = std::max(0.0, seconds(end - begin) - seconds(begin - before));
-        if (taken < 50e-6) {
-            statistics.timed_seconds += taken;
-            ++statistics.timed;
-        }
+        // Subtracts the time of reading the clock.
+        add_time(1, std::max(0.0, seconds(end - begin) - seconds(begin - before)));
         return result;
+    }
+    template <typename F>
+    void time_all(std::size_t rays, const F& f) {
+        const auto begin = Clock::now();
+        f();
+        add_time(rays, seconds(Clock::now() - begin));
+    }
+    // No ray takes longer than this limit: the thread was interrupted.
+    void add_time(std::size_t rays, double taken) {
+        if (taken >= 50e-6 * static_cast<double>(rays)) return;
+        statistics.timed_seconds += taken;
+        statistics.timed += rays;
     }
 
     const Accelerator* accelerator_;

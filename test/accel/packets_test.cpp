@@ -1,17 +1,13 @@
 // Embree's callbacks in packets of rays: the hits are those of the rays alone.
-#include "bench/rays/packets.h"
 #include "test/accel/accel_testing.h"
 #include <gtest/gtest.h>
 #include <vector>
 
 #include "montelux/accel/embree_scene.h"
+#include "montelux/accel/packets.h"
 
 namespace montelux::testing {
 namespace {
-
-using bench::BareHit;
-using bench::Packet;
-using bench::QueryContext;
 
 // Quadrics, meshes and instances; the first of both kinds have random holes.
 Scene scene_of_all_geometry() {
@@ -34,10 +30,13 @@ Scene scene_of_all_geometry() {
 template <std::size_t K>
 std::vector<BareHit> traced(const EmbreeScene& scene, bool closest, const std::vector<Ray>& rays) {
     std::vector<BareHit> hits;
+    std::vector<const Ray*> pointers;
+    for (const Ray& ray : rays) pointers.push_back(&ray);
     QueryContext context(false);
     for (std::size_t first = 0; first < rays.size(); first += K) {
         const std::size_t count = std::min(K, rays.size() - first);
-        Packet<K> packet(&rays[first], count);
+        const std::span<const Ray* const> some(&pointers[first], count);
+        Packet<K> packet(some);
         if (closest)
             packet.closest(scene.world(), context);
         else

@@ -31,7 +31,7 @@ BoundedRun bounded_run(Action action, unsigned seconds = 10) {
     if (child == 0) {
         ::close(pipe_ends[0]);
         const rlimit memory{rlim_t{1536} << 20, rlim_t{1536} << 20};
-        if (!testing::under_sanitizers) ::setrlimit(RLIMIT_AS, &memory);
+        if (!under_sanitizers) ::setrlimit(RLIMIT_AS, &memory);
         rlimit core{0, 0};
         ::setrlimit(RLIMIT_CORE, &core);
         ::alarm(seconds);

@@ -165,7 +165,7 @@ TEST(BoundedRun, SeesCrashesHangsAndGreed) {
                   .ending,
               Ending::timed_out);
     EXPECT_EQ(bounded_run([] { throw Error("a", "b"); }).message, "a: b");
-    if (!testing::under_sanitizers) {
+    if (!under_sanitizers) {
         EXPECT_EQ(bounded_run([] { std::vector<char> v(std::size_t{2} << 30); }).ending, Ending::crashed);
     }
 }

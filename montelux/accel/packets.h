@@ -1,18 +1,24 @@
 // Packet<K>: K rays that Embree traces by one call, under common names for Embree 3 and 4.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
+#include <span>
 
 #include "montelux/accel/embree.h"
 #include "montelux/scene/shape/ray.h"
 
-namespace montelux::bench {
+namespace montelux {
 
+// `coherent`: the rays of a packet are similar. If not, each is traversed as if alone, and its hit is the
+// same to the last bit whichever other rays are in the packet; coherent packets may choose otherwise among
+// equally near primitives.
 #if MONTELUX_EMBREE >= 4
 struct QueryContext {
     RTCIntersectArguments closest;
     RTCOccludedArguments any;
-    explicit QueryContext(bool coherent) {
+    explicit QueryContext(bool coherent = false) {
         rtcInitIntersectArguments(&closest);
         rtcInitOccludedArguments(&any);
         closest.flags = any.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
@@ -23,7 +29,7 @@ struct QueryContext {
 #else
 struct QueryContext {
     RTCIntersectContext context;
-    explicit QueryContext(bool coherent) {
+    explicit QueryContext(bool coherent = false) {
         rtcInitIntersectContext(&context);
         context.flags =
             coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
@@ -58,12 +64,12 @@ struct BareHit {
 
 template <std::size_t K>
 struct Packet : EmbreePacket<K> {
-    // Rays beyond `rays` are left out.
-    Packet(const Ray* rays, std::size_t count) {
+    // At least one ray, at most K.
+    explicit Packet(std::span<const Ray* const> rays) {
         auto& r = this->embree.ray;
         for (std::size_t i = 0; i < K; ++i) {
-            this->valid[i] = i < count ? -1 : 0;
-            const Ray& ray = rays[i < count ? i : 0];
+            this->valid[i] = i < rays.size() ? -1 : 0;
+            const Ray& ray = *rays[std::min(i, rays.size() - 1)];
             r.org_x[i] = ray.o.x;
             r.org_y[i] = ray.o.y;
             r.org_z[i] = ray.o.z;
@@ -85,32 +91,34 @@ struct Packet : EmbreePacket<K> {
     }
 };
 
-// One ray, by Embree's calls for single rays, as the renderer traces them.
+// One ray, by Embree's calls for single rays.
 template <>
 struct Packet<1> {
-    RTCRayHit ray{};
+    RTCRayHit embree;
 
-    Packet(const Ray* r, std::size_t) {
-        ray.ray = {.org_x = r->o.x,
-                   .org_y = r->o.y,
-                   .org_z = r->o.z,
-                   .tnear = 0,
-                   .dir_x = r->d.x,
-                   .dir_y = r->d.y,
-                   .dir_z = r->d.z,
-                   .time = 0,
-                   .tfar = r->t_max,
-                   .mask = ~0u,
-                   .id = 0,
-                   .flags = 0};
-        ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    explicit Packet(const Ray& r) {
+        embree.ray = {.org_x = r.o.x,
+                      .org_y = r.o.y,
+                      .org_z = r.o.z,
+                      .tnear = 0,
+                      .dir_x = r.d.x,
+                      .dir_y = r.d.y,
+                      .dir_z = r.d.z,
+                      .time = 0,
+                      .tfar = r.t_max,
+                      .mask = ~0u,
+                      .id = 0,
+                      .flags = 0};
+        embree.hit.geomID = embree.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     }
-    void closest(RTCScene scene, QueryContext&) { closest_hit(scene, ray); }
-    void any(RTCScene scene, QueryContext&) { any_hit(scene, ray.ray); }
-    BareHit hit(std::size_t) const {
-        if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {.t = ray.ray.tfar};
-        return {ray.ray.tfar, ray.hit.u, ray.hit.v, ray.hit.geomID, ray.hit.primID, ray.hit.instID[0]};
+    explicit Packet(std::span<const Ray* const> rays) : Packet(*rays[0]) {}
+    void closest(RTCScene scene, QueryContext&) { closest_hit(scene, embree); }
+    void any(RTCScene scene, QueryContext&) { any_hit(scene, embree.ray); }
+    BareHit hit(std::size_t = 0) const {
+        if (embree.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {.t = embree.ray.tfar};
+        return {embree.ray.tfar,   embree.hit.u,      embree.hit.v,
+                embree.hit.geomID, embree.hit.primID, embree.hit.instID[0]};
     }
 };
 
-} // namespace montelux::bench
+} // namespace montelux
