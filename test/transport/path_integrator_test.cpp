@@ -1,8 +1,9 @@
 // PathIntegrator by states and steps: any driver and any stream give the same path.
 #include "test/render/mixed_scene.h"
+#include <algorithm>
 #include <cstring>
 #include <gtest/gtest.h>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "montelux/accel/accelerator.h"
@@ -47,46 +48,25 @@ bool same_bits(const FilmContribution& a, const FilmContribution& b) {
            a.lambda.secondary_terminated() == b.lambda.secondary_terminated();
 }
 
-// All paths of a picture at once, stage by stage: closest hits, then shading, then shadow rays.
-std::vector<FilmContribution> in_waves(const World& world, const PathIntegrator& integrator,
-                                       const std::vector<CameraSample>& cameras,
-                                       std::vector<SampleStream> streams) {
-    const SceneView& scene = world.tables.view();
-    RayTracer tracer(world.accelerator);
-    std::vector<PathState> paths(cameras.begin(), cameras.end());
-    std::vector<std::optional<Hit>> hits(paths.size());
-    std::vector<std::optional<ShadowRay>> shadows(paths.size());
-    for (bool any = true; any;) {
-        any = false;
-        for (std::size_t i = 0; i < paths.size(); ++i) {
-            Hit hit;
-            hits[i].reset();
-            if (paths[i].alive && tracer.intersect(paths[i].ray, hit)) hits[i] = hit;
-        }
-        for (std::size_t i = 0; i < paths.size(); ++i) {
-            shadows[i].reset();
-            if (!paths[i].alive) continue;
-            any = true;
-            if (hits[i])
-                shadows[i] = integrator.shade(scene, paths[i], *hits[i], streams[i]);
-            else
-                integrator.escape(scene, paths[i]);
-        }
-        for (std::size_t i = 0; i < paths.size(); ++i)
-            if (shadows[i] && !tracer.occluded(shadows[i]->ray))
-                paths[i].radiance += shadows[i]->contribution;
+// All paths in batches of some size.
+std::vector<FilmContribution> in_batches(const World& world, const PathIntegrator& integrator,
+                                         std::vector<PathStart<SampleStream>> starts, std::size_t size,
+                                         RayTracer& tracer) {
+    PathBatch memory;
+    std::vector<FilmContribution> results(starts.size());
+    for (std::size_t first = 0; first < starts.size(); first += size) {
+        const std::size_t count = std::min(size, starts.size() - first);
+        integrator.estimate(world.tables.view(), tracer, std::span(starts).subspan(first, count), memory,
+                            std::span(results).subspan(first, count));
     }
-    std::vector<FilmContribution> result;
-    for (const PathState& p : paths) result.push_back({p.radiance, p.lambda, p.first});
-    return result;
+    return results;
 }
 
-TEST(PathIntegrator, PathsInWavesAreTheSameToTheLastBit) {
+TEST(PathIntegrator, PathsInBatchesAreTheSameToTheLastBit) {
     for (Strategy strategy : {Strategy::uniform, Strategy::bsdf, Strategy::light, Strategy::mis}) {
         const World world(scene_of(strategy));
         const PathIntegrator integrator(world.description.integrator, world.camera);
-        std::vector<CameraSample> cameras;
-        std::vector<SampleStream> streams;
+        std::vector<PathStart<SampleStream>> starts;
         std::vector<FilmContribution> one_by_one;
         RayTracer tracer(world.accelerator);
         for (std::uint64_t index = 0; index < 16; ++index)
@@ -94,18 +74,23 @@ TEST(PathIntegrator, PathsInWavesAreTheSameToTheLastBit) {
                 for (int x = 0; x < edge; ++x) {
                     SampleStream stream({.kind = SamplerKind::sobol, .seed = 3, .spp = 16},
                                         static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), index);
-                    cameras.push_back(world.camera_sample(x, y, stream));
-                    streams.push_back(stream);
-                    one_by_one.push_back(
-                        integrator.estimate(world.tables.view(), tracer, cameras.back(), stream));
+                    const CameraSample camera = world.camera_sample(x, y, stream);
+                    starts.push_back({camera, stream});
+                    one_by_one.push_back(integrator.estimate(world.tables.view(), tracer, camera, stream));
                 }
-        const std::vector<FilmContribution> waves = in_waves(world, integrator, cameras, streams);
-        int lit = 0;
-        for (std::size_t i = 0; i < waves.size(); ++i) {
-            ASSERT_TRUE(same_bits(waves[i], one_by_one[i])) << "strategy " << int(strategy) << ", path " << i;
-            lit += !is_black(waves[i].radiance);
+        for (const std::size_t size : {std::size_t{1}, std::size_t{7}, std::size_t{256}, starts.size()}) {
+            RayTracer batch_tracer(world.accelerator);
+            const std::vector<FilmContribution> batches =
+                in_batches(world, integrator, starts, size, batch_tracer);
+            EXPECT_EQ(batch_tracer.statistics.rays(), tracer.statistics.rays());
+            int lit = 0;
+            for (std::size_t i = 0; i < batches.size(); ++i) {
+                ASSERT_TRUE(same_bits(batches[i], one_by_one[i]))
+                    << "strategy " << int(strategy) << ", batches of " << size << ", path " << i;
+                lit += !is_black(batches[i].radiance);
+            }
+            EXPECT_GT(lit, 500) << "strategy " << int(strategy);
         }
-        EXPECT_GT(lit, 500) << "strategy " << int(strategy);
     }
 }
 
