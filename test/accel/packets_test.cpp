@@ -31,6 +31,7 @@ template <std::size_t K>
 std::vector<BareHit> traced(const EmbreeScene& scene, bool closest, const std::vector<Ray>& rays) {
     std::vector<BareHit> hits;
     std::vector<const Ray*> pointers;
+    pointers.reserve(rays.size());
     for (const Ray& ray : rays) pointers.push_back(&ray);
     QueryContext context(false);
     for (std::size_t first = 0; first < rays.size(); first += K) {

@@ -1,7 +1,8 @@
 // PathIntegrator by states and steps: any driver and any stream give the same path.
 #include "test/render/mixed_scene.h"
 #include <algorithm>
-#include <cstring>
+#include <array>
+#include <bit>
 #include <gtest/gtest.h>
 #include <span>
 #include <vector>
@@ -41,9 +42,12 @@ SceneDescription scene_of(Strategy strategy) {
     return d;
 }
 
+bool same_bits(SampledSpectrum a, SampledSpectrum b) {
+    using Bits = std::array<std::uint32_t, 4>;
+    return std::bit_cast<Bits>(a.values) == std::bit_cast<Bits>(b.values);
+}
 bool same_bits(const FilmContribution& a, const FilmContribution& b) {
-    return std::memcmp(&a.radiance, &b.radiance, sizeof a.radiance) == 0 &&
-           std::memcmp(&a.first.albedo, &b.first.albedo, sizeof a.first.albedo) == 0 &&
+    return same_bits(a.radiance, b.radiance) && same_bits(a.first.albedo, b.first.albedo) &&
            a.first.depth == b.first.depth && a.first.normal == b.first.normal &&
            a.lambda.secondary_terminated() == b.lambda.secondary_terminated();
 }
