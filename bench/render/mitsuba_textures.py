@@ -52,7 +52,7 @@ class Textures:
         found = parameters.find(name)
         if found is not None and found.type == "texture":
             return self.texture(str(found.values[0]), place)
-        return parameters.number(name, default)
+        return float(parameters.number(name, default))
 
     def texture(self, name: str, place: str) -> Converted:
         plugin = self.scene.textures.get(name)

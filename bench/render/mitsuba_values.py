@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any, Dict
 
 import numpy as np
@@ -37,8 +36,8 @@ def latitude_longitude(square: np.ndarray, oversampling: int = 2) -> np.ndarray:
 class Values:
     """Fills in a converted scene for the variant that is set."""
 
-    def __init__(self, mi: Any, folder: Path) -> None:
-        self.mi, self.folder, self.files = mi, folder, 0
+    def __init__(self, mi: Any) -> None:
+        self.mi = mi
 
     def fill(self, value: Any) -> Any:
         if isinstance(value, np.ndarray):
