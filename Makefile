@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo lab build test test-all bench bench-integrate bench-hard lint format install dependencies clean
+.PHONY: help demo lab build test test-all bench bench-integrate bench-hard bench-render lint format install dependencies clean
 
 JOBS ?= $(shell cmake/jobs.sh)
 BUILD := build/release
@@ -62,6 +62,16 @@ bench-hard: dependencies ## integrators on hard integrals: silent failures (hour
 	$(HARD)/bench/hard/montelux_bench_hard --vegas-python $(HARD)/vegas/bin/python --jobs $(JOBS) --verbose \
 	    --json $(HARD)/result.json $(if $(SEEDS),--seeds $(SEEDS)) $(if $(FAMILIES),--families $(FAMILIES)) \
 	    $(if $(METHODS),--methods $(METHODS)) $(if $(TARGETS),--targets $(TARGETS)) | tee $(HARD)/result.md
+
+RENDERS := build/bench-render
+bench-render: build ## pictures beside Mitsuba 3 (minutes a scene; SCENES="FOLDER ...", ENGINES=montelux,llvm_ad_rgb SPP=16 RUNS=3 WIDTH=200 THREADS=1)
+	@cmake/install-dependencies.sh bench-render || echo "Going on without the LLVM that is missing."
+	@mkdir -p $(RENDERS)
+	bench/render/mitsuba-environment.sh $(RENDERS)/mitsuba
+	python=$(RENDERS)/mitsuba/bin/python; test -x $$python || python=python3; \
+	$$python bench/render/bench_render.py $(BUILD)/montelux $(or $(SCENES),scenes/demo) --json $(RENDERS)/result.json \
+	    $(if $(ENGINES),--engines $(ENGINES)) $(if $(SPP),--spp $(SPP)) $(if $(RUNS),--runs $(RUNS)) \
+	    $(if $(WIDTH),--width $(WIDTH)) $(if $(THREADS),--threads $(THREADS)) | tee $(RENDERS)/result.md
 
 lint: ## formatting and static analysis (FILES="a.cpp b.cpp" for some, else all)
 	cmake/install-dependencies.sh lint

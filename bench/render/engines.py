@@ -39,7 +39,7 @@ class Montelux:
     def __init__(self, name: str, program: Path, folder: Path) -> None:
         self.name, self.program, self.folder = name, program, folder
         self.sampler = name.partition(":")[2] or "independent"
-        self.version = self._call(["--version"]).split()[1]
+        self.version = self._call(["--version"]).split()[1].rstrip(",")
 
     def _call(self, arguments: List[str]) -> str:
         try:
