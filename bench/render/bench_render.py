@@ -22,20 +22,30 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="Ratios are an engine's value over Montelux's: above 1 Montelux needs less. See docs/measurements/render.md.",
+        epilog="Ratios are those of an engine to Montelux: above 1 Montelux needs less. See docs/measurements/render.md.",
     )
     parser.add_argument("montelux", type=Path, help="program to measure")
     parser.add_argument("scenes", type=Path, nargs="+", metavar="SCENE", help="pbrt scene, or folder with a scene.pbrt")
     parser.add_argument("--python", default=sys.executable, help="Python that has mitsuba; default: this one")
     parser.add_argument(
-        "--engines", default=ENGINES, type=names, metavar="A,B", help=f"montelux[:SAMPLER] and variants of Mitsuba; default: {ENGINES}"
+        "--engines",
+        default=ENGINES,
+        type=names,
+        metavar="A,B",
+        help=f"montelux[:SAMPLER] and variants of Mitsuba; default: {ENGINES}",
     )
     parser.add_argument("--spp", default="16,64", type=counts, metavar="N,M", help="samples per pixel; default: 16,64")
     parser.add_argument("--runs", default=3, type=count, metavar="N", help="alternating runs; default: 3")
     parser.add_argument("--threads", default=1, type=count, metavar="N", help="threads of each engine; default: 1")
-    parser.add_argument("--width", default=200, type=count, metavar="PIXELS", help="width of the pictures; default: 200")
     parser.add_argument(
-        "--reference-spp", default=2048, type=count, metavar="N", help="samples per pixel of the references; default: 2048"
+        "--width", default=200, type=count, metavar="PIXELS", help="width of the pictures; default: 200"
+    )
+    parser.add_argument(
+        "--reference-spp",
+        default=2048,
+        type=count,
+        metavar="N",
+        help="samples per pixel of the references; default: 2048",
     )
     parser.add_argument("--json", type=Path, metavar="FILE", help="also write every figure to this file")
     return parser.parse_args()

@@ -113,7 +113,9 @@ class Mitsuba:
     def warm_up(self, spp: int, seed: int, threads: int) -> None:
         compiled = self._ask("warm_up", spp=spp, seed=seed, threads=threads)["compiled"]
         if compiled:
-            print(f"{self.name}: {compiled} kernels are compiled anew in each render; times contain that", file=sys.stderr)
+            print(
+                f"{self.name}: {compiled} kernels are compiled anew in each render; times contain that", file=sys.stderr
+            )
 
     def render(self, spp: int, seed: int, threads: int) -> Run:
         out = self.folder / f"{self.name}.npy"

@@ -17,7 +17,9 @@ def _version(path: str) -> Tuple[int, ...]:
 
 def newest_llvm() -> Optional[str]:
     """The newest library of this machine: LLVM below 15 is refused, and below 17 fails on processors with AVX-512."""
-    found = [path for folder in FOLDERS for path in glob.glob(f"{folder}/libLLVM[-.]*") if ".so" in path or ".dylib" in path]
+    found = [
+        path for folder in FOLDERS for path in glob.glob(f"{folder}/libLLVM[-.]*") if ".so" in path or ".dylib" in path
+    ]
     return max(found, key=_version) if found else None
 
 

@@ -52,7 +52,11 @@ class Materials:
     def coated_diffuse(self, m: Plugin) -> Dict[str, Any]:
         m.parameters.without_effect(*WALK)
         rough, lobe = self.roughness(m)
-        base = {"type": "roughplastic" if rough else "plastic", "diffuse_reflectance": self.reflectance(m), "nonlinear": True}
+        base = {
+            "type": "roughplastic" if rough else "plastic",
+            "diffuse_reflectance": self.reflectance(m),
+            "nonlinear": True,
+        }
         if rough and "alpha" not in lobe:  # Mitsuba's plastic is isotropic
             self.scene.notice(m.place, "the coat's two roughnesses become their mean")
             lobe = {"distribution": "ggx", "alpha": 0.5 * (lobe["alpha_u"] + lobe["alpha_v"])}
@@ -64,8 +68,13 @@ class Materials:
         reflectance = m.parameters.find("reflectance")
         if reflectance is not None:
             if reflectance.type != "rgb":
-                self.scene.notice(m.place, "a conductor's reflectance that is no RGB colour is not converted: 0.9 is used")
-            values = [min(max(float(v), 0.0), 0.9999) for v in (reflectance.values if reflectance.type == "rgb" else [0.9] * 3)]
+                self.scene.notice(
+                    m.place, "a conductor's reflectance that is no RGB colour is not converted: 0.9 is used"
+                )
+            values = [
+                min(max(float(v), 0.0), 0.9999)
+                for v in (reflectance.values if reflectance.type == "rgb" else [0.9] * 3)
+            ]
             k = [2 * r**0.5 / (1 - r) ** 0.5 for r in values]
             return two_sided({**metal, "eta": rgb([1, 1, 1]), "k": {"type": UNBOUNDED, "value": k}})
         eta, k = m.parameters.find(prefix + "eta"), m.parameters.find(prefix + "k")
@@ -103,7 +112,9 @@ class Materials:
         names = [str(v) for v in given.values] if given else []
         unknown = [n for n in names if n not in self.scene.materials]
         if len(names) != 2 or unknown:
-            self.scene.notice(m.place, f"mix of {' and '.join(names) or 'nothing'} is not converted: grey diffuse is used")
+            self.scene.notice(
+                m.place, f"mix of {' and '.join(names) or 'nothing'} is not converted: grey diffuse is used"
+            )
             return two_sided({"type": "diffuse", "reflectance": rgb([0.5] * 3)})
         parts = [self.bsdf(self.scene.materials[n], nesting + 1) for n in names]
         return {"type": "blendbsdf", "weight": amount, "first": parts[0], "second": parts[1]}

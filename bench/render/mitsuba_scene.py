@@ -86,7 +86,11 @@ class Converter:
         elif light.type == "distant":
             start, end = self.point(p, "from", (0, 0, 0)), self.point(p, "to", (0, 0, 1))
             direction = light.to_world[:3, :3] @ (end - start)
-            out = {"type": "directional", "direction": direction.tolist(), "irradiance": self.emission(light, "L", scale)}
+            out = {
+                "type": "directional",
+                "direction": direction.tolist(),
+                "irradiance": self.emission(light, "L", scale),
+            }
         elif light.type == "point":
             at = light.to_world @ np.append(self.point(p, "from", (0, 0, 0)), 1)
             out = {"type": "point", "position": at[:3].tolist(), "intensity": self.emission(light, "I", scale)}

@@ -12,7 +12,6 @@ import numpy as np
 
 from pbrt_scene import Parameters, Plugin, Scene
 
-
 PICTURE, EQUAL_AREA_MAP, UNBOUNDED = "montelux picture", "montelux equal-area map", "montelux unbounded colour"
 
 Converted = Union[float, Dict[str, Any]]
@@ -28,7 +27,9 @@ class Textures:
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
 
-    def color(self, parameters: Parameters, name: str, default: List[float], place: str, unbounded: bool = False) -> Converted:
+    def color(
+        self, parameters: Parameters, name: str, default: List[float], place: str, unbounded: bool = False
+    ) -> Converted:
         """A spectrum parameter. `unbounded` is for those that are no reflectances."""
         found = parameters.find(name)
         if found is None:
@@ -59,7 +60,9 @@ class Textures:
         if plugin is None:
             self.scene.notice(place, f"unknown texture {name}: 1 is used")
             return rgb([1, 1, 1])
-        convert = {"imagemap": self._picture, "checkerboard": self._checkerboard, "scale": self._scaled}.get(plugin.type)
+        convert = {"imagemap": self._picture, "checkerboard": self._checkerboard, "scale": self._scaled}.get(
+            plugin.type
+        )
         if plugin.type == "constant":
             converted = self._part(plugin.parameters, "value", 1, plugin.place)
         elif convert:
@@ -112,7 +115,9 @@ class Textures:
         p, mapping = plugin.parameters, self._mapping(plugin)
         first, second = (self._part(p, n, d, plugin.place) for n, d in (("tex1", 1), ("tex2", 0)))
         if p.number("dimension", 2) != 2 or mapping is None:
-            self.scene.notice(plugin.place, f"checkerboard {plugin.name} is not two-dimensional in uv: its first colour is used")
+            self.scene.notice(
+                plugin.place, f"checkerboard {plugin.name} is not two-dimensional in uv: its first colour is used"
+            )
             return first
         period = np.diag([0.5, 0.5, 1])  # a unit of Mitsuba's checkerboard is two squares wide
         return {"type": "checkerboard", "color0": first, "color1": second, "to_uv": period @ mapping}

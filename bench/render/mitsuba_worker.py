@@ -69,7 +69,7 @@ class Worker:
         return {"compiled": sum(not kernel["cache_hit"] for kernel in history)}
 
     def answer(self, request: Dict[str, Any]) -> Dict[str, Any]:
-        (name, values), = request.items()
+        ((name, values),) = request.items()
         return {"load": self.load, "render": self.render, "warm_up": self.warm_up}[name](**values)
 
 

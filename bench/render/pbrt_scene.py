@@ -131,7 +131,9 @@ class _Builder:
     def run(self, d: Directive) -> None:
         if d.name in WITHOUT_COUNTERPART:
             detail = " ".join(d.strings)
-            self.scene.notice(d.place, f"{d.name} {detail} ({WITHOUT_COUNTERPART[d.name]}) is left out".replace("  ", " "))
+            self.scene.notice(
+                d.place, f"{d.name} {detail} ({WITHOUT_COUNTERPART[d.name]}) is left out".replace("  ", " ")
+            )
             self.in_object = self.in_object or d.name == "ObjectBegin"
         elif d.name in NO_EFFECT:
             self.in_object = self.in_object and d.name != "ObjectEnd"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import statistics
-from typing import List, Optional
+from typing import List, Optional, Tuple
 
 from comparison import Comparison, Measurement, ReferenceResult
 
@@ -61,10 +61,14 @@ def summary(comparison: Comparison) -> str:
                 medians.append(statistics.median(known) if known else None)
             if base(chosen, chosen[0].scene, spp) is not chosen[0] and medians[0] is not None:
                 rows.append([engine, str(spp), str(len(chosen)), *(shown(v) for v in medians)])
-    return table(["engine", "spp", "scenes", "CPU time ratio", "time to equal relMSE", "the same, trimmed"], rows) if rows else ""
+    return (
+        table(["engine", "spp", "scenes", "CPU time ratio", "time to equal relMSE", "the same, trimmed"], rows)
+        if rows
+        else ""
+    )
 
 
-def difference(r: ReferenceResult, to: ReferenceResult) -> "tuple[float, float]":
+def difference(r: ReferenceResult, to: ReferenceResult) -> Tuple[float, float]:
     """Per cent by which the mean luminance is above Montelux's, and the standard error of that."""
     scale = 100 / to.luminance
     return scale * (r.luminance - to.luminance), scale * (r.error**2 + to.error**2) ** 0.5
@@ -78,7 +82,9 @@ def references(comparison: Comparison) -> str:
         if to is not None and to is not r:
             compared = "{:+.2f} % ({:.2f})".format(*difference(r, to))
         rows.append([r.scene, r.engine, str(r.spp), f"{r.luminance:.5g}", compared])
-    return table(["scene", "engine", "spp", "mean luminance of the reference", "difference from Montelux's (its error)"], rows)
+    return table(
+        ["scene", "engine", "spp", "mean luminance of the reference", "difference from Montelux's (its error)"], rows
+    )
 
 
 def markdown(comparison: Comparison, machine: List[str]) -> str:
@@ -88,5 +94,12 @@ def markdown(comparison: Comparison, machine: List[str]) -> str:
         f"{s.width} pixels wide, {s.threads} thread{'s' * (s.threads != 1)}, {s.runs} alternating runs: "
         "times are medians of microseconds per camera sample, errors are medians."
     )
-    parts = [f"Engines: {engines}.", setting, *machine, measurements(comparison), summary(comparison), references(comparison)]
+    parts = [
+        f"Engines: {engines}.",
+        setting,
+        *machine,
+        measurements(comparison),
+        summary(comparison),
+        references(comparison),
+    ]
     return "\n\n".join(part for part in parts if part)
