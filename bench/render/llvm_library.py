@@ -16,7 +16,7 @@ def _version(path: str) -> Tuple[int, ...]:
 
 
 def newest_llvm() -> Optional[str]:
-    """The newest library of this machine: LLVM below 15 is refused, and below 17 fails on processors with AVX-512."""
+    """The newest library of this machine. drjit 1.5 refuses LLVM 14; 15 and 16 fail to compile its AVX-512 code."""
     found = [
         path for folder in FOLDERS for path in glob.glob(f"{folder}/libLLVM[-.]*") if ".so" in path or ".dylib" in path
     ]

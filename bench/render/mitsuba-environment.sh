@@ -1,6 +1,6 @@
 #!/bin/sh
 # Prepares a Python environment with Mitsuba 3 and NumPy for the comparison of pictures; prints why if it cannot.
-# The llvm variants also need LLVM 17 or newer (Debian: libllvm19), which drjit loads while it runs.
+# The llvm variants also need LLVM (Debian: libllvm19), which they load while they run; see llvm_library.py.
 # Usage: mitsuba-environment.sh FOLDER
 set -eu
 folder=$1
