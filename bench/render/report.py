@@ -59,7 +59,7 @@ def summary(comparison: Comparison) -> str:
                 ratios = [ratio(m, base(found, m.scene, spp), kind) for m in chosen]
                 known = [r for r in ratios if r is not None]
                 medians.append(statistics.median(known) if known else None)
-            if base(chosen, chosen[0].scene, spp) is not chosen[0] and medians[0] is not None:
+            if medians[0] is not None and base(found, chosen[0].scene, spp) is not chosen[0]:
                 rows.append([engine, str(spp), str(len(chosen)), *(shown(v) for v in medians)])
     return (
         table(["engine", "spp", "scenes", "CPU time ratio", "time to equal relMSE", "the same, trimmed"], rows)
