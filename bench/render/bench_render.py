@@ -22,7 +22,7 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="Ratios are those of an engine to Montelux: above 1 Montelux needs less. See docs/measurements/render.md.",
+        epilog="Ratios are to Montelux: above 1 Montelux needs less. See docs/measurements/render.md.",
     )
     parser.add_argument("montelux", type=Path, help="program to measure")
     parser.add_argument("scenes", type=Path, nargs="+", metavar="SCENE", help="pbrt scene, or folder with a scene.pbrt")
