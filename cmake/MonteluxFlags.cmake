@@ -1,10 +1,11 @@
 # Compiler settings shared by every target: montelux_flags (code of ours) and what users of the library need.
 add_library(montelux_flags INTERFACE)
 target_compile_features(montelux_flags INTERFACE cxx_std_20)
-# Reproducible sums: nothing is reassociated. A result is a function of its key for one build of the library; builds
-# for other processors may fuse other multiply-adds.
+# Reproducible arithmetic: nothing is reassociated and no multiply-adds are fused, so a formula has the same bits
+# wherever it is inlined and however many paths it computes at a time. Functions of the C library may still differ
+# between processors.
 target_compile_options(montelux_flags INTERFACE
-    -ffp-contract=fast -fno-math-errno -fno-trapping-math -fvisibility=hidden
+    -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden
     -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual -Woverloaded-virtual
     -Wconversion -Wno-sign-conversion -Wno-float-conversion -Wdouble-promotion -Wno-psabi $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 if(MONTELUX_WERROR)

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "montelux/transport/one_copy.h"
-
 namespace montelux {
 
 namespace {
@@ -37,7 +35,6 @@ SampleContext::SampleContext(const SceneDescription& description, const SamplerS
       white_(RgbColorSpace::srgb().illuminant()),
       white_scale_(static_cast<float>(1 / integrate_luminance(white_))) {}
 
-MONTELUX_ONE_COPY
 PathStart<SampleStream> SampleContext::begin(const Key& key, FilmPoint& point) const {
     SampleStream stream(sampler_, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y),
                         key.index);
@@ -51,7 +48,6 @@ PathStart<SampleStream> SampleContext::begin(const Key& key, FilmPoint& point) c
             stream};
 }
 
-MONTELUX_ONE_COPY
 SampleContext::Result SampleContext::finish(const FilmContribution& path, const SampledWavelengths& lambda,
                                             const FilterSample& filter, SampleRecord* record) const {
     Result result;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uintmax_t largest_file = 16u << 20;
 
-struct Number {
+struct NumberAtLine {
     float value;
     int line;
 };
@@ -24,8 +24,8 @@ std::string at_line(std::string_view where, int line) {
     return std::string(where) + ":" + std::to_string(line);
 }
 
-std::vector<Number> read_numbers(std::string_view text, std::string_view where) {
-    std::vector<Number> numbers;
+std::vector<NumberAtLine> read_numbers(std::string_view text, std::string_view where) {
+    std::vector<NumberAtLine> numbers;
     int line = 1;
     for (std::size_t i = 0; i < text.size();) {
         if (text[i] == '#') {
@@ -53,7 +53,7 @@ std::vector<Number> read_numbers(std::string_view text, std::string_view where) 
 } // namespace
 
 PiecewiseLinear parse_spd(std::string_view text, std::string_view where) {
-    std::vector<Number> numbers = read_numbers(text, where);
+    std::vector<NumberAtLine> numbers = read_numbers(text, where);
     if (numbers.empty())
         throw Error(where, "the file holds no numbers; pairs of wavelength and value were expected");
     if (numbers.size() % 2 != 0)

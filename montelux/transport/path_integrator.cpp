@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "montelux/mc/random/sample_stream.h"
-#include "montelux/transport/one_copy.h"
 #include "montelux/transport/path_shading.h"
 
 namespace montelux {
@@ -74,7 +73,6 @@ void PathIntegrator::add_met_light(const SceneView& scene, PathState& state, Ind
     if (counted) state.radiance += state.throughput * le * weight;
 }
 
-MONTELUX_ONE_COPY
 void PathIntegrator::escape(const SceneView& scene, PathState& state, PathRecorder recorder) const {
     if (recorder) recorder.left_scene(state.ray, state.throughput);
     for (Index light : scene.light_tables.infinite_lights)

@@ -9,7 +9,6 @@
 #include "montelux/scene/light/light_sampling.h"
 #include "montelux/scene/material/make_bsdf.h"
 #include "montelux/scene/shape/surface_point.h"
-#include "montelux/transport/one_copy.h"
 #include "montelux/transport/path_integrator.h"
 
 namespace montelux {
@@ -148,11 +147,9 @@ struct PathIntegrator::Vertex {
     }
 };
 
-// One copy, so that every driver of paths gets the same bits.
 template <RandomStream Stream>
-MONTELUX_ONE_COPY std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState& state,
-                                                                 const Hit& hit, Stream& stream,
-                                                                 PathRecorder recorder) const {
+std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState& state, const Hit& hit,
+                                               Stream& stream, PathRecorder recorder) const {
     std::optional<ShadowRay> shadow; // returned by every return statement: built in place
     const Vec3f w = state.ray.d;
     const Index material = scene.shapes[hit.shape].material;

@@ -7,6 +7,8 @@
 #include <limits>
 #include <span>
 
+#include "montelux/mc/math/number.h"
+
 namespace montelux {
 
 // Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation", section 9.2. Strategy i draws
@@ -16,21 +18,22 @@ namespace montelux {
 
 // Weight of strategy f against strategy g, which gets g_share(q_g / q_f) per 1 of f. The ratio keeps powers
 // of densities from overflowing.
-template <std::floating_point T, typename Share>
+template <Number T, typename Share>
 constexpr T weight_of_two(int nf, T f_pdf, int ng, T g_pdf, Share g_share) {
-    T qf = static_cast<T>(nf) * f_pdf, qg = static_cast<T>(ng) * g_pdf;
-    if (!(qf > 0)) return 0;
-    if (qf > std::numeric_limits<T>::max())
-        return qg > std::numeric_limits<T>::max() ? static_cast<T>(nf) / static_cast<T>(nf + ng) : T(1);
-    return 1 / (1 + g_share(qg / qf));
+    using S = ScalarOf<T>;
+    constexpr S largest = std::numeric_limits<S>::max();
+    const T qf = static_cast<S>(nf) * f_pdf, qg = static_cast<S>(ng) * g_pdf;
+    const T finite = 1 / (1 + g_share(qg / qf));
+    const T infinite = select(qg > largest, T(static_cast<S>(nf) / static_cast<S>(nf + ng)), T(1));
+    return select(qf > 0, select(qf > largest, infinite, finite), T(0));
 }
 // q_f / (q_f + q_g).
-template <std::floating_point T>
+template <Number T>
 constexpr T balance_heuristic(int nf, T f_pdf, int ng, T g_pdf) {
     return weight_of_two(nf, f_pdf, ng, g_pdf, [](T ratio) { return ratio; });
 }
 // Power heuristic with exponent 2: q_f^2 / (q_f^2 + q_g^2).
-template <std::floating_point T>
+template <Number T>
 constexpr T power_heuristic(int nf, T f_pdf, int ng, T g_pdf) {
     return weight_of_two(nf, f_pdf, ng, g_pdf, [](T ratio) { return ratio * ratio; });
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <concepts>
 
+#include "montelux/mc/math/number.h"
+
 namespace montelux {
 
 template <typename T>
@@ -19,7 +21,7 @@ struct Vec2 {
 
     constexpr T& operator[](int i) { return i == 0 ? x : y; }
     constexpr T operator[](int i) const { return i == 0 ? x : y; }
-    constexpr bool operator==(const Vec2&) const = default;
+    bool operator==(const Vec2&) const = default; // constexpr where T allows it
 
     friend constexpr Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
     friend constexpr Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
@@ -44,7 +46,7 @@ struct Vec3 {
 
     constexpr T& operator[](int i) { return i == 0 ? x : (i == 1 ? y : z); }
     constexpr T operator[](int i) const { return i == 0 ? x : (i == 1 ? y : z); }
-    constexpr bool operator==(const Vec3&) const = default;
+    bool operator==(const Vec3&) const = default; // constexpr where T allows it
 
     friend constexpr Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
     friend constexpr Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -78,7 +80,7 @@ constexpr T dot(Vec3<T> a, Vec3<T> b) {
 template <typename T>
 constexpr T abs_dot(Vec3<T> a, Vec3<T> b) {
     T d = dot(a, b);
-    return d < 0 ? -d : d;
+    return select(d < 0, -d, d);
 }
 template <typename T>
 constexpr Vec3<T> cross(Vec3<T> a, Vec3<T> b) {
@@ -94,11 +96,13 @@ constexpr T length_squared(Vec3<T> a) {
 }
 template <typename T>
 T length(Vec2<T> a) {
-    return std::sqrt(dot(a, a));
+    using std::sqrt;
+    return sqrt(dot(a, a));
 }
 template <typename T>
 T length(Vec3<T> a) {
-    return std::sqrt(dot(a, a));
+    using std::sqrt;
+    return sqrt(dot(a, a));
 }
 // The zero vector has no direction: it gives NaN.
 template <typename T>
@@ -107,23 +111,30 @@ Vec3<T> normalize(Vec3<T> a) {
 }
 template <typename T>
 constexpr Vec3<T> min(Vec3<T> a, Vec3<T> b) {
-    return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
+    using std::min;
+    return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)};
 }
 template <typename T>
 constexpr Vec3<T> max(Vec3<T> a, Vec3<T> b) {
-    return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
+    using std::max;
+    return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)};
 }
 template <typename T>
 constexpr Vec3<T> abs(Vec3<T> a) {
-    return {a.x < 0 ? -a.x : a.x, a.y < 0 ? -a.y : a.y, a.z < 0 ? -a.z : a.z};
+    return {select(a.x < 0, -a.x, a.x), select(a.y < 0, -a.y, a.y), select(a.z < 0, -a.z, a.z)};
 }
 template <typename T>
 constexpr T max_component(Vec3<T> a) {
-    return std::max(a.x, std::max(a.y, a.z));
+    using std::max;
+    return max(a.x, max(a.y, a.z));
 }
 template <typename T>
 constexpr Vec3<T> multiply(Vec3<T> a, Vec3<T> b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+template <LaneNumber T>
+constexpr Vec3<T> select(MaskOf<T> condition, Vec3<T> a, Vec3<T> b) {
+    return {select(condition, a.x, b.x), select(condition, a.y, b.y), select(condition, a.z, b.z)};
 }
 template <typename T>
 bool is_finite(Vec3<T> a) {

@@ -20,6 +20,9 @@
 
 namespace montelux {
 
+template <int W>
+class LaneStream;
+
 // Numbers in [0, 1): a pure function of (settings, pixel, sample index) and of how many were drawn before,
 // one and two at a time. As many as wanted may be drawn. For every kind each number is uniform, the numbers
 // of a sample are independent of one another, and so a single sample is unbiased. Samples of one replicate
@@ -127,6 +130,9 @@ class SampleStream {
     }
 
   private:
+    template <int W>
+    friend class LaneStream;
+
     static constexpr std::uint64_t refinement = 0x7265666e; // no other hash of a dimension's key has it
     static constexpr std::uint32_t global_dimensions = sobol_nibble_dimensions;
     static constexpr std::uint32_t padded_dimensions = 4;
@@ -145,13 +151,15 @@ class SampleStream {
     }
 
     std::uint32_t next_philox() {
-        const std::uint32_t at = dimension_++ & 3u;
-        if (at == 0) {
+        const std::uint32_t d = dimension_++, block = d / 4;
+        // LaneStream may have drawn some of a block.
+        if (counter_[0] != block + 1) {
+            counter_[0] = block;
             block_ = philox4x32<>(counter_,
                                   {static_cast<std::uint32_t>(key_), static_cast<std::uint32_t>(key_ >> 32)});
-            ++counter_[0];
+            counter_[0] = block + 1;
         }
-        return block_[at];
+        return block_[d % 4];
     }
 
     std::uint32_t sobol(std::uint32_t d) {
@@ -195,7 +203,7 @@ class SampleStream {
     SamplerKind kind_;
     std::uint32_t dimension_ = 0; // draws so far
     std::uint64_t key_ = 0;
-    std::array<std::uint32_t, 4> counter_{}; // independent
+    std::array<std::uint32_t, 4> counter_{}; // independent; the first is the number of `block_` plus 1
     std::array<std::uint32_t, 4> block_;     // independent
     std::uint32_t index_ = 0, count_ = 1;    // within the replicate
     std::uint32_t shuffled_ = 0;             // sobol: the index within the padded set begun last

@@ -6,6 +6,7 @@
 #include <concepts>
 
 #include "montelux/mc/math/constants.h"
+#include "montelux/mc/math/sin_cos.h"
 #include "montelux/mc/math/vec.h"
 
 namespace montelux {
@@ -37,20 +38,16 @@ Vec2<T> invert_uniform_disk_polar(Vec2<T> p) {
 
 // Squares around the centre become circles; neighbours stay neighbours, with little distortion.
 // Shirley and Chiu 1997, "A Low Distortion Map Between Disk and Square", JGT 2(3).
-template <std::floating_point T = float>
+template <Number T = float>
 Vec2<T> sample_uniform_disk_concentric(Vec2<T> u) {
-    constexpr T quarter_pi = static_cast<T>(pi / 4), half_pi = static_cast<T>(pi / 2);
-    T a = 2 * u.x - 1, b = 2 * u.y - 1;
-    if (a == 0 && b == 0) return {0, 0};
-    T r, phi;
-    if (std::abs(a) > std::abs(b)) {
-        r = a;
-        phi = quarter_pi * (b / a);
-    } else {
-        r = b;
-        phi = half_pi - quarter_pi * (a / b);
-    }
-    return {r * std::cos(phi), r * std::sin(phi)};
+    using std::abs;
+    const T a = 2 * u.x - 1, b = 2 * u.y - 1;
+    const MaskOf<T> steep = !(abs(a) > abs(b));
+    const T r = select(steep, b, a), minor = select(steep, a, b);
+    // The angle to the axis that is nearer, at most an eighth of a turn; at the centre any will do.
+    const T share = minor / select(r == 0, T(1), r);
+    const auto [sine, cosine] = sin_cos_octant(static_cast<ScalarOf<T>>(pi / 4) * share);
+    return {r * select(steep, sine, cosine), r * select(steep, cosine, sine)};
 }
 template <std::floating_point T = float>
 Vec2<T> invert_uniform_disk_concentric(Vec2<T> p) {

@@ -24,19 +24,20 @@ Vec2<T> invert_uniform_hemisphere(Vec3<T> w) {
 }
 
 // Per steradian; zero at and below the horizon.
-template <std::floating_point T = float>
+template <Number T = float>
 constexpr T cosine_hemisphere_pdf(T cos_theta) {
-    return cos_theta > 0 ? cos_theta * static_cast<T>(inv_pi) : T(0);
+    return select(cos_theta > 0, cos_theta * static_cast<ScalarOf<T>>(inv_pi), T(0));
 }
 
 // Malley's method: the concentric disk lifted to the sphere. Points on the rim of the square lie on the
 // horizon, where the density is zero: test it before dividing.
-template <std::floating_point T = float>
+template <Number T = float>
 Vec3<T> sample_cosine_hemisphere(Vec2<T> u) {
-    Vec2<T> d = sample_uniform_disk_concentric(u);
+    using std::abs, std::max, std::sqrt;
+    const Vec2<T> d = sample_uniform_disk_concentric(u);
     // The disk radius is max(|a|, |b|) with a, b = 2u - 1, known exactly; 1 - x^2 - y^2 is not.
-    T r = std::max(std::abs(2 * u.x - 1), std::abs(2 * u.y - 1));
-    return {d.x, d.y, std::sqrt((1 - r) * (1 + r))};
+    const T r = max(abs(2 * u.x - 1), abs(2 * u.y - 1));
+    return {d.x, d.y, sqrt((1 - r) * (1 + r))};
 }
 template <std::floating_point T = float>
 Vec2<T> invert_cosine_hemisphere(Vec3<T> w) {

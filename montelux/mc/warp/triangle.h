@@ -19,9 +19,10 @@ constexpr T uniform_triangle_pdf(T area) {
 
 // b0 = 1 - sqrt(1 - u.x), b1 = u.y sqrt(1 - u.x). Turk 1990, "Generating Random Points in Triangles",
 // Graphics Gems I.
-template <std::floating_point T = float>
+template <Number T = float>
 Vec3<T> sample_uniform_triangle(Vec2<T> u) {
-    T s = std::sqrt(1 - u.x);
+    using std::sqrt;
+    const T s = sqrt(1 - u.x);
     return {u.x / (1 + s), u.y * s, (1 - u.y) * s};
 }
 template <std::floating_point T = float>

@@ -2,10 +2,12 @@
 // both point away from the surface.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "montelux/mc/math/vec.h"
-#include "montelux/spectrum/sampled_spectrum.h"
+#include "montelux/spectrum/spectrum_lanes.h"
 
 namespace montelux {
 
@@ -25,22 +27,53 @@ struct BsdfTraits {
 };
 
 // Value and density for a given pair of directions; lobes that are Dirac deltas count as zero in both.
-struct BsdfEvaluation {
-    SampledSpectrum f; // f(wo, wi) |cos theta_i|, 1/sr times cosine
-    float pdf = 0;     // of sampling wi given wo, per solid angle
+template <Number T>
+struct BsdfEvaluationOf {
+    SpectrumOf<T> f; // f(wo, wi) |cos theta_i|, 1/sr times cosine
+    T pdf = 0;       // of sampling wi given wo, per solid angle
 };
+using BsdfEvaluation = BsdfEvaluationOf<float>;
 
-struct BsdfSample {
-    SampledSpectrum weight; // f(wo, wi) |cos theta_i| / pdf; for a delta lobe its limit
-    Vec3f wi;
-    float pdf = 0;         // per solid angle; for a delta lobe the probability of choosing it
-    bool specular = false; // wi came from a delta lobe
-    bool transmission = false;
-    float eta = 1; // index of refraction on the side of wi over that on the side of wo
+template <Number T>
+struct BsdfSampleOf {
+    SpectrumOf<T> weight; // f(wo, wi) |cos theta_i| / pdf; for a delta lobe its limit
+    Vec3<T> wi;
+    T pdf = 0;                  // per solid angle; for a delta lobe the probability of choosing it
+    MaskOf<T> specular = false; // wi came from a delta lobe
+    MaskOf<T> transmission = false;
+    T eta = 1; // index of refraction on the side of wi over that on the side of wo
 };
+using BsdfSample = BsdfSampleOf<float>;
 
-inline float cos_theta(Vec3f w) { return w.z; }
-inline float abs_cos_theta(Vec3f w) { return std::abs(w.z); }
-inline bool same_hemisphere(Vec3f a, Vec3f b) { return a.z * b.z > 0; }
+// The result of sampling a BSDF, which may find no direction.
+template <Number T>
+struct MaybeBsdfSample {
+    BsdfSampleOf<T> sample;
+    MaskOf<T> found;
+};
+// An optional for float.
+inline std::optional<BsdfSample> sample_if(bool found, const BsdfSample& sample) {
+    std::optional<BsdfSample> result;
+    if (found) result = sample;
+    return result;
+}
+template <LaneNumber T>
+MaybeBsdfSample<T> sample_if(MaskOf<T> found, const BsdfSampleOf<T>& sample) {
+    return {sample, found};
+}
+
+template <Number T>
+T cos_theta(Vec3<T> w) {
+    return w.z;
+}
+template <Number T>
+T abs_cos_theta(Vec3<T> w) {
+    using std::abs;
+    return abs(w.z);
+}
+template <Number T>
+MaskOf<T> same_hemisphere(Vec3<T> a, Vec3<T> b) {
+    return a.z * b.z > 0;
+}
 
 } // namespace montelux

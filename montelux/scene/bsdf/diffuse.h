@@ -1,15 +1,14 @@
 // DiffuseBsdf: Lambertian reflection.
 #pragma once
 
-#include <optional>
-
 #include "montelux/mc/warp/hemisphere.h"
 #include "montelux/scene/bsdf/bsdf_types.h"
 
 namespace montelux {
 
-struct DiffuseBsdf {
-    SampledSpectrum reflectance;
+template <Number T>
+struct DiffuseBsdfOf {
+    SpectrumOf<T> reflectance;
 
     static constexpr const char* name = "diffuse";
     static constexpr BsdfTraits traits{};
@@ -20,24 +19,22 @@ struct DiffuseBsdf {
 
     bool is_specular() const { return false; }
     bool has_specular() const { return false; }
-    SampledSpectrum albedo(Vec3f) const { return reflectance; }
+    SpectrumOf<T> albedo(Vec3<T>) const { return reflectance; }
 
     template <typename Stream>
-    BsdfEvaluation evaluate(Vec3f wo, Vec3f wi, TransportMode, Stream&) const {
-        if (!same_hemisphere(wo, wi)) return {};
-        float pdf = inv_pi_f * abs_cos_theta(wi);
+    BsdfEvaluationOf<T> evaluate(Vec3<T> wo, Vec3<T> wi, TransportMode, Stream&) const {
+        const T pdf = select(same_hemisphere(wo, wi), inv_pi_f * abs_cos_theta(wi), T(0));
         return {reflectance * pdf, pdf};
     }
 
     template <typename Stream>
-    std::optional<BsdfSample> sample(Vec3f wo, TransportMode, Stream& stream) const {
-        Vec2f u = stream.next_2d();
-        Vec3f wi = sample_cosine_hemisphere(u);
-        if (wo.z < 0) wi.z = -wi.z;
-        float pdf = inv_pi_f * abs_cos_theta(wi);
-        if (!(pdf > 0)) return std::nullopt;
-        return BsdfSample{.weight = reflectance, .wi = wi, .pdf = pdf};
+    auto sample(Vec3<T> wo, TransportMode, Stream& stream) const {
+        Vec3<T> wi = sample_cosine_hemisphere<T>(stream.next_2d());
+        wi.z = select(wo.z < 0, -wi.z, wi.z);
+        const T pdf = inv_pi_f * abs_cos_theta(wi);
+        return sample_if(pdf > 0, BsdfSampleOf<T>{.weight = reflectance, .wi = wi, .pdf = pdf});
     }
 };
+using DiffuseBsdf = DiffuseBsdfOf<float>;
 
 } // namespace montelux

@@ -27,8 +27,10 @@ struct Hit {
 // The origin of a ray that leaves a surface: p offset along the unit normal, to the side of w, by `error`, a
 // bound on the distance between p and the true surface. Scale-free: the bound is proportional to the
 // coordinates.
-[[gnu::always_inline]] inline Point3f offset_origin(Point3f p, Normal3f n, float error, Vec3f w) {
-    return p + n * std::copysign(error, dot(n, w));
+template <Number T>
+[[gnu::always_inline]] inline Vec3<T> offset_origin(Vec3<T> p, Vec3<T> n, T error, Vec3<T> w) {
+    using std::copysign;
+    return p + n * copysign(error, dot(n, w));
 }
 
 } // namespace montelux

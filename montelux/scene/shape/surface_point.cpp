@@ -25,23 +25,16 @@ void triangle_derivatives(SurfacePoint& s, Vec3f e1, Vec3f e2, Vec2f duv1, Vec2f
     s.dpdv = frame.t;
 }
 
-SurfacePoint triangle_point(const TriangleMesh& mesh, const Shape& shape, const Hit& hit, bool coordinates) {
+SurfacePoint mesh_point(const TriangleMesh& mesh, const Shape& shape, const Hit& hit, bool coordinates) {
     SurfacePoint s;
     const Index* v = &mesh.indices[3 * std::size_t{hit.primitive}];
-    Point3f p0 = mesh.positions[v[0]], p1 = mesh.positions[v[1]], p2 = mesh.positions[v[2]];
-    Vec3f e1 = p1 - p0, e2 = p2 - p0;
-    float b0 = 1 - hit.b1 - hit.b2;
-    s.p = b0 * p0 + hit.b1 * p1 + hit.b2 * p2;
-    s.ng = normalize(cross(e1, e2));
-    if (shape.flip_normal) s.ng = -s.ng;
-    s.ns = s.ng;
-    if (!mesh.normals.empty()) {
-        const Vec3f n = interpolated_normal(mesh, v, hit.b1, hit.b2);
-        const float len2 = length_squared(n);
-        if (len2 > 0) s.ns = n / std::sqrt(len2);
-        if (turns_normal(n, s.ng)) s.ng = -s.ng;
-    }
-    s.error = coordinate_error(s.ng, max(abs(p0), max(abs(p1), abs(p2))));
+    const Point3f p0 = mesh.positions[v[0]], p1 = mesh.positions[v[1]], p2 = mesh.positions[v[2]];
+    const Vec3f normal = mesh.normals.empty() ? Vec3f{} : interpolated_normal(mesh, v, hit.b1, hit.b2);
+    const TrianglePoint<float> point = triangle_point(p0, p1, p2, hit.b1, hit.b2, shape.flip_normal, normal);
+    s.p = point.p;
+    s.ng = point.ng;
+    s.ns = point.ns;
+    s.error = point.error;
     if (!coordinates) return s;
     Point2f uv0{0, 0}, uv1{1, 0}, uv2{1, 1};
     if (!mesh.uvs.empty()) {
@@ -49,8 +42,8 @@ SurfacePoint triangle_point(const TriangleMesh& mesh, const Shape& shape, const 
         uv1 = mesh.uvs[v[1]];
         uv2 = mesh.uvs[v[2]];
     }
-    s.uv = b0 * uv0 + hit.b1 * uv1 + hit.b2 * uv2;
-    triangle_derivatives(s, e1, e2, uv1 - uv0, uv2 - uv0);
+    s.uv = (1 - hit.b1 - hit.b2) * uv0 + hit.b1 * uv1 + hit.b2 * uv2;
+    triangle_derivatives(s, p1 - p0, p2 - p0, uv1 - uv0, uv2 - uv0);
     return s;
 }
 
@@ -94,13 +87,12 @@ float stretch(const Transform& t) {
 SurfacePoint surface_point(const SceneView& scene, const Ray& ray, const Hit& hit, bool coordinates) {
     const Shape& shape = scene.shapes[hit.shape];
     auto point = [&](const Ray& local) {
-        return visit_geometry(scene, shape,
-                              Overloaded{[&](const TriangleMesh& mesh) {
-                                             return triangle_point(mesh, shape, hit, coordinates);
-                                         },
-                                         [&](const Quadric& quadric) {
-                                             return quadric_point(quadric, shape, local, hit, coordinates);
-                                         }});
+        return visit_geometry(
+            scene, shape,
+            Overloaded{[&](const TriangleMesh& mesh) { return mesh_point(mesh, shape, hit, coordinates); },
+                       [&](const Quadric& quadric) {
+                           return quadric_point(quadric, shape, local, hit, coordinates);
+                       }});
     };
     SurfacePoint s;
     if (hit.instance == no_index) {

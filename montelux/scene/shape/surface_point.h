@@ -22,6 +22,13 @@ struct SurfacePoint {
 // anisotropic BSDFs need them.
 SurfacePoint surface_point(const SceneView& scene, const Ray& ray, const Hit& hit, bool coordinates);
 
+// The part of a SurfacePoint that needs no coordinates, of a number type.
+template <Number T>
+struct TrianglePoint {
+    Vec3<T> p, ng, ns;
+    T error;
+};
+
 // The interpolated vertex normal of a triangle with vertices `v`, at weights b1 and b2 of the second and
 // third vertex; not of unit length.
 inline Vec3f interpolated_normal(const TriangleMesh& mesh, const Index* v, float b1, float b2) {
@@ -35,11 +42,34 @@ inline bool turns_normal(Vec3f interpolated, Normal3f n) {
 }
 
 // Bound on the rounding error of coordinates of that size, for offset_origin.
-inline float coordinate_error(float largest) { return 0x1p-20f * largest; }
+template <Number T>
+T coordinate_error(T largest) {
+    return 0x1p-20f * largest;
+}
 // The same along the normal n, for coordinates of different sizes: an infinite floor at height 0 has almost
 // none. Never zero: a ray must not start on the surface.
-inline float coordinate_error(Normal3f n, Vec3f largest) {
+template <Number T>
+T coordinate_error(Vec3<T> n, Vec3<T> largest) {
     return coordinate_error(dot(abs(n), largest) + 0x1p-40f * max_component(largest));
+}
+
+// A point of a triangle by the weights b1 and b2 of its second and third vertex. `flipped` as
+// Shape::flip_normal. `vertex_normal` is the interpolated one, or zero.
+template <Number T>
+TrianglePoint<T> triangle_point(Vec3<T> p0, Vec3<T> p1, Vec3<T> p2, T b1, T b2, MaskOf<T> flipped,
+                                Vec3<T> vertex_normal) {
+    using std::sqrt;
+    TrianglePoint<T> s;
+    const T b0 = 1 - b1 - b2;
+    s.p = b0 * p0 + b1 * p1 + b2 * p2;
+    s.ng = normalize(cross(p1 - p0, p2 - p0));
+    s.ng = select(flipped, -s.ng, s.ng);
+    const T len2 = length_squared(vertex_normal);
+    const MaskOf<T> smooth = len2 > 0;
+    s.ns = select(smooth, vertex_normal / sqrt(len2), s.ng);
+    s.ng = select(smooth & (dot(vertex_normal, s.ng) < 0), -s.ng, s.ng);
+    s.error = coordinate_error(s.ng, max(abs(p0), max(abs(p1), abs(p2))));
+    return s;
 }
 
 } // namespace montelux

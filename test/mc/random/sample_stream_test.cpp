@@ -1,3 +1,4 @@
+#include "sampler_kinds.h"
 #include "uniformity.h"
 #include <algorithm>
 #include <array>
@@ -16,11 +17,8 @@ namespace {
 using testing::is_net;
 using testing::uniform_square_p_value;
 
-constexpr std::array all_kinds = {SamplerKind::independent, SamplerKind::stratified,
-                                  SamplerKind::halton,      SamplerKind::hammersley,
-                                  SamplerKind::sobol,       SamplerKind::sobol_blue_noise};
-constexpr std::array kind_names = {"independent", "stratified", "halton",
-                                   "hammersley",  "sobol",      "sobol_blue_noise"};
+using testing::all_kinds;
+using testing::kind_name;
 
 // The renderer's pattern of draws: a pair, a number, a pair, ...
 std::vector<double> draw(SampleStream stream, int numbers) {
@@ -35,9 +33,7 @@ std::vector<double> draw(SampleStream stream, int numbers) {
 
 class SampleStreamOf : public ::testing::TestWithParam<SamplerKind> {};
 
-INSTANTIATE_TEST_SUITE_P(Kinds, SampleStreamOf, ::testing::ValuesIn(all_kinds), [](const auto& kind) {
-    return std::string(kind_names[static_cast<int>(kind.param)]);
-});
+INSTANTIATE_TEST_SUITE_P(Kinds, SampleStreamOf, ::testing::ValuesIn(all_kinds), kind_name);
 
 // The bits below a number are uniform and know nothing of it, nor of those of the next number; two tests a
 // kind at 1e-9.
