@@ -14,6 +14,9 @@
 
 namespace montelux {
 
+template <int W>
+struct HitGroup;
+
 // Estimates the rendering equation (MISSION C1-C5; Kajiya 1986, "The Rendering Equation"). At each vertex
 // light is found by next-event estimation and by continuing the path; multiple importance sampling weights
 // both, or one is used alone, as the settings say. Paths end after max_depth scattering events or by Russian
@@ -57,8 +60,12 @@ class PathIntegrator {
     struct Vertex;
 
     bool samples_lights() const { return settings_.strategy >= Strategy::light; }
+    // `shade` of several hits for which is_plain_diffuse holds; empties the group.
+    template <int W>
+    void shade_diffuse(const SceneView& scene, HitGroup<W>& group, PathBatch& batch) const;
     // MIS weight of the strategy with density f against the one with density g.
-    float weight(float f, float g) const {
+    template <Number T>
+    T weight(T f, T g) const {
         return settings_.heuristic == Heuristic::power ? power_heuristic(1, f, 1, g)
                                                        : balance_heuristic(1, f, 1, g);
     }

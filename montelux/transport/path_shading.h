@@ -9,6 +9,7 @@
 #include "montelux/scene/light/light_sampling.h"
 #include "montelux/scene/material/make_bsdf.h"
 #include "montelux/scene/shape/surface_point.h"
+#include "montelux/transport/diffuse_lanes.h"
 #include "montelux/transport/path_integrator.h"
 
 namespace montelux {
@@ -236,6 +237,9 @@ void PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer, std::sp
         batch.alive.push_back(static_cast<Index>(batch.states.size()));
         batch.states.emplace_back(start.camera);
     }
+    constexpr bool in_lanes = std::same_as<Stream, SampleStream>;
+    const bool samples_bsdfs = settings_.strategy != Strategy::uniform;
+    HitGroup<native_lanes> group;
     while (!batch.alive.empty()) {
         batch.rays.clear();
         for (Index i : batch.alive) batch.rays.push_back(&batch.states[i].ray);
@@ -251,12 +255,21 @@ void PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer, std::sp
                 escape(scene, state);
                 continue;
             }
+            if constexpr (in_lanes) {
+                if (samples_bsdfs && is_plain_diffuse(scene, hit)) {
+                    group.add(i, state, hit, starts[i].stream);
+                    if (group.full()) shade_diffuse(scene, group, batch);
+                    continue;
+                }
+            }
             const auto shading = [&] { return shade(scene, state, hit, starts[i].stream); };
             if (batch.shadows.emplace_back(InPlace(shading)))
                 batch.shadow_owners.push_back(i);
             else
                 batch.shadows.pop_back();
         }
+        if constexpr (in_lanes)
+            if (group.size > 0) shade_diffuse(scene, group, batch);
 
         batch.rays.clear();
         for (const std::optional<ShadowRay>& shadow : batch.shadows) batch.rays.push_back(&shadow->ray);

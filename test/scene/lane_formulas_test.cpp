@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <gtest/gtest.h>
 
-#include "montelux/mc/math/lanes.h"
+#include "montelux/mc/math/vec_lanes.h"
 #include "montelux/mc/random/sample_stream.h"
 #include "montelux/scene/bsdf/diffuse.h"
 #include "montelux/scene/shape/surface_point.h"
@@ -22,12 +22,6 @@ Vec3f any_vector(SampleStream& stream) {
     const Vec2f u = stream.next_2d();
     return {4 * u.x - 2, 4 * u.y - 2, 4 * stream.next_1d() - 2};
 }
-void set_lane(Vec3<T>& v, int lane, Vec3f value) {
-    v.x.set(lane, value.x);
-    v.y.set(lane, value.y);
-    v.z.set(lane, value.z);
-}
-Vec3f lane(const Vec3<T>& v, int lane) { return {v.x[lane], v.y[lane], v.z[lane]}; }
 bool same_bits(Vec3f a, Vec3f b) {
     return std::bit_cast<std::array<std::uint32_t, 3>>(a) == std::bit_cast<std::array<std::uint32_t, 3>>(b);
 }
@@ -66,12 +60,12 @@ TEST(LaneFormulas, PointsOfTriangles) {
         for (int i = 1; i < W; ++i) {
             const Corner& c = corners[static_cast<std::size_t>(i)];
             const auto expected = triangle_point(c.p0, c.p1, c.p2, c.b1, c.b2, c.flipped, c.normal);
-            ASSERT_TRUE(same_bits(lane(found.p, i), expected.p));
-            ASSERT_TRUE(same_bits(lane(found.ng, i), expected.ng));
-            ASSERT_TRUE(same_bits(lane(found.ns, i), expected.ns));
+            ASSERT_TRUE(same_bits(lane_of(found.p, i), expected.p));
+            ASSERT_TRUE(same_bits(lane_of(found.ng, i), expected.ng));
+            ASSERT_TRUE(same_bits(lane_of(found.ns, i), expected.ns));
             ASSERT_EQ(found.error[i], expected.error);
             ASSERT_TRUE(
-                same_bits(lane(origin, i), offset_origin(expected.p, expected.ng, expected.error, c.p0)));
+                same_bits(lane_of(origin, i), offset_origin(expected.p, expected.ng, expected.error, c.p0)));
         }
         // Without area there is no normal, in any number type.
         ASSERT_TRUE(std::isnan(found.ng.x[0]));
@@ -122,7 +116,7 @@ TEST(LaneFormulas, DiffuseBsdf) {
             const auto expected = one.sample(wo[i], TransportMode::radiance, pair);
             ASSERT_EQ(sampled.found[k], expected.has_value());
             if (!expected) continue;
-            ASSERT_TRUE(same_bits(lane(sampled.sample.wi, k), expected->wi));
+            ASSERT_TRUE(same_bits(lane_of(sampled.sample.wi, k), expected->wi));
             ASSERT_EQ(sampled.sample.pdf[k], expected->pdf);
             for (int s = 0; s < spectrum_samples; ++s)
                 ASSERT_EQ(sampled.sample.weight[s][k], expected->weight[s]);
