@@ -166,7 +166,8 @@ class RenderLoop {
     }
 
     void render_tile(std::size_t index) {
-        if (pause_) return;
+        // A tile may have its samples of this round before any are taken: then the round may end in this pause.
+        if (pause_) return report_if_finished(index);
         const PixelBounds& film = state_.film.bounds();
         const PixelBounds& tile = tiles_[index];
         const auto stride = static_cast<std::size_t>(film.width());

@@ -47,8 +47,11 @@ Attributes header_of(const Image& image) {
 
 TEST(FinishedTiles, EachIsReportedOncePerRound) {
     for (const bool adaptive : {false, true})
-        for (const double checkpoint_seconds : {1e9, 0.001}) {
-            // Pauses for checkpoints cut tiles short, which are finished later in the round.
+        for (const double checkpoint_seconds : {1e9, 0.001, 0.0}) {
+            // Pauses for checkpoints cut tiles short, which are finished later in the round, or leave them
+            // out, even those that lack no samples in this round. With 0 seconds each batch ends in a pause;
+            // one thread then meets such a tile in every run of the test.
+            const ThreadLimit threads(checkpoint_seconds > 0 ? 0 : 1);
             const auto d = described(SamplerKind::independent, 100);
             const Renderer renderer(*d, {.adaptive = adaptive});
             RenderState state(d->film);
