@@ -15,13 +15,19 @@
 
 namespace montelux {
 
-// A triangle of the world whose diffuse material has no textures.
-inline bool is_plain_diffuse(const SceneView& scene, const Hit& hit) {
-    if (hit.instance != no_index) return false;
+// What can be done in lanes at a hit.
+enum class LaneShading : std::uint8_t {
+    none,
+    scattering, // a diffuse material without bumps and normal map
+    all,        // ... without textures, on a triangle of the world
+};
+inline LaneShading lane_shading(const SceneView& scene, const Hit& hit) {
     const Shape& shape = scene.shapes[hit.shape];
-    if (!std::holds_alternative<MeshIndex>(shape.geometry) || scene.is_textured(shape.material)) return false;
     const auto* diffuse = std::get_if<DiffuseMaterial>(&scene.materials[shape.material]);
-    return diffuse != nullptr && diffuse->detail.is_flat();
+    if (diffuse == nullptr || !diffuse->detail.is_flat()) return LaneShading::none;
+    const bool plain = hit.instance == no_index && std::holds_alternative<MeshIndex>(shape.geometry) &&
+                       !scene.is_textured(shape.material) && !scene.frame_follows_tangents(shape.material);
+    return plain ? LaneShading::all : LaneShading::scattering;
 }
 
 // Hits that wait until there are W of them. What it refers to must stay where it is.
@@ -43,10 +49,33 @@ struct HitGroup {
     bool full() const { return size == W; }
 };
 
+// Of hits for which everything can be done in lanes.
+template <int W>
+TrianglePoint<Lanes<W>> triangle_points(const SceneView& scene, const std::array<const Hit*, W>& hits) {
+    Vec3<Lanes<W>> p0, p1, p2, vertex_normal;
+    Lanes<W> b1, b2;
+    LaneMask<W> flipped(false);
+    for (int i = 0; i < W; ++i) {
+        const Hit& hit = *hits[static_cast<std::size_t>(i)];
+        const Shape& shape = scene.shapes[hit.shape];
+        const TriangleMesh& mesh = scene.meshes[std::get_if<MeshIndex>(&shape.geometry)->index];
+        const Index* v = &mesh.indices[3 * std::size_t{hit.primitive}];
+        set_lane(p0, i, mesh.positions[v[0]]);
+        set_lane(p1, i, mesh.positions[v[1]]);
+        set_lane(p2, i, mesh.positions[v[2]]);
+        if (!mesh.normals.empty()) set_lane(vertex_normal, i, interpolated_normal(mesh, v, hit.b1, hit.b2));
+        b1.set(i, hit.b1);
+        b2.set(i, hit.b2);
+        flipped.set(i, shape.flip_normal);
+    }
+    return triangle_point(p0, p1, p2, b1, b2, flipped, vertex_normal);
+}
+
 // As `shade` of each hit, to the last bit. Formulas are computed in lanes; lights, spectra and tables are looked
 // up lane by lane.
 template <int W>
-void PathIntegrator::shade_diffuse(const SceneView& scene, HitGroup<W>& group, PathBatch& batch) const {
+void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, HitGroup<W>& group,
+                                   PathBatch& batch) const {
     using T = Lanes<W>;
     const int size = group.size;
     group.size = 0;
@@ -56,38 +85,36 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, HitGroup<W>& group, P
         group.streams[i] = group.streams[0];
     }
 
-    Vec3<T> w, p0, p1, p2, vertex_normal;
-    T b1, b2;
-    LaneMask<W> flipped(false);
-    SpectrumLanes<W> throughput;
-    T eta_scale;
-    for (int i = 0; i < W; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        const Hit& hit = *group.hits[k];
-        const Shape& shape = scene.shapes[hit.shape];
-        const TriangleMesh& mesh = scene.meshes[std::get_if<MeshIndex>(&shape.geometry)->index];
-        const Index* v = &mesh.indices[3 * std::size_t{hit.primitive}];
-        set_lane(w, i, group.states[k]->ray.d);
-        set_lane(p0, i, mesh.positions[v[0]]);
-        set_lane(p1, i, mesh.positions[v[1]]);
-        set_lane(p2, i, mesh.positions[v[2]]);
-        if (!mesh.normals.empty()) set_lane(vertex_normal, i, interpolated_normal(mesh, v, hit.b1, hit.b2));
-        b1.set(i, hit.b1);
-        b2.set(i, hit.b2);
-        flipped.set(i, shape.flip_normal);
-    }
-    const TrianglePoint<T> s = triangle_point(p0, p1, p2, b1, b2, flipped, vertex_normal);
-
+    TrianglePoint<T> s;
+    if (level == LaneShading::all) s = triangle_points<W>(scene, group.hits);
     LaneStream<W> stream(group.streams, size);
     DiffuseBsdfOf<T> bsdf;
+    SpectrumLanes<W> throughput;
+    T eta_scale;
+    Vec3<T> w, tangent;
+    LaneMask<W> follows_tangent(false);
     for (int i = 0; i < size; ++i) {
         const auto k = static_cast<std::size_t>(i);
         PathState& state = *group.states[k];
         const Hit& hit = *group.hits[k];
-        const Shape& shape = scene.shapes[hit.shape];
-        if (shape.light != no_index)
+        const Index material = scene.shapes[hit.shape].material;
+        const bool textured = scene.is_textured(material);
+        TextureContext context;
+        if (level != LaneShading::all) {
+            follows_tangent.set(i, scene.frame_follows_tangents(material));
+            const SurfacePoint point = surface_point(scene, state.ray, hit, textured || follows_tangent[i]);
+            set_lane(s.p, i, point.p);
+            set_lane(s.ng, i, point.ng);
+            set_lane(s.ns, i, point.ns);
+            s.error.set(i, point.error);
+            set_lane(tangent, i, point.dpdu);
+            if (textured) context = texture_context(point);
+        }
+        set_lane(w, i, state.ray.d);
+        const Index light = scene.shapes[hit.shape].light;
+        if (hit.instance == no_index && light != no_index)
             add_met_light(
-                scene, state, shape.light,
+                scene, state, light,
                 {.wi = state.ray.d, .part = hit.primitive, .p = lane_of(s.p, i), .n = lane_of(s.ng, i)},
                 PathRecorder(nullptr));
         state.alive = false;
@@ -95,10 +122,9 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, HitGroup<W>& group, P
             stream.active.set(i, false);
             continue;
         }
-        const TextureContext none;
-        const ParameterEvaluator at(scene, shape.material, none, state.lambda);
+        const ParameterEvaluator at(scene, material, context, state.lambda);
         const SampledSpectrum reflectance =
-            std::get_if<DiffuseMaterial>(&scene.materials[shape.material])->bsdf(at).reflectance;
+            std::get_if<DiffuseMaterial>(&scene.materials[material])->bsdf(at).reflectance;
         bsdf.reflectance.set_lane(i, reflectance);
         throughput.set_lane(i, state.throughput);
         eta_scale.set(i, state.eta_scale);
@@ -106,7 +132,9 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, HitGroup<W>& group, P
         if (state.depth == 1)
             state.first = {.albedo = reflectance, .normal = lane_of(s.ns, i), .depth = hit.t, .found = true};
     }
-    const FrameOf<T> frame = FrameOf<T>::from_normal(s.ns);
+    FrameOf<T> frame = FrameOf<T>::from_normal(s.ns);
+    if (any(follows_tangent))
+        frame = select(follows_tangent, FrameOf<T>::from_normal_and_tangent(s.ns, tangent), frame);
     const Vec3<T> wo = frame.to_local(-w);
     stream.active = stream.active & (wo.z != 0);
     if (!any(stream.active)) return;

@@ -14,6 +14,7 @@
 
 namespace montelux {
 
+enum class LaneShading : std::uint8_t;
 template <int W>
 struct HitGroup;
 
@@ -60,9 +61,9 @@ class PathIntegrator {
     struct Vertex;
 
     bool samples_lights() const { return settings_.strategy >= Strategy::light; }
-    // `shade` of several hits for which is_plain_diffuse holds; empties the group.
+    // `shade` of several hits that have at least this level; empties the group.
     template <int W>
-    void shade_diffuse(const SceneView& scene, HitGroup<W>& group, PathBatch& batch) const;
+    void shade_diffuse(const SceneView& scene, LaneShading level, HitGroup<W>& group, PathBatch& batch) const;
     // MIS weight of the strategy with density f against the one with density g.
     template <Number T>
     T weight(T f, T g) const {

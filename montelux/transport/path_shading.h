@@ -239,7 +239,8 @@ void PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer, std::sp
     }
     constexpr bool in_lanes = std::same_as<Stream, SampleStream>;
     const bool samples_bsdfs = settings_.strategy != Strategy::uniform;
-    HitGroup<native_lanes> group;
+    HitGroup<native_lanes> groups[2];
+    constexpr std::array levels{LaneShading::all, LaneShading::scattering};
     while (!batch.alive.empty()) {
         batch.rays.clear();
         for (Index i : batch.alive) batch.rays.push_back(&batch.states[i].ray);
@@ -256,9 +257,11 @@ void PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer, std::sp
                 continue;
             }
             if constexpr (in_lanes) {
-                if (samples_bsdfs && is_plain_diffuse(scene, hit)) {
+                const LaneShading level = samples_bsdfs ? lane_shading(scene, hit) : LaneShading::none;
+                if (level != LaneShading::none) {
+                    HitGroup<native_lanes>& group = groups[level == LaneShading::all ? 0 : 1];
                     group.add(i, state, hit, starts[i].stream);
-                    if (group.full()) shade_diffuse(scene, group, batch);
+                    if (group.full()) shade_diffuse(scene, level, group, batch);
                     continue;
                 }
             }
@@ -269,7 +272,8 @@ void PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer, std::sp
                 batch.shadows.pop_back();
         }
         if constexpr (in_lanes)
-            if (group.size > 0) shade_diffuse(scene, group, batch);
+            for (std::size_t g = 0; g < levels.size(); ++g)
+                if (groups[g].size > 0) shade_diffuse(scene, levels[g], groups[g], batch);
 
         batch.rays.clear();
         for (const std::optional<ShadowRay>& shadow : batch.shadows) batch.rays.push_back(&shadow->ray);

@@ -138,6 +138,51 @@ TEST(PathIntegrator, OddTrianglesInBatchesAreTheSameToTheLastBit) {
     }
 }
 
+// Diffuse surfaces that are not plain triangles of the world: textured ones, quadrics, mirrored instances with an
+// emission that does not shine, and one with bumps, in groups with plain ones.
+SceneDescription diffuse_of_all_kinds() {
+    SceneBuilder b = mixed_scene(1, edge, edge);
+    Image squares(8, 8, {"R", "G", "B"});
+    for (int i = 0; i < 64; ++i)
+        for (int c = 0; c < 3; ++c)
+            squares.set(i % 8, i / 8, c, 0.1f + 0.08f * static_cast<float>((i * 5 + c) % 11));
+    ImageTexture picture;
+    picture.image = static_cast<Index>(b.scene.images.size());
+    b.scene.images.push_back(squares);
+    DiffuseMaterial textured{gray(0)}, bumpy{gray(0.6f)};
+    textured.reflectance.texture = static_cast<Index>(b.scene.spectrum_textures.size());
+    b.scene.spectrum_textures.push_back(picture);
+    bumpy.detail.displacement.texture = static_cast<Index>(b.scene.float_textures.size());
+    b.scene.float_textures.push_back(picture);
+    const Index materials[] = {b.add(textured), b.add(bumpy), b.add(DiffuseMaterial{gray(0.7f)})};
+
+    for (int i = 0; i < 12; ++i) {
+        const Transform t = Transform::translate({-0.8 + 0.15 * i, -0.6, -0.9 + 0.12 * (i % 5)}) *
+                            Transform::rotate(35.0 * i, {1, 0.2 * i, 0.5}) *
+                            Transform::scale({0.2, 0.2, 0.2});
+        const Index material = materials[i % 3];
+        if (i % 4 == 0) {
+            b.add_quadric(Sphere{.world_from_object = t}, material, i == 8 ? 1.0f : 0.0f, i == 4);
+            continue;
+        }
+        const Index shape = b.add_mesh(square(t), material, i % 8 == 3 || i == 5 ? 2.0f : 0.0f);
+        if (i % 4 == 1) continue;
+        b.scene.world_shapes.pop_back();
+        b.scene.objects.push_back({{shape}});
+        b.scene.instances.push_back({static_cast<Index>(b.scene.objects.size() - 1),
+                                     Transform::translate({0.1 * i - 0.5, 0, 0.1}) *
+                                         Transform::scale({1, i % 4 == 2 ? 1.0 : -1.0, 1})});
+    }
+    SceneDescription d = b.description;
+    d.integrator.max_depth = 6;
+    return d;
+}
+
+TEST(PathIntegrator, DiffuseSurfacesOfAllKindsInBatchesAreTheSameToTheLastBit) {
+    for (const SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol})
+        ASSERT_NO_FATAL_FAILURE(expect_same_in_batches(diffuse_of_all_kinds(), kind, 500));
+}
+
 // A point of primary sample space: numbers that are kept, and drawn from another stream when first asked for.
 class PrimarySampleStream {
   public:
