@@ -172,8 +172,10 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_choice(c, "--strategy", o.strategy, strategy_names, "How light is found: ");
     add_choice(c, "--heuristic", o.heuristic, heuristic_names,
                "Weights of the strategy mis and its two terms: ");
-    add_choice(c, "--light-sampling", o.light_sampling, light_sampling_names,
-               "How one light is chosen among many: in proportion to its power, the default, or all alike: ");
+    add_choice(
+        c, "--light-sampling", o.light_sampling, light_sampling_names,
+        "How one light is chosen among many: by its importance for the point that is lit, the default; in "
+        "proportion to its power; or all alike: ");
     add_choice(c, "--environment-sampling", o.environment_sampling, environment_sampling_names,
                "How directions to environment maps are sampled; auto, the default, is tabulated: ");
     add_parsed(

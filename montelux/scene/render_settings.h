@@ -26,13 +26,13 @@ enum class Strategy : std::uint8_t {
 };
 enum class Heuristic : std::uint8_t { balance, power };
 // How one light is chosen among many (scene/light/sampler).
-enum class LightSampling : std::uint8_t { uniform, power };
+enum class LightSampling : std::uint8_t { uniform, power, tree };
 
 struct IntegratorSettings {
     int max_depth = 5; // scattering events of a path
     Strategy strategy = Strategy::mis;
     Heuristic heuristic = Heuristic::power;
-    LightSampling light_sampling = LightSampling::power;
+    LightSampling light_sampling = LightSampling::tree;
     EnvironmentSampling environment_sampling = EnvironmentSampling::automatic;
     // MIS compensation; effective only with mis and its terms.
     bool environment_compensation = true;

@@ -9,6 +9,7 @@
 
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/scene/light/light_sampling.h"
+#include "montelux/scene/light/scene_disk.h"
 #include "montelux/scene/material/material_model.h"
 
 namespace montelux {
@@ -38,6 +39,9 @@ std::optional<CoatingKey> closed_form(const SceneView& scene, const Material& ma
 // The sum over 2^32 parts is finite.
 constexpr double most_power = 1e290;
 
+// Fewer parts are chosen by their power: there a tree gains less than it costs.
+constexpr Index fewest_parts_of_tree = 3;
+
 LightSampler make_light_sampler(const SceneView& scene, LightSampling sampling) {
     const auto light_count = static_cast<Index>(scene.lights.size());
     std::vector<Index> counts;
@@ -49,6 +53,15 @@ LightSampler make_light_sampler(const SceneView& scene, LightSampling sampling) 
         if (counts[i] > 0) light_powers({scene, i}, std::span(all).subspan(parts.row(i, 0), counts[i]));
     // Estimates that overflow still choose the light; a NaN leaves it to scattering.
     for (double& power : all) power = power > 0 ? std::min(power, most_power) : 0;
+    if (sampling == LightSampling::tree && parts.size() >= fewest_parts_of_tree) {
+        const auto bounds = [&](Index row) {
+            const LightChoice at = parts.at(row);
+            return light_bounds({scene, at.light}, at.part);
+        };
+        const double area = SceneDisk(scene.light_tables.scene_bounds).area();
+        if (std::any_of(all.begin(), all.end(), [](double power) { return power > 0; }))
+            return LightSampler(TreeLightSampler(parts, all, bounds, area));
+    }
     return LightSampler(PowerLightSampler(std::move(parts), all));
 }
 

@@ -14,7 +14,7 @@ class SceneTables {
     // Builds the pyramids of all images, even of those that no texture filters. Independent parts are built
     // in parallel.
     explicit SceneTables(const Scene& scene, const EnvironmentSettings& environments = {},
-                         LightSampling light_sampling = LightSampling::power);
+                         LightSampling light_sampling = LightSampling::tree);
 
     SceneTables(const SceneTables&) = delete;
     SceneTables& operator=(const SceneTables&) = delete;

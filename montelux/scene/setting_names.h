@@ -27,8 +27,8 @@ inline constexpr SettingNames<Strategy, 6> strategy_names{{{"uniform", Strategy:
                                                            {"mis-light", Strategy::mis_light}}};
 inline constexpr SettingNames<Heuristic, 2> heuristic_names{
     {{"balance", Heuristic::balance}, {"power", Heuristic::power}}};
-inline constexpr SettingNames<LightSampling, 2> light_sampling_names{
-    {{"power", LightSampling::power}, {"uniform", LightSampling::uniform}}};
+inline constexpr SettingNames<LightSampling, 3> light_sampling_names{
+    {{"tree", LightSampling::tree}, {"power", LightSampling::power}, {"uniform", LightSampling::uniform}}};
 inline constexpr SettingNames<EnvironmentSampling, 4> environment_sampling_names{
     {{"auto", EnvironmentSampling::automatic},
      {"tabulated", EnvironmentSampling::tabulated},

@@ -128,7 +128,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
         bsdf.reflectance.set_lane(i, reflectance);
         throughput.set_lane(i, state.throughput);
         eta_scale.set(i, state.eta_scale);
-        state.previous = {lane_of(s.p, i), lane_of(s.ng, i), s.error[i]};
+        state.previous = {lane_of(s.p, i), lane_of(s.ng, i), s.error[i], Vec3f{}};
         if (state.depth == 1)
             state.first = {.albedo = reflectance, .normal = lane_of(s.ns, i), .depth = hit.t, .found = true};
     }
@@ -138,6 +138,9 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
     const Vec3<T> wo = frame.to_local(-w);
     stream.active = stream.active & (wo.z != 0);
     if (!any(stream.active)) return;
+    const Vec3<T> facing = select(wo.z > T(0), frame.n, -frame.n);
+    for (int i = 0; i < size; ++i)
+        if (stream.active[i]) group.states[static_cast<std::size_t>(i)]->previous.facing = lane_of(facing, i);
 
     // Next-event estimation.
     const LightSampler& lights = *scene.light_sampler;

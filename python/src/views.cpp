@@ -11,7 +11,7 @@ namespace montelux::python {
 namespace {
 
 constexpr Names<SamplerKind, 6> sampler_kinds{"sampler", sampler_names};
-constexpr Names<LightSampling, 2> light_samplings{"light_sampling", light_sampling_names};
+constexpr Names<LightSampling, 3> light_samplings{"light_sampling", light_sampling_names};
 constexpr Names<Strategy, 6> strategies{"strategy", strategy_names};
 constexpr Names<Heuristic, 2> heuristics{"heuristic", heuristic_names};
 constexpr Names<EnvironmentSampling, 4> environment_samplings{"environment_sampling",
@@ -235,7 +235,8 @@ void bind_views(nb::module_& m) {
     choice(integrator, "heuristic", &IntegratorSettings::heuristic, heuristics,
            "Weights of the strategy mis and its two terms: 'balance' or 'power'.");
     choice(integrator, "light_sampling", &IntegratorSettings::light_sampling, light_samplings,
-           "How one light is chosen among many: in proportion to its 'power', or 'uniform'.");
+           "How one light is chosen among many: by its importance for the point that is lit, in a 'tree'; in "
+           "proportion to its 'power'; or 'uniform'.");
     choice(
         integrator, "environment_sampling", &IntegratorSettings::environment_sampling, environment_samplings,
         "How directions to environment maps are sampled: 'auto', 'tabulated', 'median-cut' or 'structured'.");

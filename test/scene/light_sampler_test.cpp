@@ -68,7 +68,7 @@ TEST(LightSamplers, UniformOverAllParts) {
 
 TEST(LightSamplers, ByPower) {
     const Scene scene = scene_of_lights();
-    const SceneTables tables(scene);
+    const SceneTables tables(scene, {}, LightSampling::power);
     std::vector<double> powers = {4 * pi * 0.1, 0.5 * pi, pi, 0, 0.5 * pi, 0, 0, 4 * pi * 0.2};
     const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
     for (double& p : powers) p /= sum;
@@ -80,15 +80,25 @@ TEST(LightSamplers, InfinitePowerIsMuch) {
     Scene scene;
     constexpr float infinite = std::numeric_limits<float>::infinity();
     for (float scale : {infinite, 1.0f, infinite}) scene.lights.push_back(PointLight{1.0f, scale, {0, 0, 0}});
-    const SceneTables tables(scene);
+    const SceneTables tables(scene, {}, LightSampling::power);
     const LightSampler& lights = *tables.view().light_sampler;
     EXPECT_EQ(lights.probability({}, 0, 0), 0.5f);
     EXPECT_EQ(lights.probability({}, 1, 0), 0);
     EXPECT_EQ(lights.probability({}, 2, 0), 0.5f);
 }
 
+// Two lights are chosen by their power, more by a tree.
+TEST(LightSamplers, ATreeFromThreePartsOn) {
+    Scene scene;
+    for (const float x : {0.0f, 10.0f}) scene.lights.push_back(PointLight{1.0f, 1, {x, 0, 0}});
+    const ReferencePoint near_first{.p = {1, 0, 0}};
+    EXPECT_EQ(SceneTables(scene).view().light_sampler->probability(near_first, 0, 0), 0.5f);
+    scene.lights.push_back(PointLight{1.0f, 1, {20, 0, 0}});
+    EXPECT_GT(SceneTables(scene).view().light_sampler->probability(near_first, 0, 0), 0.9f);
+}
+
 TEST(LightSamplers, WithoutLights) {
-    for (const LightSampling sampling : {LightSampling::uniform, LightSampling::power}) {
+    for (const LightSampling sampling : {LightSampling::uniform, LightSampling::power, LightSampling::tree}) {
         Scene scene;
         EXPECT_TRUE(SceneTables(scene, {}, sampling).view().light_sampler->empty());
         scene.lights.push_back(PointLight{0.0f, 1, {0, 0, 0}});

@@ -318,7 +318,7 @@ TEST(LightTables, ProbabilitiesArePowers) {
     scene.lights.push_back(DistantLight{1.0f, 0.5f, {0, 0, 1}});
     scene.lights.push_back(UniformInfiniteLight{1.0f, 0.25f});
     scene.lights.push_back(PointLight{0.0f, 3, {0, 0, 0}});
-    SceneTables tables(scene);
+    SceneTables tables(scene, {}, LightSampling::power);
     const LightSampler& lights = *tables.view().light_sampler;
     double r = tables.view().light_tables.scene_bounds.radius(), cross_section = pi * r * r;
     EXPECT_GE(r, 1);

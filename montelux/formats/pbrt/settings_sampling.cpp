@@ -81,9 +81,10 @@ IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostic
         const std::string_view lights =
             r.choice("lightsampler", {"uniform", "power", "bvh", "exhaustive"}, "");
         if (lights == "uniform") s.light_sampling = LightSampling::uniform;
-        if (lights == "exhaustive" || lights == "bvh")
+        if (lights == "power") s.light_sampling = LightSampling::power;
+        if (lights == "exhaustive")
             diagnostics.warn_once("lightsampler", r.at("lightsampler"),
-                                  "lights are chosen by their power; it changes the noise alone");
+                                  "lights are chosen by a tree, as with 'bvh'; it changes the noise alone");
         r.finish();
     } else if (plugin.name == "simplepath") {
         bool lights = r.boolean("samplelights", true);

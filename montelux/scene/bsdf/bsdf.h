@@ -1,6 +1,7 @@
 // Bsdf: the variant of all BSDFs of surfaces.
 #pragma once
 
+#include <concepts>
 #include <type_traits>
 #include <variant>
 
@@ -20,5 +21,20 @@ constexpr bool all_are_models(std::type_identity<std::variant<B...>>) {
     return (BsdfModel<B> && ...);
 }
 static_assert(all_are_models(std::type_identity<Bsdf>{}));
+
+// Whether light from the other side of the surface than wo is never scattered to it.
+inline bool is_opaque(const UntiltedBsdf& bsdf) {
+    return std::visit([](const auto& b) { return !b.traits.transmits; }, bsdf);
+}
+inline bool is_opaque(const Bsdf& bsdf) {
+    return std::visit(
+        []<typename B>(const B& b) {
+            if constexpr (std::same_as<B, TiltedBsdf>)
+                return is_opaque(b.base);
+            else
+                return !B::traits.transmits;
+        },
+        bsdf);
+}
 
 } // namespace montelux

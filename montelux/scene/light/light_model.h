@@ -31,6 +31,8 @@ struct ReferencePoint {
     Point3f p{};
     Normal3f n{};    // geometric normal
     float error = 0; // as SurfacePoint::error
+    // Light is scattered from directions on the side of this unit vector only; zero: from all.
+    Vec3f facing{};
 };
 
 // A direction to a light, with the incident light.

@@ -122,7 +122,9 @@ TEST(PbrtOptions, LightSamplers) {
     };
     EXPECT_EQ(sampling("uniform"), LightSampling::uniform);
     EXPECT_EQ(sampling("power"), LightSampling::power);
-    EXPECT_EQ(sampling("bvh"), LightSampling::power);
+    EXPECT_EQ(sampling("bvh"), LightSampling::tree);
+    EXPECT_EQ(sampling("exhaustive"), LightSampling::tree);
+    EXPECT_EQ(parse("Integrator \"path\"\nWorldBegin\n").integrator.light_sampling, LightSampling::tree);
     EXPECT_THROW(sampling("tree"), Error);
 }
 
@@ -131,7 +133,7 @@ TEST(PbrtOptions, IgnoredOptionsGiveAWarning) {
     parse(R"(ColorSpace "rec2020"
 Film "gbuffer" "bool savefp16" true "string coordinatesystem" "camera"
 Accelerator "bvh" "integer maxnodeprims" 4
-Integrator "volpath" "bool regularize" true "string lightsampler" "bvh"
+Integrator "volpath" "bool regularize" true "string lightsampler" "exhaustive"
 Sampler "sobol" "string randomization" "none"
 Option "bool disablepixeljitter" true
 WorldBegin TransformBegin TransformEnd LightSource "point"
@@ -147,7 +149,7 @@ WorldEnd)",
         "scene:2:37: 'coordinatesystem' is ignored: normals are in world space",
         "scene:2:16: 'savefp16' is ignored: EXR files hold 32-bit floats",
         "scene:4:22: 'regularize' is not supported",
-        "scene:4:45: lights are chosen by their power",
+        "scene:4:45: lights are chosen by a tree",
         "scene:5:17: the points are randomised all the same",
         "scene:7:12: TransformBegin is deprecated",
         "scene:8:1: WorldEnd belongs to pbrt-v3",

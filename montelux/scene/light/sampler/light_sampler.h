@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "montelux/scene/light/sampler/power_light_sampler.h"
+#include "montelux/scene/light/sampler/tree_light_sampler.h"
 #include "montelux/scene/light/sampler/uniform_light_sampler.h"
 
 namespace montelux {
@@ -20,11 +21,12 @@ concept LightSamplerModel = requires(const S& sampler, const ReferencePoint& fro
     { sampler.probability(from, light, part) } -> std::same_as<float>;
 };
 static_assert(LightSamplerModel<PowerLightSampler>);
+static_assert(LightSamplerModel<TreeLightSampler>);
 static_assert(LightSamplerModel<UniformLightSampler>);
 
 class LightSampler {
   public:
-    using Model = std::variant<UniformLightSampler, PowerLightSampler>;
+    using Model = std::variant<UniformLightSampler, PowerLightSampler, TreeLightSampler>;
 
     LightSampler() = default;
     explicit LightSampler(Model model) : model_(std::move(model)) {}
