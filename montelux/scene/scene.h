@@ -11,6 +11,7 @@
 #include "montelux/scene/light/light.h"
 #include "montelux/scene/light/sky/sky_model.h"
 #include "montelux/scene/material/material.h"
+#include "montelux/scene/medium/medium.h"
 #include "montelux/scene/scene_spectrum.h"
 #include "montelux/scene/shape/shape.h"
 #include "montelux/scene/texture/texture.h"
@@ -34,7 +35,7 @@ struct Scene {
     std::vector<ObjectDefinition> objects;
     std::vector<Instance> instances;
 
-    std::vector<Spectrum> spectra; // of materials, textures and lights; their order has no meaning
+    std::vector<Spectrum> spectra; // of materials, textures, lights, media; their order has no meaning
     std::vector<Material> materials;
     std::vector<FloatTexture> float_textures;
     std::vector<SpectrumTexture> spectrum_textures;
@@ -45,6 +46,10 @@ struct Scene {
 
     std::vector<Light> lights;
     CameraSettings camera;
+
+    std::vector<Medium> media;
+    std::vector<ScalarGrid> scalar_grids; // of media
+    std::vector<ColorGrid> color_grids;   // of media
 };
 
 inline SceneSpectrum add_spectrum(Scene& scene, Spectrum spectrum) {

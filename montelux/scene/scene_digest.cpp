@@ -170,6 +170,49 @@ class SceneHasher {
         add(map);
     }
 
+    // Media.
+    void add(const MediumInterface& m) {
+        const auto& [inside, outside] = m;
+        all(inside, outside);
+    }
+    void add(const HenyeyGreenstein& p) {
+        const auto& [g] = p;
+        add(g);
+    }
+    void add(const Draine& p) {
+        const auto& [g, alpha] = p;
+        all(g, alpha);
+    }
+    void add(const MediumBox& b) {
+        const auto& [p0, p1, world_from_medium] = b;
+        all(p0, p1, world_from_medium);
+    }
+    template <typename T>
+    void add(const Grid3<T>& g) {
+        const auto& [size, values] = g;
+        all(size, values);
+    }
+    void add(const ScalarGrid& g) { add(static_cast<const Grid3<float>&>(g)); }
+    void add(const ColorGrid& g) { add(static_cast<const Grid3<RgbUnboundedSpectrum>&>(g)); }
+    void add(const HomogeneousMedium& m) {
+        const auto& [sigma_a, sigma_s, scale, le, le_scale, phase] = m;
+        all(sigma_a, sigma_s, scale, le, le_scale, phase);
+    }
+    void add(const GridMedium& m) {
+        const auto& [box, density, sigma_a, sigma_s, scale, le, le_scale, le_grid, temperature, offset,
+                     temperature_scale, phase] = m;
+        all(box, density, sigma_a, sigma_s, scale, le, le_scale, le_grid, temperature, offset,
+            temperature_scale, phase);
+    }
+    void add(const RgbGridMedium& m) {
+        const auto& [box, sigma_a, sigma_s, scale, le, illuminant, le_scale, phase] = m;
+        all(box, sigma_a, sigma_s, scale, le, illuminant, le_scale, phase);
+    }
+    void add(const CloudMedium& m) {
+        const auto& [box, sigma_a, sigma_s, density, wispiness, frequency, phase] = m;
+        all(box, sigma_a, sigma_s, density, wispiness, frequency, phase);
+    }
+
     // Geometry.
     void add(const TriangleMesh& m) {
         const auto& [positions, normals, uvs, indices] = m;
@@ -192,7 +235,8 @@ class SceneHasher {
         add(index);
     }
     void add(const Shape& s) {
-        const auto& [geometry, material, light, alpha, flip_normal] = s;
+        const auto& [geometry, material, light, alpha, flip_normal, media] = s;
+        static_cast<void>(media); // add_media
         all(geometry, material, light, alpha, flip_normal);
     }
     void add(const ObjectDefinition& o) {
@@ -268,7 +312,8 @@ class SceneHasher {
         add(mapping);
     }
     void add(const CameraSettings& c) {
-        const auto& [model, world_from_camera] = c;
+        const auto& [model, world_from_camera, medium] = c;
+        static_cast<void>(medium); // add_media
         all(model, world_from_camera);
     }
 
@@ -281,6 +326,15 @@ ContentDigest digest_of_all(const Scene& scene, const T&... values) {
     SceneHasher hasher(scene.spectra);
     hasher.all(values...);
     return hasher.value();
+}
+
+// Media, and where they are; nothing is hashed for a scene without media.
+void add_media(SceneHasher& hasher, const Scene& scene) {
+    if (scene.media.empty()) return;
+    hasher.all(scene.media, scene.scalar_grids, scene.color_grids, scene.camera.medium);
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i)
+        if (const MediumInterface& media = scene.shapes[i].media; media.is_transition())
+            hasher.all(static_cast<std::uint64_t>(i), media);
 }
 
 } // namespace
@@ -296,10 +350,13 @@ ContentDigest SceneDigest::whole() const {
 
 SceneDigest digest_of(const Scene& scene) {
     const auto& [meshes, quadrics, shapes, world_shapes, objects, instances, spectra, materials,
-                 float_textures, spectrum_textures, normal_maps, images, environments, skies, lights,
-                 camera] = scene;
+                 float_textures, spectrum_textures, normal_maps, images, environments, skies, lights, camera,
+                 media, scalar_grids, color_grids] = scene;
+    SceneHasher of_materials(spectra);
+    of_materials.all(materials);
+    add_media(of_materials, scene);
     return {digest_of_all(scene, meshes, quadrics, shapes, world_shapes, objects, instances),
-            digest_of_all(scene, materials),
+            of_materials.value(),
             digest_of_all(scene, float_textures, spectrum_textures, normal_maps, images),
             digest_of_all(scene, lights, environments, skies), digest_of_all(scene, camera)};
 }

@@ -8,10 +8,11 @@ namespace montelux {
 
 // By parts, so that messages can name the part that differs.
 struct SceneDigest {
-    ContentDigest geometry;  // meshes, quadrics, shapes, objects, instances
-    ContentDigest materials; // their parameters; the assignment to shapes is part of the geometry
-    ContentDigest textures;  // with their images
-    ContentDigest lights;    // with their maps
+    ContentDigest geometry; // meshes, quadrics, shapes, objects, instances
+    // Their parameters; the assignment to shapes is part of the geometry. With media, and where they are.
+    ContentDigest materials;
+    ContentDigest textures; // with their images
+    ContentDigest lights;   // with their maps
     ContentDigest camera;
 
     ContentDigest whole() const;

@@ -72,6 +72,7 @@ SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environm
     : lights_(scene, environments) {
     add_mipmaps(scene);
     add_materials(scene);
+    add_media(scene);
     view_ = SceneView(scene);
     view_.textured = textured_;
     view_.follows_tangents = follows_tangents_;
@@ -80,6 +81,7 @@ SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environm
     view_.mipmaps = mipmaps_;
     view_.alpha_mipmap_of_image = alpha_mipmap_of_image_;
     view_.alpha_mipmaps = alpha_mipmaps_;
+    view_.medium_tables = media_;
     view_.light_tables = lights_.view(scene);
     light_sampler_ = make_light_sampler(view_, light_sampling);
     view_.light_sampler = &light_sampler_;
@@ -99,6 +101,11 @@ void SceneTables::add_mipmaps(const Scene& scene) {
                 alpha_mipmap_of_image_[t->image] = static_cast<Index>(alpha_mipmaps_.size());
                 alpha_mipmaps_.emplace_back(scene.images[t->image], ImageChannels::alpha);
             }
+}
+
+void SceneTables::add_media(const Scene& scene) {
+    for (const Medium& medium : scene.media)
+        media_.push_back(std::visit([&](const auto& m) { return m.table(scene); }, medium));
 }
 
 void SceneTables::add_materials(const Scene& scene) {

@@ -1,4 +1,4 @@
-// SceneTables: tables computed once from an immutable scene: image pyramids, coatings, light sampling.
+// SceneTables: tables computed once from an immutable scene: image pyramids, coatings, media, light sampling.
 #pragma once
 
 #include <vector>
@@ -25,12 +25,14 @@ class SceneTables {
   private:
     void add_mipmaps(const Scene& scene);
     void add_materials(const Scene& scene);
+    void add_media(const Scene& scene);
 
     std::vector<MipMap> mipmaps_, alpha_mipmaps_;
     std::vector<Index> alpha_mipmap_of_image_;
     std::vector<CoatingTable> coatings_;
     std::vector<Index> coating_of_material_;
     std::vector<char> textured_, follows_tangents_;
+    std::vector<MediumTable> media_;
     LightTables lights_;
     LightSampler light_sampler_;
     SceneView view_;

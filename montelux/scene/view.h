@@ -1,6 +1,7 @@
 // SceneView: everything that a path reads of a scene and its tables, in spans and indices.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <type_traits>
 
@@ -37,6 +38,13 @@ struct SceneView {
     std::span<const Light> lights;
     std::span<const SkyModel> skies;
     LightTablesView light_tables;
+
+    std::span<const Medium> media;
+    std::span<const MediumTable> medium_tables; // one per medium
+    std::span<const ScalarGrid> scalar_grids;
+    std::span<const ColorGrid> color_grids;
+    Index camera_medium = no_index;
+
     const LightSampler* light_sampler = nullptr;
 
     SceneView() = default;
@@ -46,10 +54,21 @@ struct SceneView {
           world_shapes(scene.world_shapes), objects(scene.objects), instances(scene.instances),
           spectra(scene.spectra), materials(scene.materials), float_textures(scene.float_textures),
           spectrum_textures(scene.spectrum_textures), normal_maps(scene.normal_maps), lights(scene.lights),
-          skies(scene.skies) {}
+          skies(scene.skies), media(scene.media), scalar_grids(scene.scalar_grids),
+          color_grids(scene.color_grids), camera_medium(scene.camera.medium) {}
 
     SampledSpectrum sample(SceneSpectrum s, const SampledWavelengths& lambda) const {
         return s.is_constant() ? SampledSpectrum(s.constant) : spectra[s.index].sample(lambda);
+    }
+    // Whether paths need an integrator of volumes.
+    bool has_media() const {
+        return !media.empty() || std::any_of(materials.begin(), materials.end(), [](const Material& m) {
+            return std::holds_alternative<InterfaceMaterial>(m);
+        });
+    }
+    // A shape that rays pass without scattering.
+    bool is_interface(Index shape) const {
+        return std::holds_alternative<InterfaceMaterial>(materials[shapes[shape].material]);
     }
     // A copy, for tables.
     Spectrum spectrum(SceneSpectrum s) const { return spectrum_of(s, spectra); }

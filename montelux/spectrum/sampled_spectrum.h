@@ -71,6 +71,12 @@ inline bool all_finite(SampledSpectrum s) { return !any((s.values - s.values) !=
 inline bool has_negative(SampledSpectrum s) { return any(s.values < Float4{}); }
 
 inline SampledSpectrum exp(SampledSpectrum s) { return SampledSpectrum(exp(s.values)); }
+// 1 - e^-x for x >= 0, with a small relative error.
+inline SampledSpectrum one_minus_exp(SampledSpectrum s) {
+    const Float4 x = s.values;
+    const Float4 series = x * (1.0f - x * (0.5f - x * (1.0f / 6 - x * (1.0f / 24))));
+    return SampledSpectrum(select(x < broadcast(0.01f), series, 1.0f - exp(-x)));
+}
 inline SampledSpectrum sqrt(SampledSpectrum s) { return SampledSpectrum(sqrt(s.values)); }
 inline SampledSpectrum min(SampledSpectrum a, SampledSpectrum b) {
     return SampledSpectrum(min(a.values, b.values));

@@ -38,7 +38,8 @@ Scene scene_of_all_kinds() {
                    ThinDielectricMaterial{1.5f},
                    CoatedDiffuseMaterial{gray, {}},
                    CoatedConductorMaterial{{gray, gray, gray, true}},
-                   DiffuseTransmissionMaterial{gray, gray}};
+                   DiffuseTransmissionMaterial{gray, gray},
+                   InterfaceMaterial{}};
     s.normal_maps = {ImageTexture{.image = 0, .mapping = {}}};
     s.float_textures = {ConstantTexture<FloatParameter>{{1}}, ScaleTexture<FloatParameter>{{1}, {2}}};
     s.spectrum_textures = {ImageTexture{.image = 0, .mapping = {}},
@@ -57,6 +58,9 @@ Scene scene_of_all_kinds() {
                 ImageInfiniteLight{.environment = 0, .world_from_light = {}},
                 SkyLight{.sky = 0, .environment = 0, .world_from_light = {}},
                 with_spectrum<SunLight>(1.0f)};
+    s.media = {HomogeneousMedium{}, GridMedium{}, RgbGridMedium{}, CloudMedium{}};
+    s.scalar_grids.emplace_back();
+    s.color_grids.emplace_back();
     return s;
 }
 
@@ -162,6 +166,79 @@ struct ChangeField {
     void operator()(int& x) const { x += 1; }
     void operator()(bool& x) const { x = !x; }
 };
+
+TEST(SceneDigest, MediaCount) {
+    const auto at = []<typename M>(Scene& s, std::type_identity<M>) -> M& {
+        for (Medium& m : s.media)
+            if (auto* found = std::get_if<M>(&m)) return *found;
+        throw std::bad_variant_access();
+    };
+    const std::type_identity<HomogeneousMedium> fog;
+    const std::type_identity<GridMedium> grid;
+    const std::type_identity<RgbGridMedium> rgb;
+    const std::type_identity<CloudMedium> cloud;
+    const Transform moved = Transform::translate({1, 0, 0});
+    expect_changes(&SceneDigest::materials, {[=](Scene& s) { at(s, fog).sigma_a = 2; },
+                                             [=](Scene& s) { at(s, fog).sigma_s = 2; },
+                                             [=](Scene& s) { at(s, fog).scale = 2; },
+                                             [=](Scene& s) { at(s, fog).le = 2; },
+                                             [=](Scene& s) { at(s, fog).le_scale = 2; },
+                                             [=](Scene& s) { at(s, fog).phase = HenyeyGreenstein{0.5f}; },
+                                             [=](Scene& s) { at(s, fog).phase = Draine{}; },
+                                             [=](Scene& s) {
+                                                 at(s, fog).phase = Draine{0, 0.5f};
+                                             },
+                                             [=](Scene& s) { at(s, grid).box.p0.x = -1; },
+                                             [=](Scene& s) { at(s, grid).box.p1.z = 2; },
+                                             [=](Scene& s) { at(s, grid).box.world_from_medium = moved; },
+                                             [=](Scene& s) { at(s, grid).density = 0; },
+                                             [=](Scene& s) { at(s, grid).sigma_a = 2; },
+                                             [=](Scene& s) { at(s, grid).sigma_s = 2; },
+                                             [=](Scene& s) { at(s, grid).scale = 2; },
+                                             [=](Scene& s) { at(s, grid).le = 2; },
+                                             [=](Scene& s) { at(s, grid).le_scale = 2; },
+                                             [=](Scene& s) { at(s, grid).le_grid = 0; },
+                                             [=](Scene& s) { at(s, grid).temperature = 0; },
+                                             [=](Scene& s) { at(s, grid).temperature_offset = 2; },
+                                             [=](Scene& s) { at(s, grid).temperature_scale = 2; },
+                                             [=](Scene& s) { at(s, grid).phase = Draine{}; },
+                                             [=](Scene& s) { at(s, rgb).box.p0.y = -1; },
+                                             [=](Scene& s) { at(s, rgb).sigma_a = 0; },
+                                             [=](Scene& s) { at(s, rgb).sigma_s = 0; },
+                                             [=](Scene& s) { at(s, rgb).scale = 2; },
+                                             [=](Scene& s) { at(s, rgb).le = 0; },
+                                             [=](Scene& s) { at(s, rgb).illuminant = 1; },
+                                             [=](Scene& s) { at(s, rgb).le_scale = 2; },
+                                             [=](Scene& s) { at(s, rgb).phase = Draine{}; },
+                                             [=](Scene& s) { at(s, cloud).box.p0.z = -1; },
+                                             [=](Scene& s) { at(s, cloud).sigma_a = 2; },
+                                             [=](Scene& s) { at(s, cloud).sigma_s = 2; },
+                                             [=](Scene& s) { at(s, cloud).density = 2; },
+                                             [=](Scene& s) { at(s, cloud).wispiness = 2; },
+                                             [=](Scene& s) { at(s, cloud).frequency = 2; },
+                                             [=](Scene& s) { at(s, cloud).phase = Draine{}; },
+                                             [](Scene& s) { s.media.pop_back(); },
+                                             [](Scene& s) { s.scalar_grids[0].size[0] = 1; },
+                                             [](Scene& s) { s.scalar_grids[0].values = {0}; },
+                                             [](Scene& s) { s.color_grids[0].size[1] = 1; },
+                                             [](Scene& s) { s.color_grids[0].values.resize(1); },
+                                             [](Scene& s) { s.color_grids.emplace_back(); },
+                                             [](Scene& s) { s.camera.medium = 0; },
+                                             [](Scene& s) { s.shapes[0].media.inside = 0; },
+                                             [](Scene& s) { s.shapes[0].media.outside = 0; },
+                                             [](Scene& s) { s.shapes[1].media.inside = 0; }});
+}
+
+// Checkpoints of scenes without media stay valid.
+TEST(SceneDigest, WithoutMediaTheirPlacesDoNotCount) {
+    Scene scene = scene_of_all_kinds();
+    scene.media.clear();
+    scene.scalar_grids.clear();
+    scene.color_grids.clear();
+    const SceneDigest before = digest_of(scene);
+    scene.shapes[0].media.inside = 0;
+    EXPECT_EQ(digest_of(scene), before);
+}
 
 TEST(SceneDigest, EveryParameterOfEveryMaterialCounts) {
     std::size_t changed = 0;

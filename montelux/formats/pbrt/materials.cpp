@@ -10,8 +10,7 @@ namespace montelux::pbrt {
 namespace {
 
 // Materials of pbrt-v4 that Montelux does not have yet.
-constexpr std::array<std::string_view, 5> not_supported = {"hair", "interface", "measured", "mix",
-                                                           "subsurface"};
+constexpr std::array<std::string_view, 4> not_supported = {"hair", "measured", "mix", "subsurface"};
 
 // "coateddiffuse" for CoatedDiffuse.
 std::string type_name(std::string_view name) {

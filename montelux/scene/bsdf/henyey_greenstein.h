@@ -17,7 +17,11 @@ struct PhaseSample {
 // g in (-1, 1) is the mean cosine. wo and wi point away from the scattering event: g > 0 scatters forward,
 // that is towards wi = -wo.
 struct HenyeyGreenstein {
+    static constexpr const char* name = "Henyey-Greenstein";
+
     float g = 0;
+
+    float mean_cosine() const { return g; }
 
     float pdf(Vec3f wo, Vec3f wi) const {
         float denominator = std::max(1 + g * g + 2 * g * dot(wo, wi), 1e-9f);

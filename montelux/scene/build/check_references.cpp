@@ -146,6 +146,49 @@ void check_materials(const Scene& scene) {
             scene.materials[i]);
 }
 
+void check_media(const Scene& scene) {
+    const auto check_grid = [](const FieldCheck& check, std::string_view field, Index index,
+                               const auto& grids, std::string_view kind) {
+        if (index == no_index) return;
+        check.index(field, kind, index, grids.size());
+        const auto& grid = grids[index];
+        if (grid.values.empty() || grid.values.size() != grid.count())
+            throw Error(numbered(kind, index) + " has " + std::to_string(grid.values.size()) +
+                        " values; its size wants " + std::to_string(grid.count()));
+    };
+    for (std::size_t i = 0; i < scene.media.size(); ++i)
+        std::visit(
+            [&](const auto& m) {
+                const FieldCheck check(scene, numbered("medium", i) + " (" + m.name + ')');
+                if constexpr (std::is_same_v<decltype(m.sigma_a), SceneSpectrum>) {
+                    check("sigma_a", m.sigma_a);
+                    check("sigma_s", m.sigma_s);
+                } else {
+                    check_grid(check, "sigma_a", m.sigma_a, scene.color_grids, "color grid");
+                    check_grid(check, "sigma_s", m.sigma_s, scene.color_grids, "color grid");
+                    check_grid(check, "le", m.le, scene.color_grids, "color grid");
+                    check("illuminant", m.illuminant);
+                }
+                if constexpr (requires { m.le_grid; }) {
+                    check.index("density", "scalar grid", m.density, scene.scalar_grids.size());
+                    check_grid(check, "density", m.density, scene.scalar_grids, "scalar grid");
+                    check_grid(check, "le_grid", m.le_grid, scene.scalar_grids, "scalar grid");
+                    check_grid(check, "temperature", m.temperature, scene.scalar_grids, "scalar grid");
+                }
+                if constexpr (requires { check("le", m.le); }) check("le", m.le);
+            },
+            scene.media[i]);
+    const auto check_place = [&](const std::string& owner, Index medium) {
+        if (medium != no_index)
+            FieldCheck(scene, owner).index("medium", "medium", medium, scene.media.size());
+    };
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+        check_place(numbered("shape", i), scene.shapes[i].media.inside);
+        check_place(numbered("shape", i), scene.shapes[i].media.outside);
+    }
+    check_place("the camera", scene.camera.medium);
+}
+
 void check_textures(const Scene& scene) {
     for (std::size_t i = 0; i < scene.float_textures.size(); ++i)
         visit_inputs(scene.float_textures[i], FieldCheck(scene, numbered("float texture", i)));

@@ -10,6 +10,8 @@ namespace montelux {
 // `light` is about to be added.
 void check_light(const Scene& scene, const Light& light);
 void check_materials(const Scene& scene);
+// Their grids and spectra, and that shapes and the camera lie in media of the scene.
+void check_media(const Scene& scene);
 // Normal maps as well. No texture may depend on itself or on more than 63 levels of others: look-ups are
 // recursive.
 void check_textures(const Scene& scene);

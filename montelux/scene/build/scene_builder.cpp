@@ -41,6 +41,7 @@ Index SceneBuilder::add_shape(Geometry geometry, const ShapeSettings& settings, 
     shape.material = settings.material;
     shape.alpha = settings.alpha;
     shape.flip_normal = settings.flip_normal;
+    shape.media = settings.media;
     scene_.shapes.push_back(shape);
     (in_object() ? scene_.objects[open_object_].shapes : scene_.world_shapes).push_back(index);
     if (settings.emission != nullptr) add_area_light(index, *settings.emission, geometry, at);
@@ -127,6 +128,7 @@ void SceneBuilder::finish(SourceLocation end) {
     try {
         check_textures(scene_);
         check_materials(scene_);
+        check_media(scene_);
     } catch (const Error& e) {
         messages_.error(end, e.what());
     }

@@ -21,6 +21,7 @@ struct ShapeSettings {
     FloatParameter alpha{1};
     bool flip_normal = false;           // Shape::flip_normal
     const Emission* emission = nullptr; // null: no emission
+    MediumInterface media{};
 };
 
 // A reader calls it for each object in the file; `at` is its place, for messages. The builder checks what the

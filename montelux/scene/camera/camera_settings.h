@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "montelux/mc/math/transform.h"
+#include "montelux/scene/index.h"
 
 namespace montelux {
 
@@ -39,6 +40,7 @@ using CameraModel = std::variant<PerspectiveCamera, OrthographicCamera, Spherica
 struct CameraSettings {
     CameraModel model = PerspectiveCamera{};
     Transform world_from_camera;
+    Index medium = no_index; // around the camera, into Scene::media; no_index: vacuum
 };
 
 } // namespace montelux

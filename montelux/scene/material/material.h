@@ -10,12 +10,14 @@
 #include "montelux/scene/material/dielectric_material.h"
 #include "montelux/scene/material/diffuse_material.h"
 #include "montelux/scene/material/diffuse_transmission_material.h"
+#include "montelux/scene/material/interface_material.h"
 #include "montelux/scene/material/thin_dielectric_material.h"
 
 namespace montelux {
 
 using Material = std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, ThinDielectricMaterial,
-                              CoatedDiffuseMaterial, CoatedConductorMaterial, DiffuseTransmissionMaterial>;
+                              CoatedDiffuseMaterial, CoatedConductorMaterial, DiffuseTransmissionMaterial,
+                              InterfaceMaterial>;
 static_assert(std::is_trivially_copyable_v<Material>);
 
 } // namespace montelux

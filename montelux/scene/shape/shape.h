@@ -45,6 +45,14 @@ struct QuadricIndex {
 };
 using ShapeGeometry = std::variant<MeshIndex, QuadricIndex>;
 
+// The media on both sides of a surface.
+struct MediumInterface {
+    Index inside = no_index, outside = no_index; // into Scene::media; no_index: vacuum
+
+    // Otherwise the surface lies within one medium, whichever that is.
+    bool is_transition() const { return inside != outside; }
+};
+
 // One shape of the scene.
 struct Shape {
     ShapeGeometry geometry;
@@ -55,6 +63,7 @@ struct Shape {
     // transform swaps handedness. Vertex normals, if present, decide the side instead (reversed only by the
     // file).
     bool flip_normal = false;
+    MediumInterface media{}; // the geometric normal points outside
 };
 
 // Calls f with the TriangleMesh or the Quadric of the shape. S: Scene or SceneView.

@@ -112,8 +112,8 @@ TEST(PbrtMaterials, AttributesKnowTheParametersOfEachMaterial) {
 }
 
 const char* const all_materials[] = {
-    "diffuse",       "conductor",       "dielectric",         "thindielectric",
-    "coateddiffuse", "coatedconductor", "diffusetransmission"};
+    "diffuse",       "conductor",       "dielectric",          "thindielectric",
+    "coateddiffuse", "coatedconductor", "diffusetransmission", "interface"};
 
 TEST(PbrtMaterials, EachHasNormalMapAndBumps) {
     TemporaryFolder folder;

@@ -1,0 +1,28 @@
+// HomogeneousMedium: the same coefficients everywhere.
+#pragma once
+
+#include "montelux/scene/medium/medium_model.h"
+
+namespace montelux {
+
+struct HomogeneousMedium {
+    static constexpr const char* name = "Homogeneous";
+    static constexpr bool homogeneous = true;
+
+    SceneSpectrum sigma_a{1}, sigma_s{1}; // times `scale`, per unit of length
+    float scale = 1;
+    SceneSpectrum le{}; // emitted radiance, times `le_scale`
+    float le_scale = 1;
+    PhaseFunction phase{};
+
+    struct Sampled {
+        MediumPoint point;
+
+        MediumPoint coefficients(Point3f) const { return point; }
+        MajorantWalk majorants(const Ray& ray) const { return {0, ray.t_max, point.sigma_a + point.sigma_s}; }
+    };
+    Sampled at(const SceneView& scene, Index medium, const SampledWavelengths& lambda) const;
+    MediumTable table(const Scene&) const { return {}; }
+};
+
+} // namespace montelux

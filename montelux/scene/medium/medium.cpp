@@ -1,0 +1,126 @@
+#include "montelux/scene/medium/medium.h"
+
+#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/scene/medium/gradient_noise.h"
+#include "montelux/scene/view.h"
+
+namespace montelux {
+
+namespace {
+
+constexpr int majorant_resolution = 16; // as in pbrt-v4
+
+const ScalarGrid* grid(std::span<const ScalarGrid> grids, Index index) {
+    return index == no_index ? nullptr : &grids[index];
+}
+const ColorGrid* grid(std::span<const ColorGrid> grids, Index index) {
+    return index == no_index ? nullptr : &grids[index];
+}
+
+// bound(lower, upper) of the density in each cell of the unit cube.
+template <typename Bound>
+MajorantGrid majorant_grid(const Bound& bound) {
+    constexpr int n = majorant_resolution;
+    MajorantGrid result{n, std::vector<float>(std::size_t{n} * n * n)};
+    parallel_for(n, [&](std::int64_t z) {
+        for (int y = 0; y < n; ++y)
+            for (int x = 0; x < n; ++x) {
+                const Point3f cell(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
+                const float width = 1.0f / n;
+                result.values[(static_cast<std::size_t>(z) * n + static_cast<std::size_t>(y)) * n +
+                              static_cast<std::size_t>(x)] =
+                    bound(cell * width, (cell + Vec3f(1, 1, 1)) * width);
+            }
+    });
+    return result;
+}
+
+} // namespace
+
+AffineMap MediumBox::unit_from_world() const {
+    const Vec3d lower(p0), extent = Vec3d(p1) - lower;
+    return AffineMap(Transform::scale({1 / extent.x, 1 / extent.y, 1 / extent.z}) *
+                     Transform::translate(-lower) * world_from_medium.inverse());
+}
+
+HomogeneousMedium::Sampled HomogeneousMedium::at(const SceneView& scene, Index,
+                                                 const SampledWavelengths& lambda) const {
+    Sampled s;
+    s.point.sigma_a = scene.sample(sigma_a, lambda) * scale;
+    s.point.sigma_s = scene.sample(sigma_s, lambda) * scale;
+    s.point.emission = s.point.sigma_a * scene.sample(le, lambda) * le_scale;
+    return s;
+}
+
+GridMedium::Sampled GridMedium::at(const SceneView& scene, Index medium,
+                                   const SampledWavelengths& lambda) const {
+    return {this,
+            &scene.medium_tables[medium],
+            grid(scene.scalar_grids, density),
+            grid(scene.scalar_grids, le_grid),
+            grid(scene.scalar_grids, temperature),
+            lambda,
+            scene.sample(sigma_a, lambda) * scale,
+            scene.sample(sigma_s, lambda) * scale,
+            scene.sample(le, lambda) * le_scale};
+}
+
+MediumTable GridMedium::table(const Scene& scene) const {
+    const ScalarGrid& values = scene.scalar_grids[density];
+    return {box.unit_from_world(), box.medium_from_world(), majorant_grid([&](Point3f lower, Point3f upper) {
+                return values.largest(lower, upper, [](float v) { return v; });
+            })};
+}
+
+RgbGridMedium::Sampled RgbGridMedium::at(const SceneView& scene, Index medium,
+                                         const SampledWavelengths& lambda) const {
+    return {this,
+            &scene.medium_tables[medium],
+            grid(scene.color_grids, sigma_a),
+            grid(scene.color_grids, sigma_s),
+            grid(scene.color_grids, le),
+            lambda,
+            scene.sample(illuminant, lambda) * le_scale};
+}
+
+MediumTable RgbGridMedium::table(const Scene& scene) const {
+    const auto largest = [&](Index index, Point3f lower, Point3f upper) {
+        if (index == no_index) return 1.0f;
+        return scene.color_grids[index].largest(lower, upper,
+                                                [](const RgbUnboundedSpectrum& s) { return s.max_value(); });
+    };
+    return {box.unit_from_world(), box.medium_from_world(), majorant_grid([&](Point3f lower, Point3f upper) {
+                return scale * (largest(sigma_a, lower, upper) + largest(sigma_s, lower, upper));
+            })};
+}
+
+float CloudMedium::density_at(Point3f p) const {
+    Point3f at = p * frequency;
+    if (wispiness > 0) {
+        float amplitude = 0.05f * wispiness, octave = 10;
+        for (int i = 0; i < 2; ++i) {
+            at += gradient_noise_slope(at * octave) * amplitude;
+            amplitude *= 0.5f;
+            octave *= 1.99f;
+        }
+    }
+    float noise = 0, amplitude = 0.5f, octave = 1;
+    for (int i = 0; i < 5; ++i) {
+        noise += amplitude * gradient_noise(at * octave);
+        amplitude *= 0.5f;
+        octave *= 1.99f;
+    }
+    const float tops = std::clamp((1 - p.y) * 4.5f * density * noise, 0.0f, 1.0f);
+    return std::clamp(tops + 2 * std::max(0.0f, 0.5f - p.y), 0.0f, 1.0f);
+}
+
+CloudMedium::Sampled CloudMedium::at(const SceneView& scene, Index medium,
+                                     const SampledWavelengths& lambda) const {
+    return {this, &scene.medium_tables[medium], scene.sample(sigma_a, lambda), scene.sample(sigma_s, lambda)};
+}
+
+MediumTable CloudMedium::table(const Scene&) const {
+    return {box.unit_from_world(), box.medium_from_world(), {}};
+}
+
+} // namespace montelux

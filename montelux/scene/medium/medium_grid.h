@@ -1,0 +1,97 @@
+// Grids of values in the unit cube, interpolated trilinearly.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "montelux/mc/math/vec.h"
+#include "montelux/spectrum/rgb_spectra.h"
+
+namespace montelux {
+
+// Sample (x, y, z) is values[(z ny + y) nx + x] and lies at ((x + 1/2) / nx, (y + 1/2) / ny, (z + 1/2) / nz).
+// Outside the samples the value is 0, as in pbrt-v4: it falls to half at the faces of the cube.
+template <typename T>
+struct Grid3 {
+    std::array<int, 3> size{0, 0, 0};
+    std::vector<T> values;
+
+    std::size_t count() const { return std::size_t(size[0]) * std::size_t(size[1]) * std::size_t(size[2]); }
+
+    // The sum of weight * value(sample) over the samples around p. `value` gives what T converts to, V.
+    template <typename V, typename Value>
+    V interpolate(Point3f p, const Value& value) const {
+        std::array<int, 3> cell{};
+        std::array<float, 3> fraction{};
+        for (int a = 0; a < 3; ++a) {
+            const auto n = static_cast<float>(size[static_cast<std::size_t>(a)]);
+            // Far outside is as good as just outside; NaN as well.
+            const float x = std::min(std::max(p[a] * n - 0.5f, -2.0f), n + 1);
+            const float floor = std::floor(x);
+            cell[static_cast<std::size_t>(a)] = static_cast<int>(floor);
+            fraction[static_cast<std::size_t>(a)] = x - floor;
+        }
+        V sum{};
+        for (int z = 0; z < 2; ++z) {
+            const int k = cell[2] + z;
+            if (k < 0 || k >= size[2]) continue;
+            for (int y = 0; y < 2; ++y) {
+                const int j = cell[1] + y;
+                if (j < 0 || j >= size[1]) continue;
+                const float weight =
+                    (z == 0 ? 1 - fraction[2] : fraction[2]) * (y == 0 ? 1 - fraction[1] : fraction[1]);
+                const std::size_t row =
+                    (std::size_t(k) * std::size_t(size[1]) + std::size_t(j)) * std::size_t(size[0]);
+                for (int x = 0; x < 2; ++x) {
+                    const int i = cell[0] + x;
+                    if (i < 0 || i >= size[0]) continue;
+                    sum += value(values[row + std::size_t(i)]) *
+                           (weight * (x == 0 ? 1 - fraction[0] : fraction[0]));
+                }
+            }
+        }
+        return sum;
+    }
+
+    // The largest of bound(sample) over the samples that `interpolate` may take for points of a box.
+    template <typename Bound>
+    float largest(Point3f lower, Point3f upper, const Bound& bound) const {
+        std::array<int, 3> first{}, last{};
+        for (int a = 0; a < 3; ++a) {
+            const auto at = static_cast<std::size_t>(a);
+            const auto n = static_cast<float>(size[at]);
+            // Points may lie outside the box by rounding.
+            constexpr float margin = 1e-3f;
+            first[at] = std::max(static_cast<int>(std::floor(lower[a] * n - 0.5f - margin)), 0);
+            last[at] = std::min(static_cast<int>(std::floor(upper[a] * n - 0.5f + margin)) + 1, size[at] - 1);
+        }
+        float result = 0;
+        for (int z = first[2]; z <= last[2]; ++z)
+            for (int y = first[1]; y <= last[1]; ++y)
+                for (int x = first[0]; x <= last[0]; ++x)
+                    result = std::max(result,
+                                      bound(values[(std::size_t(z) * std::size_t(size[1]) + std::size_t(y)) *
+                                                       std::size_t(size[0]) +
+                                                   std::size_t(x)]));
+        return result;
+    }
+};
+
+// Densities, temperatures.
+struct ScalarGrid : Grid3<float> {
+    float operator()(Point3f p) const {
+        return interpolate<float>(p, [](float v) { return v; });
+    }
+};
+// Coefficients and, times an illuminant, emission.
+struct ColorGrid : Grid3<RgbUnboundedSpectrum> {
+    SampledSpectrum operator()(Point3f p, const SampledWavelengths& lambda) const {
+        return interpolate<SampledSpectrum>(p,
+                                            [&](const RgbUnboundedSpectrum& s) { return s.sample(lambda); });
+    }
+};
+
+} // namespace montelux
