@@ -146,6 +146,13 @@ void add_direct(Text& t, const DirectLight& direct, const Scene& scene) {
         t.label(2, "contribution").add("to the term mis-light, which is left out").end();
 }
 
+void add_roulette(Text& t, const PathVertex& v) {
+    if (!v.roulette) return;
+    const bool survived = v.roulette->u < v.roulette->survival;
+    t.label(1, "roulette").add("survives below ").number(v.roulette->survival);
+    t.add("; drew ").number(v.roulette->u).add(survived ? ": survived" : ": ended").end();
+}
+
 void add_scattering(Text& t, const PathVertex& v) {
     const BsdfSample& s = v.scattering->sample;
     t.add("  continued by %s of a %s lobe", s.transmission ? "transmission" : "reflection",
@@ -157,11 +164,7 @@ void add_scattering(Text& t, const PathVertex& v) {
     if (!s.specular) t.add(" per steradian");
     t.end();
     t.columns(2, "weight", s.weight);
-    if (v.roulette) {
-        const bool survived = v.roulette->u < v.roulette->survival;
-        t.label(1, "roulette").add("survives below ").number(v.roulette->survival);
-        t.add("; drew ").number(v.roulette->u).add(survived ? ": survived" : ": ended").end();
-    }
+    add_roulette(t, v);
 }
 
 const char* name_of(const Quadric& quadric) {
@@ -186,6 +189,12 @@ void add_vertex(Text& t, std::size_t number, const PathVertex& v, const Scene& s
         t.label(1, "position").vector(v.surface->p).add(", distance ").number(v.hit.t).end();
         t.label(1, "geometric normal").vector(v.surface->ng).end();
         t.label(1, "shading normal").vector(v.bsdf ? v.bsdf->frame.n : v.surface->ns).end();
+    } else if (v.medium) {
+        t.add("in a medium").end();
+        t.label(1, "position").vector(v.medium->p).add(", distance ");
+        t.number(length(v.medium->p - v.ray.o)).end();
+        t.columns(1, "absorption", v.medium->sigma_a);
+        t.columns(1, "scattering", v.medium->sigma_s);
     } else {
         t.add("beyond the scene").end();
         t.label(1, "direction").vector(v.ray.d).end();
@@ -198,6 +207,12 @@ void add_vertex(Text& t, std::size_t number, const PathVertex& v, const Scene& s
     }
     if (v.direct) add_direct(t, *v.direct, scene);
     if (v.scattering) add_scattering(t, v);
+    if (v.medium && v.medium->scattered) {
+        t.add("  continued by the phase function").end();
+        t.label(2, "direction").vector(v.medium->wi).end();
+        t.label(2, "density").number(v.medium->pdf).add(" per steradian").end();
+        add_roulette(t, v);
+    }
 }
 
 const char* sentence_of(PathEnd end) {
@@ -216,6 +231,8 @@ const char* sentence_of(PathEnd end) {
         return "the throughput is bad; it is added to the radiance, so that the sample is reported";
     case PathEnd::roulette:
         return "Russian roulette";
+    case PathEnd::absorbed:
+        return "a medium absorbed the path";
     }
     return "";
 }
@@ -257,6 +274,7 @@ void add_result(Text& t, const SampleRecord& r) {
         t.add("dispersion ended all wavelengths but the first").end();
         t.columns(1, "density, 1/nm", r.lambda_end.pdf);
     }
+    if (!is_black(r.path.emission)) t.columns(1, "emitted by media", r.path.emission);
     t.columns(1, "radiance", r.path.radiance);
     t.end().label(1, "").add("%15s%15s%15s", "R", "G", "B").end();
     t.rgb(1, "sensor", r.sensor_rgb);
@@ -287,8 +305,10 @@ std::string sample_record_text(const SampleRecord& r, const SceneDescription& d)
     t.label(1, "film").number(r.film.x).add(", ").number(r.film.y);
     t.add("; filter weight ").number(r.filter.weight).end();
     t.label(1, "lens").number(r.lens.x).add(", ").number(r.lens.y).end();
-    const Ray& ray = r.path.vertices.front().ray;
-    t.label(1, "camera ray").add("from ").vector(ray.o).add(" along ").vector(ray.d).end();
+    if (!r.path.vertices.empty()) {
+        const Ray& ray = r.path.vertices.front().ray;
+        t.label(1, "camera ray").add("from ").vector(ray.o).add(" along ").vector(ray.d).end();
+    }
     t.columns(1, "wavelengths, nm", SampledSpectrum(r.lambda.lambda));
     t.columns(1, "density, 1/nm", r.lambda.pdf);
     for (std::size_t i = 0; i < r.path.vertices.size(); ++i)

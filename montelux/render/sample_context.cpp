@@ -23,12 +23,18 @@ std::optional<BadSample::Kind> badness(Vec3f rgb, SampledSpectrum radiance) {
 // does the rest, and a sample must not depend on the number of others.
 constexpr float footprint_scale = 0.125f;
 
+// Scenes without media pay nothing for them.
+Integrator make_integrator(const IntegratorSettings& settings, const SceneView& scene, const Camera& camera) {
+    if (scene.has_media()) return VolumePathIntegrator(settings, camera, footprint_scale);
+    return PathIntegrator(settings, camera, footprint_scale);
+}
+
 } // namespace
 
 SampleContext::SampleContext(const SceneDescription& description, const SamplerSettings& sampler,
                              const SceneView& scene, const Camera& camera)
     : sampler_(sampler), max_component_value_(description.film.max_component_value), scene_(scene),
-      camera_(camera), integrator_(PathIntegrator(description.integrator, camera, footprint_scale)),
+      camera_(camera), integrator_(make_integrator(description.integrator, scene, camera)),
       filter_(description.film.filter),
       sensor_(RgbColorSpace::srgb(),
               {description.film.exposure_time, description.film.iso, description.film.white_balance}),

@@ -162,7 +162,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
             if (few) at.x = std::min(static_cast<float>(chosen.remapped), largest_below_one<float>);
             const auto light =
                 sample_li({scene, chosen.light}, chosen.part, state.previous, at, state.lambda);
-            if (!light || (!light->invisible && !samples_lights())) continue;
+            if (!light || (!light->invisible && !samples_lights(settings_))) continue;
             lit.set(i, true);
             invisible.set(i, light->invisible);
             set_lane(wi, i, light->wi);
@@ -176,7 +176,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
             const T light_pdf = choice * pdf;
             lit = lit & !is_black(e.f) & !is_black(radiance);
             const LaneMask<W> alone = invisible | LaneMask<W>(settings_.strategy == Strategy::light);
-            const T share = select(alone, T(1), weight(light_pdf, e.pdf));
+            const T share = select(alone, T(1), path_weight(settings_, light_pdf, e.pdf));
             const SpectrumLanes<W> contribution = throughput * e.f * radiance * (share / light_pdf);
             for (int i = 0; i < size; ++i) {
                 if (!lit[i]) continue;

@@ -5,11 +5,13 @@
 
 #include "montelux/mc/random/sample_stream.h"
 #include "montelux/transport/path_integrator.h"
+#include "montelux/transport/volume_path_integrator.h"
 
 namespace montelux {
 
-using Integrator = std::variant<PathIntegrator>;
+using Integrator = std::variant<PathIntegrator, VolumePathIntegrator>;
 
 static_assert(IntegratorModel<PathIntegrator, SampleStream>);
+static_assert(IntegratorModel<VolumePathIntegrator, SampleStream>);
 
 } // namespace montelux

@@ -1,53 +1,9 @@
 #include "montelux/transport/path_integrator.h"
 
-#include <cmath>
-
 #include "montelux/mc/random/sample_stream.h"
 #include "montelux/transport/path_shading.h"
 
 namespace montelux {
-
-namespace {
-
-// Finds (x, y) such that a = x dpdu + y dpdv in the least-squares sense; zero for degenerate tangents.
-class TangentSolver {
-  public:
-    TangentSolver(Vec3f dpdu, Vec3f dpdv)
-        : dpdu_(dpdu), dpdv_(dpdv), uu_(dot(dpdu, dpdu)), uv_(dot(dpdu, dpdv)), vv_(dot(dpdv, dpdv)) {
-        const float determinant = uu_ * vv_ - uv_ * uv_;
-        inverse_ = std::abs(determinant) > 0 ? 1 / determinant : 0;
-    }
-
-    Vec2f operator()(Vec3f a) const {
-        const float au = dot(a, dpdu_), av = dot(a, dpdv_);
-        const Vec2f d{(vv_ * au - uv_ * av) * inverse_, (uu_ * av - uv_ * au) * inverse_};
-        return std::isfinite(d.x) && std::isfinite(d.y) ? d : Vec2f{0, 0};
-    }
-
-  private:
-    Vec3f dpdu_, dpdv_;
-    float uu_, uv_, vv_, inverse_;
-};
-
-} // namespace
-
-TextureContext PathIntegrator::texture_context(const SurfacePoint& s) const {
-    const Camera::Footprint footprint = camera_->footprint(s.p, s.ng, footprint_scale_);
-    const TangentSolver in_tangents(s.dpdu, s.dpdv);
-    return {.p = s.p,
-            .n = s.ns,
-            .uv = s.uv,
-            .dpdx = footprint.dpdx,
-            .dpdy = footprint.dpdy,
-            .duvdx = in_tangents(footprint.dpdx),
-            .duvdy = in_tangents(footprint.dpdy)};
-}
-
-float PathIntegrator::hit_weight(float bsdf_pdf, float light_pdf) const {
-    if (!samples_lights()) return 1;
-    if (settings_.strategy == Strategy::light) return light_pdf > 0 ? 0.0f : 1.0f;
-    return weight(bsdf_pdf, light_pdf);
-}
 
 void PathIntegrator::add_met_light(const SceneView& scene, PathState& state, Index light, const LightHit& hit,
                                    PathRecorder recorder) const {
@@ -59,7 +15,7 @@ void PathIntegrator::add_met_light(const SceneView& scene, PathState& state, Ind
     const float pdf = shared ? scene.light_sampler->probability(state.previous, light, hit.part) *
                                    pdf_li(context, state.previous, hit)
                              : 0;
-    const float weight = shared ? hit_weight(state.bsdf_pdf, pdf) : 1;
+    const float weight = shared ? hit_weight(settings_, state.bsdf_pdf, pdf) : 1;
     const bool counted = settings_.strategy != Strategy::mis_light;
     if (recorder)
         recorder.found_light({.light = light,

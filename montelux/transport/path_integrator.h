@@ -5,12 +5,12 @@
 #include <span>
 #include <string_view>
 
-#include "montelux/mc/integrate/mis.h"
-#include "montelux/scene/camera/camera.h"
 #include "montelux/scene/render_settings.h"
 #include "montelux/transport/path_batch.h"
 #include "montelux/transport/path_recorder.h"
 #include "montelux/transport/path_state.h"
+#include "montelux/transport/path_weights.h"
+#include "montelux/transport/texture_footprint.h"
 
 namespace montelux {
 
@@ -60,22 +60,15 @@ class PathIntegrator {
     template <RandomStream Stream>
     struct Vertex;
 
-    bool samples_lights() const { return settings_.strategy >= Strategy::light; }
     // `shade` of several hits that have at least this level; empties the group.
     template <int W>
     void shade_diffuse(const SceneView& scene, LaneShading level, HitGroup<W>& group, PathBatch& batch) const;
-    // MIS weight of the strategy with density f against the one with density g.
-    template <Number T>
-    T weight(T f, T g) const {
-        return settings_.heuristic == Heuristic::power ? power_heuristic(1, f, 1, g)
-                                                       : balance_heuristic(1, f, 1, g);
-    }
-    // MIS weight of light that the path hit.
-    float hit_weight(float bsdf_pdf, float light_pdf) const;
     // Adds a light that the state's ray hit.
     void add_met_light(const SceneView& scene, PathState& state, Index light, const LightHit& hit,
                        PathRecorder recorder) const;
-    TextureContext texture_context(const SurfacePoint& surface) const;
+    TextureContext texture_context(const SurfacePoint& surface) const {
+        return montelux::texture_context(*camera_, footprint_scale_, surface);
+    }
 
     IntegratorSettings settings_;
     const Camera* camera_;

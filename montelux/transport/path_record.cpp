@@ -34,9 +34,10 @@ class BadSearch {
         std::size_t i = 0;
         for (; i + 1 < vertex; ++i) {
             const PathVertex& v = record_.vertices[i];
-            if (bad(v.continued) || bad(v.scattering->sample.weight)) break;
+            if (bad(v.continued) || (v.scattering && bad(v.scattering->sample.weight))) break;
         }
-        const bool factor = bad(record_.vertices[i].scattering->sample.weight);
+        const std::optional<Scattering>& scattering = record_.vertices[i].scattering;
+        const bool factor = scattering && bad(scattering->sample.weight);
         return {factor ? Quantity::bsdf_weight : Quantity::throughput, i};
     }
     BadOrigin in_found(std::size_t i, const FoundLight& light) const {

@@ -73,14 +73,27 @@ enum class PathEnd : std::uint8_t {
     nothing_carried, // the throughput is black
     bad_throughput,  // NaN or negative: added to the radiance, so that the sample is reported
     roulette,
+    absorbed, // by a medium
 };
 
-// One ray and the vertex at its end.
+// A collision with a medium.
+struct MediumEvent {
+    Point3f p{};
+    SampledSpectrum sigma_a{}, sigma_s{};
+    bool scattered = false; // this and the next ones: else absorbed, or the path ended here
+    Vec3f wi{};
+    float pdf = 0; // of wi, per solid angle
+};
+
+// One ray and the vertex at its end: on a surface, in a medium, or outside the scene. In media, throughputs are
+// weighted over the wavelengths, radiances include transmittances, and densities are relative to that of the
+// path, averaged over the wavelengths.
 struct PathVertex {
     Ray ray;
     SampledSpectrum throughput; // of the path up to here
+    std::optional<MediumEvent> medium;
     Hit hit;
-    std::optional<SurfacePoint> surface; // empty if the ray left the scene
+    std::optional<SurfacePoint> surface; // empty if the ray left the scene or ended in a medium
     std::vector<FoundLight> found;
     std::optional<SurfaceBsdf> bsdf; // this and the following are empty if the path ended before
     Vec3f wo;                        // towards the previous vertex, in the frame of the shading normal
@@ -94,6 +107,7 @@ struct PathVertex {
 struct PathRecord {
     std::vector<PathVertex> vertices;
     PathEnd end = PathEnd::left_scene;
+    SampledSpectrum emission; // of media, part of the radiance
     SampledSpectrum radiance;
 };
 
@@ -104,7 +118,7 @@ struct BadOrigin {
         found_density,   // of sampling it, or its weight
         direct_radiance, // of a sampled light
         direct_density,
-        bsdf_value,
+        bsdf_value,  // or that of a phase function
         bsdf_weight, // of the direction in which the path continued
         throughput,  // a product of good factors overflowed
         product,     // a contribution of good factors overflowed

@@ -22,6 +22,12 @@ void PathRecorder::left_scene(const Ray& ray, SampledSpectrum throughput) const 
     add_vertex(ray, throughput);
 }
 
+void PathRecorder::collided(const Ray& ray, const MediumEvent& event, SampledSpectrum throughput) const {
+    add_vertex(ray, throughput).medium = event;
+}
+
+void PathRecorder::emitted(SampledSpectrum radiance) const { record_->emission += radiance; }
+
 void PathRecorder::found_light(FoundLight light) const {
     PathVertex& v = last();
     if (light.counted) light.contribution = v.throughput * light.radiance * light.weight;
@@ -49,6 +55,14 @@ void PathRecorder::scattered(const Scattering& scattering) const {
     PathVertex& v = last();
     v.continued = v.throughput * scattering.sample.weight;
     v.scattering = scattering;
+}
+
+void PathRecorder::scattered_in_medium(Vec3f wi, float pdf, SampledSpectrum continued) const {
+    PathVertex& v = last();
+    v.medium->scattered = true;
+    v.medium->wi = wi;
+    v.medium->pdf = pdf;
+    v.continued = continued;
 }
 
 void PathRecorder::played_roulette(Roulette roulette) const {

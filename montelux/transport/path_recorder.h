@@ -15,17 +15,21 @@ class PathRecorder {
     }
     explicit operator bool() const { return record_ != nullptr; }
 
-    // In order of events. The ray hit a surface, or left the scene.
+    // In order of events. The ray hit a surface, left the scene, or collided with a medium.
     [[gnu::cold]] void hit_surface(const Ray& ray, const Hit& hit, const SurfacePoint& surface,
                                    SampledSpectrum throughput) const;
     [[gnu::cold]] void left_scene(const Ray& ray, SampledSpectrum throughput) const;
     // The recorder multiplies the contributions.
+    [[gnu::cold]] void collided(const Ray& ray, const MediumEvent& event, SampledSpectrum throughput) const;
+    // Radiance of media along the ray.
+    [[gnu::cold]] void emitted(SampledSpectrum radiance) const;
     [[gnu::cold]] void found_light(FoundLight light) const;
     [[gnu::cold]] void made_bsdf(const SurfaceBsdf& bsdf, Vec3f wo) const;
     [[gnu::cold]] void sampled_light(DirectLight light) const;
     // The shadow ray of the light that was sampled.
     [[gnu::cold]] void occluded() const;
     [[gnu::cold]] void scattered(const Scattering& scattering) const;
+    [[gnu::cold]] void scattered_in_medium(Vec3f wi, float pdf, SampledSpectrum continued) const;
     [[gnu::cold]] void played_roulette(Roulette roulette) const;
     [[gnu::cold]] void ended(PathEnd end) const;
     [[gnu::cold]] void traced(SampledSpectrum radiance) const;

@@ -4,49 +4,14 @@
 #include <algorithm>
 #include <limits>
 
-#include "montelux/mc/warp/hemisphere.h"
-#include "montelux/mc/warp/sphere.h"
-#include "montelux/scene/light/light_sampling.h"
 #include "montelux/scene/material/make_bsdf.h"
 #include "montelux/scene/shape/surface_point.h"
 #include "montelux/transport/diffuse_lanes.h"
+#include "montelux/transport/light_choice.h"
 #include "montelux/transport/path_integrator.h"
+#include "montelux/transport/uniform_scattering.h"
 
 namespace montelux {
-
-// Directions independent of the BSDF: uniform over the hemisphere of wo, or over the sphere if it transmits.
-// A BSDF with delta and other lobes gives half of the samples to the delta lobe, which no such direction can
-// find.
-template <BsdfModel B, RandomStream Stream>
-std::optional<BsdfSample> sample_uniform(const B& bsdf, Vec3f wo, Stream& stream) {
-    float share = 1;
-    if (bsdf.has_specular()) {
-        share = 0.5f;
-        float u_choice = stream.next_1d();
-        if (u_choice < share) {
-            auto s = bsdf.sample(wo, TransportMode::radiance, stream);
-            if (!s || !s->specular) return std::nullopt;
-            s->weight /= share;
-            return s;
-        }
-    }
-    Vec2f u = stream.next_2d();
-    BsdfSample s;
-    if constexpr (B::traits.transmits) {
-        s.wi = sample_uniform_sphere(u);
-        s.pdf = share * inv_four_pi_f;
-        s.transmission = !same_hemisphere(wo, s.wi);
-        if (s.transmission) s.eta = bsdf.transmitted_eta(wo);
-    } else {
-        s.wi = sample_uniform_hemisphere(u);
-        if (wo.z < 0) s.wi.z = -s.wi.z;
-        s.pdf = share * inv_two_pi_f;
-    }
-    BsdfEvaluation e = bsdf.evaluate(wo, s.wi, TransportMode::radiance, stream);
-    s.weight = e.f / s.pdf;
-    if (is_black(s.weight)) return std::nullopt;
-    return s;
-}
 
 // The scattering at one vertex of a path.
 template <RandomStream Stream>
@@ -64,18 +29,11 @@ struct PathIntegrator::Vertex {
     template <BsdfModel B>
     void sample_light(const B& bsdf, std::optional<ShadowRay>& shadow) const {
         using Outcome = DirectLight::Outcome;
-        const LightSampler& lights = *scene.light_sampler;
-        if (lights.empty()) return;
-        const ReferencePoint& here = state.previous;
-        // With few lights the choice uses the first number's leading digits and leaves the others for the
-        // point: one dimension less keeps point sets better stratified.
-        const bool few = lights.size() <= 64;
-        Vec2f u = stream.next_2d();
-        const LightChoice chosen = lights.sample(here, stream.refined(few ? u.x : stream.next_1d()));
-        const float choice = chosen.probability;
-        if (few) u.x = std::min(static_cast<float>(chosen.remapped), largest_below_one<float>);
-        const auto light = sample_li({scene, chosen.light}, chosen.part, here, u, state.lambda);
-        if (!light || (!light->invisible && !path.samples_lights())) {
+        if (scene.light_sampler->empty()) return;
+        const ChosenLight chosen = choose_light(scene, state.previous, state.lambda, stream);
+        const float choice = chosen.choice;
+        const std::optional<LightSample>& light = chosen.sample;
+        if (!light || (!light->invisible && !samples_lights(path.settings_))) {
             if (recorder)
                 recorder.sampled_light({.outcome = light ? Outcome::left_to_scattering : Outcome::dark,
                                         .light = chosen.light,
@@ -106,8 +64,9 @@ struct PathIntegrator::Vertex {
             return;
         }
         const Strategy strategy = path.settings_.strategy;
-        const float weight =
-            light->invisible || strategy == Strategy::light ? 1 : path.weight(light_pdf, e.pdf);
+        const float weight = light->invisible || strategy == Strategy::light
+                                 ? 1
+                                 : path_weight(path.settings_, light_pdf, e.pdf);
         if (strategy == Strategy::mis_bsdf) {
             record(Outcome::other_term, weight);
             return;

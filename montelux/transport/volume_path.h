@@ -1,0 +1,344 @@
+// The templates of VolumePathIntegrator, for use with any random stream.
+#pragma once
+
+#include <limits>
+
+#include "montelux/mc/warp/sphere.h"
+#include "montelux/scene/material/make_bsdf.h"
+#include "montelux/transport/light_choice.h"
+#include "montelux/transport/path_weights.h"
+#include "montelux/transport/shadow_transmittance.h"
+#include "montelux/transport/texture_footprint.h"
+#include "montelux/transport/uniform_scattering.h"
+#include "montelux/transport/volume_path_integrator.h"
+#include "montelux/transport/volume_state.h"
+
+namespace montelux {
+
+// One path.
+template <RandomStream Stream>
+class VolumePath {
+  public:
+    VolumePath(const VolumePathIntegrator& integrator, const SceneView& scene, RayTracer& tracer,
+               const CameraSample& camera, Stream& stream, PathRecord* record)
+        : integrator_(integrator), settings_(integrator.settings_), scene_(scene), tracer_(tracer),
+          stream_(stream), recorder_(record), state_(camera, scene.camera_medium) {}
+
+    FilmContribution trace() {
+        const SampledWavelengths lambda = state_.lambda;
+        while (state_.alive) {
+            Hit hit;
+            const bool found = tracer_.intersect(state_.ray, hit);
+            if (state_.medium != no_index &&
+                !passes_medium(found ? hit.t : std::numeric_limits<float>::infinity()))
+                continue;
+            if (found)
+                shade(hit);
+            else
+                escape();
+        }
+        if (recorder_) recorder_.traced(state_.radiance);
+        return {state_.radiance, lambda, state_.first};
+    }
+
+  private:
+    // Follows the ray through its medium. False if the path ended or scattered before that distance.
+    bool passes_medium(float distance) {
+        return std::visit([&](const auto& m) { return passes(m, distance); }, scene_.media[state_.medium]);
+    }
+
+    template <MediumModel M>
+    bool passes(const M& medium, float distance) {
+        const auto local = medium.at(scene_, state_.medium, state_.lambda);
+        const Ray ray{state_.ray.o, state_.ray.d, distance};
+        if constexpr (M::homogeneous)
+            if (is_black(local.point.sigma_s)) return absorbs(local.point, distance);
+        CollisionNumbers numbers(stream_);
+        const auto collision = [&](float t, SampledSpectrum relative, SampledSpectrum majorant) {
+            state_.take(relative);
+            const Point3f p = ray.o + ray.d * t;
+            const MediumPoint m = local.coefficients(p);
+            const float hero = majorant[0];
+            if (!is_black(m.emission))
+                emit(state_.throughput * m.emission / (hero * average(state_.r_u * majorant / hero)));
+            const float u = numbers.event() * hero, absorbed = m.sigma_a[0], scattered = m.sigma_s[0];
+            if (u < absorbed) {
+                if (recorder_)
+                    recorder_.collided(ray, {.p = p, .sigma_a = m.sigma_a, .sigma_s = m.sigma_s},
+                                       state_.carried());
+                return end(PathEnd::absorbed);
+            }
+            if (M::homogeneous || u < absorbed + scattered) {
+                if (!(scattered > 0)) return end(PathEnd::absorbed); // by rounding
+                state_.take(m.sigma_s / scattered);
+                state_.scatter();
+                state_.distance += t;
+                scatter(p, medium.phase, m);
+                return false;
+            }
+            const SampledSpectrum null = clamp_zero(majorant - m.sigma_a - m.sigma_s);
+            if (!(null[0] > 0)) return end(PathEnd::absorbed); // by rounding
+            state_.throughput *= null / null[0];
+            state_.r_u *= null / null[0];
+            state_.r_l *= majorant / null[0];
+            state_.rescale();
+            return true;
+        };
+        const std::optional<SampledSpectrum> relative = track(local, ray, numbers, collision);
+        if (!relative) return false;
+        if constexpr (M::homogeneous) {
+            // Light sampling computes this transmittance, so that its density is 1 at all wavelengths.
+            const SampledSpectrum before = state_.r_l;
+            state_.take(*relative);
+            const float hero = local.point.sigma_a[0] + local.point.sigma_s[0];
+            state_.r_l = hero > 0 ? before * std::exp(hero * distance) : before;
+        } else {
+            state_.take(*relative);
+        }
+        state_.rescale();
+        return true;
+    }
+
+    // A homogeneous medium without scattering: all is known.
+    bool absorbs(const MediumPoint& m, float distance) {
+        const float finite = std::min(distance, std::numeric_limits<float>::max());
+        const SampledSpectrum transmittance = exp(m.sigma_a * -finite);
+        if (!is_black(m.emission))
+            emit(state_.carried() * safe_div(m.emission, m.sigma_a) * one_minus_exp(m.sigma_a * finite));
+        state_.throughput *= transmittance;
+        if (is_black(transmittance)) return end(PathEnd::absorbed);
+        return true;
+    }
+
+    void emit(SampledSpectrum radiance) {
+        state_.radiance += radiance;
+        if (recorder_) recorder_.emitted(radiance);
+    }
+
+    // Always false.
+    bool end(PathEnd how) {
+        state_.alive = false;
+        if (recorder_) recorder_.ended(how);
+        return false;
+    }
+
+    void scatter(Point3f p, const PhaseFunction& phase, const MediumPoint& m) {
+        if (recorder_)
+            recorder_.collided(state_.ray, {.p = p, .sigma_a = m.sigma_a, .sigma_s = m.sigma_s},
+                               state_.carried());
+        if (state_.depth++ == settings_.max_depth) {
+            end(PathEnd::max_depth);
+            return;
+        }
+        const Vec3f wo = -state_.ray.d;
+        state_.previous = {p, {}, 0};
+        std::visit(
+            [&](const PhaseModel auto& f) {
+                sample_light(state_.medium, [&](Vec3f wi) {
+                    const float pdf = f.pdf(wo, wi);
+                    return BsdfEvaluation{SampledSpectrum(pdf), pdf};
+                });
+                const Vec2f u = stream_.next_2d();
+                Vec3f wi;
+                if (settings_.strategy == Strategy::uniform) {
+                    wi = sample_uniform_sphere(u);
+                    state_.bsdf_pdf = inv_four_pi_f;
+                    state_.throughput *= f.pdf(wo, wi) / inv_four_pi_f;
+                } else {
+                    const PhaseSample s = f.sample(wo, u);
+                    wi = normalize(s.wi);
+                    state_.bsdf_pdf = s.pdf;
+                }
+                state_.ray = {p, wi};
+                if (recorder_) recorder_.scattered_in_medium(wi, state_.bsdf_pdf, state_.carried());
+            },
+            phase);
+        state_.sees_lights = false;
+        state_.alive = survives();
+    }
+
+    void shade(const Hit& hit) {
+        const Vec3f w = state_.ray.d;
+        const Index material = scene_.shapes[hit.shape].material;
+        const bool interface = scene_.is_interface(hit.shape), textured = scene_.is_textured(material);
+        const SurfacePoint s =
+            surface_point(scene_, state_.ray, hit, textured || scene_.frame_follows_tangents(material));
+        if (recorder_) recorder_.hit_surface(state_.ray, hit, s, state_.carried());
+        if (hit.instance == no_index && s.shape->light != no_index)
+            add_met_light(s.shape->light, {.wi = w, .part = s.primitive, .p = s.p, .n = s.ng});
+        state_.distance += hit.t;
+        if (interface) {
+            leave(s, w);
+            if (++interfaces_ == most_interfaces) {
+                state_.radiance += SampledSpectrum(std::numeric_limits<float>::quiet_NaN()); // reported
+                end(PathEnd::bad_throughput);
+            }
+            return;
+        }
+        interfaces_ = 0;
+        if (state_.depth++ == settings_.max_depth) {
+            end(PathEnd::max_depth);
+            return;
+        }
+        state_.alive = false; // until the path continues
+        const TextureContext context =
+            textured ? texture_context(*integrator_.camera_, integrator_.footprint_scale_, s)
+                     : TextureContext();
+        const bool was_terminated = state_.lambda.secondary_terminated();
+        const SurfaceBsdf surface = make_bsdf(scene_, s, -w, context, state_.lambda);
+        if (!was_terminated && state_.lambda.secondary_terminated()) state_.terminate_secondary();
+        const Vec3f wo = surface.frame.to_local(-w);
+        if (recorder_) recorder_.made_bsdf(surface, wo);
+        if (state_.depth == 1)
+            state_.first = {.albedo = std::visit([&](const auto& b) { return b.albedo(wo); }, surface.bsdf),
+                            .normal = surface.frame.n,
+                            .depth = state_.distance,
+                            .found = true};
+        if (wo.z == 0) {
+            end(PathEnd::grazing);
+            return;
+        }
+        state_.previous = {s.p, s.ng, s.error};
+        const std::optional<BsdfSample> scattered = std::visit(
+            [&](const BsdfModel auto& bsdf) {
+                if (!bsdf.is_specular())
+                    sample_light(
+                        state_.medium,
+                        [&](Vec3f wi) {
+                            return bsdf.evaluate(wo, surface.frame.to_local(wi), TransportMode::radiance,
+                                                 stream_);
+                        },
+                        &s);
+                if (settings_.strategy == Strategy::uniform && !bsdf.is_specular())
+                    return sample_uniform(bsdf, wo, stream_);
+                return bsdf.sample(wo, TransportMode::radiance, stream_);
+            },
+            surface.bsdf);
+        if (!scattered) {
+            end(PathEnd::no_direction);
+            return;
+        }
+        state_.throughput *= scattered->weight;
+        state_.scatter();
+        state_.bsdf_pdf = scattered->pdf;
+        state_.sees_lights = scattered->specular;
+        if (scattered->transmission) state_.eta_scale *= scattered->eta * scattered->eta;
+        const Vec3f wi = surface.frame.to_world(scattered->wi);
+        if (recorder_) recorder_.scattered({*scattered, wi});
+        leave(s, wi);
+        state_.alive = survives();
+    }
+
+    // The ray continues from a surface in direction w.
+    void leave(const SurfacePoint& s, Vec3f w) {
+        state_.medium = medium_beyond(s, w, state_.medium);
+        state_.ray.o = offset_origin(s.p, s.ng, s.error, w);
+        state_.ray.d = normalize(w);
+        state_.ray.t_max = std::numeric_limits<float>::infinity();
+    }
+
+    void escape() {
+        if (recorder_) recorder_.left_scene(state_.ray, state_.carried());
+        for (Index light : scene_.light_tables.infinite_lights) add_met_light(light, {.wi = state_.ray.d});
+        end(PathEnd::left_scene);
+    }
+
+    // A light that the state's ray hit.
+    void add_met_light(Index light, const LightHit& hit) {
+        const LightContext context{scene_, light};
+        const SampledSpectrum le = incident_radiance(context, state_.previous, hit, state_.lambda);
+        if (is_black(le)) return;
+        const bool shared = !state_.sees_lights;
+        const float ratio = average(state_.r_l) / average(state_.r_u);
+        const float pdf = shared ? scene_.light_sampler->probability(state_.previous, light, hit.part) *
+                                       pdf_li(context, state_.previous, hit) * ratio
+                                 : 0;
+        const float weight = shared ? hit_weight(settings_, state_.bsdf_pdf, pdf) : 1;
+        const bool counted = settings_.strategy != Strategy::mis_light;
+        if (recorder_)
+            recorder_.found_light({.light = light,
+                                   .part = hit.part,
+                                   .radiance = le,
+                                   .shared = shared,
+                                   .bsdf_pdf = shared ? state_.bsdf_pdf : 0,
+                                   .light_pdf = pdf,
+                                   .weight = weight,
+                                   .counted = counted});
+        if (counted) state_.radiance += state_.carried() * le * weight;
+    }
+
+    // Next-event estimation: one light, one point on it. evaluate(wi) gives value and density of scattering.
+    // `surface`: what scatters, if it is no medium.
+    template <typename Evaluate>
+    void sample_light(Index medium, const Evaluate& evaluate, const SurfacePoint* surface = nullptr) {
+        using Outcome = DirectLight::Outcome;
+        if (scene_.light_sampler->empty()) return;
+        const ChosenLight chosen = choose_light(scene_, state_.previous, state_.lambda, stream_);
+        const std::optional<LightSample>& light = chosen.sample;
+        DirectLight record{.light = chosen.light, .part = chosen.part, .choice = chosen.choice};
+        const auto finish = [&](Outcome outcome) {
+            record.outcome = outcome;
+            if (recorder_) recorder_.sampled_light(record);
+        };
+        if (!light || (!light->invisible && !samples_lights(settings_)))
+            return finish(light ? Outcome::left_to_scattering : Outcome::dark);
+        const BsdfEvaluation e = evaluate(light->wi);
+        record.delta = light->delta;
+        record.wi = light->wi;
+        record.shadow = light->shadow;
+        record.radiance = light->radiance;
+        record.f = e.f;
+        record.bsdf_pdf = e.pdf;
+        record.light_pdf = chosen.choice * light->pdf;
+        if (is_black(e.f) || is_black(light->radiance)) return finish(Outcome::no_transport);
+        if (settings_.strategy == Strategy::mis_bsdf) return finish(Outcome::other_term);
+        if (surface != nullptr) medium = medium_beyond(*surface, light->wi, medium);
+        const std::optional<ShadowTransmittance> through =
+            shadow_transmittance(scene_, tracer_, light->shadow, medium, state_.lambda, stream_);
+        if (!through) return finish(Outcome::occluded);
+        // Densities relative to that of the path so far, averaged over the wavelengths.
+        const float before = average(state_.r_u);
+        record.radiance *= through->t;
+        record.bsdf_pdf *= average(state_.r_u * through->r_u) / before;
+        record.light_pdf *= average(state_.r_u * through->r_l) / before;
+        record.weight = light->invisible || settings_.strategy == Strategy::light
+                            ? 1
+                            : path_weight(settings_, record.light_pdf, record.bsdf_pdf);
+        finish(Outcome::counted);
+        state_.radiance += state_.carried() * e.f * record.radiance * (record.weight / record.light_pdf);
+    }
+
+    // Russian roulette on what the path carries to the film. Returns false if the path ends.
+    bool survives() {
+        const float strength = max_value(state_.carried()) * state_.eta_scale;
+        if (!(strength > 0)) {
+            // A NaN must not end silently: it makes the sample bad.
+            state_.radiance += state_.carried();
+            return end(is_black(state_.throughput) ? PathEnd::nothing_carried : PathEnd::bad_throughput);
+        }
+        if (!(strength < 1) || state_.depth <= 1) return true;
+        const float u = stream_.next_1d();
+        if (recorder_) recorder_.played_roulette({.survival = strength, .u = u});
+        if (!(u < strength)) return end(PathEnd::roulette);
+        state_.throughput /= strength;
+        return true;
+    }
+
+    const VolumePathIntegrator& integrator_;
+    const IntegratorSettings& settings_;
+    const SceneView& scene_;
+    RayTracer& tracer_;
+    Stream& stream_;
+    PathRecorder recorder_;
+    VolumeState state_;
+    int interfaces_ = 0; // passed since the last scattering event
+};
+
+template <RandomStream Stream>
+FilmContribution VolumePathIntegrator::estimate(const SceneView& scene, RayTracer& tracer,
+                                                const CameraSample& camera, Stream& stream,
+                                                PathRecord* record) const {
+    return VolumePath<Stream>(*this, scene, tracer, camera, stream, record).trace();
+}
+
+} // namespace montelux

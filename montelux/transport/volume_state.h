@@ -1,0 +1,54 @@
+// VolumeState: a path through media between two of its vertices, as a plain value.
+#pragma once
+
+#include <type_traits>
+
+#include "montelux/transport/path_state.h"
+
+namespace montelux {
+
+// Densities and the throughput are relative to the density of the path as it was sampled: that of the first
+// wavelength. Pharr, Jakob, Humphreys 2023, "Physically Based Rendering", 4th edition, section 14.2.3: rescaled
+// path probabilities.
+struct VolumeState : PathState {
+    SampledSpectrum r_u{1}; // density of sampling the path, at each wavelength
+    // The same if light sampling at the last scattering vertex had found what follows, without the density of
+    // the light. PathState::bsdf_pdf is the density of the direction there.
+    SampledSpectrum r_l{1};
+    Index medium = no_index; // around the ray
+    float distance = 0;      // from the camera to the ray's origin, until the first scattering event
+
+    VolumeState(const CameraSample& camera, Index camera_medium) : PathState(camera), medium(camera_medium) {}
+
+    // What the path carries to the film, weighted over the wavelengths by the balance heuristic.
+    SampledSpectrum carried() const { return throughput / average(r_u); }
+
+    // All are multiplied by `factor` when a step has this value and this density relative to its sampled one.
+    void take(SampledSpectrum factor) {
+        throughput *= factor;
+        r_u *= factor;
+        r_l *= factor;
+    }
+    // The light's share of a step begins anew at a scattering event.
+    void scatter() { r_l = r_u; }
+    // Only ratios count: the range of floats must last for many steps.
+    void rescale() {
+        const float largest = max_value(r_u);
+        if (!(largest > 0x1p40f) && !(max_value(r_l) > 0x1p60f)) return;
+        const float scale = 1 / largest;
+        throughput *= scale;
+        r_u *= scale;
+        r_l *= scale;
+    }
+    // Leaves the first wavelength alone, which then stands for all four. What the other ones have found stays.
+    // All four become the first, so that their densities remain equal.
+    void terminate_secondary() {
+        lambda.lambda = broadcast(lambda.lambda[0]);
+        throughput = SampledSpectrum(4 * throughput[0], 0, 0, 0);
+        r_u = SampledSpectrum(r_u[0]);
+        r_l = SampledSpectrum(r_l[0]);
+    }
+};
+static_assert(std::is_trivially_copyable_v<VolumeState>);
+
+} // namespace montelux
