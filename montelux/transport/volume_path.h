@@ -110,7 +110,9 @@ class VolumePath {
         return true;
     }
 
+    // Of media: no strategy but following the path finds it.
     void emit(SampledSpectrum radiance) {
+        if (settings_.strategy == Strategy::mis_light) return;
         state_.radiance += radiance;
         if (recorder_) recorder_.emitted(radiance);
     }
@@ -291,7 +293,6 @@ class VolumePath {
         record.bsdf_pdf = e.pdf;
         record.light_pdf = chosen.choice * light->pdf;
         if (is_black(e.f) || is_black(light->radiance)) return finish(Outcome::no_transport);
-        if (settings_.strategy == Strategy::mis_bsdf) return finish(Outcome::other_term);
         if (surface != nullptr) medium = medium_beyond(*surface, light->wi, medium);
         const std::optional<ShadowTransmittance> through =
             shadow_transmittance(scene_, tracer_, light->shadow, medium, state_.lambda, stream_);
@@ -304,6 +305,7 @@ class VolumePath {
         record.weight = light->invisible || settings_.strategy == Strategy::light
                             ? 1
                             : path_weight(settings_, record.light_pdf, record.bsdf_pdf);
+        if (settings_.strategy == Strategy::mis_bsdf) return finish(Outcome::other_term);
         finish(Outcome::counted);
         state_.radiance += state_.carried() * e.f * record.radiance * (record.weight / record.light_pdf);
     }
