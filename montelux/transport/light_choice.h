@@ -6,6 +6,8 @@
 
 #include "montelux/mc/random/stream.h"
 #include "montelux/scene/light/light_sampling.h"
+#include "montelux/scene/material/make_bsdf.h"
+#include "montelux/scene/shape/surface_point.h"
 
 namespace montelux {
 
@@ -27,6 +29,13 @@ template <RandomStream Stream>
     if (few) u.x = std::min(static_cast<float>(chosen.remapped), largest_below_one<float>);
     return {chosen.light, chosen.part, chosen.probability,
             sample_li({scene, chosen.light}, chosen.part, here, u, lambda)};
+}
+
+// A surface to be lit, seen from wo in the frame of its BSDF.
+inline ReferencePoint reference_point(const SurfacePoint& s, const SurfaceBsdf& surface, Vec3f wo) {
+    ReferencePoint here{s.p, s.ng, s.error, Vec3f{}};
+    if (is_opaque(surface.bsdf)) here.facing = wo.z > 0 ? surface.frame.n : -surface.frame.n;
+    return here;
 }
 
 } // namespace montelux

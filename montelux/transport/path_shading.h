@@ -140,8 +140,7 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
         return shadow;
     }
 
-    state.previous = {s.p, s.ng, s.error, Vec3f{}};
-    if (is_opaque(surface.bsdf)) state.previous.facing = wo.z > 0 ? surface.frame.n : -surface.frame.n;
+    state.previous = reference_point(s, surface, wo);
     const Vertex<Stream> vertex{*this, scene, state, stream, recorder, surface.frame, wo};
     const std::optional<BsdfSample> scattered = std::visit(
         [&](const BsdfModel auto& bsdf) {

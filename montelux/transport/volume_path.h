@@ -133,7 +133,7 @@ class VolumePath {
             return;
         }
         const Vec3f wo = -state_.ray.d;
-        state_.previous = {p, {}, 0};
+        state_.previous = {p, {}, 0, Vec3f{}};
         std::visit(
             [&](const PhaseModel auto& f) {
                 sample_light(state_.medium, [&](Vec3f wi) {
@@ -200,7 +200,7 @@ class VolumePath {
             end(PathEnd::grazing);
             return;
         }
-        state_.previous = {s.p, s.ng, s.error};
+        state_.previous = reference_point(s, surface, wo);
         const std::optional<BsdfSample> scattered = std::visit(
             [&](const BsdfModel auto& bsdf) {
                 if (!bsdf.is_specular())
