@@ -19,7 +19,7 @@ constexpr std::size_t max_blocks = 1000000;
 Directives::Directives(Files& files, Diagnostics& diagnostics)
     : files_(files), diagnostics_(diagnostics), builder_(result_.scene, diagnostics),
       spectra_(files, diagnostics), textures_(builder_, files, spectra_, diagnostics),
-      lights_(builder_, files, spectra_, diagnostics) {
+      lights_(builder_, files, spectra_, diagnostics), media_(builder_, files, spectra_, diagnostics) {
     state_.color_space = &RgbColorSpace::srgb();
     materials_.push_back({"diffuse", {}, {}}); // the material of shapes before any Material directive
 }
@@ -184,6 +184,7 @@ void Directives::set_camera(Plugin plugin) {
     set_option(camera_, std::move(plugin), "Camera");
     if (!fits_float(still_transform(at)))
         diagnostics_.error(at, "the camera's transformation is beyond what single-precision numbers hold");
+    camera_media_ = {no_index, state_.media, at};
     result_.scene.camera.world_from_camera = still_transform(at).inverse();
     const Transform& t = result_.scene.camera.world_from_camera;
     coordinate_systems_["camera"] = std::make_shared<TransformPair>(TransformPair{t, t});
@@ -295,11 +296,6 @@ void Directives::add_defaults(std::string_view target, std::vector<Parameter> pa
 
 ParameterList Directives::with_defaults(std::vector<Parameter> own, PluginKind kind) const {
     return {std::move(own), state_.defaults[static_cast<std::size_t>(kind)], kind};
-}
-
-void Directives::medium_interface(std::string_view inside, std::string_view outside, Location at) {
-    if (!inside.empty() || !outside.empty())
-        diagnostics_.error(at, "participating media are not supported yet");
 }
 
 } // namespace montelux::pbrt

@@ -10,6 +10,7 @@
 
 #include "montelux/formats/pbrt/graphics_state.h"
 #include "montelux/formats/pbrt/materials.h"
+#include "montelux/formats/pbrt/media.h"
 #include "montelux/formats/pbrt/settings.h"
 #include "montelux/formats/pbrt/shapes.h"
 #include "montelux/formats/pbrt/textures.h"
@@ -61,6 +62,10 @@ class Directives {
     const RgbColorSpace& color_space() const { return *state_.color_space; }
     void add_defaults(std::string_view target, std::vector<Parameter> parameters, Location at);
 
+    void make_named_medium(const std::string& name, std::vector<Parameter> parameters, Location at);
+    // Of following shapes; that of the camera is outside.
+    void medium_interface(const std::string& inside, const std::string& outside);
+
     // In the world.
     void material(std::string type, std::vector<Parameter> parameters, Location at);
     void make_named_material(const std::string& name, std::vector<Parameter> parameters, Location at);
@@ -70,7 +75,6 @@ class Directives {
     void light_source(std::string name, std::vector<Parameter> parameters, Location at);
     void area_light_source(std::string name, std::vector<Parameter> parameters, Location at);
     void shape(const std::string& name, std::vector<Parameter> parameters, Location at);
-    void medium_interface(std::string_view inside, std::string_view outside, Location at);
 
     bool in_world() const { return in_world_; }
     // After the last file. `end` is the place of its end.
@@ -85,6 +89,11 @@ class Directives {
     struct MaterialUse {
         Index shape;
         MaterialReference material;
+        Location at;
+    };
+    struct MediaUse {
+        Index shape;
+        MediaReference media;
         Location at;
     };
     struct AlphaUse {
@@ -104,6 +113,7 @@ class Directives {
     ParameterList with_defaults(std::vector<Parameter> own, PluginKind kind) const;
     void finish_options();
     void finish_materials();
+    void finish_media();
     Index material_index(const MaterialReference& reference, Location at);
 
     Files& files_;
@@ -113,6 +123,7 @@ class Directives {
     SpectrumReader spectra_;
     TextureLibrary textures_;
     LightReader lights_;
+    MediumReader media_;
 
     GraphicsState state_;
     std::vector<Block> blocks_;
@@ -130,6 +141,9 @@ class Directives {
     NameTable named_materials_{"material"};
     std::vector<MaterialUse> material_uses_;
     std::vector<AlphaUse> alpha_uses_;
+    NameTable named_media_{"medium"};
+    std::vector<MediaUse> media_uses_; // of shapes between two media
+    MediaUse camera_media_{no_index, {}, {}};
     std::size_t subdivided_ = 0; // triangles of 'loopsubdiv' shapes
 };
 

@@ -71,6 +71,7 @@ void Directives::shape(const std::string& name, std::vector<Parameter> parameter
     }
     r.finish();
     material_uses_.push_back({index, state_.material, at});
+    if (state_.media.inside != state_.media.outside) media_uses_.push_back({index, state_.media, at});
     builder_.add_shape(std::move(geometry), settings, at);
 }
 
@@ -118,6 +119,29 @@ void Directives::finish_materials() {
     }
 }
 
+void Directives::make_named_medium(const std::string& name, std::vector<Parameter> parameters, Location at) {
+    const ParameterList list = with_defaults(std::move(parameters), PluginKind::medium);
+    named_media_.declare(name, media_.read(list, still_transform(at), *state_.color_space, at), at,
+                         diagnostics_);
+}
+
+void Directives::medium_interface(const std::string& inside, const std::string& outside) {
+    const auto refer = [&](const std::string& name) {
+        return name.empty() ? no_index : named_media_.refer(name);
+    };
+    state_.media = {refer(inside), refer(outside)};
+}
+
+void Directives::finish_media() {
+    const auto resolve = [&](Index reference, Location at, std::string_view by) {
+        return reference == no_index ? no_index : named_media_.resolve(reference, at, diagnostics_, by);
+    };
+    for (const MediaUse& use : media_uses_)
+        result_.scene.shapes[use.shape].media = {resolve(use.media.inside, use.at, "this shape's "),
+                                                 resolve(use.media.outside, use.at, "this shape's ")};
+    result_.scene.camera.medium = resolve(camera_media_.media.outside, camera_media_.at, "the camera's ");
+}
+
 SceneDescription Directives::finish(Location end) {
     if (!in_world_) diagnostics_.error(end, "the file ends before WorldBegin");
     if (!blocks_.empty())
@@ -125,6 +149,7 @@ SceneDescription Directives::finish(Location end) {
                                                   ? "this AttributeBegin has no AttributeEnd"
                                                   : "this ObjectBegin has no ObjectEnd");
     finish_materials();
+    finish_media();
     textures_.warn_of_unused();
     builder_.finish(end);
     return std::move(result_);

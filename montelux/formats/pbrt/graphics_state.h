@@ -24,6 +24,11 @@ struct MaterialReference {
     Index index = 0; // of the declaration, or a reference of the table of names
 };
 
+// The media of a MediumInterface: references of the table of names, or no_index for vacuum.
+struct MediaReference {
+    Index inside = no_index, outside = no_index;
+};
+
 // Small, since each AttributeBegin copies it: large parts are shared and replaced, never changed.
 struct GraphicsState {
     std::shared_ptr<const TransformPair> ctm = std::make_shared<TransformPair>();
@@ -31,6 +36,7 @@ struct GraphicsState {
     bool reverse_orientation = false;
     const RgbColorSpace* color_space = nullptr;
     MaterialReference material;
+    MediaReference media;
     std::shared_ptr<const Emission> emission; // null: shapes emit no light
     // From Attribute directives, by PluginKind.
     std::array<Defaults, plugin_kind_names.size()> defaults;

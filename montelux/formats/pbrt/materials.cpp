@@ -142,12 +142,15 @@ class MaterialMaker {
     SpectrumReader& spectra_;
 };
 
+// Names of early files for "interface".
+bool is_old_interface(std::string_view type) { return type.empty() || type == "none"; }
+
 } // namespace
 
 bool is_supported_material(const MaterialDeclaration& d, Diagnostics& diagnostics) {
     const std::vector<std::string>& supported = supported_materials();
     if (std::find(supported.begin(), supported.end(), d.type) != supported.end()) return true;
-    if (d.type.empty() || d.type == "none") return false;
+    if (is_old_interface(d.type)) return true;
     std::vector<std::string_view> known(supported.begin(), supported.end());
     known.insert(known.end(), not_supported.begin(), not_supported.end());
     if (std::find(known.begin(), known.end(), d.type) == known.end())
@@ -159,7 +162,11 @@ Material make_material(const MaterialDeclaration& d, SceneBuilder& builder, Text
                        SpectrumReader& spectra, Diagnostics& diagnostics) {
     if (!is_supported_material(d, diagnostics))
         diagnostics.error(d.at, "material " + in_quotes(d.type) + " is not supported yet");
-    return MaterialMaker(d, builder, textures, spectra, diagnostics).make(d.type);
+    MaterialMaker maker(d, builder, textures, spectra, diagnostics);
+    if (!is_old_interface(d.type)) return maker.make(d.type);
+    diagnostics.warn_once("material " + in_quotes(d.type), d.at,
+                          "material " + in_quotes(d.type) + " is deprecated; it is read as 'interface'");
+    return maker.make("interface");
 }
 
 } // namespace montelux::pbrt

@@ -206,7 +206,8 @@ std::span<const SceneParser::Directive> SceneParser::directives() {
          }},
         {"MakeNamedMedium",
          [](P& p, const Token& d) {
-             p.diagnostics_.error(d.at, "participating media are not supported yet");
+             std::string name = p.string_argument(d);
+             p.builder_.make_named_medium(name, p.parameters(), d.at);
          }},
         {"Material",
          [](P& p, const Token& d) {
@@ -217,7 +218,7 @@ std::span<const SceneParser::Directive> SceneParser::directives() {
          [](P& p, const Token& d) {
              std::string inside = p.string_argument(d);
              bool two = p.tokens_->peek().kind == Token::Kind::string;
-             p.builder_.medium_interface(inside, two ? p.string_argument(d) : inside, d.at);
+             p.builder_.medium_interface(inside, two ? p.string_argument(d) : inside);
          }},
         {"NamedMaterial",
          [](P& p, const Token& d) { p.builder_.named_material(p.string_argument(d), d.at); }},
