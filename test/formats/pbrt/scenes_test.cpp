@@ -86,8 +86,8 @@ TEST(PbrtScenes, MediaAreRead) {
         Warnings warnings;
         return load_pbrt(folder() / name / "scene.pbrt", warnings).scene;
     };
-    const auto transitions = [](const Scene& scene) {
-        return std::count_if(scene.shapes.begin(), scene.shapes.end(),
+    const auto transitions = [](const Scene& read) {
+        return std::count_if(read.shapes.begin(), read.shapes.end(),
                              [](const Shape& s) { return s.media.is_transition(); });
     };
     const Scene stairs = load("staircase2"), caustic = load("volumetric-caustic");
