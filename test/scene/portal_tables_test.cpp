@@ -76,7 +76,7 @@ TEST(Portals, PowerIsTheFluxThroughThem) {
     scene.lights.push_back(map);
     map.portal = Portal(corners_of(0, 0, 2, 3));
     scene.lights.push_back(map);
-    const SceneTables tables(scene);
+    const SceneTables tables(scene, {}, LightSampling::power);
     const LightSampler& lights = *tables.view().light_sampler;
     const double r = tables.view().light_tables.scene_bounds.radius(), cross_section = pi * r * r;
     const double point = static_cast<double>(lights.probability({}, 2, 0)) / (4 * pi);
