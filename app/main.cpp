@@ -21,6 +21,7 @@
 
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/nearest_name.h"
+#include "montelux/mc/math/processor.h"
 
 namespace {
 
@@ -40,6 +41,8 @@ bool can_be_shared(std::string_view command) { return command == "render" || com
 
 std::string version() {
     std::string text = "montelux " MONTELUX_VERSION;
+    if (const std::string level = montelux::compiled_processor_level(); !level.empty())
+        text += ", for " + level;
 #ifdef MONTELUX_WITH_RENDER
     if (const std::string mpi = montelux::mpi_version(); !mpi.empty()) text += ", with MPI (" + mpi + ")";
 #endif

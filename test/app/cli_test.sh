@@ -9,6 +9,13 @@ printf 'Pf\n2 1\n-1\n\000\000\200\077\000\000\200\077' >wide.pfm
 
 expect 0 "montelux render scene.pbrt --spp 64 -o out.exr" --help
 expect 0 "montelux " --version
+# A processor that lacks what the program was built for (x86-64 alone; emulated, where the emulator is installed).
+if command -v qemu-x86_64 >/dev/null && "$montelux" --version | grep -q 'x86-64-v[34]'; then
+    code=0
+    qemu-x86_64 -cpu Nehalem "$montelux" --version >old.txt 2>&1 || code=$?
+    [ $code -eq 1 ] && grep -q 'this processor has no AVX2, which the program was built for' old.txt ||
+        fail "on an old processor: exit code $code, $(cat old.txt)"
+fi
 for command in integrate sample render info compare; do expect 0 "Example" $command --help; done
 expect 0 "--max-depth N" render --help
 expect 2 "a command is expected: integrate, sample, render, merge, compare, denoise, bake, info" # no arguments
