@@ -305,6 +305,7 @@ std::string sample_record_text(const SampleRecord& r, const SceneDescription& d)
     t.label(1, "film").number(r.film.x).add(", ").number(r.film.y);
     t.add("; filter weight ").number(r.filter.weight).end();
     t.label(1, "lens").number(r.lens.x).add(", ").number(r.lens.y).end();
+    if (r.time > 0) t.label(1, "time").number(r.time).end();
     if (!r.path.vertices.empty()) {
         const Ray& ray = r.path.vertices.front().ray;
         t.label(1, "camera ray").add("from ").vector(ray.o).add(" along ").vector(ray.d).end();

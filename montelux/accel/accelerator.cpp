@@ -44,7 +44,14 @@ Accelerator& Accelerator::operator=(Accelerator&&) noexcept = default;
 
 const Bounds3& Accelerator::bounds() const { return scene_->bounds(); }
 
+// For moving instances Embree rounds otherwise in a packet than alone: there a ray alone is a packet with one
+// ray, so that replays have the same bits.
 bool Accelerator::intersect(const Ray& ray, Hit& hit) const {
+    if (!scene_->scene().motions.empty()) {
+        const Ray* one = &ray;
+        intersect(std::span(&one, 1), std::span(&hit, 1));
+        return hit.shape != no_index;
+    }
     QueryContext context;
     Packet<1> r(ray);
     r.closest(scene_->world(), context);
@@ -52,6 +59,12 @@ bool Accelerator::intersect(const Ray& ray, Hit& hit) const {
 }
 
 bool Accelerator::occluded(const Ray& ray) const {
+    if (!scene_->scene().motions.empty()) {
+        const Ray* one = &ray;
+        bool result = false;
+        occluded(std::span(&one, 1), std::span(&result, 1));
+        return result;
+    }
     QueryContext context;
     Packet<1> r(ray);
     r.any(scene_->world(), context);

@@ -123,12 +123,17 @@ void EmbreeScene::attach_shape(RTCScene to, unsigned id, Index shape_index) {
 void EmbreeScene::attach_instance(unsigned id, const Instance& instance) const {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(geometry, objects_[instance.object]);
-    rtcSetGeometryTimeStepCount(geometry, 1);
-    float m[12];
-    for (std::size_t row = 0; row < 3; ++row)
-        for (std::size_t column = 0; column < 4; ++column)
-            m[3 * column + row] = static_cast<float>(instance.world_from_object.matrix().m[row][column]);
-    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
+    const bool moves = instance.motion != no_index;
+    const auto keys =
+        moves ? scene_.motions[instance.motion].keys() : std::span(&instance.world_from_object.matrix(), 1);
+    rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(keys.size()));
+    for (std::size_t key = 0; key < keys.size(); ++key) {
+        float m[12];
+        for (std::size_t row = 0; row < 3; ++row)
+            for (std::size_t column = 0; column < 4; ++column)
+                m[3 * column + row] = static_cast<float>(keys[key].m[row][column]);
+        rtcSetGeometryTransform(geometry, static_cast<unsigned>(key), RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
+    }
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(world_, geometry, id);
     rtcReleaseGeometry(geometry);

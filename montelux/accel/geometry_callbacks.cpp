@@ -19,7 +19,8 @@ std::optional<double> hit_quadric(const GeometryData& data, const Ray& ray, doub
 Ray ray_of(RTCRayN* rays, unsigned n, unsigned i) {
     return {{RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i)},
             {RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i)},
-            RTCRayN_tfar(rays, n, i)};
+            RTCRayN_tfar(rays, n, i),
+            RTCRayN_time(rays, n, i)};
 }
 
 // The first hit that is not in a hole.

@@ -78,7 +78,7 @@ struct Packet : EmbreePacket<K> {
             r.dir_z[i] = ray.d.z;
             r.tnear[i] = 0;
             r.tfar[i] = ray.t_max;
-            r.time[i] = 0;
+            r.time[i] = ray.time;
             r.mask[i] = ~0u;
             r.id[i] = r.flags[i] = 0;
             this->embree.hit.geomID[i] = this->embree.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
@@ -104,7 +104,7 @@ struct Packet<1> {
                       .dir_x = r.d.x,
                       .dir_y = r.d.y,
                       .dir_z = r.d.z,
-                      .time = 0,
+                      .time = r.time,
                       .tfar = r.t_max,
                       .mask = ~0u,
                       .id = 0,

@@ -34,8 +34,8 @@ Integrator make_integrator(const IntegratorSettings& settings, const SceneView& 
 SampleContext::SampleContext(const SceneDescription& description, const SamplerSettings& sampler,
                              const SceneView& scene, const Camera& camera)
     : sampler_(sampler), max_component_value_(description.film.max_component_value), scene_(scene),
-      camera_(camera), integrator_(make_integrator(description.integrator, scene, camera)),
-      filter_(description.film.filter),
+      camera_(camera), moves_(moves(description.scene)),
+      integrator_(make_integrator(description.integrator, scene, camera)), filter_(description.film.filter),
       sensor_(RgbColorSpace::srgb(),
               {description.film.exposure_time, description.film.iso, description.film.white_balance}),
       white_(RgbColorSpace::srgb().illuminant()),
@@ -47,10 +47,12 @@ PathStart<SampleStream> SampleContext::begin(const Key& key, FilmPoint& point) c
     const Vec2f u_film = stream.next_2d();
     const float u_lambda = stream.next_1d();
     point.lens = camera_.has_lens() ? stream.next_2d() : Vec2f{0.5f, 0.5f};
+    point.time = moves_ ? camera_.time_at(stream.next_1d()) : 0;
     point.filter = filter_.sample(u_film);
     point.film = {static_cast<float>(key.x) + 0.5f + point.filter.offset.x,
                   static_cast<float>(key.y) + 0.5f + point.filter.offset.y};
-    return {{camera_.generate_ray(point.film, point.lens), SampledWavelengths::sample_visible(u_lambda)},
+    return {{camera_.generate_ray(point.film, point.lens, point.time),
+             SampledWavelengths::sample_visible(u_lambda)},
             stream};
 }
 
@@ -119,6 +121,7 @@ SampleRecord SampleContext::record(RayTracer& tracer, const Key& key) const {
     record.index = key.index;
     record.film = point.film;
     record.lens = point.lens;
+    record.time = point.time;
     record.contribution = finish(path, start.camera.lambda, point.filter, &record).film;
     return record;
 }

@@ -46,11 +46,12 @@ class SampleContext {
     SampleRecord record(RayTracer& tracer, const Key& key) const;
 
   private:
-    // Where a sample lies on film and lens.
+    // Where a sample lies on film, lens and in time.
     struct FilmPoint {
         FilterSample filter;
         Point2f film;
         Vec2f lens;
+        float time = 0; // of motions
     };
     PathStart<SampleStream> begin(const Key& key, FilmPoint& point) const;
     Result finish(const FilmContribution& path, const SampledWavelengths& lambda, const FilterSample& filter,
@@ -60,6 +61,7 @@ class SampleContext {
     float max_component_value_;
     SceneView scene_;
     const Camera& camera_;
+    bool moves_; // the scene; otherwise samples have no time
     Integrator integrator_;
     PixelFilterSampler filter_;
     Sensor sensor_;

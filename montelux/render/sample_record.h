@@ -20,6 +20,7 @@ struct SampleRecord {
     FilterSample filter;           // where in the pixel, and the weight of the filter there
     Point2f film;                  // the same point on the film, in pixels
     Vec2f lens;                    // uniform numbers; 0.5 for a camera without a lens
+    float time = 0;                // of motions, in [0, 1]; 0 where nothing moves
     SampledWavelengths lambda;     // as sampled
     SampledWavelengths lambda_end; // at the path's end: dispersion terminates all but the first
     PathRecord path;

@@ -13,6 +13,7 @@
 #include "montelux/scene/material/material.h"
 #include "montelux/scene/medium/medium.h"
 #include "montelux/scene/scene_spectrum.h"
+#include "montelux/scene/shape/motion.h"
 #include "montelux/scene/shape/shape.h"
 #include "montelux/scene/texture/texture.h"
 
@@ -24,7 +25,8 @@ struct ObjectDefinition {
 };
 struct Instance {
     Index object = no_index;
-    Transform world_from_object;
+    Transform world_from_object; // of a moving instance: at time 0
+    Index motion = no_index;     // into Scene::motions; no_index: it does not move
 };
 
 struct Scene {
@@ -34,6 +36,7 @@ struct Scene {
     std::vector<Index> world_shapes; // shapes directly in the world
     std::vector<ObjectDefinition> objects;
     std::vector<Instance> instances;
+    std::vector<Motion> motions; // of instances
 
     std::vector<Spectrum> spectra; // of materials, textures, lights, media; their order has no meaning
     std::vector<Material> materials;
@@ -51,6 +54,9 @@ struct Scene {
     std::vector<ScalarGrid> scalar_grids; // of media
     std::vector<ColorGrid> color_grids;   // of media
 };
+
+// Whether anything depends on time.
+inline bool moves(const Scene& scene) { return !scene.motions.empty() || scene.camera.motion.has_value(); }
 
 inline SceneSpectrum add_spectrum(Scene& scene, Spectrum spectrum) {
     return add_spectrum(scene.spectra, std::move(spectrum));

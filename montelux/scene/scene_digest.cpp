@@ -244,9 +244,10 @@ class SceneHasher {
         add(shapes);
     }
     void add(const Instance& i) {
-        const auto& [object, world_from_object] = i;
-        all(object, world_from_object);
+        const auto& [object, world_from_object, motion] = i;
+        all(object, world_from_object, motion);
     }
+    void add(const Motion& m) { all(m.start(), m.end()); }
 
     // Lights.
     void add(const AreaLight& l) {
@@ -312,9 +313,9 @@ class SceneHasher {
         add(mapping);
     }
     void add(const CameraSettings& c) {
-        const auto& [model, world_from_camera, medium] = c;
+        const auto& [model, world_from_camera, motion, shutter_open, shutter_close, medium] = c;
         static_cast<void>(medium); // add_media
-        all(model, world_from_camera);
+        all(model, world_from_camera, motion, shutter_open, shutter_close);
     }
 
     std::span<const Spectrum> spectra_;
@@ -349,13 +350,13 @@ ContentDigest SceneDigest::whole() const {
 }
 
 SceneDigest digest_of(const Scene& scene) {
-    const auto& [meshes, quadrics, shapes, world_shapes, objects, instances, spectra, materials,
+    const auto& [meshes, quadrics, shapes, world_shapes, objects, instances, motions, spectra, materials,
                  float_textures, spectrum_textures, normal_maps, images, environments, skies, lights, camera,
                  media, scalar_grids, color_grids] = scene;
     SceneHasher of_materials(spectra);
     of_materials.all(materials);
     add_media(of_materials, scene);
-    return {digest_of_all(scene, meshes, quadrics, shapes, world_shapes, objects, instances),
+    return {digest_of_all(scene, meshes, quadrics, shapes, world_shapes, objects, instances, motions),
             of_materials.value(),
             digest_of_all(scene, float_textures, spectrum_textures, normal_maps, images),
             digest_of_all(scene, lights, environments, skies), digest_of_all(scene, camera)};

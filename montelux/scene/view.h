@@ -22,6 +22,7 @@ struct SceneView {
     std::span<const Index> world_shapes;
     std::span<const ObjectDefinition> objects;
     std::span<const Instance> instances;
+    std::span<const Motion> motions;
 
     std::span<const Spectrum> spectra;
     std::span<const Material> materials;
@@ -52,10 +53,11 @@ struct SceneView {
     explicit SceneView(const Scene& scene)
         : meshes(scene.meshes), quadrics(scene.quadrics), shapes(scene.shapes),
           world_shapes(scene.world_shapes), objects(scene.objects), instances(scene.instances),
-          spectra(scene.spectra), materials(scene.materials), float_textures(scene.float_textures),
-          spectrum_textures(scene.spectrum_textures), normal_maps(scene.normal_maps), lights(scene.lights),
-          skies(scene.skies), media(scene.media), scalar_grids(scene.scalar_grids),
-          color_grids(scene.color_grids), camera_medium(scene.camera.medium) {}
+          motions(scene.motions), spectra(scene.spectra), materials(scene.materials),
+          float_textures(scene.float_textures), spectrum_textures(scene.spectrum_textures),
+          normal_maps(scene.normal_maps), lights(scene.lights), skies(scene.skies), media(scene.media),
+          scalar_grids(scene.scalar_grids), color_grids(scene.color_grids),
+          camera_medium(scene.camera.medium) {}
 
     SampledSpectrum sample(SceneSpectrum s, const SampledWavelengths& lambda) const {
         return s.is_constant() ? SampledSpectrum(s.constant) : spectra[s.index].sample(lambda);

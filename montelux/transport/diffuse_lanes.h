@@ -170,6 +170,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
             pdf.set(i, light->pdf);
             radiance.set_lane(i, light->radiance);
             shadows[k] = light->shadow;
+            shadows[k].time = state.ray.time;
         }
         if (any(lit) && settings_.strategy != Strategy::mis_bsdf) {
             const auto e = bsdf.evaluate(wo, frame.to_local(wi), TransportMode::radiance, stream);

@@ -74,6 +74,7 @@ struct PathIntegrator::Vertex {
         record(Outcome::counted, weight);
         ShadowRay& ray = shadow.emplace();
         ray.ray = light->shadow;
+        ray.ray.time = state.ray.time;
         ray.contribution = state.throughput * e.f * light->radiance * (weight / light_pdf);
     }
 

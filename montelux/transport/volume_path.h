@@ -151,7 +151,9 @@ class VolumePath {
                     wi = normalize(s.wi);
                     state_.bsdf_pdf = s.pdf;
                 }
-                state_.ray = {p, wi};
+                state_.ray.o = p;
+                state_.ray.d = wi;
+                state_.ray.t_max = std::numeric_limits<float>::infinity();
                 if (recorder_) recorder_.scattered_in_medium(wi, state_.bsdf_pdf, state_.carried());
             },
             phase);
@@ -294,8 +296,10 @@ class VolumePath {
         record.light_pdf = chosen.choice * light->pdf;
         if (is_black(e.f) || is_black(light->radiance)) return finish(Outcome::no_transport);
         if (surface != nullptr) medium = medium_beyond(*surface, light->wi, medium);
+        Ray shadow = light->shadow;
+        shadow.time = state_.ray.time;
         const std::optional<ShadowTransmittance> through =
-            shadow_transmittance(scene_, tracer_, light->shadow, medium, state_.lambda, stream_);
+            shadow_transmittance(scene_, tracer_, shadow, medium, state_.lambda, stream_);
         if (!through) return finish(Outcome::occluded);
         // Densities relative to that of the path so far, averaged over the wavelengths.
         const float before = average(state_.r_u);

@@ -105,24 +105,35 @@ TEST(SceneDigest, CopiesAreEqual) {
 }
 
 TEST(SceneDigest, GeometryCounts) {
-    expect_changes(
-        &SceneDigest::geometry,
-        {[](Scene& s) { s.meshes[0].positions[2].z = 1e-30f; },
-         [](Scene& s) { s.meshes[0].normals[1].x = -0.0f; }, [](Scene& s) { s.meshes[0].normals.clear(); },
-         [](Scene& s) { s.meshes[0].uvs[0].y = 1; },
-         [](Scene& s) { std::swap(s.meshes[0].indices[0], s.meshes[0].indices[1]); },
-         [](Scene& s) { std::get<Sphere>(s.quadrics[0]).z_max = 0.5f; },
-         [](Scene& s) { std::get<Disk>(s.quadrics[1]).inner_radius = 0.5f; },
-         [](Scene& s) {
-             std::get<Disk>(s.quadrics[1]).world_from_object = Transform::scale({1, 1, 2});
-         },
-         [](Scene& s) { std::swap(s.quadrics[0], s.quadrics[1]); },
-         [](Scene& s) { s.shapes[0].material = 3; }, [](Scene& s) { s.shapes[0].light = 0; },
-         [](Scene& s) { s.shapes[1].alpha.value = 0.5f; }, [](Scene& s) { s.shapes[1].alpha.texture = 0; },
-         [](Scene& s) { s.shapes[2].flip_normal = true; }, [](Scene& s) { s.world_shapes.pop_back(); },
-         [](Scene& s) { s.objects[0].shapes.clear(); }, [](Scene& s) { s.objects.push_back({}); },
-         [](Scene& s) { s.instances[0].world_from_object = {}; },
-         [](Scene& s) { s.instances.push_back(s.instances[0]); }});
+    expect_changes(&SceneDigest::geometry,
+                   {[](Scene& s) { s.meshes[0].positions[2].z = 1e-30f; },
+                    [](Scene& s) { s.meshes[0].normals[1].x = -0.0f; },
+                    [](Scene& s) { s.meshes[0].normals.clear(); },
+                    [](Scene& s) { s.meshes[0].uvs[0].y = 1; },
+                    [](Scene& s) { std::swap(s.meshes[0].indices[0], s.meshes[0].indices[1]); },
+                    [](Scene& s) { std::get<Sphere>(s.quadrics[0]).z_max = 0.5f; },
+                    [](Scene& s) { std::get<Disk>(s.quadrics[1]).inner_radius = 0.5f; },
+                    [](Scene& s) {
+                        std::get<Disk>(s.quadrics[1]).world_from_object = Transform::scale({1, 1, 2});
+                    },
+                    [](Scene& s) { std::swap(s.quadrics[0], s.quadrics[1]); },
+                    [](Scene& s) { s.shapes[0].material = 3; },
+                    [](Scene& s) { s.shapes[0].light = 0; },
+                    [](Scene& s) { s.shapes[1].alpha.value = 0.5f; },
+                    [](Scene& s) { s.shapes[1].alpha.texture = 0; },
+                    [](Scene& s) { s.shapes[2].flip_normal = true; },
+                    [](Scene& s) { s.world_shapes.pop_back(); },
+                    [](Scene& s) { s.objects[0].shapes.clear(); },
+                    [](Scene& s) { s.objects.push_back({}); },
+                    [](Scene& s) { s.instances[0].world_from_object = {}; },
+                    [](Scene& s) { s.instances.push_back(s.instances[0]); },
+                    [](Scene& s) { s.instances[0].motion = 0; },
+                    [](Scene& s) {
+                        s.motions.emplace_back(Transform(), Transform::translate({1, 0, 0}));
+                    },
+                    [](Scene& s) {
+                        s.motions.emplace_back(Transform(), Transform::translate({2, 0, 0}));
+                    }});
 }
 
 TEST(SceneDigest, MaterialsCount) {
@@ -415,6 +426,10 @@ TEST(SceneDigest, TheCameraCounts) {
          [](Scene& s) { std::get<PerspectiveCamera>(s.camera.model).lens_radius = 1; },
          [](Scene& s) { std::get<PerspectiveCamera>(s.camera.model).frame_aspect_ratio = 1; },
          [](Scene& s) { std::get<PerspectiveCamera>(s.camera.model).screen_window = ScreenWindow{}; },
+         [](Scene& s) {
+             s.camera.motion.emplace(Transform(), Transform::translate({1, 0, 0}));
+         },
+         [](Scene& s) { s.camera.shutter_open = 0.5f; }, [](Scene& s) { s.camera.shutter_close = 0.5f; },
          [](Scene& s) { s.camera.model = OrthographicCamera{}; },
          [](Scene& s) { s.camera.model = SphericalCamera{}; },
          [](Scene& s) { s.camera.model = SphericalCamera{SphericalCamera::Mapping::equirectangular}; }});

@@ -88,7 +88,7 @@ void Directives::object_end(Location at) {
 void Directives::object_instance(const std::string& name, Location at) {
     require_world("ObjectInstance", at);
     if (builder_.in_object()) diagnostics_.error(at, "ObjectInstance inside an object's definition");
-    builder_.add_instance(name, still_transform(at), at);
+    builder_.add_instance(name, state_.ctm->start, state_.ctm->end, at);
 }
 
 Directives::Import Directives::begin_import(Location at) {
@@ -165,12 +165,20 @@ void Directives::reverse_orientation(Location at) {
     state_.reverse_orientation = !state_.reverse_orientation;
 }
 
-const Transform& Directives::still_transform(Location at) const {
-    if (!(state_.ctm->start == state_.ctm->end))
-        diagnostics_.error(at,
-                           "this moves (its transformations at the start and the end of the shutter's time "
-                           "differ); motion blur is not supported yet");
+bool Directives::is_moving() const { return !(state_.ctm->start == state_.ctm->end); }
+
+const Transform& Directives::start_transform(std::string_view what, Location at) const {
+    if (is_moving())
+        diagnostics_.warn_once("moving " + std::string(what), at,
+                               std::string(what) + " does not move: it stays where it is at the start");
     return state_.ctm->start;
+}
+
+void Directives::transform_times(double start, double end, Location at) {
+    require_options("TransformTimes", at);
+    if (!(start < end)) diagnostics_.error(at, "TransformTimes: the start is not before the end");
+    transform_start_ = start;
+    transform_end_ = end;
 }
 
 void Directives::set_option(std::optional<Plugin>& option, Plugin plugin, std::string_view directive) {
@@ -182,12 +190,20 @@ void Directives::set_option(std::optional<Plugin>& option, Plugin plugin, std::s
 void Directives::set_camera(Plugin plugin) {
     Location at = plugin.at;
     set_option(camera_, std::move(plugin), "Camera");
-    if (!fits_float(still_transform(at)))
+    const auto& [start, end] = *state_.ctm;
+    if (!fits_float(start) || !fits_float(end))
         diagnostics_.error(at, "the camera's transformation is beyond what single-precision numbers hold");
     camera_media_ = {no_index, state_.media, at};
-    result_.scene.camera.world_from_camera = still_transform(at).inverse();
-    const Transform& t = result_.scene.camera.world_from_camera;
-    coordinate_systems_["camera"] = std::make_shared<TransformPair>(TransformPair{t, t});
+    CameraSettings& camera = result_.scene.camera;
+    camera.world_from_camera = start.inverse();
+    camera.motion.reset();
+    try {
+        if (is_moving()) camera.motion.emplace(start.inverse(), end.inverse());
+    } catch (const Error& e) {
+        diagnostics_.error(at, e.what());
+    }
+    coordinate_systems_["camera"] =
+        std::make_shared<TransformPair>(TransformPair{start.inverse(), end.inverse()});
 }
 
 void Directives::set_film(Plugin plugin) {

@@ -44,6 +44,7 @@ class Directives {
     void concatenate(const Transform& t, Location at);
     void set_transform(const Transform& t, Location at);
     void active_transform(std::string_view which, Location at);
+    void transform_times(double start, double end, Location at);
     void coordinate_system(const std::string& name);
     void coordinate_system_transform(const std::string& name, Location at);
     void reverse_orientation(Location at);
@@ -108,8 +109,9 @@ class Directives {
     void set_option(std::optional<Plugin>& option, Plugin plugin, std::string_view directive);
     void push(Block::Kind kind, Location at);
     void pop(Block::Kind kind, std::string_view directive, Location at);
-    // The transformation, where motion is not allowed.
-    const Transform& still_transform(Location at) const;
+    bool is_moving() const;
+    // The transformation of what cannot move, with a warning if the file moves it.
+    const Transform& start_transform(std::string_view what, Location at) const;
     ParameterList with_defaults(std::vector<Parameter> own, PluginKind kind) const;
     void finish_options();
     void finish_materials();
@@ -135,6 +137,8 @@ class Directives {
     std::size_t open_imports_ = 0;
     std::optional<Plugin> camera_, film_, filter_, sampler_, integrator_;
     std::optional<std::uint64_t> seed_;
+    double transform_start_ = 0, transform_end_ = 1;
+    std::size_t moving_shapes_ = 0;
 
     std::vector<MaterialDeclaration> materials_;
     std::vector<Index> material_indices_; // into Scene::materials, of each declaration

@@ -36,13 +36,13 @@ void Directives::texture(const std::string& name, std::string_view type, std::st
     require_world("Texture", at);
     textures_.declare(type, name,
                       {std::move(plugin), with_defaults(std::move(parameters), PluginKind::texture), at,
-                       still_transform(at)});
+                       start_transform("a texture", at)});
 }
 
 void Directives::light_source(std::string name, std::vector<Parameter> parameters, Location at) {
     require_world("LightSource", at);
     Plugin plugin{std::move(name), with_defaults(std::move(parameters), PluginKind::light), at};
-    lights_.read(plugin, still_transform(at), *state_.color_space);
+    lights_.read(plugin, start_transform("a light", at), *state_.color_space);
 }
 
 void Directives::area_light_source(std::string name, std::vector<Parameter> parameters, Location at) {
@@ -53,7 +53,13 @@ void Directives::area_light_source(std::string name, std::vector<Parameter> para
 
 void Directives::shape(const std::string& name, std::vector<Parameter> parameters, Location at) {
     require_world("Shape", at);
-    const Transform& world_from_object = still_transform(at);
+    // A shape that moves is an object of its own, with one instance.
+    bool moves = is_moving();
+    if (moves && (state_.emission || builder_.in_object())) {
+        start_transform(state_.emission ? "a shape that emits light" : "a shape inside an object", at);
+        moves = false;
+    }
+    const Transform world_from_object = moves ? Transform() : state_.ctm->start;
     ParameterList list = with_defaults(std::move(parameters), PluginKind::shape);
     ParameterReader r(list, "shape " + in_quotes(name), at, diagnostics_);
     Geometry geometry =
@@ -72,7 +78,15 @@ void Directives::shape(const std::string& name, std::vector<Parameter> parameter
     r.finish();
     material_uses_.push_back({index, state_.material, at});
     if (state_.media.inside != state_.media.outside) media_uses_.push_back({index, state_.media, at});
+    if (!moves) {
+        builder_.add_shape(std::move(geometry), settings, at);
+        return;
+    }
+    const std::string object = "\n" + std::to_string(moving_shapes_++); // no name in a file
+    builder_.begin_object(object, at);
     builder_.add_shape(std::move(geometry), settings, at);
+    builder_.end_object();
+    builder_.add_instance(object, state_.ctm->start, state_.ctm->end, at);
 }
 
 void Directives::finish_options() {
@@ -82,7 +96,14 @@ void Directives::finish_options() {
     FilmSettings& film = result_.film;
     read_film(plugin(film_, "rgb"), diagnostics_, film, result_.output_file);
     film.filter = read_filter(plugin(filter_, "gaussian"), diagnostics_);
-    result_.scene.camera.model = read_camera(plugin(camera_, "perspective"), diagnostics_, film);
+    CameraSettings& camera = result_.scene.camera;
+    read_camera(plugin(camera_, "perspective"), diagnostics_, film, camera);
+    const auto motion_time = [&](float t) {
+        return static_cast<float>((static_cast<double>(t) - transform_start_) /
+                                  (transform_end_ - transform_start_));
+    };
+    camera.shutter_open = motion_time(camera.shutter_open);
+    camera.shutter_close = motion_time(camera.shutter_close);
     result_.integrator = read_integrator(plugin(integrator_, "volpath"), diagnostics_);
     result_.sampler = read_sampler(plugin(sampler_, "zsobol"), diagnostics_, seed_.value_or(0));
 }
@@ -121,8 +142,8 @@ void Directives::finish_materials() {
 
 void Directives::make_named_medium(const std::string& name, std::vector<Parameter> parameters, Location at) {
     const ParameterList list = with_defaults(std::move(parameters), PluginKind::medium);
-    named_media_.declare(name, media_.read(list, still_transform(at), *state_.color_space, at), at,
-                         diagnostics_);
+    named_media_.declare(name, media_.read(list, start_transform("a medium", at), *state_.color_space, at),
+                         at, diagnostics_);
 }
 
 void Directives::medium_interface(const std::string& inside, const std::string& outside) {

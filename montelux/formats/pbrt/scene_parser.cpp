@@ -259,7 +259,11 @@ std::span<const SceneParser::Directive> SceneParser::directives() {
          }},
         {"TransformEnd", [](P& p, const Token& d) { p.builder_.attribute_end(d.at); }},
         // The times affect only moving transformations, which are an error of their own.
-        {"TransformTimes", [](P& p, const Token& d) { p.numbers<2>(d); }},
+        {"TransformTimes",
+         [](P& p, const Token& d) {
+             const auto times = p.numbers<2>(d);
+             p.builder_.transform_times(times[0], times[1], d.at);
+         }},
         {"Translate",
          [](P& p, const Token& d) {
              auto v = p.numbers<3>(d);

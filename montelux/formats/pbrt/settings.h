@@ -19,7 +19,8 @@ struct Plugin {
 void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& film, std::string& output_file);
 PixelFilter read_filter(const Plugin& plugin, Diagnostics& diagnostics);
 // The shutter's times set the film's exposure time.
-CameraModel read_camera(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& film);
+void read_camera(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& film,
+                 CameraSettings& settings);
 // `seed` applies unless the sampler has its own.
 SamplerSettings read_sampler(const Plugin& plugin, Diagnostics& diagnostics, std::uint64_t seed);
 IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostics);

@@ -31,7 +31,8 @@ Camera read_projective(ParameterReader& r) {
 
 } // namespace
 
-CameraModel read_camera(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& film) {
+void read_camera(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& film,
+                 CameraSettings& settings) {
     constexpr std::array<std::string_view, 4> names = {"perspective", "orthographic", "spherical",
                                                        "realistic"};
     ParameterReader r(plugin.parameters, "camera " + in_quotes(plugin.name), plugin.at, diagnostics);
@@ -41,8 +42,10 @@ CameraModel read_camera(const Plugin& plugin, Diagnostics& diagnostics, FilmSett
         if (!(exposure > 0))
             r.error(close ? "shutterclose" : "shutteropen", "the shutter closes before it opens");
         film.exposure_time *= exposure;
+        settings.shutter_open = open.value_or(0.0f);
+        settings.shutter_close = close.value_or(1.0f);
     }
-    CameraModel model;
+    CameraModel& model = settings.model;
     if (plugin.name == "perspective") {
         auto camera = read_projective<PerspectiveCamera>(r);
         camera.fov = r.number("fov", 90);
@@ -64,7 +67,6 @@ CameraModel read_camera(const Plugin& plugin, Diagnostics& diagnostics, FilmSett
         r.error("unknown camera " + in_quotes(plugin.name) + did_you_mean(plugin.name, names));
     }
     r.finish();
-    return model;
 }
 
 } // namespace montelux::pbrt

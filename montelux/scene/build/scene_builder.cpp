@@ -81,7 +81,22 @@ void SceneBuilder::add_instance(const std::string& object, const Transform& worl
                                 SourceLocation at) {
     if (!fits_float(world_from_object))
         messages_.error(at, "the instance's transformation is beyond what single-precision numbers hold");
-    instances_.push_back({objects_.refer(object), world_from_object, at});
+    instances_.push_back({objects_.refer(object), world_from_object, no_index, at});
+}
+
+void SceneBuilder::add_instance(const std::string& object, const Transform& start, const Transform& end,
+                                SourceLocation at) {
+    add_instance(object, start, at);
+    if (start == end) return;
+    if (!fits_float(end))
+        messages_.error(at,
+                        "the instance's last transformation is beyond what single-precision numbers hold");
+    try {
+        scene_.motions.emplace_back(start, end);
+    } catch (const Error& e) {
+        messages_.error(at, e.what());
+    }
+    instances_.back().motion = static_cast<Index>(scene_.motions.size() - 1);
 }
 
 Index SceneBuilder::add_light(const Light& light, SourceLocation at) {
@@ -108,10 +123,15 @@ void SceneBuilder::place_instances() {
     for (const InstanceUse& use : instances_) {
         const Index object = objects_.resolve(use.object, use.at, messages_);
         const Bounds3& b = bounds[object];
-        for (int i = 0; i < 8 && !b.empty(); ++i)
-            if (!fits_float(use.world_from_object.point(b.corner(i))))
-                messages_.error(use.at, "the instance reaches to infinity in world space");
-        scene_.instances.push_back({object, use.world_from_object});
+        const auto reaches_too_far = [&](const Transform& t) {
+            bool far = false;
+            for (int i = 0; i < 8 && !b.empty(); ++i) far = far || !fits_float(t.point(b.corner(i)));
+            return far;
+        };
+        if (reaches_too_far(use.world_from_object) ||
+            (use.motion != no_index && reaches_too_far(scene_.motions[use.motion].end())))
+            messages_.error(use.at, "the instance reaches to infinity in world space");
+        scene_.instances.push_back({object, use.world_from_object, use.motion});
     }
     instances_.clear();
 }

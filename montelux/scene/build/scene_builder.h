@@ -42,6 +42,9 @@ class SceneBuilder {
     bool in_object() const { return open_object_ != no_index; }
     // The object may be declared later.
     void add_instance(const std::string& object, const Transform& world_from_object, SourceLocation at = {});
+    // An instance that moves.
+    void add_instance(const std::string& object, const Transform& world_from_object_at_start,
+                      const Transform& world_from_object_at_end, SourceLocation at = {});
 
     Index add_light(const Light& light, SourceLocation at = {});
     // A clear sky and, if requested and above the horizon, its sun. Luminances are multiplied by `scale`; a
@@ -70,6 +73,7 @@ class SceneBuilder {
     struct InstanceUse {
         Index object; // a reference of objects_
         Transform world_from_object;
+        Index motion; // into Scene::motions
         SourceLocation at;
     };
     void add_area_light(Index shape, const Emission& emission, const Geometry& geometry, SourceLocation at);

@@ -22,13 +22,17 @@ ScreenWindow window_of(const std::optional<ScreenWindow>& window, std::optional<
 
 } // namespace
 
-Camera::Camera(const CameraSettings& settings, int width, int height)
-    : world_from_camera_(settings.world_from_camera) {
+Camera::Placement::Placement(const Transform& world_from_camera)
+    : origin(world_from_camera.point(Vec3d{0, 0, 0})) {
     for (int i = 0; i < 3; ++i) {
-        Vec3d axis{i == 0 ? 1.0 : 0, i == 1 ? 1.0 : 0, i == 2 ? 1.0 : 0};
-        axes_[i] = Vec3f(world_from_camera_.vector(axis));
+        const Vec3d axis{i == 0 ? 1.0 : 0, i == 1 ? 1.0 : 0, i == 2 ? 1.0 : 0};
+        axes[i] = Vec3f(world_from_camera.vector(axis));
     }
-    origin_ = Vec3f(world_from_camera_.point(Vec3d{0, 0, 0}));
+}
+
+Camera::Camera(const CameraSettings& settings, int width, int height)
+    : world_from_camera_(settings.world_from_camera), placed_(world_from_camera_), motion_(settings.motion),
+      shutter_open_(settings.shutter_open), shutter_close_(settings.shutter_close) {
     auto use_window = [&](const ScreenWindow& w, double scale) {
         x0_ = static_cast<float>(double(w.x_min) * scale);
         dx_ = static_cast<float>((double(w.x_max) - double(w.x_min)) * scale / width);
@@ -62,10 +66,7 @@ Camera::Camera(const CameraSettings& settings, int width, int height)
     }
 }
 
-Point3f Camera::world_point(Point3f p) const { return origin_ + world_vector(p); }
-Vec3f Camera::world_vector(Vec3f v) const { return v.x * axes_[0] + v.y * axes_[1] + v.z * axes_[2]; }
-
-Ray Camera::generate_ray(Point2f film, Point2f lens) const {
+Ray Camera::generate_ray(Point2f film, Point2f lens, float time) const {
     Point3f o{0, 0, 0};
     Vec3f d;
     switch (kind_) {
@@ -96,16 +97,26 @@ Ray Camera::generate_ray(Point2f film, Point2f lens) const {
         o = {on_lens.x, on_lens.y, 0};
         d = focus - o;
     }
-    return {world_point(o), normalize(world_vector(d))};
+    Ray ray;
+    ray.time = time;
+    const auto place = [&](const Placement& placed) {
+        ray.o = placed.point(o);
+        ray.d = normalize(placed.vector(d));
+    };
+    if (motion_)
+        place(Placement(motion_->at(time)));
+    else
+        place(placed_);
+    return ray;
 }
 
 Camera::Footprint Camera::footprint(Point3f p, Normal3f n, float scale) const {
-    Vec3f axis = kind_ == Kind::orthographic ? normalize(axes_[2]) : p - origin_;
+    Vec3f axis = kind_ == Kind::orthographic ? normalize(placed_.axes[2]) : p - placed_.origin;
     float distance = kind_ == Kind::orthographic ? 1 : length(axis);
     if (!(distance > 0)) return {};
     Vec3f w = axis / distance;
-    float width = pixel_ * scale * (kind_ == Kind::orthographic ? length(axes_[0]) : distance);
-    Frame frame = Frame::from_normal_and_tangent(w, axes_[0]);
+    float width = pixel_ * scale * (kind_ == Kind::orthographic ? length(placed_.axes[0]) : distance);
+    Frame frame = Frame::from_normal_and_tangent(w, placed_.axes[0]);
     // A step across the line of sight, projected along it onto the tangent plane. At grazing angles it would
     // be infinite: the stretch is bounded.
     float cosine = dot(w, n);

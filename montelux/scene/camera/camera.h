@@ -1,6 +1,9 @@
 // Camera: maps points on film and lens to rays, and gives the size of a pixel in the scene.
 #pragma once
 
+#include <algorithm>
+#include <optional>
+
 #include "montelux/mc/math/frame.h"
 #include "montelux/scene/camera/camera_settings.h"
 #include "montelux/scene/shape/ray.h"
@@ -12,8 +15,13 @@ class Camera {
     // width, height: the full resolution in pixels. Throws Error for an invalid lens or field of view.
     Camera(const CameraSettings& settings, int width, int height);
 
-    // film: pixels from the top left corner; lens: uniform in [0,1)^2. The direction has unit length.
-    Ray generate_ray(Point2f film, Point2f lens) const;
+    // film: pixels from the top left corner; lens: uniform in [0,1)^2; time: of motions. The direction has unit
+    // length.
+    Ray generate_ray(Point2f film, Point2f lens, float time = 0) const;
+    // The time at a fraction u of the exposure.
+    float time_at(float u) const {
+        return std::clamp(shutter_open_ + u * (shutter_close_ - shutter_open_), 0.0f, 1.0f);
+    }
     bool has_lens() const { return lens_radius_ > 0; }
     const Transform& world_from_camera() const { return world_from_camera_; }
 
@@ -27,13 +35,21 @@ class Camera {
   private:
     enum class Kind : std::uint8_t { perspective, orthographic, equal_area, equirectangular };
 
-    Point3f world_point(Point3f p) const;
-    Vec3f world_vector(Vec3f v) const;
+    // Camera space in the world.
+    struct Placement {
+        explicit Placement(const Transform& world_from_camera);
+        Point3f point(Point3f p) const { return origin + vector(p); }
+        Vec3f vector(Vec3f v) const { return v.x * axes[0] + v.y * axes[1] + v.z * axes[2]; }
+
+        Vec3f axes[3];
+        Point3f origin;
+    };
 
     Kind kind_ = Kind::perspective;
     Transform world_from_camera_;
-    Vec3f axes_[3];
-    Point3f origin_;
+    Placement placed_;
+    std::optional<Motion> motion_;
+    float shutter_open_ = 0, shutter_close_ = 1;
     // Film coordinates to the screen: x = x0 + film.x dx, y = y0 + film.y dy.
     float x0_ = 0, dx_ = 0, y0_ = 0, dy_ = 0;
     float lens_radius_ = 0, focal_distance_ = 0;

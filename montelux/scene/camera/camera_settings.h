@@ -8,6 +8,7 @@
 
 #include "montelux/mc/math/transform.h"
 #include "montelux/scene/index.h"
+#include "montelux/scene/shape/motion.h"
 
 namespace montelux {
 
@@ -39,7 +40,10 @@ using CameraModel = std::variant<PerspectiveCamera, OrthographicCamera, Spherica
 
 struct CameraSettings {
     CameraModel model = PerspectiveCamera{};
-    Transform world_from_camera;
+    Transform world_from_camera;    // of a moving camera: at time 0
+    std::optional<Motion> motion{}; // of the camera itself
+    // When the shutter opens and closes, in the time of motions; before 0 and after 1 everything stands still.
+    float shutter_open = 0, shutter_close = 1;
     Index medium = no_index; // around the camera, into Scene::media; no_index: vacuum
 };
 

@@ -59,8 +59,16 @@ Bounds3 bounds_of(const Scene& scene) {
     };
     for (Index shape : scene.world_shapes) add_shape(shape, nullptr);
     for (const Instance& instance : scene.instances)
-        for (Index shape : scene.objects[instance.object].shapes)
-            add_shape(shape, &instance.world_from_object);
+        for (Index shape : scene.objects[instance.object].shapes) {
+            if (instance.motion == no_index) {
+                add_shape(shape, &instance.world_from_object);
+                continue;
+            }
+            for (const Matrix4& key : scene.motions[instance.motion].keys()) {
+                const Transform t(key, Matrix4{}); // the inverse is not used
+                add_shape(shape, &t);
+            }
+        }
     return bounds;
 }
 

@@ -14,6 +14,7 @@ struct Ray {
     Point3f o;
     Vec3f d;
     float t_max = std::numeric_limits<float>::infinity();
+    float time = 0; // of motions, in [0, 1]
 };
 
 struct Hit {

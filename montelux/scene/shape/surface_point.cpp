@@ -98,9 +98,20 @@ SurfacePoint surface_point(const SceneView& scene, const Ray& ray, const Hit& hi
     if (hit.instance == no_index) {
         s = point(ray);
     } else {
-        const Transform& t = scene.instances[hit.instance].world_from_object;
-        s = point({Vec3f(t.inverse_point(Vec3d(ray.o))), Vec3f(t.inverse_vector(Vec3d(ray.d))), ray.t_max});
-        transform_by(t, s, stretch(t));
+        const auto place = [&](const Transform& t) {
+            s = point(
+                {Vec3f(t.inverse_point(Vec3d(ray.o))), Vec3f(t.inverse_vector(Vec3d(ray.d))), ray.t_max});
+            transform_by(t, s, stretch(t));
+        };
+        const Instance& instance = scene.instances[hit.instance];
+        if (instance.motion == no_index) {
+            place(instance.world_from_object);
+        } else {
+            // The ray tracer interpolates in single precision.
+            const Motion& motion = scene.motions[instance.motion];
+            place(motion.at(ray.time));
+            s.error += coordinate_error(static_cast<float>(motion.reach()));
+        }
     }
     s.shape = &shape;
     s.primitive = hit.primitive;

@@ -199,8 +199,67 @@ TEST(PbrtTransforms, CameraAndItsCoordinateSystem) {
 TEST(PbrtTransforms, EqualTransformsOfBothTimesDoNotMove) {
     SceneDescription d =
         parse_world("ActiveTransform StartTime Translate 1 0 0 ActiveTransform EndTime Translate 1 0 0 "
-                    "ActiveTransform All TransformTimes 0 2 Shape \"sphere\"");
+                    "ActiveTransform All Shape \"sphere\"");
     expect_near(sphere(d).world_from_object.point(Vec3f()), {1, 0, 0});
+    EXPECT_FALSE(moves(d.scene));
+}
+
+TEST(PbrtTransforms, ShapesInstancesAndCamerasMove) {
+    const SceneDescription d = parse(R"(
+        TransformTimes 1 3
+        ActiveTransform EndTime Translate 0 0 -5 ActiveTransform All
+        Camera "perspective" "float shutteropen" 1.5 "float shutterclose" 2
+        WorldBegin
+        Shape "sphere"
+        ObjectBegin "ball" Shape "sphere" "float radius" 2 ObjectEnd
+        Translate 1 0 0
+        ActiveTransform EndTime Rotate 90 0 0 1 ActiveTransform All
+        Shape "disk"
+        Shape "trianglemesh" "point3 P" [ 0 0 0  1 0 0  0 1 0 ] "integer indices" [ 0 1 2 ]
+        ObjectInstance "ball")");
+    EXPECT_EQ(d.scene.camera.shutter_open, 0.25f);
+    EXPECT_EQ(d.scene.camera.shutter_close, 0.5f);
+    ASSERT_TRUE(d.scene.camera.motion.has_value());
+    expect_near(d.scene.camera.motion->at(1).point(Vec3f()), {0, 0, 5});
+    EXPECT_EQ(d.scene.world_shapes, (std::vector<Index>{0}));
+    ASSERT_EQ(d.scene.instances.size(), 3u);
+    ASSERT_EQ(d.scene.motions.size(), 3u);
+    for (const Instance& instance : d.scene.instances) {
+        ASSERT_NE(instance.motion, no_index);
+        const Motion& motion = d.scene.motions[instance.motion];
+        expect_near(motion.at(0).point(Vec3f(1, 0, 0)), {2, 0, 0});
+        expect_near(motion.at(1).point(Vec3f(1, 0, 0)), {1, 1, 0});
+    }
+    EXPECT_TRUE(std::get<Sphere>(d.scene.quadrics[1]).world_from_object == Transform());
+}
+
+TEST(PbrtTransforms, WhatCannotMoveStaysWithAWarning) {
+    Warnings warnings;
+    const SceneDescription d = parse(R"(WorldBegin
+ActiveTransform EndTime Translate 1 0 0 ActiveTransform All
+LightSource "point"
+Texture "t" "float" "constant"
+ObjectBegin "o"
+Shape "sphere"
+ObjectEnd
+AttributeBegin
+AreaLightSource "diffuse"
+Shape "sphere"
+AttributeEnd
+Shape "sphere")",
+                                     &warnings);
+    const char* expected[] = {
+        "scene:3:1: a light does not move: it stays where it is at the start",
+        "scene:4:1: a texture does not move: it stays where it is at the start",
+        "scene:6:1: a shape inside an object does not move: it stays where it is at the start",
+        "scene:10:1: a shape that emits light does not move: it stays where it is at the start",
+    };
+    for (const char* text : expected)
+        EXPECT_TRUE(std::find(warnings.messages().begin(), warnings.messages().end(), text) !=
+                    warnings.messages().end())
+            << text;
+    EXPECT_EQ(d.scene.instances.size(), 1u); // the last sphere
+    EXPECT_EQ(d.scene.world_shapes.size(), 1u);
 }
 
 TEST(PbrtShapes, Quadrics) {

@@ -105,10 +105,10 @@ TEST(PbrtErrors, SentencesInTheWorld) {
          "scene:2:1: there is no coordinate system 'worl' (did you mean 'world'?)"},
         {"ActiveTransform Endtime", "scene:2:17: ActiveTransform 'Endtime'; expected All, StartTime or "
                                     "EndTime (did you mean 'EndTime'?)"},
-        {"ActiveTransform EndTime Translate 1 0 0 ActiveTransform All Shape \"sphere\"",
-         "scene:2:61: this moves (its transformations at the start and the end of the shutter's time "
-         "differ); "
-         "motion blur is not supported yet"},
+        {"ActiveTransform EndTime Scale -1 1 1 ActiveTransform All Shape \"sphere\"",
+         "scene:2:58: motion: one end is mirrored and the other is not; between them the object would be "
+         "flat"},
+        {"TransformTimes 0 1", "scene:2:1: 'TransformTimes' is after WorldBegin; it belongs before it"},
         // Blocks.
         {"AttributeEnd", "scene:2:1: AttributeEnd without AttributeBegin"},
         {"AttributeBegin", "scene:2:1: this AttributeBegin has no AttributeEnd"},

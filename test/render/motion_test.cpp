@@ -1,0 +1,189 @@
+// Motion blur: closed forms, the mean of pictures that stand still, and the same bits on any path of the code.
+// Each comparison of means is at 5 standard errors.
+#include "test/render/scene_testing.h"
+#include <functional>
+#include <gtest/gtest.h>
+#include <utility>
+#include <vector>
+
+#include "montelux/render/sample_record.h"
+
+namespace montelux::testing {
+namespace {
+
+// A white sky behind a black square of side 2, which moves to the right by `way`. Orthographic, 16 x 1 pixels
+// over [-4, 4].
+SceneBuilder passing_square(double way) {
+    SceneBuilder b;
+    b.description.film.width = 16;
+    b.description.film.height = 1;
+    b.description.film.crop = {0, 0, 16, 1};
+    b.description.sampler.spp = 1024;
+    b.scene.camera.model = OrthographicCamera{.screen_window = ScreenWindow{-4, 4, -0.25f, 0.25f}};
+    b.scene.camera.world_from_camera = Transform::translate({0, 0, -5});
+    b.add_uniform_light(1);
+    b.add_mesh(square(Transform()), b.add(DiffuseMaterial{gray(0)}));
+    b.scene.world_shapes.clear();
+    b.scene.objects.push_back({.shapes = {0}});
+    b.scene.motions.emplace_back(Transform::translate({-way / 2, 0, 0}),
+                                 Transform::translate({way / 2, 0, 0}));
+    b.scene.instances.push_back({0, b.scene.motions[0].start(), 0});
+    return b;
+}
+
+// The share of the exposure [from, to] (times of the motion) during which the square does not cover x.
+double uncovered(double x, double way, double from, double to) {
+    // It covers x while |x - centre| < 1, where centre = way * (t - 1/2).
+    const double begin = (x - 1) / way + 0.5, end = (x + 1) / way + 0.5;
+    return 1 - std::max(0.0, std::min(end, to) - std::max(begin, from)) / (to - from);
+}
+
+TEST(MotionBlur, ASquareBlursToATrapezoid) {
+    for (const SamplerKind sampler : {SamplerKind::independent, SamplerKind::sobol, SamplerKind::halton}) {
+        const std::pair<float, float> shutters[] = {{0.0f, 1.0f}, {0.25f, 0.5f}};
+        for (const auto& [open, close] : shutters) {
+            constexpr double way = 3;
+            SceneBuilder b = passing_square(way);
+            b.description.sampler.kind = sampler;
+            b.scene.camera.shutter_open = open;
+            b.scene.camera.shutter_close = close;
+            const Film film = render(b.description);
+            for (int x = 0; x < 16; ++x) {
+                double truth = 0; // the mean over the pixel
+                for (int i = 0; i < 1000; ++i)
+                    truth +=
+                        uncovered(-4 + (x + (i + 0.5) / 1000) * 0.5, way, double(open), double(close)) / 1000;
+                const auto& pixel = film.pixel(x, 0).replicates();
+                EXPECT_NEAR(pixel.mean(1), truth, 5 * std::sqrt(pixel.variance_of_mean(1)) + 2e-3)
+                    << x << " " << open;
+            }
+        }
+    }
+}
+
+// Before the motion's time it stands at its start, after it at its end.
+TEST(MotionBlur, StandsStillOutsideOfItsTime) {
+    SceneBuilder b = passing_square(4);
+    b.scene.camera.shutter_open = 2;
+    b.scene.camera.shutter_close = 5;
+    const Film film = render(b.description);
+    for (int x = 0; x < 16; ++x)
+        EXPECT_NEAR(film.pixel(x, 0).replicates().mean(1), x >= 10 && x < 14 ? 0 : 1, 0.15) << x;
+}
+
+// A lamp over a floor, and a tumbling diffuse box between them that casts a moving shadow.
+SceneBuilder tumbling_box() {
+    SceneBuilder b;
+    b.description.film.width = b.description.film.height = 12;
+    b.description.film.crop = {0, 0, 12, 12};
+    b.add_mesh(square(Transform::scale({4, 4, 1})), b.add(DiffuseMaterial{gray(0.7f)}));
+    b.add_mesh(square(Transform::translate({0, 0, 4}) * Transform::rotate(180, {1, 0, 0})),
+               b.add(DiffuseMaterial{gray(0)}), 5);
+    const auto first = static_cast<Index>(b.scene.shapes.size());
+    const Index paint = b.add(DiffuseMaterial{gray(0.4f)});
+    b.add_mesh(square(Transform::scale({1, 0.5, 1})), paint);
+    b.add_quadric(Sphere{.radius = 0.4f, .z_min = -0.4f, .z_max = 0.4f, .world_from_object = {}}, paint);
+    b.scene.world_shapes = {0, 1};
+    b.scene.objects.push_back({.shapes = {first, first + 1}});
+    b.scene.motions.emplace_back(Transform::translate({-1, 0, 1}),
+                                 Transform::translate({1, 0.5, 1.5}) * Transform::rotate(120, {1, 2, 0}));
+    b.scene.instances.push_back({0, b.scene.motions[0].start(), 0});
+    b.look({0, -7, 5}, {0, 0, 0.7}, 45);
+    return b;
+}
+
+// z-values of the pixels of a blurred picture against the mean of `frames` pictures at the middles of equal
+// parts of the time.
+void expect_mean_of_frames(const SceneDescription& blurred,
+                           const std::function<SceneDescription(float)>& at) {
+    constexpr int frames = 64;
+    const Film film = render(blurred);
+    const int width = film.bounds().width(), height = film.bounds().height();
+    std::vector<double> mean(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)),
+        variance = mean;
+    for (int i = 0; i < frames; ++i) {
+        SceneDescription d = at((static_cast<float>(i) + 0.5f) / frames);
+        d.sampler.seed = 1000 + static_cast<std::uint64_t>(i);
+        const Film frame = render(d);
+        for (std::size_t k = 0; k < mean.size(); ++k) {
+            const auto& r = frame.pixels()[k].replicates();
+            mean[k] += r.mean(1) / frames;
+            variance[k] += r.variance_of_mean(1) / (frames * frames);
+        }
+    }
+    double sum = 0, total = 0, total_variance = 0;
+    for (std::size_t k = 0; k < mean.size(); ++k) {
+        const auto& r = film.pixels()[k].replicates();
+        const double z = (r.mean(1) - mean[k]) / std::sqrt(r.variance_of_mean(1) + variance[k] + 1e-8);
+        sum += z * z;
+        total += r.mean(1) - mean[k];
+        total_variance += r.variance_of_mean(1) + variance[k];
+    }
+    const auto n = static_cast<double>(mean.size());
+    EXPECT_LT(std::abs(total), 5 * std::sqrt(total_variance));
+    EXPECT_NEAR(sum / n, 1, 5 * std::sqrt(2 / n) + 0.15); // frames are not the whole of the time
+}
+
+TEST(MotionBlur, IsTheMeanOfPicturesThatStandStill) {
+    SceneBuilder b = tumbling_box();
+    b.description.sampler.spp = 2048;
+    expect_mean_of_frames(b.description, [&](float t) {
+        SceneDescription d = b.description;
+        d.sampler.spp = 64;
+        d.scene.instances[0] = {0, d.scene.motions[0].at(t)};
+        d.scene.motions.clear();
+        return d;
+    });
+}
+
+TEST(MotionBlur, OfTheCameraIsTheMeanOfPicturesThatStandStill) {
+    SceneBuilder b = tumbling_box();
+    b.description.sampler.spp = 2048;
+    b.scene.motions.clear();
+    b.scene.instances[0].motion = no_index;
+    const Transform start = b.scene.camera.world_from_camera;
+    b.scene.camera.motion.emplace(start, Transform::translate({0.5, 0, 0.2}) * start *
+                                             Transform::rotate(10, {0, 0, 1}));
+    expect_mean_of_frames(b.description, [&](float t) {
+        SceneDescription d = b.description;
+        d.sampler.spp = 64;
+        d.scene.camera.world_from_camera = d.scene.camera.motion->at(t);
+        d.scene.camera.motion.reset();
+        return d;
+    });
+}
+
+// Diffuse surfaces are shaded in lanes, replays are not.
+TEST(MotionBlur, ReplaysHaveTheSameBits) {
+    SceneBuilder b = tumbling_box();
+    b.description.sampler.spp = 8;
+    const Renderer renderer(b.description);
+    Film film(b.description.film);
+    renderer.render(film);
+    for (int y = 0; y < 12; ++y)
+        for (int x = 0; x < 12; ++x) {
+            Pixel pixel;
+            for (std::uint32_t i = 0; i < 8; ++i) {
+                const SampleRecord r = renderer.replay(x, y, i);
+                EXPECT_GE(r.time, 0);
+                EXPECT_LE(r.time, 1);
+                pixel.add_sample(r.contribution);
+                pixel.end_replicate();
+            }
+            EXPECT_TRUE(same_pixel(pixel, film.pixel(x, y))) << x << "," << y;
+        }
+}
+
+// Without motion the samples do not spend a number on time.
+TEST(MotionBlur, ScenesThatStandStillKeepTheirSamples) {
+    SceneBuilder still = tumbling_box();
+    still.scene.motions.clear();
+    still.scene.instances[0].motion = no_index;
+    SceneBuilder shutter(still);
+    shutter.scene.camera.shutter_open = 0.25f;
+    const Film a = render(still.description), b = render(shutter.description);
+    for (std::size_t i = 0; i < a.pixels().size(); ++i) EXPECT_TRUE(same_pixel(a.pixels()[i], b.pixels()[i]));
+}
+
+} // namespace
+} // namespace montelux::testing
