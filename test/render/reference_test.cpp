@@ -67,7 +67,7 @@ TEST_P(ReferenceSlowTest, AgreesWithPbrt) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ReferenceSlowTest,
                          ::testing::Values("cornell-box", "veach-mis", "material-testball", "killeroo-simple",
-                                           "killeroo-gold", "coffee"),
+                                           "killeroo-gold", "coffee", "staircase2"),
                          [](const auto& scene) {
                              std::string name = scene.param;
                              std::replace(name.begin(), name.end(), '-', '_');
