@@ -6,6 +6,8 @@
 
 namespace montelux {
 
+static_assert(sizeof(Point3f) == 3 * sizeof(float)); // read in place
+
 EmbreeScene::EmbreeScene(const SceneView& scene, bool robust) : scene_(scene), robust_(robust) {
     try {
         build();
@@ -80,15 +82,20 @@ RTCScene EmbreeScene::new_scene() const {
 
 RTCGeometry EmbreeScene::mesh_geometry(const TriangleMesh& mesh, bool cut_out) const {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    // Embree reads 16 bytes per vertex: a buffer of its own pads the last one.
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
-    if (vertices != nullptr)
-        for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const std::size_t count = mesh.positions.size();
+    // Embree reads 16 bytes per vertex, so four beyond the last one: they must be allocated.
+    if (count > 0 && mesh.positions.capacity() > count) {
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                   mesh.positions.data(), 0, sizeof(Point3f), count);
+    } else if (auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+                   geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), count));
+               vertices != nullptr) {
+        for (std::size_t i = 0; i < count; ++i) {
             vertices[3 * i] = mesh.positions[i].x;
             vertices[3 * i + 1] = mesh.positions[i].y;
             vertices[3 * i + 2] = mesh.positions[i].z;
         }
+    }
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(), 0,
                                3 * sizeof(Index), mesh.triangle_count());
     if (cut_out) {

@@ -51,15 +51,16 @@ PathStart<SampleStream> SampleContext::begin(const Key& key, FilmPoint& point) c
     point.filter = filter_.sample(u_film);
     point.film = {static_cast<float>(key.x) + 0.5f + point.filter.offset.x,
                   static_cast<float>(key.y) + 0.5f + point.filter.offset.y};
-    return {{camera_.generate_ray(point.film, point.lens, point.time),
-             SampledWavelengths::sample_visible(u_lambda)},
-            stream};
+    const CameraRay ray = camera_.generate_ray(point.film, point.lens, point.time);
+    point.weight = ray.weight;
+    return {{ray, SampledWavelengths::sample_visible(u_lambda)}, stream};
 }
 
 SampleContext::Result SampleContext::finish(const FilmContribution& path, const SampledWavelengths& lambda,
-                                            const FilterSample& filter, SampleRecord* record) const {
+                                            const FilmPoint& point, SampleRecord* record) const {
     Result result;
-    const Vec3f sensor_rgb = sensor_.to_rgb(path.radiance, path.lambda);
+    const FilterSample& filter = point.filter;
+    const Vec3f sensor_rgb = sensor_.to_rgb(path.radiance * point.weight, path.lambda);
     const float largest = max_component(sensor_rgb);
     const float clamp = largest > max_component_value_ ? max_component_value_ / largest : 1;
     const Vec3f rgb = sensor_rgb * clamp * filter.weight;
@@ -104,7 +105,7 @@ void SampleContext::take(RayTracer& tracer, std::span<const Key> keys, Batch& ba
         },
         integrator_);
     for (std::size_t i = 0; i < keys.size(); ++i)
-        results[i] = finish(batch.paths[i], batch.starts[i].camera.lambda, batch.points[i].filter);
+        results[i] = finish(batch.paths[i], batch.starts[i].camera.lambda, batch.points[i]);
 }
 
 SampleRecord SampleContext::record(RayTracer& tracer, const Key& key) const {
@@ -122,7 +123,7 @@ SampleRecord SampleContext::record(RayTracer& tracer, const Key& key) const {
     record.film = point.film;
     record.lens = point.lens;
     record.time = point.time;
-    record.contribution = finish(path, start.camera.lambda, point.filter, &record).film;
+    record.contribution = finish(path, start.camera.lambda, point, &record).film;
     return record;
 }
 

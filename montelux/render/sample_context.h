@@ -51,10 +51,11 @@ class SampleContext {
         FilterSample filter;
         Point2f film;
         Vec2f lens;
-        float time = 0; // of motions
+        float time = 0;   // of motions
+        float weight = 1; // of the camera's ray
     };
     PathStart<SampleStream> begin(const Key& key, FilmPoint& point) const;
-    Result finish(const FilmContribution& path, const SampledWavelengths& lambda, const FilterSample& filter,
+    Result finish(const FilmContribution& path, const SampledWavelengths& lambda, const FilmPoint& point,
                   SampleRecord* record = nullptr) const;
 
     const SamplerSettings& sampler_;

@@ -312,6 +312,14 @@ class SceneHasher {
         const auto& [mapping] = c;
         add(mapping);
     }
+    void add(const LensSurface& s) {
+        const auto& [radius, thickness, eta, aperture_radius] = s;
+        all(radius, thickness, eta, aperture_radius);
+    }
+    void add(const RealisticCamera& c) {
+        const auto& [surfaces, focus_distance, film_diagonal] = c;
+        all(surfaces, focus_distance, film_diagonal);
+    }
     void add(const CameraSettings& c) {
         const auto& [model, world_from_camera, motion, shutter_open, shutter_close, medium] = c;
         static_cast<void>(medium); // add_media

@@ -188,6 +188,7 @@ VALUES = (
     _core.PerspectiveCamera,
     _core.OrthographicCamera,
     _core.SphericalCamera,
+    _core.RealisticCamera,
     _core.Film,
     _core.BoxFilter,
     _core.TriangleFilter,

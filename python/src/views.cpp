@@ -203,6 +203,33 @@ void bind_views(nb::module_& m) {
     auto spherical = value_class<SphericalCamera>(m, "SphericalCamera", "Every direction.");
     placed(spherical);
     choice(spherical, "mapping", &SphericalCamera::mapping, mappings, "'equal_area' or 'equirectangular'.");
+    auto realistic = value_class<RealisticCamera>(
+        m, "RealisticCamera", "A lens of spherical surfaces; lengths in metres. Pixels show irradiance.");
+    placed(realistic);
+    number(realistic, "focus_distance", &RealisticCamera::focus_distance, positive, "a number above zero",
+           "Distance from the film at which points are sharp.");
+    number(realistic, "film_diagonal", &RealisticCamera::film_diagonal, positive, "a number above zero",
+           "Of the whole film.");
+    attribute<RealisticCamera>(
+        realistic, "surfaces", "list[tuple[float, float, float, float]]",
+        [](const RealisticCamera& c, const auto&) {
+            nb::list rows;
+            for (const LensSurface& s : c.surfaces)
+                rows.append(nb::make_tuple(s.radius, s.thickness, s.eta, s.aperture_radius));
+            return nb::object(rows);
+        },
+        [](RealisticCamera& c, nb::handle v, auto&, const std::string& what) {
+            std::vector<LensSurface> surfaces;
+            for (const nb::handle row : v) {
+                const std::vector<double> x = numbers_of(row, 4, what);
+                surfaces.push_back({static_cast<float>(x[0]), static_cast<float>(x[1]),
+                                    static_cast<float>(x[2]), static_cast<float>(x[3])});
+            }
+            c.surfaces = std::move(surfaces);
+        },
+        "From the scene to the film: radius of curvature (0: a stop; positive if the centre is on the film's "
+        "side), "
+        "thickness, index of refraction behind it, radius of the edge.");
     bind_film(m);
     auto sampler = value_class<SamplerSettings>(m, "Sampler", "Which points the samples are drawn from.");
     choice(sampler, "kind", &SamplerSettings::kind, sampler_kinds,

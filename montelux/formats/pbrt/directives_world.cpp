@@ -97,7 +97,7 @@ void Directives::finish_options() {
     read_film(plugin(film_, "rgb"), diagnostics_, film, result_.output_file);
     film.filter = read_filter(plugin(filter_, "gaussian"), diagnostics_);
     CameraSettings& camera = result_.scene.camera;
-    read_camera(plugin(camera_, "perspective"), diagnostics_, film, camera);
+    read_camera(plugin(camera_, "perspective"), files_, diagnostics_, film, camera);
     const auto motion_time = [&](float t) {
         return static_cast<float>((static_cast<double>(t) - transform_start_) /
                                   (transform_end_ - transform_start_));

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "montelux/formats/pbrt/files.h"
 #include "montelux/formats/pbrt/parameter.h"
 #include "montelux/scene/render_settings.h"
 
@@ -19,7 +20,7 @@ struct Plugin {
 void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& film, std::string& output_file);
 PixelFilter read_filter(const Plugin& plugin, Diagnostics& diagnostics);
 // The shutter's times set the film's exposure time.
-void read_camera(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& film,
+void read_camera(const Plugin& plugin, Files& files, Diagnostics& diagnostics, FilmSettings& film,
                  CameraSettings& settings);
 // `seed` applies unless the sampler has its own.
 SamplerSettings read_sampler(const Plugin& plugin, Diagnostics& diagnostics, std::uint64_t seed);

@@ -1,8 +1,16 @@
 #include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "montelux/formats/pbrt/parameter_reader.h"
 #include "montelux/formats/pbrt/settings.h"
+#include "montelux/formats/pbrt/tokenizer.h"
+#include "montelux/mc/math/error.h"
 #include "montelux/mc/math/nearest_name.h"
+#include "montelux/scene/camera/lens_system.h"
 
 namespace montelux::pbrt {
 namespace {
@@ -29,9 +37,45 @@ Camera read_projective(ParameterReader& r) {
     return camera;
 }
 
+// Rows of four numbers in millimetres: radius of curvature, thickness, index of refraction, diameter of the
+// aperture; '#' begins a comment.
+std::vector<LensSurface> read_lens(ParameterReader& r, Files& files, Diagnostics& diagnostics,
+                                   float stop_diameter) {
+    const std::optional<std::string> name = r.string("lensfile");
+    if (!name) r.error("camera 'realistic' needs a parameter 'string lensfile'");
+    const Location at = r.at("lensfile");
+    const std::filesystem::path path = files.find(*name, at);
+    const std::vector<std::uint8_t> bytes = files.read(path, at);
+    Tokenizer tokens({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
+                     diagnostics.add_file(path.string()), diagnostics);
+    std::vector<float> numbers;
+    tokens.read_numbers(numbers);
+    if (const Token rest = tokens.next(); rest.kind != Token::Kind::end)
+        diagnostics.error(rest.at, "expected a number, read " + describe(rest));
+    if (numbers.empty() || numbers.size() % 4 != 0)
+        diagnostics.error(at, "'" + path.string() + "' has " + std::to_string(numbers.size()) +
+                                  " numbers; expected rows of 4 (radius of curvature, thickness, index of "
+                                  "refraction, diameter of the aperture)");
+    if (numbers.size() > 4000) diagnostics.error(at, "'" + path.string() + "' has more than 1000 surfaces");
+    std::vector<LensSurface> surfaces;
+    for (std::size_t i = 0; i < numbers.size(); i += 4) {
+        float diameter = numbers[i + 3];
+        if (numbers[i] == 0) {
+            if (stop_diameter > diameter)
+                diagnostics.warn(at,
+                                 "the lens has no wider aperture than " + std::to_string(diameter) + " mm");
+            else
+                diameter = stop_diameter;
+        }
+        surfaces.push_back(
+            {numbers[i] * 0.001f, numbers[i + 1] * 0.001f, numbers[i + 2], diameter * 0.0005f});
+    }
+    return surfaces;
+}
+
 } // namespace
 
-void read_camera(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& film,
+void read_camera(const Plugin& plugin, Files& files, Diagnostics& diagnostics, FilmSettings& film,
                  CameraSettings& settings) {
     constexpr std::array<std::string_view, 4> names = {"perspective", "orthographic", "spherical",
                                                        "realistic"};
@@ -61,8 +105,23 @@ void read_camera(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& f
             camera.mapping = SphericalCamera::Mapping::equirectangular;
         model = camera;
     } else if (plugin.name == "realistic") {
-        r.error("camera 'realistic' is not supported yet; expected 'perspective', 'orthographic' or "
-                "'spherical'");
+        RealisticCamera camera;
+        const float diameter = r.number("aperturediameter", 1);
+        if (!(diameter > 0)) r.error("aperturediameter", "parameter 'aperturediameter' must be positive");
+        camera.focus_distance = r.number("focusdistance", 10);
+        if (!(camera.focus_distance > 0))
+            r.error("focusdistance", "parameter 'focusdistance' must be positive");
+        camera.film_diagonal = film.diagonal;
+        if (!r.string("aperture", "").empty())
+            r.error("aperture",
+                    "pictures of apertures are not supported yet; without 'aperture' it is round");
+        camera.surfaces = read_lens(r, files, diagnostics, diameter);
+        try {
+            static_cast<void>(LensSystem(camera));
+        } catch (const Error& e) {
+            r.error("lensfile", e.what());
+        }
+        model = std::move(camera);
     } else {
         r.error("unknown camera " + in_quotes(plugin.name) + did_you_mean(plugin.name, names));
     }

@@ -75,7 +75,8 @@ void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& fil
     film.height = read_resolution(r, "yresolution", 720);
     film.crop = read_crop(r, film.width, film.height);
     output_file = r.string("filename", "");
-    r.number("diagonal"); // millimetres; only realistic cameras use it
+    film.diagonal = r.number("diagonal", 35) * 0.001f; // millimetres
+    if (!(film.diagonal > 0)) r.error("diagonal", "parameter 'diagonal' must be positive");
     film.iso = r.number("iso", 100);
     if (!(film.iso > 0)) r.error("iso", "parameter 'iso' must be positive");
     film.white_balance = r.number("whitebalance", 0);

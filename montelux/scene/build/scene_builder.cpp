@@ -47,6 +47,9 @@ Index SceneBuilder::add_shape(Geometry geometry, const ShapeSettings& settings, 
     if (settings.emission != nullptr) add_area_light(index, *settings.emission, geometry, at);
     scene_.shapes[index].geometry =
         std::visit(Overloaded{[&](TriangleMesh& mesh) -> ShapeGeometry {
+                                  // Room for the ray tracer to read the positions in place.
+                                  if (!mesh.positions.empty())
+                                      mesh.positions.reserve(mesh.positions.size() + 1);
                                   scene_.meshes.push_back(std::move(mesh));
                                   return MeshIndex{static_cast<Index>(scene_.meshes.size() - 1)};
                               },

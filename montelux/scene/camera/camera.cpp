@@ -57,6 +57,18 @@ Camera::Camera(const CameraSettings& settings, int width, int height)
         kind_ = Kind::orthographic;
         use_window(window_of(o->screen_window, o->frame_aspect_ratio, width, height), 1);
         use_lens(o->lens_radius, o->focal_distance);
+    } else if (const auto* r = std::get_if<RealisticCamera>(&settings.model)) {
+        kind_ = Kind::realistic;
+        lens_.emplace(*r);
+        // The lens turns the picture around: film points are mirrored here.
+        const double aspect = double(height) / width;
+        const double x = double(r->film_diagonal) / std::sqrt(1 + aspect * aspect), y = aspect * x;
+        use_window({static_cast<float>(x / 2), static_cast<float>(-x / 2), static_cast<float>(-y / 2),
+                    static_cast<float>(y / 2)},
+                   1);
+        y0_ = -y0_;
+        dy_ = -dy_;
+        pixel_ /= lens_->focal_length();
     } else {
         const auto& s = std::get<SphericalCamera>(settings.model);
         kind_ = s.mapping == SphericalCamera::Mapping::equal_area ? Kind::equal_area : Kind::equirectangular;
@@ -66,9 +78,11 @@ Camera::Camera(const CameraSettings& settings, int width, int height)
     }
 }
 
-Ray Camera::generate_ray(Point2f film, Point2f lens, float time) const {
+CameraRay Camera::generate_ray(Point2f film, Point2f lens, float time) const {
     Point3f o{0, 0, 0};
     Vec3f d;
+    CameraRay ray;
+    ray.time = time;
     switch (kind_) {
     case Kind::perspective:
         d = {x0_ + film.x * dx_, y0_ + film.y * dy_, 1};
@@ -90,6 +104,13 @@ Ray Camera::generate_ray(Point2f film, Point2f lens, float time) const {
         d = {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
         break;
     }
+    case Kind::realistic: {
+        const auto sample = lens_->sample({x0_ + film.x * dx_, y0_ + film.y * dy_}, lens);
+        ray.weight = sample ? sample->weight : 0;
+        o = sample ? sample->ray.o : o;
+        d = sample ? sample->ray.d : Vec3f{0, 0, 1};
+        break;
+    }
     }
     if (lens_radius_ > 0) {
         Point3f focus = o + d * (focal_distance_ / d.z);
@@ -97,8 +118,6 @@ Ray Camera::generate_ray(Point2f film, Point2f lens, float time) const {
         o = {on_lens.x, on_lens.y, 0};
         d = focus - o;
     }
-    Ray ray;
-    ray.time = time;
     const auto place = [&](const Placement& placed) {
         ray.o = placed.point(o);
         ray.d = normalize(placed.vector(d));

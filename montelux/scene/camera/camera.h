@@ -6,9 +6,15 @@
 
 #include "montelux/mc/math/frame.h"
 #include "montelux/scene/camera/camera_settings.h"
+#include "montelux/scene/camera/lens_system.h"
 #include "montelux/scene/shape/ray.h"
 
 namespace montelux {
+
+// A ray of the camera, and the factor of its radiance on the way to the film: 0 where the lens blocks it.
+struct CameraRay : Ray {
+    float weight = 1;
+};
 
 class Camera {
   public:
@@ -17,12 +23,12 @@ class Camera {
 
     // film: pixels from the top left corner; lens: uniform in [0,1)^2; time: of motions. The direction has unit
     // length.
-    Ray generate_ray(Point2f film, Point2f lens, float time = 0) const;
+    CameraRay generate_ray(Point2f film, Point2f lens, float time = 0) const;
     // The time at a fraction u of the exposure.
     float time_at(float u) const {
         return std::clamp(shutter_open_ + u * (shutter_close_ - shutter_open_), 0.0f, 1.0f);
     }
-    bool has_lens() const { return lens_radius_ > 0; }
+    bool has_lens() const { return lens_radius_ > 0 || lens_; }
     const Transform& world_from_camera() const { return world_from_camera_; }
 
     // Steps on the tangent plane at p (normal n) that correspond to one pixel to the right and one down, as
@@ -33,7 +39,7 @@ class Camera {
     Footprint footprint(Point3f p, Normal3f n, float scale) const;
 
   private:
-    enum class Kind : std::uint8_t { perspective, orthographic, equal_area, equirectangular };
+    enum class Kind : std::uint8_t { perspective, orthographic, equal_area, equirectangular, realistic };
 
     // Camera space in the world.
     struct Placement {
@@ -53,6 +59,7 @@ class Camera {
     // Film coordinates to the screen: x = x0 + film.x dx, y = y0 + film.y dy.
     float x0_ = 0, dx_ = 0, y0_ = 0, dy_ = 0;
     float lens_radius_ = 0, focal_distance_ = 0;
+    std::optional<LensSystem> lens_;
     float pixel_ = 0; // tangent of a pixel's angle, or its width for an orthographic camera
 };
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include "montelux/mc/math/transform.h"
 #include "montelux/scene/index.h"
@@ -36,7 +37,22 @@ struct SphericalCamera {
     Mapping mapping = Mapping::equal_area;
 };
 
-using CameraModel = std::variant<PerspectiveCamera, OrthographicCamera, SphericalCamera>;
+// A spherical surface of a lens around the axis, or a stop (radius 0). Lengths in metres.
+struct LensSurface {
+    float radius = 0;          // of curvature; positive if the centre is on the film's side
+    float thickness = 0;       // distance to the next surface towards the film
+    float eta = 1;             // index of refraction of that space; 0 means air
+    float aperture_radius = 0; // of the surface's edge
+};
+// A lens as it is built; camera space is in metres, the film in its plane z = 0. Pixels show irradiance: with a white
+// scene of radiance 1, the solid angle of the exit pupil times its mean cosine.
+struct RealisticCamera {
+    std::vector<LensSurface> surfaces; // from the scene to the film
+    float focus_distance = 10;         // from the film, metres
+    float film_diagonal = 0.035f;      // metres
+};
+
+using CameraModel = std::variant<PerspectiveCamera, OrthographicCamera, SphericalCamera, RealisticCamera>;
 
 struct CameraSettings {
     CameraModel model = PerspectiveCamera{};

@@ -43,6 +43,7 @@ struct FilmSettings {
     PixelBounds crop{0, 0, 1280, 720}; // the rendered pixels
     PixelFilter filter = GaussianFilter{};
     float iso = 100, exposure_time = 1;
+    float diagonal = 0.035f; // metres; realistic cameras alone use it
     float white_balance = 0; // kelvin; 0: none
     float max_component_value = std::numeric_limits<float>::infinity();
 };

@@ -10,7 +10,7 @@ namespace montelux {
 namespace {
 
 // Chords leave the path by at most this share of the distance from the axis.
-constexpr double tolerance = 1.2e-4;
+constexpr double chord_tolerance = 1.2e-4;
 constexpr int most_steps = 128; // of Embree's
 
 using Linear = std::array<std::array<double, 3>, 3>;
@@ -106,7 +106,7 @@ int steps_of(double turn, const Linear& a, const Linear& b) {
             size = std::max(size, std::min(std::abs(a[r][c]), std::abs(b[r][c])));
         }
     const double squared =
-        (turn * turn / 8 + turn * std::min(change / std::max(size, 1e-300), 1e3) / 4) / tolerance;
+        (turn * turn / 8 + turn * std::min(change / std::max(size, 1e-300), 1e3) / 4) / chord_tolerance;
     return std::clamp(static_cast<int>(std::ceil(std::sqrt(squared))), 1, most_steps);
 }
 

@@ -295,8 +295,7 @@ TEST(PbrtErrors, SentencesBeforeTheWorld) {
         {"Camera \"perspective\" \"float shutteropen\" 1 \"float shutterclose\" 1 WorldBegin",
          "scene:1:44: the shutter closes before it opens"},
         {"Camera \"realistic\" WorldBegin",
-         "scene:1:1: camera 'realistic' is not supported yet; expected 'perspective', 'orthographic' or "
-         "'spherical'"},
+         "scene:1:1: camera 'realistic' needs a parameter 'string lensfile'"},
         {"Sampler \"sobol\" \"integer pixelsamples\" 0 WorldBegin",
          "scene:1:17: parameter 'pixelsamples' is 0; expected at least 1 sample"},
         {"Sampler \"sobol\" \"integer pixelsamples\" -4 WorldBegin",

@@ -10,13 +10,13 @@ namespace montelux {
 
 namespace {
 
-constexpr int width = LightTreeNode::width;
-using Importances = Lanes<width>;
+constexpr int node_width = LightTreeNode::width;
+using Importances = Lanes<node_width>;
 
 // In a fixed order, as all sums of importances.
 float sum(Importances w) {
     float total = 0;
-    for (int k = 0; k < width; ++k) total += w[k];
+    for (int k = 0; k < node_width; ++k) total += w[k];
     return total;
 }
 
@@ -38,7 +38,7 @@ Group choose(Importances w, double u) {
     const float total = sum(w);
     double left = u * double(total);
     int k = 0;
-    for (int i = 0; i < width; ++i) {
+    for (int i = 0; i < node_width; ++i) {
         if (!(w[i] > 0)) continue;
         // The last one may take what rounding leaves.
         if (i > k && w[k] > 0) left -= double(w[k]);
@@ -70,7 +70,7 @@ TreeLightSampler::TreeLightSampler(LightParts parts, std::span<const double> pow
     }
     if (!lights.empty()) {
         tree_.emplace(lights);
-        first_infinite_ = static_cast<Index>(tree_->nodes().size() * width);
+        first_infinite_ = static_cast<Index>(tree_->nodes().size() * node_width);
         for (Index i = 0; i < lights.size(); ++i) place_of_row_[row_of_light_[i]] = tree_->place_of(i);
     }
     if (infinite_powers.empty()) return;
@@ -141,10 +141,10 @@ float TreeLightSampler::probability(const ReferencePoint& from, Index light, Ind
     // The places that lead to the light, from below; multiplied in the order of `sample`.
     std::array<Index, LightTree::max_depth> path;
     std::size_t length = 0;
-    for (Index p = place; p != no_index; p = nodes[p / width].parent) path[length++] = p;
+    for (Index p = place; p != no_index; p = nodes[p / node_width].parent) path[length++] = p;
     for (std::size_t i = length; i-- > 0;) {
-        if (i + 1 < length) w = importances(nodes[path[i] / width], at);
-        const float own = w[static_cast<int>(path[i] % width)];
+        if (i + 1 < length) w = importances(nodes[path[i] / node_width], at);
+        const float own = w[static_cast<int>(path[i] % node_width)];
         if (!(own > 0)) return 0;
         probability *= own / sum(w);
     }

@@ -1,0 +1,81 @@
+// Realistic cameras: lens files, units, and what is wrong with them.
+#include "test/temporary_folder.h"
+#include <fstream>
+#include <gtest/gtest.h>
+#include <string>
+
+#include "montelux/formats/load_scene.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux::testing {
+namespace {
+
+class RealisticCameras : public ::testing::Test {
+  protected:
+    SceneDescription load(const std::string& lens, const std::string& parameters) {
+        std::ofstream(folder_ / "lens.dat") << lens;
+        std::ofstream(folder_ / "scene.pbrt")
+            << "Film \"rgb\" \"float diagonal\" 20\nCamera \"realistic\" " << parameters << "\nWorldBegin\n"
+            << "LightSource \"infinite\"\n";
+        warnings_ = {};
+        return load_scene(folder_ / "scene.pbrt", warnings_);
+    }
+    std::string error(const std::string& lens,
+                      const std::string& parameters = "\"string lensfile\" \"lens.dat\"") {
+        try {
+            load(lens, parameters);
+        } catch (const Error& e) {
+            const std::string text = e.what();
+            const std::size_t place = text.find(folder_.path().string());
+            return place == 0 ? text.substr(folder_.path().string().size() + 1) : text;
+        }
+        return "";
+    }
+
+    TemporaryFolder folder_;
+    Warnings warnings_;
+};
+
+constexpr const char* singlet =
+    "# r, thickness, eta, diameter\n50 3 1.5 20\n-50 1 1 20 # glass ends\n0 50 0 12\n";
+
+TEST_F(RealisticCameras, AreReadInMillimetres) {
+    const SceneDescription d = load(
+        singlet, "\"string lensfile\" \"lens.dat\" \"float aperturediameter\" 4 \"float focusdistance\" 2");
+    const auto& camera = std::get<RealisticCamera>(d.scene.camera.model);
+    ASSERT_EQ(camera.surfaces.size(), 3u);
+    EXPECT_FLOAT_EQ(camera.surfaces[0].radius, 0.05f);
+    EXPECT_FLOAT_EQ(camera.surfaces[0].thickness, 0.003f);
+    EXPECT_EQ(camera.surfaces[0].eta, 1.5f);
+    EXPECT_FLOAT_EQ(camera.surfaces[1].aperture_radius, 0.01f);
+    EXPECT_FLOAT_EQ(camera.surfaces[2].aperture_radius, 0.002f);
+    EXPECT_EQ(camera.focus_distance, 2);
+    EXPECT_FLOAT_EQ(camera.film_diagonal, 0.02f);
+    EXPECT_TRUE(warnings_.messages().empty());
+}
+
+TEST_F(RealisticCameras, CannotOpenWiderThanTheLens) {
+    load(singlet, "\"string lensfile\" \"lens.dat\" \"float aperturediameter\" 13");
+    ASSERT_EQ(warnings_.messages().size(), 1u);
+    EXPECT_NE(warnings_.messages()[0].find("no wider aperture than 12"), std::string::npos);
+}
+
+TEST_F(RealisticCameras, MistakesAreNamed) {
+    EXPECT_EQ(error("50 3 1.5\n").substr(0, 40),
+              "scene.pbrt:2:20: '" + (folder_ / "lens.dat").string().substr(0, 22));
+    EXPECT_NE(error("50 3 1.5\n").find("has 3 numbers; expected rows of 4"), std::string::npos);
+    EXPECT_NE(error("").find("has 0 numbers"), std::string::npos);
+    EXPECT_NE(error("50 3 glass 20\n").find("lens.dat:1:6: expected a number"), std::string::npos)
+        << error("50 3 glass 20\n");
+    EXPECT_NE(error("-50 3 1.5 20\n50 50 1 20\n").find("does not converge light"), std::string::npos);
+    EXPECT_NE(error(singlet, "\"string lensfile\" \"lens.dat\" \"float focusdistance\" 0.1")
+                  .find("cannot focus at"),
+              std::string::npos);
+    EXPECT_NE(error(singlet, "\"string lensfile\" \"lens.dat\" \"string aperture\" \"star\"")
+                  .find("not supported yet"),
+              std::string::npos);
+    EXPECT_NE(error(singlet, "\"string lensfile\" \"none.dat\"").find("none.dat"), std::string::npos);
+}
+
+} // namespace
+} // namespace montelux::testing
