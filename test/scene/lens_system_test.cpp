@@ -32,8 +32,9 @@ TEST(LensSystem, IsSharpAtTheFocusDistance) {
             const auto spread = [&](float z) {
                 double least_x = 1e9, most_x = -1e9;
                 for (int i = 0; i < 64; ++i) {
-                    const auto s = lens.sample(film, {(static_cast<float>(i % 8) + 0.5f) / 8,
-                                                      (static_cast<float>(i / 8) + 0.5f) / 8});
+                    const int row = i / 8, column = i % 8;
+                    const auto s = lens.sample(film, {(static_cast<float>(column) + 0.5f) / 8,
+                                                      (static_cast<float>(row) + 0.5f) / 8});
                     if (!s) continue;
                     const float t = (z - s->ray.o.z) / s->ray.d.z;
                     const double x = static_cast<double>(s->ray.o.x + t * s->ray.d.x);
