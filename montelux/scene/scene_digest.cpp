@@ -152,6 +152,33 @@ class SceneHasher {
         const auto& [dimension, mapping, values] = t;
         all(dimension, mapping, values);
     }
+    template <typename Parameter>
+    void add(const BilerpTexture<Parameter>& t) {
+        const auto& [mapping, corners] = t;
+        all(mapping, corners);
+    }
+    template <typename Parameter>
+    void add(const DotsTexture<Parameter>& t) {
+        const auto& [mapping, outside, inside] = t;
+        all(mapping, outside, inside);
+    }
+    template <typename Parameter>
+    void add(const DirectionMixTexture<Parameter>& t) {
+        const auto& [first, second, direction] = t;
+        all(first, second, direction);
+    }
+    void add(const NoiseOctaves& n) {
+        const auto& [octaves, roughness] = n;
+        all(octaves, roughness);
+    }
+    void add(const NoiseTexture& t) {
+        const auto& [kind, octaves, texture_from_world] = t;
+        all(kind, octaves, texture_from_world);
+    }
+    void add(const MarbleTexture& t) {
+        const auto& [octaves, scale, variation, texture_from_world] = t;
+        all(octaves, scale, variation, texture_from_world);
+    }
     // Pixels only, without the header.
     void add(const Image& image) {
         all(image.width(), image.height(), image.format(), image.encoding().kind(),

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "montelux/mc/math/gradient_noise.h"
 #include "montelux/mc/stats/chi_squared.h"
 #include "montelux/mc/stats/moments.h"
 #include "montelux/mc/stats/z_test.h"
-#include "montelux/scene/medium/gradient_noise.h"
 #include "montelux/scene/scene_tables.h"
 
 namespace montelux {

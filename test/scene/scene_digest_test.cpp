@@ -41,10 +41,15 @@ Scene scene_of_all_kinds() {
                    DiffuseTransmissionMaterial{gray, gray},
                    InterfaceMaterial{}};
     s.normal_maps = {ImageTexture{.image = 0, .mapping = {}}};
-    s.float_textures = {ConstantTexture<FloatParameter>{{1}}, ScaleTexture<FloatParameter>{{1}, {2}}};
+    s.float_textures = {ConstantTexture<FloatParameter>{{1}}, ScaleTexture<FloatParameter>{{1}, {2}},
+                        NoiseTexture{}};
     s.spectrum_textures = {ImageTexture{.image = 0, .mapping = {}},
                            MixTexture<SpectrumParameter>{gray, gray, {0.5f}},
-                           CheckerboardTexture<SpectrumParameter>{2, {}, {gray, gray}}};
+                           CheckerboardTexture<SpectrumParameter>{2, {}, {gray, gray}},
+                           BilerpTexture<SpectrumParameter>{{}, {gray, gray, gray, gray}},
+                           DotsTexture<SpectrumParameter>{{}, gray, gray},
+                           DirectionMixTexture<SpectrumParameter>{gray, gray},
+                           MarbleTexture{}};
     s.images.emplace_back(2, 2, std::vector<std::string>{"R", "G", "B"}, PixelFormat::u8,
                           ColorEncoding::srgb());
     s.environments.emplace_back(8, 8, std::vector<std::string>{"R", "G", "B"});
@@ -309,6 +314,28 @@ TEST(SceneDigest, TexturesCount) {
                     [](Scene& s) { std::get<3>(s.spectrum_textures[1]).amount.value = 0; },
                     [](Scene& s) { std::get<4>(s.spectrum_textures[2]).dimension = 3; },
                     [](Scene& s) { std::get<4>(s.spectrum_textures[2]).values[1].value = 0.1f; }});
+    const Transform moved = Transform::translate({1, 0, 0});
+    auto noise = [](Scene& s) -> NoiseTexture& { return std::get<8>(s.float_textures[2]); };
+    auto marble = [](Scene& s) -> MarbleTexture& { return std::get<8>(s.spectrum_textures[6]); };
+    expect_changes(&SceneDigest::textures,
+                   {[](Scene& s) { std::get<5>(s.spectrum_textures[3]).corners[3].value = 0.1f; },
+                    [](Scene& s) { std::get<5>(s.spectrum_textures[3]).mapping.su = 2; },
+                    [](Scene& s) { std::get<6>(s.spectrum_textures[4]).outside.value = 0.1f; },
+                    [](Scene& s) { std::get<6>(s.spectrum_textures[4]).inside.value = 0.1f; },
+                    [](Scene& s) { std::get<6>(s.spectrum_textures[4]).mapping.su = 2; },
+                    [](Scene& s) { std::get<7>(s.spectrum_textures[5]).first.value = 0.1f; },
+                    [](Scene& s) { std::get<7>(s.spectrum_textures[5]).second.value = 0.1f; },
+                    [](Scene& s) {
+                        std::get<7>(s.spectrum_textures[5]).direction = {1, 0, 0};
+                    },
+                    [=](Scene& s) { noise(s).kind = NoiseTexture::Kind::windy; },
+                    [=](Scene& s) { noise(s).octaves.octaves = 3; },
+                    [=](Scene& s) { noise(s).octaves.roughness = 0.3f; },
+                    [=](Scene& s) { noise(s).texture_from_world = moved; },
+                    [=](Scene& s) { marble(s).octaves.octaves = 3; },
+                    [=](Scene& s) { marble(s).octaves.roughness = 0.3f; },
+                    [=](Scene& s) { marble(s).scale = 3; }, [=](Scene& s) { marble(s).variation = 3; },
+                    [=](Scene& s) { marble(s).texture_from_world = moved; }});
 }
 
 TEST(SceneDigest, LightsCount) {

@@ -13,8 +13,6 @@
 namespace montelux::pbrt {
 namespace {
 
-constexpr std::array<std::string_view, 5> supported_textures = {"constant", "imagemap", "scale", "mix",
-                                                                "checkerboard"};
 constexpr std::array<std::string_view, 13> texture_plugins = {
     "constant", "imagemap", "scale", "mix",   "checkerboard", "bilerp",      "dots",
     "fbm",      "marble",   "ptex",  "windy", "wrinkled",     "directionmix"};
@@ -50,6 +48,41 @@ Transform texture_space(ParameterReader& r, const TextureDeclaration& d) {
     return d.world_from_texture.inverse();
 }
 
+Vec3f mix_direction(ParameterReader& r, const TextureDeclaration& d) {
+    const Vec3d v = d.world_from_texture.vector(Vec3d(r.vector3("dir").value_or(Vec3f(0, 1, 0))));
+    const double l = length(v);
+    if (!(l > 0 && std::isfinite(l))) r.error("dir", "parameter 'dir' has no direction");
+    return Vec3f(v / l);
+}
+
+// A look-up sums all octaves; finer ones have periods below any rounding error.
+constexpr int most_octaves = 64;
+
+NoiseOctaves noise_octaves(ParameterReader& r) {
+    const NoiseOctaves n{r.integer("octaves", 8), r.number("roughness", 0.5f)};
+    if (n.octaves < 0 || n.octaves > most_octaves)
+        r.error("octaves", "parameter 'octaves' is " + std::to_string(n.octaves) + "; expected 0 to " +
+                               std::to_string(most_octaves));
+    return n;
+}
+
+// "fbm", "wrinkled", "windy" or "marble", whose type fits that of the texture.
+template <typename Texture>
+Texture procedural_texture(ParameterReader& r, const TextureDeclaration& d) {
+    Texture t;
+    t.texture_from_world = texture_space(r, d);
+    if (d.plugin != "windy") t.octaves = noise_octaves(r);
+    if constexpr (std::is_same_v<Texture, MarbleTexture>) {
+        t.scale = r.number("scale", 1);
+        t.variation = r.number("variation", 0.2f);
+    } else {
+        t.kind = d.plugin == "fbm"     ? NoiseTexture::Kind::fbm
+                 : d.plugin == "windy" ? NoiseTexture::Kind::windy
+                                       : NoiseTexture::Kind::wrinkled;
+    }
+    return t;
+}
+
 // pbrt-v4 takes alpha for the value of a float texture in this case only.
 bool has_transparency(const Image& picture) {
     const auto alpha = picture.find_channel("A");
@@ -70,6 +103,12 @@ void TextureLibrary::declare(std::string_view type, const std::string& name, Tex
         texture_plugins.end())
         diagnostics_.error(declaration.at, "unknown texture " + in_quotes(declaration.plugin) +
                                                did_you_mean(declaration.plugin, texture_plugins));
+    const bool only_float =
+        declaration.plugin == "fbm" || declaration.plugin == "windy" || declaration.plugin == "wrinkled";
+    if (only_float || declaration.plugin == "marble")
+        if (const std::string_view only = only_float ? "float" : "spectrum"; type != only)
+            diagnostics_.error(declaration.at, "texture " + in_quotes(declaration.plugin) + " has type " +
+                                                   in_quotes(type) + "; expected " + in_quotes(only));
     Table& table = type == "float" ? float_ : spectrum_;
     Location at = declaration.at;
     std::size_t order = float_.size() + spectrum_.size() + 1;
@@ -152,8 +191,7 @@ Parameter TextureLibrary::input(ParameterReader& r, std::string_view name, RgbMe
 template <typename Parameter>
 TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meaning) {
     const TextureDeclaration& d = entry.declaration;
-    if (std::find(supported_textures.begin(), supported_textures.end(), d.plugin) == supported_textures.end())
-        diagnostics_.error(d.at, label(d) + " is not supported yet");
+    if (d.plugin == "ptex") diagnostics_.error(d.at, label(d) + " is not supported yet");
     if (resolving_ >= most_nested)
         diagnostics_.error(d.at, "textures refer to one another more than " + std::to_string(most_nested) +
                                      " levels deep");
@@ -176,6 +214,22 @@ TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meanin
         Parameter first = input<Parameter>(r, "tex1", meaning, 0);
         Parameter second = input<Parameter>(r, "tex2", meaning, 1);
         node = MixTexture<Parameter>{std::move(first), std::move(second), float_or(r, "amount", 0.5f)};
+    } else if (d.plugin == "bilerp") {
+        BilerpTexture<Parameter> t{mapping(r, d), {}};
+        constexpr std::array<std::string_view, 4> names = {"v00", "v10", "v01", "v11"};
+        for (std::size_t i = 0; i < names.size(); ++i)
+            t.corners[i] = input<Parameter>(r, names[i], meaning, i < 2 ? 0.0f : 1.0f);
+        node = t;
+    } else if (d.plugin == "dots") {
+        const TextureMapping m = mapping(r, d);
+        Parameter inside = input<Parameter>(r, "inside", meaning, 1);
+        node = DotsTexture<Parameter>{m, input<Parameter>(r, "outside", meaning, 0), inside};
+    } else if (d.plugin == "directionmix") {
+        Parameter first = input<Parameter>(r, "tex1", meaning, 0);
+        Parameter second = input<Parameter>(r, "tex2", meaning, 1);
+        node = DirectionMixTexture<Parameter>{first, second, mix_direction(r, d)};
+    } else if (d.plugin != "checkerboard") {
+        node = procedural_texture<ProceduralTexture<Parameter>>(r, d);
     } else {
         CheckerboardTexture<Parameter> c;
         c.dimension = r.integer("dimension", 2);

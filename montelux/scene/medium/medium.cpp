@@ -1,7 +1,8 @@
 #include "montelux/scene/medium/medium.h"
 
+#include "montelux/mc/math/fractal_noise.h"
+#include "montelux/mc/math/gradient_noise.h"
 #include "montelux/mc/parallel/parallel_for.h"
-#include "montelux/scene/medium/gradient_noise.h"
 #include "montelux/scene/view.h"
 
 namespace montelux {
@@ -101,15 +102,10 @@ float CloudMedium::density_at(Point3f p) const {
         for (int i = 0; i < 2; ++i) {
             at += gradient_noise_slope(at * octave) * amplitude;
             amplitude *= 0.5f;
-            octave *= 1.99f;
+            octave *= lacunarity;
         }
     }
-    float noise = 0, amplitude = 0.5f, octave = 1;
-    for (int i = 0; i < 5; ++i) {
-        noise += amplitude * gradient_noise(at * octave);
-        amplitude *= 0.5f;
-        octave *= 1.99f;
-    }
+    const float noise = 0.5f * fractal_noise(at, {.octaves = 5, .roughness = 0.5f});
     const float tops = std::clamp((1 - p.y) * 4.5f * density * noise, 0.0f, 1.0f);
     return std::clamp(tops + 2 * std::max(0.0f, 0.5f - p.y), 0.0f, 1.0f);
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "montelux/scene/texture/procedural.h"
+
 namespace montelux {
 
 namespace {
@@ -34,6 +36,26 @@ float second_share(const CheckerboardTexture<Parameter>& t, const TextureContext
     return (cell & 1) == 0 ? 0.0f : 1.0f;
 }
 
+template <typename Parameter>
+float second_share(const DotsTexture<Parameter>& t, const TextureContext& context) {
+    return inside_dot(t.mapping(context).st) ? 1.0f : 0.0f;
+}
+template <typename Parameter>
+float second_share(const DirectionMixTexture<Parameter>& t, const TextureContext& context) {
+    return 1 - std::abs(dot(context.n, t.direction));
+}
+
+// The two values that `second_share`, or an amount, mixes.
+template <typename Texture>
+auto mixed_values(const Texture& t) {
+    if constexpr (requires { t.values; })
+        return t.values;
+    else if constexpr (requires { t.inside; })
+        return std::array{t.outside, t.inside};
+    else
+        return std::array{t.first, t.second};
+}
+
 Vec3f image_lookup(const SceneView& scene, const ImageTexture& t, const TextureContext& context) {
     TextureCoordinates c = t.mapping(context);
     Vec3f rgb =
@@ -55,10 +77,12 @@ SampledSpectrum as_spectrum(Vec3f rgb, const ImageTexture& t, const SampledWavel
     return RgbIlluminantSpectrum(*t.color_space, rgb).sample(lambda);
 }
 
-// One tree walk for both kinds of values; `value_of` evaluates a parameter, `from_image` an image.
-template <typename Value, typename Texture, typename ValueOf, typename FromImage, typename Amount>
+// One tree walk for both kinds of values; `value_of` evaluates a parameter, `from_image` an image, `procedural`
+// what has no inputs.
+template <typename Value, typename Texture, typename ValueOf, typename FromImage, typename Procedural,
+          typename Amount>
 Value evaluate_node(const Texture& texture, const TextureContext& context, const ValueOf& value_of,
-                    const FromImage& from_image, const Amount& amount) {
+                    const FromImage& from_image, const Procedural& procedural, const Amount& amount) {
     return std::visit(
         [&](const auto& t) -> Value {
             using T = std::decay_t<decltype(t)>;
@@ -66,6 +90,12 @@ Value evaluate_node(const Texture& texture, const TextureContext& context, const
                 return value_of(t.value);
             } else if constexpr (std::is_same_v<T, ImageTexture>) {
                 return from_image(t);
+            } else if constexpr (requires { procedural(t); }) {
+                return procedural(t);
+            } else if constexpr (requires { t.corners; }) {
+                const Point2f st = t.mapping(context).st;
+                return (value_of(t.corners[0]) * (1 - st.x) + value_of(t.corners[1]) * st.x) * (1 - st.y) +
+                       (value_of(t.corners[2]) * (1 - st.x) + value_of(t.corners[3]) * st.x) * st.y;
             } else if constexpr (requires { t.scale; }) {
                 float scale = amount(t.scale);
                 return scale == 0 ? Value(0) : value_of(t.texture) * scale;
@@ -75,20 +105,7 @@ Value evaluate_node(const Texture& texture, const TextureContext& context, const
                     share = amount(t.amount);
                 else
                     share = second_share(t, context);
-                const auto& first = [&]() -> const auto& {
-                    if constexpr (requires { t.amount; })
-                        return t.first;
-                    else
-                        return t.values[0];
-                }
-                ();
-                const auto& second = [&]() -> const auto& {
-                    if constexpr (requires { t.amount; })
-                        return t.second;
-                    else
-                        return t.values[1];
-                }
-                ();
+                const auto [first, second] = mixed_values(t);
                 if (share <= 0) return value_of(first);
                 if (share >= 1) return value_of(second);
                 return value_of(first) * (1 - share) + value_of(second) * share;
@@ -105,7 +122,8 @@ float evaluate_texture(const SceneView& scene, const FloatTexture& texture, cons
         Vec3f rgb = image_lookup(scene, t, context);
         return (rgb.x + rgb.y + rgb.z) / 3;
     };
-    return evaluate_node<float>(texture, context, value_of, from_image, value_of);
+    auto procedural = [&](const NoiseTexture& t) { return noise_value(t, context); };
+    return evaluate_node<float>(texture, context, value_of, from_image, procedural, value_of);
 }
 
 SampledSpectrum evaluate_texture(const SceneView& scene, const SpectrumTexture& texture,
@@ -114,8 +132,11 @@ SampledSpectrum evaluate_texture(const SceneView& scene, const SpectrumTexture& 
     auto from_image = [&](const ImageTexture& t) {
         return as_spectrum(image_lookup(scene, t, context), t, lambda);
     };
+    auto procedural = [&](const MarbleTexture& t) {
+        return RgbAlbedoSpectrum(RgbColorSpace::srgb(), marble_color(t, context)).sample(lambda);
+    };
     auto amount = [&](const FloatParameter& p) { return evaluate(scene, p, context); };
-    return evaluate_node<SampledSpectrum>(texture, context, value_of, from_image, amount);
+    return evaluate_node<SampledSpectrum>(texture, context, value_of, from_image, procedural, amount);
 }
 
 } // namespace montelux

@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "montelux/mc/math/fractal_noise.h"
 #include "montelux/mc/math/overloaded.h"
 #include "montelux/scene/scene_spectrum.h"
 #include "montelux/scene/texture/mapping.h"
@@ -73,9 +74,49 @@ struct CheckerboardTexture {
     std::array<Parameter, 2> values;
 };
 
+// Bilinear between the corners (s, t) of the unit square, and extrapolated beyond; `corners`: v00, v10, v01,
+// v11, the digits being s and t.
 template <typename Parameter>
-using TextureNode = std::variant<ConstantTexture<Parameter>, ImageTexture, ScaleTexture<Parameter>,
-                                 MixTexture<Parameter>, CheckerboardTexture<Parameter>>;
+struct BilerpTexture {
+    TextureMapping mapping;
+    std::array<Parameter, 4> corners;
+};
+// Polka dots in the (s, t) plane: a random half of the unit cells around integers has a disc.
+template <typename Parameter>
+struct DotsTexture {
+    TextureMapping mapping;
+    Parameter outside, inside;
+};
+// a first + (1 - a) second, a = |cos| of the angle between the shading normal and `direction` (unit, world).
+template <typename Parameter>
+struct DirectionMixTexture {
+    Parameter first, second;
+    Vec3f direction{0, 1, 0};
+};
+
+// Octaves of noise in texture space, without those that the footprint would alias.
+// fbm: fractal_noise. wrinkled: turbulence. windy: waves, |fbm(p / 10)| fbm(p), of fixed octaves.
+struct NoiseTexture {
+    enum class Kind : std::uint8_t { fbm, wrinkled, windy };
+    Kind kind = Kind::fbm;
+    NoiseOctaves octaves;
+    Transform texture_from_world;
+};
+// The colours of marble in layers along y that fractal noise bends; an albedo.
+struct MarbleTexture {
+    NoiseOctaves octaves;
+    float scale = 1, variation = 0.2f;
+    Transform texture_from_world;
+};
+template <typename Parameter>
+using ProceduralTexture =
+    std::conditional_t<std::is_same_v<Parameter, FloatParameter>, NoiseTexture, MarbleTexture>;
+
+template <typename Parameter>
+using TextureNode =
+    std::variant<ConstantTexture<Parameter>, ImageTexture, ScaleTexture<Parameter>, MixTexture<Parameter>,
+                 CheckerboardTexture<Parameter>, BilerpTexture<Parameter>, DotsTexture<Parameter>,
+                 DirectionMixTexture<Parameter>, ProceduralTexture<Parameter>>;
 using FloatTexture = TextureNode<FloatParameter>;
 using SpectrumTexture = TextureNode<SpectrumParameter>;
 static_assert(std::is_trivially_copyable_v<FloatTexture> && std::is_trivially_copyable_v<SpectrumTexture>);
@@ -97,7 +138,19 @@ void visit_inputs(const TextureNode<Parameter>& texture, Visit&& visit) {
                           [&](const CheckerboardTexture<Parameter>& t) {
                               visit("first value", t.values[0]);
                               visit("second value", t.values[1]);
-                          }},
+                          },
+                          [&](const BilerpTexture<Parameter>& t) {
+                              for (const Parameter& corner : t.corners) visit("corner", corner);
+                          },
+                          [&](const DotsTexture<Parameter>& t) {
+                              visit("outside", t.outside);
+                              visit("inside", t.inside);
+                          },
+                          [&](const DirectionMixTexture<Parameter>& t) {
+                              visit("first", t.first);
+                              visit("second", t.second);
+                          },
+                          [](const ProceduralTexture<Parameter>&) {}},
                texture);
 }
 

@@ -206,6 +206,55 @@ TEST(PbrtTextures, NodesAndDefaults) {
     EXPECT_NE(metal.metal.eta.texture, m.reflectance.texture);
 }
 
+TEST(PbrtTextures, ProceduralTexturesAndDefaults) {
+    const SceneDescription d = parse_world(R"(
+        Translate 1 0 0
+        Rotate 90 0 0 1
+        Texture "fbm" "float" "fbm"
+        Texture "windy" "float" "windy"
+        Texture "wrinkled" "float" "wrinkled" "integer octaves" 3 "float roughness" 0.25
+        Texture "dots" "float" "dots" "texture inside" "fbm" "float vscale" 4
+        Texture "bilerp" "float" "bilerp"
+        Texture "turn" "float" "directionmix" "texture tex1" "dots" "texture tex2" "windy"
+        Texture "marble" "spectrum" "marble" "float variation" 2
+        Texture "corners" "spectrum" "bilerp" "spectrum v10" [ 400 0.5 700 0.5 ]
+        Identity
+        Material "coateddiffuse" "texture reflectance" "marble" "texture roughness" "wrinkled"
+                 "texture thickness" "turn" "texture albedo" "corners"
+        Shape "sphere" "texture alpha" "bilerp")");
+    const Scene& s = d.scene;
+    const auto& m = std::get<CoatedDiffuseMaterial>(s.materials.back());
+    const auto& marble = std::get<MarbleTexture>(s.spectrum_textures[m.reflectance.texture]);
+    EXPECT_EQ(marble.octaves.octaves, 8);
+    EXPECT_EQ(marble.octaves.roughness, 0.5f);
+    EXPECT_EQ(marble.scale, 1);
+    EXPECT_EQ(marble.variation, 2);
+    EXPECT_EQ(marble.texture_from_world.point(Vec3f(1, 0, 0)), Vec3f());
+    const auto& wrinkled = std::get<NoiseTexture>(s.float_textures[m.coating.roughness.u.texture]);
+    EXPECT_EQ(wrinkled.kind, NoiseTexture::Kind::wrinkled);
+    EXPECT_EQ(wrinkled.octaves.octaves, 3);
+    EXPECT_EQ(wrinkled.octaves.roughness, 0.25f);
+    const auto& turn =
+        std::get<DirectionMixTexture<FloatParameter>>(s.float_textures[m.coating.thickness.texture]);
+    EXPECT_NEAR(turn.direction.x, -1, 1e-6); // y, turned
+    EXPECT_NEAR(turn.direction.y, 0, 1e-6);
+    const auto& dots = std::get<DotsTexture<FloatParameter>>(s.float_textures[turn.first.texture]);
+    EXPECT_EQ(dots.outside.value, 0);
+    EXPECT_EQ(dots.mapping.sv, 4);
+    const auto& fbm = std::get<NoiseTexture>(s.float_textures[dots.inside.texture]);
+    EXPECT_EQ(fbm.kind, NoiseTexture::Kind::fbm);
+    EXPECT_EQ(fbm.octaves.octaves, 8);
+    EXPECT_EQ(fbm.octaves.roughness, 0.5f);
+    EXPECT_EQ(std::get<NoiseTexture>(s.float_textures[turn.second.texture]).kind, NoiseTexture::Kind::windy);
+    const auto& bilerp = std::get<BilerpTexture<FloatParameter>>(s.float_textures[s.shapes[0].alpha.texture]);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(bilerp.corners[i].value, i < 2 ? 0 : 1);
+    const auto& corners =
+        std::get<BilerpTexture<SpectrumParameter>>(s.spectrum_textures[m.coating.albedo.texture]);
+    EXPECT_NEAR(spectrum_of(corners.corners[1].value, s.spectra)(550), 0.5, 1e-6);
+    EXPECT_EQ(corners.corners[0].value.constant, 0);
+    EXPECT_EQ(corners.corners[3].value.constant, 1);
+}
+
 TEST(PbrtTextures, PicturesAreReadOnceForEachEncoding) {
     TemporaryFolder folder;
     Image picture(4, 4, {"R", "G", "B"}, PixelFormat::u8, ColorEncoding::srgb());

@@ -1,4 +1,4 @@
-#include "montelux/scene/medium/gradient_noise.h"
+#include "montelux/mc/math/gradient_noise.h"
 
 #include <array>
 #include <cmath>
