@@ -44,7 +44,7 @@ struct Scene {
     std::vector<SpectrumTexture> spectrum_textures;
     std::vector<ImageTexture> normal_maps; // R, G, B = (n + 1) / 2, without scale or invert
     std::vector<Image> images;             // of image textures and normal maps
-    std::vector<Image> environments;       // maps of infinite lights, R, G, B linear
+    std::vector<Image> environments;       // maps and pictures of lights, R, G, B linear
     std::vector<SkyModel> skies;
 
     std::vector<Light> lights;

@@ -314,6 +314,14 @@ class SceneHasher {
         const auto& [spectrum, scale, disc, up] = l;
         all(spectrum, scale, disc, up);
     }
+    void add(const GoniometricLight& l) {
+        const auto& [spectrum, scale, environment, layout, world_from_map] = l;
+        all(spectrum, scale, environment, layout, world_from_map);
+    }
+    void add(const ProjectionLight& l) {
+        const auto& [environment, scale, fov, world_from_light] = l;
+        all(environment, scale, fov, world_from_light);
+    }
     // Its tables follow from its settings.
     void add(const SkyModel& sky) {
         const auto& [elevation, azimuth, atmosphere, ground_albedo] = sky.settings();

@@ -148,6 +148,14 @@ void bind_lights(nb::module_& m) {
     number(sun, "scale", &SunLight::scale, not_negative, "a number that is not negative",
            "Multiplies the sun; 683 is luminance in cd/m^2.");
 
+    auto goniometric = value_class<GoniometricLight>(
+        m, "GoniometricLight", "Intensity from one point by a map over directions, from a scene file.");
+    emission(goniometric, "Intensity where the map is 1");
+    auto projection =
+        value_class<ProjectionLight>(m, "ProjectionLight", "A projected picture, from a scene file.");
+    number(projection, "scale", &ProjectionLight::scale, not_negative, "a number that is not negative",
+           "Multiplies the picture.");
+
     nb::list kinds;
     const auto add = [&]<typename L>(std::type_identity<L>) {
         const nb::handle kind = nb::type<Ref<L>>();

@@ -42,6 +42,9 @@ Light plain_light(const SceneRef& scene, const nb::object& o) {
     const auto refuse_sky = [] {
         throw Error("lights", "a SkyLight or SunLight belongs to the sky of its scene file");
     };
+    const auto refuse_picture = [] {
+        throw Error("lights", "a GoniometricLight or ProjectionLight refers to a picture of its scene file");
+    };
     std::visit(
         Overloaded{[](const AreaLight&) {
                        throw Error("lights", "an AreaLight belongs to a shape; set the light of that shape");
@@ -51,9 +54,10 @@ Light plain_light(const SceneRef& scene, const nb::object& o) {
                            "lights",
                            "an EnvironmentLight refers to a map of its scene; make one by add_environment()");
                    },
-                   [&](const SkyLight&) { refuse_sky(); }, [&](const SunLight&) { refuse_sky(); },
-                   [](const PointLight&) {}, [](const SpotLight&) {}, [](const DistantLight&) {},
-                   [](const UniformInfiniteLight&) {},
+                   [&](const GoniometricLight&) { refuse_picture(); },
+                   [&](const ProjectionLight&) { refuse_picture(); }, [&](const SkyLight&) { refuse_sky(); },
+                   [&](const SunLight&) { refuse_sky(); }, [](const PointLight&) {}, [](const SpotLight&) {},
+                   [](const DistantLight&) {}, [](const UniformInfiniteLight&) {},
                    []<typename L>(const L&) {
                        static_assert(sizeof(L) == 0, "say whether scene.lights takes this light from Python");
                    }},

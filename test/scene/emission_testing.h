@@ -177,6 +177,39 @@ inline Image map_of_texels() {
     return map;
 }
 
+// Point lights with pictures, turned and moved.
+inline void add_pictures(std::vector<Case>& cases) {
+    const Transform turned = Transform::translate({1, 2, 3}) * Transform::rotate(40, {1, 0.3, 2});
+    const auto add = [&](const char* name, const Image& map, const Light& light, double flux) {
+        Case c{.name = name, .scene = {}, .flux = {flux}, .place = {}};
+        c.scene.environments = {map};
+        c.scene.lights.push_back(light);
+        cases.push_back(std::move(c));
+    };
+    const Image map = map_of_texels();
+    double mean = 0;
+    for (int i = 0; i < 256; ++i) mean += double(map.value(i % 16, i / 16, 0)) / 256;
+    const GoniometricLight goniometric{
+        .spectrum = 1.0f, .scale = 3, .environment = 0, .world_from_map = turned};
+    add("goniometric", map, goniometric, 4 * pi * 3 * mean);
+    for (const EnvironmentSampling sampling :
+         {EnvironmentSampling::tabulated, EnvironmentSampling::structured}) {
+        cases.push_back(cases.back());
+        cases.back().name += ", compensated";
+        cases.back().settings = {.sampling = sampling, .compensated = true};
+    }
+    // A uniform picture, 3 wide and 2 high: the solid angle of a rectangle of half sides a, b at distance 1.
+    const double b = std::tan(0.5 * 70 * pi / 180), a = 1.5 * b;
+    const double solid_angle = 4 * std::asin(a * b / std::sqrt((1 + a * a) * (1 + b * b)));
+    const Spectrum white(RgbIlluminantSpectrum(RgbColorSpace::srgb(), {1, 1, 1}));
+    const double at_first = double(white.sample(wavelengths)[0]);
+    Image picture(48, 32, {"R", "G", "B"});
+    for (float& v : picture.f32()) v = 1;
+    const ProjectionLight projection{.environment = 0, .scale = 3, .fov = 70, .world_from_light = turned};
+    add("projection", picture, projection, 3 * at_first * solid_angle);
+    cases.back().tolerance = 2e-3; // powers take the solid angles of texels at their centres
+}
+
 inline void add_infinite(std::vector<Case>& cases) {
     auto add = [&](const char* name, const Light& light, double flux) -> Case& {
         Case c{.name = name, .scene = {}, .flux = {flux}, .place = on_scene_disk};
@@ -263,6 +296,7 @@ inline std::vector<Case> all_cases() {
     add_meshes(cases);
     add_quadrics(cases);
     add_deltas(cases);
+    add_pictures(cases);
     add_infinite(cases);
     return cases;
 }

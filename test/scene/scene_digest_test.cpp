@@ -62,7 +62,9 @@ Scene scene_of_all_kinds() {
                 UniformInfiniteLight{1.0f, 1, portal},
                 ImageInfiniteLight{.environment = 0, .world_from_light = {}},
                 SkyLight{.sky = 0, .environment = 0, .world_from_light = {}},
-                with_spectrum<SunLight>(1.0f)};
+                with_spectrum<SunLight>(1.0f),
+                GoniometricLight{.spectrum = 1.0f, .environment = 0, .world_from_map = {}},
+                ProjectionLight{.environment = 0, .world_from_light = {}}};
     s.media = {HomogeneousMedium{}, GridMedium{}, RgbGridMedium{}, CloudMedium{}};
     s.scalar_grids.emplace_back();
     s.color_grids.emplace_back();
@@ -345,6 +347,7 @@ TEST(SceneDigest, LightsCount) {
     dusk.elevation = 3;
     SkySettings snow;
     snow.ground_albedo = Spectrum(0.9f);
+    const Transform moved = Transform::translate({1, 0, 0});
     SkySettings haze;
     haze.atmosphere.turbidity = 5;
     expect_changes(&SceneDigest::lights,
@@ -370,6 +373,17 @@ TEST(SceneDigest, LightsCount) {
                         std::get<SkyLight>(s.lights[6]).world_from_light = Transform::rotate(9, {0, 0, 1});
                     },
                     [](Scene& s) { std::get<SunLight>(s.lights[7]).disc.versine = 0.5f; },
+                    change_spectrum_of_light<GoniometricLight>(red),
+                    [](Scene& s) { std::get<GoniometricLight>(s.lights[8]).scale = 2; },
+                    [](Scene& s) { std::get<GoniometricLight>(s.lights[8]).environment = 1; },
+                    [](Scene& s) {
+                        std::get<GoniometricLight>(s.lights[8]).layout = EnvironmentLayout::equirectangular;
+                    },
+                    [=](Scene& s) { std::get<GoniometricLight>(s.lights[8]).world_from_map = moved; },
+                    [](Scene& s) { std::get<ProjectionLight>(s.lights[9]).environment = 1; },
+                    [](Scene& s) { std::get<ProjectionLight>(s.lights[9]).scale = 2; },
+                    [](Scene& s) { std::get<ProjectionLight>(s.lights[9]).fov = 20; },
+                    [=](Scene& s) { std::get<ProjectionLight>(s.lights[9]).world_from_light = moved; },
                     [](Scene& s) { s.environments[0].f32()[100] = 1; },
                     [=](Scene& s) { s.skies[0] = SkyModel(dusk); },
                     [=](Scene& s) { s.skies[0] = SkyModel(snow); },

@@ -10,6 +10,7 @@
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/build/float_range.h"
+#include "montelux/scene/light/projection_table.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
 namespace montelux::pbrt {
@@ -124,7 +125,11 @@ void LightReader::read(const Plugin& plugin, const Transform& world_from_light,
         else
             light = infinite(r, world_from_light, color_space);
     } else if (plugin.name == "goniometric" || plugin.name == "projection") {
-        r.error("light " + in_quotes(plugin.name) + " is not supported yet");
+        if (!turns_in_floats(world_from_light))
+            r.error("the light's transformation is beyond what single-precision numbers hold");
+        place(r, world_from_light, Vec3f());
+        light = plugin.name == "projection" ? projection(r, world_from_light)
+                                            : goniometric(r, world_from_light, color_space);
     } else {
         r.error("unknown light " + in_quotes(plugin.name) + did_you_mean(plugin.name, light_plugins));
     }
@@ -166,7 +171,7 @@ Light LightReader::infinite(ParameterReader& r, const Transform& world_from_ligh
     }
     if (r.ignored("L")) r.error("L", "'L' together with 'filename'; expected one or the other");
     ImageInfiniteLight light;
-    light.environment = environment(*file, r.at("filename"));
+    light.environment = picture(*file, r.at("filename"), MapUse::radiance);
     const Image& map = builder_.scene().environments[light.environment];
     light.layout = *layout_of_size(map.width(), map.height());
     light.world_from_light = world_from_light;
@@ -182,19 +187,87 @@ Light LightReader::infinite(ParameterReader& r, const Transform& world_from_ligh
     return light;
 }
 
-Index LightReader::environment(const std::string& file, Location at) {
+namespace {
+
+std::string needed_file(ParameterReader& r) {
+    const std::optional<std::string> file = r.string("filename");
+    if (!file) r.error(r.plugin() + " needs a parameter 'filename'");
+    return *file;
+}
+
+// Factor by which a light of that flux (lm) reaches the parameter `power`, if that is given.
+float power_factor(ParameterReader& r, double flux) {
+    const float power = r.number("power", -1);
+    if (!(power > 0)) return 1;
+    if (!(flux > 0)) r.error("power", "the picture has no light to be scaled");
+    return static_cast<float>(double(power) / flux);
+}
+
+// The mean of the colours of each pixel; the picture itself if it has none.
+Image grey_map(const Image& picture) {
+    const Image map = rgb_map(picture);
+    if (map.empty()) return picture;
+    Image grey(map.width(), map.height(), {"Y"});
+    for (std::size_t i = 0; i < grey.sample_count(); ++i)
+        grey.f32()[i] = (map.f32()[3 * i] + map.f32()[3 * i + 1] + map.f32()[3 * i + 2]) / 3;
+    return grey;
+}
+
+} // namespace
+
+Light LightReader::goniometric(ParameterReader& r, const Transform& world_from_light,
+                               const RgbColorSpace& color_space) {
+    const Source s = source(r, "I", color_space);
+    GoniometricLight light;
+    light.spectrum = s.spectrum;
+    const std::string file = needed_file(r);
+    light.environment = picture(file, r.at("filename"), MapUse::intensity);
+    const Image& map = builder_.scene().environments[light.environment];
+    light.layout = *layout_of_size(map.width(), map.height());
+    // The map's z axis is the light's y axis.
+    const Matrix4 swap_yz{{{{1, 0, 0, 0}, {0, 0, 1, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}}}};
+    light.world_from_map = world_from_light * Transform(swap_yz, swap_yz);
+    const EnvironmentGrid grid(light.layout, map.width(), map.height());
+    double flux = 0;
+    for (int y = 0; y < map.height(); ++y)
+        for (int x = 0; x < map.width(); ++x) flux += double(map.value(x, y, 0)) * grid.solid_angle(y);
+    light.scale = s.scale * power_factor(r, flux);
+    return light;
+}
+
+Light LightReader::projection(ParameterReader& r, const Transform& world_from_light) {
+    ProjectionLight light;
+    light.fov = r.number("fov", 90);
+    if (!(light.fov > 0 && light.fov < 180))
+        r.error("fov", "parameter 'fov' is not between 0 and 180 degrees");
+    light.scale = r.number("scale", 1);
+    if (light.scale < 0) r.error("scale", "parameter 'scale' is negative");
+    light.scale *= photometric_scale(Spectrum(RgbColorSpace::srgb().illuminant()), r);
+    light.world_from_light = world_from_light;
+    const std::string file = needed_file(r);
+    light.environment = picture(file, r.at("filename"), MapUse::projection);
+    light.scale *= power_factor(r, projected_flux(builder_.scene().environments[light.environment], light.fov,
+                                                  RgbColorSpace::srgb().luminance_weights()));
+    return light;
+}
+
+Index LightReader::picture(const std::string& file, Location at, MapUse use) {
     std::filesystem::path path = files_.find(file, at);
-    if (auto known = environments_.find(path.string()); known != environments_.end()) return known->second;
+    const auto key = std::pair{path.string(), use};
+    if (auto known = pictures_.find(key); known != pictures_.end()) return known->second;
     std::vector<std::uint8_t> bytes = files_.read(path, at);
     try {
         const Image picture = read_image(bytes, path.string());
-        const Index index = builder_.add_environment(picture, path.string(), at);
+        if (use == MapUse::projection)
+            return pictures_[key] = builder_.add_light_picture(picture, path.string(), at);
+        const Index index = builder_.add_environment(use == MapUse::intensity ? grey_map(picture) : picture,
+                                                     path.string(), at);
         if (layout_of_size(picture.width(), picture.height()) == EnvironmentLayout::equirectangular)
             diagnostics_.warn(at, path.string() + " has " + std::to_string(picture.width()) + " x " +
                                       std::to_string(picture.height()) +
                                       " pixels and is taken for a latitude-longitude map; pbrt-v4 wants it "
                                       "converted ('imgtool makeequiarea')");
-        return environments_[path.string()] = index;
+        return pictures_[key] = index;
     } catch (const LocatedError&) {
         throw;
     } catch (const Error& e) {

@@ -32,13 +32,19 @@ class LightReader {
     static std::optional<Portal> portal(ParameterReader& r);
     Light infinite(ParameterReader& r, const Transform& world_from_light, const RgbColorSpace& color_space);
     SceneBuilder::SkyLights sky(ParameterReader& r, const Transform& world_from_light);
-    Index environment(const std::string& file, Location at);
+    Light goniometric(ParameterReader& r, const Transform& world_from_light,
+                      const RgbColorSpace& color_space);
+    Light projection(ParameterReader& r, const Transform& world_from_light);
+    // What the pixels of a map are; maps of intensity are grey.
+    enum class MapUse : std::uint8_t { radiance, intensity, projection };
+    // The index of a file's picture in Scene::environments; read once for each use.
+    Index picture(const std::string& file, Location at, MapUse use);
 
     SceneBuilder& builder_;
     Files& files_;
     SpectrumReader& spectra_;
     Diagnostics& diagnostics_;
-    std::map<std::string, Index> environments_; // by path
+    std::map<std::pair<std::string, MapUse>, Index> pictures_; // by path
 };
 
 } // namespace montelux::pbrt

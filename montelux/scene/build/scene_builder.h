@@ -65,6 +65,8 @@ class SceneBuilder {
     // A picture as the map of an infinite light; R, G and B are linear. Negative values become 0, with a
     // warning. Errors: neither RGB nor grey, a shape of no EnvironmentLayout, non-finite values.
     Index add_environment(const Image& picture, const std::string& name, SourceLocation at = {});
+    // The same of any size, for lights that project a picture.
+    Index add_light_picture(const Image& picture, const std::string& name, SourceLocation at = {});
 
     // Resolves the instances and makes the remaining checks. `end` is the end of the file.
     void finish(SourceLocation end = {});

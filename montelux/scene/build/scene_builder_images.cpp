@@ -58,6 +58,10 @@ Index SceneBuilder::add_environment(const Image& picture, const std::string& nam
                                 std::to_string(picture.height()) +
                                 " pixels; an environment map must be square (equal-area octahedral), or "
                                 "twice as wide as high (latitude-longitude)");
+    return add_light_picture(picture, name, at);
+}
+
+Index SceneBuilder::add_light_picture(const Image& picture, const std::string& name, SourceLocation at) {
     Image map = rgb_map(picture);
     if (map.empty()) messages_.error(at, name + no_colors);
     bool negative = false, black = true;

@@ -7,8 +7,10 @@
 
 #include "montelux/scene/light/area_light.h"
 #include "montelux/scene/light/distant_light.h"
+#include "montelux/scene/light/goniometric_light.h"
 #include "montelux/scene/light/image_infinite_light.h"
 #include "montelux/scene/light/point_light.h"
+#include "montelux/scene/light/projection_light.h"
 #include "montelux/scene/light/sky_light.h"
 #include "montelux/scene/light/spot_light.h"
 #include "montelux/scene/light/sun_light.h"
@@ -17,7 +19,7 @@
 namespace montelux {
 
 using Light = std::variant<AreaLight, PointLight, SpotLight, DistantLight, UniformInfiniteLight,
-                           ImageInfiniteLight, SkyLight, SunLight>;
+                           ImageInfiniteLight, SkyLight, SunLight, GoniometricLight, ProjectionLight>;
 static_assert(std::is_trivially_copyable_v<Light>);
 
 inline LightKind kind_of(const Light& light) {

@@ -85,6 +85,15 @@ LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings
                                   add_environment(scene, i, l.environment, EnvironmentLayout::equirectangular,
                                                   settings);
                               },
+                              [&](const GoniometricLight& l) {
+                                  add_environment(scene, i, l.environment, l.layout, settings);
+                              },
+                              [&](const ProjectionLight& l) {
+                                  const Image& picture = scene.environments[l.environment];
+                                  add_spectra(scene, l.environment);
+                                  environment_of_light_[i] = static_cast<Index>(projections_.size());
+                                  projections_.emplace_back(picture, l.fov);
+                              },
                               // Sampled in closed form.
                               [](const PointLight&) {}, [](const SpotLight&) {}, [](const DistantLight&) {},
                               [](const UniformInfiniteLight&) {}, [](const SunLight&) {},
@@ -128,11 +137,14 @@ void LightTables::add_triangles(const Scene& scene) {
     }
 }
 
+void LightTables::add_spectra(const Scene& scene, Index map) {
+    if (map_spectra_[map].empty()) map_spectra_[map] = map_spectra(scene.environments[map]);
+}
+
 void LightTables::add_map(const Scene& scene, Index light, const ImageInfiniteLight& infinite,
                           const EnvironmentSettings& settings) {
     const Image& map = scene.environments[infinite.environment];
-    auto& spectra = map_spectra_[infinite.environment];
-    if (spectra.empty()) spectra = map_spectra(map);
+    add_spectra(scene, infinite.environment);
     if (infinite.portal) {
         environment_of_light_[light] = static_cast<Index>(portals_.size());
         portals_.emplace_back(map, infinite.layout, infinite.world_from_light, *infinite.portal,
@@ -160,6 +172,7 @@ LightTablesView LightTables::view(const Scene& scene) const {
     view.maps = scene.environments;
     view.environments = environments_;
     view.portals = portals_;
+    view.projections = projections_;
     view.environment_of_light = environment_of_light_;
     view.map_spectra = map_spectra_;
     view.infinite_lights = infinite_lights_;

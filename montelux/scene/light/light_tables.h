@@ -21,6 +21,7 @@ class LightTables {
   private:
     void add_shape(const Scene& scene, Index light, const AreaLight& area);
     void add_triangles(const Scene& scene);
+    void add_spectra(const Scene& scene, Index map);
     void add_map(const Scene& scene, Index light, const ImageInfiniteLight& infinite,
                  const EnvironmentSettings& settings);
     void add_environment(const Scene& scene, Index light, Index map, EnvironmentLayout layout,
@@ -34,6 +35,7 @@ class LightTables {
     std::vector<std::optional<WorldDisk>> disks_;
     std::vector<EnvironmentSampler> environments_;
     std::vector<PortalSampler> portals_;
+    std::vector<ProjectionTable> projections_;
     std::vector<Index> environment_of_light_;
     std::map<std::pair<Index, EnvironmentLayout>, Index> known_environments_;
     std::vector<std::vector<RgbUnboundedSpectrum>> map_spectra_;

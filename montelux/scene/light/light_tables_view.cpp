@@ -8,20 +8,34 @@ RgbUnboundedSpectrum LightTablesView::texel_spectrum(const Image& map, std::size
     return {map_color_space(), max(rgb, Vec3f{0, 0, 0})};
 }
 
-SampledSpectrum LightTablesView::texel_factor(const ImageInfiniteLight& light, std::size_t texel,
+SampledSpectrum LightTablesView::texel_factor(Index map, std::size_t texel,
                                               const SampledWavelengths& lambda) const {
-    const auto& spectra = map_spectra[light.environment];
+    const auto& spectra = map_spectra[map];
     if (!spectra.empty()) return spectra[texel].sample(lambda);
-    return texel_spectrum(maps[light.environment], texel).sample(lambda);
+    return texel_spectrum(maps[map], texel).sample(lambda);
+}
+
+float LightTablesView::map_value(Index map, const EnvironmentGrid& grid, Vec2f place) const {
+    const Image& image = maps[map];
+    const auto texel = [&](std::size_t i) {
+        return image.value_at(i * static_cast<std::size_t>(image.channels()));
+    };
+    if (lookup == EnvironmentLookup::nearest) return texel(grid.texel(place));
+    const EnvironmentGrid::Blend blend = grid.blend(place);
+    float sum = 0;
+    for (std::size_t k = 0; k < 4; ++k) sum += texel(blend.texel[k]) * blend.share[k];
+    return sum;
 }
 
 SampledSpectrum LightTablesView::map_radiance(const ImageInfiniteLight& light, const EnvironmentGrid& grid,
                                               Vec2f place, const SampledWavelengths& lambda) const {
     SampledSpectrum white = map_color_space().illuminant().sample(lambda);
-    if (lookup == EnvironmentLookup::nearest) return texel_factor(light, grid.texel(place), lambda) * white;
+    if (lookup == EnvironmentLookup::nearest)
+        return texel_factor(light.environment, grid.texel(place), lambda) * white;
     const EnvironmentGrid::Blend blend = grid.blend(place);
     SampledSpectrum sum;
-    for (std::size_t k = 0; k < 4; ++k) sum += texel_factor(light, blend.texel[k], lambda) * blend.share[k];
+    for (std::size_t k = 0; k < 4; ++k)
+        sum += texel_factor(light.environment, blend.texel[k], lambda) * blend.share[k];
     return sum * white;
 }
 

@@ -8,6 +8,7 @@
 #include "montelux/scene/light/environment/environment_sampler.h"
 #include "montelux/scene/light/environment/portal_sampler.h"
 #include "montelux/scene/light/image_infinite_light.h"
+#include "montelux/scene/light/projection_table.h"
 #include "montelux/scene/shape/quadric.h"
 
 namespace montelux {
@@ -31,7 +32,8 @@ struct LightTablesView {
     // Samplers of all skies and maps without portals, one per map and layout; then those of maps with portals.
     std::span<const EnvironmentSampler> environments;
     std::span<const PortalSampler> portals;
-    std::span<const Index> environment_of_light; // into `environments` or `portals`
+    std::span<const ProjectionTable> projections;
+    std::span<const Index> environment_of_light; // into `environments`, `portals` or `projections`
     // Spectra of the texels of each map; empty for maps that are too large.
     std::span<const std::vector<RgbUnboundedSpectrum>> map_spectra;
     std::span<const Index> infinite_lights;
@@ -48,12 +50,19 @@ struct LightTablesView {
     // Radiance of an environment map at a position on its grid, before Light::scale.
     SampledSpectrum map_radiance(const ImageInfiniteLight& light, const EnvironmentGrid& grid, Vec2f place,
                                  const SampledWavelengths& lambda) const;
-    // For an infinite light with a map and no portal.
+    // The first channel of a map at a position on its grid.
+    float map_value(Index map, const EnvironmentGrid& grid, Vec2f place) const;
+    // The colour of a texel under the white illuminant.
+    SampledSpectrum texel_radiance(Index map, std::size_t texel, const SampledWavelengths& lambda) const {
+        return texel_factor(map, texel, lambda) * map_color_space().illuminant().sample(lambda);
+    }
+    // For an infinite light with a map and no portal, and goniometric lights.
     const EnvironmentSampler& environment(Index light) const {
         return environments[environment_of_light[light]];
     }
     // For an infinite light with a map and a portal.
     const PortalSampler& portal(Index light) const { return portals[environment_of_light[light]]; }
+    const ProjectionTable& projection(Index light) const { return projections[environment_of_light[light]]; }
     // For lights that are whole spheres or discs without holes.
     const std::optional<WorldSphere>& sphere(Index light) const { return spheres[light]; }
     const std::optional<WorldDisk>& disk(Index light) const { return disks[light]; }
@@ -62,8 +71,7 @@ struct LightTablesView {
 
   private:
     // Without the white illuminant, at index y * width + x.
-    SampledSpectrum texel_factor(const ImageInfiniteLight& light, std::size_t texel,
-                                 const SampledWavelengths& lambda) const;
+    SampledSpectrum texel_factor(Index map, std::size_t texel, const SampledWavelengths& lambda) const;
 };
 
 } // namespace montelux

@@ -8,6 +8,13 @@
 
 namespace montelux {
 
+// Solid angle in the light's space over that in the world around wi: 1 unless the transformation scales
+// unevenly.
+inline float solid_angle_change(const Transform& world_from_light, Vec3f wi) {
+    const double l = length(world_from_light.inverse_vector(Vec3d(wi)));
+    return static_cast<float>(std::abs(world_from_light.inverse_matrix().linear_determinant()) / (l * l * l));
+}
+
 // The members outlive it.
 struct TurnedMap {
     const EnvironmentSampler& map;
@@ -39,12 +46,7 @@ struct TurnedMap {
     float pdf_everywhere(Vec3f wi) const;
 
   private:
-    // Solid angle in the light's space over that in the world: 1 unless the transformation scales unevenly.
-    float solid_angle_change(Vec3f wi) const {
-        const double l = length(world_from_light.inverse_vector(Vec3d(wi)));
-        return static_cast<float>(std::abs(world_from_light.inverse_matrix().linear_determinant()) /
-                                  (l * l * l));
-    }
+    float solid_angle_change(Vec3f wi) const { return montelux::solid_angle_change(world_from_light, wi); }
 };
 
 } // namespace montelux

@@ -199,7 +199,10 @@ TEST(PbrtErrors, SentencesInTheWorld) {
          "you mean 'repeat'?)"},
         // Lights.
         {"LightSource \"infinit\"", "scene:2:1: unknown light 'infinit' (did you mean 'infinite'?)"},
-        {"LightSource \"projection\"", "scene:2:1: light 'projection' is not supported yet"},
+        {"LightSource \"projection\"", "scene:2:1: light 'projection' needs a parameter 'filename'"},
+        {"LightSource \"projection\" \"float fov\" 180",
+         "scene:2:26: parameter 'fov' is not between 0 and 180 degrees"},
+        {"LightSource \"goniometric\"", "scene:2:1: light 'goniometric' needs a parameter 'filename'"},
         {"LightSource \"distant\" \"point3 from\" [0 0 1]",
          "scene:2:1: 'from' and 'to' are the same point: the light has no direction"},
         {"LightSource \"spot\" \"float conedeltaangle\" 40",

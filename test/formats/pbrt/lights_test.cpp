@@ -161,5 +161,68 @@ TEST(PbrtLights, EnvironmentMaps) {
     }
 }
 
+TEST(PbrtLights, PointLightsWithPictures) {
+    TemporaryFolder folder;
+    Image map(16, 16, {"R", "G", "B"});
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x) map.set(x, y, 1, 3); // the mean of the colours is 1
+    write_image(folder / "map.exr", map);
+    Image picture(30, 20, {"R", "G", "B"});
+    for (float& v : picture.f32()) v = 2;
+    write_image(folder / "picture.exr", picture);
+    write_image(folder / "black.exr", Image(4, 4, {"R", "G", "B"}));
+    Warnings warnings;
+    const auto load = [&](const std::string& text) {
+        return parse_pbrt("WorldBegin\n" + text, "scene", folder.path(), warnings);
+    };
+    const SceneDescription d =
+        load("LightSource \"infinite\" \"string filename\" \"map.exr\"\n"
+             "Translate 1 2 3 Rotate 90 0 0 1\n"
+             "LightSource \"goniometric\" \"string filename\" \"map.exr\" \"rgb I\" [ 4 4 4 ] \"float "
+             "scale\" 0.5\n"
+             "LightSource \"goniometric\" \"string filename\" \"map.exr\" \"float power\" 10\n"
+             "LightSource \"projection\" \"string filename\" \"picture.exr\"\n"
+             "LightSource \"projection\" \"string filename\" \"picture.exr\" \"float fov\" 50 \"float "
+             "power\" 10\n");
+    EXPECT_EQ(warnings.messages(), std::vector<std::string>());
+    // The grey map and the coloured one are two.
+    ASSERT_EQ(d.scene.environments.size(), 3u);
+    const auto& g = std::get<GoniometricLight>(d.scene.lights[1]);
+    EXPECT_EQ(g.environment, 1u);
+    for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(d.scene.environments[1].value(3, 5, c), 1);
+    EXPECT_NEAR(photometric(g, d.scene.spectra), 2, 1e-5);
+    EXPECT_LT(length(g.position() - Vec3f(1, 2, 3)), 1e-6f);
+    // The centre of the map, its z, is the light's y, which is -x in the world; y and z are exchanged.
+    EXPECT_LT(length(g.world_from_map.vector(Vec3f(0, 0, 1)) - Vec3f(-1, 0, 0)), 1e-6f);
+    EXPECT_LT(length(g.world_from_map.vector(Vec3f(0, 1, 0)) - Vec3f(0, 0, 1)), 1e-6f);
+    const SceneTables tables(d.scene);
+    const SceneView view = tables.view();
+    const double white = to_photometric(Spectrum(RgbColorSpace::srgb().illuminant()));
+    // `power` is that of all directions together, of a grey map or picture.
+    EXPECT_NEAR(photometric(std::get<GoniometricLight>(d.scene.lights[2]), d.scene.spectra) * 4 * pi, 10,
+                1e-3);
+    const auto& p = std::get<ProjectionLight>(d.scene.lights[3]);
+    EXPECT_EQ(p.environment, 2u);
+    EXPECT_EQ(p.fov, 90);
+    EXPECT_NEAR(p.scale * white, 1, 1e-5);
+    EXPECT_LT(length(p.position() - Vec3f(1, 2, 3)), 1e-6f);
+    EXPECT_LT(length(p.world_from_light.vector(Vec3f(1, 0, 0)) - Vec3f(0, 1, 0)), 1e-6f);
+    const auto& q = std::get<ProjectionLight>(d.scene.lights[4]);
+    EXPECT_EQ(q.fov, 50);
+    const double b = std::tan(25 * pi / 180), a = 1.5 * b;
+    const double solid_angle = 4 * std::asin(a * b / std::sqrt((1 + a * a) * (1 + b * b)));
+    EXPECT_NEAR(q.scale * white * 2 * solid_angle, 10, 0.02);
+    EXPECT_NEAR(view.light_tables.projection(4).flux(), 2 * solid_angle, 0.002);
+    for (const char* type : {"goniometric", "projection"}) {
+        try {
+            load("LightSource \"" + std::string(type) +
+                 "\" \"string filename\" \"black.exr\" \"float power\" 1");
+            ADD_FAILURE() << "a black picture was given a power";
+        } catch (const Error& e) {
+            EXPECT_NE(std::string(e.what()).find("the picture has no light to be scaled"), std::string::npos);
+        }
+    }
+}
+
 } // namespace
 } // namespace montelux

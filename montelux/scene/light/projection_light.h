@@ -1,0 +1,26 @@
+// ProjectionLight: a point light that projects a picture.
+#pragma once
+
+#include "montelux/mc/math/transform.h"
+#include "montelux/scene/light/light_model.h"
+
+namespace montelux {
+
+// Intensity scale * the colours of the picture under the white illuminant, W/(sr nm), from the origin of the
+// light's space along its z axis (ProjectionScreen); none beside the picture.
+struct ProjectionLight {
+    static constexpr LightKind kind = LightKind::position;
+    static constexpr std::string_view name = "projection light";
+
+    Index environment = no_index; // into Scene::environments: the picture
+    float scale = 1;
+    float fov = 90; // degrees, of the shorter side
+    Transform world_from_light;
+
+    Point3f position() const { return world_from_light.point(Vec3f()); }
+
+    MONTELUX_LIGHT_MODEL;
+};
+static_assert(LightModel<ProjectionLight>);
+
+} // namespace montelux

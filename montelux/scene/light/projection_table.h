@@ -1,0 +1,59 @@
+// ProjectionTable: the directions of a light that projects a picture, and their density.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "montelux/image/image.h"
+#include "montelux/mc/dist/piecewise_2d.h"
+
+namespace montelux {
+
+// The picture fills a rectangle of the plane z = 1 around the z axis; `fov` is the angle of its shorter side,
+// in degrees. Its columns go along x and its rows along y, so that its top row is towards -y.
+class ProjectionScreen {
+  public:
+    ProjectionScreen(int width, int height, float fov);
+
+    // Position on the picture, in texels; empty beside it. `w` need not be of unit length.
+    std::optional<Vec2f> locate(Vec3f w) const;
+    // A unit vector.
+    Vec3f direction(Vec2f texels) const;
+    // Solid angle per area in texels, along a unit vector of that z.
+    float solid_angle(float z) const { return texel_area_ * z * z * z; }
+    int width() const { return width_; }
+    int height() const { return height_; }
+
+  private:
+    int width_, height_;
+    Vec2f half_; // half the sides of the rectangle
+    float texel_area_;
+};
+
+// Samples texels in proportion to the mean of their colours times their solid angle.
+class ProjectionTable {
+  public:
+    struct Sample {
+        Vec2f texels;
+        Vec3f w;       // unit
+        float pdf = 0; // per solid angle
+    };
+
+    // The picture has the channels R, G and B; negative values count as 0.
+    ProjectionTable(const Image& picture, float fov);
+
+    const ProjectionScreen& screen() const { return screen_; }
+    std::optional<Sample> sample(Vec2f u) const;
+    float pdf(Vec3f w) const;
+    // Integral of the mean of the colours over all directions, sr.
+    double flux() const { return density_.integral(); }
+
+  private:
+    ProjectionScreen screen_;
+    PiecewiseConstant2D density_;
+};
+
+// Integral of a weighted sum of the channels over all directions, each texel by the solid angle at its centre.
+double projected_flux(const Image& picture, float fov, Vec3d weights);
+
+} // namespace montelux
