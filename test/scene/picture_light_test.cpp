@@ -1,11 +1,14 @@
 // Goniometric and projecting lights: the picture on a wall, and how lights are turned.
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <utility>
+#include <vector>
 
 #include "montelux/mc/warp/equal_area_square.h"
 #include "montelux/scene/light/light_sampling.h"
 #include "montelux/scene/light/projection_table.h"
+#include "montelux/scene/light/visible_mean.h"
 #include "montelux/scene/scene_tables.h"
 
 namespace montelux {
@@ -68,6 +71,23 @@ TEST(ProjectionLight, DirectionsAndTexels) {
     EXPECT_FALSE(black.sample({0.5f, 0.5f}));
     EXPECT_EQ(black.pdf({0, 0, 1}), 0);
     EXPECT_EQ(black.flux(), 0);
+}
+
+// The power of a grey picture: its share of the intensity times the solid angle of each texel.
+TEST(ProjectionLight, PowerIsTheFlux) {
+    Scene scene;
+    scene.environments = {Image(48, 32, {"R", "G", "B"})};
+    for (float& v : scene.environments[0].f32()) v = 2;
+    scene.lights = {ProjectionLight{.environment = 0, .scale = 3, .fov = 70, .world_from_light = {}}};
+    const SceneTables tables(scene);
+    const SceneView view = tables.view();
+    std::vector<double> powers(1);
+    light_powers({view, 0}, powers);
+    // A rectangle of half sides a and b at the distance 1.
+    const double b = std::tan(35 * pi / 180), a = 1.5 * b;
+    const double solid_angle = 4 * std::asin(a * b / std::sqrt((1 + a * a) * (1 + b * b)));
+    const Spectrum white(RgbIlluminantSpectrum(RgbColorSpace::srgb(), {1, 1, 1}));
+    EXPECT_NEAR(powers[0] / (2 * 3 * visible_mean(white) * solid_angle), 1, 1e-3);
 }
 
 TEST(GoniometricLight, DirectionsOfTheMap) {
