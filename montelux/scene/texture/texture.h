@@ -81,7 +81,7 @@ struct BilerpTexture {
     TextureMapping mapping;
     std::array<Parameter, 4> corners;
 };
-// Polka dots in the (s, t) plane: a random half of the unit cells around integers has a disc.
+// Polka dots in the (s, t) plane: discs in a random choice of the unit cells around integers.
 template <typename Parameter>
 struct DotsTexture {
     TextureMapping mapping;
