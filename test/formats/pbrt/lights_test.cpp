@@ -178,7 +178,7 @@ TEST(PbrtLights, PointLightsWithPictures) {
     const SceneDescription d =
         load("LightSource \"infinite\" \"string filename\" \"map.exr\"\n"
              "Translate 1 2 3 Rotate 90 0 0 1\n"
-             "LightSource \"goniometric\" \"string filename\" \"map.exr\" \"rgb I\" [ 4 4 4 ] \"float "
+             "LightSource \"goniometric\" \"string filename\" \"map.exr\" \"blackbody I\" 3000 \"float "
              "scale\" 0.5\n"
              "LightSource \"goniometric\" \"string filename\" \"map.exr\" \"float power\" 10\n"
              "LightSource \"projection\" \"string filename\" \"picture.exr\"\n"
@@ -190,7 +190,7 @@ TEST(PbrtLights, PointLightsWithPictures) {
     const auto& g = std::get<GoniometricLight>(d.scene.lights[1]);
     EXPECT_EQ(g.environment, 1u);
     for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(d.scene.environments[1].value(3, 5, c), 1);
-    EXPECT_NEAR(photometric(g, d.scene.spectra), 2, 1e-5);
+    EXPECT_NEAR(photometric(g, d.scene.spectra), 0.5, 1e-5);
     EXPECT_LT(length(g.position() - Vec3f(1, 2, 3)), 1e-6f);
     // The centre of the map, its z, is the light's y, which is -x in the world; y and z are exchanged.
     EXPECT_LT(length(g.world_from_map.vector(Vec3f(0, 0, 1)) - Vec3f(-1, 0, 0)), 1e-6f);
