@@ -197,6 +197,11 @@ class SceneHasher {
         add(map);
     }
 
+    void add(const MaterialIndex& r) {
+        const auto& [index] = r;
+        add(index);
+    }
+
     // Media.
     void add(const MediumInterface& m) {
         const auto& [inside, outside] = m;

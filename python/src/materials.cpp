@@ -1,5 +1,6 @@
 #include "python/src/bindings.h"
 #include "python/src/scene_values.h"
+#include "python/src/shapes.h"
 #include <string>
 
 #include "montelux/scene/material/material_model.h"
@@ -156,6 +157,36 @@ struct Attributes {
                 at(m) = {map.index};
             },
             info.doc);
+    }
+
+    // One attribute for each part. A mix that is in no scene takes parts of one scene only.
+    void add(const ParameterInfo&, ParameterAt<MixedMaterials> at) const {
+        const auto part = [&](const char* name, MaterialIndex MixedMaterials::*member, const char* doc) {
+            attribute<M>(
+                c, name, "typing.Any",
+                [=](const M& m, const Ref<M>& r) -> nb::object {
+                    const MaterialIndex& p = at(m).*member;
+                    if (!p.is_given()) return nb::none();
+                    return as_python(Slot<Material>(scene_of_textures(r), p.index));
+                },
+                [=](M& m, nb::handle v, Ref<M>& r, const std::string& what) {
+                    const nb::object given = nb::borrow(v);
+                    if (r.scene()) {
+                        at(m).*member = {material_index(r.scene(), given, what)};
+                        return;
+                    }
+                    const Slot<Material>* slot = material_slot(given);
+                    if (!slot || !slot->scene())
+                        throw Error(what, std::string(nb::repr(v).c_str()) +
+                                              " was given; expected a material of a scene, such as "
+                                              "scene.materials[0]");
+                    require_scene(r, slot->scene(), what);
+                    at(m).*member = {slot->first()};
+                },
+                doc);
+        };
+        part("first", &MixedMaterials::first, "The material where the amount is 0.");
+        part("second", &MixedMaterials::second, "The material where the amount is 1.");
     }
 
   private:

@@ -180,6 +180,7 @@ struct ChangeField {
     void operator()(SpectrumParameter& x) const { x.texture = 7; }
     void operator()(FloatParameter& x) const { x.texture = 7; }
     void operator()(NormalMapParameter& x) const { x.map = 7; }
+    void operator()(MaterialIndex& x) const { x.index = 7; }
     void operator()(float& x) const { x += 1; }
     void operator()(int& x) const { x += 1; }
     void operator()(bool& x) const { x = !x; }

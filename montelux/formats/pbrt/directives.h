@@ -116,7 +116,9 @@ class Directives {
     void finish_options();
     void finish_materials();
     void finish_media();
-    Index material_index(const MaterialReference& reference, Location at);
+    // `by` names the referrer in messages.
+    Index material_index(const MaterialReference& reference, Location at,
+                         std::string_view by = "this shape's ");
 
     Files& files_;
     Diagnostics& diagnostics_;
@@ -142,6 +144,7 @@ class Directives {
 
     std::vector<MaterialDeclaration> materials_;
     std::vector<Index> material_indices_; // into Scene::materials, of each declaration
+    std::vector<Index> open_materials_;   // declarations that are being made
     NameTable named_materials_{"material"};
     std::vector<MaterialUse> material_uses_;
     std::vector<AlphaUse> alpha_uses_;

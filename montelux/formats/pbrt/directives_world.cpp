@@ -108,14 +108,27 @@ void Directives::finish_options() {
     result_.sampler = read_sampler(plugin(sampler_, "zsobol"), diagnostics_, seed_.value_or(0));
 }
 
-Index Directives::material_index(const MaterialReference& reference, Location at) {
+// Materials of a mix are made by a call from within.
+constexpr std::size_t most_levels = 64;
+
+Index Directives::material_index(const MaterialReference& reference, Location at, std::string_view by) {
     const Index declaration =
-        reference.by_name ? named_materials_.resolve(reference.index, at, diagnostics_, "this shape's ")
-                          : reference.index;
+        reference.by_name ? named_materials_.resolve(reference.index, at, diagnostics_, by) : reference.index;
     Index& index = material_indices_[declaration];
+    if (std::find(open_materials_.begin(), open_materials_.end(), declaration) != open_materials_.end())
+        diagnostics_.error(at, "the material depends on itself");
+    if (open_materials_.size() == most_levels)
+        diagnostics_.error(at, "materials refer to one another more than " + std::to_string(most_levels) +
+                                   " levels deep");
     if (index == no_index) {
-        result_.scene.materials.push_back(
-            make_material(materials_[declaration], builder_, textures_, spectra_, diagnostics_));
+        const FindMaterial find = [this](const std::string& name, Location place) {
+            return material_index({true, named_materials_.refer(name)}, place, "this mix's ");
+        };
+        open_materials_.push_back(declaration);
+        const Material made =
+            make_material(materials_[declaration], builder_, textures_, spectra_, find, diagnostics_);
+        open_materials_.pop_back();
+        result_.scene.materials.push_back(made);
         index = static_cast<Index>(result_.scene.materials.size() - 1);
     }
     return index;

@@ -10,7 +10,7 @@ namespace montelux::pbrt {
 namespace {
 
 // Materials of pbrt-v4 that Montelux does not have yet.
-constexpr std::array<std::string_view, 4> not_supported = {"hair", "measured", "mix", "subsurface"};
+constexpr std::array<std::string_view, 3> not_supported = {"hair", "measured", "subsurface"};
 
 // "coateddiffuse" for CoatedDiffuse.
 std::string type_name(std::string_view name) {
@@ -32,9 +32,9 @@ const std::vector<std::string>& supported_materials() {
 class MaterialMaker {
   public:
     MaterialMaker(const MaterialDeclaration& d, SceneBuilder& builder, TextureLibrary& textures,
-                  SpectrumReader& spectra, Diagnostics& diagnostics)
+                  SpectrumReader& spectra, const FindMaterial& find, Diagnostics& diagnostics)
         : r_(d.parameters, "material " + in_quotes(d.type), d.at, diagnostics), builder_(builder),
-          textures_(textures), spectra_(spectra) {}
+          textures_(textures), spectra_(spectra), find_(find) {}
 
     Material make(std::string_view type) {
         Material material;
@@ -121,6 +121,15 @@ class MaterialMaker {
             p.map = textures_.normal_map(*file, r_.at(parameter));
     }
 
+    void read(const ParameterInfo& info, MixedMaterials& m) {
+        const std::string_view parameter = name(info.pbrt_name());
+        const Parameter* p = r_.any(parameter, {ParameterType::string});
+        if (!p || p->strings.size() != 2)
+            r_.error(parameter, "'mix' needs a parameter 'string materials' with 2 names");
+        m.first.index = find_(p->strings[0], p->at);
+        m.second.index = find_(p->strings[1], p->at);
+    }
+
     // Values of textures are not known before they are evaluated: a material limits these itself.
     void check_range(const ParameterInfo& info, std::string_view parameter, const FloatParameter& p) {
         if (p.is_constant()) check_range(info, parameter, static_cast<double>(p.value));
@@ -140,6 +149,7 @@ class MaterialMaker {
     SceneBuilder& builder_;
     TextureLibrary& textures_;
     SpectrumReader& spectra_;
+    const FindMaterial& find_;
 };
 
 // Names of early files for "interface".
@@ -159,10 +169,10 @@ bool is_supported_material(const MaterialDeclaration& d, Diagnostics& diagnostic
 }
 
 Material make_material(const MaterialDeclaration& d, SceneBuilder& builder, TextureLibrary& textures,
-                       SpectrumReader& spectra, Diagnostics& diagnostics) {
+                       SpectrumReader& spectra, const FindMaterial& find, Diagnostics& diagnostics) {
     if (!is_supported_material(d, diagnostics))
         diagnostics.error(d.at, "material " + in_quotes(d.type) + " is not supported yet");
-    MaterialMaker maker(d, builder, textures, spectra, diagnostics);
+    MaterialMaker maker(d, builder, textures, spectra, find, diagnostics);
     if (!is_old_interface(d.type)) return maker.make(d.type);
     diagnostics.warn_once("material " + in_quotes(d.type), d.at,
                           "material " + in_quotes(d.type) + " is deprecated; it is read as 'interface'");

@@ -1,6 +1,7 @@
 // Materials of a pbrt scene file.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "montelux/formats/pbrt/textures.h"
@@ -16,8 +17,11 @@ struct MaterialDeclaration {
 // False for a pbrt material that is not supported yet; an error for an unknown one.
 bool is_supported_material(const MaterialDeclaration& d, Diagnostics& diagnostics);
 
+// The index in the scene of a named material, for the directive at a place.
+using FindMaterial = std::function<Index(const std::string& name, Location at)>;
+
 // The material with pbrt-v4's defaults for what is not given.
 Material make_material(const MaterialDeclaration& d, SceneBuilder& builder, TextureLibrary& textures,
-                       SpectrumReader& spectra, Diagnostics& diagnostics);
+                       SpectrumReader& spectra, const FindMaterial& find, Diagnostics& diagnostics);
 
 } // namespace montelux::pbrt

@@ -44,6 +44,10 @@ class FieldCheck {
     void operator()(std::string_view field, const NormalMapParameter& p) const {
         if (p.is_given()) index(field, "normal map", p.map, scene_.normal_maps.size());
     }
+    void operator()(std::string_view field, const MaterialIndex& r) const {
+        if (!r.is_given()) throw Error(owner_ + ", " + std::string(field) + ": no material is given");
+        index(field, "material", r.index, scene_.materials.size());
+    }
     void operator()(std::string_view field, const ImageTexture& t) const {
         index(field, "image", t.image, scene_.images.size());
     }
@@ -116,6 +120,39 @@ void check_nesting(const Scene& scene) {
     }
 }
 
+// Mixes of mixes of materials: no cycles, and at most most_levels deep.
+class MixNesting {
+  public:
+    explicit MixNesting(const Scene& scene) : scene_(scene), levels_(scene.materials.size(), unseen) {}
+
+    int levels_of(Index i) {
+        const auto* mix = std::get_if<MixMaterial>(&scene_.materials[i]);
+        if (mix == nullptr) return 1;
+        if (levels_[i] == open) throw Error(numbered("material", i) + " (Mix) depends on itself");
+        if (levels_[i] != unseen) return levels_[i];
+        levels_[i] = open;
+        check(++depth_, i);
+        const int below =
+            std::max(levels_of(mix->materials.first.index), levels_of(mix->materials.second.index));
+        --depth_;
+        check(below + 1, i);
+        return levels_[i] = below + 1;
+    }
+
+  private:
+    static constexpr int unseen = 0, open = -1;
+
+    static void check(int levels, Index i) {
+        if (levels > most_levels)
+            throw Error(numbered("material", i) + " (Mix): materials refer to one another more than " +
+                        std::to_string(most_levels) + " levels deep");
+    }
+
+    const Scene& scene_;
+    std::vector<int> levels_;
+    int depth_ = 0;
+};
+
 } // namespace
 
 void check_light(const Scene& scene, const Light& light) {
@@ -144,6 +181,8 @@ void check_materials(const Scene& scene) {
                 });
             },
             scene.materials[i]);
+    MixNesting nesting(scene);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) nesting.levels_of(static_cast<Index>(i));
 }
 
 void check_media(const Scene& scene) {

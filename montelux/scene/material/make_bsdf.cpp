@@ -7,10 +7,18 @@ namespace montelux {
 
 namespace {
 
-Frame plain_frame(const SceneView& scene, const SurfacePoint& surface) {
-    return scene.frame_follows_tangents(surface.shape->material)
-               ? Frame::from_normal_and_tangent(surface.ns, surface.dpdu)
-               : Frame::from_normal(surface.ns);
+// The material at a point: mixes choose one of theirs. Scenes without cycles end this (check_references.h).
+Index material_at(const SceneView& scene, const SurfacePoint& surface, Vec3f wo,
+                  const TextureContext& context) {
+    Index index = surface.shape->material;
+    while (const auto* mix = std::get_if<MixMaterial>(&scene.materials[index]))
+        index = mix->choose(evaluate(scene, mix->amount, context), surface.p, wo, index);
+    return index;
+}
+
+Frame plain_frame(const SceneView& scene, Index material, const SurfacePoint& surface) {
+    return scene.frame_follows_tangents(material) ? Frame::from_normal_and_tangent(surface.ns, surface.dpdu)
+                                                  : Frame::from_normal(surface.ns);
 }
 
 // `normal`: the geometric normal in the frame of the BSDF.
@@ -29,14 +37,14 @@ Bsdf tilted(const Bsdf& bsdf, Normal3f normal) {
 
 SurfaceBsdf make_bsdf(const SceneView& scene, const SurfacePoint& surface, Vec3f wo,
                       const TextureContext& context, SampledWavelengths& lambda) {
-    const Index index = surface.shape->material;
+    const Index index = material_at(scene, surface, wo, context);
     const ParameterEvaluator at(scene, index, context, lambda);
     return std::visit(
         [&](const auto& m) -> SurfaceBsdf {
             if (!m.detail.is_flat())
                 if (auto frame = tilted_frame(scene, m.detail, surface, wo, context))
                     return {tilted(m.bsdf(at), frame->to_local(surface.ng)), *frame};
-            return {m.bsdf(at), plain_frame(scene, surface)};
+            return {m.bsdf(at), plain_frame(scene, index, surface)};
         },
         scene.materials[index]);
 }

@@ -11,13 +11,14 @@
 #include "montelux/scene/material/diffuse_material.h"
 #include "montelux/scene/material/diffuse_transmission_material.h"
 #include "montelux/scene/material/interface_material.h"
+#include "montelux/scene/material/mix_material.h"
 #include "montelux/scene/material/thin_dielectric_material.h"
 
 namespace montelux {
 
 using Material = std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, ThinDielectricMaterial,
                               CoatedDiffuseMaterial, CoatedConductorMaterial, DiffuseTransmissionMaterial,
-                              InterfaceMaterial>;
+                              InterfaceMaterial, MixMaterial>;
 static_assert(std::is_trivially_copyable_v<Material>);
 
 } // namespace montelux

@@ -62,8 +62,18 @@ struct NormalMapParameter {
     bool is_given() const { return map != no_index; }
 };
 
+// Another material of the scene.
+struct MaterialIndex {
+    Index index = no_index; // into Scene::materials
+
+    bool is_given() const { return index != no_index; }
+};
+struct MixedMaterials {
+    MaterialIndex first, second;
+};
+
 // The simple fields of a parameter: visit(name, field) of SceneSpectrum, SpectrumParameter, FloatParameter,
-// float, int, bool or NormalMapParameter.
+// float, int, bool, NormalMapParameter or MaterialIndex.
 template <typename Field, typename Visit>
 void visit_leaves(std::string_view name, Field& field, Visit&& visit) {
     if constexpr (requires { field.remap; }) {
@@ -75,6 +85,9 @@ void visit_leaves(std::string_view name, Field& field, Visit&& visit) {
         visit("k", field.k);
         visit("reflectance", field.reflectance);
         visit("from_reflectance", field.from_reflectance);
+    } else if constexpr (requires { field.second.index; }) {
+        visit("first", field.first);
+        visit("second", field.second);
     } else {
         visit(name, field);
     }

@@ -82,11 +82,13 @@ TEST(SceneReferences, NoParameterIsForgotten) {
         void operator()(SpectrumParameter& p) const { p = no_color; }
         void operator()(FloatParameter& p) const { p = no_float; }
         void operator()(NormalMapParameter& p) const { p.map = 1; }
+        void operator()(MaterialIndex& p) const { p.index = 9; }
     };
     for_each_material_kind([]<typename M>(std::type_identity<M>) {
         std::size_t i = 0;
         for (std::size_t n = 0; n <= i; ++n) {
             M m;
+            if constexpr (std::is_same_v<M, MixMaterial>) m.materials = {{0}, {0}};
             i = 0;
             visit_parameters(m, [&](const ParameterInfo& info, auto& field) {
                 visit_leaves(info.name, field, [&](std::string_view, auto& leaf) {
@@ -98,6 +100,26 @@ TEST(SceneReferences, NoParameterIsForgotten) {
         }
         EXPECT_GE(i, (std::is_same_v<M, InterfaceMaterial> ? 2u : 3u)) << M::name;
     });
+}
+
+TEST(SceneReferences, MixesHaveNoCycles) {
+    EXPECT_EQ(error_of_material(MixMaterial{}), "test: material 2 (Mix), first: no material is given");
+    EXPECT_EQ(error_of_material(MixMaterial{.materials = {{0}, {3}}}),
+              "test: material 2 (Mix), second: there is no material 3; the scene has 3");
+    EXPECT_EQ(error_of_material(MixMaterial{.materials = {{0}, {1}}}), "");
+    EXPECT_EQ(error_of_material(MixMaterial{.materials = {{0}, {2}}}),
+              "test: material 2 (Mix) depends on itself");
+    const auto chain = [](Index length) {
+        return finish_error([=](Scene& s) {
+            const auto first = static_cast<Index>(s.materials.size());
+            s.materials.emplace_back(DiffuseMaterial{});
+            for (Index i = 0; i < length; ++i)
+                s.materials.emplace_back(MixMaterial{.materials = {{first + i}, {first + i}}});
+        });
+    };
+    EXPECT_EQ(chain(63), "");
+    EXPECT_NE(chain(64).find("more than 64 levels deep"), std::string::npos) << chain(64);
+    EXPECT_NE(chain(100000).find("more than 64 levels deep"), std::string::npos);
 }
 
 TEST(SceneReferences, MediaNameTheParameter) {
