@@ -112,7 +112,7 @@ void SceneTables::add_materials(const Scene& scene) {
     std::map<CoatingKey, Index> index_of;
     std::vector<CoatingKey> keys;
     for (const Material& material : scene.materials) {
-        textured_.push_back(is_textured(material) ? 1 : 0);
+        textured_.push_back(uses_coordinates(material) ? 1 : 0);
         follows_tangents_.push_back(has_textured_bsdf(material) || is_anisotropic(material) ? 1 : 0);
         Index table = no_index;
         if (auto key = closed_form(SceneView(scene), material)) {

@@ -75,7 +75,7 @@ struct SceneView {
     // A copy, for tables.
     Spectrum spectrum(SceneSpectrum s) const { return spectrum_of(s, spectra); }
     bool is_constant(SceneSpectrum s) const { return s.is_constant() || spectra[s.index].is_constant(); }
-    // The material's parameters use textures, so coordinates and footprints are needed.
+    // The material's parameters use textures, or its BSDF the coordinates: these and footprints are needed.
     bool is_textured(Index material) const { return textured[material] != 0; }
     // The BSDF's frame is aligned with the tangents: its lobes depend on them, or its textures need them
     // anyway.

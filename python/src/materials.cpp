@@ -159,6 +159,49 @@ struct Attributes {
             info.doc);
     }
 
+    // What is set last counts; what does not reads as None.
+    void add(const ParameterInfo&, ParameterAt<HairColorParameter> at) const {
+        const auto colour = [&](const char* name, SpectrumParameter HairColorParameter::*member, int source,
+                                RgbMeaning meaning, const char* doc) {
+            attribute<M>(
+                c, name, spectrum_type,
+                [=](const M& m, const Ref<M>& r) -> nb::object {
+                    if (at(m).source != source) return nb::none();
+                    return spectrum_or_texture(at(m).*member, r);
+                },
+                [=](M& m, nb::handle v, Ref<M>& r, const std::string& what) {
+                    at(m).*member = spectrum_parameter_of(v, meaning, r, what);
+                    at(m).source = source;
+                },
+                doc);
+        };
+        const auto melanin = [&](const char* name, FloatParameter HairColorParameter::*member,
+                                 const char* doc) {
+            attribute<M>(
+                c, name, "typing.Any",
+                [=](const M& m, const Ref<M>& r) -> nb::object {
+                    if (at(m).source != HairColorParameter::melanins) return nb::none();
+                    return number_or_texture(at(m).*member, scene_of_textures(r));
+                },
+                [=](M& m, nb::handle v, Ref<M>& r, const std::string& what) {
+                    const FloatParameter p = float_parameter_of(v, r, what);
+                    if (p.is_constant())
+                        require_range(static_cast<double>(p.value), 0, std::numeric_limits<double>::max(), v,
+                                      what);
+                    at(m).*member = p;
+                    at(m).source = HairColorParameter::melanins;
+                },
+                doc);
+        };
+        colour("sigma_a", &HairColorParameter::sigma_a, HairColorParameter::absorption, RgbMeaning::unbounded,
+               "Absorption coefficient, per radius of the hair.");
+        colour("reflectance", &HairColorParameter::reflectance, HairColorParameter::reflectances,
+               RgbMeaning::albedo, "Reflectance of many hairs together, 0 to 1.");
+        melanin("eumelanin", &HairColorParameter::eumelanin,
+                "Concentration of the brown pigment: 0.3 is blond, 8 black.");
+        melanin("pheomelanin", &HairColorParameter::pheomelanin, "Concentration of the red pigment.");
+    }
+
     // One attribute for each part. A mix that is in no scene takes parts of one scene only.
     void add(const ParameterInfo&, ParameterAt<MixedMaterials> at) const {
         const auto part = [&](const char* name, MaterialIndex MixedMaterials::*member, const char* doc) {

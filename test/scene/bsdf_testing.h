@@ -45,6 +45,7 @@ struct BsdfCase {
     std::string name;
     std::function<Bsdf()> make; // called within the test: coating tables take a second under sanitizers
     bool exact_pdf = true;      // the reported pdf is the sampled density
+    bool reciprocal = true;
 };
 
 inline const CoatingTable& coating_table(float alpha) {
@@ -162,6 +163,10 @@ inline std::vector<BsdfCase> bsdf_cases() {
         {"layered_diffuse_fog", [=] { return in_fog(layered_diffuse(0.4f, 0.6f), 5); }, false},
         {"layered_conductor_fog", [=] { return in_fog(layered_conductor(0.2f, 0.3f), 2); }, false},
         {"layered_conductor_smooth_fog", [=] { return in_fog(layered_conductor(0, 0), 10); }, false},
+        // The offset h belongs to wo: light that comes back along a path meets the hair at another one.
+        {"hair", [=] { return HairBsdf::make(0.4f, 1.55f, 0.1f * k, 0.3f, 0.3f, 2); }, true, false},
+        {"hair_rough", [=] { return HairBsdf::make(-0.8f, 1.4f, 0.1f * eta, 0.9f, 0.8f, 4); }, true, false},
+        {"hair_glossy", [=] { return HairBsdf::make(0, 1.55f, 0.1f * eta, 0.15f, 0.2f, 0); }, true, false},
     };
 }
 

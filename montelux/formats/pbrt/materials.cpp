@@ -10,7 +10,7 @@ namespace montelux::pbrt {
 namespace {
 
 // Materials of pbrt-v4 that Montelux does not have yet.
-constexpr std::array<std::string_view, 3> not_supported = {"hair", "measured", "subsurface"};
+constexpr std::array<std::string_view, 2> not_supported = {"measured", "subsurface"};
 
 // "coateddiffuse" for CoatedDiffuse.
 std::string type_name(std::string_view name) {
@@ -119,6 +119,31 @@ class MaterialMaker {
         const std::string_view parameter = name(info.pbrt_name());
         if (std::optional<std::string> file = r_.string(parameter))
             p.map = textures_.normal_map(*file, r_.at(parameter));
+    }
+
+    // The first that is given of sigma_a, the reflectance (or color) and the melanins; pbrt-v4 warns of others.
+    void read(const ParameterInfo&, HairColorParameter& c) {
+        const auto sigma_a = textures_.find_spectrum(r_, "sigma_a", RgbMeaning::unbounded);
+        auto reflectance = textures_.find_spectrum(r_, "reflectance", RgbMeaning::albedo);
+        const auto color = textures_.find_spectrum(r_, "color", RgbMeaning::albedo);
+        if (!reflectance) reflectance = color;
+        const auto eumelanin = textures_.find_float(r_, "eumelanin");
+        const auto pheomelanin = textures_.find_float(r_, "pheomelanin");
+        const bool melanin = eumelanin || pheomelanin;
+        if ((sigma_a ? 1 : 0) + (reflectance ? 1 : 0) + (melanin ? 1 : 0) > 1)
+            r_.diagnostics().warn(r_.at(), "'hair' has several of 'sigma_a', 'reflectance' and melanins; '" +
+                                               std::string(sigma_a ? "sigma_a" : "reflectance") +
+                                               "' is used");
+        if (sigma_a) {
+            c.sigma_a = *sigma_a;
+            c.source = HairColorParameter::absorption;
+        } else if (reflectance) {
+            c.reflectance = *reflectance;
+            c.source = HairColorParameter::reflectances;
+        } else if (melanin) {
+            c.eumelanin = eumelanin.value_or(FloatParameter{});
+            c.pheomelanin = pheomelanin.value_or(FloatParameter{});
+        }
     }
 
     void read(const ParameterInfo& info, MixedMaterials& m) {

@@ -8,6 +8,7 @@
 #include "montelux/scene/bsdf/dielectric.h"
 #include "montelux/scene/bsdf/diffuse.h"
 #include "montelux/scene/bsdf/diffuse_transmission.h"
+#include "montelux/scene/bsdf/hair.h"
 #include "montelux/scene/bsdf/layered.h"
 #include "montelux/scene/bsdf/thin_dielectric.h"
 
@@ -15,6 +16,6 @@ namespace montelux {
 
 using UntiltedBsdf =
     std::variant<DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf, ThinDielectricBsdf,
-                 CoatedDiffuseBsdf, LayeredBsdf<DiffuseBsdf>, LayeredBsdf<ConductorBsdf>>;
+                 CoatedDiffuseBsdf, LayeredBsdf<DiffuseBsdf>, LayeredBsdf<ConductorBsdf>, HairBsdf>;
 
 } // namespace montelux

@@ -10,6 +10,7 @@
 #include "montelux/scene/material/dielectric_material.h"
 #include "montelux/scene/material/diffuse_material.h"
 #include "montelux/scene/material/diffuse_transmission_material.h"
+#include "montelux/scene/material/hair_material.h"
 #include "montelux/scene/material/interface_material.h"
 #include "montelux/scene/material/mix_material.h"
 #include "montelux/scene/material/thin_dielectric_material.h"
@@ -18,7 +19,7 @@ namespace montelux {
 
 using Material = std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, ThinDielectricMaterial,
                               CoatedDiffuseMaterial, CoatedConductorMaterial, DiffuseTransmissionMaterial,
-                              InterfaceMaterial, MixMaterial>;
+                              InterfaceMaterial, MixMaterial, HairMaterial>;
 static_assert(std::is_trivially_copyable_v<Material>);
 
 } // namespace montelux

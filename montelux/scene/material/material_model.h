@@ -65,7 +65,9 @@ void visit_fields(M& material, Visit&& visit) {
 
 // Whether making the BSDF, or its frame, looks up a texture.
 bool is_textured(const Material& material);
-// The same without surface detail.
+// Whether the BSDF needs texture coordinates, for textures or itself.
+bool uses_coordinates(const Material& material);
+// The same as is_textured without surface detail.
 bool has_textured_bsdf(const Material& material);
 // Whether the BSDF's lobes depend on the direction of the tangents.
 bool is_anisotropic(const Material& material);

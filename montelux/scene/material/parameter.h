@@ -29,7 +29,8 @@ struct ParameterInfo {
     // conductor.eta
     std::string pbrt_name() const {
         std::string result = prefix.empty() ? std::string() : std::string(prefix) + '.';
-        for (char c : pbrt.empty() ? name : pbrt)
+        if (!pbrt.empty()) return result.append(pbrt);
+        for (char c : name)
             if (c != '_') result += c;
         return result;
     }
@@ -72,6 +73,16 @@ struct MixedMaterials {
     MaterialIndex first, second;
 };
 
+// Absorption inside hair: given itself, or computed from the reflectance of many hairs, or from the
+// concentrations of the two melanins.
+struct HairColorParameter {
+    enum Source : int { melanins, absorption, reflectances };
+
+    SpectrumParameter sigma_a{}, reflectance{};
+    FloatParameter eumelanin{1.3f}, pheomelanin{};
+    int source = melanins;
+};
+
 // The simple fields of a parameter: visit(name, field) of SceneSpectrum, SpectrumParameter, FloatParameter,
 // float, int, bool, NormalMapParameter or MaterialIndex.
 template <typename Field, typename Visit>
@@ -85,6 +96,12 @@ void visit_leaves(std::string_view name, Field& field, Visit&& visit) {
         visit("k", field.k);
         visit("reflectance", field.reflectance);
         visit("from_reflectance", field.from_reflectance);
+    } else if constexpr (requires { field.eumelanin; }) {
+        visit("sigma_a", field.sigma_a);
+        visit("reflectance", field.reflectance);
+        visit("eumelanin", field.eumelanin);
+        visit("pheomelanin", field.pheomelanin);
+        visit("source", field.source);
     } else if constexpr (requires { field.second.index; }) {
         visit("first", field.first);
         visit("second", field.second);

@@ -71,6 +71,20 @@ class ParameterEvaluator {
         return b;
     }
 
+    // From the texture coordinate v: -1 to 1 across a hair.
+    float offset_across() const { return std::clamp(2 * context_.uv.y - 1, -1.0f, 1.0f); }
+
+    SampledSpectrum hair_absorption(const HairColorParameter& c, float beta_n) const {
+        if (c.source == HairColorParameter::absorption) return clamp_zero((*this)(c.sigma_a));
+        if (c.source == HairColorParameter::reflectances)
+            return HairBsdf::sigma_a_of_reflectance(reflectance(c.reflectance),
+                                                    std::clamp(beta_n, 0.01f, 1.0f));
+        // Absorption by one unit of eumelanin and pheomelanin (d'Eon et al. 2011), as in pbrt-v4.
+        const float e = std::max((*this)(c.eumelanin), 0.0f), p = std::max((*this)(c.pheomelanin), 0.0f);
+        const Vec3f rgb = e * Vec3f{0.419f, 0.697f, 1.37f} + p * Vec3f{0.187f, 0.4f, 1.05f};
+        return RgbUnboundedSpectrum(RgbColorSpace::srgb(), rgb).sample(lambda_);
+    }
+
     // Null where the closed form of CoatingTable does not hold for the material.
     const CoatingTable* coating_table() const { return scene_.coating(material_); }
 

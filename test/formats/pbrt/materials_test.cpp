@@ -103,7 +103,8 @@ TEST(PbrtMaterials, AttributesKnowTheParametersOfEachMaterial) {
         M m;
         visit_parameters(m, []<typename Field>(const ParameterInfo& info, const Field&) {
             if constexpr (!std::is_same_v<Field, RoughnessParameter> &&
-                          !std::is_same_v<Field, MetalParameter>) {
+                          !std::is_same_v<Field, MetalParameter> &&
+                          !std::is_same_v<Field, HairColorParameter>) {
                 EXPECT_TRUE(pbrt::has_parameter(pbrt::PluginKind::material, info.pbrt_name()))
                     << M::name << ' ' << info.pbrt_name() << ": to be added to plugin_parameters.cpp";
             }
@@ -113,7 +114,8 @@ TEST(PbrtMaterials, AttributesKnowTheParametersOfEachMaterial) {
 
 const char* const all_materials[] = {
     "diffuse",       "conductor",       "dielectric",          "thindielectric",
-    "coateddiffuse", "coatedconductor", "diffusetransmission", "interface"};
+    "coateddiffuse", "coatedconductor", "diffusetransmission", "interface",
+    "hair"};
 
 TEST(PbrtMaterials, EachHasNormalMapAndBumps) {
     TemporaryFolder folder;
@@ -161,12 +163,13 @@ TEST(PbrtMaterials, NamedOnesMayFollowAndUnusedOnesGiveAWarning) {
     Warnings warnings;
     SceneDescription d = parse_world(
         "LightSource \"point\" NamedMaterial \"a\" Shape \"sphere\" Shape \"disk\" MakeNamedMaterial "
-        "\"a\" \"string type\" \"dielectric\"\nMaterial \"hair\"",
+        "\"a\" \"string type\" \"dielectric\"\nMaterial \"subsurface\"",
         &warnings);
     EXPECT_EQ(d.scene.materials.size(), 1u);
     EXPECT_TRUE(std::holds_alternative<DielectricMaterial>(d.scene.materials[d.scene.shapes[1].material]));
-    EXPECT_EQ(warnings.messages(),
-              std::vector<std::string>{"scene:3:1: material 'hair' is not supported yet; no shape uses it"});
+    EXPECT_EQ(
+        warnings.messages(),
+        std::vector<std::string>{"scene:3:1: material 'subsurface' is not supported yet; no shape uses it"});
 }
 
 TEST(PbrtMaterials, MixesOfNamedMaterials) {
@@ -210,6 +213,42 @@ TEST(PbrtMaterials, MixesThatAreNoneSayWhere) {
     }
     EXPECT_NE(test::world_error(chain + "NamedMaterial \"m69\" Shape \"sphere\"").find("64 levels deep"),
               std::string::npos);
+}
+
+TEST(PbrtMaterials, Hair) {
+    auto m = material<HairMaterial>("Material \"hair\"");
+    EXPECT_EQ(m.color.source, HairColorParameter::melanins);
+    EXPECT_EQ(m.color.eumelanin.value, 1.3f);
+    EXPECT_EQ(m.color.pheomelanin.value, 0);
+    EXPECT_EQ(m.eta.value, 1.55f);
+    EXPECT_EQ(m.beta_m.value, 0.3f);
+    EXPECT_EQ(m.beta_n.value, 0.3f);
+    EXPECT_EQ(m.alpha.value, 2);
+    m = material<HairMaterial>("Material \"hair\" \"float pheomelanin\" 0.7 \"float beta_m\" 0.2 "
+                               "\"float beta_n\" 0.4 \"float alpha\" 3 \"float eta\" 1.4");
+    EXPECT_EQ(m.color.eumelanin.value, 0);
+    EXPECT_EQ(m.color.pheomelanin.value, 0.7f);
+    EXPECT_EQ(m.beta_m.value, 0.2f);
+    EXPECT_EQ(m.beta_n.value, 0.4f);
+    EXPECT_EQ(m.alpha.value, 3);
+    EXPECT_EQ(m.eta.value, 1.4f);
+    m = material<HairMaterial>("Material \"hair\" \"spectrum sigma_a\" [ 400 1 600 3 ]");
+    EXPECT_EQ(m.color.source, HairColorParameter::absorption);
+    EXPECT_FLOAT_EQ(m.of(m.color.sigma_a.value)(500), 2);
+    for (const char* name : {"color", "reflectance"}) {
+        m = material<HairMaterial>("Material \"hair\" \"spectrum " + std::string(name) +
+                                   "\" [ 400 0.2 600 0.6 ]");
+        EXPECT_EQ(m.color.source, HairColorParameter::reflectances) << name;
+        EXPECT_FLOAT_EQ(m.of(m.color.reflectance.value)(500), 0.4f);
+    }
+    Warnings warnings;
+    parse_world("LightSource \"point\" Material \"hair\" \"float eumelanin\" 1 \"rgb color\" [ 0.5 0.5 0.5 ] "
+                "Shape \"sphere\"",
+                &warnings);
+    EXPECT_EQ(
+        warnings.messages(),
+        std::vector<std::string>{"scene:2:23: 'hair' has several of 'sigma_a', 'reflectance' and melanins; "
+                                 "'reflectance' is used"});
 }
 
 TEST(PbrtTextures, NodesAndDefaults) {
