@@ -6,7 +6,7 @@ namespace {
 
 float safe_sqrt(float x) { return std::sqrt(std::max(x, 0.0f)); }
 float squared(float x) { return x * x; }
-float power(float x, int n) {
+float whole_power(float x, int n) {
     float result = 1;
     for (; n > 0; n >>= 1, x *= x)
         if (n & 1) result *= x;
@@ -86,8 +86,8 @@ HairBsdf HairBsdf::make(float h, float eta, SampledSpectrum sigma_a, float beta_
     b.sigma_a = sigma_a;
     const float m = std::clamp(beta_m, 0.01f, 1.0f), n = std::clamp(beta_n, 0.01f, 1.0f);
     // Equations 7 and 8.
-    b.variance = squared(0.726f * m + 0.812f * m * m + 3.7f * power(m, 20));
-    b.scale = 0.626657069f * (0.265f * n + 1.194f * n * n + 5.372f * power(n, 22)); // sqrt(pi / 8)
+    b.variance = squared(0.726f * m + 0.812f * m * m + 3.7f * whole_power(m, 20));
+    b.scale = 0.626657069f * (0.265f * n + 1.194f * n * n + 5.372f * whole_power(n, 22)); // sqrt(pi / 8)
     b.sin_tilt = std::sin(tilt * pi_f / 180);
     b.cos_tilt = safe_sqrt(1 - squared(b.sin_tilt));
     return b;
@@ -95,8 +95,8 @@ HairBsdf HairBsdf::make(float h, float eta, SampledSpectrum sigma_a, float beta_
 
 SampledSpectrum HairBsdf::sigma_a_of_reflectance(SampledSpectrum reflectance, float beta_n) {
     const float n = beta_n;
-    const float d = 5.969f - 0.215f * n + 2.532f * n * n - 10.73f * power(n, 3) + 5.574f * power(n, 4) +
-                    0.245f * power(n, 5);
+    const float d = 5.969f - 0.215f * n + 2.532f * n * n - 10.73f * whole_power(n, 3) +
+                    5.574f * whole_power(n, 4) + 0.245f * whole_power(n, 5);
     SampledSpectrum result;
     for (int k = 0; k < spectrum_samples; ++k)
         result.set(k, squared(std::log(std::clamp(reflectance[k], 1e-6f, 1.0f)) / d));

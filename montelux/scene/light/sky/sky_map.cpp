@@ -39,8 +39,8 @@ void add_sun(Image& picture, const EnvironmentGrid& grid, const SkyModel& sky) {
     const Vec3d rgb = RgbColorSpace::srgb().rgb_from_xyz() * xyz;
     const double each = disc.solid_angle() / (per_side * per_side);
     for (const std::size_t texel : hits) {
-        const auto width = static_cast<std::size_t>(grid.width());
-        const double share = each / grid.solid_angle(static_cast<int>(texel / width));
+        const auto columns = static_cast<std::size_t>(grid.width());
+        const double share = each / grid.solid_angle(static_cast<int>(texel / columns));
         for (int c = 0; c < 3; ++c)
             picture.f32()[texel * 3 + static_cast<std::size_t>(c)] +=
                 static_cast<float>(share * std::max(0.0, rgb[c]));
