@@ -247,7 +247,7 @@ TEST(PbrtMaterials, Hair) {
                 &warnings);
     EXPECT_EQ(
         warnings.messages(),
-        std::vector<std::string>{"scene:2:23: 'hair' has several of 'sigma_a', 'reflectance' and melanins; "
+        std::vector<std::string>{"scene:2:21: 'hair' has several of 'sigma_a', 'reflectance' and melanins; "
                                  "'reflectance' is used"});
 }
 
