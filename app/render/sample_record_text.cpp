@@ -168,8 +168,10 @@ void add_scattering(Text& t, const PathVertex& v) {
 }
 
 const char* name_of(const Quadric& quadric) {
-    return std::visit(
-        Overloaded{[](const Sphere&) { return "a sphere"; }, [](const Disk&) { return "a disk"; }}, quadric);
+    return std::visit(Overloaded{[](const Sphere&) { return "a sphere"; },
+                                 [](const Disk&) { return "a disk"; },
+                                 [](const Cylinder&) { return "a cylinder"; }},
+                      quadric);
 }
 
 void add_vertex(Text& t, std::size_t number, const PathVertex& v, const Scene& scene) {

@@ -258,6 +258,10 @@ class SceneHasher {
         const auto& [height, radius, inner_radius, phi_max, world_from_object] = d;
         all(height, radius, inner_radius, phi_max, world_from_object);
     }
+    void add(const Cylinder& c) {
+        const auto& [radius, z_min, z_max, phi_max, world_from_object] = c;
+        all(radius, z_min, z_max, phi_max, world_from_object);
+    }
     void add(const MeshIndex& i) {
         const auto& [index] = i;
         add(index);

@@ -339,6 +339,15 @@ void bind_scene(nb::module_& m) {
             "radius"_a, "material"_a, nb::kw_only(), "inner_radius"_a = 0., "height"_a = 0.,
             "transform"_a = nb::none(), "light"_a = nb::none(),
             "The points of the plane z = height between two radii; its front is +z. See add_mesh.")
+        .def(
+            "add_cylinder",
+            [](const SceneObject& s, double radius, const nb::object& material, double z_min, double z_max,
+               const nb::object& transform, const nb::object& light) {
+                return add_cylinder(s.holder, radius, z_min, z_max, material, transform, light);
+            },
+            "radius"_a, "material"_a, nb::kw_only(), "z_min"_a = -1., "z_max"_a = 1.,
+            "transform"_a = nb::none(), "light"_a = nb::none(),
+            "An open cylinder around the z axis; its front is outside. See add_mesh.")
         .def("add_environment", &add_environment, "image"_a, nb::kw_only(), "scale"_a = 1.,
              "world_from_light"_a = nb::none(),
              "Light from everywhere, by a map, square (equal-area) or twice as wide as high "

@@ -17,9 +17,11 @@ std::string kind_of(const ShapeRef& r) {
     return visit_geometry(r.scene()->read().scene, r.value(),
                           Overloaded{[](const TriangleMesh&) { return "mesh"; },
                                      [](const Quadric& quadric) {
-                                         return std::visit(Overloaded{[](const Sphere&) { return "sphere"; },
-                                                                      [](const Disk&) { return "disk"; }},
-                                                           quadric);
+                                         return std::visit(
+                                             Overloaded{[](const Sphere&) { return "sphere"; },
+                                                        [](const Disk&) { return "disk"; },
+                                                        [](const Cylinder&) { return "cylinder"; }},
+                                             quadric);
                                      }});
 }
 
@@ -169,9 +171,22 @@ nb::object add_disk(const SceneRef& scene, double radius, double inner_radius, d
     return added(scene, "add_disk", disk, disk.world_from_object.swaps_handedness(), material, emission);
 }
 
+nb::object add_cylinder(const SceneRef& scene, double radius, double z_min, double z_max,
+                        const nb::object& material, const nb::object& transform, const nb::object& emission) {
+    if (!positive(radius)) throw Error("add_cylinder, radius", "expected a number above zero");
+    if (!(z_min < z_max)) throw Error("add_cylinder, z_max", "expected a number above z_min");
+    Cylinder cylinder;
+    cylinder.radius = static_cast<float>(radius);
+    cylinder.z_min = static_cast<float>(z_min);
+    cylinder.z_max = static_cast<float>(z_max);
+    cylinder.world_from_object = transform_of(transform, "add_cylinder, transform");
+    return added(scene, "add_cylinder", cylinder, cylinder.world_from_object.swaps_handedness(), material,
+                 emission);
+}
+
 void bind_shapes(nb::module_& m) {
     nb::class_<ShapeRef> c(m, "Shape", "A shape of a scene: its material, its light, its side.");
-    c.def_prop_ro("kind", &kind_of, "'mesh', 'sphere' or 'disk'.")
+    c.def_prop_ro("kind", &kind_of, "'mesh', 'sphere', 'disk' or 'cylinder'.")
         .def_prop_rw(
             "material",
             [](const ShapeRef& r) -> nb::object {

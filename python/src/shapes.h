@@ -16,6 +16,8 @@ nb::object add_sphere(const SceneRef& scene, double radius, const nb::object& ce
                       const nb::object& material, const nb::object& transform, const nb::object& emission);
 nb::object add_disk(const SceneRef& scene, double radius, double inner_radius, double height,
                     const nb::object& material, const nb::object& transform, const nb::object& emission);
+nb::object add_cylinder(const SceneRef& scene, double radius, double z_min, double z_max,
+                        const nb::object& material, const nb::object& transform, const nb::object& emission);
 
 // The index of a material in a scene; a detached one is added to it.
 Index material_index(const SceneRef& scene, const nb::object& material, const std::string& what);

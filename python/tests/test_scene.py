@@ -195,6 +195,10 @@ def test_meshes_textures_and_environments():
     assert 0.1 < scene.render(spp=16).layers["albedo"].mean() < 0.9
     scene.add_disk(0.5, montelux.Conductor(), height=1)
     assert scene.render(spp=4).layers["depth"][8, 8] == pytest.approx(3, abs=1e-3)
+    tube = scene.add_cylinder(0.5, montelux.Conductor(), z_min=0.5, z_max=1.5)
+    assert tube.kind == "cylinder"
+    with pytest.raises(montelux.Error, match="add_cylinder, z_max"):
+        scene.add_cylinder(1, material, z_min=1, z_max=-1)
     other = montelux.Scene()
     with pytest.raises(montelux.Error, match="another scene"):
         other.add_sphere(1, material)

@@ -194,6 +194,22 @@ class BruteForce {
             accept(t, margin, shape, 0, instance, t_max);
         }
     }
+    void try_quadric(const Cylinder& s, Index shape, Index instance, Vec3d o, Vec3d d, double t_max) const {
+        const double r = s.radius, a = d.x * d.x + d.y * d.y, b = o.x * d.x + o.y * d.y,
+                     c = o.x * o.x + o.y * o.y - r * r;
+        const double discriminant = b * b - a * c;
+        if (discriminant < 0) {
+            closest_miss_ = std::min(closest_miss_, -discriminant / (a * r * r));
+            return;
+        }
+        for (const double sign : {-1.0, 1.0}) {
+            const double t = (-b + sign * std::sqrt(discriminant)) / a;
+            const Vec3d p = o + t * d;
+            const double margin = std::min({azimuth_margin(p, s.phi_max), (p.z - s.z_min) / r,
+                                            (s.z_max - p.z) / r, discriminant / (a * r * r)});
+            accept(t, margin, shape, 0, instance, t_max);
+        }
+    }
     void try_quadric(const Disk& s, Index shape, Index instance, Vec3d o, Vec3d d, double t_max) const {
         if (d.z == 0) return;
         double t = (s.height - o.z) / d.z;

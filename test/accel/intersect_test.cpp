@@ -97,6 +97,32 @@ TEST(Intersect, PartialAndTransformedQuadrics) {
     expect_same_hits(std::move(scene), 20000, 6);
 }
 
+TEST(Intersect, Cylinders) {
+    Draws draws(11);
+    Scene scene;
+    for (int i = 0; i < 16; ++i)
+        add_shape(scene, Quadric(Cylinder{.radius = draws.uniform(0.1f, 0.4f),
+                                          .z_min = draws.uniform(-0.5f, 0),
+                                          .z_max = draws.uniform(0.05f, 0.5f),
+                                          .phi_max = i % 4 == 0 ? 6.2831853f : draws.uniform(0.5f, 6),
+                                          .world_from_object = draws.transform(1, i % 2 == 0)}));
+    expect_same_hits(std::move(scene), 20000, 12);
+}
+
+// Rays along the axis pass through the open ends; rays from within meet the wall.
+TEST(Intersect, CylindersAreOpen) {
+    Scene scene;
+    add_shape(scene, Quadric(Cylinder{}));
+    const World world(std::move(scene));
+    Hit hit;
+    for (const float x : {0.0f, 0.5f, 2.0f})
+        EXPECT_FALSE(world.accelerator.intersect({{x, 0, -5}, {0, 0, 1}}, hit)) << x;
+    ASSERT_TRUE(world.accelerator.intersect({{0, 0, 0.5f}, {-1, 0, 0}}, hit));
+    EXPECT_FLOAT_EQ(hit.t, 1);
+    ASSERT_TRUE(world.accelerator.intersect({{0, -3, 0.5f}, {0, 2, 0}}, hit));
+    EXPECT_FLOAT_EQ(hit.t, 1);
+}
+
 TEST(Intersect, InstancesOfMeshesAndQuadrics) {
     Draws draws(7);
     Scene scene;

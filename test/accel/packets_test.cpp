@@ -17,6 +17,8 @@ Scene scene_of_all_geometry() {
     const Quadric holed = Sphere{.radius = 0.7f, .z_min = -0.7f, .z_max = 0.4f, .world_from_object = {}};
     scene.shapes[add_shape(scene, holed)].alpha = {0.5f};
     add_shape(scene, Quadric(Disk{.height = -0.5f, .radius = 3, .world_from_object = {}}));
+    add_shape(scene,
+              Quadric(Cylinder{.radius = 0.4f, .phi_max = 5, .world_from_object = draws.transform(1, true)}));
     const Index mesh = add_shape(scene, soup(draws, 50, 0.6f), false);
     const Index sphere = add_shape(
         scene, Quadric(Sphere{.radius = 0.3f, .z_min = -0.3f, .z_max = 0.3f, .world_from_object = {}}),

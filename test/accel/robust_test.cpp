@@ -147,6 +147,23 @@ TEST(Robust, RaysLeaveSpheres) {
         20000, "sphere");
 }
 
+TEST(Robust, RaysLeaveCylinders) {
+    for (const bool whole : {false, true})
+        expect_no_self_hits(
+            [&](Scene& scene, Vec3f center, float size, Draws& draws) {
+                const double angle = draws.uniform(0, 360);
+                const Vec3d axis(draws.direction());
+                add_shape(scene, Quadric(Cylinder{.radius = 0.5f * size,
+                                                  .z_min = -0.5f * size,
+                                                  .z_max = size,
+                                                  .phi_max = whole ? 6.2831853f : 4,
+                                                  .world_from_object = Transform::translate(Vec3d(center)) *
+                                                                       Transform::rotate(angle, axis) *
+                                                                       Transform::scale({1, -0.7, 0.5})}));
+            },
+            20000, whole ? "cylinder" : "part of a cylinder");
+}
+
 // The size in the transform instead of in the radius.
 TEST(Robust, RaysLeaveScaledSpheresAndDisks) {
     for (bool disk : {false, true})

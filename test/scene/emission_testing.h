@@ -127,6 +127,14 @@ inline void add_quadrics(std::vector<Case>& cases) {
         const Vec3d p = t.inverse_point(Vec3d(s.ray.o));
         return Vec2d{(p.z + 0.5) / 1.4, turn_fraction(p.x, p.y) * 2 * pi / 4};
     });
+    const Quadric tube =
+        Cylinder{.radius = 0.5f, .z_min = -1, .z_max = 2, .phi_max = 4, .world_from_object = t};
+    auto on_tube = [t](const EmissionSample& s, Index) {
+        const Vec3d p = t.inverse_point(Vec3d(s.ray.o));
+        return Vec2d{(p.z + 1) / 3, turn_fraction(p.x, p.y) * 2 * pi / 4};
+    };
+    add("part of a cylinder", tube, 6, false, on_tube);
+    add("part of a cylinder, of two sides", tube, 6, true, on_tube);
     // Uniform in the sphere's own space.
     const Quadric ellipsoid = Sphere{.world_from_object = t * Transform::scale({1, 0.6, 0.8})};
     add("ellipsoid", ellipsoid, world_area(ellipsoid), false, [t](const EmissionSample& s, Index) {

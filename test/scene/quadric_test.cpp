@@ -20,7 +20,9 @@ TEST(Quadrics, DerivativesAreThoseOfTheCoordinates) {
         Sphere{.radius = 2, .z_min = -2, .z_max = 2, .world_from_object = place},
         Sphere{.radius = 2, .z_min = -1, .z_max = 1.5f, .phi_max = 0.8f, .world_from_object = place},
         Disk{.height = 0.5f, .radius = 2, .world_from_object = place},
-        Disk{.radius = 2, .inner_radius = 0.5f, .phi_max = 3, .world_from_object = place}};
+        Disk{.radius = 2, .inner_radius = 0.5f, .phi_max = 3, .world_from_object = place},
+        Cylinder{.radius = 2, .world_from_object = place},
+        Cylinder{.radius = 0.5f, .z_min = 1, .z_max = 1.5f, .phi_max = 0.8f, .world_from_object = place}};
     TestUniforms u(3);
     for (const Quadric& quadric : quadrics)
         for (int i = 0; i < 200; ++i) {
@@ -50,6 +52,14 @@ TEST(Quadrics, AreasInClosedForm) {
                 4 * 0.5 * 3 * 3, 1e-4);
     EXPECT_NEAR(world_area(Disk{.radius = 2, .world_from_object = Transform::scale({3, 0.5, 9})}),
                 pi * 4 * 1.5, 1e-3);
+    EXPECT_NEAR(world_area(Cylinder{
+                    .radius = 1.5f, .z_min = 1, .z_max = 3, .phi_max = 2, .world_from_object = twice}),
+                4 * 2 * 1.5 * 2, 1e-4);
+    // Stretched along its axis, and to an ellipse of half axes 1 and 1/2, whose circumference is
+    // 4 E(m = 3/4).
+    EXPECT_NEAR(world_area(Cylinder{.world_from_object = Transform::scale({1, 1, 3})}), 2 * pi * 6, 1e-4);
+    EXPECT_NEAR(world_area(Cylinder{.world_from_object = Transform::scale({1, 0.5, 3})}), 4.8442241102738 * 6,
+                1e-3);
     // Oblate spheroid with axes 1, 1, 1/2.
     double e = std::sqrt(0.75);
     EXPECT_NEAR(world_area(Sphere{.world_from_object = Transform::scale({1, 1, 0.5})}),
@@ -62,7 +72,8 @@ TEST(Quadrics, AreaSamplesLieOnTheSurfaceWithTheirDensity) {
     const Quadric cases[] = {
         Sphere{.radius = 2, .z_min = -2, .z_max = 2, .world_from_object = {}},
         Sphere{.z_min = -0.3f, .z_max = 0.8f, .phi_max = 4, .world_from_object = odd},
-        Disk{.height = 0.5f, .radius = 2, .inner_radius = 0.5f, .phi_max = 5, .world_from_object = odd}};
+        Disk{.height = 0.5f, .radius = 2, .inner_radius = 0.5f, .phi_max = 5, .world_from_object = odd},
+        Cylinder{.radius = 2, .z_min = -1, .z_max = 3, .phi_max = 5, .world_from_object = odd}};
     for (const Quadric& q : cases) {
         TestUniforms uniforms(4);
         RunningMoments inverse_density;
@@ -80,6 +91,12 @@ TEST(Quadrics, AreaSamplesLieOnTheSurfaceWithTheirDensity) {
                 ASSERT_LE(p.z, sphere->z_max + 1e-5);
                 // Archimedes: uniform in z.
                 double t = (p.z - sphere->z_min) / (double(sphere->z_max) - double(sphere->z_min));
+                octants[static_cast<std::size_t>(std::clamp(static_cast<int>(4 * t), 0, 3))] += 1;
+            } else if (const auto* c = std::get_if<Cylinder>(&q)) {
+                ASSERT_NEAR(std::hypot(p.x, p.y), c->radius, 1e-5);
+                const double t = (p.z - c->z_min) / (double(c->z_max) - double(c->z_min));
+                ASSERT_GE(t, -1e-5);
+                ASSERT_LE(t, 1 + 1e-5);
                 octants[static_cast<std::size_t>(std::clamp(static_cast<int>(4 * t), 0, 3))] += 1;
             } else {
                 const auto& disk = std::get<Disk>(q);

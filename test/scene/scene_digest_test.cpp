@@ -23,7 +23,7 @@ Scene scene_of_all_kinds() {
                         {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}},
                         {{0, 0}, {1, 0}, {0, 1}},
                         {0, 1, 2}});
-    s.quadrics = {Sphere{}, Disk{}};
+    s.quadrics = {Sphere{}, Disk{}, Cylinder{}};
     s.shapes.resize(3);
     s.shapes[0].geometry = MeshIndex{0};
     s.shapes[1].geometry = QuadricIndex{0};
@@ -140,6 +140,17 @@ TEST(SceneDigest, GeometryCounts) {
                     },
                     [](Scene& s) {
                         s.motions.emplace_back(Transform(), Transform::translate({2, 0, 0}));
+                    }});
+}
+
+TEST(SceneDigest, CylindersCount) {
+    expect_changes(&SceneDigest::geometry,
+                   {[](Scene& s) { std::get<Cylinder>(s.quadrics[2]).radius = 2; },
+                    [](Scene& s) { std::get<Cylinder>(s.quadrics[2]).z_min = -2; },
+                    [](Scene& s) { std::get<Cylinder>(s.quadrics[2]).z_max = 2; },
+                    [](Scene& s) { std::get<Cylinder>(s.quadrics[2]).phi_max = 2; },
+                    [](Scene& s) {
+                        std::get<Cylinder>(s.quadrics[2]).world_from_object = Transform::scale({1, 1, 2});
                     }});
 }
 

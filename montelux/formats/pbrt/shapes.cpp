@@ -30,6 +30,18 @@ Quadric read_sphere(ParameterReader& r, const Transform& world_from_object) {
     return s;
 }
 
+Quadric read_cylinder(ParameterReader& r, const Transform& world_from_object) {
+    Cylinder c;
+    c.radius = r.number("radius", 1);
+    if (!(c.radius > 0)) r.error("radius", "parameter 'radius' must be positive");
+    const float a = r.number("zmin", -1), b = r.number("zmax", 1);
+    c.z_min = std::min(a, b);
+    c.z_max = std::max(a, b);
+    c.phi_max = radians(r.number("phimax", 360));
+    c.world_from_object = world_from_object;
+    return c;
+}
+
 Quadric read_disk(ParameterReader& r, const Transform& world_from_object) {
     Disk d;
     d.height = r.number("height", 0);
@@ -160,6 +172,7 @@ Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transfo
                     bool reverse_orientation, Files& files, std::size_t& subdivided) {
     if (plugin == "sphere") return read_sphere(r, world_from_object);
     if (plugin == "disk") return read_disk(r, world_from_object);
+    if (plugin == "cylinder") return read_cylinder(r, world_from_object);
     TriangleMesh mesh;
     if (plugin == "trianglemesh")
         mesh = read_triangle_mesh(r);

@@ -64,6 +64,7 @@ float object_area(const Quadric& quadric) {
         float operator()(const Disk& d) const {
             return 0.5f * d.phi_max * (d.radius * d.radius - d.inner_radius * d.inner_radius);
         }
+        float operator()(const Cylinder& c) const { return c.phi_max * c.radius * (c.z_max - c.z_min); }
     };
     return std::visit(Area{}, quadric);
 }

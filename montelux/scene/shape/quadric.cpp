@@ -20,6 +20,11 @@ bool within(const Sphere& s, Vec3d p) {
     return double(s.phi_max) >= 2 * pi - 1e-6 || azimuth(p) <= double(s.phi_max);
 }
 
+bool within(const Cylinder& c, Vec3d p) {
+    if (p.z < double(c.z_min) || p.z > double(c.z_max)) return false;
+    return double(c.phi_max) >= 2 * pi - 1e-6 || azimuth(p) <= double(c.phi_max);
+}
+
 bool within(const Disk& d, Vec3d p) {
     double r2 = p.x * p.x + p.y * p.y;
     if (r2 > double(d.radius) * double(d.radius) || r2 < double(d.inner_radius) * double(d.inner_radius))
@@ -48,6 +53,20 @@ std::optional<double> intersect_object(const Sphere& s, const ObjectRay& r, doub
     return std::nullopt;
 }
 
+std::optional<double> intersect_object(const Cylinder& c, const ObjectRay& r, double t_min, double t_max) {
+    const double a = r.d.x * r.d.x + r.d.y * r.d.y;
+    if (!(a > 0)) return std::nullopt;
+    // As for spheres, in the xy plane.
+    const double t_mid = -(r.o.x * r.d.x + r.o.y * r.d.y) / a;
+    const double x = r.o.x + t_mid * r.d.x, y = r.o.y + t_mid * r.d.y;
+    const double h2 = double(c.radius) * double(c.radius) - (x * x + y * y);
+    if (h2 < 0) return std::nullopt;
+    const double half = std::sqrt(h2 / a);
+    for (double t : {t_mid - half, t_mid + half})
+        if (t > t_min && t < t_max && within(c, r.o + t * r.d)) return t;
+    return std::nullopt;
+}
+
 std::optional<double> intersect_object(const Disk& d, const ObjectRay& r, double t_min, double t_max) {
     if (r.d.z == 0) return std::nullopt;
     double t = (double(d.height) - r.o.z) / r.d.z;
@@ -61,8 +80,16 @@ Vec3d project(const Sphere& s, Vec3d p) {
 }
 Vec3d project(const Disk& d, Vec3d p) { return {p.x, p.y, double(d.height)}; }
 
+Vec3d project(const Cylinder& c, Vec3d p) {
+    const double len = std::sqrt(p.x * p.x + p.y * p.y), r = c.radius;
+    return len > 0 ? Vec3d{p.x * (r / len), p.y * (r / len), p.z} : Vec3d{r, 0, p.z};
+}
+
 Vec3d object_normal(const Sphere& s, Vec3d p) { return p / double(s.radius); }
 Vec3d object_normal(const Disk&, Vec3d) { return {0, 0, 1}; }
+Vec3d object_normal(const Cylinder& c, Vec3d p) {
+    return {p.x / double(c.radius), p.y / double(c.radius), 0};
+}
 
 // The unit vector from the axis to p.
 Vec3d radial(Vec3d p) {
@@ -87,6 +114,10 @@ Coordinates coordinates(const Disk& d, Vec3d p) {
     const double width = double(d.radius) - double(d.inner_radius);
     return {azimuth(p) / double(d.phi_max), (double(d.radius) - std::sqrt(p.x * p.x + p.y * p.y)) / width,
             -width * radial(p)};
+}
+Coordinates coordinates(const Cylinder& c, Vec3d p) {
+    const double length = double(c.z_max) - double(c.z_min);
+    return {azimuth(p) / double(c.phi_max), (p.z - double(c.z_min)) / length, {0, 0, length}};
 }
 
 template <typename S>
@@ -121,6 +152,9 @@ double object_area(const Disk& d) {
     double r = d.radius, ri = d.inner_radius;
     return 0.5 * double(d.phi_max) * (r * r - ri * ri);
 }
+double object_area(const Cylinder& c) {
+    return double(c.phi_max) * double(c.radius) * (double(c.z_max) - double(c.z_min));
+}
 
 Vec3d sample_object(const Sphere& s, Vec2d u) {
     double z = z_low(s) + u.x * (z_high(s) - z_low(s)), phi = u.y * double(s.phi_max);
@@ -131,6 +165,11 @@ Vec3d sample_object(const Disk& d, Vec2d u) {
     double ri = double(d.inner_radius) * double(d.inner_radius), ro = double(d.radius) * double(d.radius);
     double r = std::sqrt(ri + u.x * (ro - ri)), phi = u.y * double(d.phi_max);
     return {r * std::cos(phi), r * std::sin(phi), double(d.height)};
+}
+Vec3d sample_object(const Cylinder& c, Vec2d u) {
+    const double z = double(c.z_min) + u.x * (double(c.z_max) - double(c.z_min));
+    const double phi = u.y * double(c.phi_max);
+    return {double(c.radius) * std::cos(phi), double(c.radius) * std::sin(phi), z};
 }
 
 std::optional<double> uniform_scale(const Transform& t) {
@@ -153,6 +192,9 @@ Bounds3 world_bounds(const Quadric& quadric) {
             if constexpr (std::is_same_v<std::decay_t<decltype(s)>, Sphere>) {
                 lower.z = z_low(s);
                 upper.z = z_high(s);
+            } else if constexpr (std::is_same_v<std::decay_t<decltype(s)>, Cylinder>) {
+                lower.z = double(s.z_min);
+                upper.z = double(s.z_max);
             } else {
                 lower.z = upper.z = double(s.height);
             }
@@ -167,6 +209,7 @@ Bounds3 world_bounds(const Quadric& quadric) {
 std::optional<Vec3d> constant_normal(const Quadric& quadric) {
     struct Normal {
         std::optional<Vec3d> operator()(const Sphere&) const { return std::nullopt; }
+        std::optional<Vec3d> operator()(const Cylinder&) const { return std::nullopt; }
         std::optional<Vec3d> operator()(const Disk& d) const {
             return normalize(d.world_from_object.normal(Vec3d{0, 0, 1}));
         }

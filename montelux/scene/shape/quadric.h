@@ -1,4 +1,4 @@
-// Spheres and discs: intersection in double precision, area, and points by surface coordinates.
+// Spheres, discs and cylinders: intersection in double precision, area, and points by surface coordinates.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 namespace montelux {
 
 struct QuadricPoint {
-    Vec3d p, n;       // n: unit outward normal (sphere), +z (disc); both in world space
+    Vec3d p, n;       // n: unit outward normal (sphere, cylinder), +z (disc); both in world space
     Point2f uv;       // u = phi / phi_max; v as in pbrt-v4's file format; only on request
     Vec3d dpdu, dpdv; // only on request; dpdu is replaced by a nonzero vector at poles and disc centres
 };

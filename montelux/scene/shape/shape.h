@@ -34,7 +34,14 @@ struct Disk {
     Transform world_from_object;
 };
 
-using Quadric = std::variant<Sphere, Disk>;
+// The points at `radius` from the z axis with z in [z_min, z_max] and azimuth in [0, phi_max] (radians); open
+// at both ends; normal away from the axis.
+struct Cylinder {
+    float radius = 1, z_min = -1, z_max = 1, phi_max = 6.2831853f;
+    Transform world_from_object;
+};
+
+using Quadric = std::variant<Sphere, Disk, Cylinder>;
 
 // The geometry of a shape: an index into the scene's array of its kind.
 struct MeshIndex {

@@ -281,6 +281,25 @@ TEST(PbrtShapes, Quadrics) {
     EXPECT_EQ(d.scene.world_shapes, (std::vector<Index>{0, 1, 2, 3, 4, 5}));
 }
 
+TEST(PbrtShapes, Cylinders) {
+    const SceneDescription d = parse_world(
+        "Shape \"cylinder\" Scale 1 1 -2 Shape \"cylinder\" \"float radius\" 0.5 \"float zmin\" 3 "
+        "\"float zmax\" 2 \"float phimax\" 90");
+    const Cylinder& whole = std::get<Cylinder>(d.scene.quadrics[0]);
+    EXPECT_EQ(whole.radius, 1);
+    EXPECT_EQ(whole.z_min, -1);
+    EXPECT_EQ(whole.z_max, 1);
+    EXPECT_FLOAT_EQ(whole.phi_max, 6.2831853f);
+    EXPECT_FALSE(d.scene.shapes[0].flip_normal);
+    const Cylinder& part = std::get<Cylinder>(d.scene.quadrics[1]);
+    EXPECT_EQ(part.radius, 0.5f);
+    EXPECT_EQ(part.z_min, 2);
+    EXPECT_EQ(part.z_max, 3);
+    EXPECT_FLOAT_EQ(part.phi_max, 1.5707963f);
+    expect_near(part.world_from_object.point(Vec3f(0, 0, 1)), {0, 0, -2});
+    EXPECT_TRUE(d.scene.shapes[1].flip_normal);
+}
+
 TEST(PbrtShapes, MeshesGoToTheWorld) {
     SceneDescription d = parse_world(R"(
         ReverseOrientation
