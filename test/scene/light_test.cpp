@@ -104,8 +104,8 @@ std::vector<AreaCase> area_cases() {
     add("part of a sphere, two-sided",
         Quadric(Sphere{.z_min = -0.5f, .z_max = 0.9f, .phi_max = 4, .world_from_object = tilted}), false,
         true);
-    add("part of a cylinder",
-        Quadric(Cylinder{.radius = 0.7f, .z_max = 0.8f, .phi_max = 4, .world_from_object = tilted}));
+    add("part of a cylinder, open towards the point",
+        Quadric(Cylinder{.radius = 0.7f, .z_max = 0.8f, .phi_max = 4, .world_from_object = tilted}), true);
     add("elliptic cylinder from within, two-sided",
         Quadric(Cylinder{.radius = 2, .z_min = -2, .world_from_object = Transform::scale({1, 0.6, 0.8})}),
         false, true);
