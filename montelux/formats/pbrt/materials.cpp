@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <type_traits>
 
 #include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/material/material_model.h"
@@ -42,6 +43,11 @@ class MaterialMaker {
             if (type_name(M::name) != type) return;
             M m = default_material<M>([&](const Spectrum& s) { return builder_.add_spectrum(s); });
             visit_parameters(m, [&](const ParameterInfo& info, auto& field) { read(info, field); });
+            if constexpr (std::is_same_v<M, MixMaterial> || std::is_same_v<M, InterfaceMaterial>) {
+                if (!m.detail.is_flat())
+                    r_.diagnostics().warn(r_.at(), "bumps and normal map of " + in_quotes(type) +
+                                                       " are ignored: it has no surface of its own");
+            }
             material = m;
         });
         r_.ignored("type");

@@ -60,8 +60,11 @@ bool is_textured(const Material& material) {
 }
 
 bool uses_coordinates(const Material& material) {
-    return is_textured(material) ||
-           std::visit([]<typename M>(const M&) { return requires { M::uses_coordinates; }; }, material);
+    return is_textured(material) || std::visit(
+                                        []<typename M>(const M&) {
+                                            return requires { M::uses_coordinates; };
+                                        },
+                                        material);
 }
 
 bool is_anisotropic(const Material& material) {

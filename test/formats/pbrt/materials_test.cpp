@@ -122,12 +122,13 @@ TEST(PbrtMaterials, EachHasNormalMapAndBumps) {
     Image normals(1, 1, {"R", "G", "B"}, PixelFormat::u8, ColorEncoding::srgb());
     for (int c = 0; c < 3; ++c) normals.u8()[static_cast<std::size_t>(c)] = c == 2 ? 255 : 51;
     write_image(folder / "n.png", normals);
-    for (const char* name : all_materials) {
+    for (const std::string name : all_materials) {
+        if (name == "interface") continue; // WhatHasNoSurfaceHasNoBumps
         Warnings warnings;
         const SceneDescription d =
             parse_pbrt("WorldBegin LightSource \"point\"\n"
                        "Texture \"h\" \"float\" \"checkerboard\"\nMaterial \"" +
-                           std::string(name) +
+                           name +
                            "\" \"string normalmap\" \"n.png\" \"texture displacement\" "
                            "\"h\"\nShape \"sphere\" Shape \"disk\"",
                        "scene", folder.path(), warnings);
@@ -213,6 +214,24 @@ TEST(PbrtMaterials, MixesThatAreNoneSayWhere) {
     }
     EXPECT_NE(test::world_error(chain + "NamedMaterial \"m69\" Shape \"sphere\"").find("64 levels deep"),
               std::string::npos);
+}
+
+TEST(PbrtMaterials, WhatHasNoSurfaceHasNoBumps) {
+    for (const std::string type : {"interface", "mix"}) {
+        Warnings warnings;
+        test::parse(R"(WorldBegin
+Texture "t" "float" "fbm"
+MakeNamedMaterial "m" "string type" "diffuse"
+Material ")" + type + R"(" "texture displacement" "t" "string materials" [ "m" "m" ]
+Shape "sphere"
+LightSource "point")",
+                    &warnings);
+        const std::string expected =
+            "scene:4:1: bumps and normal map of '" + type + "' are ignored: it has no surface of its own";
+        EXPECT_NE(std::find(warnings.messages().begin(), warnings.messages().end(), expected),
+                  warnings.messages().end())
+            << type << " " << warnings.messages().size();
+    }
 }
 
 TEST(PbrtMaterials, Hair) {
