@@ -184,7 +184,11 @@ void add_vertex(Text& t, std::size_t number, const PathVertex& v, const Scene& s
                            t.add("triangle %u of mesh %u", static_cast<unsigned>(v.hit.primitive),
                                  static_cast<unsigned>(mesh.index));
                        },
-                       [&](QuadricIndex quadric) { t.add("%s", name_of(scene.quadrics[quadric.index])); }},
+                       [&](QuadricIndex quadric) { t.add("%s", name_of(scene.quadrics[quadric.index])); },
+                       [&](CurvesIndex curves) {
+                           t.add("segment %u of curves %u", static_cast<unsigned>(v.hit.primitive),
+                                 static_cast<unsigned>(curves.index));
+                       }},
             shape.geometry);
         if (v.hit.instance != no_index) t.add(", instance %u", static_cast<unsigned>(v.hit.instance));
         t.add(", material %u", static_cast<unsigned>(shape.material)).end();

@@ -13,9 +13,9 @@ bool is_opaque(const SceneView& scene, const Ray& ray, const Hit& hit) {
     const float alpha = alpha_at(scene, ray, hit);
     if (alpha >= 1) return true;
     if (!(alpha > 0)) return false;
-    // Each surface along the ray decides independently; a quadric may be hit twice.
+    // Each surface along the ray decides independently; a quadric or a curve may be hit twice.
     std::uint64_t h = hash_key(hit.shape, hit.primitive);
-    if (quadric_of(scene, scene.shapes[hit.shape]) != nullptr)
+    if (!std::holds_alternative<MeshIndex>(scene.shapes[hit.shape].geometry))
         h = mix64(h ^ std::bit_cast<std::uint32_t>(hit.t));
     for (float v : {ray.o.x, ray.o.y, ray.o.z, ray.d.x, ray.d.y, ray.d.z})
         h = mix64(h ^ std::bit_cast<std::uint32_t>(v));

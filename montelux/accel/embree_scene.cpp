@@ -46,6 +46,8 @@ void EmbreeScene::build() {
         data_[i].shape = static_cast<Index>(i);
         data_[i].cut_out = is_cut_out(shape);
         data_[i].quadric = quadric_of(scene_, shape);
+        data_[i].curves = curves_of(scene_, shape);
+        if (data_[i].curves != nullptr) data_[i].pieces = curve_pieces(*data_[i].curves);
         if (data_[i].quadric != nullptr) data_[i].sphere = whole_sphere(*data_[i].quadric);
     }
 
@@ -105,22 +107,25 @@ RTCGeometry EmbreeScene::mesh_geometry(const TriangleMesh& mesh, bool cut_out) c
     return geometry;
 }
 
-RTCGeometry EmbreeScene::quadric_geometry() const {
+RTCGeometry EmbreeScene::user_geometry(std::size_t primitives) const {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, 1);
-    rtcSetGeometryBoundsFunction(geometry, fill_quadric_bounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, intersect_quadric);
-    rtcSetGeometryOccludedFunction(geometry, occlude_quadric);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(primitives));
+    rtcSetGeometryBoundsFunction(geometry, fill_bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, intersect_primitive);
+    rtcSetGeometryOccludedFunction(geometry, occlude_primitive);
     return geometry;
 }
 
 void EmbreeScene::attach_shape(RTCScene to, unsigned id, Index shape_index) {
     const Shape& shape = scene_.shapes[shape_index];
     const bool cut_out = data_[shape_index].cut_out;
-    RTCGeometry geometry =
-        visit_geometry(scene_, shape,
-                       Overloaded{[&](const TriangleMesh& mesh) { return mesh_geometry(mesh, cut_out); },
-                                  [&](const Quadric&) { return quadric_geometry(); }});
+    RTCGeometry geometry = visit_geometry(
+        scene_, shape,
+        Overloaded{[&](const TriangleMesh& mesh) { return mesh_geometry(mesh, cut_out); },
+                   [&](const Quadric&) { return user_geometry(1); },
+                   [&](const Curves& curves) {
+                       return user_geometry(curves.segment_count() << data_[shape_index].pieces.levels);
+                   }});
     rtcSetGeometryUserData(geometry, &data_[shape_index]);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(to, geometry, id);

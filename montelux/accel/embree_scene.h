@@ -28,7 +28,7 @@ class EmbreeScene {
   private:
     RTCScene new_scene() const;
     RTCGeometry mesh_geometry(const TriangleMesh& mesh, bool cut_out) const;
-    RTCGeometry quadric_geometry() const;
+    RTCGeometry user_geometry(std::size_t primitives) const;
     void attach_shape(RTCScene to, unsigned id, Index shape_index);
     void attach_instance(unsigned id, const Instance& instance) const;
     void build();

@@ -11,9 +11,26 @@ namespace {
 
 constexpr int present = -1; // of Embree's masks of valid rays
 
-std::optional<double> hit_quadric(const GeometryData& data, const Ray& ray, double t_min) {
-    if (data.sphere) return intersect(*data.sphere, ray, t_min);
-    return intersect(*data.quadric, ray, t_min);
+struct PrimitiveHit {
+    double t;
+    double u = 0, v = 0;       // of a curve
+    std::size_t primitive = 0; // of the shape
+};
+
+std::optional<PrimitiveHit> first_hit(const GeometryData& data, unsigned primitive, const Ray& ray,
+                                      double t_min) {
+    std::optional<double> t;
+    if (data.curves != nullptr) {
+        const std::size_t segment = data.pieces.segment(primitive);
+        const auto hit = intersect(data.curves->segment(segment), Vec3d(ray.o), Vec3d(ray.d), t_min,
+                                   double(ray.t_max), data.pieces.range(primitive));
+        return hit ? std::optional(PrimitiveHit{hit->t, hit->u, hit->v, segment}) : std::nullopt;
+    }
+    if (data.sphere)
+        t = intersect(*data.sphere, ray, t_min);
+    else
+        t = intersect(*data.quadric, ray, t_min);
+    return t ? std::optional(PrimitiveHit{*t}) : std::nullopt;
 }
 
 Ray ray_of(RTCRayN* rays, unsigned n, unsigned i) {
@@ -24,20 +41,27 @@ Ray ray_of(RTCRayN* rays, unsigned n, unsigned i) {
 }
 
 // The first hit that is not in a hole.
-std::optional<float> solid_hit(const GeometryData& data, const Ray& ray, double t_min) {
-    while (const auto t = hit_quadric(data, ray, t_min)) {
-        const Hit hit{.t = static_cast<float>(*t), .shape = data.shape};
-        if (!data.cut_out || is_opaque(*data.scene, ray, hit)) return hit.t;
-        t_min = *t;
+std::optional<Hit> solid_hit(const GeometryData& data, unsigned primitive, const Ray& ray, double t_min) {
+    while (const auto found = first_hit(data, primitive, ray, t_min)) {
+        const Hit hit{.t = static_cast<float>(found->t),
+                      .b1 = static_cast<float>(found->u),
+                      .b2 = static_cast<float>(found->v),
+                      .shape = data.shape,
+                      .primitive = static_cast<Index>(found->primitive)};
+        if (!data.cut_out || is_opaque(*data.scene, ray, hit)) return hit;
+        t_min = found->t;
     }
     return std::nullopt;
 }
 
 } // namespace
 
-void fill_quadric_bounds(const RTCBoundsFunctionArguments* args) {
-    const auto* data = static_cast<const GeometryData*>(args->geometryUserPtr);
-    Bounds3 b = world_bounds(*data->quadric);
+void fill_bounds(const RTCBoundsFunctionArguments* args) {
+    const auto& data = *static_cast<const GeometryData*>(args->geometryUserPtr);
+    const Bounds3 b = data.curves != nullptr
+                          ? bounds_of(data.curves->segment(data.pieces.segment(args->primID)),
+                                      data.pieces.range(args->primID))
+                          : world_bounds(*data.quadric);
     RTCBounds& out = *args->bounds_o;
     auto below = [](double v) { return std::nextafter(static_cast<float>(v), -1e38f); };
     auto above = [](double v) { return std::nextafter(static_cast<float>(v), 1e38f); };
@@ -49,29 +73,30 @@ void fill_quadric_bounds(const RTCBoundsFunctionArguments* args) {
     out.upper_z = above(b.upper.z);
 }
 
-void intersect_quadric(const RTCIntersectFunctionNArguments* args) {
+void intersect_primitive(const RTCIntersectFunctionNArguments* args) {
     const auto& data = *static_cast<const GeometryData*>(args->geometryUserPtr);
     const unsigned n = args->N;
     RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, n);
     RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, n);
     for (unsigned i = 0; i < n; ++i) {
         if (args->valid[i] != present) continue;
-        const auto t = solid_hit(data, ray_of(rays, n, i), double(RTCRayN_tnear(rays, n, i)));
-        if (!t) continue;
-        RTCRayN_tfar(rays, n, i) = *t;
-        RTCHitN_u(hits, n, i) = RTCHitN_v(hits, n, i) = 0;
+        const auto hit = solid_hit(data, args->primID, ray_of(rays, n, i), double(RTCRayN_tnear(rays, n, i)));
+        if (!hit) continue;
+        RTCRayN_tfar(rays, n, i) = hit->t;
+        RTCHitN_u(hits, n, i) = hit->b1;
+        RTCHitN_v(hits, n, i) = hit->b2;
         RTCHitN_geomID(hits, n, i) = args->geomID;
-        RTCHitN_primID(hits, n, i) = 0;
+        RTCHitN_primID(hits, n, i) = hit->primitive;
         RTCHitN_instID(hits, n, i, 0) = args->context->instID[0];
     }
 }
 
-void occlude_quadric(const RTCOccludedFunctionNArguments* args) {
+void occlude_primitive(const RTCOccludedFunctionNArguments* args) {
     const auto& data = *static_cast<const GeometryData*>(args->geometryUserPtr);
     const unsigned n = args->N;
     for (unsigned i = 0; i < n; ++i)
         if (args->valid[i] == present &&
-            solid_hit(data, ray_of(args->ray, n, i), double(RTCRayN_tnear(args->ray, n, i))))
+            solid_hit(data, args->primID, ray_of(args->ray, n, i), double(RTCRayN_tnear(args->ray, n, i))))
             RTCRayN_tfar(args->ray, n, i) = -std::numeric_limits<float>::infinity();
 }
 

@@ -1,8 +1,9 @@
-// Embree's callbacks for quadrics and alpha cut-outs, one ray at a time or in packets.
+// Embree's callbacks for quadrics, curves and alpha cut-outs, one ray at a time or in packets.
 #pragma once
 
 #include <optional>
 
+#include "montelux/accel/curve_pieces.h"
 #include "montelux/accel/embree.h"
 #include "montelux/scene/shape/quadric.h"
 #include "montelux/scene/view.h"
@@ -13,14 +14,17 @@ namespace montelux {
 struct GeometryData {
     const SceneView* scene = nullptr;
     Index shape = no_index;
-    const Quadric* quadric = nullptr;  // null for meshes
+    const Quadric* quadric = nullptr;  // null for other geometry
     std::optional<WorldSphere> sphere; // if the quadric is one
+    const Curves* curves = nullptr;    // null for other geometry
+    CurvePieces pieces;                // of the curves: Embree's primitives
     bool cut_out = false;
 };
 
-void fill_quadric_bounds(const RTCBoundsFunctionArguments* args);
-void intersect_quadric(const RTCIntersectFunctionNArguments* args);
-void occlude_quadric(const RTCOccludedFunctionNArguments* args);
+// For all geometry but meshes.
+void fill_bounds(const RTCBoundsFunctionArguments* args);
+void intersect_primitive(const RTCIntersectFunctionNArguments* args);
+void occlude_primitive(const RTCOccludedFunctionNArguments* args);
 // Rejects hits on the holes of meshes.
 void filter_triangle(const RTCFilterFunctionNArguments* args);
 

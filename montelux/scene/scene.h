@@ -32,6 +32,7 @@ struct Instance {
 struct Scene {
     std::vector<TriangleMesh> meshes;
     std::vector<Quadric> quadrics;
+    std::vector<Curves> curves;
     std::vector<Shape> shapes;
     std::vector<Index> world_shapes; // shapes directly in the world
     std::vector<ObjectDefinition> objects;

@@ -266,6 +266,14 @@ class SceneHasher {
         const auto& [index] = i;
         add(index);
     }
+    void add(const Curves& c) {
+        const auto& [kind, control_points, widths, normals] = c;
+        all(kind, control_points, widths, normals);
+    }
+    void add(const CurvesIndex& i) {
+        const auto& [index] = i;
+        add(index);
+    }
     void add(const QuadricIndex& i) {
         const auto& [index] = i;
         add(index);
@@ -402,14 +410,16 @@ ContentDigest SceneDigest::whole() const {
 }
 
 SceneDigest digest_of(const Scene& scene) {
-    const auto& [meshes, quadrics, shapes, world_shapes, objects, instances, motions, spectra, materials,
-                 float_textures, spectrum_textures, normal_maps, images, environments, skies, lights, camera,
-                 media, scalar_grids, color_grids] = scene;
+    const auto& [meshes, quadrics, curves, shapes, world_shapes, objects, instances, motions, spectra,
+                 materials, float_textures, spectrum_textures, normal_maps, images, environments, skies,
+                 lights, camera, media, scalar_grids, color_grids] = scene;
     SceneHasher of_materials(spectra);
     of_materials.all(materials);
     add_media(of_materials, scene);
-    return {digest_of_all(scene, meshes, quadrics, shapes, world_shapes, objects, instances, motions),
-            of_materials.value(),
+    SceneHasher of_geometry(spectra);
+    of_geometry.all(meshes, quadrics, shapes, world_shapes, objects, instances, motions);
+    if (!curves.empty()) of_geometry.all(curves);
+    return {of_geometry.value(), of_materials.value(),
             digest_of_all(scene, float_textures, spectrum_textures, normal_maps, images),
             digest_of_all(scene, lights, environments, skies), digest_of_all(scene, camera)};
 }

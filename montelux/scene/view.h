@@ -18,6 +18,7 @@ namespace montelux {
 struct SceneView {
     std::span<const TriangleMesh> meshes;
     std::span<const Quadric> quadrics;
+    std::span<const Curves> curves;
     std::span<const Shape> shapes;
     std::span<const Index> world_shapes;
     std::span<const ObjectDefinition> objects;
@@ -51,7 +52,7 @@ struct SceneView {
     SceneView() = default;
     // Without tables: enough for geometry and constant parameters.
     explicit SceneView(const Scene& scene)
-        : meshes(scene.meshes), quadrics(scene.quadrics), shapes(scene.shapes),
+        : meshes(scene.meshes), quadrics(scene.quadrics), curves(scene.curves), shapes(scene.shapes),
           world_shapes(scene.world_shapes), objects(scene.objects), instances(scene.instances),
           motions(scene.motions), spectra(scene.spectra), materials(scene.materials),
           float_textures(scene.float_textures), spectrum_textures(scene.spectrum_textures),

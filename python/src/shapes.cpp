@@ -22,7 +22,8 @@ std::string kind_of(const ShapeRef& r) {
                                                         [](const Disk&) { return "disk"; },
                                                         [](const Cylinder&) { return "cylinder"; }},
                                              quadric);
-                                     }});
+                                     },
+                                     [](const Curves&) { return "curves"; }});
 }
 
 nb::object light_of(const ShapeRef& r) {

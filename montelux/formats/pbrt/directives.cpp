@@ -76,6 +76,7 @@ void Directives::object_begin(const std::string& name, Location at) {
     require_world("ObjectBegin", at);
     if (builder_.in_object()) diagnostics_.error(at, "ObjectBegin inside another object's definition");
     builder_.begin_object(name, at);
+    open_curves_.reset();
     push(Block::Kind::object, at);
 }
 
@@ -83,6 +84,7 @@ void Directives::object_end(Location at) {
     require_world("ObjectEnd", at);
     pop(Block::Kind::object, "ObjectEnd", at);
     builder_.end_object();
+    open_curves_.reset();
 }
 
 void Directives::object_instance(const std::string& name, Location at) {

@@ -97,6 +97,18 @@ class Directives {
         MediaReference media;
         Location at;
     };
+    // The shape of curves that was read last, and what else curves must share to belong to it: a head of hair
+    // in a file is one shape 'curve' for each hair.
+    struct OpenCurves {
+        Index shape;
+        MaterialReference material;
+        MediaReference media;
+        Curves::Kind kind;
+        bool flip_normal;
+        float alpha;
+
+        bool operator==(const OpenCurves&) const = default;
+    };
     struct AlphaUse {
         Index shape;
         ParameterList parameters;
@@ -116,6 +128,8 @@ class Directives {
     void finish_options();
     void finish_materials();
     void finish_media();
+    bool joins_open_curves(const Geometry& geometry, const ShapeSettings& settings, bool is_plain,
+                           Location at);
     // `by` names the referrer in messages.
     Index material_index(const MaterialReference& reference, Location at,
                          std::string_view by = "this shape's ");
@@ -148,6 +162,7 @@ class Directives {
     NameTable named_materials_{"material"};
     std::vector<MaterialUse> material_uses_;
     std::vector<AlphaUse> alpha_uses_;
+    std::optional<OpenCurves> open_curves_;
     NameTable named_media_{"medium"};
     std::vector<MediaUse> media_uses_; // of shapes between two media
     MediaUse camera_media_{no_index, {}, {}};

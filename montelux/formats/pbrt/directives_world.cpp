@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "montelux/formats/pbrt/curves.h"
 #include "montelux/formats/pbrt/directives.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/spectrum/rgb_colorspace.h"
@@ -51,6 +52,32 @@ void Directives::area_light_source(std::string name, std::vector<Parameter> para
     state_.emission = std::make_shared<Emission>(lights_.read_area(plugin, *state_.color_space));
 }
 
+// Appends curves to the shape before them if they differ in nothing else; `is_plain`: they may be joined.
+bool Directives::joins_open_curves(const Geometry& geometry, const ShapeSettings& settings, bool is_plain,
+                                   Location at) {
+    const auto* curves = std::get_if<Curves>(&geometry);
+    Scene& scene = result_.scene;
+    const auto next = static_cast<Index>(scene.shapes.size());
+    if (curves == nullptr || !is_plain) {
+        open_curves_.reset();
+        return false;
+    }
+    OpenCurves open{next - 1,     state_.material,      state_.media,
+                    curves->kind, settings.flip_normal, settings.alpha.value};
+    if (open_curves_ == open) {
+        try {
+            check_geometry(geometry);
+        } catch (const Error& e) {
+            diagnostics_.error(at, e.what());
+        }
+        append(scene.curves.back(), *curves);
+        return true;
+    }
+    open.shape = next;
+    open_curves_ = open;
+    return false;
+}
+
 void Directives::shape(const std::string& name, std::vector<Parameter> parameters, Location at) {
     require_world("Shape", at);
     // A shape that moves is an object of its own, with one instance.
@@ -69,13 +96,16 @@ void Directives::shape(const std::string& name, std::vector<Parameter> parameter
     settings.flip_normal = state_.reverse_orientation != world_from_object.swaps_handedness();
     settings.emission = state_.emission.get();
     const auto index = static_cast<Index>(result_.scene.shapes.size());
+    bool alpha_varies = false;
     if (const Parameter* alpha = r.any("alpha", {ParameterType::texture, ParameterType::floating})) {
-        if (alpha->type == ParameterType::texture)
+        alpha_varies = alpha->type == ParameterType::texture;
+        if (alpha_varies)
             alpha_uses_.push_back({index, ParameterList({*alpha}), r.plugin(), at});
         else
             settings.alpha.value = r.number_of(*alpha);
     }
     r.finish();
+    if (joins_open_curves(geometry, settings, !moves && !alpha_varies && !state_.emission, at)) return;
     material_uses_.push_back({index, state_.material, at});
     if (state_.media.inside != state_.media.outside) media_uses_.push_back({index, state_.media, at});
     if (!moves) {

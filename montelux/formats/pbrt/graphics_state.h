@@ -22,11 +22,15 @@ struct TransformPair {
 struct MaterialReference {
     bool by_name = false;
     Index index = 0; // of the declaration, or a reference of the table of names
+
+    bool operator==(const MaterialReference&) const = default;
 };
 
 // The media of a MediumInterface: references of the table of names, or no_index for vacuum.
 struct MediaReference {
     Index inside = no_index, outside = no_index;
+
+    bool operator==(const MediaReference&) const = default;
 };
 
 // Small, since each AttributeBegin copies it: large parts are shared and replaced, never changed.

@@ -111,6 +111,13 @@ std::span<const float> ParameterReader::numbers(std::string_view name, Parameter
     return p->numbers;
 }
 
+std::vector<Vec3f> ParameterReader::triples(std::string_view name, ParameterType type) {
+    const std::span<const float> values = numbers(name, type, 3);
+    std::vector<Vec3f> v(values.size() / 3);
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+    return v;
+}
+
 std::span<const std::int32_t> ParameterReader::integers(std::string_view name) {
     const Parameter* p = any(name, {ParameterType::integer});
     return p ? std::span<const std::int32_t>(p->integers) : std::span<const std::int32_t>();

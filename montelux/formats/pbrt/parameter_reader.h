@@ -32,6 +32,7 @@ class ParameterReader {
 
     // All values of a parameter; empty when it is not there. The count is a multiple of `group`.
     std::span<const float> numbers(std::string_view name, ParameterType type, std::size_t group = 1);
+    std::vector<Vec3f> triples(std::string_view name, ParameterType type);
     std::span<const std::int32_t> integers(std::string_view name);
 
     // The parameter, if present with one of these types. Warns if it is given with several of them.

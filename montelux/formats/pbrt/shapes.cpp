@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "montelux/formats/loop_subdivision.h"
+#include "montelux/formats/pbrt/curves.h"
 #include "montelux/formats/ply.h"
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
@@ -55,13 +56,6 @@ Quadric read_disk(ParameterReader& r, const Transform& world_from_object) {
     return d;
 }
 
-std::vector<Vec3f> triples(std::span<const float> numbers) {
-    std::vector<Vec3f> v(numbers.size() / 3);
-    for (std::size_t i = 0; i < v.size(); ++i)
-        v[i] = {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
-    return v;
-}
-
 // Indices as in the file: whole triangles, each index below `vertex_count`.
 std::vector<Index> read_indices(ParameterReader& r, std::size_t vertex_count) {
     std::span<const std::int32_t> given = r.integers("indices");
@@ -83,7 +77,7 @@ std::vector<Index> read_indices(ParameterReader& r, std::size_t vertex_count) {
 
 TriangleMesh read_triangle_mesh(ParameterReader& r) {
     TriangleMesh mesh;
-    mesh.positions = triples(r.numbers("P", ParameterType::point3, 3));
+    mesh.positions = r.triples("P", ParameterType::point3);
     if (mesh.positions.empty()) r.error("shape 'trianglemesh' needs vertex positions 'P'");
     if (r.integers("indices").empty()) {
         if (mesh.positions.size() != 3)
@@ -92,7 +86,7 @@ TriangleMesh read_triangle_mesh(ParameterReader& r) {
     } else {
         mesh.indices = read_indices(r, mesh.positions.size());
     }
-    mesh.normals = triples(r.numbers("N", ParameterType::normal, 3));
+    mesh.normals = r.triples("N", ParameterType::normal);
     std::span<const float> uv = r.numbers("uv", ParameterType::point2, 2);
     for (std::size_t i = 0; i < uv.size(); i += 2) mesh.uvs.emplace_back(uv[i], uv[i + 1]);
     auto drop_unless_one_a_vertex = [&](auto& values, std::string_view name) {
@@ -144,7 +138,7 @@ TriangleMesh read_loop_subdivision(ParameterReader& r, std::size_t& subdivided) 
     int levels = r.integer("levels", 3);
     if (levels < 0) r.error("levels", "parameter 'levels' is negative");
     r.choice("scheme", {"loop"}, "loop");
-    std::vector<Vec3f> positions = triples(r.numbers("P", ParameterType::point3, 3));
+    std::vector<Vec3f> positions = r.triples("P", ParameterType::point3);
     if (positions.empty()) r.error("shape 'loopsubdiv' needs vertex positions 'P'");
     std::vector<Index> indices = read_indices(r, positions.size());
     if (indices.empty()) r.error("shape 'loopsubdiv' needs 'indices'");
@@ -173,6 +167,7 @@ Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transfo
     if (plugin == "sphere") return read_sphere(r, world_from_object);
     if (plugin == "disk") return read_disk(r, world_from_object);
     if (plugin == "cylinder") return read_cylinder(r, world_from_object);
+    if (plugin == "curve") return read_curves(r, world_from_object);
     TriangleMesh mesh;
     if (plugin == "trianglemesh")
         mesh = read_triangle_mesh(r);

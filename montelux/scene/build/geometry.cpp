@@ -35,11 +35,28 @@ void check_mesh(const TriangleMesh& mesh) {
         if (!is_finite(n)) throw Error("a vertex normal is not finite in world space");
 }
 
+void check_curves(const Curves& curves) {
+    const std::size_t count = curves.segment_count();
+    const bool ribbon = curves.kind == Curves::Kind::ribbon;
+    if (curves.widths.size() != count || curves.normals.size() != (ribbon ? count : 0))
+        throw Error("curves need two widths per segment, and ribbons two normals");
+    for (std::size_t i = 0; i < count; ++i) {
+        const CurveSegment s = curves.segment(i);
+        if (!(s.width0 >= 0 && s.width1 >= 0)) throw Error("a curve has a negative width");
+        if (!fits_float(bounds_of(s))) throw Error("a curve reaches to infinity in world space");
+        if (!s.normals) continue;
+        for (const Vec3d n : *s.normals)
+            if (!(std::abs(length_squared(n) - 1) < 1e-4))
+                throw Error("a normal of a ribbon is not of unit length");
+    }
+}
+
 } // namespace
 
 std::size_t primitive_count(const Geometry& geometry) {
-    const auto* mesh = std::get_if<TriangleMesh>(&geometry);
-    return mesh != nullptr ? mesh->triangle_count() : 1;
+    if (const auto* mesh = std::get_if<TriangleMesh>(&geometry)) return mesh->triangle_count();
+    if (const auto* curves = std::get_if<Curves>(&geometry)) return curves->segment_count();
+    return 1;
 }
 
 void transform_mesh(TriangleMesh& mesh, const Transform& t, bool reverse_orientation) {
@@ -54,6 +71,7 @@ void transform_mesh(TriangleMesh& mesh, const Transform& t, bool reverse_orienta
 
 void check_geometry(const Geometry& geometry) {
     if (const auto* mesh = std::get_if<TriangleMesh>(&geometry)) return check_mesh(*mesh);
+    if (const auto* curves = std::get_if<Curves>(&geometry)) return check_curves(*curves);
     if (!fits_float(world_bounds(std::get<Quadric>(geometry))))
         throw Error("the shape reaches to infinity in world space");
 }

@@ -9,9 +9,9 @@
 
 namespace montelux {
 
-using Geometry = std::variant<TriangleMesh, Quadric>;
+using Geometry = std::variant<TriangleMesh, Quadric, Curves>;
 
-// Number of primitives: the triangles of a mesh, or one quadric.
+// Number of primitives: the triangles of a mesh, the segments of curves, or one quadric.
 std::size_t primitive_count(const Geometry& geometry);
 
 // Transforms vertices and vertex normals; `reverse_orientation` reverses the normals.

@@ -22,6 +22,13 @@ Bounds3 bounds_of(const ObjectDefinition& object, const Scene& scene) {
                                       const Bounds3 b = world_bounds(quadric);
                                       bounds.add(b.lower);
                                       bounds.add(b.upper);
+                                  },
+                                  [&](const Curves& curves) {
+                                      for (std::size_t k = 0; k < curves.segment_count(); ++k) {
+                                          const Bounds3 b = bounds_of(curves.segment(k));
+                                          bounds.add(b.lower);
+                                          bounds.add(b.upper);
+                                      }
                                   }});
     }
     return bounds;
@@ -56,6 +63,10 @@ Index SceneBuilder::add_shape(Geometry geometry, const ShapeSettings& settings, 
                               [&](Quadric& quadric) -> ShapeGeometry {
                                   scene_.quadrics.push_back(quadric);
                                   return QuadricIndex{static_cast<Index>(scene_.quadrics.size() - 1)};
+                              },
+                              [&](Curves& curves) -> ShapeGeometry {
+                                  scene_.curves.push_back(std::move(curves));
+                                  return CurvesIndex{static_cast<Index>(scene_.curves.size() - 1)};
                               }},
                    geometry);
     return index;
@@ -65,6 +76,10 @@ void SceneBuilder::add_area_light(Index shape, const Emission& emission, const G
                                   SourceLocation at) {
     if (in_object()) {
         messages_.warn_once("area light in object", at, "area lights inside object definitions do not shine");
+        return;
+    }
+    if (std::holds_alternative<Curves>(geometry)) {
+        messages_.warn_once("area light on curves", at, "curves do not emit light");
         return;
     }
     const std::size_t count = primitive_count(geometry);

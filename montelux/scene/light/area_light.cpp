@@ -133,7 +133,7 @@ Index AreaLight::part_count(const LightContext& context) const {
     return visit_geometry(
         context.scene, s,
         Overloaded{[](const TriangleMesh& mesh) { return static_cast<Index>(mesh.triangle_count()); },
-                   [](const Quadric&) { return Index{1}; }});
+                   [](const Quadric&) { return Index{1}; }, [](const Curves&) { return Index{0}; }});
 }
 
 std::optional<LightSample> AreaLight::sample_li(const LightContext& context, Index part,
@@ -208,7 +208,8 @@ void AreaLight::powers(const LightContext& context, std::span<double> parts) con
                                       parts[part] =
                                           power(double(context.tables().triangle(context.light, part).area),
                                                 radiance_scale(*this, context, part));
-                              }});
+                              },
+                              [](const Curves&) {}});
 }
 
 std::optional<LightBounds> AreaLight::bounds(const LightContext& context, Index part) const {
@@ -218,7 +219,8 @@ std::optional<LightBounds> AreaLight::bounds(const LightContext& context, Index 
         Overloaded{[&](const TriangleMesh& mesh) {
                        return triangle_bounds(mesh, context.tables().triangle(context.light, part), part);
                    },
-                   [&](const Quadric& quadric) { return quadric_bounds(quadric, s.flip_normal); }});
+                   [&](const Quadric& quadric) { return quadric_bounds(quadric, s.flip_normal); },
+                   [](const Curves&) { return LightBounds{}; }});
     b.cos_theta_e = 0;
     b.two_sided = b.two_sided || two_sided;
     return b;

@@ -63,7 +63,8 @@ std::optional<EmissivePoint> sample_area(const LightContext& context, Index inde
                                            const auto& disk = context.tables().disk(context.light);
                                            return disk ? sample_disk(*disk, shape.flip_normal, u)
                                                        : sample_quadric(quadric, shape.flip_normal, u);
-                                       }});
+                                       },
+                                       [](const Curves&) { return std::optional<EmissivePoint>(); }});
     if (s) {
         s->hit.shape = index;
         s->hit.primitive = part;
@@ -81,7 +82,8 @@ float area_density(const LightContext& context, Index index, Index part, Point3f
                    [&](const Quadric& quadric) {
                        const auto& disk = context.tables().disk(context.light);
                        return disk ? 1 / disk->area : static_cast<float>(area_pdf(quadric, Vec3d(p)));
-                   }});
+                   },
+                   [](const Curves&) { return 0.0f; }});
 }
 
 } // namespace montelux

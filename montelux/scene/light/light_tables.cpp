@@ -55,6 +55,12 @@ Bounds3 bounds_of(const Scene& scene) {
                                   [&](const Quadric& quadric) {
                                       const Bounds3 b = world_bounds(quadric);
                                       for (int i = 0; i < 8; ++i) add(b.corner(i));
+                                  },
+                                  [&](const Curves& curves) {
+                                      for (std::size_t k = 0; k < curves.segment_count(); ++k) {
+                                          const Bounds3 b = bounds_of(curves.segment(k));
+                                          for (int i = 0; i < 8; ++i) add(b.corner(i));
+                                      }
                                   }});
     };
     for (Index shape : scene.world_shapes) add_shape(shape, nullptr);
@@ -119,7 +125,8 @@ void LightTables::add_shape(const Scene& scene, Index light, const AreaLight& ar
                                   // it.
                                   if (!is_cut_out(shape)) spheres_[light] = whole_sphere(quadric);
                                   disks_[light] = whole_disk(quadric);
-                              }});
+                              },
+                              [](const Curves&) {}});
 }
 
 void LightTables::add_triangles(const Scene& scene) {

@@ -26,6 +26,21 @@ CubicBezier cubic_span(std::span<const Vec3d> p) {
     return {mix(a, b, 0.5), b, c, mix(c, d, 0.5)};
 }
 
+double width_of(const CurveSegment& segment, double u) {
+    return (1 - u) * segment.width0 + u * segment.width1;
+}
+
+// By its blossom (Ramshaw 1987).
+CubicBezier part_of(const CubicBezier& c, CurveRange range) {
+    const auto [u0, u1] = range;
+    if (u0 == 0 && u1 == 1) return c;
+    const auto blossom = [&](double r, double s, double t) {
+        const Vec3d a = mix(c[0], c[1], r), b = mix(c[1], c[2], r), d = mix(c[2], c[3], r);
+        return mix(mix(a, b, s), mix(b, d, s), t);
+    };
+    return {blossom(u0, u0, u0), blossom(u0, u0, u1), blossom(u0, u1, u1), blossom(u1, u1, u1)};
+}
+
 // A segment in the frame of a ray, which is the z axis; z is in units of t.
 struct Projected {
     const CurveSegment& segment;
@@ -33,10 +48,8 @@ struct Projected {
     double t_min, t_max;
     std::optional<CurveHit> hit{};
 
-    double width(double u) const { return (1 - u) * segment.width0 + u * segment.width1; }
-
     bool may_hit(const CubicBezier& c, double u0, double u1) const {
-        const double reach = 0.5 * std::max(width(u0), width(u1));
+        const double reach = 0.5 * std::max(width_of(segment, u0), width_of(segment, u1));
         const Vec3d low = min(min(c[0], c[1]), min(c[2], c[3])), high = max(max(c[0], c[1]), max(c[2], c[3]));
         return low.x <= reach && high.x >= -reach && low.y <= reach && high.y >= -reach && low.z < t_max &&
                high.z > t_min;
@@ -60,7 +73,7 @@ struct Projected {
         if (!(length2 > 0)) return;
         const double w = std::clamp(-dot2(c[0], chord) / length2, 0.0, 1.0), u = u0 + w * (u1 - u0);
         const Vec3d center = point_of(c, w), tangent = derivative_of(c, w);
-        double across = width(u);
+        double across = width_of(segment, u);
         if (segment.normals) across *= std::abs(dot(normal_of(segment, u), direction));
         const double distance = std::sqrt(dot2(center, center));
         if (!(distance <= 0.5 * across) || !(center.z > t_min && center.z < t_max)) return;
@@ -84,6 +97,17 @@ int splits(const CubicBezier& c, double error) {
 }
 
 } // namespace
+
+// The control points hold a Bezier curve in their convex hull.
+Bounds3 bounds_of(const CurveSegment& segment, CurveRange range) {
+    const double reach = 0.5 * std::max(width_of(segment, range.u0), width_of(segment, range.u1));
+    Bounds3 bounds;
+    for (const Vec3d p : part_of(segment.curve, range)) {
+        bounds.add(p - Vec3d{reach, reach, reach});
+        bounds.add(p + Vec3d{reach, reach, reach});
+    }
+    return bounds;
+}
 
 std::vector<CubicBezier> bezier_segments(std::span<const Point3f> points, CurveBasis basis, int degree) {
     if (degree != 2 && degree != 3) throw Error("a curve has degree 2 or 3, not " + std::to_string(degree));
@@ -128,7 +152,8 @@ Vec3d normal_of(const CurveSegment& segment, double u) {
     return (std::sin((1 - u) * angle) * a + std::sin(u * angle) * b) / sine;
 }
 
-std::optional<CurveHit> intersect(const CurveSegment& segment, Vec3d o, Vec3d d, double t_min, double t_max) {
+std::optional<CurveHit> intersect(const CurveSegment& segment, Vec3d o, Vec3d d, double t_min, double t_max,
+                                  CurveRange range) {
     const double speed = length(d);
     if (!(speed > 0)) return std::nullopt;
     const Vec3d z = d / speed;
@@ -143,7 +168,9 @@ std::optional<CurveHit> intersect(const CurveSegment& segment, Vec3d o, Vec3d d,
         c[i] = {dot(p, x), dot(p, y), dot(p, z) / speed};
     }
     Projected projected{.segment = segment, .direction = z, .t_min = t_min, .t_max = t_max};
-    projected.visit(c, 0, 1, splits(c, 0.05 * std::max(segment.width0, segment.width1)));
+    c = part_of(c, range);
+    const double width = std::max(width_of(segment, range.u0), width_of(segment, range.u1));
+    projected.visit(c, range.u0, range.u1, splits(c, 0.05 * width));
     return projected.hit;
 }
 

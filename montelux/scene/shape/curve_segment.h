@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "montelux/mc/math/vec.h"
+#include "montelux/scene/shape/bounds.h"
 
 namespace montelux {
 
@@ -34,12 +35,21 @@ struct CurveSegment {
 // The unit normal at u, by spherical interpolation (Shoemake 1985). Only with normals.
 Vec3d normal_of(const CurveSegment& segment, double u);
 
+// A part of a segment: u0 <= u <= u1.
+struct CurveRange {
+    double u0 = 0, u1 = 1;
+};
+
+// Holds all points of the part of the surface, whichever way it faces.
+Bounds3 bounds_of(const CurveSegment& segment, CurveRange range = {});
+
 struct CurveHit {
     double t;
     double u, v; // u along the curve; v from 0 to 1 across its width, along direction x tangent
 };
 
-// The first hit with t in (t_min, t_max) of the ray o + t d.
-std::optional<CurveHit> intersect(const CurveSegment& segment, Vec3d o, Vec3d d, double t_min, double t_max);
+// The first hit of the ray o + t d on the part of the segment with t in (t_min, t_max).
+std::optional<CurveHit> intersect(const CurveSegment& segment, Vec3d o, Vec3d d, double t_min, double t_max,
+                                  CurveRange range = {});
 
 } // namespace montelux

@@ -1,4 +1,4 @@
-// Shapes: triangle meshes and quadrics as plain values, and the attributes of their instances.
+// Shapes: geometry as plain values, and the attributes of each shape.
 #pragma once
 
 #include <variant>
@@ -6,6 +6,7 @@
 
 #include "montelux/mc/math/transform.h"
 #include "montelux/scene/index.h"
+#include "montelux/scene/shape/curves.h"
 #include "montelux/scene/texture/texture.h"
 
 namespace montelux {
@@ -50,7 +51,10 @@ struct MeshIndex {
 struct QuadricIndex {
     Index index = no_index; // into Scene::quadrics
 };
-using ShapeGeometry = std::variant<MeshIndex, QuadricIndex>;
+struct CurvesIndex {
+    Index index = no_index; // into Scene::curves
+};
+using ShapeGeometry = std::variant<MeshIndex, QuadricIndex, CurvesIndex>;
 
 // The media on both sides of a surface.
 struct MediumInterface {
@@ -73,7 +77,7 @@ struct Shape {
     MediumInterface media{}; // the geometric normal points outside
 };
 
-// Calls f with the TriangleMesh or the Quadric of the shape. S: Scene or SceneView.
+// Calls f with the TriangleMesh, the Quadric or the Curves of the shape. S: Scene or SceneView.
 template <typename S, typename F>
 decltype(auto) visit_geometry(const S& scene, const Shape& shape, const F& f) {
     struct Visitor {
@@ -81,6 +85,7 @@ decltype(auto) visit_geometry(const S& scene, const Shape& shape, const F& f) {
         const F& f;
         decltype(auto) operator()(MeshIndex i) const { return f(scene.meshes[i.index]); }
         decltype(auto) operator()(QuadricIndex i) const { return f(scene.quadrics[i.index]); }
+        decltype(auto) operator()(CurvesIndex i) const { return f(scene.curves[i.index]); }
     };
     return std::visit(Visitor{scene, f}, shape.geometry);
 }
@@ -89,6 +94,11 @@ template <typename S>
 const Quadric* quadric_of(const S& scene, const Shape& shape) {
     const auto* i = std::get_if<QuadricIndex>(&shape.geometry);
     return i != nullptr ? &scene.quadrics[i->index] : nullptr;
+}
+template <typename S>
+const Curves* curves_of(const S& scene, const Shape& shape) {
+    const auto* i = std::get_if<CurvesIndex>(&shape.geometry);
+    return i != nullptr ? &scene.curves[i->index] : nullptr;
 }
 
 } // namespace montelux

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/overloaded.h"
 #include "montelux/scene/shape/quadric.h"
 
@@ -65,6 +66,45 @@ SurfacePoint quadric_point(const Quadric& quadric, const Shape& shape, const Ray
     return s;
 }
 
+SurfacePoint curve_point(const Curves& curves, const Shape& shape, const Ray& ray, const Hit& hit) {
+    SurfacePoint s;
+    const CurveSegment segment = curves.segment(hit.primitive);
+    const double u = double(hit.b1), v = double(hit.b2);
+    const double width = (1 - u) * segment.width0 + u * segment.width1;
+    const Vec3d d = normalize(Vec3d(ray.d)), o(ray.o);
+    Vec3d along = derivative_of(segment.curve, u);
+    if (!(length_squared(along) > 0)) along = segment.curve[3] - segment.curve[0];
+    if (!(length_squared(along) > 0)) along = Vec3d(Frame::from_normal(Vec3f(d)).s);
+    const Vec3d tangent = normalize(along);
+    // Across the curve in the direction of growing v, and the normal on the ray's side.
+    Vec3d across = cross(d, tangent);
+    across = length_squared(across) > 1e-24 ? normalize(across) : Vec3d(Frame::from_normal(Vec3f(tangent)).s);
+    Vec3d facing = cross(across, tangent);
+    s.p = Vec3f(o + Vec3d(ray.d) * double(hit.t));
+    s.uv = {hit.b1, hit.b2};
+    s.dpdu = Vec3f(along);
+    if (curves.kind == Curves::Kind::ribbon && segment.normals) {
+        const Vec3d n = normal_of(segment, u);
+        const Vec3d upright = n - tangent * dot(n, tangent);
+        const double side = dot(upright, facing) < 0 ? -1.0 : 1.0;
+        if (length_squared(upright) > 1e-24) facing = normalize(upright) * side;
+        across = cross(tangent, facing);
+        s.ng = Vec3f(shape.flip_normal ? facing * -side : facing * side);
+        s.ns = s.ng;
+        s.dpdv = Vec3f(across * width);
+    } else if (curves.kind == Curves::Kind::cylinder) {
+        const double theta = (v - 0.5) * pi;
+        s.ng = s.ns = Vec3f(normalize(facing * std::cos(theta) + across * std::sin(theta)));
+        s.dpdv = Vec3f((across * std::cos(theta) - facing * std::sin(theta)) * width);
+    } else {
+        s.ng = s.ns = Vec3f(facing);
+        s.dpdv = Vec3f(across * width);
+    }
+    // A ray that leaves must not meet the curve, which will face it then.
+    s.error = static_cast<float>(width) + coordinate_error(largest_coordinate(s.p));
+    return s;
+}
+
 void transform_by(const Transform& t, SurfacePoint& s, float scale) {
     s.p = t.point(s.p);
     s.ng = normalize(t.normal(s.ng));
@@ -92,7 +132,8 @@ SurfacePoint surface_point(const SceneView& scene, const Ray& ray, const Hit& hi
             Overloaded{[&](const TriangleMesh& mesh) { return mesh_point(mesh, shape, hit, coordinates); },
                        [&](const Quadric& quadric) {
                            return quadric_point(quadric, shape, local, hit, coordinates);
-                       }});
+                       },
+                       [&](const Curves& curves) { return curve_point(curves, shape, local, hit); }});
     };
     SurfacePoint s;
     if (hit.instance == no_index) {

@@ -1,0 +1,29 @@
+// Curves: thin surfaces along cubic curves, such as hair, fur and grass.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "montelux/scene/shape/curve_segment.h"
+
+namespace montelux {
+
+// Each segment is a primitive. Positions are in world space, or in the space of the object definition.
+struct Curves {
+    enum class Kind : std::uint8_t {
+        flat,     // faces each ray
+        cylinder, // the same, with the normals of a cylinder
+        ribbon,   // faces the normals of its segments
+    };
+    Kind kind = Kind::flat;
+    std::vector<std::array<Point3f, 4>> control_points; // of each segment's cubic Bezier curve
+    std::vector<std::array<float, 2>> widths;           // of each segment at its ends
+    std::vector<std::array<Normal3f, 2>> normals;       // the same, of unit length; empty unless a ribbon
+
+    std::size_t segment_count() const { return control_points.size(); }
+    CurveSegment segment(std::size_t i) const;
+};
+
+} // namespace montelux
