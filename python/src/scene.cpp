@@ -348,6 +348,20 @@ void bind_scene(nb::module_& m) {
             "radius"_a, "material"_a, nb::kw_only(), "z_min"_a = -1., "z_max"_a = 1.,
             "transform"_a = nb::none(), "light"_a = nb::none(),
             "An open cylinder around the z axis; its front is outside. See add_mesh.")
+        .def(
+            "add_curves",
+            [](const SceneObject& s, const nb::object& points, const nb::object& width,
+               const nb::object& material, const std::string& kind, const std::string& basis, int degree,
+               const nb::object& normals, const nb::object& transform) {
+                return add_curves(s.holder, points, width, material, kind, basis, degree, normals, transform);
+            },
+            "points"_a, "width"_a, "material"_a, nb::kw_only(), "kind"_a = "flat", "basis"_a = "bezier",
+            "degree"_a = 3, "normals"_a = nb::none(), "transform"_a = nb::none(),
+            "Hair, fur, grass: strands of control points, an array of shape (strands, n, 3), with a width or "
+            "one for each end. kind: 'flat' faces each ray, 'cylinder' is shaded as one, 'ribbon' faces its "
+            "normals, of shape (strands, segments + 1, 3). basis: 'bezier' or 'bspline', of degree 2 or 3. "
+            "See "
+            "add_mesh.")
         .def("add_environment", &add_environment, "image"_a, nb::kw_only(), "scale"_a = 1.,
              "world_from_light"_a = nb::none(),
              "Light from everywhere, by a map, square (equal-area) or twice as wide as high "

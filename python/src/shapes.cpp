@@ -185,9 +185,66 @@ nb::object add_cylinder(const SceneRef& scene, double radius, double z_min, doub
                  emission);
 }
 
+nb::object add_curves(const SceneRef& scene, const nb::object& points, const nb::object& width,
+                      const nb::object& material, const std::string& kind, const std::string& basis,
+                      int degree, const nb::object& normals, const nb::object& transform) {
+    const auto strands_of = [](const nb::object& given, const std::string& what) {
+        Numbers numbers = numbers_of(given, what);
+        if (numbers.shape.size() == 2) numbers.shape.insert(numbers.shape.begin(), 1);
+        if (numbers.shape.size() != 3 || numbers.shape[2] != 3)
+            throw Error(what, "expected an array of shape (n, 3), or (strands, n, 3)");
+        return numbers;
+    };
+    const auto vectors_of = [](const Numbers& numbers, std::size_t strand) {
+        std::vector<Vec3f> v;
+        const std::size_t n = numbers.shape[1];
+        for (std::size_t i = strand * n; i < (strand + 1) * n; ++i)
+            v.push_back(
+                Vec3f(Vec3d{numbers.values[3 * i], numbers.values[3 * i + 1], numbers.values[3 * i + 2]}));
+        return v;
+    };
+    Curves curves;
+    if (kind == "cylinder")
+        curves.kind = Curves::Kind::cylinder;
+    else if (kind == "ribbon")
+        curves.kind = Curves::Kind::ribbon;
+    else if (kind != "flat")
+        throw Error("add_curves, kind", "expected 'flat', 'cylinder' or 'ribbon'");
+    if (basis != "bezier" && basis != "bspline")
+        throw Error("add_curves, basis", "expected 'bezier' or 'bspline'");
+    const Transform world = transform_of(transform, "add_curves, transform");
+    const Numbers p = strands_of(points, "add_curves, points");
+    const Numbers ends = numbers_of(width, "add_curves, width");
+    if (ends.values.empty() || ends.values.size() > 2 ||
+        !(ends.values.front() >= 0 && ends.values.back() >= 0))
+        throw Error("add_curves, width", "expected a number or two, for the ends, from zero on");
+    std::optional<Numbers> n;
+    if (!normals.is_none()) {
+        n = strands_of(normals, "add_curves, normals");
+        if (n->shape[0] != p.shape[0]) throw Error("add_curves, normals", "expected those of each strand");
+    }
+    for (std::size_t i = 0; i < p.shape[0]; ++i) {
+        const std::vector<Vec3f> of_points = vectors_of(p, i),
+                                 of_normals = n ? vectors_of(*n, i) : std::vector<Vec3f>();
+        try {
+            append(curves,
+                   {.points = of_points,
+                    .basis = basis == "bspline" ? CurveBasis::bspline : CurveBasis::bezier,
+                    .degree = degree,
+                    .width0 = static_cast<float>(ends.values.front()),
+                    .width1 = static_cast<float>(ends.values.back()),
+                    .normals = of_normals},
+                   world);
+        } catch (const Error& e) {
+            throw Error("add_curves", e.what());
+        }
+    }
+    return added(scene, "add_curves", std::move(curves), world.swaps_handedness(), material, nb::none());
+}
+
 void bind_shapes(nb::module_& m) {
     nb::class_<ShapeRef> c(m, "Shape", "A shape of a scene: its material, its light, its side.");
-    c.def_prop_ro("kind", &kind_of, "'mesh', 'sphere', 'disk' or 'cylinder'.")
+    c.def_prop_ro("kind", &kind_of, "'mesh', 'sphere', 'disk', 'cylinder' or 'curves'.")
         .def_prop_rw(
             "material",
             [](const ShapeRef& r) -> nb::object {

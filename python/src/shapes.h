@@ -18,6 +18,9 @@ nb::object add_disk(const SceneRef& scene, double radius, double inner_radius, d
                     const nb::object& material, const nb::object& transform, const nb::object& emission);
 nb::object add_cylinder(const SceneRef& scene, double radius, double z_min, double z_max,
                         const nb::object& material, const nb::object& transform, const nb::object& emission);
+nb::object add_curves(const SceneRef& scene, const nb::object& points, const nb::object& width,
+                      const nb::object& material, const std::string& kind, const std::string& basis,
+                      int degree, const nb::object& normals, const nb::object& transform);
 
 // The index of a material in a scene; a detached one is added to it.
 Index material_index(const SceneRef& scene, const nb::object& material, const std::string& what);

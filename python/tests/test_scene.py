@@ -199,6 +199,16 @@ def test_meshes_textures_and_environments():
     assert tube.kind == "cylinder"
     with pytest.raises(montelux.Error, match="add_cylinder, z_max"):
         scene.add_cylinder(1, material, z_min=1, z_max=-1)
+    strands = np.array([[[x, -1, 0], [x, 0, 0.5], [x, 1, 0]] for x in (-0.5, 0, 0.5)])
+    hair = scene.add_curves(strands, (0.1, 0.05), montelux.Hair(), kind="cylinder", degree=2)
+    assert hair.kind == "curves"
+    assert np.isfinite(scene.render(spp=4).layers["mean"]).all()
+    with pytest.raises(montelux.Error, match="add_curves: 3 control points were given; expected 4"):
+        scene.add_curves(strands, 0.1, material)
+    with pytest.raises(montelux.Error, match="0 normals were given for 1 segment; expected 2"):
+        scene.add_curves(strands, 0.1, material, degree=2, kind="ribbon")
+    with pytest.raises(montelux.Error, match="add_curves, width"):
+        scene.add_curves(strands, -1, material, degree=2)
     other = montelux.Scene()
     with pytest.raises(montelux.Error, match="another scene"):
         other.add_sphere(1, material)

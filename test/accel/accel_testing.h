@@ -156,7 +156,8 @@ class BruteForce {
                                                           inverse.vector(d), t_max);
                                           },
                                           quadric);
-                                  }});
+                                  },
+                                  [](const Curves&) {}}); // curves_test.cpp
     }
     void try_mesh(const TriangleMesh& m, Index shape, Index instance, Vec3d o, Vec3d d, double t_max) const {
         for (std::size_t i = 0; i < m.triangle_count(); ++i) {

@@ -19,6 +19,13 @@ Scene scene_of_all_geometry() {
     add_shape(scene, Quadric(Disk{.height = -0.5f, .radius = 3, .world_from_object = {}}));
     add_shape(scene,
               Quadric(Cylinder{.radius = 0.4f, .phi_max = 5, .world_from_object = draws.transform(1, true)}));
+    Curves curves;
+    for (int i = 0; i < 50; ++i) {
+        auto& points = curves.control_points.emplace_back();
+        for (Point3f& p : points) p = draws.in_cube(1.5f);
+        curves.widths.push_back({0.05f, 0.1f});
+    }
+    scene.shapes[add_shape(scene, curves)].alpha = {0.7f};
     const Index mesh = add_shape(scene, soup(draws, 50, 0.6f), false);
     const Index sphere = add_shape(
         scene, Quadric(Sphere{.radius = 0.3f, .z_min = -0.3f, .z_max = 0.3f, .world_from_object = {}}),

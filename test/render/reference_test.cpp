@@ -46,6 +46,8 @@ TEST_P(ReferenceSlowTest, AgreesWithPbrt) {
                        std::to_string(channel.mean_difference_error / channel.mean_b));
         EXPECT_NEAR(channel.relative_mean_difference, 0, tolerance) << channel.name;
     }
+    // Some of its pixels are dominated by one sample in 64, so that their errors are too small.
+    if (std::string(GetParam()) == "hair-curl") return;
     const ZScores& z = c.pooled;
     RecordProperty("z mean", std::to_string(z.mean));
     RecordProperty("z sd", std::to_string(z.standard_deviation));
@@ -67,7 +69,7 @@ TEST_P(ReferenceSlowTest, AgreesWithPbrt) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ReferenceSlowTest,
                          ::testing::Values("cornell-box", "veach-mis", "material-testball", "killeroo-simple",
-                                           "killeroo-gold", "coffee", "staircase2"),
+                                           "killeroo-gold", "coffee", "staircase2", "hair-curl"),
                          [](const auto& scene) {
                              std::string name = scene.param;
                              std::replace(name.begin(), name.end(), '-', '_');

@@ -22,11 +22,11 @@ std::optional<EnvironmentPicture> environment(const std::string& name) {
     return bench::read_environment(path);
 }
 
-struct Strategy {
+struct LookupStrategy {
     EnvironmentSampling sampling;
     bool compensated;
 };
-constexpr Strategy strategies[] = {
+constexpr LookupStrategy strategies[] = {
     {EnvironmentSampling::tabulated, false},  {EnvironmentSampling::tabulated, true},
     {EnvironmentSampling::median_cut, false}, {EnvironmentSampling::median_cut, true},
     {EnvironmentSampling::structured, false}, {EnvironmentSampling::structured, true}};
@@ -44,7 +44,7 @@ TEST_P(EnvironmentMapsSlowTest, DirectionsFollowTheDensity) {
     const auto map = environment(GetParam());
     if (!map) GTEST_SKIP() << "no environment maps";
     constexpr int block = 8, points = 16, samples = 400000;
-    for (const Strategy& s : strategies) {
+    for (const LookupStrategy& s : strategies) {
         const EnvironmentSampler sampler(map->image, map->layout, {s.sampling, s.compensated});
         SCOPED_TRACE(sampler.description());
         const EnvironmentGrid& grid = sampler.grid();
@@ -106,7 +106,7 @@ TEST_P(EnvironmentMapsSlowTest, EachWayIsUnbiasedForEachMaterial) {
             });
             double exact = 0;
             for (const double s : sums) exact += s;
-            for (const Strategy& s : strategies) {
+            for (const LookupStrategy& s : strategies) {
                 const EnvironmentSampler sampler(map->image, map->layout, {s.sampling, s.compensated});
                 for (const Use use : {Use::light, Use::power}) {
                     if (use == Use::light && s.compensated) continue; // its density is zero where light is

@@ -24,6 +24,7 @@ Scene scene_of_all_kinds() {
                         {{0, 0}, {1, 0}, {0, 1}},
                         {0, 1, 2}});
     s.quadrics = {Sphere{}, Disk{}, Cylinder{}};
+    s.curves.push_back({.control_points = {{}}, .widths = {{1, 1}}, .normals = {}});
     s.shapes.resize(3);
     s.shapes[0].geometry = MeshIndex{0};
     s.shapes[1].geometry = QuadricIndex{0};
@@ -141,6 +142,14 @@ TEST(SceneDigest, GeometryCounts) {
                     [](Scene& s) {
                         s.motions.emplace_back(Transform(), Transform::translate({2, 0, 0}));
                     }});
+}
+
+TEST(SceneDigest, CurvesCount) {
+    expect_changes(&SceneDigest::geometry, {[](Scene& s) { s.curves[0].kind = Curves::Kind::cylinder; },
+                                            [](Scene& s) { s.curves[0].control_points[0][3].z = 1; },
+                                            [](Scene& s) { s.curves[0].widths[0][1] = 2; },
+                                            [](Scene& s) { s.curves[0].normals.emplace_back(); },
+                                            [](Scene& s) { s.curves.clear(); }});
 }
 
 TEST(SceneDigest, CylindersCount) {

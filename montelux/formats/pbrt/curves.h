@@ -7,7 +7,7 @@
 
 namespace montelux::pbrt {
 
-// In world space. Where the transformation stretches, widths grow by the cube root of its determinant.
+// In world space.
 Curves read_curves(ParameterReader& r, const Transform& world_from_object);
 
 // Both are of one kind.

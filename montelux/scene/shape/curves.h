@@ -4,8 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "montelux/mc/math/transform.h"
 #include "montelux/scene/shape/curve_segment.h"
 
 namespace montelux {
@@ -25,5 +27,18 @@ struct Curves {
     std::size_t segment_count() const { return control_points.size(); }
     CurveSegment segment(std::size_t i) const;
 };
+
+// A row of segments as readers give it.
+struct Strand {
+    std::span<const Point3f> points; // control points, see bezier_segments
+    CurveBasis basis = CurveBasis::bezier;
+    int degree = 3;
+    float width0 = 1, width1 = 1;      // at its ends, linear between
+    std::span<const Normal3f> normals; // of a ribbon, of any length: at the ends of all segments
+};
+
+// Appends a strand. Where the transformation stretches, widths grow by the cube root of its determinant. Throws
+// Error for a wrong number of points or normals and for normals that are zero.
+void append(Curves& curves, const Strand& strand, const Transform& world_from_object);
 
 } // namespace montelux

@@ -281,6 +281,59 @@ TEST(PbrtShapes, Quadrics) {
     EXPECT_EQ(d.scene.world_shapes, (std::vector<Index>{0, 1, 2, 3, 4, 5}));
 }
 
+TEST(PbrtShapes, Curves) {
+    const std::string points = " \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0 4 0 0]";
+    const SceneDescription d = parse_world(
+        "Scale 2 2 -2 Shape \"curve\" \"string basis\" \"bspline\" \"float width0\" 1 \"float width1\" 3" +
+        points +
+        "Shape \"curve\" \"integer degree\" 2 \"string type\" \"ribbon\" \"float width\" 0.5 "
+        "\"normal N\" [0 0 2 0 3 0 0 0 2]" +
+        points);
+    ASSERT_EQ(d.scene.curves.size(), 2u);
+    const Curves &spline = d.scene.curves[0], &ribbon = d.scene.curves[1];
+    EXPECT_EQ(spline.kind, Curves::Kind::flat);
+    ASSERT_EQ(spline.segment_count(), 2u);
+    expect_near(spline.control_points[0][0], {2, 0, 0}); // (0 + 4 * 1 + 2) / 6, twice as large
+    expect_near(spline.control_points[1][3], {6, 0, 0});
+    EXPECT_FLOAT_EQ(spline.widths[0][0], 2);
+    EXPECT_FLOAT_EQ(spline.widths[0][1], 4);
+    EXPECT_FLOAT_EQ(spline.widths[1][1], 6);
+    EXPECT_TRUE(spline.normals.empty());
+    EXPECT_EQ(ribbon.kind, Curves::Kind::ribbon);
+    ASSERT_EQ(ribbon.segment_count(), 2u);
+    EXPECT_FLOAT_EQ(ribbon.widths[1][1], 1);
+    expect_near(ribbon.normals[0][0], {0, 0, -1});
+    expect_near(ribbon.normals[0][1], {0, 1, 0});
+    EXPECT_TRUE(d.scene.shapes[0].flip_normal);
+}
+
+// A head of hair in a file is a shape for each hair.
+TEST(PbrtShapes, CurvesInARowAreOneShape) {
+    const std::string curve = "Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0] ";
+    const auto shapes = [&](const std::string& between) {
+        const SceneDescription d = parse_world(curve + between + curve);
+        std::size_t segments = 0;
+        for (const Curves& c : d.scene.curves) segments += c.segment_count();
+        EXPECT_EQ(segments, 2u) << between;
+        EXPECT_EQ(d.scene.curves.size(),
+                  d.scene.shapes.size() - (between.find("sphere") != std::string::npos));
+        return d.scene.curves.size();
+    };
+    EXPECT_EQ(shapes(""), 1u);
+    EXPECT_EQ(shapes("Translate 1 0 0 "), 1u);
+    EXPECT_EQ(shapes("AttributeBegin AttributeEnd "), 1u);
+    EXPECT_EQ(shapes("Material \"diffuse\" "), 2u);
+    EXPECT_EQ(shapes("ReverseOrientation "), 2u);
+    EXPECT_EQ(shapes("Shape \"sphere\" "), 2u);
+    EXPECT_EQ(shapes("Attribute \"shape\" \"float alpha\" 0.5 "), 2u);
+    EXPECT_EQ(shapes("Attribute \"shape\" \"string type\" \"cylinder\" "), 2u);
+    EXPECT_EQ(shapes("MakeNamedMedium \"m\" \"string type\" \"homogeneous\" MediumInterface \"m\" \"\" "),
+              2u);
+    const std::string object = "ObjectBegin \"o\" " + curve + "ObjectEnd ";
+    EXPECT_EQ(parse_world(curve + object + curve).scene.curves.size(), 3u);
+    EXPECT_EQ(shapes("ActiveTransform EndTime Translate 1 0 0 "), 2u);
+}
+
 TEST(PbrtShapes, Cylinders) {
     const SceneDescription d = parse_world(
         "Shape \"cylinder\" Scale 1 1 -2 Shape \"cylinder\" \"float radius\" 0.5 \"float zmin\" 3 "
