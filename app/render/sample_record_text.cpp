@@ -188,6 +188,10 @@ void add_vertex(Text& t, std::size_t number, const PathVertex& v, const Scene& s
                        [&](CurvesIndex curves) {
                            t.add("segment %u of curves %u", static_cast<unsigned>(v.hit.primitive),
                                  static_cast<unsigned>(curves.index));
+                       },
+                       [&](BilinearMeshIndex mesh) {
+                           t.add("patch %u of bilinear mesh %u", static_cast<unsigned>(v.hit.primitive),
+                                 static_cast<unsigned>(mesh.index));
                        }},
             shape.geometry);
         if (v.hit.instance != no_index) t.add(", instance %u", static_cast<unsigned>(v.hit.instance));

@@ -13,7 +13,7 @@ bool is_opaque(const SceneView& scene, const Ray& ray, const Hit& hit) {
     const float alpha = alpha_at(scene, ray, hit);
     if (alpha >= 1) return true;
     if (!(alpha > 0)) return false;
-    // Each surface along the ray decides independently; a quadric or a curve may be hit twice.
+    // Each surface along the ray decides independently; other geometry than triangles may be hit twice.
     std::uint64_t h = hash_key(hit.shape, hit.primitive);
     if (!std::holds_alternative<MeshIndex>(scene.shapes[hit.shape].geometry))
         h = mix64(h ^ std::bit_cast<std::uint32_t>(hit.t));

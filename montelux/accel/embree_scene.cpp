@@ -47,6 +47,7 @@ void EmbreeScene::build() {
         data_[i].cut_out = is_cut_out(shape);
         data_[i].quadric = quadric_of(scene_, shape);
         data_[i].curves = curves_of(scene_, shape);
+        data_[i].patches = bilinear_mesh_of(scene_, shape);
         if (data_[i].curves != nullptr) data_[i].pieces = curve_pieces(*data_[i].curves);
         if (data_[i].quadric != nullptr) data_[i].sphere = whole_sphere(*data_[i].quadric);
     }
@@ -125,7 +126,8 @@ void EmbreeScene::attach_shape(RTCScene to, unsigned id, Index shape_index) {
                    [&](const Quadric&) { return user_geometry(1); },
                    [&](const Curves& curves) {
                        return user_geometry(curves.segment_count() << data_[shape_index].pieces.levels);
-                   }});
+                   },
+                   [&](const BilinearMesh& mesh) { return user_geometry(mesh.patch_count()); }});
     rtcSetGeometryUserData(geometry, &data_[shape_index]);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(to, geometry, id);

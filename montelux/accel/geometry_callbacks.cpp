@@ -13,7 +13,7 @@ constexpr int present = -1; // of Embree's masks of valid rays
 
 struct PrimitiveHit {
     double t;
-    double u = 0, v = 0;       // of a curve
+    double u = 0, v = 0;       // of a curve or a patch
     std::size_t primitive = 0; // of the shape
 };
 
@@ -26,11 +26,23 @@ std::optional<PrimitiveHit> first_hit(const GeometryData& data, unsigned primiti
                                    double(ray.t_max), data.pieces.range(primitive));
         return hit ? std::optional(PrimitiveHit{hit->t, hit->u, hit->v, segment}) : std::nullopt;
     }
+    if (data.patches != nullptr) {
+        const auto hit =
+            intersect(data.patches->patch(primitive), Vec3d(ray.o), Vec3d(ray.d), t_min, double(ray.t_max));
+        return hit ? std::optional(PrimitiveHit{hit->t, hit->u, hit->v, primitive}) : std::nullopt;
+    }
     if (data.sphere)
         t = intersect(*data.sphere, ray, t_min);
     else
         t = intersect(*data.quadric, ray, t_min);
     return t ? std::optional(PrimitiveHit{*t}) : std::nullopt;
+}
+
+Bounds3 primitive_bounds(const GeometryData& data, unsigned primitive) {
+    if (data.curves != nullptr)
+        return bounds_of(data.curves->segment(data.pieces.segment(primitive)), data.pieces.range(primitive));
+    if (data.patches != nullptr) return data.patches->patch_bounds(primitive);
+    return world_bounds(*data.quadric);
 }
 
 Ray ray_of(RTCRayN* rays, unsigned n, unsigned i) {
@@ -58,10 +70,7 @@ std::optional<Hit> solid_hit(const GeometryData& data, unsigned primitive, const
 
 void fill_bounds(const RTCBoundsFunctionArguments* args) {
     const auto& data = *static_cast<const GeometryData*>(args->geometryUserPtr);
-    const Bounds3 b = data.curves != nullptr
-                          ? bounds_of(data.curves->segment(data.pieces.segment(args->primID)),
-                                      data.pieces.range(args->primID))
-                          : world_bounds(*data.quadric);
+    const Bounds3 b = primitive_bounds(data, args->primID);
     RTCBounds& out = *args->bounds_o;
     auto below = [](double v) { return std::nextafter(static_cast<float>(v), -1e38f); };
     auto above = [](double v) { return std::nextafter(static_cast<float>(v), 1e38f); };

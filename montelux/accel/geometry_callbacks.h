@@ -1,4 +1,4 @@
-// Embree's callbacks for quadrics, curves and alpha cut-outs, one ray at a time or in packets.
+// Embree's callbacks for quadrics, curves, bilinear patches and alpha cut-outs, one ray at a time or in packets.
 #pragma once
 
 #include <optional>
@@ -14,10 +14,11 @@ namespace montelux {
 struct GeometryData {
     const SceneView* scene = nullptr;
     Index shape = no_index;
-    const Quadric* quadric = nullptr;  // null for other geometry
-    std::optional<WorldSphere> sphere; // if the quadric is one
-    const Curves* curves = nullptr;    // null for other geometry
-    CurvePieces pieces;                // of the curves: Embree's primitives
+    const Quadric* quadric = nullptr;      // null for other geometry
+    std::optional<WorldSphere> sphere;     // if the quadric is one
+    const Curves* curves = nullptr;        // null for other geometry
+    CurvePieces pieces;                    // of the curves: Embree's primitives
+    const BilinearMesh* patches = nullptr; // null for other geometry
     bool cut_out = false;
 };
 

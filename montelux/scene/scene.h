@@ -33,6 +33,7 @@ struct Scene {
     std::vector<TriangleMesh> meshes;
     std::vector<Quadric> quadrics;
     std::vector<Curves> curves;
+    std::vector<BilinearMesh> bilinear_meshes;
     std::vector<Shape> shapes;
     std::vector<Index> world_shapes; // shapes directly in the world
     std::vector<ObjectDefinition> objects;

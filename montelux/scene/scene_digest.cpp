@@ -270,6 +270,14 @@ class SceneHasher {
         const auto& [kind, control_points, widths, normals] = c;
         all(kind, control_points, widths, normals);
     }
+    void add(const BilinearMesh& m) {
+        const auto& [positions, normals, uvs, indices] = m;
+        all(positions, normals, uvs, indices);
+    }
+    void add(const BilinearMeshIndex& i) {
+        const auto& [index] = i;
+        add(index);
+    }
     void add(const CurvesIndex& i) {
         const auto& [index] = i;
         add(index);
@@ -295,8 +303,8 @@ class SceneHasher {
 
     // Lights.
     void add(const AreaLight& l) {
-        const auto& [spectrum, scale, two_sided, shape, triangle_flux] = l;
-        all(spectrum, scale, two_sided, shape, triangle_flux);
+        const auto& [spectrum, scale, two_sided, shape, primitive_flux] = l;
+        all(spectrum, scale, two_sided, shape, primitive_flux);
     }
     void add(const PointLight& l) {
         const auto& [spectrum, scale, position] = l;
@@ -410,15 +418,16 @@ ContentDigest SceneDigest::whole() const {
 }
 
 SceneDigest digest_of(const Scene& scene) {
-    const auto& [meshes, quadrics, curves, shapes, world_shapes, objects, instances, motions, spectra,
-                 materials, float_textures, spectrum_textures, normal_maps, images, environments, skies,
-                 lights, camera, media, scalar_grids, color_grids] = scene;
+    const auto& [meshes, quadrics, curves, bilinear_meshes, shapes, world_shapes, objects, instances, motions,
+                 spectra, materials, float_textures, spectrum_textures, normal_maps, images, environments,
+                 skies, lights, camera, media, scalar_grids, color_grids] = scene;
     SceneHasher of_materials(spectra);
     of_materials.all(materials);
     add_media(of_materials, scene);
     SceneHasher of_geometry(spectra);
     of_geometry.all(meshes, quadrics, shapes, world_shapes, objects, instances, motions);
     if (!curves.empty()) of_geometry.all(curves);
+    if (!bilinear_meshes.empty()) of_geometry.all(bilinear_meshes);
     return {of_geometry.value(), of_materials.value(),
             digest_of_all(scene, float_textures, spectrum_textures, normal_maps, images),
             digest_of_all(scene, lights, environments, skies), digest_of_all(scene, camera)};

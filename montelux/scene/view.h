@@ -19,6 +19,7 @@ struct SceneView {
     std::span<const TriangleMesh> meshes;
     std::span<const Quadric> quadrics;
     std::span<const Curves> curves;
+    std::span<const BilinearMesh> bilinear_meshes;
     std::span<const Shape> shapes;
     std::span<const Index> world_shapes;
     std::span<const ObjectDefinition> objects;
@@ -52,13 +53,13 @@ struct SceneView {
     SceneView() = default;
     // Without tables: enough for geometry and constant parameters.
     explicit SceneView(const Scene& scene)
-        : meshes(scene.meshes), quadrics(scene.quadrics), curves(scene.curves), shapes(scene.shapes),
-          world_shapes(scene.world_shapes), objects(scene.objects), instances(scene.instances),
-          motions(scene.motions), spectra(scene.spectra), materials(scene.materials),
-          float_textures(scene.float_textures), spectrum_textures(scene.spectrum_textures),
-          normal_maps(scene.normal_maps), lights(scene.lights), skies(scene.skies), media(scene.media),
-          scalar_grids(scene.scalar_grids), color_grids(scene.color_grids),
-          camera_medium(scene.camera.medium) {}
+        : meshes(scene.meshes), quadrics(scene.quadrics), curves(scene.curves),
+          bilinear_meshes(scene.bilinear_meshes), shapes(scene.shapes), world_shapes(scene.world_shapes),
+          objects(scene.objects), instances(scene.instances), motions(scene.motions), spectra(scene.spectra),
+          materials(scene.materials), float_textures(scene.float_textures),
+          spectrum_textures(scene.spectrum_textures), normal_maps(scene.normal_maps), lights(scene.lights),
+          skies(scene.skies), media(scene.media), scalar_grids(scene.scalar_grids),
+          color_grids(scene.color_grids), camera_medium(scene.camera.medium) {}
 
     SampledSpectrum sample(SceneSpectrum s, const SampledWavelengths& lambda) const {
         return s.is_constant() ? SampledSpectrum(s.constant) : spectra[s.index].sample(lambda);

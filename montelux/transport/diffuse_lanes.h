@@ -113,10 +113,13 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
         set_lane(w, i, state.ray.d);
         const Index light = scene.shapes[hit.shape].light;
         if (hit.instance == no_index && light != no_index)
-            add_met_light(
-                scene, state, light,
-                {.wi = state.ray.d, .part = hit.primitive, .p = lane_of(s.p, i), .n = lane_of(s.ng, i)},
-                PathRecorder(nullptr));
+            add_met_light(scene, state, light,
+                          {.wi = state.ray.d,
+                           .part = hit.primitive,
+                           .p = lane_of(s.p, i),
+                           .n = lane_of(s.ng, i),
+                           .b = {hit.b1, hit.b2}},
+                          PathRecorder(nullptr));
         state.alive = false;
         if (state.depth++ == settings_.max_depth) {
             stream.active.set(i, false);

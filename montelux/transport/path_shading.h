@@ -119,8 +119,8 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
         surface_point(scene, state.ray, hit, textured || scene.frame_follows_tangents(material));
     if (recorder) recorder.hit_surface(state.ray, hit, s, state.throughput);
     if (hit.instance == no_index && s.shape->light != no_index)
-        add_met_light(scene, state, s.shape->light, {.wi = w, .part = s.primitive, .p = s.p, .n = s.ng},
-                      recorder);
+        add_met_light(scene, state, s.shape->light,
+                      {.wi = w, .part = s.primitive, .p = s.p, .n = s.ng, .b = s.b}, recorder);
     state.alive = false; // until the path continues
     if (state.depth++ == settings_.max_depth) {
         if (recorder) recorder.ended(PathEnd::max_depth);

@@ -23,7 +23,8 @@ std::string kind_of(const ShapeRef& r) {
                                                         [](const Cylinder&) { return "cylinder"; }},
                                              quadric);
                                      },
-                                     [](const Curves&) { return "curves"; }});
+                                     [](const Curves&) { return "curves"; },
+                                     [](const BilinearMesh&) { return "bilinear mesh"; }});
 }
 
 nb::object light_of(const ShapeRef& r) {
@@ -244,7 +245,7 @@ nb::object add_curves(const SceneRef& scene, const nb::object& points, const nb:
 
 void bind_shapes(nb::module_& m) {
     nb::class_<ShapeRef> c(m, "Shape", "A shape of a scene: its material, its light, its side.");
-    c.def_prop_ro("kind", &kind_of, "'mesh', 'sphere', 'disk', 'cylinder' or 'curves'.")
+    c.def_prop_ro("kind", &kind_of, "'mesh', 'bilinear mesh', 'sphere', 'disk', 'cylinder' or 'curves'.")
         .def_prop_rw(
             "material",
             [](const ShapeRef& r) -> nb::object {

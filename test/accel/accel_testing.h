@@ -157,7 +157,8 @@ class BruteForce {
                                           },
                                           quadric);
                                   },
-                                  [](const Curves&) {}}); // curves_test.cpp
+                                  [](const Curves&) {},         // curves_test.cpp
+                                  [](const BilinearMesh&) {}}); // bilinear_mesh_test.cpp
     }
     void try_mesh(const TriangleMesh& m, Index shape, Index instance, Vec3d o, Vec3d d, double t_max) const {
         for (std::size_t i = 0; i < m.triangle_count(); ++i) {

@@ -36,10 +36,10 @@ inline Shape add_shape(Scene& scene, Shape shape) {
     scene.world_shapes.push_back(index);
     return shape;
 }
-inline void add_area_light(Scene& scene, Shape shape, bool two_sided, float triangle_flux = 0) {
+inline void add_area_light(Scene& scene, Shape shape, bool two_sided, float primitive_flux = 0) {
     shape.light = static_cast<Index>(scene.lights.size());
     scene.lights.push_back(
-        AreaLight{1.0f, 2, two_sided, static_cast<Index>(scene.shapes.size()), triangle_flux});
+        AreaLight{1.0f, 2, two_sided, static_cast<Index>(scene.shapes.size()), primitive_flux});
     add_shape(scene, shape);
 }
 
@@ -65,14 +65,14 @@ inline Vec2d in_triangle(const EmissionSample& s, Index part) {
 
 inline void add_meshes(std::vector<Case>& cases) {
     const double a0 = area_of(0, 1, 2), a1 = area_of(2, 1, 3);
-    auto add = [&](const char* name, std::vector<double> flux, bool two_sided, float triangle_flux,
+    auto add = [&](const char* name, std::vector<double> flux, bool two_sided, float primitive_flux,
                    const auto& change) {
         Case c{.name = name, .scene = {}, .flux = std::move(flux), .place = in_triangle};
         c.scene.meshes.push_back(two_triangles());
         Shape shape;
         shape.geometry = MeshIndex{0};
         change(c.scene.meshes[0], shape);
-        add_area_light(c.scene, shape, two_sided, triangle_flux);
+        add_area_light(c.scene, shape, two_sided, primitive_flux);
         cases.push_back(std::move(c));
     };
     auto nothing = [](TriangleMesh&, Shape&) {};

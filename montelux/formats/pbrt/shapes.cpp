@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "montelux/formats/loop_subdivision.h"
+#include "montelux/formats/pbrt/bilinear_mesh.h"
 #include "montelux/formats/pbrt/curves.h"
+#include "montelux/formats/pbrt/mesh_parameters.h"
 #include "montelux/formats/ply.h"
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
@@ -56,25 +58,6 @@ Quadric read_disk(ParameterReader& r, const Transform& world_from_object) {
     return d;
 }
 
-// Indices as in the file: whole triangles, each index below `vertex_count`.
-std::vector<Index> read_indices(ParameterReader& r, std::size_t vertex_count) {
-    std::span<const std::int32_t> given = r.integers("indices");
-    std::size_t count = given.size() - given.size() % 3;
-    if (count != given.size())
-        r.diagnostics().warn(r.at("indices"), "parameter 'indices' has " + std::to_string(given.size()) +
-                                                  " values, no multiple of 3; the last " +
-                                                  std::to_string(given.size() - count) + " are ignored");
-    std::vector<Index> indices(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        if (given[i] < 0 || static_cast<std::size_t>(given[i]) >= vertex_count)
-            r.error("indices", "triangle " + std::to_string(i / 3) + " refers to vertex " +
-                                   std::to_string(given[i]) + "; the mesh has " +
-                                   std::to_string(vertex_count) + " vertices");
-        indices[i] = static_cast<Index>(given[i]);
-    }
-    return indices;
-}
-
 TriangleMesh read_triangle_mesh(ParameterReader& r) {
     TriangleMesh mesh;
     mesh.positions = r.triples("P", ParameterType::point3);
@@ -84,21 +67,9 @@ TriangleMesh read_triangle_mesh(ParameterReader& r) {
             r.error("shape 'trianglemesh' needs 'indices' when it has not exactly 3 vertices");
         mesh.indices = {0, 1, 2};
     } else {
-        mesh.indices = read_indices(r, mesh.positions.size());
+        mesh.indices = read_indices(r, mesh.positions.size(), 3, "triangle");
     }
-    mesh.normals = r.triples("N", ParameterType::normal);
-    std::span<const float> uv = r.numbers("uv", ParameterType::point2, 2);
-    for (std::size_t i = 0; i < uv.size(); i += 2) mesh.uvs.emplace_back(uv[i], uv[i + 1]);
-    auto drop_unless_one_a_vertex = [&](auto& values, std::string_view name) {
-        if (values.empty() || values.size() == mesh.positions.size()) return;
-        r.diagnostics().warn(r.at(name), "parameter " + in_quotes(name) + " has " +
-                                             std::to_string(values.size()) + " entries for " +
-                                             std::to_string(mesh.positions.size()) +
-                                             " vertices; it is ignored");
-        values.clear();
-    };
-    drop_unless_one_a_vertex(mesh.normals, "N");
-    drop_unless_one_a_vertex(mesh.uvs, "uv");
+    read_vertex_values(r, mesh);
     if (r.ignored("S"))
         r.diagnostics().warn_once("trianglemesh S", r.at("S"),
                                   "vertex tangents 'S' are not supported yet: they matter to anisotropic "
@@ -140,7 +111,7 @@ TriangleMesh read_loop_subdivision(ParameterReader& r, std::size_t& subdivided) 
     r.choice("scheme", {"loop"}, "loop");
     std::vector<Vec3f> positions = r.triples("P", ParameterType::point3);
     if (positions.empty()) r.error("shape 'loopsubdiv' needs vertex positions 'P'");
-    std::vector<Index> indices = read_indices(r, positions.size());
+    std::vector<Index> indices = read_indices(r, positions.size(), 3, "triangle");
     if (indices.empty()) r.error("shape 'loopsubdiv' needs 'indices'");
     const std::size_t count = subdivided_count(indices.size() / 3, levels);
     if (count > max_subdivided_triangles - subdivided)
@@ -163,11 +134,12 @@ TriangleMesh read_loop_subdivision(ParameterReader& r, std::size_t& subdivided) 
 } // namespace
 
 Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transform& world_from_object,
-                    bool reverse_orientation, Files& files, std::size_t& subdivided) {
+                    bool reverse_orientation, bool emits, Files& files, std::size_t& subdivided) {
     if (plugin == "sphere") return read_sphere(r, world_from_object);
     if (plugin == "disk") return read_disk(r, world_from_object);
     if (plugin == "cylinder") return read_cylinder(r, world_from_object);
     if (plugin == "curve") return read_curves(r, world_from_object);
+    if (plugin == "bilinearmesh") return read_bilinear_mesh(r, world_from_object, reverse_orientation, emits);
     TriangleMesh mesh;
     if (plugin == "trianglemesh")
         mesh = read_triangle_mesh(r);
@@ -175,8 +147,6 @@ Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transfo
         mesh = read_ply_mesh(r, files);
     else if (plugin == "loopsubdiv")
         mesh = read_loop_subdivision(r, subdivided);
-    else if (std::find(shape_plugins.begin(), shape_plugins.end(), plugin) != shape_plugins.end())
-        r.error("shape " + in_quotes(plugin) + " is not supported yet");
     else
         r.error("unknown shape " + in_quotes(plugin) + did_you_mean(plugin, shape_plugins));
     transform_mesh(mesh, world_from_object, reverse_orientation);

@@ -13,8 +13,8 @@ namespace montelux::pbrt {
 
 // The geometry of one Shape directive. Vertices of meshes are transformed by `world_from_object`; vertex normals too, and turned around with
 // `reverse_orientation`. A quadric keeps the transform. `subdivided` counts the triangles of all 'loopsubdiv'
-// shapes of the scene.
+// shapes of the scene. `emits`: it is an area light.
 Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transform& world_from_object,
-                    bool reverse_orientation, Files& files, std::size_t& subdivided);
+                    bool reverse_orientation, bool emits, Files& files, std::size_t& subdivided);
 
 } // namespace montelux::pbrt

@@ -29,7 +29,7 @@ AreaLight Emission::light(Index shape, const Geometry& geometry) const {
     if (!(power > 0)) return light;
     const auto* quadric = std::get_if<Quadric>(&geometry);
     if (quadric == nullptr)
-        light.triangle_flux = power;
+        light.primitive_flux = power;
     else if (const float area = object_area(*quadric); area > 0)
         light.scale *= power / ((two_sided ? 2.0f : 1.0f) * area * pi_f);
     return light;

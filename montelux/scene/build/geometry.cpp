@@ -14,18 +14,20 @@ void check_one_a_vertex(std::size_t count, std::size_t vertices, const char* wha
                     std::to_string(vertices) + " vertices; expected one per vertex");
 }
 
-void check_mesh(const TriangleMesh& mesh) {
+// Of triangles or patches.
+template <typename Mesh>
+void check_mesh(const Mesh& mesh, std::size_t corners, const std::string& primitive) {
     const std::size_t vertices = mesh.positions.size();
     if (vertices > no_index) throw Error("the mesh has more than 2^32 vertices");
-    if (mesh.indices.size() % 3 != 0)
-        throw Error("the mesh has " + std::to_string(mesh.indices.size()) +
-                    " indices; expected three per triangle");
-    if (mesh.triangle_count() >= no_index) throw Error("the mesh has more than 2^32 triangles");
+    if (mesh.indices.size() % corners != 0)
+        throw Error("the mesh has " + std::to_string(mesh.indices.size()) + " indices; expected " +
+                    (corners == 3 ? "three" : "four") + " per " + primitive);
+    if (mesh.indices.size() / corners >= no_index) throw Error("the mesh has more than 2^32 primitives");
     check_one_a_vertex(mesh.normals.size(), vertices, "normals");
     check_one_a_vertex(mesh.uvs.size(), vertices, "texture coordinates");
     for (std::size_t i = 0; i < mesh.indices.size(); ++i)
         if (mesh.indices[i] >= vertices)
-            throw Error("triangle " + std::to_string(i / 3) + " refers to vertex " +
+            throw Error(primitive + " " + std::to_string(i / corners) + " refers to vertex " +
                         std::to_string(mesh.indices[i]) + "; the mesh has " + std::to_string(vertices) +
                         " vertices");
     for (std::size_t i = 0; i < vertices; ++i)
@@ -51,15 +53,8 @@ void check_curves(const Curves& curves) {
     }
 }
 
-} // namespace
-
-std::size_t primitive_count(const Geometry& geometry) {
-    if (const auto* mesh = std::get_if<TriangleMesh>(&geometry)) return mesh->triangle_count();
-    if (const auto* curves = std::get_if<Curves>(&geometry)) return curves->segment_count();
-    return 1;
-}
-
-void transform_mesh(TriangleMesh& mesh, const Transform& t, bool reverse_orientation) {
+template <typename Mesh>
+void transform_vertices(Mesh& mesh, const Transform& t, bool reverse_orientation) {
     const bool stays = t.matrix() == Matrix4{};
     if (!stays)
         for (Point3f& p : mesh.positions) p = t.point(p);
@@ -69,9 +64,27 @@ void transform_mesh(TriangleMesh& mesh, const Transform& t, bool reverse_orienta
     }
 }
 
+} // namespace
+
+std::size_t primitive_count(const Geometry& geometry) {
+    if (const auto* mesh = std::get_if<TriangleMesh>(&geometry)) return mesh->triangle_count();
+    if (const auto* curves = std::get_if<Curves>(&geometry)) return curves->segment_count();
+    if (const auto* patches = std::get_if<BilinearMesh>(&geometry)) return patches->patch_count();
+    return 1;
+}
+
+void transform_mesh(TriangleMesh& mesh, const Transform& t, bool reverse_orientation) {
+    transform_vertices(mesh, t, reverse_orientation);
+}
+
+void transform_mesh(BilinearMesh& mesh, const Transform& t, bool reverse_orientation) {
+    transform_vertices(mesh, t, reverse_orientation);
+}
+
 void check_geometry(const Geometry& geometry) {
-    if (const auto* mesh = std::get_if<TriangleMesh>(&geometry)) return check_mesh(*mesh);
+    if (const auto* mesh = std::get_if<TriangleMesh>(&geometry)) return check_mesh(*mesh, 3, "triangle");
     if (const auto* curves = std::get_if<Curves>(&geometry)) return check_curves(*curves);
+    if (const auto* mesh = std::get_if<BilinearMesh>(&geometry)) return check_mesh(*mesh, 4, "patch");
     if (!fits_float(world_bounds(std::get<Quadric>(geometry))))
         throw Error("the shape reaches to infinity in world space");
 }

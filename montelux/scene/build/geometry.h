@@ -9,15 +9,16 @@
 
 namespace montelux {
 
-using Geometry = std::variant<TriangleMesh, Quadric, Curves>;
+using Geometry = std::variant<TriangleMesh, Quadric, Curves, BilinearMesh>;
 
-// Number of primitives: the triangles of a mesh, the segments of curves, or one quadric.
+// Number of primitives: the triangles or patches of a mesh, the segments of curves, or one quadric.
 std::size_t primitive_count(const Geometry& geometry);
 
 // Transforms vertices and vertex normals; `reverse_orientation` reverses the normals.
 void transform_mesh(TriangleMesh& mesh, const Transform& t, bool reverse_orientation = false);
+void transform_mesh(BilinearMesh& mesh, const Transform& t, bool reverse_orientation = false);
 
-// Throws Error, naming the first triangle or vertex at fault: indices out of range or not in whole triangles,
+// Throws Error, naming the first primitive or vertex at fault: indices out of range or not in whole primitives,
 // normals or texture coordinates not one per vertex, non-finite numbers, bounds beyond single precision.
 void check_geometry(const Geometry& geometry);
 

@@ -29,6 +29,9 @@ Bounds3 bounds_of(const ObjectDefinition& object, const Scene& scene) {
                                           bounds.add(b.lower);
                                           bounds.add(b.upper);
                                       }
+                                  },
+                                  [&](const BilinearMesh& mesh) {
+                                      for (const Point3f p : mesh.positions) bounds.add(Vec3d(p));
                                   }});
     }
     return bounds;
@@ -52,23 +55,26 @@ Index SceneBuilder::add_shape(Geometry geometry, const ShapeSettings& settings, 
     scene_.shapes.push_back(shape);
     (in_object() ? scene_.objects[open_object_].shapes : scene_.world_shapes).push_back(index);
     if (settings.emission != nullptr) add_area_light(index, *settings.emission, geometry, at);
-    scene_.shapes[index].geometry =
-        std::visit(Overloaded{[&](TriangleMesh& mesh) -> ShapeGeometry {
-                                  // Room for the ray tracer to read the positions in place.
-                                  if (!mesh.positions.empty())
-                                      mesh.positions.reserve(mesh.positions.size() + 1);
-                                  scene_.meshes.push_back(std::move(mesh));
-                                  return MeshIndex{static_cast<Index>(scene_.meshes.size() - 1)};
-                              },
-                              [&](Quadric& quadric) -> ShapeGeometry {
-                                  scene_.quadrics.push_back(quadric);
-                                  return QuadricIndex{static_cast<Index>(scene_.quadrics.size() - 1)};
-                              },
-                              [&](Curves& curves) -> ShapeGeometry {
-                                  scene_.curves.push_back(std::move(curves));
-                                  return CurvesIndex{static_cast<Index>(scene_.curves.size() - 1)};
-                              }},
-                   geometry);
+    scene_.shapes[index].geometry = std::visit(
+        Overloaded{[&](TriangleMesh& mesh) -> ShapeGeometry {
+                       // Room for the ray tracer to read the positions in place.
+                       if (!mesh.positions.empty()) mesh.positions.reserve(mesh.positions.size() + 1);
+                       scene_.meshes.push_back(std::move(mesh));
+                       return MeshIndex{static_cast<Index>(scene_.meshes.size() - 1)};
+                   },
+                   [&](Quadric& quadric) -> ShapeGeometry {
+                       scene_.quadrics.push_back(quadric);
+                       return QuadricIndex{static_cast<Index>(scene_.quadrics.size() - 1)};
+                   },
+                   [&](Curves& curves) -> ShapeGeometry {
+                       scene_.curves.push_back(std::move(curves));
+                       return CurvesIndex{static_cast<Index>(scene_.curves.size() - 1)};
+                   },
+                   [&](BilinearMesh& mesh) -> ShapeGeometry {
+                       scene_.bilinear_meshes.push_back(std::move(mesh));
+                       return BilinearMeshIndex{static_cast<Index>(scene_.bilinear_meshes.size() - 1)};
+                   }},
+        geometry);
     return index;
 }
 

@@ -1,6 +1,7 @@
 #include "montelux/scene/light/area_light.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "montelux/mc/math/frame.h"
@@ -20,11 +21,11 @@ float sides(const AreaLight& light) { return light.two_sided ? 2.0f : 1.0f; }
 
 // Radiance over AreaLight::spectrum.
 float radiance_scale(const AreaLight& light, const LightContext& context, Index part) {
-    if (!(light.triangle_flux > 0)) return light.scale;
+    if (!(light.primitive_flux > 0)) return light.scale;
     const Shape& shape = context.scene.shapes[light.shape];
     if (quadric_of(context.scene, shape) != nullptr) return light.scale;
-    const float area = context.tables().triangle(context.light, part).area;
-    return area > 0 ? light.scale * (light.triangle_flux / (sides(light) * area * pi_f)) : 0;
+    const float area = context.tables().area(context.light, part);
+    return area > 0 ? light.scale * (light.primitive_flux / (sides(light) * area * pi_f)) : 0;
 }
 
 // Whether the surface emits along a direction with that cosine to its normal.
@@ -115,6 +116,24 @@ LightBounds triangle_bounds(const TriangleMesh& mesh, const LightTriangle& t, In
     return b;
 }
 
+LightBounds patch_bounds(const BilinearMesh& mesh, const Shape& shape, Index part) {
+    LightBounds b;
+    b.box = mesh.patch_bounds(part);
+    // Normals lie between those of the corners (normal_of).
+    const std::array<Normal3f, 4> normals = {
+        patch_normal(mesh, shape, part, 0, 0), patch_normal(mesh, shape, part, 1, 0),
+        patch_normal(mesh, shape, part, 0, 1), patch_normal(mesh, shape, part, 1, 1)};
+    const Vec3f sum = normals[0] + normals[1] + normals[2] + normals[3];
+    if (!(length(sum) > 0) || !mesh.normals.empty()) return b;
+    const Vec3f axis = normalize(sum);
+    float cosine = 1;
+    for (const Normal3f n : normals) cosine = std::min(cosine, dot(axis, n));
+    if (!(cosine > 0)) return b;
+    b.axis = axis;
+    b.cos_theta_o = cosine;
+    return b;
+}
+
 LightBounds quadric_bounds(const Quadric& quadric, bool flip_normal) {
     LightBounds b;
     b.box = world_bounds(quadric);
@@ -133,6 +152,7 @@ Index AreaLight::part_count(const LightContext& context) const {
     return visit_geometry(
         context.scene, s,
         Overloaded{[](const TriangleMesh& mesh) { return static_cast<Index>(mesh.triangle_count()); },
+                   [](const BilinearMesh& mesh) { return static_cast<Index>(mesh.patch_count()); },
                    [](const Quadric&) { return Index{1}; }, [](const Curves&) { return Index{0}; }});
 }
 
@@ -148,7 +168,7 @@ std::optional<LightSample> AreaLight::sample_li(const LightContext& context, Ind
 
 float AreaLight::pdf_li(const LightContext& context, const ReferencePoint& from, const LightHit& hit) const {
     if (const auto cone = cone_of(context, from.p)) return cone->pdf();
-    const float density = area_density(context, shape, hit.part, hit.p);
+    const float density = area_density(context, shape, hit);
     Vec3f d = hit.p - from.p;
     float d2 = length_squared(d);
     float cosine = std::abs(dot(hit.n, d)) / std::sqrt(d2);
@@ -189,7 +209,7 @@ std::optional<EmissionSample> AreaLight::sample_le(const LightContext& context, 
 
 EmissionPdf AreaLight::pdf_le(const LightContext& context, const LightHit& hit, Vec3f w) const {
     const float cosine = dot(hit.n, w);
-    return {area_density(context, shape, hit.part, hit.p),
+    return {area_density(context, shape, hit),
             cosine_hemisphere_pdf(two_sided ? std::abs(cosine) : cosine) / sides(*this)};
 }
 
@@ -201,15 +221,15 @@ void AreaLight::powers(const LightContext& context, std::span<double> parts) con
         if (alpha > 0 && alpha < 1) area *= double(alpha);
         return pi * area * (two_sided ? 2 : 1) * double(factor) * brightness;
     };
+    const auto of_primitives = [&] {
+        for (Index part = 0; part < parts.size(); ++part)
+            parts[part] = power(double(context.tables().area(context.light, part)),
+                                radiance_scale(*this, context, part));
+    };
     visit_geometry(context.scene, s,
                    Overloaded{[&](const Quadric& quadric) { parts[0] = power(world_area(quadric), scale); },
-                              [&](const TriangleMesh&) {
-                                  for (Index part = 0; part < parts.size(); ++part)
-                                      parts[part] =
-                                          power(double(context.tables().triangle(context.light, part).area),
-                                                radiance_scale(*this, context, part));
-                              },
-                              [](const Curves&) {}});
+                              [&](const TriangleMesh&) { of_primitives(); },
+                              [&](const BilinearMesh&) { of_primitives(); }, [](const Curves&) {}});
 }
 
 std::optional<LightBounds> AreaLight::bounds(const LightContext& context, Index part) const {
@@ -220,6 +240,7 @@ std::optional<LightBounds> AreaLight::bounds(const LightContext& context, Index 
                        return triangle_bounds(mesh, context.tables().triangle(context.light, part), part);
                    },
                    [&](const Quadric& quadric) { return quadric_bounds(quadric, s.flip_normal); },
+                   [&](const BilinearMesh& mesh) { return patch_bounds(mesh, s, part); },
                    [](const Curves&) { return LightBounds{}; }});
     b.cos_theta_e = 0;
     b.two_sided = b.two_sided || two_sided;

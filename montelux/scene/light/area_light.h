@@ -1,4 +1,4 @@
-// AreaLight: a shape that emits: all triangles of a mesh, or a quadric.
+// AreaLight: a shape that emits: all primitives of a mesh, or a quadric.
 #pragma once
 
 #include "montelux/scene/light/light_model.h"
@@ -7,7 +7,7 @@
 namespace montelux {
 
 // Radiance scale * spectrum, W/(m^2 sr nm), from the front (or both sides) of a shape; the front is where
-// SurfacePoint::ng points. The parts are the triangles of a mesh. A shape with holes emits only from the
+// SurfacePoint::ng points. The parts are the triangles or patches of a mesh. A shape with holes emits only from the
 // points that are present (Shape::alpha); one with alpha 0 everywhere emits fully and is invisible, as in
 // pbrt-v4. Shapes inside object definitions do not emit.
 struct AreaLight {
@@ -18,8 +18,8 @@ struct AreaLight {
     float scale = 1;
     bool two_sided = false;
     Index shape = no_index;
-    // If positive, each triangle of a mesh emits this flux times scale * spectrum, whatever its area.
-    float triangle_flux = 0;
+    // If positive, each primitive of a mesh emits this flux times scale * spectrum, whatever its area.
+    float primitive_flux = 0;
 
     MONTELUX_LIGHT_MODEL;
 };

@@ -27,6 +27,21 @@ std::optional<EmissivePoint> sample_triangle(const TriangleMesh& mesh, const Lig
     return point;
 }
 
+std::optional<EmissivePoint> sample_patch(const BilinearMesh& mesh, const Shape& shape, Index part, Vec2f u) {
+    std::optional<EmissivePoint> point;
+    const BilinearPatch patch = mesh.patch(part);
+    const PatchSample at = sample_area(patch, Vec2d(u));
+    if (!(at.pdf > 0)) return point;
+    EmissivePoint& s = point.emplace();
+    s.hit.b1 = static_cast<float>(at.u);
+    s.hit.b2 = static_cast<float>(at.v);
+    s.p = Vec3f(point_of(patch, at.u, at.v));
+    s.n = patch_normal(mesh, shape, part, at.u, at.v);
+    s.error = patch_error(patch, s.n);
+    s.area_density = static_cast<float>(at.pdf);
+    return point;
+}
+
 std::optional<EmissivePoint> sample_disk(const WorldDisk& disk, bool flip_normal, Vec2f u) {
     std::optional<EmissivePoint> point;
     EmissivePoint& s = point.emplace();
@@ -54,17 +69,18 @@ std::optional<EmissivePoint> sample_quadric(const Quadric& quadric, bool flip_no
 
 std::optional<EmissivePoint> sample_area(const LightContext& context, Index index, Index part, Vec2f u) {
     const Shape& shape = context.scene.shapes[index];
-    auto s = visit_geometry(context.scene, shape,
-                            Overloaded{[&](const TriangleMesh& mesh) {
-                                           return sample_triangle(
-                                               mesh, context.tables().triangle(context.light, part), part, u);
-                                       },
-                                       [&](const Quadric& quadric) {
-                                           const auto& disk = context.tables().disk(context.light);
-                                           return disk ? sample_disk(*disk, shape.flip_normal, u)
-                                                       : sample_quadric(quadric, shape.flip_normal, u);
-                                       },
-                                       [](const Curves&) { return std::optional<EmissivePoint>(); }});
+    auto s = visit_geometry(
+        context.scene, shape,
+        Overloaded{[&](const TriangleMesh& mesh) {
+                       return sample_triangle(mesh, context.tables().triangle(context.light, part), part, u);
+                   },
+                   [&](const Quadric& quadric) {
+                       const auto& disk = context.tables().disk(context.light);
+                       return disk ? sample_disk(*disk, shape.flip_normal, u)
+                                   : sample_quadric(quadric, shape.flip_normal, u);
+                   },
+                   [&](const BilinearMesh& mesh) { return sample_patch(mesh, shape, part, u); },
+                   [](const Curves&) { return std::optional<EmissivePoint>(); }});
     if (s) {
         s->hit.shape = index;
         s->hit.primitive = part;
@@ -72,18 +88,22 @@ std::optional<EmissivePoint> sample_area(const LightContext& context, Index inde
     return s;
 }
 
-float area_density(const LightContext& context, Index index, Index part, Point3f p) {
-    return visit_geometry(
-        context.scene, context.scene.shapes[index],
-        Overloaded{[&](const TriangleMesh&) {
-                       const float area = context.tables().triangle(context.light, part).area;
-                       return area > 0 ? 1 / area : 0;
-                   },
-                   [&](const Quadric& quadric) {
-                       const auto& disk = context.tables().disk(context.light);
-                       return disk ? 1 / disk->area : static_cast<float>(area_pdf(quadric, Vec3d(p)));
-                   },
-                   [](const Curves&) { return 0.0f; }});
+float area_density(const LightContext& context, Index index, const LightHit& hit) {
+    return visit_geometry(context.scene, context.scene.shapes[index],
+                          Overloaded{[&](const TriangleMesh&) {
+                                         const float area = context.tables().area(context.light, hit.part);
+                                         return area > 0 ? 1 / area : 0;
+                                     },
+                                     [&](const Quadric& quadric) {
+                                         const auto& disk = context.tables().disk(context.light);
+                                         return disk ? 1 / disk->area
+                                                     : static_cast<float>(area_pdf(quadric, Vec3d(hit.p)));
+                                     },
+                                     [&](const BilinearMesh& mesh) {
+                                         return static_cast<float>(area_pdf(
+                                             mesh.patch(hit.part), double(hit.b.x), double(hit.b.y)));
+                                     },
+                                     [](const Curves&) { return 0.0f; }});
 }
 
 } // namespace montelux

@@ -51,6 +51,7 @@ struct LightHit {
     Index part = 0; // this and the next ones for surfaces only
     Point3f p{};    // on the surface
     Normal3f n{};   // geometric normal, on the emitting side
+    Vec2f b{};      // Hit::b1 and b2
 };
 
 // A ray that leaves a light. The flux of the light is the mean of radiance * cosine / (pdf_position *
@@ -79,7 +80,7 @@ struct LightBounds {
     bool two_sided = false; // the same about -axis
 };
 
-// A light consists of parts that are chosen individually: the triangles of an emissive mesh; other lights
+// A light consists of parts that are chosen individually: the primitives of an emissive mesh; other lights
 // have one. Functions take random numbers in [0, 1)^2, do not allocate, and do not throw, except `powers`.
 // Samples are large: where every return statement names the same variable, it is built in place.
 template <typename L>

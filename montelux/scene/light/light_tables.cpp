@@ -61,6 +61,9 @@ Bounds3 bounds_of(const Scene& scene) {
                                           const Bounds3 b = bounds_of(curves.segment(k));
                                           for (int i = 0; i < 8; ++i) add(b.corner(i));
                                       }
+                                  },
+                                  [&](const BilinearMesh& mesh) {
+                                      for (Point3f p : mesh.positions) add(Vec3d(p));
                                   }});
     };
     for (Index shape : scene.world_shapes) add_shape(shape, nullptr);
@@ -84,6 +87,7 @@ LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings
       map_spectra_(scene.environments.size()), in_world_(scene.shapes.size()), bounds_(bounds_of(scene)) {
     for (const Index shape : scene.world_shapes) in_world_[shape] = 1;
     for (Index i = 0; i < scene.lights.size(); ++i) {
+        first_patch_.push_back(patch_areas_.size());
         if (kind_of(scene.lights[i]) == LightKind::infinite) infinite_lights_.push_back(i);
         std::visit(Overloaded{[&](const AreaLight& l) { add_shape(scene, i, l); },
                               [&](const ImageInfiniteLight& l) { add_map(scene, i, l, settings); },
@@ -109,6 +113,7 @@ LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings
                               }},
                    scene.lights[i]);
     }
+    first_patch_.push_back(patch_areas_.size());
     add_triangles(scene);
 }
 
@@ -125,6 +130,11 @@ void LightTables::add_shape(const Scene& scene, Index light, const AreaLight& ar
                                   // it.
                                   if (!is_cut_out(shape)) spheres_[light] = whole_sphere(quadric);
                                   disks_[light] = whole_disk(quadric);
+                              },
+                              [&](const BilinearMesh& mesh) {
+                                  for (std::size_t i = 0;
+                                       i < mesh.patch_count() && in_world_[area.shape] != 0; ++i)
+                                      patch_areas_.push_back(static_cast<float>(area_of(mesh.patch(i))));
                               },
                               [](const Curves&) {}});
 }
@@ -174,6 +184,8 @@ LightTablesView LightTables::view(const Scene& scene) const {
     view.lookup = lookup_;
     view.triangles = triangles_;
     view.first_triangle = first_triangle_;
+    view.patch_areas = patch_areas_;
+    view.first_patch = first_patch_;
     view.spheres = spheres_;
     view.disks = disks_;
     view.maps = scene.environments;

@@ -31,6 +31,8 @@ class LightTables {
     EnvironmentLookup lookup_;
     std::vector<LightTriangle> triangles_;
     std::vector<std::size_t> first_triangle_;
+    std::vector<float> patch_areas_;
+    std::vector<std::size_t> first_patch_;
     std::vector<std::optional<WorldSphere>> spheres_;
     std::vector<std::optional<WorldDisk>> disks_;
     std::vector<EnvironmentSampler> environments_;

@@ -26,6 +26,8 @@ struct LightTablesView {
     EnvironmentLookup lookup{};
     std::span<const LightTriangle> triangles;
     std::span<const std::size_t> first_triangle; // of each light; at the end the total
+    std::span<const float> patch_areas;          // of each light on bilinear patches, one after the other
+    std::span<const std::size_t> first_patch;    // of each light; at the end the total
     std::span<const std::optional<WorldSphere>> spheres;
     std::span<const std::optional<WorldDisk>> disks;
     std::span<const Image> maps; // Scene::environments
@@ -46,6 +48,11 @@ struct LightTablesView {
     // For a light on a mesh in the world.
     const LightTriangle& triangle(Index light, Index primitive) const {
         return triangles[first_triangle[light] + primitive];
+    }
+    // Area of a triangle or a patch, for a light on such a mesh in the world.
+    float area(Index light, Index primitive) const {
+        const std::size_t patch = first_patch[light] + primitive;
+        return patch < first_patch[light + 1] ? patch_areas[patch] : triangle(light, primitive).area;
     }
     // Radiance of an environment map at a position on its grid, before Light::scale.
     SampledSpectrum map_radiance(const ImageInfiniteLight& light, const EnvironmentGrid& grid, Vec2f place,

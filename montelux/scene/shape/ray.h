@@ -19,7 +19,7 @@ struct Ray {
 
 struct Hit {
     float t = 0;
-    float b1 = 0, b2 = 0; // barycentric weights of a triangle's second and third vertex
+    float b1 = 0, b2 = 0; // barycentric weights of a triangle's second and third vertex; u and v of a patch
     Index shape = no_index;
     Index primitive = 0;
     Index instance = no_index; // into Scene::instances; no_index for shapes directly in the world

@@ -6,6 +6,7 @@
 
 #include "montelux/mc/math/transform.h"
 #include "montelux/scene/index.h"
+#include "montelux/scene/shape/bilinear_mesh.h"
 #include "montelux/scene/shape/curves.h"
 #include "montelux/scene/texture/texture.h"
 
@@ -54,7 +55,10 @@ struct QuadricIndex {
 struct CurvesIndex {
     Index index = no_index; // into Scene::curves
 };
-using ShapeGeometry = std::variant<MeshIndex, QuadricIndex, CurvesIndex>;
+struct BilinearMeshIndex {
+    Index index = no_index; // into Scene::bilinear_meshes
+};
+using ShapeGeometry = std::variant<MeshIndex, QuadricIndex, CurvesIndex, BilinearMeshIndex>;
 
 // The media on both sides of a surface.
 struct MediumInterface {
@@ -77,7 +81,7 @@ struct Shape {
     MediumInterface media{}; // the geometric normal points outside
 };
 
-// Calls f with the TriangleMesh, the Quadric or the Curves of the shape. S: Scene or SceneView.
+// Calls f with the TriangleMesh, Quadric, Curves or BilinearMesh of the shape. S: Scene or SceneView.
 template <typename S, typename F>
 decltype(auto) visit_geometry(const S& scene, const Shape& shape, const F& f) {
     struct Visitor {
@@ -86,6 +90,7 @@ decltype(auto) visit_geometry(const S& scene, const Shape& shape, const F& f) {
         decltype(auto) operator()(MeshIndex i) const { return f(scene.meshes[i.index]); }
         decltype(auto) operator()(QuadricIndex i) const { return f(scene.quadrics[i.index]); }
         decltype(auto) operator()(CurvesIndex i) const { return f(scene.curves[i.index]); }
+        decltype(auto) operator()(BilinearMeshIndex i) const { return f(scene.bilinear_meshes[i.index]); }
     };
     return std::visit(Visitor{scene, f}, shape.geometry);
 }
@@ -99,6 +104,11 @@ template <typename S>
 const Curves* curves_of(const S& scene, const Shape& shape) {
     const auto* i = std::get_if<CurvesIndex>(&shape.geometry);
     return i != nullptr ? &scene.curves[i->index] : nullptr;
+}
+template <typename S>
+const BilinearMesh* bilinear_mesh_of(const S& scene, const Shape& shape) {
+    const auto* i = std::get_if<BilinearMeshIndex>(&shape.geometry);
+    return i != nullptr ? &scene.bilinear_meshes[i->index] : nullptr;
 }
 
 } // namespace montelux

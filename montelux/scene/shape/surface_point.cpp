@@ -12,8 +12,9 @@ namespace {
 
 float largest_coordinate(Vec3f p) { return std::max(std::abs(p.x), std::max(std::abs(p.y), std::abs(p.z))); }
 
-// p(u, v) is affine on a triangle: solves for its derivatives. Degenerate uv yield arbitrary tangents.
-void triangle_derivatives(SurfacePoint& s, Vec3f e1, Vec3f e2, Vec2f duv1, Vec2f duv2) {
+// The derivatives of p with respect to uv by those of p (e1, e2) and of uv with respect to two other coordinates.
+// Degenerate uv yield arbitrary tangents.
+void set_tangents(SurfacePoint& s, Vec3f e1, Vec3f e2, Vec2f duv1, Vec2f duv2) {
     float determinant = duv1.x * duv2.y - duv1.y * duv2.x;
     if (std::abs(determinant) > 1e-20f) {
         float inv = 1 / determinant;
@@ -44,7 +45,34 @@ SurfacePoint mesh_point(const TriangleMesh& mesh, const Shape& shape, const Hit&
         uv2 = mesh.uvs[v[2]];
     }
     s.uv = (1 - hit.b1 - hit.b2) * uv0 + hit.b1 * uv1 + hit.b2 * uv2;
-    triangle_derivatives(s, p1 - p0, p2 - p0, uv1 - uv0, uv2 - uv0);
+    set_tangents(s, p1 - p0, p2 - p0, uv1 - uv0, uv2 - uv0);
+    return s;
+}
+
+SurfacePoint patch_point(const BilinearMesh& mesh, const Shape& shape, const Hit& hit, bool coordinates) {
+    SurfacePoint s;
+    const Index* i = &mesh.indices[4 * std::size_t{hit.primitive}];
+    const BilinearPatch patch = mesh.patch(hit.primitive);
+    const double u = double(hit.b1), v = double(hit.b2);
+    s.p = Vec3f(point_of(patch, u, v));
+    s.ng = patch_normal(mesh, shape, hit.primitive, u, v);
+    s.ns = s.ng;
+    if (const Vec3f n = interpolated_patch_normal(mesh, hit.primitive, hit.b1, hit.b2); length_squared(n) > 0)
+        s.ns = normalize(n);
+    s.error = patch_error(patch, s.ng);
+    if (!coordinates) return s;
+    const Vec3f dpdu(dpdu_of(patch, v)), dpdv(dpdv_of(patch, u));
+    Point2f uv00{0, 0}, uv10{1, 0}, uv01{0, 1}, uv11{1, 1};
+    if (!mesh.uvs.empty()) {
+        uv00 = mesh.uvs[i[0]];
+        uv10 = mesh.uvs[i[1]];
+        uv01 = mesh.uvs[i[2]];
+        uv11 = mesh.uvs[i[3]];
+    }
+    s.uv = bilinear(uv00, uv10, uv01, uv11, hit.b1, hit.b2);
+    const Vec2f duv_du = (1 - hit.b2) * (uv10 - uv00) + hit.b2 * (uv11 - uv01),
+                duv_dv = (1 - hit.b1) * (uv01 - uv00) + hit.b1 * (uv11 - uv10);
+    set_tangents(s, dpdu, dpdv, duv_du, duv_dv);
     return s;
 }
 
@@ -124,6 +152,28 @@ float stretch(const Transform& t) {
 
 } // namespace
 
+Vec3f interpolated_patch_normal(const BilinearMesh& mesh, std::size_t primitive, float u, float v) {
+    if (mesh.normals.empty()) return {};
+    const Index* i = &mesh.indices[4 * primitive];
+    return bilinear(mesh.normals[i[0]], mesh.normals[i[1]], mesh.normals[i[2]], mesh.normals[i[3]], u, v);
+}
+
+Normal3f patch_normal(const BilinearMesh& mesh, const Shape& shape, std::size_t primitive, double u,
+                      double v) {
+    const BilinearPatch patch = mesh.patch(primitive);
+    Vec3d n = normal_of(patch, u, v);
+    if (!(length_squared(n) > 0)) n = normal_of(patch, 0.5, 0.5); // at a corner where edges coincide
+    if (!(length_squared(n) > 0)) n = {0, 0, 1};
+    const Normal3f ng = Vec3f(normalize(shape.flip_normal ? -n : n));
+    const Vec3f vertex_normal =
+        interpolated_patch_normal(mesh, primitive, static_cast<float>(u), static_cast<float>(v));
+    return turns_normal(vertex_normal, ng) ? -ng : ng;
+}
+
+float patch_error(const BilinearPatch& p, Normal3f n) {
+    return coordinate_error(n, Vec3f(max(max(abs(p.p00), abs(p.p10)), max(abs(p.p01), abs(p.p11)))));
+}
+
 SurfacePoint surface_point(const SceneView& scene, const Ray& ray, const Hit& hit, bool coordinates) {
     const Shape& shape = scene.shapes[hit.shape];
     auto point = [&](const Ray& local) {
@@ -133,7 +183,8 @@ SurfacePoint surface_point(const SceneView& scene, const Ray& ray, const Hit& hi
                        [&](const Quadric& quadric) {
                            return quadric_point(quadric, shape, local, hit, coordinates);
                        },
-                       [&](const Curves& curves) { return curve_point(curves, shape, local, hit); }});
+                       [&](const Curves& curves) { return curve_point(curves, shape, local, hit); },
+                       [&](const BilinearMesh& mesh) { return patch_point(mesh, shape, hit, coordinates); }});
     };
     SurfacePoint s;
     if (hit.instance == no_index) {
@@ -156,6 +207,7 @@ SurfacePoint surface_point(const SceneView& scene, const Ray& ray, const Hit& hi
     }
     s.shape = &shape;
     s.primitive = hit.primitive;
+    s.b = {hit.b1, hit.b2};
     return s;
 }
 

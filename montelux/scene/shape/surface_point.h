@@ -16,6 +16,7 @@ struct SurfacePoint {
     Vec3f dpdu, dpdv; // with respect to uv
     const Shape* shape = nullptr;
     Index primitive = 0;
+    Vec2f b{}; // Hit::b1 and b2
 };
 
 // The surface at a hit of `ray`. Texture coordinates and derivatives are computed on request: textures and
@@ -40,6 +41,14 @@ inline Vec3f interpolated_normal(const TriangleMesh& mesh, const Index* v, float
 inline bool turns_normal(Vec3f interpolated, Normal3f n) {
     return length_squared(interpolated) > 0 && dot(interpolated, n) < 0;
 }
+
+// The interpolated vertex normal of a patch, not of unit length; zero without vertex normals.
+Vec3f interpolated_patch_normal(const BilinearMesh& mesh, std::size_t primitive, float u, float v);
+// SurfacePoint::ng of a patch at u and v.
+Normal3f patch_normal(const BilinearMesh& mesh, const Shape& shape, std::size_t primitive, double u,
+                      double v);
+// SurfacePoint::error of points of a patch.
+float patch_error(const BilinearPatch& patch, Normal3f n);
 
 // Bound on the rounding error of coordinates of that size, for offset_origin.
 template <Number T>

@@ -107,7 +107,7 @@ TEST_F(SceneBuilding, AreaLightsHaveTheirPower) {
     EXPECT_NEAR(sphere.scale, 2 * 12 / (pi * 4 * pi), 1e-5);
     EXPECT_NEAR(ring.scale, 2 * 12 / (2 * pi * 3 * pi), 1e-5);
     EXPECT_EQ(mesh.scale, 2);
-    EXPECT_EQ(mesh.triangle_flux, 12);
+    EXPECT_EQ(mesh.primitive_flux, 12);
     for (Index i = 0; i < 3; ++i) {
         EXPECT_EQ(scene_.shapes[i].light, i);
         EXPECT_EQ(std::get<AreaLight>(scene_.lights[i]).shape, i);
