@@ -42,6 +42,14 @@ Index add_light(Scene& scene, Vec3f a, Vec3f b, Vec3f c, bool two_sided = false)
     return add_light(scene, shape, two_sided);
 }
 
+Index add_light(Scene& scene, const BilinearMesh& mesh, bool flip = false, bool two_sided = false) {
+    Shape shape;
+    shape.geometry = BilinearMeshIndex{static_cast<Index>(scene.bilinear_meshes.size())};
+    shape.flip_normal = flip;
+    scene.bilinear_meshes.push_back(mesh);
+    return add_light(scene, shape, two_sided);
+}
+
 // All points of a light's shape along a ray, found without an accelerator.
 std::vector<SurfacePoint> points_along(const Scene& scene, const AreaLight& light, const Ray& ray) {
     std::vector<SurfacePoint> points;
@@ -52,6 +60,19 @@ std::vector<SurfacePoint> points_along(const Scene& scene, const AreaLight& ligh
             points.push_back(surface_point(SceneView(scene), ray,
                                            Hit{.t = static_cast<float>(*t), .shape = light.shape}, false));
             t_min = *t * (1 + 1e-9);
+        }
+        return points;
+    }
+    if (const BilinearMesh* mesh = bilinear_mesh_of(scene, shape)) {
+        double t_min = 0;
+        while (const auto hit = intersect(mesh->patch(0), Vec3d(ray.o), Vec3d(ray.d), t_min, 1e30)) {
+            points.push_back(surface_point(SceneView(scene), ray,
+                                           Hit{.t = static_cast<float>(hit->t),
+                                               .b1 = static_cast<float>(hit->u),
+                                               .b2 = static_cast<float>(hit->v),
+                                               .shape = light.shape},
+                                           false));
+            t_min = hit->t * (1 + 1e-9);
         }
         return points;
     }
@@ -114,6 +135,19 @@ std::vector<AreaCase> area_cases() {
     add("part of a ring",
         Quadric(Disk{.radius = 1.2f, .inner_radius = 0.5f, .phi_max = 4, .world_from_object = tilted}));
     add("disk from behind, two-sided", Quadric(Disk{.radius = 1.2f, .world_from_object = up}), false, true);
+    const auto patch = [](Point3f p00, Point3f p10, Point3f p01, Point3f p11) {
+        BilinearMesh mesh;
+        mesh.positions = {p00, p10, p01, p11};
+        mesh.indices = {0, 1, 2, 3};
+        return mesh;
+    };
+    const BilinearMesh bent = patch({-1, -1, 1.5f}, {1, -1.2f, 2.2f}, {-1.3f, 1, 2.4f}, {1.2f, 0.8f, 1.2f});
+    add("bent patch", bent, true, false);
+    add("bent patch of two sides", bent, false, true);
+    add("trapezoid", patch({-1, -1, 2}, {-0.5f, 1, 2}, {1, -1, 2}, {0.6f, 1, 2}));
+    BilinearMesh turned = bent;
+    turned.normals = {{0, 0, -1}, {0, 0, -1}, {0, 0.2f, -1}, {0, 0, -1}};
+    add("bent patch with vertex normals", turned);
     return cases;
 }
 
@@ -132,7 +166,7 @@ TEST(AreaLights, DirectionsFollowTheirDensity) {
             float sum = 0;
             for (const SurfacePoint& s : points_along(c.scene, light, {origin.p, w}))
                 if (light.two_sided || dot(s.ng, w) < 0)
-                    sum += pdf_li({tables.view(), 0}, origin, {.wi = w, .p = s.p, .n = s.ng});
+                    sum += pdf_li({tables.view(), 0}, origin, {.wi = w, .p = s.p, .n = s.ng, .b = s.b});
             // The visible half of a whole sphere represents all of it.
             if (light.two_sided && tables.view().light_tables.sphere(0)) sum *= 0.5f;
             return sum;
@@ -170,7 +204,7 @@ TEST(AreaLights, SamplesAgreeWithHits) {
             if (nearest == nullptr) continue; // rounding at a rim
             ++found;
             ASSERT_LT(length(nearest->p - end), 2e-3f) << c.name;
-            const LightHit hit{.wi = s->wi, .p = nearest->p, .n = nearest->ng};
+            const LightHit hit{.wi = s->wi, .p = nearest->p, .n = nearest->ng, .b = nearest->b};
             SampledSpectrum le = incident_radiance({tables.view(), 0}, origin, hit, wavelengths);
             ASSERT_EQ(le[0], s->radiance[0]) << c.name;
             float pdf = pdf_li({tables.view(), 0}, origin, hit);

@@ -25,6 +25,8 @@ Scene scene_of_all_kinds() {
                         {0, 1, 2}});
     s.quadrics = {Sphere{}, Disk{}, Cylinder{}};
     s.curves.push_back({.control_points = {{}}, .widths = {{1, 1}}, .normals = {}});
+    s.bilinear_meshes.push_back(
+        {.positions = {{}, {}, {}, {}}, .normals = {}, .uvs = {}, .indices = {0, 1, 2, 3}});
     s.shapes.resize(3);
     s.shapes[0].geometry = MeshIndex{0};
     s.shapes[1].geometry = QuadricIndex{0};
@@ -150,6 +152,12 @@ TEST(SceneDigest, CurvesCount) {
                                             [](Scene& s) { s.curves[0].widths[0][1] = 2; },
                                             [](Scene& s) { s.curves[0].normals.emplace_back(); },
                                             [](Scene& s) { s.curves.clear(); }});
+    expect_changes(&SceneDigest::geometry, {[](Scene& s) { s.bilinear_meshes[0].positions[1].y = 2; },
+                                            [](Scene& s) { s.bilinear_meshes[0].normals.emplace_back(); },
+                                            [](Scene& s) { s.bilinear_meshes[0].uvs.emplace_back(); },
+                                            [](Scene& s) { s.bilinear_meshes[0].indices[0] = 1; },
+                                            [](Scene& s) { s.shapes[0].geometry = BilinearMeshIndex{0}; },
+                                            [](Scene& s) { s.bilinear_meshes.clear(); }});
 }
 
 TEST(SceneDigest, CylindersCount) {

@@ -281,6 +281,32 @@ TEST(PbrtShapes, Quadrics) {
     EXPECT_EQ(d.scene.world_shapes, (std::vector<Index>{0, 1, 2, 3, 4, 5}));
 }
 
+TEST(PbrtShapes, BilinearMeshes) {
+    const std::string flat = " \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 0]",
+                      bent = " \"point3 P\" [0 0 0  1 0 0  0 1 0  1 1 1]";
+    const SceneDescription d =
+        parse_world("Scale 2 2 -2 Shape \"bilinearmesh\"" + flat + "Shape \"bilinearmesh\"" + bent +
+                    " \"point2 uv\" [0 0 2 0 0 2 2 2] \"integer indices\" [0 1 2 3 1 0 3 2 7]" +
+                    "ReverseOrientation Shape \"bilinearmesh\" \"normal N\" [0 0 1 0 0 1 0 0 1 0 0 1]" +
+                    flat + "Shape \"bilinearmesh\" \"point2 uv\" [0 0 2 0 0 2 2 3]" + flat +
+                    "AreaLightSource \"diffuse\" \"float power\" 3 Shape \"bilinearmesh\"" + flat);
+    ASSERT_EQ(d.scene.shapes.size(), 5u);
+    ASSERT_EQ(d.scene.meshes.size(), 1u); // the parallelogram
+    const TriangleMesh& mesh = d.scene.meshes[0];
+    EXPECT_EQ(mesh.indices, (std::vector<Index>{0, 1, 3, 0, 3, 2}));
+    EXPECT_EQ(mesh.uvs[3], (Point2f{1, 1}));
+    ASSERT_EQ(d.scene.bilinear_meshes.size(), 4u);
+    const BilinearMesh& patches = d.scene.bilinear_meshes[0];
+    ASSERT_EQ(patches.patch_count(), 2u); // the ninth index is ignored with a warning
+    expect_near(patches.positions[3], {2, 2, -2});
+    EXPECT_EQ(patches.uvs[3], (Point2f{2, 2}));
+    expect_near(normalize(d.scene.bilinear_meshes[1].normals[0]), {0, 0, 1}); // mirrored and reversed
+    EXPECT_TRUE(d.scene.shapes[1].flip_normal);
+    EXPECT_FALSE(d.scene.shapes[2].flip_normal);
+    EXPECT_EQ(std::get<AreaLight>(d.scene.lights.at(0)).primitive_flux, 3);
+    EXPECT_EQ(std::get<BilinearMeshIndex>(d.scene.shapes[4].geometry).index, 3u);
+}
+
 TEST(PbrtShapes, Curves) {
     const std::string points = " \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0 4 0 0]";
     const SceneDescription d = parse_world(

@@ -30,6 +30,7 @@ AttributeBegin
 AttributeEnd
 Material "coateddiffuse" "texture reflectance" "grid" "spectrum albedo" [ 400 .1 700 .2 ]
 Shape "loopsubdiv" "integer levels" 1 "point3 P" [ 0 0 0 1 0 0 0 1 0 0 0 1 ] "integer indices" [ 0 2 1 0 1 3 1 2 3 2 0 3 ]
+Shape "bilinearmesh" "point3 P" [ 0 0 0 1 0 0 0 1 0 1 1 1 ] "integer indices" [ 0 1 2 3 ] "point2 uv" [ 0 0 1 0 0 1 1 1 ]
 Shape "curve" "string type" "ribbon" "string basis" "bspline" "integer degree" 2 "point3 P" [ 0 0 0 1 0 0 0 1 0 1 1 1 ] "normal N" [ 0 0 1 0 1 1 1 0 1 ] "float width" 0.1
 ObjectInstance "o" ConcatTransform [ 1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1 ] ObjectInstance "o"
 )";
@@ -47,13 +48,17 @@ void expect_sound(const std::string& text) {
     ASSERT_GT(d.sampler.spp, 0u);
     for (const Shape& s : d.scene.shapes) {
         ASSERT_LT(s.material, d.scene.materials.size());
-        ASSERT_TRUE(std::visit(Overloaded{[&](MeshIndex i) { return i.index < d.scene.meshes.size(); },
-                                          [&](QuadricIndex i) { return i.index < d.scene.quadrics.size(); },
-                                          [&](CurvesIndex i) { return i.index < d.scene.curves.size(); }},
-                               s.geometry));
+        ASSERT_TRUE(std::visit(
+            Overloaded{[&](MeshIndex i) { return i.index < d.scene.meshes.size(); },
+                       [&](QuadricIndex i) { return i.index < d.scene.quadrics.size(); },
+                       [&](CurvesIndex i) { return i.index < d.scene.curves.size(); },
+                       [&](BilinearMeshIndex i) { return i.index < d.scene.bilinear_meshes.size(); }},
+            s.geometry));
         ASSERT_TRUE(s.light == no_index || s.light < d.scene.lights.size());
     }
     for (const TriangleMesh& m : d.scene.meshes)
+        for (Index i : m.indices) ASSERT_LT(i, m.positions.size());
+    for (const BilinearMesh& m : d.scene.bilinear_meshes)
         for (Index i : m.indices) ASSERT_LT(i, m.positions.size());
     for (const Instance& i : d.scene.instances) ASSERT_LT(i.object, d.scene.objects.size());
 }
