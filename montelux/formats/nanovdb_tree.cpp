@@ -40,6 +40,9 @@ class TreeCopy {
         collect_nodes();
         const NodePlace origin = allocate_nodes();
         for (const Placed& p : placed_) copy_node(p, origin);
+        for (const Level& level : levels_)
+            if (std::find(level.visited.begin(), level.visited.end(), false) != level.visited.end())
+                throw Error("the tree is damaged: a node has no parent");
         const Vec3d shift(128.0 * origin[0], 128.0 * origin[1], 128.0 * origin[2]);
         return {std::move(grid_), map() * Transform::translate(shift)};
     }

@@ -1,8 +1,8 @@
 // NanoVDB files that NanoVDB has written, read and looked up beside NanoVDB's own sampler; damaged ones.
 #include "test/formats/nanovdb_writing.h"
 #include <cmath>
-#include <functional>
 #include <gtest/gtest.h>
+#include <limits>
 #include <memory>
 #include <nanovdb/util/Primitives.h>
 #include <nanovdb/util/SampleFromVoxels.h>
@@ -144,8 +144,8 @@ TEST(NanovdbFile, WhatItCannotReadIsSaid) {
     EXPECT_EQ(changed([](Bytes& b) { b[14] = 7; }), "f.nvdb: has an unknown compression, 7");
     EXPECT_EQ(changed([](Bytes& b) { b[b.size() - 1] ^= 1; }),
               "f.nvdb, grid 'density': the checksum does not fit: the file is damaged");
-    EXPECT_EQ(changed([](Bytes& b) { b[16 + 176 + 8 + 632] ^= 3; }).substr(0, 39),
-              "f.nvdb, grid 'density': the checksum do"); // its class
+    EXPECT_EQ(changed([](Bytes& b) { b[16 + 176 + 8 + 400] ^= 1; }), // its transformation
+              "f.nvdb, grid 'density': the checksum does not fit: the file is damaged");
 
     EXPECT_EQ(error_of_file(nanovdb_bytes(handles(small_nanovdb("density", nanovdb::ChecksumMode::Full,
                                                                 nanovdb::GridClass::LevelSet)))),
@@ -222,7 +222,7 @@ TEST(NanovdbFile, DamagedBytesAreRefusedOrHarmless) {
             if (good[i] != 0) vital.push_back(i);
         const std::size_t head = std::min<std::size_t>(good.size(), 1400);
         std::mt19937 random(11);
-        for (int n = 0; n < 3000; ++n) {
+        for (int n = 0; n < 1200; ++n) {
             auto bytes = good;
             for (unsigned k = 0; k <= random() % 3; ++k) {
                 const std::size_t at = random() % 2 == 0 ? random() % head : vital[random() % vital.size()];

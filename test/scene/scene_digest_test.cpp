@@ -66,9 +66,10 @@ Scene scene_of_all_kinds() {
                 with_spectrum<SunLight>(1.0f),
                 GoniometricLight{.spectrum = 1.0f, .environment = 0, .world_from_map = {}},
                 ProjectionLight{.environment = 0, .world_from_light = {}}};
-    s.media = {HomogeneousMedium{}, GridMedium{}, RgbGridMedium{}, CloudMedium{}};
+    s.media = {HomogeneousMedium{}, GridMedium{}, RgbGridMedium{}, CloudMedium{}, SparseGridMedium{}};
     s.scalar_grids.emplace_back();
     s.color_grids.emplace_back();
+    s.sparse_grids.emplace_back();
     return s;
 }
 
@@ -216,6 +217,7 @@ TEST(SceneDigest, MediaCount) {
     const std::type_identity<GridMedium> grid;
     const std::type_identity<RgbGridMedium> rgb;
     const std::type_identity<CloudMedium> cloud;
+    const std::type_identity<SparseGridMedium> sparse;
     const Transform moved = Transform::translate({1, 0, 0});
     expect_changes(&SceneDigest::materials, {[=](Scene& s) { at(s, fog).sigma_a = 2; },
                                              [=](Scene& s) { at(s, fog).sigma_s = 2; },
@@ -256,6 +258,25 @@ TEST(SceneDigest, MediaCount) {
                                              [=](Scene& s) { at(s, cloud).wispiness = 2; },
                                              [=](Scene& s) { at(s, cloud).frequency = 2; },
                                              [=](Scene& s) { at(s, cloud).phase = Draine{}; },
+                                             [=](Scene& s) { at(s, sparse).box.p0.y = -1; },
+                                             [=](Scene& s) { at(s, sparse).density = 0; },
+                                             [=](Scene& s) { at(s, sparse).sigma_a = 2; },
+                                             [=](Scene& s) { at(s, sparse).sigma_s = 2; },
+                                             [=](Scene& s) { at(s, sparse).scale = 2; },
+                                             [=](Scene& s) { at(s, sparse).temperature = 0; },
+                                             [=](Scene& s) {
+                                                 at(s, sparse).temperature_space_from_density = moved;
+                                             },
+                                             [=](Scene& s) { at(s, sparse).le_scale = 2; },
+                                             [=](Scene& s) { at(s, sparse).temperature_offset = 2; },
+                                             [=](Scene& s) { at(s, sparse).temperature_scale = 2; },
+                                             [=](Scene& s) { at(s, sparse).phase = Draine{}; },
+                                             [](Scene& s) { s.sparse_grids[0].node_count[0] = 1; },
+                                             [](Scene& s) { s.sparse_grids[0].nodes = {0}; },
+                                             [](Scene& s) { s.sparse_grids[0].blocks = {0}; },
+                                             [](Scene& s) { s.sparse_grids[0].values = {0}; },
+                                             [](Scene& s) { s.sparse_grids[0].constants[0] = 1; },
+                                             [](Scene& s) { s.sparse_grids.emplace_back(); },
                                              [](Scene& s) { s.media.pop_back(); },
                                              [](Scene& s) { s.scalar_grids[0].size[0] = 1; },
                                              [](Scene& s) { s.scalar_grids[0].values = {0}; },
@@ -274,6 +295,7 @@ TEST(SceneDigest, WithoutMediaTheirPlacesDoNotCount) {
     scene.media.clear();
     scene.scalar_grids.clear();
     scene.color_grids.clear();
+    scene.sparse_grids.clear();
     const SceneDigest before = digest_of(scene);
     scene.shapes[0].media.inside = 0;
     EXPECT_EQ(digest_of(scene), before);
