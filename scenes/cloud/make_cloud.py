@@ -64,16 +64,17 @@ for x, y, z, r in spheres:
     distance = np.sqrt(dx[:, None, None] ** 2 + dy[None, :, None] ** 2 + dz[None, None, :] ** 2)
     depth[tuple(window)] = np.maximum(depth[tuple(window)], r - distance)
 
-# Wisps at the surface, finer and stronger at the base, which is flat but for them.
+# Smaller billows, with creases between them, and wisps.
 near = np.argwhere(np.abs(depth) < 0.15)
 points = low + VOXEL * near
-wisps = sum(noise(points, 0.12 / 2**k) * 0.55**k for k in range(3))
-depth[tuple(near.T)] += (0.035 * wisps).astype(np.float32)
+puffs = sum((1 - 2.5 * np.abs(noise(points, 0.2 / 2**k))) * 0.55**k for k in range(3))
+wisps = noise(points, 0.04)
+depth[tuple(near.T)] += (0.035 * puffs + 0.012 * wisps).astype(np.float32)
 flat = (axes[2] - BASE)[None, None, :] + 0.03 * noise(
     np.stack(np.meshgrid(axes[0], axes[1], [0.0], indexing="ij"), -1), 0.2)
 depth = np.minimum(depth, 0.6 * flat)
 
-density = np.clip(depth / 0.05, 0, 1)
+density = np.clip(depth / 0.035, 0, 1)
 density = np.round(density * density * (3 - 2 * density) * 15) / 15  # a few levels compress well
 write_fog(Path(__file__).parent / "cloud.nvdb", "density", density, voxel_size=VOXEL, origin=tuple(low))
 print(size, np.mean(density > 0))

@@ -275,7 +275,7 @@ TEST(PbrtErrors, SentencesInTheWorld) {
         {"MakeNamedMedium \"a\" \"string type\" \"nanovdb\"",
          "scene:2:1: medium 'nanovdb' needs a parameter 'string filename'"},
         {"MakeNamedMedium \"a\" \"string type\" \"nanovdb\" \"string filename\" \"none.nvdb\"",
-         "scene:2:48: there is no file './none.nvdb'"},
+         "scene:2:45: there is no file './none.nvdb'"},
         {"MediumInterface \"fog\" \"\" Shape \"sphere\"",
          "scene:2:26: this shape's medium 'fog' is not defined"},
         // Files.
