@@ -22,7 +22,7 @@ using NanoRoot = nanovdb::NanoRoot<float>::DataType;
 using NodePlace = std::array<int, 3>; // of a node of 128^3 voxels, in units of its width
 
 constexpr std::uint64_t nanovdb_newer_grid_magic = 0x314244566f6e614eu; // "NanoVDB1", from version 32.6 on
-constexpr int upper_width = 32, root_tile_width = 32;                    // in nodes of 128^3 voxels
+constexpr int upper_width = 32, root_tile_width = 32;                   // in nodes of 128^3 voxels
 // Limits of a grid's extent: its tables stay small, and positions of voxels exact enough in single precision.
 constexpr int most_nodes_along = 512, most_nodes = 1 << 22;
 
@@ -96,9 +96,10 @@ class TreeCopy {
         if (grid_class != static_cast<std::uint32_t>(nanovdb::GridClass::FogVolume) &&
             grid_class != static_cast<std::uint32_t>(nanovdb::GridClass::Unknown)) {
             const bool known = grid_class < static_cast<std::uint32_t>(nanovdb::GridClass::End);
-            throw Error("has class " +
-                        (known ? std::string(nanovdb::toStr(header_.mGridClass)) : std::to_string(grid_class)) +
-                        "; expected a fog volume (FOG)");
+            throw Error(
+                "has class " +
+                (known ? std::string(nanovdb::toStr(header_.mGridClass)) : std::to_string(grid_class)) +
+                "; expected a fog volume (FOG)");
         }
         constexpr std::size_t tree = sizeof(nanovdb::GridData);
         const auto tree_data = get<nanovdb::TreeData<3>>(tree);
@@ -168,8 +169,8 @@ class TreeCopy {
     }
 
     std::uint32_t constant(float value) {
-        const auto [place, is_new] = constant_of_.try_emplace(std::bit_cast<std::uint32_t>(finite(value)),
-                                                              static_cast<std::uint32_t>(grid_.constants.size()));
+        const auto [place, is_new] = constant_of_.try_emplace(
+            std::bit_cast<std::uint32_t>(finite(value)), static_cast<std::uint32_t>(grid_.constants.size()));
         if (is_new) grid_.constants.push_back(value);
         return SparseGrid::constant_entry | place->second;
     }
@@ -188,7 +189,9 @@ class TreeCopy {
             }
             const std::size_t upper = child_at(2, root_at_, tile.child);
             for_each_entry<NanoUpper>(upper, [&](std::size_t n, bool is_child, std::size_t entry) {
-                const auto along = [&](int shift) { return static_cast<int>(n >> shift & (upper_width - 1)); };
+                const auto along = [&](int shift) {
+                    return static_cast<int>(n >> shift & (upper_width - 1));
+                };
                 Placed p{{first[0] + along(10), first[1] + along(5), first[2] + along(0)}, 1, false, 0, 0};
                 if (is_child) {
                     p.lower = child_at(1, upper, get<std::int64_t>(entry));
@@ -220,10 +223,10 @@ class TreeCopy {
             grid_.node_count[a] = along;
             count *= std::min(along, most_nodes_along + 1);
             if (along > most_nodes_along || count > most_nodes)
-                throw Error("is too large: its voxels spread over " + std::to_string(128 * std::int64_t{along}) +
-                            " along axis " + std::to_string(a) + "; expected at most " +
-                            std::to_string(128 * most_nodes_along) + " along each, and " +
-                            std::to_string(most_nodes) + " blocks of 128^3");
+                throw Error("is too large: its voxels spread over " +
+                            std::to_string(128 * std::int64_t{along}) + " along axis " + std::to_string(a) +
+                            "; expected at most " + std::to_string(128 * most_nodes_along) +
+                            " along each, and " + std::to_string(most_nodes) + " blocks of 128^3");
         }
         grid_.nodes.assign(static_cast<std::size_t>(count), SparseGrid::constant_entry);
         return lower;

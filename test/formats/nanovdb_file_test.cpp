@@ -73,8 +73,8 @@ TEST(NanovdbFile, LookUpsEqualThoseOfNanovdb) {
 
 // Large tiles of one value inside.
 TEST(NanovdbFile, LookUpsInTilesEqualThoseOfNanovdb) {
-    const auto grids = handles(nanovdb::createFogVolumeSphere<float>(
-        90.0f, nanovdb::Vec3f(40, -70, 10), 1.0, 3.0, nanovdb::Vec3d(0), "density"));
+    const auto grids = handles(nanovdb::createFogVolumeSphere<float>(90.0f, nanovdb::Vec3f(40, -70, 10), 1.0,
+                                                                     3.0, nanovdb::Vec3d(0), "density"));
     const PlacedSparseGrid read = NanovdbFile(nanovdb_bytes(grids), "f").read("density");
     expect_same_values(grids[0], read);
     // Those of the surface, about 4 pi 90^2 / 8^2 times the width of the band.
@@ -93,7 +93,8 @@ TEST(NanovdbFile, MapsWithRotationAndShear) {
     nanovdb::GridBuilder<float> builder(0.0f, nanovdb::GridClass::Unknown);
     auto accessor = builder.getAccessor();
     for (int n = 0; n < 4000; ++n)
-        accessor.setValue(nanovdb::Coord(n % 16, n / 16 % 16, n / 256 - 300), 1 + 0.001f * static_cast<float>(n));
+        accessor.setValue(nanovdb::Coord(n % 16, n / 16 % 16, n / 256 - 300),
+                          1 + 0.001f * static_cast<float>(n));
     nanovdb::Map map;
     const double m[3][3] = {{0.4, 0.1, 0}, {-0.2, 0.5, 0.3}, {0, 0.05, -0.6}};
     const double det = 0.4 * (0.5 * -0.6 - 0.3 * 0.05) - 0.1 * (-0.2 * -0.6);
@@ -147,8 +148,8 @@ TEST(NanovdbFile, WhatItCannotReadIsSaid) {
     EXPECT_EQ(changed([](Bytes& b) { b[16 + 176 + 8 + 400] ^= 1; }), // its transformation
               "f.nvdb, grid 'density': the checksum does not fit: the file is damaged");
 
-    EXPECT_EQ(error_of_file(nanovdb_bytes(handles(small_nanovdb("density", nanovdb::ChecksumMode::Full,
-                                                                nanovdb::GridClass::LevelSet)))),
+    EXPECT_EQ(error_of_file(nanovdb_bytes(handles(
+                  small_nanovdb("density", nanovdb::ChecksumMode::Full, nanovdb::GridClass::LevelSet)))),
               "f.nvdb, grid 'density': has class SDF; expected a fog volume (FOG)");
     nanovdb::GridBuilder<double> doubles(0.0, nanovdb::GridClass::FogVolume);
     doubles.getAccessor().setValue(nanovdb::Coord(1, 2, 3), 1);
@@ -163,9 +164,10 @@ TEST(NanovdbFile, WhatItCannotReadIsSaid) {
     using nanovdb::Coord;
     EXPECT_EQ(of_values({{Coord(1, 2, 3), std::nanf("")}}),
               "f.nvdb, grid 'density': has a value that is not finite");
-    EXPECT_EQ(of_values({{Coord(0, 0, 0), 1.0f}, {Coord(0, 1 << 20, 0), 1.0f}}),
-              "f.nvdb, grid 'density': is too large: its voxels spread over 1048704 along axis 1; expected at "
-              "most 65536 along each, and 4194304 blocks of 128^3");
+    EXPECT_EQ(
+        of_values({{Coord(0, 0, 0), 1.0f}, {Coord(0, 1 << 20, 0), 1.0f}}),
+        "f.nvdb, grid 'density': is too large: its voxels spread over 1048704 along axis 1; expected at "
+        "most 65536 along each, and 4194304 blocks of 128^3");
     EXPECT_NE(of_values({{Coord(0, 0, 0), 1.0f}, {Coord(60000, 60000, 60000), 1.0f}}), "");
     EXPECT_EQ(of_values({{Coord(0, -30000, 0), 1.0f}, {Coord(0, 30000, 7), 1.0f}}), "");
 }
@@ -180,7 +182,8 @@ TEST(NanovdbFile, LargeSparseGridsStaySmall) {
                                 static_cast<int>(random() % 125) * 8);
         auto accessor = builder.getAccessor();
         for (int v = 0; v < 512; v += 3)
-            accessor.setValue(at + nanovdb::Coord(v >> 6, v >> 3 & 7, v & 7), static_cast<float>(v + 1)), ++voxels;
+            accessor.setValue(at + nanovdb::Coord(v >> 6, v >> 3 & 7, v & 7), static_cast<float>(v + 1)),
+                ++voxels;
     }
     const auto bytes = nanovdb_bytes(handles(builder.getHandle(1.0, nanovdb::Vec3d(0), "density")));
     const SparseGrid grid = NanovdbFile(bytes, "f").read("density").grid;
@@ -249,8 +252,8 @@ TEST(NanovdbFile, WrongOffsetsAreSeen) {
         std::memcpy(&bytes[at], &value, 8);
         return error_of_file(bytes);
     };
-    for (const std::int64_t by : {std::int64_t{32}, std::int64_t{-32}, std::int64_t{1} << 40, -(std::int64_t{1} << 40),
-                                  std::numeric_limits<std::int64_t>::max() / 2}) {
+    for (const std::int64_t by : {std::int64_t{32}, std::int64_t{-32}, std::int64_t{1} << 40,
+                                  -(std::int64_t{1} << 40), std::numeric_limits<std::int64_t>::max() / 2}) {
         for (std::size_t i = 0; i < 4; ++i) EXPECT_NE(set(tree + 8 * i, by), "") << i << ' ' << by;
         EXPECT_NE(set(tile + 8, by), "") << by; // an upper node
     }
@@ -273,7 +276,8 @@ TEST(NanovdbFile, SizesOutOfProportionAreRefused) {
     auto bytes = nanovdb_bytes(handles(small_nanovdb("density")), nanovdb::io::Codec::ZIP);
     const std::uint64_t size = std::uint64_t{1} << 40;
     std::memcpy(&bytes[16], &size, 8);
-    EXPECT_NE(error_of_file(bytes).find("unpacks to 1048576 MiB, which is out of proportion"), std::string::npos);
+    EXPECT_NE(error_of_file(bytes).find("unpacks to 1048576 MiB, which is out of proportion"),
+              std::string::npos);
 }
 
 } // namespace

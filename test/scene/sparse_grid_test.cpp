@@ -56,7 +56,8 @@ TEST(SparseGrid, InterpolatesBetweenVoxels) {
         ASSERT_NEAR(g(p), expected, 2e-6) << p.x << ' ' << p.y << ' ' << p.z;
     }
     constexpr float nan = std::numeric_limits<float>::quiet_NaN(), big = 1e30f;
-    for (const Point3f p : {Point3f(nan, nan, nan), Point3f(big, 0, 0), Point3f(0, -big, big)}) EXPECT_EQ(g(p), 0);
+    for (const Point3f p : {Point3f(nan, nan, nan), Point3f(big, 0, 0), Point3f(0, -big, big)})
+        EXPECT_EQ(g(p), 0);
 }
 
 TEST(SparseGrid, LargestIsThatOfTheVoxelsInReach) {

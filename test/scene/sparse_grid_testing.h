@@ -19,9 +19,9 @@ SparseGrid sparse_grid(std::array<int, 3> nodes, const Density& density) {
                 for (int b = 0; b < 4096; ++b) {
                     std::array<float, 512> values{};
                     for (int n = 0; n < 512; ++n)
-                        values[static_cast<std::size_t>(n)] =
-                            density(128 * x + 8 * (b >> 8) + (n >> 6), 128 * y + 8 * (b >> 4 & 15) + (n >> 3 & 7),
-                                    128 * z + 8 * (b & 15) + (n & 7));
+                        values[static_cast<std::size_t>(n)] = density(
+                            128 * x + 8 * (b >> 8) + (n >> 6), 128 * y + 8 * (b >> 4 & 15) + (n >> 3 & 7),
+                            128 * z + 8 * (b & 15) + (n & 7));
                     if (std::all_of(values.begin(), values.end(), [&](float v) { return v == values[0]; })) {
                         const auto found = std::find(g.constants.begin(), g.constants.end(), values[0]);
                         g.blocks.push_back(SparseGrid::constant_entry |

@@ -110,8 +110,8 @@ TEST(VolumeAgreement, TransmittanceOfSparseGrids) {
     m.density = 0;
     m.box.p0 = {109, 5, -1};
     m.box.p1 = {150, 26, 40};
-    m.box.world_from_medium = Transform::scale({2.0 / 41, 2.0 / 21, 2.0 / 41}) *
-                              Transform::translate({-129.5, -15.5, -19.5});
+    m.box.world_from_medium =
+        Transform::scale({2.0 / 41, 2.0 / 21, 2.0 / 41}) * Transform::translate({-129.5, -15.5, -19.5});
     m.sigma_a = b.spectrum(0.2f, 0.9f);
     m.sigma_s = b.spectrum(0.7f, 0.4f);
     m.scale = 2;
@@ -121,8 +121,9 @@ TEST(VolumeAgreement, TransmittanceOfSparseGrids) {
 // A black body in absorbing gas: its density and its temperature lie on two grids of their own places.
 TEST(VolumeAgreement, EmissionOfSparseGrids) {
     VolumeScene b;
-    b.scene.sparse_grids.push_back(sparse_grid(
-        {1, 1, 1}, [](int i, int j, int k) { return std::max({i, j, k}) < 40 ? 0.3f + 0.02f * float(k) : 0; }));
+    b.scene.sparse_grids.push_back(sparse_grid({1, 1, 1}, [](int i, int j, int k) {
+        return std::max({i, j, k}) < 40 ? 0.3f + 0.02f * float(k) : 0;
+    }));
     b.scene.sparse_grids.push_back(
         sparse_grid({1, 1, 1}, [](int, int, int k) { return 10 + 3 * static_cast<float>(k); }));
     SparseGridMedium m;
@@ -149,7 +150,8 @@ TEST(VolumeAgreement, EmissionOfSparseGrids) {
             const double fade = std::min({1.0, k + 1, 40 - k}), inner = std::clamp(k, 0.0, 39.0);
             const double a = sigma * (0.3 + 0.02 * inner) * fade;
             const float kelvins = static_cast<float>((10 + 3 * (8 + 0.5 * k) - 20) * 70);
-            radiance += std::exp(-depth - a * step / 2) * a * step * 3 * double(BlackbodySpectrum(kelvins)(lambda));
+            radiance +=
+                std::exp(-depth - a * step / 2) * a * step * 3 * double(BlackbodySpectrum(kelvins)(lambda));
             depth += a * step;
         }
         return radiance;

@@ -116,8 +116,7 @@ MediumTable SparseGridMedium::table(const Scene& scene) const {
     const auto bound = [&](Point3f lower, Point3f upper) {
         return values.largest(box.at(lower), box.at(upper));
     };
-    return {box.unit_from_world(), box.medium_from_world(),
-            majorant_grid(bound, sparse_majorant_resolution)};
+    return {box.unit_from_world(), box.medium_from_world(), majorant_grid(bound, sparse_majorant_resolution)};
 }
 
 float CloudMedium::density_at(Point3f p) const {

@@ -66,8 +66,7 @@ float SparseGrid::largest(Point3f lower, Point3f upper) const {
         const float* block = &values[entry * block_size];
         for (int i = from[0]; i <= to[0]; ++i)
             for (int j = from[1]; j <= to[1]; ++j)
-                for (int k = from[2]; k <= to[2]; ++k)
-                    result = std::max(result, block[in_block(i, j, k)]);
+                for (int k = from[2]; k <= to[2]; ++k) result = std::max(result, block[in_block(i, j, k)]);
     });
     return result;
 }

@@ -22,7 +22,8 @@ class SparseGrid {
     static constexpr std::size_t block_size = 512, node_size = 4096;
 
     std::array<int, 3> node_count{0, 0, 0};
-    std::vector<std::uint32_t> nodes;   // (x node_count[1] + y) node_count[2] + z, an index into `blocks` / 4096
+    std::vector<std::uint32_t>
+        nodes; // (x node_count[1] + y) node_count[2] + z, an index into `blocks` / 4096
     std::vector<std::uint32_t> blocks;  // in each node: 256 x + 16 y + z, an index into `values` / 512
     std::vector<float> values;          // in each block: 64 x + 8 y + z
     std::vector<float> constants{0.0f}; // the first is that of all voxels outside
@@ -92,7 +93,7 @@ inline float SparseGrid::operator()(Point3f p) const {
         c[at] = static_cast<int>(floor);
         f[at] = x - floor;
     }
-    std::array<float, 8> v{}; // 4 x + 2 y + z
+    std::array<float, 8> v{};                                    // 4 x + 2 y + z
     if ((c[0] & 7) != 7 && (c[1] & 7) != 7 && (c[2] & 7) != 7) { // all in one block
         const std::uint32_t entry = block_entry(c[0], c[1], c[2]);
         if ((entry & constant_entry) != 0) return constants[entry & ~constant_entry];

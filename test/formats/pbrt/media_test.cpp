@@ -125,7 +125,8 @@ SceneDescription with_nanovdb(const std::vector<test::Handle>& grids, const std:
     const TemporaryFolder folder;
     const std::vector<std::uint8_t> bytes = test::nanovdb_bytes(grids, nanovdb::io::Codec::ZIP);
     const std::string path = folder.write("f.nvdb", {bytes.begin(), bytes.end()}).string();
-    return parse_world("Translate 1 2 3\n" + medium("nanovdb", "\"string filename\" \"" + path + "\" " + parameters));
+    return parse_world("Translate 1 2 3\n" +
+                       medium("nanovdb", "\"string filename\" \"" + path + "\" " + parameters));
 }
 test::Handle three_voxels(const std::string& name, float value = 1) {
     nanovdb::GridBuilder<float> builder(0.0f, nanovdb::GridClass::FogVolume);
@@ -188,8 +189,7 @@ TEST(PbrtMedia, NanovdbWithEverything) {
                     RgbUnboundedSpectrum(RgbColorSpace::srgb(), {0.70f, 1.22f, 1.90f})(450));
     // A point of the file in both grids.
     const PlacedSparseGrid file = NanovdbFile(test::nanovdb_bytes(grids), "f").read("temperature");
-    const Vec3d in_density =
-        hot.box.world_from_medium.inverse().point(Vec3d(1, 2, 3) + Vec3d(4, 0.5, 4.5));
+    const Vec3d in_density = hot.box.world_from_medium.inverse().point(Vec3d(1, 2, 3) + Vec3d(4, 0.5, 4.5));
     const Vec3d expected = file.file_from_grid.inverse().point(Vec3d(4, 0.5, 4.5));
     EXPECT_NEAR(length(hot.temperature_space_from_density.point(in_density) - expected), 0, 1e-9);
 }
@@ -216,7 +216,8 @@ TEST(PbrtMedia, NanovdbRefusesWhatIsNoDensity) {
     builder.getAccessor().setValue(nanovdb::Coord(1, 1, 1), 1);
     grids.clear();
     grids.push_back(builder.getHandle(1.0, nanovdb::Vec3d(0), "density"));
-    EXPECT_EQ(error(grids), "f.nvdb, grid 'density': has a density other than 0 outside its voxels (its background)");
+    EXPECT_EQ(error(grids),
+              "f.nvdb, grid 'density': has a density other than 0 outside its voxels (its background)");
 }
 
 // Media may be named before they are made; in blocks the state is that of attributes.
