@@ -67,7 +67,7 @@ TEST(NanovdbFile, LookUpsEqualThoseOfNanovdb) {
         const auto bytes = nanovdb_bytes(grids, codec);
         const PlacedSparseGrid read = NanovdbFile(bytes, "f").read("density");
         expect_same_values(grids[0], read);
-        EXPECT_LT(read.grid.block_count(), 50u);
+        EXPECT_EQ(read.grid.block_count(), 47u); // of 48: one is constant
     }
 }
 
