@@ -245,7 +245,8 @@ class TreeCopy {
             for (int y = 0; y < p.width; ++y)
                 for (int z = 0; z < p.width; ++z) {
                     const auto along = [&](std::size_t a, int i) {
-                        return static_cast<std::size_t>(p.first[a] - origin[a] + i);
+                        const int place = p.first[a] - origin[a] + i;
+                        return static_cast<std::size_t>(place);
                     };
                     grid_.nodes[(along(0, x) * static_cast<std::size_t>(grid_.node_count[1]) + along(1, y)) *
                                     static_cast<std::size_t>(grid_.node_count[2]) +
