@@ -55,6 +55,7 @@ struct Scene {
     std::vector<Medium> media;
     std::vector<ScalarGrid> scalar_grids; // of media
     std::vector<ColorGrid> color_grids;   // of media
+    std::vector<SparseGrid> sparse_grids; // of media
 };
 
 // Whether anything depends on time.

@@ -240,6 +240,16 @@ class SceneHasher {
         const auto& [box, sigma_a, sigma_s, scale, le, illuminant, le_scale, phase] = m;
         all(box, sigma_a, sigma_s, scale, le, illuminant, le_scale, phase);
     }
+    void add(const SparseGrid& g) {
+        const auto& [node_count, nodes, blocks, values, constants] = g;
+        all(node_count, nodes, blocks, values, constants);
+    }
+    void add(const SparseGridMedium& m) {
+        const auto& [box, density, sigma_a, sigma_s, scale, temperature, temperature_space, le_scale, offset,
+                     temperature_scale, phase] = m;
+        all(box, density, sigma_a, sigma_s, scale, temperature, temperature_space, le_scale, offset,
+            temperature_scale, phase);
+    }
     void add(const CloudMedium& m) {
         const auto& [box, sigma_a, sigma_s, density, wispiness, frequency, phase] = m;
         all(box, sigma_a, sigma_s, density, wispiness, frequency, phase);
@@ -401,6 +411,7 @@ ContentDigest digest_of_all(const Scene& scene, const T&... values) {
 void add_media(SceneHasher& hasher, const Scene& scene) {
     if (scene.media.empty()) return;
     hasher.all(scene.media, scene.scalar_grids, scene.color_grids, scene.camera.medium);
+    if (!scene.sparse_grids.empty()) hasher.all(scene.sparse_grids); // else the digest is that without them
     for (std::size_t i = 0; i < scene.shapes.size(); ++i)
         if (const MediumInterface& media = scene.shapes[i].media; media.is_transition())
             hasher.all(static_cast<std::uint64_t>(i), media);
@@ -420,7 +431,7 @@ ContentDigest SceneDigest::whole() const {
 SceneDigest digest_of(const Scene& scene) {
     const auto& [meshes, quadrics, curves, bilinear_meshes, shapes, world_shapes, objects, instances, motions,
                  spectra, materials, float_textures, spectrum_textures, normal_maps, images, environments,
-                 skies, lights, camera, media, scalar_grids, color_grids] = scene;
+                 skies, lights, camera, media, scalar_grids, color_grids, sparse_grids] = scene;
     SceneHasher of_materials(spectra);
     of_materials.all(materials);
     add_media(of_materials, scene);

@@ -46,6 +46,7 @@ struct SceneView {
     std::span<const MediumTable> medium_tables; // one per medium
     std::span<const ScalarGrid> scalar_grids;
     std::span<const ColorGrid> color_grids;
+    std::span<const SparseGrid> sparse_grids;
     Index camera_medium = no_index;
 
     const LightSampler* light_sampler = nullptr;
@@ -59,7 +60,8 @@ struct SceneView {
           materials(scene.materials), float_textures(scene.float_textures),
           spectrum_textures(scene.spectrum_textures), normal_maps(scene.normal_maps), lights(scene.lights),
           skies(scene.skies), media(scene.media), scalar_grids(scene.scalar_grids),
-          color_grids(scene.color_grids), camera_medium(scene.camera.medium) {}
+          color_grids(scene.color_grids), sparse_grids(scene.sparse_grids),
+          camera_medium(scene.camera.medium) {}
 
     SampledSpectrum sample(SceneSpectrum s, const SampledWavelengths& lambda) const {
         return s.is_constant() ? SampledSpectrum(s.constant) : spectra[s.index].sample(lambda);

@@ -190,6 +190,7 @@ std::vector<std::string> fenced_libraries(const std::vector<SourceFile>& files) 
         {std::regex("^xxh"), "montelux/scene/"},
         {std::regex("^dlfcn\\.h$"), "montelux/denoise/", "test/"},
         {std::regex("^mpi\\.h$"), "montelux/cluster/"},
+        {std::regex("^nanovdb/"), "montelux/formats/", "test/"},
         {std::regex("^CLI/"), "app/"},
     };
     std::vector<std::string> wrong;

@@ -1,6 +1,8 @@
 // Estimators of the same light through media: they differ in noise alone.
 #include "test/render/mixed_scene.h"
+#include "test/scene/sparse_grid_testing.h"
 #include "test/transport/volume_testing.h"
+#include <algorithm>
 #include <bit>
 
 #include "montelux/mc/stats/chi_squared.h"
@@ -40,6 +42,50 @@ std::vector<float> wild_densities(std::size_t count) {
     return values;
 }
 
+// Along rays through the cube [-1, 1]^3 with a medium.
+template <typename M>
+void expect_transmittances_agree(VolumeScene b, const M& m, const std::string& what) {
+    b.add_cube(b.add_medium(m));
+    b.add_sky();
+    b.description.integrator.max_depth = 0;
+    const VolumeWorld world(b.description);
+    const SceneView& scene = world.tables.view();
+    for (const Vec3f d : {normalize(Vec3f(0.1f, -0.2f, 1)), Vec3f(0, 0, 1)}) {
+        const Ray ray{{0.15f, 0.25f, -3}, d};
+        const SpectralMean delta = radiance_along<VolumePathIntegrator>(world, ray, 100000);
+        // Points 1e-4 apart.
+        SampledSpectrum depth;
+        const auto local = m.at(scene, 0, delta.lambda);
+        constexpr double step = 1e-4;
+        std::array<double, 4> sum{};
+        for (double t = step / 2; t < 6; t += step) {
+            const Point3f p = ray.o + d * static_cast<float>(t);
+            if (max_component(abs(p)) > 1) continue;
+            const MediumPoint c = local.coefficients(p);
+            for (int k = 0; k < 4; ++k)
+                sum[static_cast<std::size_t>(k)] += step * double((c.sigma_a + c.sigma_s)[k]);
+        }
+        const auto truth = [&](float lambda) {
+            for (int k = 0; k < 4; ++k)
+                if (delta.lambda.lambda[k] == lambda) return std::exp(-sum[static_cast<std::size_t>(k)]);
+            return 0.0;
+        };
+        expect_radiance(delta, truth, "delta, " + what, 1e-3);
+
+        SpectralMean ratio;
+        ratio.lambda = delta.lambda;
+        RayTracer tracer(world.accelerator);
+        for (int i = 0; i < 100000; ++i) {
+            SampleStream stream({.seed = 5}, 0, 0, static_cast<std::uint64_t>(i));
+            const auto through = shadow_transmittance(scene, tracer, ray, no_index, ratio.lambda, stream);
+            // By the first wavelength's walk.
+            for (int k = 0; k < 4; ++k)
+                ratio.moments[static_cast<std::size_t>(k)].add(through ? double(through->t[k]) : 0);
+        }
+        expect_radiance(ratio, truth, "ratio, " + what, 1e-3);
+    }
+}
+
 TEST(VolumeAgreement, DeltaTrackingRatioTrackingAndQuadratureOfTransmittance) {
     for (const bool constant : {true, false}) {
         VolumeScene b;
@@ -47,46 +93,70 @@ TEST(VolumeAgreement, DeltaTrackingRatioTrackingAndQuadratureOfTransmittance) {
             9, 7, 31, constant ? std::vector<float>(9 * 7 * 31, 0.7f) : wild_densities(9 * 7 * 31)));
         m.sigma_a = b.spectrum(0.2f, 0.9f);
         m.sigma_s = b.spectrum(0.7f, 0.4f);
-        b.add_cube(b.add_medium(m));
-        b.add_sky();
-        b.description.integrator.max_depth = 0;
-        const VolumeWorld world(b.description);
-        const SceneView& scene = world.tables.view();
-        for (const Vec3f d : {normalize(Vec3f(0.1f, -0.2f, 1)), Vec3f(0, 0, 1)}) {
-            const Ray ray{{0.15f, 0.25f, -3}, d};
-            const SpectralMean delta = radiance_along<VolumePathIntegrator>(world, ray, 100000);
-            // Points 1e-4 apart.
-            SampledSpectrum depth;
-            const auto local = m.at(scene, 0, delta.lambda);
-            constexpr double step = 1e-4;
-            std::array<double, 4> sum{};
-            for (double t = step / 2; t < 6; t += step) {
-                const Point3f p = ray.o + d * static_cast<float>(t);
-                if (max_component(abs(p)) > 1) continue;
-                const MediumPoint c = local.coefficients(p);
-                for (int k = 0; k < 4; ++k)
-                    sum[static_cast<std::size_t>(k)] += step * double((c.sigma_a + c.sigma_s)[k]);
-            }
-            const auto truth = [&](float lambda) {
-                for (int k = 0; k < 4; ++k)
-                    if (delta.lambda.lambda[k] == lambda) return std::exp(-sum[static_cast<std::size_t>(k)]);
-                return 0.0;
-            };
-            expect_radiance(delta, truth, constant ? "delta, constant" : "delta, wild", 1e-3);
-
-            SpectralMean ratio;
-            ratio.lambda = delta.lambda;
-            RayTracer tracer(world.accelerator);
-            for (int i = 0; i < 100000; ++i) {
-                SampleStream stream({.seed = 5}, 0, 0, static_cast<std::uint64_t>(i));
-                const auto through = shadow_transmittance(scene, tracer, ray, no_index, ratio.lambda, stream);
-                // By the first wavelength's walk.
-                for (int k = 0; k < 4; ++k)
-                    ratio.moments[static_cast<std::size_t>(k)].add(through ? double(through->t[k]) : 0);
-            }
-            expect_radiance(ratio, truth, constant ? "ratio, constant" : "ratio, wild", 1e-3);
-        }
+        expect_transmittances_agree(b, m, constant ? "constant" : "wild");
     }
+}
+
+TEST(VolumeAgreement, TransmittanceOfSparseGrids) {
+    VolumeScene b;
+    SparseGridMedium m;
+    const std::vector<float> wild = wild_densities(40 * 20 * 40);
+    b.scene.sparse_grids.push_back(sparse_grid({2, 1, 1}, [&](int i, int j, int k) {
+        i -= 110; // across the two nodes
+        j -= 6;
+        if (std::min({i, j, k}) < 0 || i >= 40 || j >= 20 || k >= 40) return 0.0f;
+        return (i / 8 + k / 8) % 2 == 0 ? 0.0f : wild[static_cast<std::size_t>((i * 20 + j) * 40 + k)];
+    }));
+    m.density = 0;
+    m.box.p0 = {109, 5, -1};
+    m.box.p1 = {150, 26, 40};
+    m.box.world_from_medium =
+        Transform::scale({2.0 / 41, 2.0 / 21, 2.0 / 41}) * Transform::translate({-129.5, -15.5, -19.5});
+    m.sigma_a = b.spectrum(0.2f, 0.9f);
+    m.sigma_s = b.spectrum(0.7f, 0.4f);
+    m.scale = 2;
+    expect_transmittances_agree(b, m, "sparse");
+}
+
+// A black body in absorbing gas: its density and its temperature lie on two grids of their own places.
+TEST(VolumeAgreement, EmissionOfSparseGrids) {
+    VolumeScene b;
+    b.scene.sparse_grids.push_back(sparse_grid({1, 1, 1}, [](int i, int j, int k) {
+        return std::max({i, j, k}) < 40 ? 0.3f + 0.02f * float(k) : 0;
+    }));
+    b.scene.sparse_grids.push_back(
+        sparse_grid({1, 1, 1}, [](int, int, int k) { return 10 + 3 * static_cast<float>(k); }));
+    SparseGridMedium m;
+    m.density = 0;
+    m.temperature = 1;
+    m.box.p0 = {-1, -1, -1};
+    m.box.p1 = {40, 40, 40};
+    m.box.world_from_medium =
+        Transform::scale({2.0 / 41, 2.0 / 41, 2.0 / 41}) * Transform::translate({-19.5, -19.5, -19.5});
+    m.temperature_space_from_density = Transform::translate({20, 20, 8}) * Transform::scale({0.5, 0.5, 0.5});
+    m.temperature_offset = 20;
+    m.temperature_scale = 70;
+    m.sigma_a = b.spectrum(0.4f, 1.5f);
+    m.sigma_s = 0.0f;
+    m.le_scale = 3;
+    b.add_cube(b.add_medium(m));
+    const SpectralMean mean = volume_radiance(b.description, {{0, 0, -3}, {0, 0, 1}}, 200000);
+    const auto truth = [](float lambda) {
+        const double sigma = double(line(0.4f, 1.5f)(lambda));
+        double depth = 0, radiance = 0;
+        constexpr double step = 1e-4;
+        for (double z = -1 + step / 2; z < 1; z += step) {
+            const double k = 19.5 + 20.5 * z; // of the voxel
+            const double fade = std::min({1.0, k + 1, 40 - k}), inner = std::clamp(k, 0.0, 39.0);
+            const double a = sigma * (0.3 + 0.02 * inner) * fade;
+            const float kelvins = static_cast<float>((10 + 3 * (8 + 0.5 * k) - 20) * 70);
+            radiance +=
+                std::exp(-depth - a * step / 2) * a * step * 3 * double(BlackbodySpectrum(kelvins)(lambda));
+            depth += a * step;
+        }
+        return radiance;
+    };
+    expect_radiance(mean, truth, "emission", 1e-3);
 }
 
 // A coloured grid with glass, a mirror and lamps in it: inside, outside, visible and not.

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "montelux/formats/nanovdb_file.h"
 #include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/build/float_range.h"
 #include "montelux/scene/medium/medium_presets.h"
@@ -40,12 +42,16 @@ float not_negative(ParameterReader& r, std::string_view name, float otherwise) {
     return value;
 }
 
-MediumBox box(ParameterReader& r, const Transform& world_from_medium) {
+void check_transform(ParameterReader& r, const Transform& world_from_medium) {
     const Matrix4& m = world_from_medium.matrix();
     if (m.m[3] != std::array<double, 4>{0, 0, 0, 1})
         r.error("the medium's transformation is projective; expected an affine one");
     if (!fits_float(world_from_medium))
         r.error("the medium's transformation is beyond what single-precision numbers hold");
+}
+
+MediumBox box(ParameterReader& r, const Transform& world_from_medium) {
+    check_transform(r, world_from_medium);
     MediumBox b;
     const Point3f p0 = r.point3("p0").value_or(b.p0), p1 = r.point3("p1").value_or(b.p1);
     b.p0 = min(p0, p1);
@@ -89,6 +95,15 @@ SceneSpectrum MediumReader::coefficient(ParameterReader& r, std::string_view nam
     return builder_.add_spectrum(s);
 }
 
+std::pair<SceneSpectrum, SceneSpectrum> MediumReader::coefficients(ParameterReader& r) {
+    const SceneSpectrum sigma_a = coefficient(r, "sigma_a"), sigma_s = coefficient(r, "sigma_s");
+    const std::optional<std::string> name = r.string("preset");
+    if (!name || name->empty()) return {sigma_a, sigma_s};
+    const MediumPreset& preset = find_preset(r, *name);
+    return {builder_.add_spectrum(RgbUnboundedSpectrum(RgbColorSpace::srgb(), preset.sigma_a)),
+            builder_.add_spectrum(RgbUnboundedSpectrum(RgbColorSpace::srgb(), preset.sigma_s))};
+}
+
 std::optional<std::pair<SceneSpectrum, float>> MediumReader::emission(ParameterReader& r) {
     const Parameter* p = r.any("Le", {ParameterType::rgb, ParameterType::spectrum, ParameterType::blackbody});
     if (p == nullptr) return std::nullopt;
@@ -103,13 +118,7 @@ std::optional<std::pair<SceneSpectrum, float>> MediumReader::emission(ParameterR
 
 HomogeneousMedium MediumReader::homogeneous(ParameterReader& r) {
     HomogeneousMedium m;
-    m.sigma_a = coefficient(r, "sigma_a");
-    m.sigma_s = coefficient(r, "sigma_s");
-    if (const std::optional<std::string> name = r.string("preset"); name && !name->empty()) {
-        const MediumPreset& preset = find_preset(r, *name);
-        m.sigma_a = builder_.add_spectrum(RgbUnboundedSpectrum(RgbColorSpace::srgb(), preset.sigma_a));
-        m.sigma_s = builder_.add_spectrum(RgbUnboundedSpectrum(RgbColorSpace::srgb(), preset.sigma_s));
-    }
+    std::tie(m.sigma_a, m.sigma_s) = coefficients(r);
     m.scale = not_negative(r, "scale", 1);
     m.le_scale = not_negative(r, "Lescale", 1);
     if (const auto le = emission(r)) {
@@ -218,6 +227,69 @@ CloudMedium MediumReader::cloud(ParameterReader& r, const Transform& world_from_
     return m;
 }
 
+Index MediumReader::add(SparseGrid grid) {
+    std::vector<SparseGrid>& grids = builder_.scene().sparse_grids;
+    grids.push_back(std::move(grid));
+    return static_cast<Index>(grids.size() - 1);
+}
+
+SparseGridMedium MediumReader::nanovdb(ParameterReader& r, const Transform& world_from_medium) {
+    SparseGridMedium m;
+    check_transform(r, world_from_medium);
+    const std::optional<std::string> name = r.string("filename");
+    if (!name) r.error("medium 'nanovdb' needs a parameter 'string filename'");
+    const Location at = r.at("filename");
+    const std::filesystem::path path = files_.find(*name, at);
+    const std::vector<std::uint8_t> bytes = files_.read(path, at);
+    const std::string density_name = r.string("gridname", "density"),
+                      temperature_name = r.string("temperaturename", "temperature");
+    const bool names_temperature = r.any("temperaturename", {ParameterType::string}) != nullptr;
+    PlacedSparseGrid density;
+    std::optional<PlacedSparseGrid> temperature;
+    try {
+        const NanovdbFile file(bytes, path.string());
+        density = file.read(density_name);
+        density.grid.for_each_value([&](float v) {
+            if (v < 0) throw Error(path.string() + ", grid '" + density_name + "'", "has a negative value");
+        });
+        if (density.grid.background() != 0)
+            throw Error(path.string() + ", grid '" + density_name + "'",
+                        "has a density other than 0 outside its voxels (its background)");
+        if (names_temperature || file.contains(temperature_name)) temperature = file.read(temperature_name);
+    } catch (const Error& e) {
+        r.error("filename", e.what());
+    }
+
+    // Interpolation reaches one voxel beyond those that are not 0.
+    const SparseGrid::VoxelRange voxels = density.grid.non_zero();
+    for (int a = 0; a < 3 && !voxels.empty(); ++a) {
+        const auto i = static_cast<std::size_t>(a);
+        m.box.p0[a] = static_cast<float>(voxels.lower[i] - 1);
+        m.box.p1[a] = static_cast<float>(voxels.upper[i] + 1);
+    }
+    m.box.world_from_medium = world_from_medium * density.file_from_grid;
+    const auto check_place = [&](const Transform& t) {
+        if (!fits_float(t))
+            r.error("filename", path.string() + ": the transformation of a grid is beyond what "
+                                                "single-precision numbers hold");
+    };
+    check_place(m.box.world_from_medium);
+    m.density = add(std::move(density.grid));
+    if (temperature) {
+        m.temperature_space_from_density = temperature->file_from_grid.inverse() * density.file_from_grid;
+        check_place(m.temperature_space_from_density);
+        m.temperature = add(std::move(temperature->grid));
+    }
+    m.temperature_offset = r.number("temperaturecutoff", 0);
+    m.temperature_offset = r.number("temperatureoffset", m.temperature_offset);
+    m.temperature_scale = r.number("temperaturescale", 1);
+    m.le_scale = not_negative(r, "Lescale", 1);
+    std::tie(m.sigma_a, m.sigma_s) = coefficients(r);
+    m.scale = not_negative(r, "scale", 1);
+    m.phase = phase_function(r);
+    return m;
+}
+
 Index MediumReader::read(const ParameterList& parameters, const Transform& world_from_medium,
                          const RgbColorSpace& color_space, Location at) {
     const std::optional<std::string> type =
@@ -237,7 +309,7 @@ Index MediumReader::read(const ParameterList& parameters, const Transform& world
     } else if (*type == "cloud") {
         medium = cloud(r, world_from_medium);
     } else if (*type == "nanovdb") {
-        r.error("medium 'nanovdb' is not supported yet");
+        medium = nanovdb(r, world_from_medium);
     } else {
         r.error("type", "unknown medium " + in_quotes(*type) + did_you_mean(*type, medium_types));
     }

@@ -26,12 +26,16 @@ class MediumReader {
     GridMedium uniform_grid(ParameterReader& r, const Transform& world_from_medium);
     RgbGridMedium rgb_grid(ParameterReader& r, const Transform& world_from_medium);
     CloudMedium cloud(ParameterReader& r, const Transform& world_from_medium);
+    SparseGridMedium nanovdb(ParameterReader& r, const Transform& world_from_medium);
 
+    // sigma_a and sigma_s, or those of a preset.
+    std::pair<SceneSpectrum, SceneSpectrum> coefficients(ParameterReader& r);
     SceneSpectrum coefficient(ParameterReader& r, std::string_view name);
     // Le, and the scale that makes its luminance 1; empty without one.
     std::optional<std::pair<SceneSpectrum, float>> emission(ParameterReader& r);
     std::optional<ScalarGrid> scalar_grid(ParameterReader& r, std::string_view name, std::array<int, 3> size);
     Index add(ScalarGrid grid);
+    Index add(SparseGrid grid);
     Index color_grid(ParameterReader& r, std::string_view name, std::array<int, 3> size);
 
     SceneBuilder& builder_;

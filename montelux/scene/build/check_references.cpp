@@ -195,6 +195,12 @@ void check_media(const Scene& scene) {
             throw Error(numbered(kind, index) + " has " + std::to_string(grid.values.size()) +
                         " values; its size wants " + std::to_string(grid.count()));
     };
+    const auto check_sparse_grid = [&](const FieldCheck& check, std::string_view field, Index index) {
+        if (index == no_index) return;
+        check.index(field, "sparse grid", index, scene.sparse_grids.size());
+        if (!scene.sparse_grids[index].is_consistent())
+            throw Error(numbered("sparse grid", index) + " has tables that lead outside it");
+    };
     for (std::size_t i = 0; i < scene.media.size(); ++i)
         std::visit(
             [&](const auto& m) {
@@ -213,6 +219,11 @@ void check_media(const Scene& scene) {
                     check_grid(check, "density", m.density, scene.scalar_grids, "scalar grid");
                     check_grid(check, "le_grid", m.le_grid, scene.scalar_grids, "scalar grid");
                     check_grid(check, "temperature", m.temperature, scene.scalar_grids, "scalar grid");
+                }
+                if constexpr (std::is_same_v<std::decay_t<decltype(m)>, SparseGridMedium>) {
+                    check.index("density", "sparse grid", m.density, scene.sparse_grids.size());
+                    check_sparse_grid(check, "density", m.density);
+                    check_sparse_grid(check, "temperature", m.temperature);
                 }
                 if constexpr (requires { check("le", m.le); }) check("le", m.le);
             },

@@ -9,26 +9,30 @@ namespace montelux {
 
 namespace {
 
-constexpr int majorant_resolution = 16; // as in pbrt-v4
+// As in pbrt-v4.
+constexpr int majorant_resolution = 16, sparse_majorant_resolution = 64;
 
 const ScalarGrid* grid(std::span<const ScalarGrid> grids, Index index) {
+    return index == no_index ? nullptr : &grids[index];
+}
+const SparseGrid* grid(std::span<const SparseGrid> grids, Index index) {
     return index == no_index ? nullptr : &grids[index];
 }
 const ColorGrid* grid(std::span<const ColorGrid> grids, Index index) {
     return index == no_index ? nullptr : &grids[index];
 }
 
-// bound(lower, upper) of the density in each cell of the unit cube.
+// bound(lower, upper) of the density in each of n^3 cells of the unit cube.
 template <typename Bound>
-MajorantGrid majorant_grid(const Bound& bound) {
-    constexpr int n = majorant_resolution;
-    MajorantGrid result{n, std::vector<float>(std::size_t{n} * n * n)};
+MajorantGrid majorant_grid(const Bound& bound, int n = majorant_resolution) {
+    const auto count = static_cast<std::size_t>(n);
+    MajorantGrid result{n, std::vector<float>(count * count * count)};
     parallel_for(n, [&](std::int64_t z) {
         for (int y = 0; y < n; ++y)
             for (int x = 0; x < n; ++x) {
                 const Point3f cell(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
-                const float width = 1.0f / n;
-                result.values[(static_cast<std::size_t>(z) * n + static_cast<std::size_t>(y)) * n +
+                const float width = 1.0f / static_cast<float>(n);
+                result.values[(static_cast<std::size_t>(z) * count + static_cast<std::size_t>(y)) * count +
                               static_cast<std::size_t>(x)] =
                     bound(cell * width, (cell + Vec3f(1, 1, 1)) * width);
             }
@@ -93,6 +97,26 @@ MediumTable RgbGridMedium::table(const Scene& scene) const {
     return {box.unit_from_world(), box.medium_from_world(), majorant_grid([&](Point3f lower, Point3f upper) {
                 return scale * (largest(sigma_a, lower, upper) + largest(sigma_s, lower, upper));
             })};
+}
+
+SparseGridMedium::Sampled SparseGridMedium::at(const SceneView& scene, Index medium,
+                                               const SampledWavelengths& lambda) const {
+    return {this,
+            &scene.medium_tables[medium],
+            grid(scene.sparse_grids, density),
+            grid(scene.sparse_grids, temperature),
+            AffineMap(temperature_space_from_density),
+            lambda,
+            scene.sample(sigma_a, lambda) * scale,
+            scene.sample(sigma_s, lambda) * scale};
+}
+
+MediumTable SparseGridMedium::table(const Scene& scene) const {
+    const SparseGrid& values = scene.sparse_grids[density];
+    const auto bound = [&](Point3f lower, Point3f upper) {
+        return values.largest(box.at(lower), box.at(upper));
+    };
+    return {box.unit_from_world(), box.medium_from_world(), majorant_grid(bound, sparse_majorant_resolution)};
 }
 
 float CloudMedium::density_at(Point3f p) const {

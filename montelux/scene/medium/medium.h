@@ -8,10 +8,11 @@
 #include "montelux/scene/medium/grid_medium.h"
 #include "montelux/scene/medium/homogeneous_medium.h"
 #include "montelux/scene/medium/rgb_grid_medium.h"
+#include "montelux/scene/medium/sparse_grid_medium.h"
 
 namespace montelux {
 
-using Medium = std::variant<HomogeneousMedium, GridMedium, RgbGridMedium, CloudMedium>;
+using Medium = std::variant<HomogeneousMedium, GridMedium, RgbGridMedium, CloudMedium, SparseGridMedium>;
 static_assert(std::is_trivially_copyable_v<Medium>);
 
 template <typename... M>

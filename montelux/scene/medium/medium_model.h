@@ -46,6 +46,10 @@ struct MediumBox {
     Transform world_from_medium;      // affine
 
     AffineMap medium_from_world() const { return AffineMap(world_from_medium.inverse()); }
+    // The point of the box at a point of the unit cube.
+    Point3f at(Point3f unit) const {
+        return {p0.x + unit.x * (p1.x - p0.x), p0.y + unit.y * (p1.y - p0.y), p0.z + unit.z * (p1.z - p0.z)};
+    }
     // The box becomes the unit cube.
     AffineMap unit_from_world() const;
 };

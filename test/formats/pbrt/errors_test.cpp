@@ -276,6 +276,10 @@ TEST(PbrtErrors, SentencesInTheWorld) {
          "scene:2:43: parameter 'wispiness' is negative"},
         {"Transform [1 0 0 0.5 0 1 0 0 0 0 1 0 0 0 0 1] MakeNamedMedium \"a\" \"string type\" \"cloud\"",
          "scene:2:47: the medium's transformation is projective; expected an affine one"},
+        {"MakeNamedMedium \"a\" \"string type\" \"nanovdb\"",
+         "scene:2:1: medium 'nanovdb' needs a parameter 'string filename'"},
+        {"MakeNamedMedium \"a\" \"string type\" \"nanovdb\" \"string filename\" \"none.nvdb\"",
+         "scene:2:45: there is no file './none.nvdb'"},
         {"MediumInterface \"fog\" \"\" Shape \"sphere\"",
          "scene:2:26: this shape's medium 'fog' is not defined"},
         // Files.

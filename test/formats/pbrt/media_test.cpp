@@ -1,8 +1,12 @@
 // Media, their places, and the material 'interface' of pbrt files.
+#include "test/formats/nanovdb_writing.h"
 #include "test/formats/pbrt/parse.h"
+#include "test/temporary_folder.h"
 #include <gtest/gtest.h>
 
+#include "montelux/formats/nanovdb_file.h"
 #include "montelux/scene/build/emission.h"
+#include "montelux/scene/scene_tables.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
 namespace montelux {
@@ -114,6 +118,106 @@ TEST(PbrtMedia, GridsWithEverything) {
                     RgbUnboundedSpectrum(RgbColorSpace::srgb(), {4, 5, 6})(600));
     EXPECT_EQ(colors.le_scale, 3);
     EXPECT_FLOAT_EQ(value(rgb, colors.illuminant, 600), RgbColorSpace::srgb().illuminant()(600));
+}
+
+// A file of grids, and a scene with parameters that refers to it as FILE.
+SceneDescription with_nanovdb(const std::vector<test::Handle>& grids, const std::string& parameters = {}) {
+    const TemporaryFolder folder;
+    const std::vector<std::uint8_t> bytes = test::nanovdb_bytes(grids, nanovdb::io::Codec::ZIP);
+    const std::string path = folder.write("f.nvdb", {bytes.begin(), bytes.end()}).string();
+    return parse_world("Translate 1 2 3\n" +
+                       medium("nanovdb", "\"string filename\" \"" + path + "\" " + parameters));
+}
+test::Handle three_voxels(const std::string& name, float value = 1) {
+    nanovdb::GridBuilder<float> builder(0.0f, nanovdb::GridClass::FogVolume);
+    auto accessor = builder.getAccessor();
+    accessor.setValue(nanovdb::Coord(-1, 0, 2), value);
+    accessor.setValue(nanovdb::Coord(10, 0, 3), 5);
+    accessor.setValue(nanovdb::Coord(0, 1, 9), 2);
+    return builder.getHandle(0.5, nanovdb::Vec3d(4, 0, 0), name);
+}
+
+TEST(PbrtMedia, NanovdbDefaultsAreThoseOfPbrt) {
+    std::vector<test::Handle> grids;
+    grids.push_back(three_voxels("density"));
+    const SceneDescription d = with_nanovdb(grids);
+    const auto m = first_medium<SparseGridMedium>(d);
+    EXPECT_EQ(m.sigma_a.constant, 1);
+    EXPECT_EQ(m.sigma_s.constant, 1);
+    EXPECT_EQ(m.scale, 1);
+    EXPECT_EQ(m.temperature, no_index);
+    EXPECT_EQ(std::get<HenyeyGreenstein>(m.phase).g, 0);
+    // One voxel around those that are not 0, in the world: voxels (-1, 0, 2) to (10, 1, 9).
+    const Transform& world = m.box.world_from_medium;
+    const Vec3d low = world.point(Vec3d(m.box.p0)), high = world.point(Vec3d(m.box.p1));
+    EXPECT_EQ(low, Vec3d(1 + 4 - 1, 2 - 0.5, 3 + 0.5));
+    EXPECT_EQ(high, Vec3d(1 + 4 + 5.5, 2 + 1, 3 + 5));
+    const SceneTables tables(d.scene);
+    const auto local = m.at(tables.view(), 0, SampledWavelengths::sample_visible(0.5f));
+    const Vec3d centre = Vec3d(1, 2, 3) + Vec3d(4 + 0.5 * 10, 0, 0.5 * 3);
+    EXPECT_NEAR(local.coefficients(Point3f(centre)).sigma_s[0], 5, 1e-4f);
+    EXPECT_NEAR(local.coefficients(Point3f(centre + Vec3d(0.25, 0, 0))).sigma_s[0], 2.5f, 1e-4f);
+}
+
+TEST(PbrtMedia, NanovdbWithEverything) {
+    std::vector<test::Handle> grids;
+    grids.push_back(three_voxels("heat", 3));
+    grids.push_back(three_voxels("smoke"));
+    grids.push_back(test::small_nanovdb("temperature"));
+    const auto m = first_medium<SparseGridMedium>(
+        with_nanovdb(grids, "\"string gridname\" \"smoke\" \"string temperaturename\" \"heat\" "
+                            "\"float temperaturecutoff\" 3 \"float temperaturescale\" 2 \"float Lescale\" 7 "
+                            "\"float scale\" 4 \"float g\" 0.1 \"float alpha\" 2 "
+                            "\"spectrum sigma_a\" [300 1 900 4]"));
+    EXPECT_EQ(m.density, 0u);
+    EXPECT_EQ(m.temperature, 1u);
+    EXPECT_EQ(m.temperature_offset, 3);
+    EXPECT_EQ(m.temperature_scale, 2);
+    EXPECT_EQ(m.le_scale, 7);
+    EXPECT_EQ(m.scale, 4);
+    EXPECT_EQ(std::get<Draine>(m.phase).alpha, 2);
+    EXPECT_FALSE(m.sigma_a.is_constant());
+
+    grids.clear();
+    grids.push_back(test::small_nanovdb("temperature"));
+    grids.push_back(three_voxels("density"));
+    const SceneDescription d =
+        with_nanovdb(grids, "\"string preset\" \"Skimmilk\" \"float temperatureoffset\" 5");
+    const auto hot = first_medium<SparseGridMedium>(d);
+    EXPECT_EQ(hot.temperature_offset, 5);
+    EXPECT_FLOAT_EQ(value(d, hot.sigma_s, 450),
+                    RgbUnboundedSpectrum(RgbColorSpace::srgb(), {0.70f, 1.22f, 1.90f})(450));
+    // A point of the file in both grids.
+    const PlacedSparseGrid file = NanovdbFile(test::nanovdb_bytes(grids), "f").read("temperature");
+    const Vec3d in_density = hot.box.world_from_medium.inverse().point(Vec3d(1, 2, 3) + Vec3d(4, 0.5, 4.5));
+    const Vec3d expected = file.file_from_grid.inverse().point(Vec3d(4, 0.5, 4.5));
+    EXPECT_NEAR(length(hot.temperature_space_from_density.point(in_density) - expected), 0, 1e-9);
+}
+
+TEST(PbrtMedia, NanovdbRefusesWhatIsNoDensity) {
+    const auto error = [](const std::vector<test::Handle>& grids, const std::string& parameters = {}) {
+        try {
+            with_nanovdb(grids, parameters);
+        } catch (const Error& e) {
+            const std::string what = e.what();
+            return what.substr(what.find("f.nvdb"));
+        }
+        return std::string();
+    };
+    std::vector<test::Handle> grids;
+    grids.push_back(three_voxels("density", -1));
+    EXPECT_EQ(error(grids), "f.nvdb, grid 'density': has a negative value");
+    EXPECT_EQ(error(grids, "\"string gridname\" \"x\""), "f.nvdb: has no grid 'x'; it has 'density'");
+    grids.clear();
+    grids.push_back(three_voxels("density"));
+    EXPECT_EQ(error(grids), "");
+    EXPECT_EQ(error(grids, "\"string temperaturename\" \"t\""), "f.nvdb: has no grid 't'; it has 'density'");
+    nanovdb::GridBuilder<float> builder(0.25f, nanovdb::GridClass::FogVolume);
+    builder.getAccessor().setValue(nanovdb::Coord(1, 1, 1), 1);
+    grids.clear();
+    grids.push_back(builder.getHandle(1.0, nanovdb::Vec3d(0), "density"));
+    EXPECT_EQ(error(grids),
+              "f.nvdb, grid 'density': has a density other than 0 outside its voxels (its background)");
 }
 
 // Media may be named before they are made; in blocks the state is that of attributes.

@@ -1,8 +1,11 @@
 // Whole scenes of pbrt-v4 users.
+#include "test/formats/nanovdb_writing.h"
 #include "test/temporary_folder.h"
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <nanovdb/util/GridValidator.h>
 
 #include "montelux/formats/pbrt/load_pbrt.h"
 #include "montelux/mc/math/error.h"
@@ -57,6 +60,31 @@ TEST(PbrtScenes, Counts) {
         std::size_t expected_warnings = std::string(c.name) == "cornell-box" ? 1 : 0; // its Accelerator
         EXPECT_EQ(warnings.messages().size(), expected_warnings);
     }
+}
+
+// The file that a script wrote is a NanoVDB file in every sense.
+TEST(PbrtScenes, TheCloudIsRead) {
+    const std::filesystem::path cloud = std::filesystem::path(MONTELUX_SOURCE_DIR) / "scenes/cloud";
+    Warnings warnings;
+    const Scene read = load_pbrt(cloud / "cloud.pbrt", warnings).scene;
+    EXPECT_TRUE(warnings.messages().empty());
+    ASSERT_EQ(read.sparse_grids.size(), 1u);
+    const auto handle = nanovdb::io::readGrid((cloud / "cloud.nvdb").string());
+    ASSERT_NE(handle.grid<float>(), nullptr);
+    EXPECT_TRUE(nanovdb::isValid(*handle.grid<float>(), true, false));
+    const nanovdb::NanoGrid<float>& grid = *handle.grid<float>();
+    const auto accessor = grid.getAccessor();
+    const auto& medium = std::get<SparseGridMedium>(read.media.at(0));
+    std::uint64_t voxels = 0;
+    for (auto it = grid.indexBBox().begin(); it; ++it) {
+        const nanovdb::Vec3d at = grid.indexToWorld(nanovdb::Vec3d((*it)[0], (*it)[1], (*it)[2]));
+        const Vec3d p = medium.box.world_from_medium.inverse().point(Vec3d(at[0], at[1], at[2]));
+        const auto i = [](double x) { return static_cast<int>(std::lround(x)); };
+        const float value = accessor.getValue(*it);
+        ASSERT_EQ(read.sparse_grids[0].value(i(p.x), i(p.y), i(p.z)), value);
+        voxels += value > 0;
+    }
+    EXPECT_EQ(voxels, grid.activeVoxelCount());
 }
 
 TEST(PbrtScenes, HairIsRead) {

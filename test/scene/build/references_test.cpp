@@ -129,6 +129,8 @@ TEST(SceneReferences, MediaNameTheParameter) {
             s.scalar_grids[0].size = {1, 1, 2};
             s.scalar_grids[0].values = {1, 2};
             s.scalar_grids[1].size = {1, 1, 2};
+            s.sparse_grids.resize(2);
+            s.sparse_grids[1].nodes = {0};
             s.media.push_back(medium);
         });
     };
@@ -146,6 +148,15 @@ TEST(SceneReferences, MediaNameTheParameter) {
               "test: medium 0 (UniformGrid), temperature: there is no scalar grid 2; the scene has 2");
     grid.temperature = 1;
     EXPECT_EQ(error_of_medium(grid), "test: scalar grid 1 has 0 values; its size wants 2");
+    SparseGridMedium sparse;
+    EXPECT_NE(error_of_medium(sparse), "");
+    sparse.density = 0;
+    EXPECT_EQ(error_of_medium(sparse), "");
+    sparse.temperature = 2;
+    EXPECT_EQ(error_of_medium(sparse),
+              "test: medium 0 (SparseGrid), temperature: there is no sparse grid 2; the scene has 2");
+    sparse.temperature = 1;
+    EXPECT_EQ(error_of_medium(sparse), "test: sparse grid 1 has tables that lead outside it");
     RgbGridMedium colors;
     EXPECT_EQ(error_of_medium(colors), "");
     colors.le = 0;
