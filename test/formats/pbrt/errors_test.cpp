@@ -73,7 +73,7 @@ TEST(PbrtErrors, SentencesInTheWorld) {
         {"Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]",
          "scene:2:1: shape 'bilinearmesh' needs 'indices' when it has not exactly 4 vertices"},
         {"Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"integer indices\" [0 1 2 4]",
-         "scene:2:65: patch 0 refers to vertex 4; the mesh has 4 vertices"},
+         "scene:2:59: patch 0 refers to vertex 4; the mesh has 4 vertices"},
         {"Shape \"curve\"", "scene:2:1: shape 'curve' needs control points 'P'"},
         {"Shape \"curve\" \"integer degree\" 4", "scene:2:15: parameter 'degree' must be 2 or 3"},
         {"Shape \"curve\" \"point3 P\" [0 0 0 1 1 1 2 2 2]",
