@@ -85,7 +85,7 @@ NanovdbFile::NanovdbFile(std::span<const std::uint8_t> bytes, std::string name) 
                                    std::to_string(NANOVDB_MAJOR_VERSION_NUMBER));
         if (header.codec == codec_blosc)
             throw Error(name_, "is compressed by Blosc, which is not supported; convert it with "
-                               "'nanovdb_convert --zip' or without compression");
+                               "nanovdb_convert to zip or to no compression");
         if (header.codec > codec_blosc)
             throw Error(name_, "has an unknown compression, " + std::to_string(header.codec));
         if (header.grid_count == 0) throw Error(name_, "has no grid");

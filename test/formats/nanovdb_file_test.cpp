@@ -141,7 +141,7 @@ TEST(NanovdbFile, WhatItCannotReadIsSaid) {
     EXPECT_EQ(changed([](Bytes& b) { b[11] = 31 << 5 >> 3; }).substr(0, 29), "f.nvdb: has NanoVDB's version");
     EXPECT_EQ(changed([](Bytes& b) { b[14] = 2; }),
               "f.nvdb: is compressed by Blosc, which is not supported; convert it with "
-              "'nanovdb_convert --zip' or without compression");
+              "nanovdb_convert to zip or to no compression");
     EXPECT_EQ(changed([](Bytes& b) { b[14] = 7; }), "f.nvdb: has an unknown compression, 7");
     EXPECT_EQ(changed([](Bytes& b) { b[b.size() - 1] ^= 1; }),
               "f.nvdb, grid 'density': the checksum does not fit: the file is damaged");

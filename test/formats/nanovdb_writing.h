@@ -35,7 +35,8 @@ inline Handle small_nanovdb(const std::string& name, nanovdb::ChecksumMode sums 
     for (int i = -9; i < 14; ++i)
         for (int j = -3; j < 20; ++j)
             for (int k = -12; k < 4; ++k) {
-                const auto hash = static_cast<unsigned>(i * 73856093 ^ j * 19349663 ^ k * 83492791);
+                const auto hash = static_cast<unsigned>(i) * 73856093u ^
+                                  static_cast<unsigned>(j) * 19349663u ^ static_cast<unsigned>(k) * 83492791u;
                 const bool constant = i >= 0 && i < 8 && j >= 8 && j < 16 && k < 0 && k >= -8;
                 accessor.setValue(nanovdb::Coord(i, j, k),
                                   constant ? 0.5f : least + static_cast<float>(hash % 89) / 89);

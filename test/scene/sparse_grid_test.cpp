@@ -15,7 +15,8 @@ float blob(int i, int j, int k) {
     const int d = (i - 125) * (i - 125) + (j - 40) * (j - 40) + (k - 130) * (k - 130);
     if (d > 30 * 30) return 0;
     if (d < 20 * 20) return 0.5f;
-    const auto hash = static_cast<unsigned>(i * 73856093 ^ j * 19349663 ^ k * 83492791);
+    const auto hash = static_cast<unsigned>(i) * 73856093u ^ static_cast<unsigned>(j) * 19349663u ^
+                      static_cast<unsigned>(k) * 83492791u;
     return static_cast<float>(hash % 97) / 97;
 }
 SparseGrid blob_grid() { return sparse_grid({2, 1, 2}, blob); }
