@@ -313,8 +313,9 @@ class SceneHasher {
 
     // Lights.
     void add(const AreaLight& l) {
-        const auto& [spectrum, scale, two_sided, shape, primitive_flux] = l;
+        const auto& [spectrum, scale, two_sided, shape, primitive_flux, picture] = l;
         all(spectrum, scale, two_sided, shape, primitive_flux);
+        if (picture != no_index) add(picture);
     }
     void add(const PointLight& l) {
         const auto& [spectrum, scale, position] = l;

@@ -35,8 +35,13 @@ nb::object light_of(const ShapeRef& r) {
 
 // From an AreaLight or a spectrum, which is added to the scene.
 AreaLight area_light_of(const SceneRef& scene, const nb::object& emission) {
-    if (nb::isinstance<Ref<AreaLight>>(emission))
-        return std::get<AreaLight>(value_for<Light>(scene, nb::cast<const Ref<AreaLight>&>(emission)));
+    if (nb::isinstance<Ref<AreaLight>>(emission)) {
+        const AreaLight light =
+            std::get<AreaLight>(value_for<Light>(scene, nb::cast<const Ref<AreaLight>&>(emission)));
+        if (light.picture != no_index)
+            throw Error("Shape.light", "an AreaLight with a picture belongs to the shape of its scene file");
+        return light;
+    }
     const Spectrum spectrum = spectrum_of(emission, RgbMeaning::illuminant, "Shape.light");
     const float scale = photometric_scale(spectrum, "Shape.light");
     return {add_spectrum(scene->edit().scene, spectrum), scale};

@@ -409,6 +409,7 @@ TEST(SceneDigest, LightsCount) {
                     change_spectrum_of_light<SunLight>(red),
                     [](Scene& s) { std::get<AreaLight>(s.lights[0]).two_sided = true; },
                     [](Scene& s) { std::get<AreaLight>(s.lights[0]).primitive_flux = 1; },
+                    [](Scene& s) { std::get<AreaLight>(s.lights[0]).picture = 0; },
                     [](Scene& s) { std::get<PointLight>(s.lights[1]).position.x = 1; },
                     [](Scene& s) { std::get<SpotLight>(s.lights[2]).cos_total_width = 0.5f; },
                     [](Scene& s) {

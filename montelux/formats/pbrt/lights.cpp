@@ -76,9 +76,20 @@ Emission LightReader::read_area(const Plugin& plugin, const RgbColorSpace& color
     if (plugin.name != "diffuse")
         r.error("unknown area light " + in_quotes(plugin.name) + did_you_mean(plugin.name, names) +
                 "; expected 'diffuse'");
-    if (r.ignored("filename")) r.error("filename", "an image on an area light is not supported yet");
-    Source s = source(r, "L", color_space);
+    const std::optional<std::string> file = r.string("filename");
+    if (file && r.ignored("L")) r.error("L", "'L' together with 'filename'; expected one or the other");
+    Source s = source(r, "L", file ? RgbColorSpace::srgb() : color_space);
     Emission e{s.spectrum, s.scale, r.boolean("twosided", false), r.number("power", -1)};
+    if (file) {
+        e.picture = picture(*file, r.at("filename"), MapUse::projection);
+        const Image& image = builder_.scene().environments[e.picture];
+        const Vec3d weights = RgbColorSpace::srgb().luminance_weights();
+        double sum = 0;
+        for (std::size_t i = 0; i < image.sample_count(); ++i)
+            sum += double(image.value_at(i)) * weights[static_cast<int>(i % 3)];
+        e.picture_mean = sum / static_cast<double>(image.pixel_count());
+        if (e.power > 0 && !(e.picture_mean > 0)) r.error("power", "the picture has no light to be scaled");
+    }
     r.finish();
     return e;
 }

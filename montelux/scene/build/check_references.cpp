@@ -164,6 +164,9 @@ void check_light(const Scene& scene, const Light& light) {
             if constexpr (requires { l.shape; }) check.index("shape", "shape", l.shape, scene.shapes.size());
             if constexpr (requires { l.environment; })
                 check.index("environment", "environment map", l.environment, scene.environments.size());
+            if constexpr (requires { l.picture; })
+                if (l.picture != no_index)
+                    check.index("picture", "picture", l.picture, scene.environments.size());
             if constexpr (requires { l.sky; }) check.index("sky", "sky", l.sky, scene.skies.size());
         },
         light);

@@ -25,13 +25,15 @@ float spot_intensity(float flux, double cos_falloff_start, double cos_total_widt
 float sky_luminance(float illuminance) { return illuminance / pi_f; }
 
 AreaLight Emission::light(Index shape, const Geometry& geometry) const {
-    AreaLight light{spectrum, scale, two_sided, shape};
+    AreaLight light{
+        .spectrum = spectrum, .scale = scale, .two_sided = two_sided, .shape = shape, .picture = picture};
     if (!(power > 0)) return light;
+    const float power_of_white = static_cast<float>(static_cast<double>(power) / picture_mean);
     const auto* quadric = std::get_if<Quadric>(&geometry);
     if (quadric == nullptr)
-        light.primitive_flux = power;
+        light.primitive_flux = power_of_white;
     else if (const float area = object_area(*quadric); area > 0)
-        light.scale *= power / ((two_sided ? 2.0f : 1.0f) * area * pi_f);
+        light.scale *= power_of_white / ((two_sided ? 2.0f : 1.0f) * area * pi_f);
     return light;
 }
 

@@ -24,6 +24,8 @@ struct Emission {
     float scale = 1; // radiance is scale * spectrum
     bool two_sided = false;
     float power = 0; // lm of each primitive, if positive: scale is then multiplied by power / emitted power
+    Index picture = no_index; // AreaLight::picture
+    double picture_mean = 1;  // luminance, by which the emitted power is multiplied
 
     // The light of a shape with this geometry.
     AreaLight light(Index shape, const Geometry& geometry) const;

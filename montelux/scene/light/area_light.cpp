@@ -28,6 +28,25 @@ float radiance_scale(const AreaLight& light, const LightContext& context, Index 
     return area > 0 ? light.scale * (light.primitive_flux / (sides(light) * area * pi_f)) : 0;
 }
 
+// Radiance over radiance_scale at a point of the surface, seen along w.
+SampledSpectrum color_at(const AreaLight& light, const LightContext& context, Point3f p, Vec3f w, Hit hit,
+                         const SampledWavelengths& lambda) {
+    if (light.picture == no_index) return context.scene.sample(light.spectrum, lambda);
+    hit.t = 0;
+    hit.shape = light.shape;
+    const Point2f uv = surface_point(context.scene, {p, w}, hit, true).uv;
+    return context.tables().picture_radiance(light.picture, uv, lambda);
+}
+
+// As if the picture covered each part evenly.
+double picture_brightness(const LightContext& context, Index picture) {
+    const Image& image = context.tables().maps[picture];
+    double sum = 0;
+    for (std::size_t i = 0; i < image.sample_count(); ++i) sum += double(image.value_at(i));
+    const Spectrum white(RgbIlluminantSpectrum(LightTablesView::map_color_space(), {1, 1, 1}));
+    return visible_mean(white) * sum / static_cast<double>(image.sample_count());
+}
+
 // Whether the surface emits along a direction with that cosine to its normal.
 bool shines(const AreaLight& light, float cosine) { return cosine > 0 || (light.two_sided && cosine < 0); }
 
@@ -49,11 +68,11 @@ std::optional<LightSample> sample_sphere(const AreaLight& light, const LightCont
     s.wi = Frame::from_normal(cone.axis).to_world(
         {sin_theta * std::cos(phi), sin_theta * std::sin(phi), cos_theta});
     s.pdf = cone.pdf();
-    s.radiance = context.scene.sample(light.spectrum, lambda) * light.scale;
     // The near intersection.
     double t = cone.distance * (1 - one_minus_cos) -
                std::sqrt(std::max(0.0, sphere.radius * sphere.radius - cone.distance * cone.distance * sin2));
     Vec3d p = Vec3d(from.p) + t * Vec3d(s.wi);
+    s.radiance = color_at(light, context, Vec3f(p), s.wi, {}, lambda) * light.scale;
     Vec3f n = Vec3f(normalize(p - sphere.center));
     s.shadow =
         shadow_ray(from, s.wi, Vec3f(p), n, coordinate_error(size_of(p) + static_cast<float>(sphere.radius)));
@@ -92,7 +111,8 @@ std::optional<LightSample> sample_surface(const AreaLight& light, const LightCon
     const float share = share_there(context, shape, *point, wi);
     if (!(share > 0)) return result;
     LightSample& s = result.emplace();
-    s.radiance = context.scene.sample(light.spectrum, lambda) * radiance_scale(light, context, part) * share;
+    s.radiance = color_at(light, context, point->p, wi, point->hit, lambda) *
+                 radiance_scale(light, context, part) * share;
     s.wi = wi;
     s.pdf = point->area_density * d2 / std::abs(cosine);
     s.invisible = is_invisible(context, shape);
@@ -178,7 +198,8 @@ float AreaLight::pdf_li(const LightContext& context, const ReferencePoint& from,
 SampledSpectrum AreaLight::radiance(const LightContext& context, const ReferencePoint&, const LightHit& hit,
                                     const SampledWavelengths& lambda) const {
     if (!shines(*this, -dot(hit.n, hit.wi))) return {};
-    return context.scene.sample(spectrum, lambda) * radiance_scale(*this, context, hit.part);
+    const Hit at{.b1 = hit.b.x, .b2 = hit.b.y, .primitive = hit.part};
+    return color_at(*this, context, hit.p, hit.wi, at, lambda) * radiance_scale(*this, context, hit.part);
 }
 
 std::optional<EmissionSample> AreaLight::sample_le(const LightContext& context, Index part, Vec2f u_position,
@@ -198,7 +219,8 @@ std::optional<EmissionSample> AreaLight::sample_le(const LightContext& context, 
     const float share = share_there(context, context.scene.shapes[shape], *point, w);
     if (!(share > 0)) return std::nullopt;
     EmissionSample s;
-    s.radiance = context.scene.sample(spectrum, lambda) * (radiance_scale(*this, context, part) * share);
+    s.radiance = color_at(*this, context, point->p, w, point->hit, lambda) *
+                 (radiance_scale(*this, context, part) * share);
     s.ray = {offset_origin(point->p, n, point->error, w), w};
     s.n = n;
     s.cosine = local.z;
@@ -216,7 +238,8 @@ EmissionPdf AreaLight::pdf_le(const LightContext& context, const LightHit& hit, 
 void AreaLight::powers(const LightContext& context, std::span<double> parts) const {
     const Shape& s = context.scene.shapes[shape];
     const float alpha = constant_alpha(context.scene, s).value_or(1);
-    const double brightness = visible_mean(context.scene.spectrum(spectrum));
+    const double brightness = picture == no_index ? visible_mean(context.scene.spectrum(spectrum))
+                                                  : picture_brightness(context, picture);
     auto power = [&](double area, float factor) {
         if (alpha > 0 && alpha < 1) area *= double(alpha);
         return pi * area * (two_sided ? 2 : 1) * double(factor) * brightness;

@@ -20,6 +20,9 @@ struct AreaLight {
     Index shape = no_index;
     // If positive, each primitive of a mesh emits this flux times scale * spectrum, whatever its area.
     float primitive_flux = 0;
+    // If given, into Scene::environments: the colours of this picture instead of the spectrum, by the surface's
+    // texture coordinates (bilinear; the top row at v = 1). A given flux is then that of a white picture.
+    Index picture = no_index;
 
     MONTELUX_LIGHT_MODEL;
 };

@@ -118,6 +118,7 @@ LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings
 }
 
 void LightTables::add_shape(const Scene& scene, Index light, const AreaLight& area) {
+    if (area.picture != no_index) add_spectra(scene, area.picture);
     const Shape& shape = scene.shapes[area.shape];
     visit_geometry(scene, shape,
                    Overloaded{[&](const TriangleMesh& mesh) {

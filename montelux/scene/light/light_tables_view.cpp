@@ -1,5 +1,8 @@
 #include "montelux/scene/light/light_tables_view.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace montelux {
 
 RgbUnboundedSpectrum LightTablesView::texel_spectrum(const Image& map, std::size_t texel) {
@@ -25,6 +28,26 @@ float LightTablesView::map_value(Index map, const EnvironmentGrid& grid, Vec2f p
     float sum = 0;
     for (std::size_t k = 0; k < 4; ++k) sum += texel(blend.texel[k]) * blend.share[k];
     return sum;
+}
+
+SampledSpectrum LightTablesView::picture_radiance(Index map, Point2f uv,
+                                                  const SampledWavelengths& lambda) const {
+    const int width = maps[map].width(), height = maps[map].height();
+    const auto place = [](float t, int n) { // not a number: 0
+        return std::max(0.0f, std::min(t, 1.0f)) * static_cast<float>(n) - 0.5f;
+    };
+    const float x = place(uv.x, width), y = place(1 - uv.y, height);
+    const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
+    SampledSpectrum sum;
+    for (int k = 0; k < 4; ++k) {
+        const int dx = k & 1, dy = k >> 1;
+        const float share =
+            std::abs(static_cast<float>(x0 + 1 - dx) - x) * std::abs(static_cast<float>(y0 + 1 - dy) - y);
+        const auto column = static_cast<std::size_t>(std::clamp(x0 + dx, 0, width - 1)),
+                   row = static_cast<std::size_t>(std::clamp(y0 + dy, 0, height - 1));
+        sum += texel_factor(map, row * static_cast<std::size_t>(width) + column, lambda) * share;
+    }
+    return sum * map_color_space().illuminant().sample(lambda);
 }
 
 SampledSpectrum LightTablesView::map_radiance(const ImageInfiniteLight& light, const EnvironmentGrid& grid,

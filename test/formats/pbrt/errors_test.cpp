@@ -242,7 +242,9 @@ TEST(PbrtErrors, SentencesInTheWorld) {
          "scene:2:21: parameter 'I' is no temperature; expected 1 positive number of kelvins"},
         {"AreaLightSource \"area\"", "scene:2:1: unknown area light 'area'; expected 'diffuse'"},
         {"AreaLightSource \"diffuse\" \"string filename\" \"a.png\"",
-         "scene:2:27: an image on an area light is not supported yet"},
+         "scene:2:27: there is no file './a.png'"},
+        {"AreaLightSource \"diffuse\" \"string filename\" \"a.png\" \"rgb L\" [1 1 1]",
+         "scene:2:52: 'L' together with 'filename'; expected one or the other"},
         // Media.
         {"MakeNamedMedium \"a\" \"float g\" 0", "scene:2:1: the medium needs a parameter 'string type'"},
         {"MakeNamedMedium \"a\" \"string type\" \"homogenous\"",

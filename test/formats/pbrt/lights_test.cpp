@@ -9,6 +9,7 @@
 
 #include "montelux/image/image_write.h"
 #include "montelux/scene/light/light_sampling.h"
+#include "montelux/scene/light/visible_mean.h"
 #include "montelux/scene/scene_tables.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
@@ -99,6 +100,45 @@ TEST(PbrtLights, AreaLightsOfShapes) {
                         to_photometric(tables.view().spectrum(l.spectrum)),
                     12 / (2 * areas[i] * pi), 1e-5);
     }
+}
+
+TEST(PbrtLights, PicturesOnAreaLights) {
+    TemporaryFolder folder;
+    Image picture(2, 2, {"R", "G", "B"});
+    for (int c = 0; c < 3; ++c) {
+        picture.set(0, 0, c, 1);
+        picture.set(1, 0, c, 3);
+        picture.set(0, 1, c, 5);
+        picture.set(1, 1, c, 7);
+    }
+    write_image(folder / "light.exr", picture);
+    const std::string light =
+        "AreaLightSource \"diffuse\" \"string filename\" \"" + (folder / "light.exr").string() + "\" ";
+    const SceneDescription d = parse_world(
+        light + "\"float scale\" 2 Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]" + light +
+        "\"float power\" 8 Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]");
+    const SceneTables tables(d.scene);
+    const SampledWavelengths lambda = SampledWavelengths::sample_visible(0.3f);
+    const float white = RgbColorSpace::srgb().illuminant().sample(lambda)[0] *
+                        photometric_scale(Spectrum(RgbColorSpace::srgb().illuminant()));
+    const auto radiance = [&](Index index, Vec2f b) {
+        const LightHit hit{.wi = {0, 0, -1}, .p = {b.x, b.y, 0}, .n = {0, 0, 1}, .b = b};
+        return incident_radiance({tables.view(), index}, {}, hit, lambda)[0] / white;
+    };
+    // The top row at v = 1; bilinear; clamped at the border.
+    EXPECT_NEAR(radiance(0, {0.25f, 0.75f}), 2 * 1, 1e-3);
+    EXPECT_NEAR(radiance(0, {0.75f, 0.75f}), 2 * 3, 1e-3);
+    EXPECT_NEAR(radiance(0, {0.25f, 0.25f}), 2 * 5, 1e-3);
+    EXPECT_NEAR(radiance(0, {0, 0}), 2 * 5, 1e-3);
+    EXPECT_NEAR(radiance(0, {0.5f, 0.5f}), 2 * 4, 1e-3);
+    EXPECT_NEAR(radiance(0, {1, 0.375f}), 2 * 6, 1e-3);
+    // 8 lm over pi and the mean of the picture.
+    EXPECT_NEAR(radiance(1, {0.5f, 0.5f}), 8 / pi, 1e-3);
+    std::vector<double> powers(1);
+    light_powers({tables.view(), 1}, powers);
+    const Spectrum illuminant(RgbColorSpace::srgb().illuminant());
+    EXPECT_NEAR(powers[0], 8 * visible_mean(illuminant) * double(photometric_scale(illuminant)),
+                1e-2 * powers[0]);
 }
 
 TEST(PbrtLights, EnvironmentMaps) {
