@@ -244,7 +244,7 @@ TEST(PbrtErrors, SentencesInTheWorld) {
         {"AreaLightSource \"diffuse\" \"string filename\" \"a.png\"",
          "scene:2:27: there is no file './a.png'"},
         {"AreaLightSource \"diffuse\" \"string filename\" \"a.png\" \"rgb L\" [1 1 1]",
-         "scene:2:52: 'L' together with 'filename'; expected one or the other"},
+         "scene:2:53: 'L' together with 'filename'; expected one or the other"},
         // Media.
         {"MakeNamedMedium \"a\" \"float g\" 0", "scene:2:1: the medium needs a parameter 'string type'"},
         {"MakeNamedMedium \"a\" \"string type\" \"homogenous\"",

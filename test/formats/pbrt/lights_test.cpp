@@ -8,6 +8,7 @@
 #include <string>
 
 #include "montelux/image/image_write.h"
+#include "montelux/scene/build/emission.h"
 #include "montelux/scene/light/light_sampling.h"
 #include "montelux/scene/light/visible_mean.h"
 #include "montelux/scene/scene_tables.h"
