@@ -48,6 +48,7 @@ struct Scene {
     std::vector<Image> images;             // of image textures and normal maps
     std::vector<Image> environments;       // maps and pictures of lights, R, G, B linear
     std::vector<SkyModel> skies;
+    std::vector<MeasuredBrdf> measured_brdfs;
 
     std::vector<Light> lights;
     CameraSettings camera;

@@ -197,6 +197,20 @@ class SceneHasher {
         add(map);
     }
 
+    void add(const MeasuredBrdfIndex& b) {
+        const auto& [index] = b;
+        add(index);
+    }
+    void add(const BrdfTables& t) {
+        const auto& [columns, rows, values] = t;
+        all(columns, rows, values);
+    }
+    // Its distributions follow from its data.
+    void add(const MeasuredBrdf& b) {
+        const auto& [theta, phi, wavelengths, ndf, sigma, visible_normals, luminance, spectra] = b.data();
+        all(theta, phi, wavelengths, ndf, sigma, visible_normals, luminance, spectra);
+    }
+
     void add(const MaterialIndex& r) {
         const auto& [index] = r;
         add(index);
@@ -432,9 +446,10 @@ ContentDigest SceneDigest::whole() const {
 SceneDigest digest_of(const Scene& scene) {
     const auto& [meshes, quadrics, curves, bilinear_meshes, shapes, world_shapes, objects, instances, motions,
                  spectra, materials, float_textures, spectrum_textures, normal_maps, images, environments,
-                 skies, lights, camera, media, scalar_grids, color_grids, sparse_grids] = scene;
+                 skies, measured_brdfs, lights, camera, media, scalar_grids, color_grids, sparse_grids] = scene;
     SceneHasher of_materials(spectra);
     of_materials.all(materials);
+    if (!measured_brdfs.empty()) of_materials.all(measured_brdfs);
     add_media(of_materials, scene);
     SceneHasher of_geometry(spectra);
     of_geometry.all(meshes, quadrics, shapes, world_shapes, objects, instances, motions);

@@ -34,6 +34,7 @@ struct SceneView {
     std::span<const FloatTexture> float_textures;
     std::span<const SpectrumTexture> spectrum_textures;
     std::span<const ImageTexture> normal_maps;
+    std::span<const MeasuredBrdf> measured_brdfs;
     std::span<const MipMap> mipmaps;              // one per image, of its colours
     std::span<const Index> alpha_mipmap_of_image; // into alpha_mipmaps, or no_index
     std::span<const MipMap> alpha_mipmaps;
@@ -58,7 +59,8 @@ struct SceneView {
           bilinear_meshes(scene.bilinear_meshes), shapes(scene.shapes), world_shapes(scene.world_shapes),
           objects(scene.objects), instances(scene.instances), motions(scene.motions), spectra(scene.spectra),
           materials(scene.materials), float_textures(scene.float_textures),
-          spectrum_textures(scene.spectrum_textures), normal_maps(scene.normal_maps), lights(scene.lights),
+          spectrum_textures(scene.spectrum_textures), normal_maps(scene.normal_maps),
+          measured_brdfs(scene.measured_brdfs), lights(scene.lights),
           skies(scene.skies), media(scene.media), scalar_grids(scene.scalar_grids),
           color_grids(scene.color_grids), sparse_grids(scene.sparse_grids),
           camera_medium(scene.camera.medium) {}

@@ -159,6 +159,24 @@ struct Attributes {
             info.doc);
     }
 
+    void add(const ParameterInfo& info, ParameterAt<MeasuredBrdfIndex> at) const {
+        attribute<M>(
+            c, info.python_name().c_str(), "MeasuredBrdf | None",
+            [at](const M& m, const Ref<M>& r) -> nb::object {
+                if (!at(m).is_given()) return nb::none();
+                return nb::cast(MeasuredBrdfHandle{scene_of_textures(r), at(m).index});
+            },
+            [at](M& m, nb::handle v, Ref<M>& r, const std::string& what) {
+                if (!nb::isinstance<MeasuredBrdfHandle>(v))
+                    throw Error(what, std::string(nb::repr(v).c_str()) +
+                                          " was given; expected what Scene.measured_brdf() returns");
+                const auto& brdf = nb::cast<const MeasuredBrdfHandle&>(v);
+                require_scene(r, brdf.scene, what);
+                at(m) = {brdf.index};
+            },
+            info.doc);
+    }
+
     // What is set last counts; what does not reads as None.
     void add(const ParameterInfo&, ParameterAt<HairColorParameter> at) const {
         const auto colour = [&](const char* name, SpectrumParameter HairColorParameter::*member, int source,

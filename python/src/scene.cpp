@@ -7,6 +7,7 @@
 #include <set>
 
 #include "montelux/formats/load_scene.h"
+#include "montelux/formats/measured_brdf_file.h"
 #include "montelux/formats/pbrt/load_pbrt.h"
 #include "montelux/image/image_read.h"
 #include "montelux/mc/math/overloaded.h"
@@ -191,6 +192,14 @@ NormalMapHandle normal_map(const SceneObject& s, const nb::object& image, const 
     return {s.holder, static_cast<Index>(all.size() - 1)};
 }
 
+MeasuredBrdfHandle measured_brdf(const SceneObject& s, const std::filesystem::path& path) {
+    DiskFiles disk;
+    const std::vector<std::uint8_t> bytes = read_unpacked(disk, path);
+    std::vector<MeasuredBrdf>& all = s.holder->edit().scene.measured_brdfs;
+    all.push_back(read_measured_brdf(bytes, path.string()));
+    return {s.holder, static_cast<Index>(all.size() - 1)};
+}
+
 SpectrumTextureHandle checkerboard(const SceneObject& s, const nb::object& a, const nb::object& b, double su,
                                    double sv) {
     const Spectrum first = spectrum_of(a, RgbMeaning::albedo, "checkerboard_texture"),
@@ -235,6 +244,9 @@ void bind_scene(nb::module_& m) {
     nb::class_<NormalMapHandle>(m, "NormalMap", "Shading normals over surfaces, of one scene.")
         .def("__repr__",
              [](const NormalMapHandle& t) { return "<NormalMap " + std::to_string(t.index) + ">"; });
+    nb::class_<MeasuredBrdfHandle>(m, "MeasuredBrdf", "The measurements of a surface, of one scene.")
+        .def("__repr__",
+             [](const MeasuredBrdfHandle& b) { return "<MeasuredBrdf " + std::to_string(b.index) + ">"; });
     bind_lists(m);
     nb::class_<SceneObject> c(m, "SceneBase", "What montelux.Scene is made of.");
     c.def(nb::init<>())
@@ -381,6 +393,9 @@ void bind_scene(nb::module_& m) {
              "wrap"_a = "repeat", "uv"_a = std::vector<double>{1, 1, 0, 0},
              "Shading normals of a picture whose R, G, B are (n + 1) / 2 along dp/du, dp/dv and the normal, "
              "linear whatever the file says; for the normal_map of materials. See image_texture.")
+        .def("measured_brdf", &measured_brdf, "path"_a,
+             "Measurements of a surface in the format of Dupuy and Jakob's database (.bsdf), for the "
+             "material Measured.")
         .def("checkerboard_texture", &checkerboard, "a"_a, "b"_a, "su"_a = 1., "sv"_a = 1.,
              "Unit cells of two colours in (su u, sv v).");
 }

@@ -29,6 +29,10 @@ struct NormalMapHandle {
     std::shared_ptr<SceneHolder> scene;
     Index index;
 };
+struct MeasuredBrdfHandle {
+    std::shared_ptr<SceneHolder> scene;
+    Index index;
+};
 
 // All errors begin with `what`.
 double number_of(nb::handle v, const std::string& what);

@@ -1,6 +1,7 @@
 // BSDFs to test, and streams of random numbers for them.
 #pragma once
 
+#include "test/scene/measured_brdf_testing.h"
 #include <cmath>
 #include <functional>
 #include <map>
@@ -166,6 +167,16 @@ inline std::vector<BsdfCase> bsdf_cases() {
         // The offset h belongs to wo: light that comes back along a path meets the hair at another one.
         {"hair", [=] { return HairBsdf::make(0.4f, 1.55f, 0.1f * k, 0.3f, 0.3f, 2); }, true, false},
         {"hair_rough", [=] { return HairBsdf::make(-0.8f, 1.4f, 0.1f * eta, 0.9f, 0.8f, 4); }, true, false},
+        {"measured",
+         [=] {
+             return MeasuredBsdf{&measured_case(0.5f, 0.5f), Float4{380, 500, 600, 700}};
+         },
+         true, false},
+        {"measured_anisotropic",
+         [=] {
+             return MeasuredBsdf{&measured_case(0.3f, 0.6f), Float4{380, 500, 600, 700}};
+         },
+         true, false},
         {"hair_glossy", [=] { return HairBsdf::make(0, 1.55f, 0.1f * eta, 0.15f, 0.2f, 0); }, true, false},
     };
 }

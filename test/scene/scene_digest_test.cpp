@@ -72,6 +72,7 @@ Scene scene_of_all_kinds() {
     s.scalar_grids.emplace_back();
     s.color_grids.emplace_back();
     s.sparse_grids.emplace_back();
+    s.measured_brdfs.push_back(testing::measured_case(0.5f, 0.5f));
     return s;
 }
 

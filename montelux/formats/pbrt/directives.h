@@ -140,6 +140,7 @@ class Directives {
     SceneBuilder builder_;
     SpectrumReader spectra_;
     TextureLibrary textures_;
+    MeasuredBrdfLibrary measured_brdfs_;
     LightReader lights_;
     MediumReader media_;
 

@@ -156,7 +156,7 @@ Index Directives::material_index(const MaterialReference& reference, Location at
         };
         open_materials_.push_back(declaration);
         const Material made =
-            make_material(materials_[declaration], builder_, textures_, spectra_, find, diagnostics_);
+            make_material(materials_[declaration], builder_, textures_, measured_brdfs_, spectra_, find, diagnostics_);
         open_materials_.pop_back();
         result_.scene.materials.push_back(made);
         index = static_cast<Index>(result_.scene.materials.size() - 1);

@@ -11,7 +11,7 @@ namespace montelux::pbrt {
 namespace {
 
 // Materials of pbrt-v4 that Montelux does not have yet.
-constexpr std::array<std::string_view, 2> not_supported = {"measured", "subsurface"};
+constexpr std::array<std::string_view, 1> not_supported = {"subsurface"};
 
 // "coateddiffuse" for CoatedDiffuse.
 std::string type_name(std::string_view name) {
@@ -33,9 +33,10 @@ const std::vector<std::string>& supported_materials() {
 class MaterialMaker {
   public:
     MaterialMaker(const MaterialDeclaration& d, SceneBuilder& builder, TextureLibrary& textures,
-                  SpectrumReader& spectra, const FindMaterial& find, Diagnostics& diagnostics)
+                  MeasuredBrdfLibrary& brdfs, SpectrumReader& spectra, const FindMaterial& find,
+                  Diagnostics& diagnostics)
         : r_(d.parameters, "material " + in_quotes(d.type), d.at, diagnostics), builder_(builder),
-          textures_(textures), spectra_(spectra), find_(find) {}
+          textures_(textures), brdfs_(brdfs), spectra_(spectra), find_(find) {}
 
     Material make(std::string_view type) {
         Material material;
@@ -127,6 +128,13 @@ class MaterialMaker {
             p.map = textures_.normal_map(*file, r_.at(parameter));
     }
 
+    void read(const ParameterInfo& info, MeasuredBrdfIndex& b) {
+        const std::string_view parameter = name(info.pbrt_name());
+        const std::optional<std::string> file = r_.string(parameter);
+        if (!file) r_.error(parameter, "'measured' needs a parameter 'string filename'");
+        b.index = brdfs_.index(*file, r_.at(parameter));
+    }
+
     // The first that is given of sigma_a, the reflectance (or color) and the melanins; pbrt-v4 warns of others.
     void read(const ParameterInfo&, HairColorParameter& c) {
         const auto sigma_a = textures_.find_spectrum(r_, "sigma_a", RgbMeaning::unbounded);
@@ -179,6 +187,7 @@ class MaterialMaker {
     ParameterReader r_;
     SceneBuilder& builder_;
     TextureLibrary& textures_;
+    MeasuredBrdfLibrary& brdfs_;
     SpectrumReader& spectra_;
     const FindMaterial& find_;
 };
@@ -200,10 +209,11 @@ bool is_supported_material(const MaterialDeclaration& d, Diagnostics& diagnostic
 }
 
 Material make_material(const MaterialDeclaration& d, SceneBuilder& builder, TextureLibrary& textures,
-                       SpectrumReader& spectra, const FindMaterial& find, Diagnostics& diagnostics) {
+                       MeasuredBrdfLibrary& brdfs, SpectrumReader& spectra, const FindMaterial& find,
+                       Diagnostics& diagnostics) {
     if (!is_supported_material(d, diagnostics))
         diagnostics.error(d.at, "material " + in_quotes(d.type) + " is not supported yet");
-    MaterialMaker maker(d, builder, textures, spectra, find, diagnostics);
+    MaterialMaker maker(d, builder, textures, brdfs, spectra, find, diagnostics);
     if (!is_old_interface(d.type)) return maker.make(d.type);
     diagnostics.warn_once("material " + in_quotes(d.type), d.at,
                           "material " + in_quotes(d.type) + " is deprecated; it is read as 'interface'");

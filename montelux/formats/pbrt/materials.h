@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "montelux/formats/pbrt/measured_brdfs.h"
 #include "montelux/formats/pbrt/textures.h"
 
 namespace montelux::pbrt {
@@ -22,6 +23,7 @@ using FindMaterial = std::function<Index(const std::string& name, Location at)>;
 
 // The material with pbrt-v4's defaults for what is not given.
 Material make_material(const MaterialDeclaration& d, SceneBuilder& builder, TextureLibrary& textures,
-                       SpectrumReader& spectra, const FindMaterial& find, Diagnostics& diagnostics);
+                       MeasuredBrdfLibrary& brdfs, SpectrumReader& spectra, const FindMaterial& find,
+                       Diagnostics& diagnostics);
 
 } // namespace montelux::pbrt

@@ -44,6 +44,10 @@ class FieldCheck {
     void operator()(std::string_view field, const NormalMapParameter& p) const {
         if (p.is_given()) index(field, "normal map", p.map, scene_.normal_maps.size());
     }
+    void operator()(std::string_view field, const MeasuredBrdfIndex& b) const {
+        if (!b.is_given()) throw Error(owner_ + ", " + std::string(field) + ": no measured BRDF is given");
+        index(field, "measured BRDF", b.index, scene_.measured_brdfs.size());
+    }
     void operator()(std::string_view field, const MaterialIndex& r) const {
         if (!r.is_given()) throw Error(owner_ + ", " + std::string(field) + ": no material is given");
         index(field, "material", r.index, scene_.materials.size());

@@ -12,6 +12,7 @@
 #include "montelux/scene/material/diffuse_transmission_material.h"
 #include "montelux/scene/material/hair_material.h"
 #include "montelux/scene/material/interface_material.h"
+#include "montelux/scene/material/measured_material.h"
 #include "montelux/scene/material/mix_material.h"
 #include "montelux/scene/material/thin_dielectric_material.h"
 
@@ -19,7 +20,7 @@ namespace montelux {
 
 using Material = std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, ThinDielectricMaterial,
                               CoatedDiffuseMaterial, CoatedConductorMaterial, DiffuseTransmissionMaterial,
-                              InterfaceMaterial, MixMaterial, HairMaterial>;
+                              InterfaceMaterial, MixMaterial, HairMaterial, MeasuredMaterial>;
 static_assert(std::is_trivially_copyable_v<Material>);
 
 } // namespace montelux

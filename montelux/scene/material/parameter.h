@@ -63,6 +63,13 @@ struct NormalMapParameter {
     bool is_given() const { return map != no_index; }
 };
 
+// The measurements of a surface.
+struct MeasuredBrdfIndex {
+    Index index = no_index; // into Scene::measured_brdfs
+
+    bool is_given() const { return index != no_index; }
+};
+
 // Another material of the scene.
 struct MaterialIndex {
     Index index = no_index; // into Scene::materials
@@ -84,7 +91,7 @@ struct HairColorParameter {
 };
 
 // The simple fields of a parameter: visit(name, field) of SceneSpectrum, SpectrumParameter, FloatParameter,
-// float, int, bool, NormalMapParameter or MaterialIndex.
+// float, int, bool, NormalMapParameter, MeasuredBrdfIndex or MaterialIndex.
 template <typename Field, typename Visit>
 void visit_leaves(std::string_view name, Field& field, Visit&& visit) {
     if constexpr (requires { field.remap; }) {

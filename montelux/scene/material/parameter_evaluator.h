@@ -85,6 +85,10 @@ class ParameterEvaluator {
         return RgbUnboundedSpectrum(RgbColorSpace::srgb(), rgb).sample(lambda_);
     }
 
+    MeasuredBsdf measured(MeasuredBrdfIndex b) const {
+        return {&scene_.measured_brdfs[b.index], lambda_.lambda};
+    }
+
     // Null where the closed form of CoatingTable does not hold for the material.
     const CoatingTable* coating_table() const { return scene_.coating(material_); }
 

@@ -1,7 +1,9 @@
 // Materials and textures with pbrt-v4's defaults.
 #include "test/formats/pbrt/parse.h"
+#include "test/scene/measured_brdf_testing.h"
 #include "test/temporary_folder.h"
 #include <cmath>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <string>
 
@@ -231,6 +233,33 @@ LightSource "point")",
         EXPECT_NE(std::find(warnings.messages().begin(), warnings.messages().end(), expected),
                   warnings.messages().end())
             << type << " " << warnings.messages().size();
+    }
+}
+
+TEST(PbrtMaterials, Measured) {
+    TemporaryFolder folder;
+    const std::vector<std::uint8_t> bytes =
+        testing::measured_brdf_file(testing::measured_ggx({{0.5f, 0.5f}}, 8)).bytes();
+    std::ofstream(folder / "a.bsdf", std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    std::ofstream(folder / "b.bsdf") << "no such file";
+    Warnings warnings;
+    const auto parse = [&](const std::string& file) {
+        return parse_pbrt("WorldBegin LightSource \"point\"\n"
+                          "Material \"measured\" \"string filename\" \"a.bsdf\" Shape \"sphere\" AttributeBegin\n"
+                          "Material \"measured\" \"string filename\" \"" + file + "\" \"float displacement\" 1 Shape \"disk\" AttributeEnd",
+                          "scene", folder.path(), warnings);
+    };
+    const SceneDescription d = parse("a.bsdf");
+    EXPECT_TRUE(warnings.messages().empty());
+    ASSERT_EQ(d.scene.measured_brdfs.size(), 1u);
+    EXPECT_TRUE(d.scene.measured_brdfs[0].is_isotropic());
+    ASSERT_EQ(d.scene.materials.size(), 2u);
+    for (const Material& m : d.scene.materials) EXPECT_EQ(std::get<MeasuredMaterial>(m).brdf.index, 0u);
+    try {
+        parse("b.bsdf");
+        FAIL() << "read";
+    } catch (const Error& e) {
+        EXPECT_EQ(std::string(e.what()), "scene:3:40: " + (folder / "b.bsdf").string() + ": is no file of a measured BRDF (.bsdf)");
     }
 }
 

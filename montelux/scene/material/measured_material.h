@@ -1,0 +1,28 @@
+// MeasuredMaterial: reflection as measured by a gonio-photometer.
+#pragma once
+
+#include "montelux/scene/bsdf/measured_brdf.h"
+#include "montelux/scene/material/parameter.h"
+#include "montelux/scene/material/surface_detail.h"
+
+namespace montelux {
+
+struct MeasuredMaterial {
+    static constexpr const char* name = "Measured";
+    static constexpr const char* doc = "A measured surface, from a file of Dupuy and Jakob's format (.bsdf).";
+
+    MeasuredBrdfIndex brdf{};
+    SurfaceDetail detail{};
+
+    template <typename Self, typename Visit>
+    static void visit_parameters(Self& m, Visit&& visit) {
+        visit({.name = "brdf", .doc = "What Scene.measured_brdf() returns.", .pbrt = "filename"}, m.brdf);
+    }
+
+    template <typename Evaluator>
+    MeasuredBsdf bsdf(const Evaluator& at) const {
+        return at.measured(brdf);
+    }
+};
+
+} // namespace montelux
