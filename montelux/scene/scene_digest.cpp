@@ -201,6 +201,10 @@ class SceneHasher {
         const auto& [index] = b;
         add(index);
     }
+    void add(const MediumIndex& m) {
+        const auto& [index] = m;
+        add(index);
+    }
     void add(const BrdfTables& t) {
         const auto& [columns, rows, values] = t;
         all(columns, rows, values);
@@ -241,8 +245,9 @@ class SceneHasher {
     void add(const ScalarGrid& g) { add(static_cast<const Grid3<float>&>(g)); }
     void add(const ColorGrid& g) { add(static_cast<const Grid3<RgbUnboundedSpectrum>&>(g)); }
     void add(const HomogeneousMedium& m) {
-        const auto& [sigma_a, sigma_s, scale, le, le_scale, phase] = m;
+        const auto& [sigma_a, sigma_s, scale, le, le_scale, phase, is_body] = m;
         all(sigma_a, sigma_s, scale, le, le_scale, phase);
+        if (is_body) add(is_body);
     }
     void add(const GridMedium& m) {
         const auto& [box, density, sigma_a, sigma_s, scale, le, le_scale, le_grid, temperature, offset,

@@ -15,6 +15,10 @@
 
 namespace montelux {
 
+// Scattering events of a path inside translucent bodies. In a body without absorption that fills a half-space, one path
+// in 500 is longer.
+inline constexpr int most_body_events = 1 << 16;
+
 // One path.
 template <RandomStream Stream>
 class VolumePath {
@@ -128,7 +132,8 @@ class VolumePath {
         if (recorder_)
             recorder_.collided(state_.ray, {.p = p, .sigma_a = m.sigma_a, .sigma_s = m.sigma_s},
                                state_.carried());
-        if (state_.depth++ == settings_.max_depth) {
+        const bool in_body = is_in_body();
+        if (in_body ? ++body_events_ == most_body_events : state_.depth++ == settings_.max_depth) {
             end(PathEnd::max_depth);
             return;
         }
@@ -136,10 +141,11 @@ class VolumePath {
         state_.previous = {p, {}, 0, Vec3f{}};
         std::visit(
             [&](const PhaseModel auto& f) {
-                sample_light(state_.medium, [&](Vec3f wi) {
-                    const float pdf = f.pdf(wo, wi);
-                    return BsdfEvaluation{SampledSpectrum(pdf), pdf};
-                });
+                if (!in_body)
+                    sample_light(state_.medium, [&](Vec3f wi) {
+                        const float pdf = f.pdf(wo, wi);
+                        return BsdfEvaluation{SampledSpectrum(pdf), pdf};
+                    });
                 const Vec2f u = stream_.next_2d();
                 Vec3f wi;
                 if (settings_.strategy == Strategy::uniform) {
@@ -157,8 +163,15 @@ class VolumePath {
                 if (recorder_) recorder_.scattered_in_medium(wi, state_.bsdf_pdf, state_.carried());
             },
             phase);
-        state_.sees_lights = false;
+        state_.sees_lights = in_body;
         state_.alive = survives();
+    }
+
+    // What surrounds the ray is the inside of a translucent body.
+    bool is_in_body() const {
+        if (state_.medium == no_index) return false;
+        const auto* medium = std::get_if<HomogeneousMedium>(&scene_.media[state_.medium]);
+        return medium != nullptr && medium->is_body;
     }
 
     void shade(const Hit& hit) {
@@ -180,7 +193,8 @@ class VolumePath {
             return;
         }
         interfaces_ = 0;
-        if (state_.depth++ == settings_.max_depth) {
+        const bool in_body = is_in_body();
+        if (in_body ? ++body_events_ == most_body_events : state_.depth++ == settings_.max_depth) {
             end(PathEnd::max_depth);
             return;
         }
@@ -193,7 +207,7 @@ class VolumePath {
         if (!was_terminated && state_.lambda.secondary_terminated()) state_.terminate_secondary();
         const Vec3f wo = surface.frame.to_local(-w);
         if (recorder_) recorder_.made_bsdf(surface, wo);
-        if (state_.depth == 1)
+        if (state_.depth == 1 && !in_body)
             state_.first = {.albedo = std::visit([&](const auto& b) { return b.albedo(wo); }, surface.bsdf),
                             .normal = surface.frame.n,
                             .depth = state_.distance,
@@ -337,6 +351,7 @@ class VolumePath {
     Stream& stream_;
     PathRecorder recorder_;
     VolumeState state_;
+    int body_events_ = 0; // inside translucent bodies
     int interfaces_ = 0; // passed since the last scattering event
 };
 

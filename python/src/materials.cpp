@@ -177,6 +177,9 @@ struct Attributes {
             info.doc);
     }
 
+    // Of scene files alone.
+    void add(const ParameterInfo&, ParameterAt<MediumIndex>) const {}
+
     // What is set last counts; what does not reads as None.
     void add(const ParameterInfo&, ParameterAt<HairColorParameter> at) const {
         const auto colour = [&](const char* name, SpectrumParameter HairColorParameter::*member, int source,

@@ -1,5 +1,6 @@
 // Digests of scenes: every value counts, by itself and in its part; addresses and origins do not.
 #include "test/scene/light_testing.h"
+#include "test/scene/measured_brdf_testing.h"
 #include <array>
 #include <functional>
 #include <gtest/gtest.h>
@@ -200,6 +201,8 @@ TEST(SceneDigest, MaterialsCount) {
                     [=](Scene& s) { at(s, Coated()).coating.sample_count = 3; },
                     [=](Scene& s) { at(s, CoatedMetal()).metal.eta.texture = 1; },
                     [=](Scene& s) { at(s, CoatedMetal()).coating.eta = 1.1f; },
+                    [](Scene& s) { s.measured_brdfs.pop_back(); },
+                    [](Scene& s) { s.measured_brdfs[0] = testing::measured_case(0.3f, 0.6f); },
                     [](Scene& s) { std::swap(s.materials[0], s.materials[1]); },
                     [](Scene& s) { s.materials.pop_back(); }});
 }
@@ -210,6 +213,8 @@ struct ChangeField {
     void operator()(SpectrumParameter& x) const { x.texture = 7; }
     void operator()(FloatParameter& x) const { x.texture = 7; }
     void operator()(NormalMapParameter& x) const { x.map = 7; }
+    void operator()(MeasuredBrdfIndex& x) const { x.index = 7; }
+    void operator()(MediumIndex& x) const { x.index = 7; }
     void operator()(MaterialIndex& x) const { x.index = 7; }
     void operator()(float& x) const { x += 1; }
     void operator()(int& x) const { x += 1; }

@@ -2,6 +2,7 @@
 #include "test/transport/volume_testing.h"
 
 #include "montelux/mc/math/quadrature.h"
+#include "montelux/scene/medium/semi_infinite_albedo.h"
 
 namespace montelux::testing {
 namespace {
@@ -136,6 +137,85 @@ TEST(VolumeClosedForms, AlbedoOfAHalfSpace) {
                 },
                 "strategy " + std::to_string(int(strategy)));
         }
+    }
+}
+
+// Diffuse Fresnel reflectance from outside, by quadrature.
+double diffuse_fresnel(float eta) {
+    double sum = 0;
+    for (const QuadratureNode& node : gauss_legendre_rule(64))
+        sum += 2 * node.weight * node.x * double(fresnel_dielectric(static_cast<float>(node.x), eta));
+    return sum;
+}
+// Of a half-space under diffuse light, without a boundary.
+double diffuse_albedo(double single) {
+    const ChandrasekharH h(single);
+    double moment = 0;
+    for (const QuadratureNode& node : gauss_legendre_rule(32)) moment += node.weight * node.x * h(node.x);
+    return 1 - 2 * std::sqrt(1 - single) * moment;
+}
+
+TEST(VolumeClosedForms, DiffuseFresnelReflectance) {
+    for (const float eta : {1.0f, 1.0005f, 1.01f, 1.33f, 1.5f, 2.5f}) {
+        EXPECT_NEAR(double(diffuse_fresnel_reflectance(eta)), diffuse_fresnel(eta), 2e-3) << eta;
+        if (eta > 1.1f) {
+            EXPECT_NEAR(double(diffuse_fresnel_reflectance(eta)), diffuse_fresnel(eta), 1e-4) << eta;
+        }
+    }
+}
+
+TEST(VolumeClosedForms, SingleScatteringAlbedoOfAReflectance) {
+    for (const float eta : {1.0f, 1.33f, 1.7f})
+        for (const float reflectance : {0.0f, 0.01f, 0.3f, 0.8f, 0.97f, 1.0f}) {
+            const float single = single_scattering_albedo(reflectance, eta);
+            const double r = 1 - (1 - diffuse_fresnel(eta)) / double(eta * eta), inside = diffuse_albedo(double(single));
+            EXPECT_NEAR((1 - r) * inside / (1 - r * inside), double(reflectance), 5e-4) << eta << ' ' << single;
+        }
+}
+
+// A path that may scatter once enters, walks and leaves a translucent half-space: F + (1 - F) A, where of the light that
+// has entered A = (1 - r) R / (1 - r R) leaves.
+TEST(VolumeClosedForms, TranslucentHalfSpace) {
+    const Line s{0.5f, 6};
+    const float eta = 1.4f;
+    const double r = 1 - (1 - diffuse_fresnel(eta)) / double(eta * eta);
+    for (const Strategy strategy : {Strategy::bsdf, Strategy::light, Strategy::mis}) {
+        VolumeScene b;
+        const Index medium = b.add_medium(
+            HomogeneousMedium{.sigma_a = 0.1f, .sigma_s = b.spectrum(0.5f, 6), .phase = {}, .is_body = true});
+        b.bound(b.add_mesh(square(Transform::scale({1e3, 1e3, 1})), b.add(SubsurfaceMaterial{.eta = eta})), no_index,
+                medium);
+        b.add_sky();
+        b.description.integrator.strategy = strategy;
+        b.description.integrator.max_depth = 1;
+        for (const float mu : {0.3f, 1.0f}) {
+            const Vec3f d(std::sqrt(1 - mu * mu), 0, mu);
+            expect_radiance(
+                volume_radiance(b.description, {Point3f(0, 0, 0) - d * 2, d}, 40000),
+                [&](float l) {
+                    const double inside = diffuse_albedo(s(l) / (0.1 + s(l)));
+                    const auto f = double(fresnel_dielectric(mu, eta));
+                    return f + (1 - f) * (1 - r) * inside / (1 - r * inside);
+                },
+                "strategy " + std::to_string(int(strategy)), 2e-4);
+        }
+    }
+}
+
+// Nothing is lost in a white body with a smooth surface.
+TEST(VolumeClosedForms, FurnaceOfATranslucentBody) {
+    for (const Strategy strategy : {Strategy::bsdf, Strategy::light, Strategy::mis}) {
+        VolumeScene b;
+        const Index medium = b.add_medium(HomogeneousMedium{
+            .sigma_a = 0.0f, .sigma_s = b.spectrum(0.5f, 4), .phase = HenyeyGreenstein{0.5f}, .is_body = true});
+        b.add_cube(medium);
+        for (Shape& shape : b.scene.shapes) shape.material = b.add(SubsurfaceMaterial{.eta = 1.5f});
+        b.add_sky();
+        b.description.integrator.strategy = strategy;
+        b.description.integrator.max_depth = 100;
+        expect_radiance(
+            volume_radiance(b.description, straight, 20000), [](float) { return 1.0; },
+            "strategy " + std::to_string(int(strategy)));
     }
 }
 

@@ -128,6 +128,8 @@ class Directives {
     void finish_options();
     void finish_materials();
     void finish_media();
+    // The medium inside shapes with a material, or no_index.
+    Index interior_of(Index material, Location at) const;
     bool joins_open_curves(const Geometry& geometry, const ShapeSettings& settings, bool is_plain,
                            Location at);
     // `by` names the referrer in messages.
@@ -165,7 +167,7 @@ class Directives {
     std::vector<AlphaUse> alpha_uses_;
     std::optional<OpenCurves> open_curves_;
     NameTable named_media_{"medium"};
-    std::vector<MediaUse> media_uses_; // of shapes between two media
+    std::vector<MediaUse> media_uses_; // of shapes in or between media
     MediaUse camera_media_{no_index, {}, {}};
     std::size_t subdivided_ = 0; // triangles of 'loopsubdiv' shapes
 };

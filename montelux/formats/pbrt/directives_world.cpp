@@ -107,7 +107,7 @@ void Directives::shape(const std::string& name, std::vector<Parameter> parameter
     r.finish();
     if (joins_open_curves(geometry, settings, !moves && !alpha_varies && !state_.emission, at)) return;
     material_uses_.push_back({index, state_.material, at});
-    if (state_.media.inside != state_.media.outside) media_uses_.push_back({index, state_.media, at});
+    if (state_.media != MediaReference()) media_uses_.push_back({index, state_.media, at});
     if (!moves) {
         builder_.add_shape(std::move(geometry), settings, at);
         return;
@@ -169,14 +169,8 @@ void Directives::finish_materials() {
     for (const MaterialUse& use : material_uses_)
         result_.scene.shapes[use.shape].material = material_index(use.material, use.at);
     // Unused textures are read as well, so that their errors are reported.
-    for (Index i = 1; i < materials_.size(); ++i) {
-        if (material_indices_[i] != no_index) continue;
-        if (is_supported_material(materials_[i], diagnostics_))
-            material_index({false, i}, materials_[i].at);
-        else
-            diagnostics_.warn(materials_[i].at, "material " + in_quotes(materials_[i].type) +
-                                                    " is not supported yet; no shape uses it");
-    }
+    for (Index i = 1; i < materials_.size(); ++i)
+        if (material_indices_[i] == no_index) material_index({false, i}, materials_[i].at);
     for (const AlphaUse& use : alpha_uses_) {
         ParameterReader r(use.parameters, use.plugin, use.at, diagnostics_);
         result_.scene.shapes[use.shape].alpha = textures_.float_or(r, "alpha", 1);
@@ -196,6 +190,18 @@ void Directives::medium_interface(const std::string& inside, const std::string& 
     state_.media = {refer(inside), refer(outside)};
 }
 
+Index Directives::interior_of(Index material, Location at) const {
+    if (const auto* body = std::get_if<SubsurfaceMaterial>(&result_.scene.materials[material]))
+        return body->interior.index;
+    const auto* mix = std::get_if<MixMaterial>(&result_.scene.materials[material]);
+    if (mix == nullptr) return no_index;
+    const Index first = interior_of(mix->materials.first.index, at),
+                second = interior_of(mix->materials.second.index, at);
+    if (first != no_index && second != no_index && first != second)
+        diagnostics_.error(at, "the materials of a mix have two interiors ('subsurface'); expected one");
+    return first == no_index ? second : first;
+}
+
 void Directives::finish_media() {
     const auto resolve = [&](Index reference, Location at, std::string_view by) {
         return reference == no_index ? no_index : named_media_.resolve(reference, at, diagnostics_, by);
@@ -203,6 +209,11 @@ void Directives::finish_media() {
     for (const MediaUse& use : media_uses_)
         result_.scene.shapes[use.shape].media = {resolve(use.media.inside, use.at, "this shape's "),
                                                  resolve(use.media.outside, use.at, "this shape's ")};
+    for (const MaterialUse& use : material_uses_) {
+        Shape& shape = result_.scene.shapes[use.shape];
+        const Index interior = interior_of(shape.material, use.at);
+        if (interior != no_index) shape.media.inside = interior;
+    }
     result_.scene.camera.medium = resolve(camera_media_.media.outside, camera_media_.at, "the camera's ");
 }
 

@@ -4,14 +4,12 @@
 #include <deque>
 #include <type_traits>
 
+#include "montelux/formats/pbrt/subsurface.h"
 #include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/material/material_model.h"
 
 namespace montelux::pbrt {
 namespace {
-
-// Materials of pbrt-v4 that Montelux does not have yet.
-constexpr std::array<std::string_view, 1> not_supported = {"subsurface"};
 
 // "coateddiffuse" for CoatedDiffuse.
 std::string type_name(std::string_view name) {
@@ -20,7 +18,7 @@ std::string type_name(std::string_view name) {
     return result;
 }
 
-const std::vector<std::string>& supported_materials() {
+const std::vector<std::string>& material_types() {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> all;
         for_each_material_kind([&]<typename M>(std::type_identity<M>) { all.push_back(type_name(M::name)); });
@@ -135,6 +133,12 @@ class MaterialMaker {
         b.index = brdfs_.index(*file, r_.at(parameter));
     }
 
+    void read(const ParameterInfo&, MediumIndex& interior) {
+        std::vector<Medium>& media = builder_.scene().media;
+        media.push_back(read_subsurface(r_, builder_, spectra_, r_.number("eta", SubsurfaceMaterial().eta)));
+        interior.index = static_cast<Index>(media.size() - 1);
+    }
+
     // The first that is given of sigma_a, the reflectance (or color) and the melanins; pbrt-v4 warns of others.
     void read(const ParameterInfo&, HairColorParameter& c) {
         const auto sigma_a = textures_.find_spectrum(r_, "sigma_a", RgbMeaning::unbounded);
@@ -197,22 +201,13 @@ bool is_old_interface(std::string_view type) { return type.empty() || type == "n
 
 } // namespace
 
-bool is_supported_material(const MaterialDeclaration& d, Diagnostics& diagnostics) {
-    const std::vector<std::string>& supported = supported_materials();
-    if (std::find(supported.begin(), supported.end(), d.type) != supported.end()) return true;
-    if (is_old_interface(d.type)) return true;
-    std::vector<std::string_view> known(supported.begin(), supported.end());
-    known.insert(known.end(), not_supported.begin(), not_supported.end());
-    if (std::find(known.begin(), known.end(), d.type) == known.end())
-        diagnostics.error(d.at, "unknown material " + in_quotes(d.type) + did_you_mean(d.type, known));
-    return false;
-}
-
 Material make_material(const MaterialDeclaration& d, SceneBuilder& builder, TextureLibrary& textures,
                        MeasuredBrdfLibrary& brdfs, SpectrumReader& spectra, const FindMaterial& find,
                        Diagnostics& diagnostics) {
-    if (!is_supported_material(d, diagnostics))
-        diagnostics.error(d.at, "material " + in_quotes(d.type) + " is not supported yet");
+    const std::vector<std::string>& names = material_types();
+    if (std::find(names.begin(), names.end(), d.type) == names.end() && !is_old_interface(d.type))
+        diagnostics.error(d.at, "unknown material " + in_quotes(d.type) +
+                                    did_you_mean(d.type, std::vector<std::string_view>(names.begin(), names.end())));
     MaterialMaker maker(d, builder, textures, brdfs, spectra, find, diagnostics);
     if (!is_old_interface(d.type)) return maker.make(d.type);
     diagnostics.warn_once("material " + in_quotes(d.type), d.at,

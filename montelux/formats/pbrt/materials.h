@@ -15,9 +15,6 @@ struct MaterialDeclaration {
     Location at;
 };
 
-// False for a pbrt material that is not supported yet; an error for an unknown one.
-bool is_supported_material(const MaterialDeclaration& d, Diagnostics& diagnostics);
-
 // The index in the scene of a named material, for the directive at a place.
 using FindMaterial = std::function<Index(const std::string& name, Location at)>;
 

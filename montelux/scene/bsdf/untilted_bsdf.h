@@ -11,12 +11,13 @@
 #include "montelux/scene/bsdf/hair.h"
 #include "montelux/scene/bsdf/layered.h"
 #include "montelux/scene/bsdf/measured_brdf.h"
+#include "montelux/scene/bsdf/subsurface_boundary.h"
 #include "montelux/scene/bsdf/thin_dielectric.h"
 
 namespace montelux {
 
 using UntiltedBsdf =
     std::variant<DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf, ThinDielectricBsdf,
-                 CoatedDiffuseBsdf, LayeredBsdf<DiffuseBsdf>, LayeredBsdf<ConductorBsdf>, HairBsdf, MeasuredBsdf>;
+                 CoatedDiffuseBsdf, LayeredBsdf<DiffuseBsdf>, LayeredBsdf<ConductorBsdf>, HairBsdf, MeasuredBsdf, SubsurfaceBsdf>;
 
 } // namespace montelux

@@ -48,6 +48,9 @@ class FieldCheck {
         if (!b.is_given()) throw Error(owner_ + ", " + std::string(field) + ": no measured BRDF is given");
         index(field, "measured BRDF", b.index, scene_.measured_brdfs.size());
     }
+    void operator()(std::string_view field, const MediumIndex& m) const {
+        if (m.is_given()) index(field, "medium", m.index, scene_.media.size());
+    }
     void operator()(std::string_view field, const MaterialIndex& r) const {
         if (!r.is_given()) throw Error(owner_ + ", " + std::string(field) + ": no material is given");
         index(field, "material", r.index, scene_.materials.size());

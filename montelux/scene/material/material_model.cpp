@@ -32,6 +32,7 @@ struct FindTexture {
     void operator()(std::string_view, const SpectrumParameter& p) const { found |= !p.is_constant(); }
     void operator()(std::string_view, const NormalMapParameter& p) const { found |= p.is_given(); }
     void operator()(std::string_view, const MeasuredBrdfIndex&) const {}
+    void operator()(std::string_view, const MediumIndex&) const {}
     // Its parts may be textured.
     void operator()(std::string_view, const MaterialIndex& p) const { found |= p.is_given(); }
     void operator()(std::string_view, const SceneSpectrum&) const {}

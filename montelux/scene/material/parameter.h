@@ -70,6 +70,13 @@ struct MeasuredBrdfIndex {
     bool is_given() const { return index != no_index; }
 };
 
+// The medium below a surface.
+struct MediumIndex {
+    Index index = no_index; // into Scene::media
+
+    bool is_given() const { return index != no_index; }
+};
+
 // Another material of the scene.
 struct MaterialIndex {
     Index index = no_index; // into Scene::materials
@@ -91,7 +98,7 @@ struct HairColorParameter {
 };
 
 // The simple fields of a parameter: visit(name, field) of SceneSpectrum, SpectrumParameter, FloatParameter,
-// float, int, bool, NormalMapParameter, MeasuredBrdfIndex or MaterialIndex.
+// float, int, bool, NormalMapParameter, MeasuredBrdfIndex, MediumIndex or MaterialIndex.
 template <typename Field, typename Visit>
 void visit_leaves(std::string_view name, Field& field, Visit&& visit) {
     if constexpr (requires { field.remap; }) {

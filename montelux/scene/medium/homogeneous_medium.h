@@ -14,6 +14,9 @@ struct HomogeneousMedium {
     SceneSpectrum le{}; // emitted radiance, times `le_scale`
     float le_scale = 1;
     PhaseFunction phase{};
+    // The interior of a translucent body: what happens in it counts as one scattering event of a path with that of
+    // entering, and lights are looked for only where the path leaves it.
+    bool is_body = false;
 
     struct Sampled {
         MediumPoint point;

@@ -146,7 +146,6 @@ TEST(PbrtErrors, SentencesInTheWorld) {
         {"ColorSpace \"sRBG\"", "scene:2:1: unknown colour space 'sRBG' (did you mean 'srgb'?)"},
         // Materials.
         {"Material \"difuse\"", "scene:2:1: unknown material 'difuse' (did you mean 'diffuse'?)"},
-        {"Material \"subsurface\" Shape \"sphere\"", "scene:2:1: material 'subsurface' is not supported yet"},
         {"MakeNamedMaterial \"m\"", "scene:2:1: named material 'm' needs a parameter 'string type'"},
         {"MakeNamedMaterial \"m\" \"string type\" \"diffuse\" MakeNamedMaterial \"m\" \"string type\" "
          "\"diffuse\"",

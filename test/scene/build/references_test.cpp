@@ -1,5 +1,6 @@
 // SceneBuilder: spectra are shared, and indices that lead nowhere are refused.
 #include "test/scene/light_testing.h"
+#include "test/scene/measured_brdf_testing.h"
 #include <functional>
 #include <gtest/gtest.h>
 #include <string>
@@ -23,6 +24,8 @@ std::string finish_error(const std::function<void(Scene&)>& change) {
     scene.images.emplace_back(1, 1, std::vector<std::string>{"R", "G", "B"});
     scene.normal_maps = {ImageTexture{.image = 0, .mapping = {}}};
     scene.materials = {DiffuseMaterial{{{}, 0}}, DielectricMaterial{SceneSpectrum::at(0)}};
+    scene.measured_brdfs = {testing::measured_case(0.5f, 0.5f)};
+    scene.media = {HomogeneousMedium{}};
     change(scene);
     CallMessages messages("test");
     try {
@@ -82,6 +85,8 @@ TEST(SceneReferences, NoParameterIsForgotten) {
         void operator()(SpectrumParameter& p) const { p = no_color; }
         void operator()(FloatParameter& p) const { p = no_float; }
         void operator()(NormalMapParameter& p) const { p.map = 1; }
+        void operator()(MeasuredBrdfIndex& p) const { p.index = 1; }
+        void operator()(MediumIndex& p) const { p.index = 1; }
         void operator()(MaterialIndex& p) const { p.index = 9; }
     };
     for_each_material_kind([]<typename M>(std::type_identity<M>) {
@@ -89,6 +94,7 @@ TEST(SceneReferences, NoParameterIsForgotten) {
         for (std::size_t n = 0; n <= i; ++n) {
             M m;
             if constexpr (std::is_same_v<M, MixMaterial>) m.materials = {{0}, {0}};
+            if constexpr (std::is_same_v<M, MeasuredMaterial>) m.brdf = {0};
             i = 0;
             visit_parameters(m, [&](const ParameterInfo& info, auto& field) {
                 visit_leaves(info.name, field, [&](std::string_view, auto& leaf) {
