@@ -44,8 +44,9 @@ class TensorFile {
             for (std::uint16_t d = 0; d < dimensions; ++d) {
                 field.shape.push_back(take<std::uint64_t>());
                 // Beyond the size of the file there is no need to know it.
-                size = field.shape.back() > bytes.size() ? bytes.size() + 1
-                                                         : std::min(size * field.shape.back(), bytes.size() + 1);
+                size = field.shape.back() > bytes.size()
+                           ? bytes.size() + 1
+                           : std::min(size * field.shape.back(), bytes.size() + 1);
             }
             if (field.type == tensor_of_float32) size *= sizeof(float);
             if (field.type == tensor_of_uint8 || field.type == tensor_of_float32) {
@@ -60,7 +61,8 @@ class TensorFile {
         const auto found = fields_.find(name);
         if (found == fields_.end()) throw Error(name_, "has no field '" + name + "'");
         if (found->second.type != type || found->second.shape.size() != dimensions)
-            throw Error(name_, "field '" + name + "' has another type or number of dimensions than a measured BRDF");
+            throw Error(name_,
+                        "field '" + name + "' has another type or number of dimensions than a measured BRDF");
         return found->second;
     }
     std::vector<float> numbers(const std::string& name, std::size_t dimensions) const {

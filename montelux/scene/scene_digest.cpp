@@ -451,7 +451,8 @@ ContentDigest SceneDigest::whole() const {
 SceneDigest digest_of(const Scene& scene) {
     const auto& [meshes, quadrics, curves, bilinear_meshes, shapes, world_shapes, objects, instances, motions,
                  spectra, materials, float_textures, spectrum_textures, normal_maps, images, environments,
-                 skies, measured_brdfs, lights, camera, media, scalar_grids, color_grids, sparse_grids] = scene;
+                 skies, measured_brdfs, lights, camera, media, scalar_grids, color_grids, sparse_grids] =
+        scene;
     SceneHasher of_materials(spectra);
     of_materials.all(materials);
     if (!measured_brdfs.empty()) of_materials.all(measured_brdfs);

@@ -60,9 +60,8 @@ struct SceneView {
           objects(scene.objects), instances(scene.instances), motions(scene.motions), spectra(scene.spectra),
           materials(scene.materials), float_textures(scene.float_textures),
           spectrum_textures(scene.spectrum_textures), normal_maps(scene.normal_maps),
-          measured_brdfs(scene.measured_brdfs), lights(scene.lights),
-          skies(scene.skies), media(scene.media), scalar_grids(scene.scalar_grids),
-          color_grids(scene.color_grids), sparse_grids(scene.sparse_grids),
+          measured_brdfs(scene.measured_brdfs), lights(scene.lights), skies(scene.skies), media(scene.media),
+          scalar_grids(scene.scalar_grids), color_grids(scene.color_grids), sparse_grids(scene.sparse_grids),
           camera_medium(scene.camera.medium) {}
 
     SampledSpectrum sample(SceneSpectrum s, const SampledWavelengths& lambda) const {

@@ -352,7 +352,7 @@ class VolumePath {
     PathRecorder recorder_;
     VolumeState state_;
     int body_events_ = 0; // inside translucent bodies
-    int interfaces_ = 0; // passed since the last scattering event
+    int interfaces_ = 0;  // passed since the last scattering event
 };
 
 template <RandomStream Stream>

@@ -177,8 +177,14 @@ inline std::vector<BsdfCase> bsdf_cases() {
              return MeasuredBsdf{&measured_case(0.3f, 0.6f), Float4{380, 500, 600, 700}};
          },
          true, false},
-        {"subsurface", [=] { return SubsurfaceBsdf::make(1.4f, {0, 0}); }},
-        {"subsurface_rough", [=] { return SubsurfaceBsdf::make(1.33f, {0.3f, 0.5f}); }},
+        {"subsurface",
+         [=] {
+             return SubsurfaceBsdf::make(1.4f, {0, 0});
+         }},
+        {"subsurface_rough",
+         [=] {
+             return SubsurfaceBsdf::make(1.33f, {0.3f, 0.5f});
+         }},
         {"hair_glossy", [=] { return HairBsdf::make(0, 1.55f, 0.1f * eta, 0.15f, 0.2f, 0); }, true, false},
     };
 }

@@ -12,7 +12,8 @@ const Float4 four_wavelengths{400, 500, 600, 700};
 
 class MeasuredReflector : public ::testing::TestWithParam<std::pair<float, float>> {};
 INSTANTIATE_TEST_SUITE_P(MeasuredBrdf, MeasuredReflector,
-                         ::testing::Values(std::pair{0.4f, 0.4f}, std::pair{0.7f, 0.7f}, std::pair{0.4f, 0.7f}));
+                         ::testing::Values(std::pair{0.4f, 0.4f}, std::pair{0.7f, 0.7f},
+                                           std::pair{0.4f, 0.7f}));
 
 TEST_P(MeasuredReflector, GivesBackWhatWasMeasured) {
     const MeasuredGgx truth{{GetParam().first, GetParam().second}};
@@ -91,7 +92,9 @@ TEST(MeasuredBrdf, RefusesTablesThatDoNotFit) {
     EXPECT_EQ(message([](MeasuredBrdfData& d) { d.spectra.values[3] = INFINITY; }),
               "measured BRDF: spectra: a value is not finite");
     EXPECT_EQ(message([](MeasuredBrdfData& d) { d.spectra.values[3] = -0.01f; }), ""); // noise
-    EXPECT_EQ(message([](MeasuredBrdfData& d) { d.phi = {0, 0.5f, 1}; }),
+    EXPECT_EQ(message([](MeasuredBrdfData& d) {
+                  d.phi = {0, 0.5f, 1};
+              }),
               "measured BRDF: phi_i covers a part of the circle; only isotropic surfaces may");
 }
 

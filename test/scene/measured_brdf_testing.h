@@ -34,7 +34,8 @@ inline MeasuredBrdfData measured_ggx(const MeasuredGgx& m, std::uint32_t n = 48)
     const auto knots = [](std::size_t count, float from, float to) {
         std::vector<float> x(count);
         for (std::size_t i = 0; i < count; ++i)
-            x[i] = count == 1 ? from : from + (to - from) * static_cast<float>(i) / static_cast<float>(count - 1);
+            x[i] = count == 1 ? from
+                              : from + (to - from) * static_cast<float>(i) / static_cast<float>(count - 1);
         return x;
     };
     MeasuredBrdfData d;
@@ -58,7 +59,8 @@ inline MeasuredBrdfData measured_ggx(const MeasuredGgx& m, std::uint32_t n = 48)
     const auto for_each_outgoing = [&](const auto& f) {
         for (float phi : d.phi)
             for (float theta : d.theta)
-                f(phi, Vec3f{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
+                f(phi,
+                  Vec3f{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
     };
     // The normal at a place of the square.
     const auto normal = [&](float phi, float x, float y) {
@@ -99,7 +101,8 @@ inline const MeasuredBrdf& measured_case(float alpha_x, float alpha_y) {
 // The bytes of a file, with fields as in Dupuy and Jakob's database.
 class TensorFileWriter {
   public:
-    void add(const std::string& name, const std::vector<std::uint64_t>& shape, const std::vector<float>& values) {
+    void add(const std::string& name, const std::vector<std::uint64_t>& shape,
+             const std::vector<float>& values) {
         std::string bytes(values.size() * sizeof(float), '\0');
         std::memcpy(bytes.data(), values.data(), bytes.size());
         fields_.push_back({name, 10, shape, bytes});
@@ -150,7 +153,8 @@ inline TensorFileWriter measured_brdf_file(const MeasuredBrdfData& d) {
     w.add("wavelengths", {lambdas}, d.wavelengths);
     w.add("ndf", {d.ndf.rows, d.ndf.columns}, d.ndf.values);
     w.add("sigma", {d.sigma.rows, d.sigma.columns}, d.sigma.values);
-    w.add("vndf", {phis, thetas, d.visible_normals.rows, d.visible_normals.columns}, d.visible_normals.values);
+    w.add("vndf", {phis, thetas, d.visible_normals.rows, d.visible_normals.columns},
+          d.visible_normals.values);
     w.add("luminance", {phis, thetas, d.luminance.rows, d.luminance.columns}, d.luminance.values);
     w.add("spectra", {phis, thetas, lambdas, d.spectra.rows, d.spectra.columns}, d.spectra.values);
     return w;

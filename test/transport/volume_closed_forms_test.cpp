@@ -168,8 +168,10 @@ TEST(VolumeClosedForms, SingleScatteringAlbedoOfAReflectance) {
     for (const float eta : {1.0f, 1.33f, 1.7f})
         for (const float reflectance : {0.0f, 0.01f, 0.3f, 0.8f, 0.97f, 1.0f}) {
             const float single = single_scattering_albedo(reflectance, eta);
-            const double r = 1 - (1 - diffuse_fresnel(eta)) / double(eta * eta), inside = diffuse_albedo(double(single));
-            EXPECT_NEAR((1 - r) * inside / (1 - r * inside), double(reflectance), 5e-4) << eta << ' ' << single;
+            const double r = 1 - (1 - diffuse_fresnel(eta)) / double(eta * eta),
+                         inside = diffuse_albedo(double(single));
+            EXPECT_NEAR((1 - r) * inside / (1 - r * inside), double(reflectance), 5e-4)
+                << eta << ' ' << single;
         }
 }
 
@@ -183,7 +185,9 @@ TEST(VolumeClosedForms, TranslucentHalfSpace) {
         VolumeScene b;
         const Index medium = b.add_medium(
             HomogeneousMedium{.sigma_a = 0.1f, .sigma_s = b.spectrum(0.5f, 6), .phase = {}, .is_body = true});
-        b.bound(b.add_mesh(square(Transform::scale({1e3, 1e3, 1})), b.add(SubsurfaceMaterial{.eta = eta})), no_index,
+        // The body is below the normal, at z > 0.
+        b.bound(b.add_mesh(square(Transform::scale({1e3, 1e3, 1}) * Transform::rotate(180, {1, 0, 0})),
+                           b.add(SubsurfaceMaterial{.eta = eta})),
                 medium);
         b.add_sky();
         b.description.integrator.strategy = strategy;
@@ -206,8 +210,10 @@ TEST(VolumeClosedForms, TranslucentHalfSpace) {
 TEST(VolumeClosedForms, FurnaceOfATranslucentBody) {
     for (const Strategy strategy : {Strategy::bsdf, Strategy::light, Strategy::mis}) {
         VolumeScene b;
-        const Index medium = b.add_medium(HomogeneousMedium{
-            .sigma_a = 0.0f, .sigma_s = b.spectrum(0.5f, 4), .phase = HenyeyGreenstein{0.5f}, .is_body = true});
+        const Index medium = b.add_medium(HomogeneousMedium{.sigma_a = 0.0f,
+                                                            .sigma_s = b.spectrum(0.5f, 4),
+                                                            .phase = HenyeyGreenstein{0.5f},
+                                                            .is_body = true});
         b.add_cube(medium);
         for (Shape& shape : b.scene.shapes) shape.material = b.add(SubsurfaceMaterial{.eta = 1.5f});
         b.add_sky();

@@ -19,8 +19,8 @@ constexpr std::size_t max_blocks = 1000000;
 Directives::Directives(Files& files, Diagnostics& diagnostics)
     : files_(files), diagnostics_(diagnostics), builder_(result_.scene, diagnostics),
       spectra_(files, diagnostics), textures_(builder_, files, spectra_, diagnostics),
-      measured_brdfs_(builder_, files, diagnostics),
-      lights_(builder_, files, spectra_, diagnostics), media_(builder_, files, spectra_, diagnostics) {
+      measured_brdfs_(builder_, files, diagnostics), lights_(builder_, files, spectra_, diagnostics),
+      media_(builder_, files, spectra_, diagnostics) {
     state_.color_space = &RgbColorSpace::srgb();
     materials_.push_back({"diffuse", {}, {}}); // the material of shapes before any Material directive
 }

@@ -155,8 +155,8 @@ Index Directives::material_index(const MaterialReference& reference, Location at
             return material_index({true, named_materials_.refer(name)}, place, "this mix's ");
         };
         open_materials_.push_back(declaration);
-        const Material made =
-            make_material(materials_[declaration], builder_, textures_, measured_brdfs_, spectra_, find, diagnostics_);
+        const Material made = make_material(materials_[declaration], builder_, textures_, measured_brdfs_,
+                                            spectra_, find, diagnostics_);
         open_materials_.pop_back();
         result_.scene.materials.push_back(made);
         index = static_cast<Index>(result_.scene.materials.size() - 1);

@@ -206,8 +206,9 @@ Material make_material(const MaterialDeclaration& d, SceneBuilder& builder, Text
                        Diagnostics& diagnostics) {
     const std::vector<std::string>& names = material_types();
     if (std::find(names.begin(), names.end(), d.type) == names.end() && !is_old_interface(d.type))
-        diagnostics.error(d.at, "unknown material " + in_quotes(d.type) +
-                                    did_you_mean(d.type, std::vector<std::string_view>(names.begin(), names.end())));
+        diagnostics.error(
+            d.at, "unknown material " + in_quotes(d.type) +
+                      did_you_mean(d.type, std::vector<std::string_view>(names.begin(), names.end())));
     MaterialMaker maker(d, builder, textures, brdfs, spectra, find, diagnostics);
     if (!is_old_interface(d.type)) return maker.make(d.type);
     diagnostics.warn_once("material " + in_quotes(d.type), d.at,

@@ -15,7 +15,8 @@ namespace {
 
 std::optional<Spectrum> interior_spectrum(ParameterReader& r, SpectrumReader& spectra, std::string_view name,
                                           RgbMeaning meaning) {
-    if (const Parameter* p = r.any(name, {ParameterType::rgb, ParameterType::spectrum, ParameterType::texture});
+    if (const Parameter* p =
+            r.any(name, {ParameterType::rgb, ParameterType::spectrum, ParameterType::texture});
         p != nullptr && p->type == ParameterType::texture)
         r.error(name, "parameter " + in_quotes(name) +
                           " of 'subsurface' is a texture; expected a colour or spectrum for the whole body");
@@ -52,7 +53,8 @@ const MediumPreset& body_preset(ParameterReader& r, const std::string& name) {
 
 } // namespace
 
-HomogeneousMedium read_subsurface(ParameterReader& r, SceneBuilder& builder, SpectrumReader& spectra, float eta) {
+HomogeneousMedium read_subsurface(ParameterReader& r, SceneBuilder& builder, SpectrumReader& spectra,
+                                  float eta) {
     HomogeneousMedium m;
     m.is_body = true;
     float g = r.number("g", 0);
@@ -73,12 +75,14 @@ HomogeneousMedium read_subsurface(ParameterReader& r, SceneBuilder& builder, Spe
         r.error(sigma_a ? "sigma_a" : "sigma_s", "'sigma_a' and 'sigma_s' must be given together");
     const bool named = name && !name->empty();
     if ((named ? 1 : 0) + (sigma_a ? 1 : 0) + (reflectance ? 1 : 0) > 1)
-        r.diagnostics().warn(r.at(), std::string("'subsurface' has several of 'name', 'sigma_a' with 'sigma_s', and "
-                                                 "'reflectance'; '") +
-                                         (named ? "name" : "sigma_a") + "' is used");
+        r.diagnostics().warn(r.at(),
+                             std::string("'subsurface' has several of 'name', 'sigma_a' with 'sigma_s', and "
+                                         "'reflectance'; '") +
+                                 (named ? "name" : "sigma_a") + "' is used");
     if (named) {
         const MediumPreset& preset = body_preset(r, *name);
-        if (g != 0) r.diagnostics().warn(r.at("g"), "'g' is ignored: the coefficients of 'name' are reduced ones");
+        if (g != 0)
+            r.diagnostics().warn(r.at("g"), "'g' is ignored: the coefficients of 'name' are reduced ones");
         g = 0;
         from_rgb(preset.sigma_a, preset.sigma_s);
     } else if (sigma_a) {

@@ -8,6 +8,7 @@
 namespace montelux::pbrt {
 
 // Of `name`, or sigma_a and sigma_s, or reflectance and mfp, with pbrt-v4's defaults. `eta` is that of the surface.
-HomogeneousMedium read_subsurface(ParameterReader& r, SceneBuilder& builder, SpectrumReader& spectra, float eta);
+HomogeneousMedium read_subsurface(ParameterReader& r, SceneBuilder& builder, SpectrumReader& spectra,
+                                  float eta);
 
 } // namespace montelux::pbrt

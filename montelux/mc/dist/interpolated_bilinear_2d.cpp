@@ -54,7 +54,8 @@ InterpolationWeights interpolation_weights(const std::vector<float>& first, cons
     for (std::size_t i = 0; i <= (a.fraction > 0 ? 1u : 0u); ++i)
         for (std::size_t j = 0; j <= (b.fraction > 0 ? 1u : 0u); ++j) {
             w.entry[w.count] = (a.index + i) * second.size() + b.index + j;
-            w.weight[w.count++] = (i == 0 ? 1 - a.fraction : a.fraction) * (j == 0 ? 1 - b.fraction : b.fraction);
+            w.weight[w.count++] =
+                (i == 0 ? 1 - a.fraction : a.fraction) * (j == 0 ? 1 - b.fraction : b.fraction);
         }
     return w;
 }
@@ -131,7 +132,8 @@ InterpolatedBilinear2D::Sample InterpolatedBilinear2D::invert(const Interpolatio
     const float row = along(row_cdf_, at, columns_ - 1, j, y);
     const float low = along(row_cdf_, at, columns_ - 1, j, 0), high = along(row_cdf_, at, columns_ - 1, j, 1);
     // In a row without mass any u.x will do.
-    const float ux = row > 0 ? (along(row_cdf_, at, i, j, y) + mass_in_cell(x, left, right, columns_)) / row : p.x;
+    const float ux =
+        row > 0 ? (along(row_cdf_, at, i, j, y) + mass_in_cell(x, left, right, columns_)) / row : p.x;
     const float uy = (mean(marginal_, at, rows_, j) + mass_in_cell(y, low, high, rows_)) /
                      mean(marginal_, at, rows_, rows_ - 1);
     return {{std::clamp(ux, 0.0f, 1.0f), std::clamp(uy, 0.0f, 1.0f)}, left + x * (right - left)};

@@ -54,13 +54,12 @@ class InterpolatedBilinear2D {
     static float mean(const std::vector<float>& table, const InterpolationWeights& at, std::size_t stride,
                       std::size_t place) {
         float sum = 0;
-        for (std::size_t k = 0; k < at.count; ++k)
-            sum += at.weight[k] * table[at.entry[k] * stride + place];
+        for (std::size_t k = 0; k < at.count; ++k) sum += at.weight[k] * table[at.entry[k] * stride + place];
         return sum;
     }
     // At column i, between row j and the next.
-    float along(const std::vector<float>& table, const InterpolationWeights& at, std::uint32_t i, std::uint32_t j,
-                float y) const {
+    float along(const std::vector<float>& table, const InterpolationWeights& at, std::uint32_t i,
+                std::uint32_t j, float y) const {
         const std::size_t stride = std::size_t{columns_} * rows_, place = std::size_t{j} * columns_ + i;
         return (1 - y) * mean(table, at, stride, place) + y * mean(table, at, stride, place + columns_);
     }

@@ -16,8 +16,8 @@ const char* const where_brdf = "measured BRDF";
 
 void check_knots_of_brdf(const char* what, const std::vector<float>& knots) {
     const bool finite = std::all_of(knots.begin(), knots.end(), [](float x) { return std::isfinite(x); });
-    const bool increases =
-        std::adjacent_find(knots.begin(), knots.end(), [](float a, float b) { return !(a < b); }) == knots.end();
+    const bool increases = std::adjacent_find(knots.begin(), knots.end(),
+                                              [](float a, float b) { return !(a < b); }) == knots.end();
     if (knots.empty() || !finite || !increases)
         throw Error(where_brdf, std::string(what) + ": expected finite numbers that increase");
 }
@@ -25,10 +25,12 @@ void check_knots_of_brdf(const char* what, const std::vector<float>& knots) {
 void check_brdf_tables(const char* what, const BrdfTables& t, std::size_t count, bool negative_too = false) {
     if (t.columns < 2 || t.rows < 2 || t.values.size() / t.columns / t.rows != count ||
         t.values.size() % (std::size_t{t.columns} * t.rows) != 0)
-        throw Error(where_brdf, std::string(what) + ": the size does not fit the numbers of directions and wavelengths");
+        throw Error(where_brdf,
+                    std::string(what) + ": the size does not fit the numbers of directions and wavelengths");
     if (!std::all_of(t.values.begin(), t.values.end(),
                      [&](float x) { return std::isfinite(x) && (negative_too || x >= 0); }))
-        throw Error(where_brdf, std::string(what) + ": a value is " + (negative_too ? "" : "negative or ") + "not finite");
+        throw Error(where_brdf, std::string(what) + ": a value is " + (negative_too ? "" : "negative or ") +
+                                    "not finite");
 }
 
 // Checked before the distributions are made of them.

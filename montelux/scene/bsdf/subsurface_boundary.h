@@ -24,7 +24,7 @@ inline float internal_diffuse_reflectance(float eta) {
 // light sampling from within. The same assumption is made by separable BSSRDFs (Jensen et al. 2001, "A Practical Model
 // for Subsurface Light Transport", S_w).
 struct SubsurfaceBsdf {
-    float eta = 1.33f; // index below the surface (-z) over that above, at least 1
+    float eta = 1.33f;              // index below the surface (-z) over that above, at least 1
     float internal_reflectance = 0; // internal_diffuse_reflectance(eta)
     Ggx ggx;
 
@@ -51,9 +51,11 @@ struct SubsurfaceBsdf {
         if (!same_hemisphere(wo, wi)) {
             const bool enters = wo.z > 0;
             const float t = transmittance(enters ? wo : wi);
-            return {SampledSpectrum(t * cosine_pdf * scale(enters, mode)), (1 - reflection_probability(wo)) * cosine_pdf};
+            return {SampledSpectrum(t * cosine_pdf * scale(enters, mode)),
+                    (1 - reflection_probability(wo)) * cosine_pdf};
         }
-        if (wo.z < 0) return {SampledSpectrum(internal_reflectance * cosine_pdf), internal_reflectance * cosine_pdf};
+        if (wo.z < 0)
+            return {SampledSpectrum(internal_reflectance * cosine_pdf), internal_reflectance * cosine_pdf};
         if (ggx.is_smooth()) return {};
         const Vec3f m = normalize(wo + wi);
         const float density = ggx.visible_pdf(wo, m) / (4 * std::abs(dot(wo, m)));
@@ -67,7 +69,7 @@ struct SubsurfaceBsdf {
         const float uc = stream.next_1d();
         const Vec2f u = stream.next_2d();
         const float p = reflection_probability(wo);
-        const bool reflects = uc < p, outside = wo.z > 0;
+        const bool reflects = uc<p, outside = wo.z> 0;
         BsdfSample s;
         if (reflects && outside) {
             const bool smooth = ggx.is_smooth();
@@ -79,7 +81,8 @@ struct SubsurfaceBsdf {
             s.weight = SampledSpectrum(1);
             if (smooth) return s;
             s.pdf *= ggx.visible_pdf(wo, m) / (4 * std::abs(dot(wo, m)));
-            s.weight = SampledSpectrum(fresnel_dielectric(dot(wo, m), eta) * ggx.g(wo, s.wi) / (ggx.g1(wo) * p));
+            s.weight =
+                SampledSpectrum(fresnel_dielectric(dot(wo, m), eta) * ggx.g(wo, s.wi) / (ggx.g1(wo) * p));
             if (!(s.pdf > 0)) return std::nullopt;
             return s;
         }

@@ -16,8 +16,8 @@
 
 namespace montelux {
 
-using UntiltedBsdf =
-    std::variant<DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf, ThinDielectricBsdf,
-                 CoatedDiffuseBsdf, LayeredBsdf<DiffuseBsdf>, LayeredBsdf<ConductorBsdf>, HairBsdf, MeasuredBsdf, SubsurfaceBsdf>;
+using UntiltedBsdf = std::variant<DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf,
+                                  ThinDielectricBsdf, CoatedDiffuseBsdf, LayeredBsdf<DiffuseBsdf>,
+                                  LayeredBsdf<ConductorBsdf>, HairBsdf, MeasuredBsdf, SubsurfaceBsdf>;
 
 } // namespace montelux

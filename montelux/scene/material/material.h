@@ -19,9 +19,10 @@
 
 namespace montelux {
 
-using Material = std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, ThinDielectricMaterial,
-                              CoatedDiffuseMaterial, CoatedConductorMaterial, DiffuseTransmissionMaterial,
-                              InterfaceMaterial, MixMaterial, HairMaterial, MeasuredMaterial, SubsurfaceMaterial>;
+using Material =
+    std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, ThinDielectricMaterial,
+                 CoatedDiffuseMaterial, CoatedConductorMaterial, DiffuseTransmissionMaterial,
+                 InterfaceMaterial, MixMaterial, HairMaterial, MeasuredMaterial, SubsurfaceMaterial>;
 static_assert(std::is_trivially_copyable_v<Material>);
 
 } // namespace montelux

@@ -10,8 +10,8 @@
 #include "montelux/formats/pbrt/plugin_parameters.h"
 #include "montelux/image/image_write.h"
 #include "montelux/scene/light/light_sampling.h"
-#include "montelux/scene/medium/semi_infinite_albedo.h"
 #include "montelux/scene/material/material_model.h"
+#include "montelux/scene/medium/semi_infinite_albedo.h"
 #include "montelux/scene/scene_tables.h"
 #include "montelux/spectrum/named_spectra.h"
 #include "montelux/spectrum/rgb_colorspace.h"
@@ -107,7 +107,7 @@ TEST(PbrtMaterials, AttributesKnowTheParametersOfEachMaterial) {
         visit_parameters(m, []<typename Field>(const ParameterInfo& info, const Field&) {
             if constexpr (!std::is_same_v<Field, RoughnessParameter> &&
                           !std::is_same_v<Field, MetalParameter> &&
-                          !std::is_same_v<Field, HairColorParameter>) {
+                          !std::is_same_v<Field, HairColorParameter> && !std::is_same_v<Field, MediumIndex>) {
                 EXPECT_TRUE(pbrt::has_parameter(pbrt::PluginKind::material, info.pbrt_name()))
                     << M::name << ' ' << info.pbrt_name() << ": to be added to plugin_parameters.cpp";
             }
@@ -163,17 +163,17 @@ TEST(PbrtMaterials, NormalMapsThatAreNoneSayWhere) {
     }
 }
 
-TEST(PbrtMaterials, NamedOnesMayFollowAndUnusedOnesGiveAWarning) {
+TEST(PbrtMaterials, NamedOnesMayFollowAndUnusedOnesAreRead) {
     Warnings warnings;
     SceneDescription d = parse_world(
         "LightSource \"point\" NamedMaterial \"a\" Shape \"sphere\" Shape \"disk\" MakeNamedMaterial "
-        "\"a\" \"string type\" \"dielectric\"\nMaterial \"subsurface\"",
+        "\"a\" \"string type\" \"dielectric\"\nMaterial \"diffuse\"",
         &warnings);
-    EXPECT_EQ(d.scene.materials.size(), 1u);
+    EXPECT_EQ(d.scene.materials.size(), 2u);
     EXPECT_TRUE(std::holds_alternative<DielectricMaterial>(d.scene.materials[d.scene.shapes[1].material]));
-    EXPECT_EQ(
-        warnings.messages(),
-        std::vector<std::string>{"scene:3:1: material 'subsurface' is not supported yet; no shape uses it"});
+    EXPECT_TRUE(warnings.messages().empty());
+    EXPECT_EQ(test::world_error("Material \"hair\" \"float beta_m\" 2"),
+              "scene:2:17: parameter 'beta_m' is above 1");
 }
 
 TEST(PbrtMaterials, MixesOfNamedMaterials) {
@@ -239,13 +239,15 @@ LightSource "point")",
 
 HomogeneousMedium interior_of_sphere(const SceneDescription& d) {
     const Shape& shape = d.scene.shapes.at(0);
-    EXPECT_EQ(std::get<SubsurfaceMaterial>(d.scene.materials.at(shape.material)).interior.index, shape.media.inside);
+    EXPECT_EQ(std::get<SubsurfaceMaterial>(d.scene.materials.at(shape.material)).interior.index,
+              shape.media.inside);
     return std::get<HomogeneousMedium>(d.scene.media.at(shape.media.inside));
 }
 
 TEST(PbrtMaterials, Subsurface) {
     const auto body = [](const std::string& parameters, Warnings* warnings = nullptr) {
-        SceneDescription d = parse_world("LightSource \"point\" Material \"subsurface\" " + parameters + " Shape \"sphere\"", warnings);
+        SceneDescription d = parse_world(
+            "LightSource \"point\" Material \"subsurface\" " + parameters + " Shape \"sphere\"", warnings);
         return WithSpectra<HomogeneousMedium>{interior_of_sphere(d), d.scene.spectra};
     };
     const RgbColorSpace& srgb = RgbColorSpace::srgb();
@@ -258,7 +260,8 @@ TEST(PbrtMaterials, Subsurface) {
     m = body("\"rgb sigma_a\" [ 1 2 3 ] \"spectrum sigma_s\" [ 400 1 600 3 ]");
     expect_same(m.of(m.sigma_a), Spectrum(RgbUnboundedSpectrum(srgb, {1, 2, 3})));
     EXPECT_FLOAT_EQ(m.of(m.sigma_s)(500), 2);
-    m = body("\"spectrum reflectance\" [ 300 0.8 900 0.8 ] \"spectrum mfp\" [ 300 0.25 900 0.25 ] \"float scale\" 2 "
+    m = body("\"spectrum reflectance\" [ 300 0.8 900 0.8 ] \"spectrum mfp\" [ 300 0.25 900 0.25 ] \"float "
+             "scale\" 2 "
              "\"float eta\" 1.5");
     EXPECT_EQ(m.scale, 1);
     const float albedo = single_scattering_albedo(0.8f, 1.5f);
@@ -275,18 +278,21 @@ TEST(PbrtMaterials, Subsurface) {
     expect_same(m.of(m.sigma_s), Spectrum(RgbUnboundedSpectrum(srgb, {0.70f, 1.22f, 1.90f})));
     EXPECT_EQ(std::get<HenyeyGreenstein>(m.phase).g, 0);
     EXPECT_EQ(warnings.messages(),
-              (std::vector<std::string>{"scene:2:21: 'subsurface' has several of 'name', 'sigma_a' with 'sigma_s', and "
-                                        "'reflectance'; 'name' is used",
-                                        "scene:2:64: 'g' is ignored: the coefficients of 'name' are reduced ones"}));
+              (std::vector<std::string>{
+                  "scene:2:21: 'subsurface' has several of 'name', 'sigma_a' with 'sigma_s', and "
+                  "'reflectance'; 'name' is used",
+                  "scene:2:68: 'g' is ignored: the coefficients of 'name' are reduced ones"}));
 }
 
 TEST(PbrtMaterials, SubsurfaceIsInsideOfItsShapes) {
     // In fog; in a mix; one for both shapes.
-    const SceneDescription d = parse_world(
-        "LightSource \"point\" MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" MediumInterface \"fog\" \"fog\"\n"
-        "MakeNamedMaterial \"skin\" \"string type\" \"subsurface\" MakeNamedMaterial \"dust\" \"string type\" \"diffuse\"\n"
-        "NamedMaterial \"skin\" Shape \"sphere\" Material \"mix\" \"string materials\" [ \"dust\" \"skin\" ] Shape \"sphere\"\n"
-        "NamedMaterial \"dust\" Shape \"sphere\"");
+    const SceneDescription d = parse_world("LightSource \"point\" MakeNamedMedium \"fog\" \"string type\" "
+                                           "\"homogeneous\" MediumInterface \"fog\" \"fog\"\n"
+                                           "MakeNamedMaterial \"skin\" \"string type\" \"subsurface\" "
+                                           "MakeNamedMaterial \"dust\" \"string type\" \"diffuse\"\n"
+                                           "NamedMaterial \"skin\" Shape \"sphere\" Material \"mix\" "
+                                           "\"string materials\" [ \"dust\" \"skin\" ] Shape \"sphere\"\n"
+                                           "NamedMaterial \"dust\" Shape \"sphere\"");
     ASSERT_EQ(d.scene.media.size(), 2u);
     for (int i : {0, 1}) {
         EXPECT_EQ(d.scene.shapes.at(static_cast<std::size_t>(i)).media.inside, 1u);
@@ -296,37 +302,44 @@ TEST(PbrtMaterials, SubsurfaceIsInsideOfItsShapes) {
     EXPECT_EQ(test::world_error("MakeNamedMaterial \"a\" \"string type\" \"subsurface\"\n"
                                 "MakeNamedMaterial \"b\" \"string type\" \"subsurface\"\n"
                                 "Material \"mix\" \"string materials\" [ \"a\" \"b\" ] Shape \"sphere\""),
-              "scene:4:44: the materials of a mix have two interiors ('subsurface'); expected one");
+              "scene:4:47: the materials of a mix have two interiors ('subsurface'); expected one");
 }
 
 TEST(PbrtMaterials, SubsurfaceErrors) {
     const auto error = [](const std::string& parameters) {
         return test::world_error("Material \"subsurface\" " + parameters + " Shape \"sphere\"");
     };
-    EXPECT_EQ(error("\"rgb sigma_a\" [ 1 1 1 ]"), "scene:2:23: 'sigma_a' and 'sigma_s' must be given together");
+    EXPECT_EQ(error("\"rgb sigma_a\" [ 1 1 1 ]"),
+              "scene:2:23: 'sigma_a' and 'sigma_s' must be given together");
     EXPECT_EQ(error("\"float g\" 1"), "scene:2:23: parameter 'g' is not between -1 and 1");
     EXPECT_EQ(error("\"float eta\" 0.5"), "scene:2:23: parameter 'eta' is below 1");
     EXPECT_EQ(error("\"float scale\" 0"), "scene:2:23: parameter 'scale' is not positive");
     EXPECT_EQ(error("\"rgb reflectance\" [ .5 .5 .5 ] \"spectrum mfp\" [ 400 0 500 1 ]"),
-              "scene:2:56: parameter 'mfp' is 0 at a visible wavelength");
-    EXPECT_EQ(error("\"string name\" \"Skimmilc\""), "scene:2:23: there is no medium preset 'Skimmilc' (did you mean 'Skimmilk'?)");
-    EXPECT_EQ(error("\"texture reflectance\" \"t\""), "scene:2:23: parameter 'reflectance' of 'subsurface' is a texture; expected a colour or spectrum for the whole body");
+              "scene:2:54: parameter 'mfp' is 0 at a visible wavelength");
+    EXPECT_EQ(error("\"string name\" \"Skimmilc\""),
+              "scene:2:23: there is no medium preset 'Skimmilc' (did you mean 'Skimmilk'?)");
+    EXPECT_EQ(error("\"texture reflectance\" \"t\""),
+              "scene:2:23: parameter 'reflectance' of 'subsurface' is a texture; expected a colour or "
+              "spectrum for the whole body");
     EXPECT_EQ(error("\"spectrum sigma_a\" [ 400 -1 500 1 ] \"rgb sigma_s\" [ 1 1 1 ]"),
-              "scene:2:23: parameter 'sigma_a' is negative or not finite at 360 nm");
+              "scene:2:23: parameter 'sigma_a' is negative or not finite at 400 nm");
 }
 
 TEST(PbrtMaterials, Measured) {
     TemporaryFolder folder;
     const std::vector<std::uint8_t> bytes =
         testing::measured_brdf_file(testing::measured_ggx({{0.5f, 0.5f}}, 8)).bytes();
-    std::ofstream(folder / "a.bsdf", std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    std::ofstream(folder / "a.bsdf", std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     std::ofstream(folder / "b.bsdf") << "no such file";
     Warnings warnings;
     const auto parse = [&](const std::string& file) {
-        return parse_pbrt("WorldBegin LightSource \"point\"\n"
-                          "Material \"measured\" \"string filename\" \"a.bsdf\" Shape \"sphere\" AttributeBegin\n"
-                          "Material \"measured\" \"string filename\" \"" + file + "\" \"float displacement\" 1 Shape \"disk\" AttributeEnd",
-                          "scene", folder.path(), warnings);
+        return parse_pbrt(
+            "WorldBegin LightSource \"point\"\n"
+            "Material \"measured\" \"string filename\" \"a.bsdf\" Shape \"sphere\" AttributeBegin\n"
+            "Material \"measured\" \"string filename\" \"" +
+                file + "\" \"float displacement\" 1 Shape \"disk\" AttributeEnd",
+            "scene", folder.path(), warnings);
     };
     const SceneDescription d = parse("a.bsdf");
     EXPECT_TRUE(warnings.messages().empty());
@@ -338,7 +351,8 @@ TEST(PbrtMaterials, Measured) {
         parse("b.bsdf");
         FAIL() << "read";
     } catch (const Error& e) {
-        EXPECT_EQ(std::string(e.what()), "scene:3:21: " + (folder / "b.bsdf").string() + ": is no file of a measured BRDF (.bsdf)");
+        EXPECT_EQ(std::string(e.what()),
+                  "scene:3:21: " + (folder / "b.bsdf").string() + ": is no file of a measured BRDF (.bsdf)");
     }
 }
 

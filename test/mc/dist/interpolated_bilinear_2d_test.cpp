@@ -47,7 +47,8 @@ TEST(InterpolatedBilinear2D, SamplesFollowTheDensityAndInvert) {
     std::mt19937 random(2);
     std::uniform_real_distribution<float> uniform(0, 1);
     for (Vec2f parameters : {Vec2f{-1, 0}, Vec2f{-0.3f, 0.7f}, Vec2f{1.5f, 1}, Vec2f{2, 1}}) {
-        const InterpolationWeights at = interpolation_weights(first_knots, second_knots, parameters.x, parameters.y);
+        const InterpolationWeights at =
+            interpolation_weights(first_knots, second_knots, parameters.x, parameters.y);
         // Over each of 60 x 60 squares the number of samples is that of the density's integral (midpoints of
         // squares of a fifteenth and a twentieth of a cell).
         constexpr int n = 60, samples = 400000;
@@ -104,9 +105,13 @@ TEST(InterpolatedBilinear2D, IsTheMeanOfItsEntries) {
 }
 
 TEST(InterpolatedBilinear2D, RefusesBadTables) {
-    EXPECT_EQ(message_of([] { InterpolatedBilinear2D(1, 1, 2, {1, 1}); }),
+    EXPECT_EQ(message_of([] {
+                  InterpolatedBilinear2D(1, 1, 2, {1, 1});
+              }),
               "InterpolatedBilinear2D: expected at least 2 columns and 2 rows");
-    EXPECT_EQ(message_of([] { InterpolatedBilinear2D(1, 2, 2, {1, 1}); }),
+    EXPECT_EQ(message_of([] {
+                  InterpolatedBilinear2D(1, 2, 2, {1, 1});
+              }),
               "InterpolatedBilinear2D: found 2 values; expected 1 * 2 * 2");
     EXPECT_NE(message_of([] { InterpolatedBilinear2D(1, 2, 2, {1, 1, -1, 1}); }), "");
 }

@@ -25,7 +25,6 @@ std::string finish_error(const std::function<void(Scene&)>& change) {
     scene.normal_maps = {ImageTexture{.image = 0, .mapping = {}}};
     scene.materials = {DiffuseMaterial{{{}, 0}}, DielectricMaterial{SceneSpectrum::at(0)}};
     scene.measured_brdfs = {testing::measured_case(0.5f, 0.5f)};
-    scene.media = {HomogeneousMedium{}};
     change(scene);
     CallMessages messages("test");
     try {
