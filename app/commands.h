@@ -19,5 +19,6 @@ void add_compare(CLI::App& app, int& exit_code);
 void add_denoise(CLI::App& app, int& exit_code);
 void add_bake(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
+void add_formats(CLI::App& app, int& exit_code);
 
 } // namespace montelux::app

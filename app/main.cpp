@@ -144,6 +144,7 @@ int run(int argc, char** argv) {
         add_denoise(app, exit_code);
         add_bake(app, exit_code);
         add_info(app, exit_code);
+        add_formats(app, exit_code);
 #endif
         try {
             parse(app, argc, argv);

@@ -276,8 +276,9 @@ class SceneHasher {
 
     // Geometry.
     void add(const TriangleMesh& m) {
-        const auto& [positions, normals, uvs, indices] = m;
+        const auto& [positions, normals, uvs, indices, tangents] = m;
         all(positions, normals, uvs, indices);
+        if (!tangents.empty()) add(tangents);
     }
     void add(const Sphere& s) {
         const auto& [radius, z_min, z_max, phi_max, world_from_object] = s;

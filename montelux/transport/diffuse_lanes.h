@@ -107,7 +107,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
             set_lane(s.ng, i, point.ng);
             set_lane(s.ns, i, point.ns);
             s.error.set(i, point.error);
-            set_lane(tangent, i, point.dpdu);
+            set_lane(tangent, i, point.tangent());
             if (textured) context = texture_context(point);
         }
         set_lane(w, i, state.ray.d);

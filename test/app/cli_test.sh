@@ -18,7 +18,7 @@ if command -v qemu-x86_64 >/dev/null && "$montelux" --version | grep -q 'x86-64-
 fi
 for command in integrate sample render info compare; do expect 0 "Example" $command --help; done
 expect 0 "--max-depth N" render --help
-expect 2 "a command is expected: integrate, sample, render, merge, compare, denoise, bake, info" # no arguments
+expect 2 "a command is expected: integrate, sample, render, merge, compare, denoise, bake, info, formats" # no arguments
 expect 2 "there is no command 'rendr' (did you mean 'render'?)" rendr
 expect 2 "there is no bake command 'skye' (did you mean 'sky'?); expected one of environment" bake skye
 expect 2 "a bake command is expected: environment, brdf, report, sky" bake
@@ -40,6 +40,11 @@ expect 1 "montelux: error: none.exr: cannot be opened" info none.exr
 expect 1 "it is a folder" info .
 printf 'no picture' >text.png
 expect 1 "montelux: error: text.png: is not a picture" info text.png
+
+expect 0 "gbuffer              otherwise: read as 'rgb'" formats pbrt
+expect 0 '"plugin": "bilinearmesh"' formats pbrt --json
+expect 2 "a formats command is expected: pbrt" formats
+expect 2 "there is no formats command 'pbr' (did you mean 'pbrt'?); expected one of pbrt" formats pbr
 
 expect 0 "RMSE 0.353553" compare a.pfm b.pfm
 expect 0 "neither picture has standard errors" compare a.pfm b.pfm

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <variant>
 
+#include "montelux/formats/pbrt/coverage.h"
 #include "montelux/image/image_read.h"
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
@@ -15,9 +16,6 @@
 
 namespace montelux::pbrt {
 namespace {
-
-constexpr std::array<std::string_view, 7> light_plugins = {"point", "spot",        "distant",   "infinite",
-                                                           "sky",   "goniometric", "projection"};
 
 float photometric_scale(const Spectrum& s, ParameterReader& r) {
     try {
@@ -72,10 +70,9 @@ LightReader::Source LightReader::source(ParameterReader& r, std::string_view nam
 
 Emission LightReader::read_area(const Plugin& plugin, const RgbColorSpace& color_space) {
     ParameterReader r(plugin.parameters, "area light " + in_quotes(plugin.name), plugin.at, diagnostics_);
-    constexpr std::array<std::string_view, 1> names = {"diffuse"};
     if (plugin.name != "diffuse")
-        r.error("unknown area light " + in_quotes(plugin.name) + did_you_mean(plugin.name, names) +
-                "; expected 'diffuse'");
+        r.error("unknown area light " + in_quotes(plugin.name) +
+                did_you_mean(plugin.name, plugin_names("AreaLightSource")) + "; expected 'diffuse'");
     const std::optional<std::string> file = r.string("filename");
     if (file && r.ignored("L")) r.error("L", "'L' together with 'filename'; expected one or the other");
     Source s = source(r, "L", file ? RgbColorSpace::srgb() : color_space);
@@ -142,7 +139,8 @@ void LightReader::read(const Plugin& plugin, const Transform& world_from_light,
         light = plugin.name == "projection" ? projection(r, world_from_light)
                                             : goniometric(r, world_from_light, color_space);
     } else {
-        r.error("unknown light " + in_quotes(plugin.name) + did_you_mean(plugin.name, light_plugins));
+        r.error("unknown light " + in_quotes(plugin.name) +
+                did_you_mean(plugin.name, plugin_names("LightSource")));
     }
     r.finish();
     if (auto* sky = std::get_if<SceneBuilder::SkyLights>(&light))

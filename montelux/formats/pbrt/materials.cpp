@@ -4,28 +4,13 @@
 #include <deque>
 #include <type_traits>
 
+#include "montelux/formats/pbrt/coverage.h"
 #include "montelux/formats/pbrt/subsurface.h"
 #include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/material/material_model.h"
 
 namespace montelux::pbrt {
 namespace {
-
-// "coateddiffuse" for CoatedDiffuse.
-std::string type_name(std::string_view name) {
-    std::string result;
-    for (char c : name) result += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    return result;
-}
-
-const std::vector<std::string>& material_types() {
-    static const std::vector<std::string> names = [] {
-        std::vector<std::string> all;
-        for_each_material_kind([&]<typename M>(std::type_identity<M>) { all.push_back(type_name(M::name)); });
-        return all;
-    }();
-    return names;
-}
 
 // Reads the parameters that a material lists (scene/material/parameter.h); missing ones keep their defaults.
 class MaterialMaker {
@@ -39,7 +24,7 @@ class MaterialMaker {
     Material make(std::string_view type) {
         Material material;
         for_each_material_kind([&]<typename M>(std::type_identity<M>) {
-            if (type_name(M::name) != type) return;
+            if (material_type(M::name) != type) return;
             M m = default_material<M>([&](const Spectrum& s) { return builder_.add_spectrum(s); });
             visit_parameters(m, [&](const ParameterInfo& info, auto& field) { read(info, field); });
             if constexpr (std::is_same_v<M, MixMaterial> || std::is_same_v<M, InterfaceMaterial>) {
@@ -204,11 +189,9 @@ bool is_old_interface(std::string_view type) { return type.empty() || type == "n
 Material make_material(const MaterialDeclaration& d, SceneBuilder& builder, TextureLibrary& textures,
                        MeasuredBrdfLibrary& brdfs, SpectrumReader& spectra, const FindMaterial& find,
                        Diagnostics& diagnostics) {
-    const std::vector<std::string>& names = material_types();
-    if (std::find(names.begin(), names.end(), d.type) == names.end() && !is_old_interface(d.type))
-        diagnostics.error(
-            d.at, "unknown material " + in_quotes(d.type) +
-                      did_you_mean(d.type, std::vector<std::string_view>(names.begin(), names.end())));
+    if (!is_plugin("Material", d.type) && !is_old_interface(d.type))
+        diagnostics.error(d.at, "unknown material " + in_quotes(d.type) +
+                                    did_you_mean(d.type, plugin_names("Material")));
     MaterialMaker maker(d, builder, textures, brdfs, spectra, find, diagnostics);
     if (!is_old_interface(d.type)) return maker.make(d.type);
     diagnostics.warn_once("material " + in_quotes(d.type), d.at,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "montelux/formats/nanovdb_file.h"
+#include "montelux/formats/pbrt/coverage.h"
 #include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/build/float_range.h"
 #include "montelux/scene/medium/medium_presets.h"
@@ -15,9 +16,6 @@
 
 namespace montelux::pbrt {
 namespace {
-
-constexpr std::array<std::string_view, 5> medium_types = {"homogeneous", "uniformgrid", "rgbgrid", "cloud",
-                                                          "nanovdb"};
 
 const MediumPreset& find_preset(ParameterReader& r, const std::string& name) {
     std::vector<std::string_view> names;
@@ -311,7 +309,8 @@ Index MediumReader::read(const ParameterList& parameters, const Transform& world
     } else if (*type == "nanovdb") {
         medium = nanovdb(r, world_from_medium);
     } else {
-        r.error("type", "unknown medium " + in_quotes(*type) + did_you_mean(*type, medium_types));
+        r.error("type",
+                "unknown medium " + in_quotes(*type) + did_you_mean(*type, plugin_names("MakeNamedMedium")));
     }
     r.finish();
     builder_.scene().media.push_back(medium);

@@ -20,6 +20,10 @@ void read_values(ParameterReader& r, Mesh& mesh) {
     };
     drop_unless_one_a_vertex(mesh.normals, "N");
     drop_unless_one_a_vertex(mesh.uvs, "uv");
+    if constexpr (requires { mesh.tangents; }) {
+        mesh.tangents = r.triples("S", ParameterType::vector3);
+        drop_unless_one_a_vertex(mesh.tangents, "S");
+    }
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "montelux/formats/pbrt/coverage.h"
 #include "montelux/formats/pbrt/parameter_reader.h"
 #include "montelux/formats/pbrt/settings.h"
 #include "montelux/formats/pbrt/tokenizer.h"
@@ -77,8 +78,6 @@ std::vector<LensSurface> read_lens(ParameterReader& r, Files& files, Diagnostics
 
 void read_camera(const Plugin& plugin, Files& files, Diagnostics& diagnostics, FilmSettings& film,
                  CameraSettings& settings) {
-    constexpr std::array<std::string_view, 4> names = {"perspective", "orthographic", "spherical",
-                                                       "realistic"};
     ParameterReader r(plugin.parameters, "camera " + in_quotes(plugin.name), plugin.at, diagnostics);
     std::optional<float> open = r.number("shutteropen"), close = r.number("shutterclose");
     if (open || close) {
@@ -123,7 +122,8 @@ void read_camera(const Plugin& plugin, Files& files, Diagnostics& diagnostics, F
         }
         model = std::move(camera);
     } else {
-        r.error("unknown camera " + in_quotes(plugin.name) + did_you_mean(plugin.name, names));
+        r.error("unknown camera " + in_quotes(plugin.name) +
+                did_you_mean(plugin.name, plugin_names("Camera")));
     }
     r.finish();
 }

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "montelux/formats/pbrt/coverage.h"
 #include "montelux/formats/pbrt/parameter_reader.h"
 #include "montelux/formats/pbrt/settings.h"
 #include "montelux/image/image.h"
@@ -57,10 +58,9 @@ int read_resolution(ParameterReader& r, std::string_view name, int otherwise) {
 } // namespace
 
 void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& film, std::string& output_file) {
-    constexpr std::array<std::string_view, 3> names = {"rgb", "gbuffer", "spectral"};
-    if (std::find(names.begin(), names.end(), plugin.name) == names.end())
-        diagnostics.error(plugin.at,
-                          "unknown film " + in_quotes(plugin.name) + did_you_mean(plugin.name, names));
+    if (!is_plugin("Film", plugin.name))
+        diagnostics.error(plugin.at, "unknown film " + in_quotes(plugin.name) +
+                                         did_you_mean(plugin.name, plugin_names("Film")));
     ParameterReader r(plugin.parameters, "film " + in_quotes(plugin.name), plugin.at, diagnostics);
     if (plugin.name == "spectral") r.error("film 'spectral' is not supported yet; expected 'rgb'");
     if (plugin.name == "gbuffer") {
@@ -100,7 +100,6 @@ void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& fil
 }
 
 PixelFilter read_filter(const Plugin& plugin, Diagnostics& diagnostics) {
-    constexpr std::array<std::string_view, 5> names = {"box", "gaussian", "mitchell", "sinc", "triangle"};
     ParameterReader r(plugin.parameters, "pixel filter " + in_quotes(plugin.name), plugin.at, diagnostics);
     auto radius = [&](float otherwise) {
         float x = r.number("xradius", otherwise);
@@ -127,7 +126,8 @@ PixelFilter read_filter(const Plugin& plugin, Diagnostics& diagnostics) {
     } else if (plugin.name == "triangle") {
         filter = TriangleFilter{radius(2)};
     } else {
-        r.error("unknown pixel filter " + in_quotes(plugin.name) + did_you_mean(plugin.name, names));
+        r.error("unknown pixel filter " + in_quotes(plugin.name) +
+                did_you_mean(plugin.name, plugin_names("PixelFilter")));
     }
     r.finish();
     return filter;

@@ -2,15 +2,13 @@
 #include <array>
 #include <cstdint>
 
+#include "montelux/formats/pbrt/coverage.h"
 #include "montelux/formats/pbrt/parameter_reader.h"
 #include "montelux/formats/pbrt/settings.h"
 #include "montelux/mc/math/nearest_name.h"
 
 namespace montelux::pbrt {
 namespace {
-
-constexpr std::array<std::string_view, 7> sampler_names = {"independent", "stratified", "halton", "sobol",
-                                                           "paddedsobol", "zsobol",     "pmj02bn"};
 
 std::uint32_t read_count(ParameterReader& r, std::string_view name, int otherwise) {
     int n = r.integer(name, otherwise);
@@ -50,7 +48,8 @@ SamplerSettings read_sampler(const Plugin& plugin, Diagnostics& diagnostics, std
     } else if (plugin.name == "zsobol" || plugin.name == "pmj02bn") {
         s.kind = SamplerKind::sobol_blue_noise;
     } else {
-        r.error("unknown sampler " + in_quotes(plugin.name) + did_you_mean(plugin.name, sampler_names));
+        r.error("unknown sampler " + in_quotes(plugin.name) +
+                did_you_mean(plugin.name, plugin_names("Sampler")));
     }
     s.spp = read_count(r, "pixelsamples", 16);
     if (plugin.name == "pmj02bn") {
@@ -67,9 +66,6 @@ SamplerSettings read_sampler(const Plugin& plugin, Diagnostics& diagnostics, std
 }
 
 IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostics) {
-    constexpr std::array<std::string_view, 12> names = {
-        "path", "volpath", "simplepath", "randomwalk", "simplevolpath",    "bdpt",
-        "mlt",  "sppm",    "lightpath",  "ao",         "ambientocclusion", "function"};
     ParameterReader r(plugin.parameters, "integrator " + in_quotes(plugin.name), plugin.at, diagnostics);
     IntegratorSettings s;
     s.max_depth = r.integer("maxdepth", 5);
@@ -97,11 +93,12 @@ IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostic
     } else if (plugin.name == "randomwalk") {
         s.strategy = Strategy::uniform;
         r.finish();
-    } else if (std::find(names.begin(), names.end(), plugin.name) != names.end()) {
+    } else if (is_plugin("Integrator", plugin.name)) {
         diagnostics.warn(plugin.at, "integrator " + in_quotes(plugin.name) +
                                         " is not supported yet; the scene is rendered with 'path'");
     } else {
-        r.error("unknown integrator " + in_quotes(plugin.name) + did_you_mean(plugin.name, names));
+        r.error("unknown integrator " + in_quotes(plugin.name) +
+                did_you_mean(plugin.name, plugin_names("Integrator")));
     }
     return s;
 }

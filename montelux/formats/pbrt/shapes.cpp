@@ -6,6 +6,7 @@
 
 #include "montelux/formats/loop_subdivision.h"
 #include "montelux/formats/pbrt/bilinear_mesh.h"
+#include "montelux/formats/pbrt/coverage.h"
 #include "montelux/formats/pbrt/curves.h"
 #include "montelux/formats/pbrt/mesh_parameters.h"
 #include "montelux/formats/ply.h"
@@ -15,9 +16,6 @@
 
 namespace montelux::pbrt {
 namespace {
-
-constexpr std::array<std::string_view, 8> shape_plugins = {
-    "sphere", "disk", "trianglemesh", "plymesh", "loopsubdiv", "cylinder", "bilinearmesh", "curve"};
 
 float radians(float degrees) { return std::clamp(degrees, 0.0f, 360.0f) * (pi_f / 180); }
 
@@ -70,10 +68,6 @@ TriangleMesh read_triangle_mesh(ParameterReader& r) {
         mesh.indices = read_indices(r, mesh.positions.size(), 3, "triangle");
     }
     read_vertex_values(r, mesh);
-    if (r.ignored("S"))
-        r.diagnostics().warn_once("trianglemesh S", r.at("S"),
-                                  "vertex tangents 'S' are not supported yet: they matter to anisotropic "
-                                  "materials, and the picture differs");
     r.ignored("faceIndices"); // only Ptex textures use it
     return mesh;
 }
@@ -148,7 +142,7 @@ Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transfo
     else if (plugin == "loopsubdiv")
         mesh = read_loop_subdivision(r, subdivided);
     else
-        r.error("unknown shape " + in_quotes(plugin) + did_you_mean(plugin, shape_plugins));
+        r.error("unknown shape " + in_quotes(plugin) + did_you_mean(plugin, plugin_names("Shape")));
     transform_mesh(mesh, world_from_object, reverse_orientation);
     return mesh;
 }

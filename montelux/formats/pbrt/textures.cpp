@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "montelux/formats/pbrt/coverage.h"
 #include "montelux/image/image_read.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/nearest_name.h"
@@ -12,10 +13,6 @@
 
 namespace montelux::pbrt {
 namespace {
-
-constexpr std::array<std::string_view, 13> texture_plugins = {
-    "constant", "imagemap", "scale", "mix",   "checkerboard", "bilerp",      "dots",
-    "fbm",      "marble",   "ptex",  "windy", "wrinkled",     "directionmix"};
 
 // Limit of the depth of texture trees: look-ups are recursive.
 constexpr std::size_t most_nested = 64;
@@ -99,10 +96,9 @@ void TextureLibrary::declare(std::string_view type, const std::string& name, Tex
     if (type != "float" && type != "spectrum")
         diagnostics_.error(declaration.at, "texture " + in_quotes(name) + " has type " + in_quotes(type) +
                                                "; expected 'float' or 'spectrum'");
-    if (std::find(texture_plugins.begin(), texture_plugins.end(), declaration.plugin) ==
-        texture_plugins.end())
+    if (!is_plugin("Texture", declaration.plugin))
         diagnostics_.error(declaration.at, "unknown texture " + in_quotes(declaration.plugin) +
-                                               did_you_mean(declaration.plugin, texture_plugins));
+                                               did_you_mean(declaration.plugin, plugin_names("Texture")));
     const bool only_float =
         declaration.plugin == "fbm" || declaration.plugin == "windy" || declaration.plugin == "wrinkled";
     if (only_float || declaration.plugin == "marble")

@@ -25,6 +25,11 @@ void check_mesh(const Mesh& mesh, std::size_t corners, const std::string& primit
     if (mesh.indices.size() / corners >= no_index) throw Error("the mesh has more than 2^32 primitives");
     check_one_a_vertex(mesh.normals.size(), vertices, "normals");
     check_one_a_vertex(mesh.uvs.size(), vertices, "texture coordinates");
+    if constexpr (requires { mesh.tangents; }) {
+        check_one_a_vertex(mesh.tangents.size(), vertices, "tangents");
+        for (const Vec3f& t : mesh.tangents)
+            if (!is_finite(t)) throw Error("a vertex tangent is not finite in world space");
+    }
     for (std::size_t i = 0; i < mesh.indices.size(); ++i)
         if (mesh.indices[i] >= vertices)
             throw Error(primitive + " " + std::to_string(i / corners) + " refers to vertex " +
@@ -62,6 +67,8 @@ void transform_vertices(Mesh& mesh, const Transform& t, bool reverse_orientation
         if (!stays) n = t.normal(n);
         if (reverse_orientation) n = -n;
     }
+    if constexpr (requires { mesh.tangents; })
+        for (Vec3f& tangent : mesh.tangents) tangent = t.vector(tangent);
 }
 
 } // namespace

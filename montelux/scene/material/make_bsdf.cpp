@@ -17,7 +17,7 @@ Index material_at(const SceneView& scene, const SurfacePoint& surface, Vec3f wo,
 }
 
 Frame plain_frame(const SceneView& scene, Index material, const SurfacePoint& surface) {
-    return scene.frame_follows_tangents(material) ? Frame::from_normal_and_tangent(surface.ns, surface.dpdu)
+    return scene.frame_follows_tangents(material) ? Frame::from_normal_and_tangent(surface.ns, surface.tangent())
                                                   : Frame::from_normal(surface.ns);
 }
 

@@ -94,6 +94,8 @@ std::optional<Frame> tilted_frame(const SceneView& scene, const SurfaceDetail& d
                                   const SurfacePoint& surface, Vec3f wo, const TextureContext& context) {
     Tangents t{surface.ns, across(surface.dpdu, surface.ns), across(surface.dpdv, surface.ns)};
     const bool bumpy = add_bumps(scene, detail.displacement, surface, context, t);
+    // Heights vary with the coordinates, maps of normals refer to the mesh's own tangents.
+    if (length_squared(surface.vertex_tangent) > 0) t.u = across(surface.vertex_tangent, t.n);
     const bool mapped = add_map(scene, detail.normal_map, context, t);
     if (!bumpy && !mapped) return std::nullopt;
     return Frame::from_normal_and_tangent(facing(t.n, surface.ng, wo), t.u);

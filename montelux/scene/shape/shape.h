@@ -12,13 +12,15 @@
 
 namespace montelux {
 
-// Positions are in world space, or in the space of the mesh's object definition. `normals` and `uvs` are
-// empty or one per vertex. The builder checks the indices.
+// Positions are in world space, or in the space of the mesh's object definition. `normals`, `uvs` and
+// `tangents` are empty or one per vertex. The builder checks the indices.
 struct TriangleMesh {
     std::vector<Point3f> positions;
     std::vector<Normal3f> normals;
     std::vector<Point2f> uvs;
     std::vector<Index> indices; // three per triangle
+    // Of vertices, along the first axis of the shading frame; empty: along dp/du.
+    std::vector<Vec3f> tangents{};
 
     std::size_t triangle_count() const { return indices.size() / 3; }
 };

@@ -46,6 +46,9 @@ SurfacePoint mesh_point(const TriangleMesh& mesh, const Shape& shape, const Hit&
     }
     s.uv = (1 - hit.b1 - hit.b2) * uv0 + hit.b1 * uv1 + hit.b2 * uv2;
     set_tangents(s, p1 - p0, p2 - p0, uv1 - uv0, uv2 - uv0);
+    if (!mesh.tangents.empty())
+        s.vertex_tangent = (1 - hit.b1 - hit.b2) * mesh.tangents[v[0]] + hit.b1 * mesh.tangents[v[1]] +
+                           hit.b2 * mesh.tangents[v[2]];
     return s;
 }
 
@@ -139,6 +142,7 @@ void transform_by(const Transform& t, SurfacePoint& s, float scale) {
     s.ns = normalize(t.normal(s.ns));
     s.dpdu = t.vector(s.dpdu);
     s.dpdv = t.vector(s.dpdv);
+    s.vertex_tangent = t.vector(s.vertex_tangent);
     s.error = s.error * scale + coordinate_error(largest_coordinate(s.p));
 }
 

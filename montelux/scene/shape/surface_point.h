@@ -9,14 +9,18 @@ namespace montelux {
 
 struct SurfacePoint {
     Point3f p;
-    Normal3f ng;      // geometric normal, unit, on the side of ns
-    Normal3f ns;      // shading normal, unit
-    float error = 0;  // bound of the distance between p and the true surface along ng
-    Point2f uv;       // this and the tangents are computed by surface_point only on request
-    Vec3f dpdu, dpdv; // with respect to uv
+    Normal3f ng;            // geometric normal, unit, on the side of ns
+    Normal3f ns;            // shading normal, unit
+    float error = 0;        // bound of the distance between p and the true surface along ng
+    Point2f uv;             // this and the tangents are computed by surface_point only on request
+    Vec3f dpdu, dpdv;       // with respect to uv
+    Vec3f vertex_tangent{}; // interpolated; zero where the mesh has none
     const Shape* shape = nullptr;
     Index primitive = 0;
     Vec2f b{}; // Hit::b1 and b2
+
+    // The first axis of the shading frame is its part across the shading normal.
+    Vec3f tangent() const { return length_squared(vertex_tangent) > 0 ? vertex_tangent : dpdu; }
 };
 
 // The surface at a hit of `ray`. Texture coordinates and derivatives are computed on request: textures and

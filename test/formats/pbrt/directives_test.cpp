@@ -333,6 +333,20 @@ TEST(PbrtShapes, Curves) {
     EXPECT_TRUE(d.scene.shapes[0].flip_normal);
 }
 
+TEST(PbrtShapes, VertexTangents) {
+    const std::string mesh = "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] ";
+    Warnings warnings;
+    const SceneDescription d =
+        test::parse_world("Scale 1 2 3 Translate 4 5 6 " + mesh + "\"vector3 S\" [ 1 1 1  0 1 0  1 0 0 ] " +
+                              mesh + "\"vector3 S\" [ 1 1 1 ] LightSource \"point\"",
+                          &warnings);
+    EXPECT_EQ(d.scene.meshes.at(0).tangents, (std::vector<Vec3f>{{1, 2, 3}, {0, 2, 0}, {1, 0, 0}}));
+    EXPECT_TRUE(d.scene.meshes.at(1).tangents.empty());
+    ASSERT_EQ(warnings.messages().size(), 1u);
+    EXPECT_NE(warnings.messages()[0].find("parameter 'S' has 1 entries for 3 vertices; it is ignored"),
+              std::string::npos);
+}
+
 // A head of hair in a file is a shape for each hair.
 TEST(PbrtShapes, CurvesInARowAreOneShape) {
     const std::string curve = "Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0] ";

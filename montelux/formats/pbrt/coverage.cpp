@@ -1,0 +1,109 @@
+#include "montelux/formats/pbrt/coverage.h"
+
+#include <algorithm>
+#include <map>
+
+#include "montelux/scene/material/material_model.h"
+
+namespace montelux::pbrt {
+namespace {
+
+std::vector<PluginCoverage> make_coverage() {
+    constexpr Support in_part = Support::in_part, otherwise = Support::otherwise, none = Support::none;
+    std::vector<PluginCoverage> all;
+    const auto add = [&](std::string_view directive, std::initializer_list<PluginCoverage> plugins) {
+        for (PluginCoverage p : plugins) {
+            p.directive = directive;
+            all.push_back(std::move(p));
+        }
+    };
+    const auto plugin = [](std::string_view name, Support support = Support::full,
+                           std::string_view note = {}) {
+        return PluginCoverage{{}, std::string(name), support, note};
+    };
+    constexpr std::string_view by_path = "rendered with the integrator 'path'";
+    constexpr std::string_view own_tracer = "the ray tracer builds its own hierarchy";
+
+    add("Film", {plugin("rgb", in_part, "sensors other than 'cie1931' are refused"),
+                 plugin("gbuffer", otherwise, "read as 'rgb'; every render has albedo, normal and depth"),
+                 plugin("spectral", none)});
+    add("PixelFilter",
+        {plugin("box"), plugin("gaussian"), plugin("mitchell"), plugin("sinc"), plugin("triangle")});
+    add("Camera", {plugin("perspective"), plugin("orthographic"), plugin("spherical"),
+                   plugin("realistic", in_part, "pictures of 'aperture' are refused")});
+    add("Sampler",
+        {plugin("independent"), plugin("stratified"), plugin("halton"), plugin("sobol"),
+         plugin("paddedsobol"), plugin("zsobol"), plugin("pmj02bn", otherwise, "read as 'zsobol'")});
+    add("Integrator",
+        {plugin("path", in_part, "'regularize' is ignored"),
+         plugin("volpath", in_part, "'regularize' is ignored"), plugin("simplepath"), plugin("randomwalk"),
+         plugin("simplevolpath", otherwise, by_path), plugin("bdpt", otherwise, by_path),
+         plugin("mlt", otherwise, by_path), plugin("sppm", otherwise, by_path),
+         plugin("lightpath", otherwise, by_path), plugin("ambientocclusion", otherwise, by_path),
+         plugin("ao", otherwise, by_path), plugin("function", otherwise, by_path)});
+    add("Accelerator", {plugin("bvh", otherwise, own_tracer), plugin("kdtree", otherwise, own_tracer)});
+    add("ColorSpace", {plugin("srgb"), plugin("dci-p3"), plugin("rec2020"), plugin("aces2065-1")});
+    add("Shape", {plugin("sphere"), plugin("disk"), plugin("cylinder"), plugin("bilinearmesh"),
+                  plugin("curve"), plugin("trianglemesh"), plugin("loopsubdiv"),
+                  plugin("plymesh", in_part, "'displacement' is ignored")});
+    for_each_material_kind([&]<typename M>(std::type_identity<M>) {
+        const std::string type = material_type(M::name);
+        add("Material", {type == "subsurface" ? plugin(type, in_part, "textures inside the body are refused")
+                                              : plugin(type)});
+    });
+    add("Texture",
+        {plugin("constant"), plugin("imagemap"), plugin("scale"), plugin("mix"), plugin("directionmix"),
+         plugin("checkerboard"), plugin("bilerp"), plugin("dots"), plugin("fbm"), plugin("marble"),
+         plugin("windy"), plugin("wrinkled"), plugin("ptex", none)});
+    add("LightSource",
+        {plugin("point"), plugin("spot"), plugin("distant"), plugin("infinite"), plugin("goniometric"),
+         plugin("projection"), plugin("sky", Support::full, "Montelux's own")});
+    add("AreaLightSource", {plugin("diffuse")});
+    add("MakeNamedMedium",
+        {plugin("homogeneous"), plugin("uniformgrid"), plugin("rgbgrid"), plugin("cloud"),
+         plugin("nanovdb", in_part, "Blosc, and grids other than of floats, are refused")});
+    return all;
+}
+
+} // namespace
+
+std::string material_type(std::string_view name) {
+    std::string result;
+    for (char c : name) result += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return result;
+}
+
+std::span<const PluginCoverage> plugin_coverage() {
+    static const std::vector<PluginCoverage> all = make_coverage();
+    return all;
+}
+
+std::span<const std::string_view> plugin_names(std::string_view directive) {
+    static const std::map<std::string_view, std::vector<std::string_view>> names = [] {
+        std::map<std::string_view, std::vector<std::string_view>> by_directive;
+        for (const PluginCoverage& p : plugin_coverage()) by_directive[p.directive].push_back(p.plugin);
+        return by_directive;
+    }();
+    return names.at(directive);
+}
+
+bool is_plugin(std::string_view directive, std::string_view name) {
+    const std::span<const std::string_view> names = plugin_names(directive);
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string_view name_of(Support s) {
+    switch (s) {
+    case Support::full:
+        return "yes";
+    case Support::in_part:
+        return "in part";
+    case Support::otherwise:
+        return "otherwise";
+    case Support::none:
+        return "no";
+    }
+    return {};
+}
+
+} // namespace montelux::pbrt

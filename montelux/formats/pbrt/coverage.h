@@ -1,0 +1,38 @@
+// Which plugins of pbrt-v4 are read, directive by directive: the table behind `montelux formats pbrt`.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace montelux::pbrt {
+
+enum class Support : std::uint8_t {
+    full,
+    in_part,   // a parameter is refused, or ignored with a warning
+    otherwise, // read without effect, or as another plugin, with a warning
+    none,      // an error
+};
+
+struct PluginCoverage {
+    std::string_view directive; // of the scene file
+    std::string plugin;
+    Support support = Support::full;
+    std::string_view note{}; // what is missing or happens instead
+};
+
+// All plugins of pbrt-v4's file format, and those that Montelux adds, by directive.
+std::span<const PluginCoverage> plugin_coverage();
+// The plugins of a directive, whether they are supported or not.
+std::span<const std::string_view> plugin_names(std::string_view directive);
+bool is_plugin(std::string_view directive, std::string_view name);
+
+// "coateddiffuse" for the material CoatedDiffuse.
+std::string material_type(std::string_view name);
+
+// "yes", "in part", "otherwise", "no"
+std::string_view name_of(Support s);
+
+} // namespace montelux::pbrt
