@@ -68,7 +68,7 @@ class TensorFile {
     std::vector<float> numbers(const std::string& name, std::size_t dimensions) const {
         const TensorField& f = field(name, tensor_of_float32, dimensions);
         std::vector<float> values(f.bytes.size() / sizeof(float));
-        std::memcpy(values.data(), f.bytes.data(), f.bytes.size());
+        if (!values.empty()) std::memcpy(values.data(), f.bytes.data(), f.bytes.size());
         return values;
     }
     // The last two indices are row and column of a table; `counts` are those before.

@@ -11,6 +11,7 @@
 #include "montelux/image/tone_curve.h"
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/render/render_warnings.h"
+#include "montelux/scene/build/check_references.h"
 
 namespace montelux::python {
 namespace {
@@ -20,6 +21,7 @@ void check_scene(const SceneHolder& scene) {
     if (!scene.has_camera)
         throw Error("render",
                     "the scene has no camera; set scene.camera, for example to PerspectiveCamera(fov=40)");
+    check_materials(scene.description->scene);
 }
 
 std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::uint32_t> spp,
