@@ -108,7 +108,7 @@ void bind_vegas(nb::module_& m) {
             },
             nb::kw_only(), "points"_a = "stratified", "alpha"_a = 1.0, "beta"_a = 0.75,
             "training_iterations"_a = 5, "training_evaluations"_a = 0, "increments"_a = 512,
-            "uniform_share"_a = 0.05, "replicates"_a = 8, "map"_a = nb::none())
+            "uniform_share"_a = 0.05, "replicates"_a = 16, "map"_a = nb::none())
         .def_prop_rw(
             "points", [](const Vegas& v) { return vegas_points.name(v.points); },
             [](Vegas& v, const std::string& s) { v.points = vegas_points.value(s); },

@@ -27,8 +27,8 @@ constexpr double cautious_rate = 0.5;     // the same power, where few evaluatio
 constexpr double largest_first = 0.25;    // share of a fixed number of evaluations that one region may take
 constexpr std::uint64_t patience = 60000; // evaluations of sampling before cubature gets a second chance,
 constexpr double second_share = 0.2;      // and the share of sampling's evaluations that it then gets
-// A localised result is compared with sampling at twice the target, limited to these relative errors.
-constexpr double finest_comparison = 1e-3, coarsest_comparison = 0.03;
+// A localised result is compared with sampling at a multiple of the target, within these relative errors.
+constexpr double finest_comparison = 1e-5, coarsest_comparison = 0.03;
 constexpr double comparable = 1.5;  // largest ratio of sampling's error to cubature's when both are compared
 constexpr double disagreeing = 2.5; // standard errors; a false alarm costs evaluations only
 constexpr double surprising = 4;    // growth of the error that makes a new problem
@@ -185,9 +185,10 @@ class AutoEstimator final : public Estimator {
     // peaks.
     StepOutcome compare(const StepRequest& request) {
         StepRequest rough = request;
-        const double twice = request.relative_error > 0 ? 2 * request.relative_error : coarsest_comparison;
+        const double multiple =
+            request.relative_error > 0 ? comparable * request.relative_error : coarsest_comparison;
         rough.relative_error =
-            std::max(request.relative_error, std::clamp(twice, finest_comparison, coarsest_comparison));
+            std::max(request.relative_error, std::clamp(multiple, finest_comparison, coarsest_comparison));
         const StepOutcome outcome = sampling_->step(rough);
         if (outcome == StepOutcome::cancelled) return outcome;
         const bool over = outcome != StepOutcome::advanced;

@@ -85,19 +85,24 @@ double ExtremeValues::largest() const {
     return std::max({c.greatest, -c.least, 0.0});
 }
 
-double ExtremeValues::least_standard_error(int component, std::uint64_t values) const {
-    Component c = components_[static_cast<std::size_t>(component)];
+double ExtremeValues::largest_deviation(int component, std::uint64_t values) const {
+    const Component& c = components_[static_cast<std::size_t>(component)];
     if (values == 0) return 0;
-    if (c.count < values) {
-        c.least = std::min(c.least, 0.0);
-        c.greatest = std::max(c.greatest, 0.0);
-    }
+    const double zero = c.count < values ? 0 : c.least;
+    const double mean = c.sum / static_cast<double>(values);
+    const double deviation = std::max(std::max(c.greatest, zero) - mean, mean - std::min(c.least, zero));
+    return deviation > all_equal * std::abs(mean) ? deviation : 0;
+}
+
+double ExtremeValues::least_standard_error(int component, std::uint64_t values) const {
+    const Component& c = components_[static_cast<std::size_t>(component)];
+    if (values == 0) return 0;
     const double n = static_cast<double>(values), mean = c.sum / n;
-    const double largest_deviation = std::max(c.greatest - mean, mean - c.least);
-    if (!(largest_deviation > all_equal * std::abs(mean))) return equal_values_error(mean, n);
-    const double k = std::max(0.0, c.squares - n * mean * mean) / (largest_deviation * largest_deviation);
+    const double largest = largest_deviation(component, values);
+    if (!(largest > 0)) return equal_values_error(mean, n);
+    const double k = std::max(0.0, c.squares - n * mean * mean) / (largest * largest);
     if (!(k < few) || !(k < few_of_all * n)) return 0;
-    return std::sqrt(std::max(k, 1.0)) * largest_deviation / n * few_values_factor(k);
+    return std::sqrt(std::max(k, 1.0)) * largest / n * few_values_factor(k);
 }
 
 void ExtremeValues::save(StateWriter& state) const {

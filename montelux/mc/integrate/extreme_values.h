@@ -39,6 +39,9 @@ class ExtremeValues {
     const ParetoTail& tail() const { return tail_; }
     // Magnitude of the first component; 0 without values.
     double largest() const;
+    // Of n values of a component from their mean, 0 if they are equal but for rounding; values that were not
+    // added count as zeros.
+    double largest_deviation(int component, std::uint64_t n) const;
 
     // Lower bound on the standard error of the mean of n independent values, if only few of them (hits of a
     // rare event, misses of a common one) contribute to the variance, or if all are equal; else 0, and 0 if

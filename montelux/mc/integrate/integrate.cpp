@@ -279,10 +279,15 @@ class Run {
         r.reason = std::move(tally.reason);
         r.stop = stop;
         r.warnings = std::move(tally.warnings);
-        if (r.warnings.empty() && nothing_found(estimator_->tally()))
-            r.warnings.push_back(
-                "a value is zero with an error of zero: no point has met anything but zeros, and "
-                "a narrow peak would not have been seen");
+        if (nothing_found(estimator_->tally())) {
+            if (r.warnings.empty())
+                r.warnings.push_back(
+                    "no point has met anything but zeros; a narrow peak would not have been seen");
+            // Zeros tell nothing of the size of what was not seen.
+            for (std::size_t c = 0; c < r.value.size(); ++c)
+                if (r.value[c] == 0 && r.standard_error[c] == 0)
+                    r.standard_error[c] = std::numeric_limits<double>::infinity();
+        }
         if (targeted_ && stop == StopReason::finished && rounding)
             r.warnings.push_back("the error asked for is below the rounding error of double precision");
         if (unchecked && stop != StopReason::error_target)

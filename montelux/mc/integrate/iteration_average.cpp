@@ -37,6 +37,19 @@ void IterationEstimate::add_mean(const CovarianceMoments& samples) {
     }
 }
 
+void IterationEstimate::add_mean(const SampleMoments& samples) {
+    add_mean(samples.moments);
+    const std::uint64_t n = samples.moments.count();
+    bool equal = true; // but for rounding: exact, as a combination of controls is
+    for (std::size_t c = 0; c < value.size(); ++c) {
+        const double deviation = samples.extremes.largest_deviation(static_cast<int>(c), n);
+        const double share = deviation / static_cast<double>(n);
+        equal = equal && !(deviation > rounding_error * std::abs(value[c]));
+        largest_variance[c] = std::max(largest_variance[c], share * share);
+    }
+    if (!equal) points += static_cast<double>(n);
+}
+
 IterationAverage::IterationAverage(int components, bool full_covariance)
     : full_(full_covariance), value_(static_cast<std::size_t>(components)),
       covariance_(value_.size() * (full_covariance ? value_.size() : 1)), chi_squared_(value_),

@@ -9,6 +9,8 @@
 
 namespace montelux {
 
+struct SampleMoments;
+
 // One iteration's estimate: values of the components and their covariances, row by row with the lower
 // triangle alone filled (or variances alone).
 struct IterationEstimate {
@@ -22,6 +24,8 @@ struct IterationEstimate {
     static IterationEstimate zero(int components, bool full_covariance);
     // Adds an independent part: the mean of samples of these moments, with its own covariance.
     void add_mean(const CovarianceMoments& samples);
+    // The same with the largest share of one value, from the samples' extremes.
+    void add_mean(const SampleMoments& samples);
 };
 
 // Iterations are weighted by numbers that are fixed before they run. (Weights by the variances that

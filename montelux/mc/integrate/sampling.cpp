@@ -51,11 +51,16 @@ void tally_mean(const SampleMoments& samples, Tally& tally) {
     judge_extremes(samples.extremes, samples.moments.count(), tally);
 }
 
-void judge_extremes(const ExtremeValues& extremes, std::uint64_t n, Tally& tally) {
-    if (n < 2 || extremes.components() == 0) return;
+void raise_errors_of_few(const ExtremeValues& extremes, std::uint64_t n, Tally& tally) {
+    if (n < 2) return;
     std::vector<double> least;
     for (int c = 0; c < extremes.components(); ++c) least.push_back(extremes.least_standard_error(c, n));
     raise_standard_errors(least, tally);
+}
+
+void judge_extremes(const ExtremeValues& extremes, std::uint64_t n, Tally& tally) {
+    if (n < 2 || extremes.components() == 0) return;
+    raise_errors_of_few(extremes, n, tally);
     warn_of_heavy_tail(extremes.tail(), n, static_cast<double>(n), tally.standard_error[0], tally.warnings);
 }
 

@@ -65,7 +65,9 @@ struct SampleMoments {
 // covariance, divided by `count`, is that of the mean.
 void tally_mean(const CovarianceMoments& moments, Tally& tally);
 void tally_mean(const SampleMoments& samples, Tally& tally);
-// Raises errors of means of n values if too few of the values contribute to them, and warns of heavy tails.
+// Raises errors of means of n values if too few of the values contribute to them.
+void raise_errors_of_few(const ExtremeValues& extremes, std::uint64_t n, Tally& tally);
+// The same, and warns of heavy tails.
 void judge_extremes(const ExtremeValues& extremes, std::uint64_t n, Tally& tally);
 // Standard errors of at least `least`, one per component; covariances grow in proportion.
 void raise_standard_errors(std::span<const double> least, Tally& tally);

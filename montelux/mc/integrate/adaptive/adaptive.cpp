@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "montelux/mc/integrate/adaptive/density_check.h"
 #include "montelux/mc/integrate/adaptive/density_trainer.h"
 #include "montelux/mc/integrate/adaptive/mixture_estimate.h"
 #include "montelux/mc/math/special.h"
@@ -39,7 +40,8 @@ constexpr std::uint64_t plateau_evaluations = 16384;
 constexpr double even_values = 0.7;          // effective share of exploring points of a plateau
 constexpr std::uint64_t most_kept = 1 << 18; // uniform points of a step that are kept for training
 constexpr double surprise_matters = 2;       // error over target from which heavy weights matter
-constexpr double much_sooner = 0.5; // share of the expected rest below which uniform points are resumed
+constexpr double much_sooner = 0.5;      // share of the expected rest below which uniform points are resumed
+constexpr std::uint64_t early_check = 4; // first samples after which a density is checked
 constexpr std::uint64_t step_points = 65536; // of each replicate in one step
 constexpr std::uint64_t smallest_budget = 4; // rounds that must be affordable for training to begin
 
@@ -73,6 +75,9 @@ class AdaptiveEstimator final : public Estimator {
         case Phase::train:
             return train(request);
         case Phase::weighted:
+            if (targeted(request) && checkable() &&
+                check_.due(weighted_, request, early_check * first_sample()))
+                return check(request);
             return sample(request, trainer_.density(), 2, weighted_);
         default:
             return sample(request, cube_, 0, uniform_);
@@ -90,7 +95,8 @@ class AdaptiveEstimator final : public Estimator {
         tally.non_finite.merge(weighted_.sums().non_finite);
         tally.non_finite.merge(abandoned_non_finite_);
         tally.ready = estimate.compared() && (phase_ == Phase::uniform || weighted) &&
-                      (weighted || !plateau() || uniform_.evaluations() >= plateau_evaluations);
+                      (weighted || !plateau() || uniform_.evaluations() >= plateau_evaluations) &&
+                      (!weighted || !checkable() || check_.covers(weighted_.points()));
         if (estimate.points() == 0) return tally;
         if (weighted)
             for (const DensityTrainer::Check& check : trainer_.checks()) {
@@ -105,8 +111,10 @@ class AdaptiveEstimator final : public Estimator {
         std::vector<std::string> tail;
         warn_of_heavy_tail(estimate.sums().extremes.tail(), estimate.all_points(),
                            static_cast<double>(estimate.all_points()), tally.standard_error[0], tail);
-        if (heavy || lost || !tail.empty()) tally.ready = false;
+        const bool unseen = weighted && check_.unseen() > 0;
+        if (heavy || lost || unseen || !tail.empty()) tally.ready = false;
         tally.warnings = std::move(tail);
+        if (weighted) check_.warn(tally);
         add_warnings(estimate, heavy, lost, tally);
         return tally;
     }
@@ -118,6 +126,7 @@ class AdaptiveEstimator final : public Estimator {
         state.put(round_points_);
         state.put(training_goal_);
         state.put(retrained_);
+        check_.save(state);
         state.put(abandoned_evaluations_);
         montelux::save(state, abandoned_non_finite_);
         trainer_.save(state);
@@ -131,6 +140,7 @@ class AdaptiveEstimator final : public Estimator {
         round_points_ = state.get_word();
         training_goal_ = state.get_double();
         retrained_ = state.get<int>();
+        check_.load(state);
         abandoned_evaluations_ = state.get_word();
         montelux::load(state, abandoned_non_finite_);
         trainer_.load(state);
@@ -295,6 +305,32 @@ class AdaptiveEstimator final : public Estimator {
         return StepOutcome::advanced;
     }
 
+    // Peaks and ridges may reach farther than the density that was fitted to them.
+    bool checkable() const {
+        return trainer_.effective_share() < peaky &&
+               problem_.evaluator.dimensions() <= DensityTrainer::max_gaussian_dimensions;
+    }
+    StepOutcome check(const StepRequest& request) {
+        if (request.cancel && request.cancel->requested()) return StepOutcome::cancelled;
+        const std::uint64_t trained = trainer_.evaluations();
+        const bool again = retrained_ < max_retrainings && 4 * trained < request.max_evaluations;
+        check_.run(trainer_, weighted_, request, again);
+        if (check_.unseen() > 0 && again) retrain(2 * static_cast<double>(trained));
+        return StepOutcome::advanced;
+    }
+
+    // Discards the weighted samples: an estimate that kept them, with a density chosen by looking at them,
+    // would be biased.
+    void retrain(double goal) {
+        ++retrained_;
+        abandoned_evaluations_ += weighted_.evaluations();
+        abandoned_non_finite_.merge(weighted_.sums().non_finite);
+        weighted_ = MixtureEstimate(settings_.replicates, problem_.evaluator.components());
+        check_ = {};
+        training_goal_ = goal;
+        phase_ = Phase::train;
+    }
+
     // Returns to uniform points if they prove better; trains more if the target is much farther than
     // expected.
     void choose_again(const StepRequest& request, bool first) {
@@ -321,14 +357,7 @@ class AdaptiveEstimator final : public Estimator {
         const bool surprised = ratio <= surprise_matters && surprising(weighted_) &&
                                4 * trained < static_cast<double>(request.max_evaluations);
         if (!far && !surprised) return;
-        // Discards these samples: an estimate that kept them, with a density chosen by looking at them, would
-        // be biased.
-        ++retrained_;
-        abandoned_evaluations_ += weighted_.evaluations();
-        abandoned_non_finite_.merge(weighted_.sums().non_finite);
-        weighted_ = MixtureEstimate(settings_.replicates, problem_.evaluator.components());
-        training_goal_ = surprised ? 2 * trained : settings_.training_share * left;
-        phase_ = Phase::train;
+        retrain(surprised ? 2 * trained : settings_.training_share * left);
     }
 
     bool surprising(const MixtureEstimate& estimate) const {
@@ -370,6 +399,7 @@ class AdaptiveEstimator final : public Estimator {
     std::uint64_t round_points_; // of the next round of training
     double training_goal_ = 0;   // evaluations that training may always take
     int retrained_ = 0;
+    DensityCheck check_;
     std::uint64_t abandoned_evaluations_ = 0;
     NonFiniteCount abandoned_non_finite_;
     MixtureEstimate uniform_, weighted_;

@@ -15,7 +15,6 @@
 namespace montelux {
 namespace {
 
-constexpr int max_gaussian_dimensions = 32;   // their covariances grow with the square
 constexpr double enough_even = 0.3;           // relative variance below which no Gaussians are added
 constexpr int first_fit_before_gaussians = 2; // rounds that maps alone are given
 constexpr int em_steps = 20;
@@ -25,8 +24,14 @@ constexpr std::size_t most_remembered = 128;
 constexpr double exploring_width = 1.5;
 constexpr double safe_width = 1.1;
 constexpr std::size_t least_walked = 4, most_walked = 128; // steps of walkers after a round
+constexpr std::size_t longest_check = 1024;                // steps that check the density
+constexpr double few_hits = 4;      // their spread hardly shows in that of the replicates
 constexpr double heavy_shape = 0.4; // of the tail of a round's weights; from 0.5 the variance is infinite
 constexpr std::uint64_t least_seen = 16; // non-zero points of a round needed for a fit
+
+// Scouts walk under |g|^(1 / temperature). In many variables it is lower, so that their effective number, when
+// they are weighted to |g|, stays within an order of magnitude for a Gaussian.
+double scout_temperature(int dimensions) { return std::min(4.0, 1 + 15.0 / dimensions); }
 
 bool is_heavy_tailed(std::span<const double> weights) {
     ParetoTail tail;
@@ -129,7 +134,7 @@ bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
     Round drawn_round{drawn, std::move(points.x), std::move(h), std::move(points.density)};
     Walk walked;
     if (!useless && lacking(rounds_ + 1, relative_variance) && !density_.gaussians().empty())
-        walked = walk(drawn_round, n / 4);
+        walked = walk(walked_, drawn_round, n / 4, most_walked, 1);
 
     // Nothing is changed before this line, so an exception of the integrand changes nothing.
     ++rounds_;
@@ -145,7 +150,10 @@ bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
         recent_.push_back(std::move(drawn_round));
         if (recent_.size() > 2) recent_.erase(recent_.begin());
     }
-    if (!walked.points.h.empty()) walked_ = std::move(walked.points);
+    if (!walked.points.h.empty()) {
+        walked_ = std::move(walked.points);
+        ++walks_;
+    }
     fit();
     return true;
 }
@@ -165,34 +173,73 @@ DensityFunction DensityTrainer::counted_steering(std::uint64_t& evaluations,
     };
 }
 
-DensityTrainer::Walk DensityTrainer::walk(const Round& last, std::uint64_t max_evaluations) const {
+DensityTrainer::Walk DensityTrainer::walk(const WalkedPoints& before, const Round& last,
+                                          std::uint64_t max_evaluations, std::size_t longest,
+                                          double exponent) const {
     DifferenceWalk settings;
-    settings.key = hash_key(problem_.seed, 5, rounds_ + 1);
-    settings.steps = std::min<std::uint64_t>(most_walked, max_evaluations / settings.walkers);
+    settings.key = hash_key(problem_.seed, 5, walks_);
+    settings.steps = std::min<std::uint64_t>(longest, max_evaluations / settings.walkers);
+    settings.exponent = exponent;
     Walk walk;
     if (settings.steps < least_walked) return walk;
     const DensityFunction h = counted_steering(walk.evaluations, walk.non_finite);
-    if (walked_.h.empty()) {
+    if (before.h.empty()) {
         std::vector<double> weights(last.h.size());
-        for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = last.h[i] / last.p[i];
+        for (std::size_t i = 0; i < weights.size(); ++i)
+            weights[i] = std::pow(last.h[i], exponent) / last.p[i];
         walk.points = walk_by_differences(h, last.x, last.h, weights, settings);
     } else {
-        const std::size_t first = walked_.h.size() - settings.walkers;
-        walk.points = walk_by_differences(h, walked_.x.view().slice(first, settings.walkers),
-                                          std::span(walked_.h).subspan(first),
+        const std::size_t first = before.h.size() - settings.walkers;
+        walk.points = walk_by_differences(h, before.x.view().slice(first, settings.walkers),
+                                          std::span(before.h).subspan(first),
                                           std::vector<double>(settings.walkers, 1.0), settings);
     }
     return walk;
 }
 
+double DensityTrainer::unseen_share(double n, std::uint64_t max_evaluations) {
+    const Round& last = recent_.back();
+    const double exponent = 1 / scout_temperature(density_.dimensions());
+    Walk walked = walk(scouts_, last, max_evaluations, longest_check, exponent);
+    if (walked.points.h.empty()) return 0;
+    double mean = 0;
+    for (std::size_t i = 0; i < last.h.size(); ++i)
+        mean += last.h[i] / last.p[i] / static_cast<double>(last.h.size());
+    const std::size_t count = walked.points.h.size();
+    const double largest = *std::max_element(walked.points.h.begin(), walked.points.h.end());
+    // Each walked point stands for a share of the integral, and for so many of the n points.
+    std::vector<double> shares(count), hits(count);
+    double total = 0;
+    for (std::size_t i = 0; i < count; ++i)
+        total += shares[i] = std::pow(walked.points.h[i] / largest, 1 - exponent);
+    density_.pdf(walked.points.x, hits);
+    for (std::size_t i = 0; i < count; ++i) {
+        shares[i] /= total;
+        hits[i] *= mean / walked.points.h[i];
+    }
+    evaluations_ += walked.evaluations;
+    non_finite_.merge(walked.non_finite);
+    scouts_ = std::move(walked.points);
+    ++walks_;
+    std::vector<std::uint32_t> order(count);
+    std::iota(order.begin(), order.end(), std::uint32_t{0});
+    std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
+        return hits[a] != hits[b] ? hits[a] < hits[b] : a < b;
+    });
+    double expected = 0, unseen = 0;
+    for (std::uint32_t i : order) {
+        expected += hits[i] * shares[i] * n;
+        if (expected >= few_hits || hits[i] * far_above > 1) break;
+        unseen += shares[i];
+    }
+    return unseen;
+}
+
 DensityTrainer::Pool DensityTrainer::pool() const {
     const int dimensions = density_.dimensions();
-    std::size_t drawn = walked_.h.size(); // points that have a density
-    double mean_size = 0;                 // of h, by the last round
-    for (const Round& r : recent_) drawn += r.h.size();
     const Round& last = recent_.back();
-    for (std::size_t i = 0; i < last.h.size(); ++i)
-        mean_size += last.h[i] / last.p[i] / static_cast<double>(last.h.size());
+    std::size_t drawn = walked_.h.size() + scouts_.h.size(); // points that have a density
+    for (const Round& r : recent_) drawn += r.h.size();
     const std::size_t count = drawn + remembered_h_.size();
     Pool pool;
     pool.x.resize(count, dimensions);
@@ -203,14 +250,21 @@ DensityTrainer::Pool DensityTrainer::pool() const {
         pool.h.insert(pool.h.end(), h.begin(), h.end());
     };
     for (const Round& r : recent_) add(r.x, r.h);
-    if (!walked_.h.empty()) add(walked_.x, walked_.h);
+    for (const WalkedPoints* walked : {&walked_, &scouts_})
+        if (!walked->h.empty()) add(walked->x, walked->h);
     if (!remembered_h_.empty()) add(remembered_, remembered_h_);
-    // The density of walkers is h over its integral.
     pool.p.assign(count, 0.0);
-    if (mean_size > 0)
-        for (std::size_t i = 0; i < count; ++i)
-            pool.p[i] =
-                pool.h[i] / mean_size * static_cast<double>(walked_.h.size()) / static_cast<double>(drawn);
+    for (const WalkedPoints* walked : {&walked_, &scouts_}) {
+        if (walked->h.empty()) continue;
+        // The density of walkers is a power of h over its integral, which the last round estimates.
+        double integral = 0;
+        for (std::size_t i = 0; i < last.h.size(); ++i)
+            integral +=
+                std::pow(last.h[i], walked->exponent) / last.p[i] / static_cast<double>(last.h.size());
+        const double share = static_cast<double>(walked->h.size()) / static_cast<double>(drawn);
+        for (std::size_t i = 0; integral > 0 && i < count; ++i)
+            pool.p[i] += std::pow(pool.h[i], walked->exponent) / integral * share;
+    }
     std::vector<double> part(count);
     for (const Round& r : recent_) {
         r.density.pdf(pool.x, part);

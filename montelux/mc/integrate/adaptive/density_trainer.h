@@ -32,6 +32,10 @@ class DensityTrainer {
     // One round of n points, about (a multiple of what the density divides exactly). False when cancelled:
     // nothing changed.
     bool round(std::uint64_t n, const CancelFlag* cancel);
+    // Walks under |g| from points of the last round, and returns the share of the integral that lies where n
+    // points of the density are expected to hit too rarely for their spread to tell. The next fit sees the
+    // walked points.
+    double unseen_share(double n, std::uint64_t max_evaluations);
 
     const MixtureDensity& density() const { return density_; }
     int rounds() const { return rounds_; }
@@ -43,6 +47,8 @@ class DensityTrainer {
     // density does not cover.
     double uncovered_share() const { return uncovered_share_; }
     static constexpr double uncovered_matters = 2e-3; // above which it matters
+    // With more variables there are no Gaussians, whose covariances grow with the square, and no walkers.
+    static constexpr int max_gaussian_dimensions = 32;
     // The last two rounds' estimates of the first component, with variances as of independent points.
     struct Check {
         double value = 0, variance = 0;
@@ -74,8 +80,9 @@ class DensityTrainer {
         std::uint64_t evaluations = 0;
         NonFiniteCount non_finite;
     };
-    // Continues the last walk, or starts at points of the round just drawn.
-    Walk walk(const Round& last, std::uint64_t max_evaluations) const;
+    // Continues a walk, or starts at points of the round just drawn.
+    Walk walk(const WalkedPoints& before, const Round& last, std::uint64_t max_evaluations,
+              std::size_t longest, double exponent) const;
     void fit();
     Pool pool() const;
     void remember(const Pool& all, std::span<const double> ratios);
@@ -88,9 +95,10 @@ class DensityTrainer {
     // Points of all rounds with the greatest h / q at the time, so that later rounds do not forget them.
     PointBuffer remembered_;
     std::vector<double> remembered_h_;
-    WalkedPoints walked_; // of the last walk
+    WalkedPoints walked_; // of the last walk,
+    WalkedPoints scouts_; // and of the last check
     std::vector<Check> checks_;
-    int rounds_ = 0;
+    int rounds_ = 0, walks_ = 0;
     bool enriched_ = false;
     double relative_variance_ = 0, effective_share_ = 0, uncovered_share_ = 0;
     std::uint64_t nonzero_ = 0, evaluations_ = 0;

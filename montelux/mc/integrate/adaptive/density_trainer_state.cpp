@@ -22,15 +22,19 @@ void DensityTrainer::save(StateWriter& state) const {
     state.put(remembered_h_);
     for (int d = 0; d < remembered_.dimensions(); ++d)
         for (double v : remembered_.view().coordinate(d)) state.put(v);
-    state.put(walked_.h);
-    for (int d = 0; d < density_.dimensions(); ++d)
-        for (double v : walked_.x.view().coordinate(d)) state.put(v);
+    for (const WalkedPoints* walked : {&walked_, &scouts_}) {
+        state.put(walked->h);
+        state.put(walked->exponent);
+        for (int d = 0; d < walked->x.dimensions(); ++d)
+            for (double v : walked->x.view().coordinate(d)) state.put(v);
+    }
     state.put(static_cast<std::uint64_t>(checks_.size()));
     for (const Check& c : checks_) {
         state.put(c.value);
         state.put(c.variance);
     }
     state.put(rounds_);
+    state.put(walks_);
     state.put(enriched_);
     state.put(share_step_);
     state.put(relative_variance_);
@@ -63,16 +67,20 @@ void DensityTrainer::load(StateReader& state) {
     remembered_.resize(remembered_h_.size(), dimensions);
     for (int d = 0; d < dimensions; ++d)
         for (double& v : remembered_.coordinate(d)) v = state.get_double();
-    walked_.h = state.get_doubles();
-    walked_.x.resize(walked_.h.size(), dimensions);
-    for (int d = 0; d < dimensions; ++d)
-        for (double& v : walked_.x.coordinate(d)) v = state.get_double();
+    for (WalkedPoints* walked : {&walked_, &scouts_}) {
+        walked->h = state.get_doubles();
+        walked->exponent = state.get_double();
+        walked->x.resize(walked->h.size(), dimensions);
+        for (int d = 0; d < dimensions && !walked->h.empty(); ++d)
+            for (double& v : walked->x.coordinate(d)) v = state.get_double();
+    }
     checks_.clear();
     for (std::uint64_t n = state.get_word(); n > 0; --n) {
         const double value = state.get_double();
         checks_.push_back({value, state.get_double()});
     }
     rounds_ = state.get<int>();
+    walks_ = state.get<int>();
     enriched_ = state.get<int>() != 0;
     share_step_ = std::clamp(state.get<int>(), 1, MixtureDensity::units);
     relative_variance_ = state.get_double();

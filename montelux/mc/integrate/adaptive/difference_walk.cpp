@@ -12,6 +12,10 @@ namespace montelux {
 namespace {
 
 constexpr double shortest_step = 0.05; // relative to the best one for a Gaussian, for ridges that bend
+// Shares of the coordinates that a proposal moves: some of them may bend where others do not.
+constexpr std::array moved_shares{1 / 3., 2 / 3., 1.};
+constexpr double least_snooker = 1.2; // and 2.2 at most, around the best length for a Gaussian, 1.7
+constexpr double whole_steps = 0.125; // share of proposals by a whole difference, from peak to like peak
 
 // Systematic draws of indices by weight.
 std::vector<std::size_t> draw_by_weight(std::span<const double> weights, std::size_t count, double u) {
@@ -45,6 +49,8 @@ WalkedPoints walk_by_differences(const DensityFunction& h, const PointBatch& x,
         here[place] = h_at_x[starts[w]];
     }
     WalkedPoints walked;
+    walked.exponent = settings.exponent;
+    const double coldness = 1 / settings.exponent;
     walked.x.resize(walkers * settings.steps, n);
     const double best_step = 2.38 / std::sqrt(2.0 * n);
     PointBuffer proposed(half, n);
@@ -57,18 +63,49 @@ WalkedPoints walk_by_differences(const DensityFunction& h, const PointBatch& x,
                                                                             static_cast<double>(half)));
             };
             std::vector<char> inside(half, 1);
+            auto propose = [&](std::size_t w, int d, double to) {
+                inside[w] = inside[w] && to > 0 && to < 1;
+                proposed(w, d) = std::clamp(to, 1e-12, 1 - 1e-12);
+            };
+            const bool snooker = step % 3 == 2;
+            std::vector<double> factor(half, 1.0); // of the densities' ratio
             for (std::size_t w = 0; w < half; ++w) {
                 const std::size_t a = draw(), b = draw();
-                const double length = best_step * std::pow(shortest_step, numbers.next_double());
+                if (snooker) {
+                    const std::size_t z = draw();
+                    double along = 0, before = 0;
+                    for (int d = 0; d < n; ++d) {
+                        const double arm = at(first + w, d) - at(z, d);
+                        along += (at(a, d) - at(b, d)) * arm;
+                        before += arm * arm;
+                    }
+                    const double length = least_snooker + numbers.next_double();
+                    // The walker's distance from z changes by this factor.
+                    const double stretch = before > 0 ? 1 + length * along / before : 1;
+                    for (int d = 0; d < n; ++d)
+                        propose(w, d, at(z, d) + stretch * (at(first + w, d) - at(z, d)));
+                    factor[w] = std::pow(std::abs(stretch), n - 1);
+                    continue;
+                }
+                const double part = numbers.next_double();
+                const double length =
+                    part < whole_steps
+                        ? 1
+                        : best_step * std::pow(shortest_step, (part - whole_steps) / (1 - whole_steps));
+                const double moved = moved_shares[std::min<std::size_t>(
+                    moved_shares.size() - 1,
+                    static_cast<std::size_t>(numbers.next_double() * moved_shares.size()))];
                 for (int d = 0; d < n; ++d) {
-                    const double to = at(first + w, d) + length * (at(a, d) - at(b, d));
-                    inside[w] = inside[w] && to > 0 && to < 1;
-                    proposed(w, d) = std::clamp(to, 1e-12, 1 - 1e-12);
+                    const bool moves = numbers.next_double() < moved;
+                    propose(w, d, at(first + w, d) + (moves ? length * (at(a, d) - at(b, d)) : 0));
                 }
             }
             h(proposed, there);
             for (std::size_t w = 0; w < half; ++w) {
-                if (!inside[w] || !(there[w] > numbers.next_double() * here[first + w])) continue;
+                // Accepted with probability (h'/h)^exponent times the factor.
+                if (!inside[w] || !(there[w] * std::pow(factor[w], coldness) >
+                                    std::pow(numbers.next_double(), coldness) * here[first + w]))
+                    continue;
                 for (int d = 0; d < n; ++d) at(first + w, d) = proposed(w, d);
                 here[first + w] = there[w];
             }

@@ -12,6 +12,7 @@ namespace montelux {
 namespace {
 
 constexpr std::size_t most_points = 16384; // that a fit takes
+constexpr double least_log_density = -700;
 
 } // namespace
 
@@ -60,6 +61,12 @@ void Gaussian::log_pdf(const PointBatch& x, std::span<double> result) const {
         }
         for (std::size_t p = 0; p < count; ++p) result[p] -= 0.5 * z[p] * z[p];
     }
+}
+
+void Gaussian::pdf(const PointBatch& x, std::span<double> result) const {
+    log_pdf(x, result);
+    for (std::size_t p = 0; p < x.count(); ++p)
+        result[p] = result[p] > least_log_density ? std::exp(result[p]) : 0;
 }
 
 double Gaussian::squared_distance(std::span<const double> x) const {
@@ -176,8 +183,8 @@ void fit_gaussians(std::vector<Gaussian>& components, const PointBatch& x, std::
     std::vector<std::vector<double>> part(components.size(), std::vector<double>(used.size()));
     for (int step = 0; step < steps; ++step) {
         for (std::size_t k = 0; k < components.size(); ++k) {
-            components[k].log_pdf(points, part[k]);
-            for (double& p : part[k]) p = shares[k] * std::exp(p);
+            components[k].pdf(points, part[k]);
+            for (double& p : part[k]) p *= shares[k];
         }
         for (std::size_t j = 0; j < used.size(); ++j) {
             double sum = 0;

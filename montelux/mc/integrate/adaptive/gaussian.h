@@ -22,6 +22,8 @@ class Gaussian {
     void sample(const PointBatch& u, PointBuffer& x) const;
     // log p(x) at each point.
     void log_pdf(const PointBatch& x, std::span<double> result) const;
+    // The density itself; 0 instead of numbers below the smallest normal ones, which are slow to compute.
+    void pdf(const PointBatch& x, std::span<double> result) const;
     // (x - mu)^T Sigma^-1 (x - mu).
     double squared_distance(std::span<const double> x) const;
     double log_norm() const { return log_norm_; }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "montelux/mc/integrate/adaptive/boundary_density.h"
+#include "montelux/mc/integrate/lane_sum.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
@@ -13,7 +14,8 @@ namespace {
 
 // Too few points near a corner show how heavy its weights are, so this share is not fitted.
 constexpr int boundary_units = 1;
-constexpr double most_weight = 10; // times the mean, of a point that shares are fitted to
+constexpr double most_weight = 10;         // times the mean, of a point that shares are fitted to
+constexpr std::size_t block_points = 1024; // whose densities stay in the cache
 
 } // namespace
 
@@ -68,8 +70,7 @@ void MixtureDensity::sample(int channel, const PointBatch& u, PointBuffer& x,
 
 void MixtureDensity::channel_pdf(int channel, const PointBatch& x, std::span<double> density) const {
     if (channel >= first_gaussian()) {
-        gaussian(channel).log_pdf(x, density);
-        for (std::size_t i = 0; i < x.count(); ++i) density[i] = std::exp(density[i]);
+        gaussian(channel).pdf(x, density);
         return;
     }
     std::fill_n(density.begin(), x.count(), 1.0);
@@ -111,20 +112,31 @@ void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double
     double total = 0;
     for (std::size_t i = 0; i < x.count(); ++i) total += h[i] / p[i];
     const double mean = total / static_cast<double>(x.count()), largest = most_weight * mean;
-    std::vector<double> a(n, 1 / static_cast<double>(n)), moment(n), scale(x.count());
+    std::vector<double> a(n, 1 / static_cast<double>(n)), moment(n), mixture(block_points),
+        scale(block_points);
     auto normalise = [&] {
         const double sum = std::accumulate(a.begin(), a.end(), 0.0);
         for (double& v : a) v /= sum;
     };
     for (int iteration = 0; iteration < 40; ++iteration) {
-        for (std::size_t i = 0; i < x.count(); ++i) {
-            double mixture = 0;
-            for (std::size_t k = 0; k < n; ++k) mixture += a[k] * q[k][i];
-            const double weight = std::min(h[i] / p[i], largest), ratio = h[i] / mixture;
-            scale[i] = h[i] > 0 && ratio < beyond_reach * mean ? weight * ratio / mixture : 0;
+        std::ranges::fill(moment, 0.0);
+        for (std::size_t first = 0; first < x.count(); first += block_points) {
+            const std::size_t count = std::min(block_points, x.count() - first);
+            std::ranges::fill(mixture, 0.0);
+            for (std::size_t k = 0; k < n; ++k) {
+                const double *qk = &q[k][first], ak = a[k];
+                for (std::size_t i = 0; i < count; ++i) mixture[i] += ak * qk[i];
+            }
+            for (std::size_t i = 0; i < count; ++i) {
+                const double hi = h[first + i];
+                const double weight = std::min(hi / p[first + i], largest), ratio = hi / mixture[i];
+                scale[i] = hi > 0 && ratio < beyond_reach * mean ? weight * ratio / mixture[i] : 0;
+            }
+            for (std::size_t k = 0; k < n; ++k) {
+                const double* qk = &q[k][first];
+                moment[k] += lane_sum(count, [&](std::size_t i) { return scale[i] * qk[i]; });
+            }
         }
-        for (std::size_t k = 0; k < n; ++k)
-            moment[k] = std::inner_product(scale.begin(), scale.end(), q[k].begin(), 0.0);
         for (std::size_t k = 0; k < n; ++k) a[k] *= std::sqrt(moment[k]);
         if (!(std::isfinite(std::accumulate(a.begin(), a.end(), 0.0)) &&
               std::accumulate(a.begin(), a.end(), 0.0) > 0))

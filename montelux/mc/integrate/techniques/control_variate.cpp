@@ -64,8 +64,10 @@ class ControlVariateEstimator final : public Estimator {
         if (!sum) return StepOutcome::cancelled;
         if (!beta_.empty()) {
             auto estimate = IterationEstimate::zero(components(), problem_.full_covariance);
-            estimate.add_mean(sum->residual.moments);
+            estimate.add_mean(sum->residual);
             average_.add(static_cast<double>(size), estimate);
+            tail_.merge(sum->residual.extremes.tail());
+            averaged_ += size;
         }
         joint_.merge(sum->joint);
         non_finite_.merge(sum->residual.non_finite);
@@ -76,6 +78,8 @@ class ControlVariateEstimator final : public Estimator {
     Tally tally() const override {
         Tally tally;
         average_.tally(tally);
+        warn_of_heavy_tail(tail_, averaged_, static_cast<double>(averaged_), tally.standard_error[0],
+                           tally.warnings);
         tally.evaluations = joint_.count();
         tally.non_finite = non_finite_;
         warn(tally.warnings);
@@ -86,6 +90,8 @@ class ControlVariateEstimator final : public Estimator {
         montelux::save(state, joint_);
         montelux::save(state, non_finite_);
         state.put(beta_);
+        state.put(averaged_);
+        state.put(tail_.values());
     }
     void load(StateReader& state) override {
         average_.load(state);
@@ -94,6 +100,8 @@ class ControlVariateEstimator final : public Estimator {
         beta_ = state.get_doubles();
         if (!beta_.empty() && beta_.size() != static_cast<std::size_t>(components()) * integrals_.size())
             throw Error("the saved state has another number of controls");
+        averaged_ = state.get_word();
+        tail_.restore(state.get_doubles());
     }
 
   private:
@@ -117,7 +125,7 @@ class ControlVariateEstimator final : public Estimator {
     int controls() const { return static_cast<int>(integrals_.size()); }
     ControlSum empty() const {
         return {CovarianceMoments(g_.components()),
-                {CovarianceMoments(components(), problem_.full_covariance), {}}};
+                {CovarianceMoments(components(), problem_.full_covariance), {}, ExtremeValues(components())}};
     }
 
     void add(const ValueBuffer& values, ControlSum& to) const {
@@ -176,7 +184,9 @@ class ControlVariateEstimator final : public Estimator {
     CovarianceMoments joint_;
     IterationAverage average_;
     NonFiniteCount non_finite_;
-    std::vector<double> beta_; // component by component; empty before the pilot
+    std::vector<double> beta_;   // component by component; empty before the pilot
+    ParetoTail tail_;            // of the averaged residuals,
+    std::uint64_t averaged_ = 0; // and their number
 };
 
 } // namespace

@@ -102,6 +102,9 @@ class RoundsEstimator : public Estimator {
 
     int components() const { return sampler_.problem().evaluator.components(); }
     bool full() const { return sampler_.problem().full_covariance; }
+    SampleMoments empty_samples() const {
+        return {CovarianceMoments(components(), full()), {}, ExtremeValues(components())};
+    }
 
     TechniqueSampler sampler_;
     std::uint64_t rounds_ = 0;
@@ -116,7 +119,7 @@ class HeuristicEstimator final : public RoundsEstimator {
   public:
     HeuristicEstimator(const Problem& problem, const MultipleImportance& settings)
         : RoundsEstimator(problem, settings), heuristic_(std::get<MisHeuristic>(settings.weights)),
-          sums_(sampler_.techniques(), CovarianceMoments(components(), full())) {
+          sums_(sampler_.techniques(), empty().samples) {
         const double p = heuristic_.parameter;
         if (heuristic_.kind == MisHeuristic::Kind::power && !(p > 0 && std::isfinite(p)))
             throw Error("multiple_importance",
@@ -130,7 +133,7 @@ class HeuristicEstimator final : public RoundsEstimator {
         return next_step_size(done, 4096, limit);
     }
     std::uint64_t least_rounds() const override { return 1; }
-    TechniqueSum empty() const override { return {{CovarianceMoments(components(), full()), {}}, {}, {}}; }
+    TechniqueSum empty() const override { return {empty_samples(), {}, {}}; }
 
     void add(std::size_t i, Batch& batch, TechniqueSum& to) const override {
         const std::size_t count = batch.sum.size(), techniques = sampler_.techniques();
@@ -151,15 +154,16 @@ class HeuristicEstimator final : public RoundsEstimator {
         to.samples.add(batch.f);
     }
     void take(std::uint64_t, const std::vector<TechniqueSum>& sums) override {
-        for (std::size_t i = 0; i < sums.size(); ++i) sums_[i].merge(sums[i].samples.moments);
+        for (std::size_t i = 0; i < sums.size(); ++i) sums_[i].merge(sums[i].samples);
     }
     void fill(Tally& tally) const override {
         if (rounds_ == 0) return;
         Tally part;
         const auto m = static_cast<std::size_t>(components());
         std::vector<double> variance(m);
-        for (const CovarianceMoments& s : sums_) {
-            tally_mean(s, part);
+        for (const SampleMoments& s : sums_) {
+            tally_mean(s.moments, part);
+            raise_errors_of_few(s.extremes, s.moments.count(), part);
             for (std::size_t c = 0; c < m; ++c) {
                 tally.value[c] += part.value[c];
                 variance[c] += part.standard_error[c] * part.standard_error[c];
@@ -169,16 +173,27 @@ class HeuristicEstimator final : public RoundsEstimator {
                 tally.covariance[k] += part.covariance[k];
         }
         for (std::size_t c = 0; c < m; ++c) tally.standard_error[c] = std::sqrt(variance[c]);
+        for (const SampleMoments& s : sums_) {
+            if (!tally.warnings.empty()) break;
+            warn_of_heavy_tail(s.extremes.tail(), s.moments.count(), static_cast<double>(s.moments.count()),
+                               tally.standard_error[0], tally.warnings);
+        }
     }
     void save_sums(StateWriter& state) const override {
-        for (const CovarianceMoments& s : sums_) montelux::save(state, s);
+        for (const SampleMoments& s : sums_) {
+            montelux::save(state, s.moments);
+            s.extremes.save(state);
+        }
     }
     void load_sums(StateReader& state) override {
-        for (CovarianceMoments& s : sums_) montelux::load(state, s);
+        for (SampleMoments& s : sums_) {
+            montelux::load(state, s.moments);
+            s.extremes.load(state);
+        }
     }
 
     MisHeuristic heuristic_;
-    std::vector<CovarianceMoments> sums_;
+    std::vector<SampleMoments> sums_; // one per technique
 };
 
 class OptimalEstimator final : public RoundsEstimator {
@@ -186,7 +201,8 @@ class OptimalEstimator final : public RoundsEstimator {
     OptimalEstimator(const Problem& problem, const MultipleImportance& settings)
         : RoundsEstimator(problem, settings), average_(components(), full()),
           matrix_(sampler_.techniques() * sampler_.techniques()),
-          vectors_(sampler_.techniques() * static_cast<std::size_t>(components())) {}
+          vectors_(sampler_.techniques() * static_cast<std::size_t>(components())),
+          tails_(sampler_.techniques()) {}
 
   private:
     std::uint64_t step_size(std::uint64_t done, std::uint64_t limit) const override {
@@ -195,9 +211,7 @@ class OptimalEstimator final : public RoundsEstimator {
     // A variance needs two samples of each technique.
     std::uint64_t least_rounds() const override { return 2; }
     TechniqueSum empty() const override {
-        return {{CovarianceMoments(components(), full()), {}},
-                std::vector<double>(matrix_.size()),
-                std::vector<double>(vectors_.size())};
+        return {empty_samples(), std::vector<double>(matrix_.size()), std::vector<double>(vectors_.size())};
     }
 
     void add(std::size_t i, Batch& batch, TechniqueSum& to) const override {
@@ -234,8 +248,12 @@ class OptimalEstimator final : public RoundsEstimator {
             auto estimate = IterationEstimate::zero(components(), full());
             for (std::size_t c = 0; c < estimate.value.size(); ++c)
                 for (std::size_t k = 0; k < techniques; ++k) estimate.value[c] += alpha_[c * techniques + k];
-            for (const TechniqueSum& s : sums) estimate.add_mean(s.samples.moments);
+            for (std::size_t i = 0; i < sums.size(); ++i) {
+                estimate.add_mean(sums[i].samples);
+                tails_[i].merge(sums[i].samples.extremes.tail());
+            }
             average_.add(static_cast<double>(rounds * sampler_.samples_in_round()), estimate);
+            averaged_ += rounds;
         }
         for (const TechniqueSum& s : sums) {
             for (std::size_t k = 0; k < matrix_.size(); ++k) matrix_[k] += s.matrix[k];
@@ -244,15 +262,25 @@ class OptimalEstimator final : public RoundsEstimator {
         alpha_ = solve_semidefinite(matrix_, vectors_, components());
     }
 
-    void fill(Tally& tally) const override { average_.tally(tally); }
+    void fill(Tally& tally) const override {
+        average_.tally(tally);
+        for (std::size_t i = 0; i < tails_.size() && tally.warnings.empty(); ++i) {
+            const std::uint64_t n = averaged_ * sampler_.samples(i);
+            warn_of_heavy_tail(tails_[i], n, static_cast<double>(n), tally.standard_error[0], tally.warnings);
+        }
+    }
     void save_sums(StateWriter& state) const override {
         average_.save(state);
+        state.put(averaged_);
+        for (const ParetoTail& tail : tails_) state.put(tail.values());
         state.put(matrix_);
         state.put(vectors_);
         state.put(alpha_);
     }
     void load_sums(StateReader& state) override {
         average_.load(state);
+        averaged_ = state.get_word();
+        for (ParetoTail& tail : tails_) tail.restore(state.get_doubles());
         for (std::vector<double>* part : {&matrix_, &vectors_}) {
             std::vector<double> numbers = state.get_doubles();
             if (numbers.size() != part->size())
@@ -265,9 +293,11 @@ class OptimalEstimator final : public RoundsEstimator {
     }
 
     IterationAverage average_;
-    std::vector<double> matrix_;  // sum over all samples so far of p_k p_l / (sum of n p)^2
-    std::vector<double> vectors_; // f p_k / (sum of n p)^2, component by component
-    std::vector<double> alpha_;   // likewise; empty before the pilot
+    std::vector<double> matrix_;    // sum over all samples so far of p_k p_l / (sum of n p)^2
+    std::vector<double> vectors_;   // f p_k / (sum of n p)^2, component by component
+    std::vector<double> alpha_;     // likewise; empty before the pilot
+    std::vector<ParetoTail> tails_; // of the averaged values of each technique,
+    std::uint64_t averaged_ = 0;    // which are of this many rounds
 };
 
 } // namespace

@@ -48,7 +48,7 @@ struct Vegas {
     // Uniform points for each point of the estimate, [0, 1].
     double uniform_share = 0.05;
     // Of Sobol' points.
-    int replicates = 8;
+    int replicates = 16;
     // Where the map starts; none: the identity. Its number of increments then stays.
     std::optional<AdaptiveMap> map = std::nullopt;
 

@@ -131,6 +131,29 @@ TEST(Adaptive, FollowsThinRingsAndCurvedRidges) {
     expect_found({rosenbrock, Domain({{-5, 5}, {-5, 5}}), {0.301507}}, 4, 3);
 }
 
+// A ridge in five variables that bends to a side peak of 7 % at x_1 < 0. Without the check by walkers, some 8
+// of 24 runs lose it.
+TEST(AdaptiveSlowTest, FollowsARidgeInFiveVariables) {
+    const double a = 0.8154, b = 98.95, truth = 4.132334e-4;
+    auto f = [=](std::span<const double> x) {
+        double exponent = 0;
+        for (std::size_t j = 0; j + 1 < x.size(); ++j) {
+            const double off = x[j + 1] - x[j] * x[j];
+            exponent += (a - x[j]) * (a - x[j]) + b * off * off;
+        }
+        return std::exp(-exponent);
+    };
+    const std::vector<Range> ranges(5, {-4.903, 4.917});
+    int lost = 0;
+    for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+        const IntegrationResult r =
+            integrate(f, Domain(ranges), Adaptive{}, {.relative_error = 1e-2, .evaluations = 1'000'000},
+                      {.seed = seed, .threads = 1});
+        lost += r.warnings.empty() && std::abs(r.value[0] - truth) > 4 * r.standard_error[0];
+    }
+    EXPECT_LE(lost, 3);
+}
+
 // Exploration and rounds of training shrink with the number of evaluations.
 TEST(Adaptive, TrainsWithFiveThousandEvaluations) {
     const KnownIntegral problem = two_peaks(4);

@@ -149,6 +149,33 @@ TEST(DensityTrainer, PeaksBecomeGaussians) {
     EXPECT_LT(trainer.relative_variance(), 2);
 }
 
+// Half of a thin ring: at first there are Gaussians for a part of it, after some rounds for all.
+TEST(DensityTrainer, WalkersTellWhatIsHardlySampled) {
+    const Watched watched(
+        [](std::span<const double> x) {
+            const double off = std::hypot(x[0] - 0.5, x[1] - 0.5) - 0.35;
+            return x[1] > 0.5 ? std::exp(-off * off / (2 * 0.008 * 0.008)) : 0.0;
+        },
+        2);
+    DensityTrainer trainer(watched.problem(), 4);
+    explore(trainer, watched, 4096);
+    trainer.find_peaks(100);
+    ASSERT_GE(trainer.density().gaussians().size(), 1u);
+    ASSERT_LE(trainer.density().gaussians().size(), 3u);
+    const std::uint64_t before = watched.evaluations, counted = trainer.evaluations();
+    EXPECT_GT(trainer.unseen_share(300, 8192), 0.3);
+    EXPECT_EQ(watched.evaluations - before, 8192u);
+    EXPECT_EQ(trainer.evaluations() - counted, 8192u);
+    // So many points hit every part of the ring.
+    EXPECT_LT(trainer.unseen_share(1e8, 8192), 1e-3);
+    for (int i = 0; i < 8; ++i) ASSERT_TRUE(trainer.round(4096, nullptr));
+    EXPECT_LT(trainer.unseen_share(3000, 8192), 3e-3);
+    // A walk that cannot be afforded tells nothing.
+    const std::uint64_t after = watched.evaluations;
+    EXPECT_EQ(trainer.unseen_share(3000, 64), 0);
+    EXPECT_EQ(watched.evaluations, after);
+}
+
 TEST(DensityTrainer, CancelledOrInterruptedStepsChangeNothing) {
     Watched watched([](std::span<const double> x) { return peak(x, 0.4, 50); }, 3);
     DensityTrainer trainer(watched.problem(), 4);
@@ -163,6 +190,8 @@ TEST(DensityTrainer, CancelledOrInterruptedStepsChangeNothing) {
     EXPECT_THROW(trainer.round(2048, nullptr), Stopped);
     EXPECT_EQ(words_of(trainer), before);
     EXPECT_THROW(trainer.find_peaks(2000), Stopped);
+    EXPECT_EQ(words_of(trainer), before);
+    EXPECT_THROW(trainer.unseen_share(1e4, 4096), Stopped);
     EXPECT_EQ(words_of(trainer), before);
 }
 

@@ -58,6 +58,49 @@ TEST(DifferenceWalk, HasTheMomentsOfTheFunction) {
     EXPECT_NEAR(std::sqrt(third) / 0.1, 1, 0.1);
 }
 
+// The square root of a Gaussian has twice its variances, and its points weighted by the other root have once.
+TEST(DifferenceWalk, FollowsAPowerOfTheFunction) {
+    Counted counted;
+    const WalkedPoints walked = walk(counted, {.key = 9, .walkers = 64, .steps = 1000, .exponent = 0.5});
+    EXPECT_EQ(walked.exponent, 0.5);
+    double third = 0, weighted = 0, total = 0;
+    for (std::size_t i = 0; i < walked.h.size(); ++i) {
+        const double c = walked.x.view()(i, 2) - 0.5, weight = std::sqrt(walked.h[i]);
+        third += c * c / 64e3;
+        weighted += weight * c * c;
+        total += weight;
+    }
+    EXPECT_NEAR(std::sqrt(third / 2) / 0.1, 1, 0.1);
+    EXPECT_NEAR(std::sqrt(weighted / total) / 0.1, 1, 0.1);
+}
+
+// All begin at one of two far peaks that no path joins; whole differences lead to the other once one walker is
+// there.
+TEST(DifferenceWalk, JumpsBetweenLikePeaks) {
+    const DensityFunction lattice = [](const PointBatch& x, std::span<double> values) {
+        for (std::size_t i = 0; i < x.count(); ++i) {
+            double squares = 0;
+            for (int d = 0; d < 2; ++d) {
+                const double t = 4 * x(i, d), off = t - std::floor(t) - 0.5;
+                squares += off * off;
+            }
+            values[i] = std::exp(-squares / (2 * 0.02 * 0.02));
+        }
+    };
+    const PointBuffer all = uniform_points(50'000, 2, 5);
+    std::vector<double> h(all.count()), weights(all.count());
+    lattice(all, h);
+    // The peaks of one column and one row alone.
+    for (std::size_t i = 0; i < h.size(); ++i)
+        weights[i] = all.view()(i, 0) < 0.25 || all.view()(i, 1) < 0.25 ? h[i] : 0;
+    const WalkedPoints walked =
+        walk_by_differences(lattice, all, h, weights, {.key = 1, .walkers = 64, .steps = 400});
+    int elsewhere = 0;
+    for (std::size_t i = walked.h.size() - 64; i < walked.h.size(); ++i)
+        elsewhere += walked.x.view()(i, 0) > 0.25 && walked.x.view()(i, 1) > 0.25;
+    EXPECT_GT(elsewhere, 15); // of about 36
+}
+
 TEST(DifferenceWalk, KeepsTheFunctionAtEachPoint) {
     Counted counted;
     const WalkedPoints walked = walk(counted, {.key = 3, .walkers = 8, .steps = 50});

@@ -221,11 +221,11 @@ TEST(Vegas, HeavyTailGivesAWarning) {
     EXPECT_FALSE(r.warnings.empty()) << r;
 }
 
-TEST(Vegas, ConstantsAndZeroAreExact) {
+TEST(Vegas, ConstantsAreExactAndZerosHaveNoKnownError) {
     for (const Form& form : forms) {
         const auto zero = integrate([](Point) { return 0.0; }, Domain::unit_cube(2), form.settings);
         EXPECT_EQ(zero.value[0], 0) << form.name;
-        EXPECT_EQ(zero.standard_error[0], 0) << form.name;
+        EXPECT_TRUE(std::isinf(zero.standard_error[0])) << form.name; // of what was not seen
         const auto three =
             integrate([](Point) { return 3.0; }, Domain::unit_cube(2), form.settings, {.evaluations = 50000});
         EXPECT_NEAR(three.value[0], 3, 5e-4) << form.name;

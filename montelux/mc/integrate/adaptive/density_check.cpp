@@ -1,0 +1,70 @@
+#include "montelux/mc/integrate/adaptive/density_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace montelux {
+namespace {
+
+constexpr double least_walk = 4096;    // evaluations of a check,
+constexpr double long_walk = 16384;    // the same where ridges may bend: uneven weights in several variables,
+constexpr double walk_share = 1 / 16.; // or this share of the weighted evaluations, if they are more
+constexpr int few_dimensions = 3;
+constexpr double even_weights = 0.1;        // relative variance
+constexpr std::uint64_t checked_growth = 4; // of points for which a check holds
+constexpr double fitted_share = 0.25;       // unseen share over target above which a density is fitted again,
+constexpr double warned_share = 0.5;        // and above which a result has a warning where it cannot be
+constexpr double least_unseen = 2e-4;       // smaller shares cannot be told from none
+
+// The target relative to the first component.
+double relative_target(const MixtureEstimate& estimate, const StepRequest& request) {
+    Tally tally;
+    estimate.tally(false, tally);
+    const double size = std::abs(tally.value[0]);
+    return std::max(request.relative_error, size > 0 ? request.absolute_error / size : 0);
+}
+
+} // namespace
+
+bool DensityCheck::due(const MixtureEstimate& estimate, const StepRequest& request,
+                       std::uint64_t early) const {
+    if (covers(estimate.points())) return false;
+    return estimate.points() >= early || (estimate.compared() && estimate.error_ratio(request) <= 1);
+}
+
+void DensityCheck::run(DensityTrainer& trainer, const MixtureEstimate& estimate, const StepRequest& request,
+                       bool again) {
+    const double left = static_cast<double>(request.max_evaluations);
+    const bool bent =
+        trainer.density().dimensions() > few_dimensions && trainer.relative_variance() > even_weights;
+    const double walk = std::min(left, std::max(bent ? long_walk : least_walk,
+                                                walk_share * static_cast<double>(estimate.evaluations())));
+    const double expected =
+        static_cast<double>(estimate.all_points()) + std::min(left, estimate.expected_rest(request));
+    const double target = relative_target(estimate, request);
+    unseen_ = trainer.unseen_share(expected, static_cast<std::uint64_t>(walk));
+    if (unseen_ <= std::max(least_unseen, (again ? fitted_share : warned_share) * target)) unseen_ = 0;
+    checked_points_ = checked_growth * estimate.points();
+}
+
+void DensityCheck::warn(Tally& tally) const {
+    if (!(unseen_ > 0)) return;
+    char text[128];
+    std::snprintf(text, sizeof text,
+                  "about %.2g %% of the integral lies where the trained density hardly samples",
+                  100 * unseen_);
+    tally.warnings.emplace_back(text);
+}
+
+void DensityCheck::save(StateWriter& state) const {
+    state.put(checked_points_);
+    state.put(unseen_);
+}
+
+void DensityCheck::load(StateReader& state) {
+    checked_points_ = state.get_word();
+    unseen_ = state.get_double();
+}
+
+} // namespace montelux
