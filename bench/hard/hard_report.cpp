@@ -53,7 +53,7 @@ struct Freedom {
 constexpr Freedom freedoms[] = {
     {"adaptive", "16 replicates", 15},
     {"quasi", "16 replicates", 15},
-    {"vegas_sobol", "8 replicates", 7},
+    {"vegas_sobol", "16 replicates", 15},
     {"vegas+", "10 iterations, each with its variance", 0},
     {"vegas", "variances within the strata", 0},
     {"basic", "all points", 0},

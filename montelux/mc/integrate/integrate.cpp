@@ -132,7 +132,8 @@ class Run {
         const Tally tally = estimator_->tally();
         // Nothing is known without evaluations.
         if (tally.evaluations > 0) {
-            if (targeted_ && tally.ready && reached(tally)) return StopReason::error_target;
+            if (targeted_ && tally.ready && reached(tally))
+                return nothing_found(tally) ? StopReason::finished : StopReason::error_target;
             if (targeted_ && tally.ready && is_rounding(tally)) return StopReason::finished;
             if (tally.evaluations + lost_ >= limit_) return StopReason::evaluations;
             if (has_time() && elapsed() >= budget_.time.count()) return StopReason::time;
@@ -284,9 +285,12 @@ class Run {
                 r.warnings.push_back(
                     "no point has met anything but zeros; a narrow peak would not have been seen");
             // Zeros tell nothing of the size of what was not seen.
-            for (std::size_t c = 0; c < r.value.size(); ++c)
-                if (r.value[c] == 0 && r.standard_error[c] == 0)
-                    r.standard_error[c] = std::numeric_limits<double>::infinity();
+            const std::size_t m = r.value.size();
+            for (std::size_t c = 0; c < m; ++c) {
+                if (r.value[c] != 0 || r.standard_error[c] != 0) continue;
+                r.standard_error[c] = std::numeric_limits<double>::infinity();
+                if (!r.covariance.empty()) r.covariance[c * m + c] = r.standard_error[c];
+            }
         }
         if (targeted_ && stop == StopReason::finished && rounding)
             r.warnings.push_back("the error asked for is below the rounding error of double precision");

@@ -86,7 +86,7 @@ std::string_view falls_short(std::string_view method, Line line) {
                                  line.family == Family::ridge))
         return "peaks that few samples or none have hit, and nothing searches for";
     if (line.family == Family::jump && method == "vegas_sobol")
-        return "a jump on a line lies in one cell of the net, where eight replicates often all agree";
+        return "a jump on a line lies in one cell of the net, where all replicates often agree";
     return "";
 }
 

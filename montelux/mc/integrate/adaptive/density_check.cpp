@@ -8,13 +8,14 @@ namespace montelux {
 namespace {
 
 constexpr double least_walk = 4096;    // evaluations of a check,
-constexpr double long_walk = 16384;    // the same where ridges may bend: uneven weights in several variables,
-constexpr double walk_share = 1 / 16.; // or this share of the weighted evaluations, if they are more
+constexpr double walk_share = 1 / 16.; // or this share of the weighted evaluations, if they are more;
+// where ridges may bend (uneven weights in several variables) a larger share of all, up to so many
+constexpr double bent_share = 0.25, long_walk = 16384;
 constexpr int few_dimensions = 3;
 constexpr double even_weights = 0.1;        // relative variance
 constexpr std::uint64_t checked_growth = 4; // of points for which a check holds
-constexpr double fitted_share = 0.25;       // unseen share over target above which a density is fitted again,
-constexpr double warned_share = 0.5;        // and above which a result has a warning where it cannot be
+constexpr double fitted_share = 0.5;        // unseen share over target above which a density is fitted again,
+constexpr double warned_share = 1;          // and above which a result has a warning where it cannot be
 constexpr double least_unseen = 2e-4;       // smaller shares cannot be told from none
 
 // The target relative to the first component.
@@ -36,10 +37,13 @@ bool DensityCheck::due(const MixtureEstimate& estimate, const StepRequest& reque
 void DensityCheck::run(DensityTrainer& trainer, const MixtureEstimate& estimate, const StepRequest& request,
                        bool again) {
     const double left = static_cast<double>(request.max_evaluations);
-    const bool bent =
-        trainer.density().dimensions() > few_dimensions && trainer.relative_variance() > even_weights;
-    const double walk = std::min(left, std::max(bent ? long_walk : least_walk,
-                                                walk_share * static_cast<double>(estimate.evaluations())));
+    const double weighted = static_cast<double>(estimate.evaluations());
+    double walk = std::max(least_walk, walk_share * weighted);
+    if (trainer.density().dimensions() > few_dimensions && trainer.relative_variance() > even_weights) {
+        const double all = weighted + static_cast<double>(trainer.evaluations());
+        walk = std::max(walk, std::min(long_walk, bent_share * all));
+    }
+    walk = std::min(walk, left);
     const double expected =
         static_cast<double>(estimate.all_points()) + std::min(left, estimate.expected_rest(request));
     const double target = relative_target(estimate, request);
