@@ -183,6 +183,7 @@ TEST(Adaptive, ZeroIntegrandGivesAWarning) {
     EXPECT_FALSE(r.converged());
     ASSERT_FALSE(r.warnings.empty());
     EXPECT_NE(r.warnings[0].find("zero at every point"), std::string::npos) << r.warnings[0];
+    EXPECT_TRUE(std::isinf(r.standard_error[0]));
 }
 
 // (x_1 + x_2 + x_3 mod 1)^-0.8 has mean 5 and no variance; it follows no coordinate, so that no map helps.
