@@ -254,6 +254,7 @@ class Run {
     IntegrationResult result(StopReason stop) const {
         Tally tally = estimator_->tally();
         const bool unchecked = targeted_ && !tally.statistical && !tally.ready && tally.warnings.empty();
+        const bool only_zeros = nothing_found(tally);
         const bool rounding = (tally.at_limit && tally.warnings.empty()) || is_rounding(tally);
         IntegrationResult r;
         r.value = std::move(tally.value);
@@ -280,11 +281,10 @@ class Run {
         r.reason = std::move(tally.reason);
         r.stop = stop;
         r.warnings = std::move(tally.warnings);
-        if (nothing_found(estimator_->tally())) {
+        if (only_zeros) {
             if (r.warnings.empty())
-                r.warnings.push_back(
-                    "no point has met anything but zeros; a narrow peak would not have been seen");
-            // Zeros tell nothing of the size of what was not seen.
+                r.warnings.push_back("a value was zero at every point; a narrow peak may have been missed");
+            // Zeros give no scale for what was missed.
             const std::size_t m = r.value.size();
             for (std::size_t c = 0; c < m; ++c) {
                 if (r.value[c] != 0 || r.standard_error[c] != 0) continue;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "montelux/mc/integrate/adaptive/balanced_points.h"
 #include "montelux/mc/integrate/adaptive/density_check.h"
 #include "montelux/mc/integrate/adaptive/density_trainer.h"
 #include "montelux/mc/integrate/adaptive/mixture_estimate.h"
@@ -45,12 +46,6 @@ constexpr std::uint64_t early_check = 4; // first samples after which a density 
 constexpr std::uint64_t step_points = 65536; // of each replicate in one step
 constexpr std::uint64_t smallest_budget = 4; // rounds that must be affordable for training to begin
 
-// 2^k or 3 * 2^(k - 1): numbers of Sobol' points that divide the cube evenly; the next one above n.
-std::uint64_t next_balanced(std::uint64_t n) {
-    const std::uint64_t floor = std::bit_floor(n);
-    return n < floor + floor / 2 ? floor + floor / 2 : 2 * floor;
-}
-
 bool targeted(const StepRequest& request) { return request.relative_error > 0 || request.absolute_error > 0; }
 
 class AdaptiveEstimator final : public Estimator {
@@ -75,9 +70,7 @@ class AdaptiveEstimator final : public Estimator {
         case Phase::train:
             return train(request);
         case Phase::weighted:
-            if (targeted(request) && checkable() &&
-                check_.due(weighted_, request, early_check * first_sample()))
-                return check(request);
+            if (check_.due(trainer_, weighted_, request, early_check * first_sample())) return check(request);
             return sample(request, trainer_.density(), 2, weighted_);
         default:
             return sample(request, cube_, 0, uniform_);
@@ -96,7 +89,7 @@ class AdaptiveEstimator final : public Estimator {
         tally.non_finite.merge(abandoned_non_finite_);
         tally.ready = estimate.compared() && (phase_ == Phase::uniform || weighted) &&
                       (weighted || !plateau() || uniform_.evaluations() >= plateau_evaluations) &&
-                      (!weighted || !checkable() || check_.covers(weighted_.points()));
+                      (!weighted || check_.covers(trainer_, weighted_.points()));
         if (estimate.points() == 0) return tally;
         if (weighted)
             for (const DensityTrainer::Check& check : trainer_.checks()) {
@@ -109,8 +102,7 @@ class AdaptiveEstimator final : public Estimator {
         const bool heavy = weighted && estimate.heavy_tailed(tally.standard_error[0]);
         const bool lost = weighted && estimate.lost_what_is_in(uniform_);
         std::vector<std::string> tail;
-        warn_of_heavy_tail(estimate.sums().extremes.tail(), estimate.all_points(),
-                           static_cast<double>(estimate.all_points()), tally.standard_error[0], tail);
+        estimate.warn_of_tail(tally.standard_error[0], tail);
         const bool unseen = weighted && check_.unseen() > 0;
         if (heavy || lost || unseen || !tail.empty()) tally.ready = false;
         tally.warnings = std::move(tail);
@@ -276,10 +268,7 @@ class AdaptiveEstimator final : public Estimator {
         } else if (points > 0) {
             while (next_balanced(goal) <= std::min(2 * points, affordable)) goal = next_balanced(goal);
         }
-        while (goal > affordable && goal > points) { // the largest affordable balanced number
-            const std::uint64_t floor = std::bit_floor(goal);
-            goal = goal > floor ? floor : floor / 4 * 3;
-        }
+        if (goal > affordable) goal = last_balanced(affordable);
         const std::uint64_t balanced = density.balanced_points();
         goal = goal / balanced * balanced;
         if (goal <= points) return StepOutcome::exhausted;
@@ -305,16 +294,11 @@ class AdaptiveEstimator final : public Estimator {
         return StepOutcome::advanced;
     }
 
-    // Peaks and ridges may reach farther than the density that was fitted to them.
-    bool checkable() const {
-        return trainer_.effective_share() < peaky &&
-               problem_.evaluator.dimensions() <= DensityTrainer::max_gaussian_dimensions;
-    }
     StepOutcome check(const StepRequest& request) {
         if (request.cancel && request.cancel->requested()) return StepOutcome::cancelled;
         const std::uint64_t trained = trainer_.evaluations();
         const bool again = retrained_ < max_retrainings && 4 * trained < request.max_evaluations;
-        check_.run(trainer_, weighted_, request, again);
+        if (!check_.run(trainer_, weighted_, request, again)) return StepOutcome::exhausted;
         if (check_.unseen() > 0 && again) retrain(2 * static_cast<double>(trained));
         return StepOutcome::advanced;
     }
@@ -354,19 +338,10 @@ class AdaptiveEstimator final : public Estimator {
         const double trained = static_cast<double>(trainer_.evaluations());
         const bool far = settings_.training_share * left > 2 * trained && sampled < left;
         // Unexpectedly large weights: the density misses a part of the integrand.
-        const bool surprised = ratio <= surprise_matters && surprising(weighted_) &&
+        const bool surprised = ratio <= surprise_matters && weighted_.has_surprising_weights() &&
                                4 * trained < static_cast<double>(request.max_evaluations);
         if (!far && !surprised) return;
         retrain(surprised ? 2 * trained : settings_.training_share * left);
-    }
-
-    bool surprising(const MixtureEstimate& estimate) const {
-        Tally tally;
-        estimate.tally(false, tally);
-        warn_of_heavy_tail(estimate.sums().extremes.tail(), estimate.all_points(),
-                           static_cast<double>(estimate.all_points()), tally.standard_error[0],
-                           tally.warnings);
-        return !tally.warnings.empty() || estimate.heavy_tailed(tally.standard_error[0]);
     }
 
     void add_warnings(const MixtureEstimate& estimate, bool heavy, bool lost, Tally& tally) const {

@@ -13,13 +13,15 @@ namespace montelux {
 // Walkers reach it along the ridge. A check holds until the points have grown fourfold.
 class DensityCheck {
   public:
-    // Has the density of `points` points of a replicate been checked?
-    bool covers(std::uint64_t points) const { return points <= checked_points_; }
+    // Has the density of `points` points of a replicate been checked, or does it need no check? Only those of
+    // concentrated integrands do, whose peaks and ridges may reach farther than the density.
+    bool covers(const DensityTrainer& trainer, std::uint64_t points) const;
     // Is a check due? Before a target is claimed, and at `early` points, so that a bad density is found soon.
-    bool due(const MixtureEstimate& estimate, const StepRequest& request, std::uint64_t early) const;
+    bool due(const DensityTrainer& trainer, const MixtureEstimate& estimate, const StepRequest& request,
+             std::uint64_t early) const;
     // Walks; the evaluations count as the trainer's. `again`: whether the density can be fitted again, which is
-    // asked for by a smaller share than a warning.
-    void run(DensityTrainer& trainer, const MixtureEstimate& estimate, const StepRequest& request,
+    // asked for by a smaller share than a warning. False if too few evaluations are left: nothing changed.
+    bool run(DensityTrainer& trainer, const MixtureEstimate& estimate, const StepRequest& request,
              bool again);
     // Share of the integral that is hardly sampled; 0 where it is small for the target.
     double unseen() const { return unseen_; }

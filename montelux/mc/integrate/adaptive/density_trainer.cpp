@@ -197,14 +197,19 @@ DensityTrainer::Walk DensityTrainer::walk(const WalkedPoints& before, const Roun
     return walk;
 }
 
-double DensityTrainer::unseen_share(double n, std::uint64_t max_evaluations) {
+double DensityTrainer::Round::integral(double exponent) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < h.size(); ++i)
+        sum += std::pow(h[i], exponent) / p[i] / static_cast<double>(h.size());
+    return sum;
+}
+
+std::optional<double> DensityTrainer::unseen_share(double n, std::uint64_t max_evaluations) {
     const Round& last = recent_.back();
     const double exponent = 1 / scout_temperature(density_.dimensions());
     Walk walked = walk(scouts_, last, max_evaluations, longest_check, exponent);
-    if (walked.points.h.empty()) return 0;
-    double mean = 0;
-    for (std::size_t i = 0; i < last.h.size(); ++i)
-        mean += last.h[i] / last.p[i] / static_cast<double>(last.h.size());
+    if (walked.points.h.empty()) return std::nullopt;
+    const double mean = last.integral(1);
     const std::size_t count = walked.points.h.size();
     const double largest = *std::max_element(walked.points.h.begin(), walked.points.h.end());
     // Each walked point stands for a share of the integral, and for so many of the n points.
@@ -257,10 +262,7 @@ DensityTrainer::Pool DensityTrainer::pool() const {
     for (const WalkedPoints* walked : {&walked_, &scouts_}) {
         if (walked->h.empty()) continue;
         // The density of walkers is a power of h over its integral, which the last round estimates.
-        double integral = 0;
-        for (std::size_t i = 0; i < last.h.size(); ++i)
-            integral +=
-                std::pow(last.h[i], walked->exponent) / last.p[i] / static_cast<double>(last.h.size());
+        const double integral = last.integral(walked->exponent);
         const double share = static_cast<double>(walked->h.size()) / static_cast<double>(drawn);
         for (std::size_t i = 0; integral > 0 && i < count; ++i)
             pool.p[i] += std::pow(pool.h[i], walked->exponent) / integral * share;

@@ -35,7 +35,8 @@ class DensityTrainer {
     // Walks under |g| from points of the last round, and returns the share of the integral that lies where n
     // points of the density are expected to hit too rarely for their spread to tell. The next fit sees the
     // walked points.
-    double unseen_share(double n, std::uint64_t max_evaluations);
+    // Empty if the evaluations are too few for a walk.
+    std::optional<double> unseen_share(double n, std::uint64_t max_evaluations);
 
     const MixtureDensity& density() const { return density_; }
     int rounds() const { return rounds_; }
@@ -63,6 +64,8 @@ class DensityTrainer {
         MixtureDensity density;
         PointBuffer x;
         std::vector<double> h, p; // p: the density there
+        // Of h^exponent, estimated by its points.
+        double integral(double exponent) const;
     };
     // The points of all recent rounds, and those remembered; p is the mixture of the rounds' densities.
     struct Pool {

@@ -107,6 +107,18 @@ bool MixtureEstimate::heavy_tailed(double standard_error) const {
     return largest > heavy_weight * size && largest > heavy_influence * n * standard_error;
 }
 
+void MixtureEstimate::warn_of_tail(double standard_error, std::vector<std::string>& warnings) const {
+    warn_of_heavy_tail(sums_.extremes.tail(), all_points(), static_cast<double>(all_points()), standard_error,
+                       warnings);
+}
+
+bool MixtureEstimate::has_surprising_weights() const {
+    Tally found;
+    tally(false, found);
+    warn_of_tail(found.standard_error[0], found.warnings);
+    return !found.warnings.empty() || heavy_tailed(found.standard_error[0]);
+}
+
 bool MixtureEstimate::one_replicate_stands_out() const {
     const int replicates = sums_.sums.replicates();
     if (replicates < enough_replicates) return false;

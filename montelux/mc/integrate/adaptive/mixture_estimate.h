@@ -40,6 +40,10 @@ class MixtureEstimate {
     // Does one sample of the first component dominate an error? Then others like it were probably not drawn
     // yet.
     bool heavy_tailed(double standard_error) const;
+    // Adds a warning if the variance of the weights is probably infinite.
+    void warn_of_tail(double standard_error, std::vector<std::string>& warnings) const;
+    // Are there such weights, or one that dominates an error?
+    bool has_surprising_weights() const;
     // Does one replicate cause nearly all of the spread?
     bool one_replicate_stands_out() const;
     // Is a component zero with no error, although `other` saw it non-zero?

@@ -42,7 +42,7 @@ class ControlVariateEstimator final : public Estimator {
         : problem_(problem), integrals_(settings.integrals),
           g_(joined(problem.evaluator.integrand(), checked(problem, settings)), problem.evaluator.domain(),
              problem.evaluator.policy()),
-          joint_(g_.components()), average_(components(), problem.full_covariance) {}
+          joint_(g_.components()), average_(components(), problem.full_covariance), extremes_(components()) {}
 
     StepOutcome step(const StepRequest& request) override {
         const std::uint64_t done = joint_.count(), limit = request.max_evaluations;
@@ -66,7 +66,7 @@ class ControlVariateEstimator final : public Estimator {
             auto estimate = IterationEstimate::zero(components(), problem_.full_covariance);
             estimate.add_mean(sum->residual);
             average_.add(static_cast<double>(size), estimate);
-            tail_.merge(sum->residual.extremes.tail());
+            extremes_.merge(sum->residual.extremes);
             averaged_ += size;
         }
         joint_.merge(sum->joint);
@@ -78,8 +78,8 @@ class ControlVariateEstimator final : public Estimator {
     Tally tally() const override {
         Tally tally;
         average_.tally(tally);
-        warn_of_heavy_tail(tail_, averaged_, static_cast<double>(averaged_), tally.standard_error[0],
-                           tally.warnings);
+        warn_of_heavy_tail(extremes_.tail(), averaged_, static_cast<double>(averaged_),
+                           tally.standard_error[0], tally.warnings);
         tally.evaluations = joint_.count();
         tally.non_finite = non_finite_;
         warn(tally.warnings);
@@ -91,7 +91,7 @@ class ControlVariateEstimator final : public Estimator {
         montelux::save(state, non_finite_);
         state.put(beta_);
         state.put(averaged_);
-        state.put(tail_.values());
+        extremes_.save(state);
     }
     void load(StateReader& state) override {
         average_.load(state);
@@ -101,7 +101,7 @@ class ControlVariateEstimator final : public Estimator {
         if (!beta_.empty() && beta_.size() != static_cast<std::size_t>(components()) * integrals_.size())
             throw Error("the saved state has another number of controls");
         averaged_ = state.get_word();
-        tail_.restore(state.get_doubles());
+        extremes_.load(state);
     }
 
   private:
@@ -125,7 +125,7 @@ class ControlVariateEstimator final : public Estimator {
     int controls() const { return static_cast<int>(integrals_.size()); }
     ControlSum empty() const {
         return {CovarianceMoments(g_.components()),
-                {CovarianceMoments(components(), problem_.full_covariance), {}, ExtremeValues(components())}};
+                {CovarianceMoments(components(), problem_.full_covariance), {}, extremes_.empty()}};
     }
 
     void add(const ValueBuffer& values, ControlSum& to) const {
@@ -185,7 +185,7 @@ class ControlVariateEstimator final : public Estimator {
     IterationAverage average_;
     NonFiniteCount non_finite_;
     std::vector<double> beta_;   // component by component; empty before the pilot
-    ParetoTail tail_;            // of the averaged residuals,
+    ExtremeValues extremes_;     // of the averaged residuals,
     std::uint64_t averaged_ = 0; // and their number
 };
 

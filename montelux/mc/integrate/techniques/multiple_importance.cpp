@@ -47,7 +47,7 @@ class RoundsEstimator : public Estimator {
         std::vector<TechniqueSum> sums;
         for (std::size_t i = 0; i < sampler_.techniques(); ++i) {
             auto sum = sum_batches(
-                rounds * sampler_.samples(i), [&] { return empty(); },
+                rounds * sampler_.samples(i), [&] { return empty(i); },
                 [&](std::uint64_t first, std::uint64_t count, TechniqueSum& to) {
                     Batch batch;
                     sampler_.draw(i, rounds_ * sampler_.samples(i) + first, count, batch,
@@ -92,7 +92,8 @@ class RoundsEstimator : public Estimator {
   protected:
     virtual std::uint64_t step_size(std::uint64_t done, std::uint64_t limit) const = 0;
     virtual std::uint64_t least_rounds() const = 0;
-    virtual TechniqueSum empty() const = 0;
+    // Of technique i, without samples.
+    virtual TechniqueSum empty(std::size_t i) const = 0;
     // Turns f of a batch of technique i into its values and adds them.
     virtual void add(std::size_t i, Batch& batch, TechniqueSum& to) const = 0;
     virtual void take(std::uint64_t rounds, const std::vector<TechniqueSum>& sums) = 0;
@@ -102,8 +103,15 @@ class RoundsEstimator : public Estimator {
 
     int components() const { return sampler_.problem().evaluator.components(); }
     bool full() const { return sampler_.problem().full_covariance; }
-    SampleMoments empty_samples() const {
-        return {CovarianceMoments(components(), full()), {}, ExtremeValues(components())};
+    SampleMoments no_samples(const ExtremeValues& so_far) const {
+        return {CovarianceMoments(components(), full()), {}, so_far.empty()};
+    }
+    // Warns of the first technique whose values, n_i of them, have a tail without a variance.
+    static bool warn_of_tail(const ExtremeValues& extremes, std::uint64_t n, Tally& tally) {
+        const std::size_t before = tally.warnings.size();
+        warn_of_heavy_tail(extremes.tail(), n, static_cast<double>(n), tally.standard_error[0],
+                           tally.warnings);
+        return tally.warnings.size() > before;
     }
 
     TechniqueSampler sampler_;
@@ -119,7 +127,7 @@ class HeuristicEstimator final : public RoundsEstimator {
   public:
     HeuristicEstimator(const Problem& problem, const MultipleImportance& settings)
         : RoundsEstimator(problem, settings), heuristic_(std::get<MisHeuristic>(settings.weights)),
-          sums_(sampler_.techniques(), empty().samples) {
+          sums_(sampler_.techniques(), no_samples(ExtremeValues(components()))) {
         const double p = heuristic_.parameter;
         if (heuristic_.kind == MisHeuristic::Kind::power && !(p > 0 && std::isfinite(p)))
             throw Error("multiple_importance",
@@ -133,7 +141,7 @@ class HeuristicEstimator final : public RoundsEstimator {
         return next_step_size(done, 4096, limit);
     }
     std::uint64_t least_rounds() const override { return 1; }
-    TechniqueSum empty() const override { return {empty_samples(), {}, {}}; }
+    TechniqueSum empty(std::size_t i) const override { return {no_samples(sums_[i].extremes), {}, {}}; }
 
     void add(std::size_t i, Batch& batch, TechniqueSum& to) const override {
         const std::size_t count = batch.sum.size(), techniques = sampler_.techniques();
@@ -173,11 +181,8 @@ class HeuristicEstimator final : public RoundsEstimator {
                 tally.covariance[k] += part.covariance[k];
         }
         for (std::size_t c = 0; c < m; ++c) tally.standard_error[c] = std::sqrt(variance[c]);
-        for (const SampleMoments& s : sums_) {
-            if (!tally.warnings.empty()) break;
-            warn_of_heavy_tail(s.extremes.tail(), s.moments.count(), static_cast<double>(s.moments.count()),
-                               tally.standard_error[0], tally.warnings);
-        }
+        for (const SampleMoments& s : sums_)
+            if (warn_of_tail(s.extremes, s.moments.count(), tally)) break;
     }
     void save_sums(StateWriter& state) const override {
         for (const SampleMoments& s : sums_) {
@@ -202,7 +207,7 @@ class OptimalEstimator final : public RoundsEstimator {
         : RoundsEstimator(problem, settings), average_(components(), full()),
           matrix_(sampler_.techniques() * sampler_.techniques()),
           vectors_(sampler_.techniques() * static_cast<std::size_t>(components())),
-          tails_(sampler_.techniques()) {}
+          extremes_(sampler_.techniques(), ExtremeValues(components())) {}
 
   private:
     std::uint64_t step_size(std::uint64_t done, std::uint64_t limit) const override {
@@ -210,8 +215,9 @@ class OptimalEstimator final : public RoundsEstimator {
     }
     // A variance needs two samples of each technique.
     std::uint64_t least_rounds() const override { return 2; }
-    TechniqueSum empty() const override {
-        return {empty_samples(), std::vector<double>(matrix_.size()), std::vector<double>(vectors_.size())};
+    TechniqueSum empty(std::size_t i) const override {
+        return {no_samples(extremes_[i]), std::vector<double>(matrix_.size()),
+                std::vector<double>(vectors_.size())};
     }
 
     void add(std::size_t i, Batch& batch, TechniqueSum& to) const override {
@@ -250,7 +256,7 @@ class OptimalEstimator final : public RoundsEstimator {
                 for (std::size_t k = 0; k < techniques; ++k) estimate.value[c] += alpha_[c * techniques + k];
             for (std::size_t i = 0; i < sums.size(); ++i) {
                 estimate.add_mean(sums[i].samples);
-                tails_[i].merge(sums[i].samples.extremes.tail());
+                extremes_[i].merge(sums[i].samples.extremes);
             }
             average_.add(static_cast<double>(rounds * sampler_.samples_in_round()), estimate);
             averaged_ += rounds;
@@ -264,15 +270,13 @@ class OptimalEstimator final : public RoundsEstimator {
 
     void fill(Tally& tally) const override {
         average_.tally(tally);
-        for (std::size_t i = 0; i < tails_.size() && tally.warnings.empty(); ++i) {
-            const std::uint64_t n = averaged_ * sampler_.samples(i);
-            warn_of_heavy_tail(tails_[i], n, static_cast<double>(n), tally.standard_error[0], tally.warnings);
-        }
+        for (std::size_t i = 0; i < extremes_.size(); ++i)
+            if (warn_of_tail(extremes_[i], averaged_ * sampler_.samples(i), tally)) break;
     }
     void save_sums(StateWriter& state) const override {
         average_.save(state);
         state.put(averaged_);
-        for (const ParetoTail& tail : tails_) state.put(tail.values());
+        for (const ExtremeValues& extremes : extremes_) extremes.save(state);
         state.put(matrix_);
         state.put(vectors_);
         state.put(alpha_);
@@ -280,7 +284,7 @@ class OptimalEstimator final : public RoundsEstimator {
     void load_sums(StateReader& state) override {
         average_.load(state);
         averaged_ = state.get_word();
-        for (ParetoTail& tail : tails_) tail.restore(state.get_doubles());
+        for (ExtremeValues& extremes : extremes_) extremes.load(state);
         for (std::vector<double>* part : {&matrix_, &vectors_}) {
             std::vector<double> numbers = state.get_doubles();
             if (numbers.size() != part->size())
@@ -293,11 +297,11 @@ class OptimalEstimator final : public RoundsEstimator {
     }
 
     IterationAverage average_;
-    std::vector<double> matrix_;    // sum over all samples so far of p_k p_l / (sum of n p)^2
-    std::vector<double> vectors_;   // f p_k / (sum of n p)^2, component by component
-    std::vector<double> alpha_;     // likewise; empty before the pilot
-    std::vector<ParetoTail> tails_; // of the averaged values of each technique,
-    std::uint64_t averaged_ = 0;    // which are of this many rounds
+    std::vector<double> matrix_;          // sum over all samples so far of p_k p_l / (sum of n p)^2
+    std::vector<double> vectors_;         // f p_k / (sum of n p)^2, component by component
+    std::vector<double> alpha_;           // likewise; empty before the pilot
+    std::vector<ExtremeValues> extremes_; // of the averaged values of each technique,
+    std::uint64_t averaged_ = 0;          // which are of this many rounds
 };
 
 } // namespace

@@ -131,8 +131,8 @@ TEST(Adaptive, FollowsThinRingsAndCurvedRidges) {
     expect_found({rosenbrock, Domain({{-5, 5}, {-5, 5}}), {0.301507}}, 4, 3);
 }
 
-// A ridge in five variables that bends to a side peak of 7 % at x_1 < 0. Without the check by walkers, some 8
-// of 24 runs lose it.
+// A ridge in five variables that bends to a side peak of 7 % at x_1 < 0. Without the check by walkers, 6 of
+// 24 runs lose it.
 TEST(AdaptiveSlowTest, FollowsARidgeInFiveVariables) {
     const double a = 0.8154, b = 98.95, truth = 4.132334e-4;
     auto f = [=](std::span<const double> x) {

@@ -39,23 +39,22 @@ TEST(DensityCheck, IsDueBeforeAClaimAndWhenPointsHaveGrown) {
     ring.sample(128);
     DensityCheck check;
     const StepRequest loose{100'000, 10, 0, nullptr}, tight{100'000, 1e-6, 0, nullptr};
-    EXPECT_TRUE(check.due(ring.estimate, loose, 1024));
-    EXPECT_FALSE(check.due(ring.estimate, tight, 1024));
-    EXPECT_TRUE(check.due(ring.estimate, tight, 128));
-    check.run(ring.trainer, ring.estimate, loose, false);
-    EXPECT_FALSE(check.due(ring.estimate, loose, 128));
-    EXPECT_TRUE(check.covers(512));
-    EXPECT_FALSE(check.covers(513));
+    EXPECT_TRUE(check.due(ring.trainer, ring.estimate, loose, 1024));
+    EXPECT_FALSE(check.due(ring.trainer, ring.estimate, tight, 1024));
+    EXPECT_TRUE(check.due(ring.trainer, ring.estimate, tight, 128));
+    EXPECT_FALSE(check.due(ring.trainer, ring.estimate, {100'000, 0, 0, nullptr}, 128)); // no target
+    EXPECT_TRUE(check.run(ring.trainer, ring.estimate, loose, false));
+    EXPECT_FALSE(check.due(ring.trainer, ring.estimate, loose, 128));
+    EXPECT_TRUE(check.covers(ring.trainer, 512));
+    EXPECT_FALSE(check.covers(ring.trainer, 513));
 }
 
 TEST(DensityCheck, WarnsOfWhatIsHardlySampledUntilTheDensityIsFitted) {
     HalfRing ring;
     ring.sample(16);
     DensityCheck check;
-    const StepRequest request{0, 1e-2, 0, nullptr};
-    StepRequest walks = request;
-    walks.max_evaluations = 8192;
-    check.run(ring.trainer, ring.estimate, walks, true);
+    const StepRequest walks{8192, 1e-2, 0, nullptr};
+    ASSERT_TRUE(check.run(ring.trainer, ring.estimate, walks, true));
     EXPECT_GT(check.unseen(), 0.1);
     Tally tally;
     check.warn(tally);
@@ -74,11 +73,22 @@ TEST(DensityCheck, WarnsOfWhatIsHardlySampledUntilTheDensityIsFitted) {
     for (int i = 0; i < 8; ++i) ASSERT_TRUE(ring.trainer.round(4096, nullptr));
     ring.estimate = MixtureEstimate(16, 1);
     ring.sample(512);
-    check.run(ring.trainer, ring.estimate, walks, true);
+    ASSERT_TRUE(check.run(ring.trainer, ring.estimate, walks, true));
     EXPECT_EQ(check.unseen(), 0);
     Tally silent;
     check.warn(silent);
     EXPECT_TRUE(silent.warnings.empty());
+}
+
+TEST(DensityCheck, OnlyConcentratedIntegrandsNeedIt) {
+    const Evaluator wide(Integrand([](std::span<const double> x) { return x[0] + x[1]; }),
+                         Domain::unit_cube(2));
+    DensityTrainer trainer({wide, 5}, 4);
+    SamplePoints drawn;
+    ASSERT_TRUE(sample_mixture(wide, MixtureDensity(2), 1, 1, 0, 4096, &drawn, nullptr));
+    trainer.start(std::move(drawn));
+    EXPECT_TRUE(DensityCheck().covers(trainer, 1 << 20));
+    EXPECT_FALSE(DensityCheck().covers(HalfRing().trainer, 1));
 }
 
 // Evaluations are those of the walk, within what is left.
@@ -88,7 +98,8 @@ TEST(DensityCheck, KeepsToItsEvaluations) {
     for (std::uint64_t left : {0, 100, 1000, 100'000}) {
         const std::uint64_t before = ring.trainer.evaluations();
         DensityCheck check;
-        check.run(ring.trainer, ring.estimate, {left, 1e-2, 0, nullptr}, true);
+        EXPECT_EQ(check.run(ring.trainer, ring.estimate, {left, 1e-2, 0, nullptr}, true), left >= 1000);
+        EXPECT_EQ(check.covers(ring.trainer, 64), left >= 1000);
         EXPECT_LE(ring.trainer.evaluations() - before, std::min<std::uint64_t>(left, 4096));
         EXPECT_EQ(ring.trainer.evaluations() > before, left >= 1000);
     }

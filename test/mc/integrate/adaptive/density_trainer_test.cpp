@@ -163,16 +163,16 @@ TEST(DensityTrainer, WalkersTellWhatIsHardlySampled) {
     ASSERT_GE(trainer.density().gaussians().size(), 1u);
     ASSERT_LE(trainer.density().gaussians().size(), 3u);
     const std::uint64_t before = watched.evaluations, counted = trainer.evaluations();
-    EXPECT_GT(trainer.unseen_share(300, 8192), 0.3);
+    EXPECT_GT(trainer.unseen_share(300, 8192).value(), 0.3);
     EXPECT_EQ(watched.evaluations - before, 8192u);
     EXPECT_EQ(trainer.evaluations() - counted, 8192u);
     // So many points hit every part of the ring.
-    EXPECT_LT(trainer.unseen_share(1e8, 8192), 1e-3);
+    EXPECT_LT(trainer.unseen_share(1e8, 8192).value(), 1e-3);
     for (int i = 0; i < 8; ++i) ASSERT_TRUE(trainer.round(4096, nullptr));
-    EXPECT_LT(trainer.unseen_share(3000, 8192), 3e-3);
-    // A walk that cannot be afforded tells nothing.
+    EXPECT_LT(trainer.unseen_share(3000, 8192).value(), 3e-3);
+    // A walk that cannot be afforded gives no answer.
     const std::uint64_t after = watched.evaluations;
-    EXPECT_EQ(trainer.unseen_share(3000, 64), 0);
+    EXPECT_FALSE(trainer.unseen_share(3000, 64));
     EXPECT_EQ(watched.evaluations, after);
 }
 

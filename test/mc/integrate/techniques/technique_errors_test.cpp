@@ -35,22 +35,23 @@ bool warns_of_tail(const IntegrationResult& r) {
     return false;
 }
 
-// Some eight samples hit: the spread of the few that do makes plain errors too small too often.
+// Some 6 to 9 samples hit, where the maximum heuristic, too, takes most samples: the spread of the few that do
+// makes plain errors too small too often.
 TEST(TechniqueErrors, FewHitsAreWithinFourErrors) {
-    const double width = 2e-3, truth = width;
-    const auto f = [&](double x) { return x > 0.5 && x < 0.5 + width ? 1.0 : 0.0; };
-    constexpr int seeds = 400;
+    const double width = 1.5e-3, truth = width;
+    const auto f = [&](double x) { return x > 0.99 && x < 0.99 + width ? 1.0 : 0.0; };
+    constexpr int seeds = 1000;
     for (const NamedTechniques& m : all_methods()) {
         int far = 0, missed = 0;
         for (std::uint64_t seed = 0; seed < seeds; ++seed) {
             const IntegrationResult r = integrate(f, Domain::unit_cube(1), m.method, {.evaluations = 4000},
                                                   {.seed = seed, .threads = 1});
-            missed += r.standard_error[0] == 0;
-            far += r.standard_error[0] > 0 && std::abs(r.value[0] - truth) > 4 * r.standard_error[0];
+            missed += std::isinf(r.standard_error[0]);
+            far += std::abs(r.value[0] - truth) > 4 * r.standard_error[0];
         }
-        // One hit, where eight are expected, has a probability of 0.3 %.
-        EXPECT_LE(far, 5) << m.name;
-        EXPECT_LE(missed, 3) << m.name;
+        // One hit, where six are expected, has a probability of 1.5 % and is five plain errors off.
+        EXPECT_LE(far, 3) << m.name;
+        EXPECT_LE(missed, 12) << m.name; // expected: 1000 exp(-5.6) at most
     }
 }
 
@@ -70,13 +71,19 @@ TEST(TechniqueErrors, InfiniteVarianceGivesAWarning) {
     }
 }
 
-// What the controls explain whole has no error: all residuals are equal.
+// An integrand that controls or densities explain completely has no error: all residuals are equal.
 TEST(TechniqueErrors, ExactCombinationsKeepNoError) {
     const auto line = [](double x) { return x; };
     const IntegrationResult r = integrate([](double x) { return 3 * x + 1; }, Domain::unit_cube(1),
                                           ControlVariate{line, {0.5}}, {.evaluations = 4000});
     EXPECT_NEAR(r.value[0], 2.5, 1e-12);
     EXPECT_LT(r.standard_error[0], 1e-12);
+    const Technique flat = UniformDistribution(), rising = LinearDistribution();
+    const IntegrationResult optimal =
+        integrate([](double x) { return 3 * x + 1; }, Domain::unit_cube(1),
+                  MultipleImportance{{{flat, 1}, {rising, 1}}, OptimalWeights{}}, {.evaluations = 4000});
+    EXPECT_NEAR(optimal.value[0], 2.5, 1e-12);
+    EXPECT_LT(optimal.standard_error[0], 1e-12);
 }
 
 } // namespace
