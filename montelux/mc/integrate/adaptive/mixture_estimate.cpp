@@ -34,6 +34,7 @@ void MixtureEstimate::grow(const MixtureSums& added, std::uint64_t end) {
     if (points_ > 0) {
         const CovarianceMoments moments = sums_.sums.moments(points_, false);
         std::vector<double> errors;
+        errors.reserve(static_cast<std::size_t>(moments.components()));
         for (int c = 0; c < moments.components(); ++c) errors.push_back(standard_error(moments, c));
         errors_before_ = std::move(errors);
     }

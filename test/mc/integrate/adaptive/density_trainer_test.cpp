@@ -14,7 +14,7 @@ struct Stopped {};
 
 // A problem whose evaluations are counted, and that throws Stopped on request.
 struct Watched {
-    explicit Watched(Integrand f, int dimensions)
+    explicit Watched(const Integrand& f, int dimensions)
         : evaluator(f.with_function([this, f](const PointBatch& x, ValueBatch y) {
               if (stop) throw Stopped();
               evaluations += x.count();
