@@ -176,6 +176,10 @@ void declare(CLI::App& c, RenderOptions& o) {
         c, "--light-sampling", o.light_sampling, light_sampling_names,
         "How one light is chosen among many: by its importance for the point that is lit, the default; in "
         "proportion to its power; or all alike: ");
+    add_parsed(
+        c, "--equiangular", "on|off", o.equiangular, parse_on_off,
+        "In homogeneous media lamps are also looked for from points of the ray close to them: on, off. "
+        "Default: on");
     add_choice(c, "--environment-sampling", o.environment_sampling, environment_sampling_names,
                "How directions to environment maps are sampled; auto, the default, is tabulated: ");
     add_parsed(
@@ -232,6 +236,7 @@ void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.strategy) d.integrator.strategy = *o.strategy;
     if (o.heuristic) d.integrator.heuristic = *o.heuristic;
     if (o.light_sampling) d.integrator.light_sampling = *o.light_sampling;
+    if (o.equiangular) d.integrator.equiangular = *o.equiangular;
     if (o.environment_sampling) d.integrator.environment_sampling = *o.environment_sampling;
     if (o.environment_compensation) d.integrator.environment_compensation = *o.environment_compensation;
     if (o.environment_lookup) d.integrator.environment_lookup = *o.environment_lookup;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <optional>
 #include <type_traits>
 
 #include "montelux/mc/math/overloaded.h"
@@ -95,6 +96,14 @@ void add_densities(Text& t, float light_pdf, float bsdf_pdf, float weight) {
     t.add(" per steradian; weight ").number(weight).end();
 }
 
+// In media three strategies may find the same light.
+void add_densities_of_three(Text& t, const DirectLight& direct, bool on_ray) {
+    t.label(2, "densities").add(on_ray ? "equiangular " : "light ").number(direct.light_pdf);
+    t.add(on_ray ? ", free flight with light " : ", equiangular ").number(direct.other_pdf);
+    t.add(on_ray ? ", with phase function " : ", phase function ").number(direct.bsdf_pdf);
+    t.add("; weight ").number(direct.weight).end();
+}
+
 void add_found(Text& t, const FoundLight& found, const Scene& scene) {
     add_light(t, "met", found.light, found.part, scene);
     t.end();
@@ -109,10 +118,13 @@ void add_found(Text& t, const FoundLight& found, const Scene& scene) {
         t.label(2, "contribution").add("to the term mis-bsdf, which is left out").end();
 }
 
-void add_direct(Text& t, const DirectLight& direct, const Scene& scene) {
+// `distance`: along the ray, of a light that was sampled from a point on it.
+void add_direct(Text& t, const DirectLight& direct, const Scene& scene,
+                std::optional<float> distance = std::nullopt) {
     using Outcome = DirectLight::Outcome;
-    add_light(t, "sampled", direct.light, direct.part, scene);
+    add_light(t, distance ? "sampled on the way" : "sampled", direct.light, direct.part, scene);
     t.add(", chosen with probability ").number(direct.choice);
+    if (distance) t.add(", from the distance ").number(*distance);
     switch (direct.outcome) {
     case Outcome::counted:
     case Outcome::other_term:
@@ -135,9 +147,11 @@ void add_direct(Text& t, const DirectLight& direct, const Scene& scene) {
     if (std::isfinite(direct.shadow.t_max)) t.add(", distance ").number(length(direct.shadow.d));
     t.end();
     t.columns(2, direct.delta ? "irradiance" : "radiance", direct.radiance);
-    t.columns(2, "BSDF x cosine", direct.f);
+    t.columns(2, distance ? "scattering" : "BSDF x cosine", direct.f);
     if (direct.outcome == Outcome::no_transport) return;
-    if (direct.delta)
+    if (distance || direct.other_pdf > 0)
+        add_densities_of_three(t, direct, distance.has_value());
+    else if (direct.delta)
         t.label(2, "weight").add("1: nothing else could have found it").end();
     else
         add_densities(t, direct.light_pdf, direct.bsdf_pdf, direct.weight);
@@ -174,7 +188,8 @@ const char* name_of(const Quadric& quadric) {
                       quadric);
 }
 
-void add_vertex(Text& t, std::size_t number, const PathVertex& v, const Scene& scene) {
+void add_vertex(Text& t, std::size_t number, const PathVertex& v, const std::vector<RayLight>& on_rays,
+                const Scene& scene) {
     t.end().add("vertex %zu: ", number);
     if (v.surface) {
         const Shape& shape = *v.surface->shape;
@@ -210,6 +225,8 @@ void add_vertex(Text& t, std::size_t number, const PathVertex& v, const Scene& s
         t.label(1, "direction").vector(v.ray.d).end();
     }
     t.columns(1, "throughput", v.throughput);
+    for (const RayLight& on_ray : on_rays)
+        if (on_ray.vertex + 1 == number) add_direct(t, on_ray.light, scene, on_ray.distance);
     for (const FoundLight& found : v.found) add_found(t, found, scene);
     if (v.bsdf) {
         t.label(1, "BSDF");
@@ -323,7 +340,7 @@ std::string sample_record_text(const SampleRecord& r, const SceneDescription& d)
     t.columns(1, "wavelengths, nm", SampledSpectrum(r.lambda.lambda));
     t.columns(1, "density, 1/nm", r.lambda.pdf);
     for (std::size_t i = 0; i < r.path.vertices.size(); ++i)
-        add_vertex(t, i + 1, r.path.vertices[i], d.scene);
+        add_vertex(t, i + 1, r.path.vertices[i], r.path.on_rays, d.scene);
     add_result(t, r);
     return t.take();
 }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view kind = "render";
 // Version of the layout below.
-constexpr std::uint32_t layout_version = 3;
+constexpr std::uint32_t layout_version = 4;
 static_assert(std::is_trivially_copyable_v<Pixel> && std::endian::native == std::endian::little);
 
 template <typename... T>
@@ -78,7 +78,7 @@ std::array<Fingerprint, 10> fingerprints(const SceneDigest& scene, const SceneDe
           hash_of(d.integrator.max_depth, static_cast<int>(d.integrator.strategy),
                   static_cast<int>(d.integrator.heuristic), static_cast<int>(d.integrator.light_sampling),
                   static_cast<int>(d.integrator.environment_sampling), d.integrator.environment_compensation,
-                  static_cast<int>(d.integrator.environment_lookup))},
+                  static_cast<int>(d.integrator.environment_lookup), d.integrator.equiangular)},
          {"the allocation of samples (--adaptive) differs", hash_of(target.adaptive)},
          {"the slice differs", hash_of(target.slice.index, target.slice.count)}}};
 }

@@ -55,6 +55,7 @@ void add_render_header(Image& image, const std::string& scene_name, const Render
     a["strategy"] = std::string(name_of(description.integrator.strategy));
     a["heuristic"] = std::string(name_of(description.integrator.heuristic));
     a["lightSampling"] = std::string(name_of(description.integrator.light_sampling));
+    a["equiangular"] = description.integrator.equiangular ? 1 : 0;
     a["environmentSampling"] = std::string(name_of(description.integrator.environment_sampling));
     a["environmentCompensation"] = description.integrator.environment_compensation ? 1 : 0;
     a["environmentLookup"] = std::string(name_of(description.integrator.environment_lookup));

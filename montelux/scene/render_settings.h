@@ -33,6 +33,9 @@ struct IntegratorSettings {
     Strategy strategy = Strategy::mis;
     Heuristic heuristic = Heuristic::power;
     LightSampling light_sampling = LightSampling::tree;
+    // Lamps are looked for along rays through homogeneous media, too (transport/segment_light.h). Effective where
+    // lights are sampled.
+    bool equiangular = true;
     EnvironmentSampling environment_sampling = EnvironmentSampling::automatic;
     // MIS compensation; effective only with mis and its terms.
     bool environment_compensation = true;

@@ -42,17 +42,28 @@ constexpr double most_power = 1e290;
 // Fewer parts are chosen by their power: there a tree gains less than it costs.
 constexpr Index fewest_parts_of_tree = 3;
 
-LightSampler make_light_sampler(const SceneView& scene, LightSampling sampling) {
-    const auto light_count = static_cast<Index>(scene.lights.size());
+std::vector<Index> part_counts(const SceneView& scene) {
     std::vector<Index> counts;
-    for (Index i = 0; i < light_count; ++i) counts.push_back(part_count({scene, i}));
-    LightParts parts(counts);
-    if (sampling == LightSampling::uniform) return LightSampler(UniformLightSampler(std::move(parts)));
+    for (Index i = 0; i < static_cast<Index>(scene.lights.size()); ++i)
+        counts.push_back(part_count({scene, i}));
+    return counts;
+}
+
+std::vector<double> part_powers(const SceneView& scene, std::span<const Index> counts,
+                                const LightParts& parts) {
     std::vector<double> all(parts.size());
-    for (Index i = 0; i < light_count; ++i)
+    for (Index i = 0; i < static_cast<Index>(counts.size()); ++i)
         if (counts[i] > 0) light_powers({scene, i}, std::span(all).subspan(parts.row(i, 0), counts[i]));
     // Estimates that overflow still choose the light; a NaN leaves it to scattering.
     for (double& power : all) power = power > 0 ? std::min(power, most_power) : 0;
+    return all;
+}
+
+LightSampler make_light_sampler(const SceneView& scene, LightSampling sampling) {
+    const std::vector<Index> counts = part_counts(scene);
+    LightParts parts(counts);
+    if (sampling == LightSampling::uniform) return LightSampler(UniformLightSampler(std::move(parts)));
+    const std::vector<double> all = part_powers(scene, counts, parts);
     if (sampling == LightSampling::tree && parts.size() >= fewest_parts_of_tree) {
         const auto bounds = [&](Index row) {
             const LightChoice at = parts.at(row);
@@ -63,6 +74,23 @@ LightSampler make_light_sampler(const SceneView& scene, LightSampling sampling) 
             return LightSampler(TreeLightSampler(parts, all, bounds, area));
     }
     return LightSampler(PowerLightSampler(std::move(parts), all));
+}
+
+// Of lights with a position, if a homogeneous medium scatters light on its way from them.
+std::optional<PowerLightSampler> make_segment_lights(const SceneView& scene) {
+    const bool homogeneous = std::ranges::any_of(scene.media, [](const Medium& medium) {
+        const auto* m = std::get_if<HomogeneousMedium>(&medium);
+        return m != nullptr && !m->is_body;
+    });
+    if (!homogeneous) return std::nullopt;
+    const std::vector<Index> counts = part_counts(scene);
+    LightParts parts(counts);
+    std::vector<double> powers = part_powers(scene, counts, parts);
+    for (Index i = 0; i < static_cast<Index>(counts.size()); ++i)
+        for (Index k = 0; k < counts[i]; ++k)
+            if (!light_bounds({scene, i}, k)) powers[parts.row(i, k)] = 0;
+    if (std::ranges::none_of(powers, [](double power) { return power > 0; })) return std::nullopt;
+    return PowerLightSampler(std::move(parts), powers);
 }
 
 } // namespace
@@ -85,6 +113,8 @@ SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environm
     view_.light_tables = lights_.view(scene);
     light_sampler_ = make_light_sampler(view_, light_sampling);
     view_.light_sampler = &light_sampler_;
+    segment_lights_ = make_segment_lights(view_);
+    if (segment_lights_) view_.segment_lights = &*segment_lights_;
 }
 
 void SceneTables::add_mipmaps(const Scene& scene) {

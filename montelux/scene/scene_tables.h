@@ -35,6 +35,7 @@ class SceneTables {
     std::vector<MediumTable> media_;
     LightTables lights_;
     LightSampler light_sampler_;
+    std::optional<PowerLightSampler> segment_lights_;
     SceneView view_;
 };
 

@@ -51,6 +51,8 @@ struct SceneView {
     Index camera_medium = no_index;
 
     const LightSampler* light_sampler = nullptr;
+    // Parts of lights that have a position, for rays through media; null without media or without such lights.
+    const PowerLightSampler* segment_lights = nullptr;
 
     SceneView() = default;
     // Without tables: enough for geometry and constant parameters.

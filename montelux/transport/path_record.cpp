@@ -16,6 +16,8 @@ class BadSearch {
     std::optional<BadOrigin> first() const {
         for (std::size_t i = 0; i < record_.vertices.size(); ++i) {
             const PathVertex& v = record_.vertices[i];
+            for (const RayLight& on_ray : record_.on_rays)
+                if (on_ray.vertex == i && bad(on_ray.light.contribution)) return in_direct(i, on_ray.light);
             for (const FoundLight& light : v.found)
                 if (bad(light.contribution)) return in_found(i, light);
             if (v.direct && bad(v.direct->contribution)) return in_direct(i, *v.direct);

@@ -51,7 +51,9 @@ struct DirectLight {
     SampledSpectrum f{};        // BSDF times cosine
     float light_pdf = 0;        // per solid angle, choice included; for a delta light the choice alone
     float bsdf_pdf = 0;         // of scattering into wi, per solid angle
-    float weight = 0;           // of multiple importance sampling
+    // In a medium: of SegmentLight finding the same; of light on a ray: of light sampling after a free flight.
+    float other_pdf = 0;
+    float weight = 0; // of multiple importance sampling
     SampledSpectrum contribution{};
 };
 
@@ -103,9 +105,19 @@ struct PathVertex {
     SampledSpectrum continued; // throughput after scattering and roulette
 };
 
+// Light sampled from a point of a ray through a medium (SegmentLight). Its f is transmittance x scattering
+// coefficient x phase function, and light_pdf is a density per length as well.
+struct RayLight {
+    std::size_t vertex = 0; // at the end of the ray: index into PathRecord::vertices
+    float distance = 0;     // from the start of the ray
+    SampledSpectrum throughput{};
+    DirectLight light;
+};
+
 // Refers to the scene and its tables (SurfacePoint::shape, CoatedDiffuseBsdf::table), which must outlive it.
 struct PathRecord {
     std::vector<PathVertex> vertices;
+    std::vector<RayLight> on_rays;
     PathEnd end = PathEnd::left_scene;
     SampledSpectrum emission; // of media, part of the radiance
     SampledSpectrum radiance;

@@ -46,6 +46,12 @@ void PathRecorder::sampled_light(DirectLight light) const {
     v.direct = light;
 }
 
+void PathRecorder::sampled_light_on_ray(float distance, DirectLight light, SampledSpectrum throughput) const {
+    if (light.outcome == DirectLight::Outcome::counted)
+        light.contribution = throughput * light.f * light.radiance * (light.weight / light.light_pdf);
+    record_->on_rays.push_back({record_->vertices.size(), distance, throughput, light});
+}
+
 void PathRecorder::occluded() const {
     last().direct->outcome = DirectLight::Outcome::occluded;
     last().direct->contribution = {};

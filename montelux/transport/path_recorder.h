@@ -26,6 +26,9 @@ class PathRecorder {
     [[gnu::cold]] void found_light(FoundLight light) const;
     [[gnu::cold]] void made_bsdf(const SurfaceBsdf& bsdf, Vec3f wo) const;
     [[gnu::cold]] void sampled_light(DirectLight light) const;
+    // From a point of the ray to the next vertex.
+    [[gnu::cold]] void sampled_light_on_ray(float distance, DirectLight light,
+                                            SampledSpectrum throughput) const;
     // The shadow ray of the light that was sampled.
     [[gnu::cold]] void occluded() const;
     [[gnu::cold]] void scattered(const Scattering& scattering) const;

@@ -1,6 +1,8 @@
 // How light sampling and scattering share the light of a path, by the settings of an integrator.
 #pragma once
 
+#include <cmath>
+
 #include "montelux/mc/integrate/mis.h"
 #include "montelux/scene/render_settings.h"
 
@@ -15,6 +17,12 @@ template <Number T>
 T path_weight(const IntegratorSettings& settings, T f, T g) {
     return settings.heuristic == Heuristic::power ? power_heuristic(1, f, 1, g)
                                                   : balance_heuristic(1, f, 1, g);
+}
+
+// The density of one strategy that weighs as much as two.
+inline float joint_density(const IntegratorSettings& settings, float f, float g) {
+    if (g == 0) return f;
+    return settings.heuristic == Heuristic::power ? std::hypot(f, g) : f + g;
 }
 
 // MIS weight of light that a path hit after scattering with density `scatter_pdf`.

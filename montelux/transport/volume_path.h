@@ -55,8 +55,12 @@ class VolumePath {
     bool passes(const M& medium, float distance) {
         const auto local = medium.at(scene_, state_.medium, state_.lambda);
         const Ray ray{state_.ray.o, state_.ray.d, distance};
-        if constexpr (M::homogeneous)
+        SegmentLight segment;
+        if constexpr (M::homogeneous) {
             if (is_black(local.point.sigma_s)) return absorbs(local.point, distance);
+            segment = sample_segment(medium, local.point, ray);
+        }
+        const SampledSpectrum before = state_.r_u;
         CollisionNumbers numbers(stream_);
         const auto collision = [&](float t, SampledSpectrum relative, SampledSpectrum majorant) {
             state_.take(relative);
@@ -75,7 +79,12 @@ class VolumePath {
             if (M::homogeneous || u < absorbed + scattered) {
                 if (!(scattered > 0)) return end(PathEnd::absorbed); // by rounding
                 state_.take(m.sigma_s / scattered);
-                state_.scatter();
+                if constexpr (M::homogeneous) {
+                    segment.at = t;
+                    state_.scatter(segment, before, scattered * std::exp(-hero * t));
+                } else {
+                    state_.scatter();
+                }
                 state_.distance += t;
                 scatter(p, medium.phase, m);
                 return false;
@@ -85,6 +94,7 @@ class VolumePath {
             state_.throughput *= null / null[0];
             state_.r_u *= null / null[0];
             state_.r_l *= majorant / null[0];
+            state_.r_s *= majorant / null[0];
             state_.rescale();
             return true;
         };
@@ -92,10 +102,12 @@ class VolumePath {
         if (!relative) return false;
         if constexpr (M::homogeneous) {
             // Light sampling computes this transmittance, so that its density is 1 at all wavelengths.
-            const SampledSpectrum before = state_.r_l;
+            const SampledSpectrum of_light = state_.r_l, of_segment = state_.r_s;
             state_.take(*relative);
             const float hero = local.point.sigma_a[0] + local.point.sigma_s[0];
-            state_.r_l = hero > 0 ? before * std::exp(hero * distance) : before;
+            const float inverse = hero > 0 ? std::exp(hero * distance) : 1.0f;
+            state_.r_l = of_light * inverse;
+            state_.r_s = of_segment * inverse;
         } else {
             state_.take(*relative);
         }
@@ -268,9 +280,14 @@ class VolumePath {
         if (is_black(le)) return;
         const bool shared = !state_.sees_lights;
         const float ratio = average(state_.r_l) / average(state_.r_u);
-        const float pdf = shared ? scene_.light_sampler->probability(state_.previous, light, hit.part) *
-                                       pdf_li(context, state_.previous, hit) * ratio
-                                 : 0;
+        float pdf = 0;
+        if (shared) {
+            const float of_point = pdf_li(context, state_.previous, hit);
+            pdf = joint_density(settings_,
+                                scene_.light_sampler->probability(state_.previous, light, hit.part) *
+                                    of_point * ratio,
+                                segment_pdf(light, hit.part, of_point));
+        }
         const float weight = shared ? hit_weight(settings_, state_.bsdf_pdf, pdf) : 1;
         const bool counted = settings_.strategy != Strategy::mis_light;
         if (recorder_)
@@ -283,6 +300,73 @@ class VolumePath {
                                    .weight = weight,
                                    .counted = counted});
         if (counted) state_.radiance += state_.carried() * le * weight;
+    }
+
+    // Next-event estimation from a point of the ray that is chosen for a lamp (SegmentLight). Returns what its
+    // density at other points follows from.
+    SegmentLight sample_segment(const HomogeneousMedium& medium, const MediumPoint& m, const Ray& ray) {
+        using Outcome = DirectLight::Outcome;
+        if (scene_.segment_lights == nullptr || !settings_.equiangular || !samples_lights(settings_) ||
+            medium.is_body || state_.depth >= settings_.max_depth)
+            return {};
+        const SampledSpectrum sigma_t = m.sigma_a + m.sigma_s;
+        SegmentLight segment{ray.o, ray.d, ray.t_max, average(sigma_t)};
+        const Vec2f u = stream_.next_2d(), of_light = stream_.next_2d();
+        const LightChoice chosen = segment.choose(scene_, stream_.refined(u.x));
+        const auto distances = segment.distances(scene_, chosen.light, chosen.part);
+        if (!distances) return segment;
+        segment.at = distances->sample(u.y);
+        const float choice = chosen.probability * distances->pdf(segment.at);
+        if (!(choice > 0 && segment.at < ray.t_max)) return segment;
+        const ReferencePoint here{ray.o + ray.d * segment.at};
+        const std::optional<LightSample> light =
+            sample_li({scene_, chosen.light}, chosen.part, here, of_light, state_.lambda);
+        if (!light) return segment;
+        const float phase =
+            std::visit([&](const PhaseModel auto& f) { return f.pdf(-ray.d, light->wi); }, medium.phase);
+        const SampledSpectrum passed = exp(sigma_t * -segment.at), scattered = m.sigma_s * passed;
+        DirectLight record{.outcome = Outcome::no_transport,
+                           .light = chosen.light,
+                           .part = chosen.part,
+                           .choice = chosen.probability,
+                           .delta = light->delta,
+                           .wi = light->wi,
+                           .shadow = light->shadow,
+                           .radiance = light->radiance,
+                           .f = scattered * phase};
+        const auto finish = [&](Outcome outcome) {
+            record.outcome = outcome;
+            if (recorder_) recorder_.sampled_light_on_ray(segment.at, record, state_.carried());
+            return segment;
+        };
+        if (is_black(record.f) || is_black(light->radiance)) return finish(Outcome::no_transport);
+        Ray shadow = light->shadow;
+        shadow.time = state_.ray.time;
+        const std::optional<ShadowTransmittance> through =
+            shadow_transmittance(scene_, tracer_, shadow, state_.medium, state_.lambda, stream_);
+        if (!through) return finish(Outcome::occluded);
+        const float before = average(state_.r_u);
+        record.radiance *= through->t;
+        record.light_pdf = choice * light->pdf * average(state_.r_u * through->r_l) / before;
+        // The free flight that ends here, with light sampling or scattering.
+        const bool alone = light->invisible || settings_.strategy == Strategy::light;
+        const SampledSpectrum flight = state_.r_u * scattered;
+        record.other_pdf = scene_.light_sampler->probability(here, chosen.light, chosen.part) * light->pdf *
+                           average(flight * through->r_l) / before;
+        record.bsdf_pdf = alone ? 0 : phase * average(flight * through->r_u) / before;
+        record.weight = path_weight(settings_, record.light_pdf,
+                                    joint_density(settings_, record.bsdf_pdf, record.other_pdf));
+        if (settings_.strategy == Strategy::mis_bsdf) return finish(Outcome::other_term);
+        state_.radiance += state_.carried() * record.f * record.radiance * (record.weight / record.light_pdf);
+        return finish(Outcome::counted);
+    }
+
+    // Density of SegmentLight finding the last vertex and, from there, a point of a light that light sampling
+    // finds with density `pdf`: per solid angle, relative to the path's density.
+    float segment_pdf(Index light, Index part, float pdf,
+                      SampledSpectrum through = SampledSpectrum(1)) const {
+        const float choice = state_.segment.length > 0 ? state_.segment.pdf(scene_, light, part) : 0;
+        return choice > 0 ? choice * pdf * average(state_.r_s * through) / average(state_.r_u) : 0;
     }
 
     // Next-event estimation: one light, one point on it. evaluate(wi) gives value and density of scattering.
@@ -320,9 +404,10 @@ class VolumePath {
         record.radiance *= through->t;
         record.bsdf_pdf *= average(state_.r_u * through->r_u) / before;
         record.light_pdf *= average(state_.r_u * through->r_l) / before;
-        record.weight = light->invisible || settings_.strategy == Strategy::light
-                            ? 1
-                            : path_weight(settings_, record.light_pdf, record.bsdf_pdf);
+        const bool alone = light->invisible || settings_.strategy == Strategy::light;
+        record.other_pdf = segment_pdf(chosen.light, chosen.part, light->pdf, through->r_l);
+        const float others = joint_density(settings_, alone ? 0 : record.bsdf_pdf, record.other_pdf);
+        record.weight = alone && others == 0 ? 1 : path_weight(settings_, record.light_pdf, others);
         if (settings_.strategy == Strategy::mis_bsdf) return finish(Outcome::other_term);
         finish(Outcome::counted);
         state_.radiance += state_.carried() * e.f * record.radiance * (record.weight / record.light_pdf);

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "montelux/transport/path_state.h"
+#include "montelux/transport/segment_light.h"
 
 namespace montelux {
 
@@ -15,6 +16,10 @@ struct VolumeState : PathState {
     // The same if light sampling at the last scattering vertex had found what follows, without the density of
     // the light. PathState::bsdf_pdf is the density of the direction there.
     SampledSpectrum r_l{1};
+    // The same if SegmentLight had found the last scattering vertex and light sampling what follows, without the
+    // densities of the part, the distance and the light.
+    SampledSpectrum r_s{1};
+    SegmentLight segment;    // on which the last scattering vertex lies, if it is one in a medium
     Index medium = no_index; // around the ray
     float distance = 0;      // from the camera to the ray's origin, until the first scattering event
 
@@ -28,9 +33,20 @@ struct VolumeState : PathState {
         throughput *= factor;
         r_u *= factor;
         r_l *= factor;
+        r_s *= factor;
     }
     // The light's share of a step begins anew at a scattering event.
-    void scatter() { r_l = r_u; }
+    void scatter() {
+        r_l = r_u;
+        segment = {};
+    }
+    // A scattering event that the strategy of `found` could have found, whose density at the first wavelength
+    // was `hero`; r_u was `before`.
+    void scatter(const SegmentLight& found, SampledSpectrum before, float hero) {
+        r_l = r_u;
+        segment = found;
+        r_s = before / hero;
+    }
     // Only ratios count: the range of floats must last for many steps.
     void rescale() {
         const float largest = max_value(r_u);
@@ -39,6 +55,7 @@ struct VolumeState : PathState {
         throughput *= scale;
         r_u *= scale;
         r_l *= scale;
+        r_s *= scale;
     }
     // Leaves the first wavelength alone, which then stands for all four. What the other ones have found stays.
     // All four become the first, so that their densities remain equal.
@@ -47,6 +64,7 @@ struct VolumeState : PathState {
         throughput = SampledSpectrum(4 * throughput[0], 0, 0, 0);
         r_u = SampledSpectrum(r_u[0]);
         r_l = SampledSpectrum(r_l[0]);
+        r_s = SampledSpectrum(r_s[0]);
     }
 };
 static_assert(std::is_trivially_copyable_v<VolumeState>);

@@ -38,6 +38,18 @@ void choice(nb::class_<Ref<T>>& c, const char* name, M T::*member, const Table& 
         doc);
 }
 
+template <typename T>
+void flag(nb::class_<Ref<T>>& c, const char* name, bool T::*member, const char* doc) {
+    attribute<T>(
+        c, name, "bool", [member](const T& t, const auto&) { return nb::cast(t.*member); },
+        [member](T& t, nb::handle v, auto&, const std::string& what) {
+            if (!nb::isinstance<nb::bool_>(v))
+                throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected True or False");
+            t.*member = nb::cast<bool>(v);
+        },
+        doc);
+}
+
 nb::object floats(std::initializer_list<float> values) {
     nb::list l;
     for (const float v : values) l.append(static_cast<double>(v));
@@ -267,15 +279,12 @@ void bind_views(nb::module_& m) {
     choice(
         integrator, "environment_sampling", &IntegratorSettings::environment_sampling, environment_samplings,
         "How directions to environment maps are sampled: 'auto', 'tabulated', 'median-cut' or 'structured'.");
-    attribute<IntegratorSettings>(
-        integrator, "environment_compensation", "bool",
-        [](const IntegratorSettings& s, const auto&) { return nb::cast(s.environment_compensation); },
-        [](IntegratorSettings& s, nb::handle v, auto&, const std::string& what) {
-            if (!nb::isinstance<nb::bool_>(v))
-                throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected True or False");
-            s.environment_compensation = nb::cast<bool>(v);
-        },
-        "With the strategy mis and its terms, maps are not sampled where BSDFs find them as well.");
+    flag(integrator, "equiangular", &IntegratorSettings::equiangular,
+         "Where lights are sampled: in homogeneous media lamps are also looked for from points of the ray "
+         "close to "
+         "them.");
+    flag(integrator, "environment_compensation", &IntegratorSettings::environment_compensation,
+         "With the strategy mis and its terms, maps are not sampled where BSDFs find them as well.");
     choice(integrator, "environment_lookup", &IntegratorSettings::environment_lookup, environment_lookups,
            "What environment maps are between the centres of their texels: 'nearest' or 'bilinear'.");
 }

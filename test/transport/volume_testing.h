@@ -137,6 +137,29 @@ void expect_radiance(const SpectralMean& mean, const Truth& truth, const std::st
     }
 }
 
+// All wavelengths together, over the pixels of the scene's camera.
+template <typename Integrator>
+RunningMoments camera_mean(const SceneDescription& description, int samples, std::uint64_t seed) {
+    const VolumeWorld world(description);
+    const Integrator integrator(world.description.integrator, world.camera);
+    RayTracer tracer(world.accelerator);
+    RunningMoments mean;
+    for (int i = 0; i < samples; ++i) {
+        SampleStream stream({.seed = seed}, 0, 0, static_cast<std::uint64_t>(i));
+        const Vec2f film = stream.next_2d() * 16;
+        const auto lambda = SampledWavelengths::sample_visible(stream.next_1d());
+        const FilmContribution c = integrator.estimate(world.tables.view(), tracer,
+                                                       {world.camera.generate_ray(film, {}), lambda}, stream);
+        mean.add(double(average(safe_div(c.radiance, c.lambda.pdf))));
+    }
+    return mean;
+}
+
+inline void expect_same_mean(const RunningMoments& a, const RunningMoments& b, const std::string& what) {
+    EXPECT_GT(a.mean(), 0);
+    EXPECT_NEAR(a.mean(), b.mean(), 5 * std::sqrt(a.variance_of_mean() + b.variance_of_mean())) << what;
+}
+
 constexpr Strategy volume_strategies[] = {Strategy::uniform, Strategy::bsdf, Strategy::light, Strategy::mis};
 
 } // namespace montelux::testing

@@ -1,10 +1,12 @@
 // One-dimensional warps (B2 to B5): chi-squared, round trip, and derivative of the inverse = density.
 #include <functional>
 #include <gtest/gtest.h>
+#include <limits>
 #include <string>
 
 #include "montelux/mc/stats/chi_squared.h"
 #include "montelux/mc/warp/cosine.h"
+#include "montelux/mc/warp/equiangular.h"
 #include "montelux/mc/warp/exponential.h"
 #include "montelux/mc/warp/linear.h"
 #include "montelux/mc/warp/tent.h"
@@ -27,6 +29,14 @@ std::vector<IntervalWarp> all_interval_warps() {
                             0,
                             1};
     };
+    auto equiangular = [](const char* name, Equiangular<double> d) {
+        return IntervalWarp{name,
+                            [=](double u) { return d.sample(u); },
+                            [=](double x) { return d.invert(x); },
+                            [=](double x) { return d.pdf(x); },
+                            0,
+                            d.length};
+    };
     return {
         linear("LinearFromZero", 0, 1),
         linear("LinearToZero", 2, 0),
@@ -40,6 +50,9 @@ std::vector<IntervalWarp> all_interval_warps() {
         {"TruncatedExponential", [](double u) { return sample_truncated_exponential(u, 3.0, 0.5); },
          [](double x) { return invert_truncated_exponential(x, 3.0, 0.5); },
          [](double x) { return truncated_exponential_pdf(x, 3.0, 0.5); }, 0, 0.5},
+        equiangular("EquiangularBefore", {-0.5, 0.3, 2}),
+        equiangular("EquiangularOnTheSegment", {0.7, 0.05, 2}),
+        equiangular("EquiangularBehind", {3, 1, 2}),
         {"Cosine", [](double u) { return sample_cosine(u); }, [](double x) { return invert_cosine(x); },
          [](double x) { return cosine_pdf(x); }, 0, pi / 2},
         {"Quadratic", [](double u) { return sample_quadratic(u); },
@@ -70,6 +83,14 @@ TEST_P(IntervalWarpTest, InverseUndoesSampleAndItsSlopeIsTheDensity) {
 
 INSTANTIATE_TEST_SUITE_P(All, IntervalWarpTest, testing::ValuesIn(all_interval_warps()),
                          [](const auto& warp) { return warp.param.name; });
+
+TEST(EquiangularWarp, TheSegmentMayBeInfinite) {
+    const Equiangular<double> d{2, 0.5, std::numeric_limits<double>::infinity()};
+    EXPECT_NEAR(d.invert(1e12), 1, 1e-12);
+    EXPECT_NEAR(d.sample(d.invert(7.0)), 7, 1e-12);
+    EXPECT_GT(d.sample(one_minus_epsilon_d), 1e12);
+    EXPECT_EQ(d.pdf(-1.0), 0);
+}
 
 TEST(ExponentialWarp, ShortPathsKeepTheirDigits) {
     EXPECT_NEAR(sample_exponential(1e-30f, 1.0f) / 1e-30f, 1, 1e-6f);

@@ -1,0 +1,65 @@
+// SegmentLight: distances along a ray at which the light of a lamp near the ray is looked for.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "montelux/mc/warp/equiangular.h"
+#include "montelux/scene/light/light_sampling.h"
+#include "montelux/scene/shape/ray.h"
+#include "montelux/scene/view.h"
+
+namespace montelux {
+
+// A ray through a homogeneous medium. The strategy chooses a part of a light, and a distance by the equiangular density
+// about the centre of that part; light is then sampled on the part from there. Half of the choices are made for a
+// point of the ray, the others by power alone: a beam may cross the ray elsewhere.
+struct SegmentLight {
+    Point3f o{};
+    Vec3f d{};            // unit
+    float length = 0;     // 0: the strategy is not used. May be infinite.
+    float extinction = 0; // mean over the wavelengths
+    float at = 0;         // distance of the path's scattering event
+
+    // Lamps farther away are left to free flights: little of their light arrives, and it is spread evenly.
+    static constexpr float most_depth = 4;
+
+    // Half of the length, or a mean free path if that is less.
+    ReferencePoint middle() const { return {o + d * std::min(0.5f * length, 1 / extinction)}; }
+    // u in [0, 1).
+    LightChoice choose(const SceneView& scene, double u) const {
+        LightChoice chosen = u < 0.5 ? scene.light_sampler->sample(middle(), 2 * u)
+                                     : scene.segment_lights->sample({}, 2 * u - 1);
+        chosen.probability = choice(scene, chosen.light, chosen.part);
+        return chosen;
+    }
+    float choice(const SceneView& scene, Index light, Index part) const {
+        return 0.5f * (scene.light_sampler->probability(middle(), light, part) +
+                       scene.segment_lights->probability({}, light, part));
+    }
+
+    // Empty for parts without a position, or too far.
+    std::optional<Equiangular<float>> distances(const SceneView& scene, Index light, Index part) const {
+        const std::optional<LightBounds> bounds = light_bounds({scene, light}, part);
+        if (!bounds) return std::nullopt;
+        const Vec3f to(bounds->box.center() - Vec3d(o));
+        const float foot = dot(to, d), far = montelux::length(to);
+        if (!(extinction * far < most_depth)) return std::nullopt;
+        // The light of a lamp does not rise further within its size.
+        const float least = std::max(0.5f * static_cast<float>(bounds->box.radius()), 1e-4f * far);
+        const float beside = std::max(montelux::length(to - foot * d), least);
+        if (!(beside > std::numeric_limits<float>::min())) return std::nullopt;
+        return Equiangular<float>{foot, beside, length};
+    }
+
+    // Density of choosing this part and the distance `at`, per length.
+    float pdf(const SceneView& scene, Index light, Index part) const {
+        if (!(length > 0)) return 0;
+        const std::optional<Equiangular<float>> found = distances(scene, light, part);
+        return found ? choice(scene, light, part) * found->pdf(at) : 0;
+    }
+};
+
+} // namespace montelux

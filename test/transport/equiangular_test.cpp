@@ -1,0 +1,207 @@
+// Lamps in homogeneous fog: light that is looked for along rays.
+#include "test/transport/volume_testing.h"
+
+#include "montelux/mc/math/quadrature.h"
+
+namespace montelux::testing {
+namespace {
+
+constexpr float lamp_z = 2.5f, lamp_beside = 0.3f;
+
+// Chromatic fog everywhere, with a lamp beside the ray. `wall`: a black one behind the lamp, at z = 4.
+VolumeScene lamp_in_fog(bool wall, float density = 1) {
+    VolumeScene b;
+    b.scene.camera.medium = b.add_medium(HomogeneousMedium{.sigma_a = b.spectrum(0.02f, 0.1f),
+                                                           .sigma_s = b.spectrum(0.05f, 0.4f),
+                                                           .scale = density,
+                                                           .phase = HenyeyGreenstein{0.4f}});
+    if (wall)
+        b.add_mesh(square(Transform::translate({0, 0, 4}) * Transform::scale({1e3, 1e3, 1})),
+                   b.add(DiffuseMaterial{gray(0)}));
+    b.description.integrator.max_depth = 1;
+    return b;
+}
+const Ray through_fog{{0, 0, 0}, {0, 0, 1}};
+
+// By quadrature over the angle at the lamp: the integral over z of sigma_s p e^(-sigma_t (z + r)) I(w) / r^2, where I is
+// the intensity in the direction from the lamp.
+template <typename Intensity>
+double single_scattering(double sigma_a, double sigma_s, double length, const Intensity& intensity) {
+    const double first = std::atan(double(-lamp_z / lamp_beside)),
+                 last = std::atan((length - double(lamp_z)) / double(lamp_beside));
+    const std::vector<QuadratureNode> rule = gauss_legendre_rule(24);
+    double sum = 0;
+    constexpr int pieces = 64;
+    for (int i = 0; i < pieces; ++i)
+        for (const QuadratureNode& node : rule) {
+            const double angle = first + (last - first) * (i + node.x) / pieces;
+            const double z = double(lamp_z) + double(lamp_beside) * std::tan(angle);
+            const double r = double(lamp_beside) / std::cos(angle);
+            const Vec3f to_lamp = normalize(Vec3f(lamp_beside, 0, lamp_z - static_cast<float>(z)));
+            const double phase = double(HenyeyGreenstein{0.4f}.pdf({0, 0, -1}, to_lamp));
+            // dz = r^2 / beside d(angle)
+            sum += node.weight * (last - first) / pieces * sigma_s * phase *
+                   std::exp(-(sigma_a + sigma_s) * (z + r)) * intensity(-to_lamp) / double(lamp_beside);
+        }
+    return sum;
+}
+
+TEST(Equiangular, SingleScatteringOfAPointLight) {
+    for (const bool wall : {false, true})
+        for (const bool equiangular : {false, true})
+            for (const Strategy strategy : {Strategy::light, Strategy::mis})
+                for (const Heuristic heuristic : {Heuristic::power, Heuristic::balance}) {
+                    VolumeScene b = lamp_in_fog(wall);
+                    b.scene.lights.push_back(PointLight{SceneSpectrum(3.0f), 1, {lamp_beside, 0, lamp_z}});
+                    b.description.integrator.strategy = strategy;
+                    b.description.integrator.heuristic = heuristic;
+                    b.description.integrator.equiangular = equiangular;
+                    expect_radiance(
+                        volume_radiance(b.description, through_fog, 40000),
+                        [&](float l) {
+                            return single_scattering(double(line(0.02f, 0.1f)(l)),
+                                                     double(line(0.05f, 0.4f)(l)), wall ? 4 : 60,
+                                                     [](Vec3f) { return 3.0; });
+                        },
+                        std::string("point light") + (wall ? ", wall" : "") +
+                            (equiangular ? ", equiangular" : ""),
+                        2e-4);
+                }
+}
+
+// The beam crosses the ray; most points of the ray are dark.
+TEST(Equiangular, SingleScatteringOfABeam) {
+    VolumeScene b = lamp_in_fog(true);
+    const SpotLight spot{SceneSpectrum(3.0f),           1,     {lamp_beside, 0, lamp_z},
+                         normalize(Vec3f(-1, 0, 0.5f)), 0.99f, 0.96f};
+    b.scene.lights.push_back(spot);
+    b.add_sky(0.0f);
+    expect_radiance(
+        volume_radiance(b.description, through_fog, 40000),
+        [&](float l) {
+            return single_scattering(double(line(0.02f, 0.1f)(l)), double(line(0.05f, 0.4f)(l)), 4,
+                                     [&](Vec3f w) { return 3.0 * double(spot.falloff(w)); });
+        },
+        "spot light", 5e-4);
+}
+
+// Scattering hits these lamps, too: three strategies share the light.
+TEST(Equiangular, SingleScatteringOfLampsThatRaysHit) {
+    for (const bool mesh : {false, true}) {
+        VolumeScene b = lamp_in_fog(true);
+        const Transform place = Transform::translate({0.5, 0, 2.5});
+        const Index black = b.add(DiffuseMaterial{gray(0)});
+        if (mesh)
+            b.add_mesh(square(place * Transform::rotate(-90, {0, 1, 0}) * Transform::scale({0.3, 0.3, 0.3})),
+                       black, 8);
+        else
+            b.add_quadric(Sphere{.world_from_object = place * Transform::scale({0.3, 0.3, 0.3})}, black, 8);
+        const auto mean = [&](Strategy strategy, Heuristic heuristic, bool equiangular, int samples) {
+            b.description.integrator.strategy = strategy;
+            b.description.integrator.heuristic = heuristic;
+            b.description.integrator.equiangular = equiangular;
+            return volume_radiance(b.description, through_fog, samples).total;
+        };
+        const std::string what = mesh ? "mesh, " : "sphere, ";
+        const RunningMoments bsdf = mean(Strategy::bsdf, Heuristic::power, true, 1000000);
+        expect_same_mean(bsdf, mean(Strategy::mis, Heuristic::power, true, 100000), what + "power");
+        expect_same_mean(bsdf, mean(Strategy::mis, Heuristic::balance, true, 100000), what + "balance");
+        expect_same_mean(bsdf, mean(Strategy::mis, Heuristic::power, false, 100000), what + "without");
+        expect_same_mean(bsdf, mean(Strategy::light, Heuristic::power, true, 100000), what + "light");
+    }
+}
+
+// Thin fog: a free flight rarely ends near the lamp.
+TEST(Equiangular, ThinFogHasLessNoise) {
+    VolumeScene b = lamp_in_fog(true, 0.01f);
+    b.scene.lights.push_back(PointLight{SceneSpectrum(3.0f), 1, {lamp_beside, 0, lamp_z}});
+    const RunningMoments with = volume_radiance(b.description, through_fog, 20000).total;
+    b.description.integrator.equiangular = false;
+    const RunningMoments without = volume_radiance(b.description, through_fog, 20000).total;
+    EXPECT_NEAR(with.mean(), without.mean(), 5 * std::sqrt(without.variance_of_mean()));
+    EXPECT_LT(with.variance(), without.variance() / 100);
+}
+
+// Lamps that rays hit, of triangles and as a sphere, seen through an interface between two fogs and by a diffuse wall;
+// a sky and a lamp too far away to be looked for along rays; several scattering events.
+VolumeScene hall_of_lamps() {
+    VolumeScene b;
+    const Index outer = b.add_medium(HomogeneousMedium{.sigma_a = b.spectrum(0.02f, 0.1f),
+                                                       .sigma_s = b.spectrum(0.05f, 0.3f),
+                                                       .phase = HenyeyGreenstein{0.5f}});
+    const Index inner = b.add_medium(
+        HomogeneousMedium{.sigma_a = b.spectrum(0.2f, 0.02f), .sigma_s = b.spectrum(1.2f, 0.3f)});
+    b.scene.camera.medium = outer;
+    const Index black = b.add(DiffuseMaterial{gray(0)});
+    const auto lamp = [&](Index shape, Index medium) { b.bound(shape, medium, medium); };
+    lamp(b.add_mesh(square(Transform::translate({0, 0, 2.5}) * Transform::rotate(180, {1, 0, 0}) *
+                           Transform::scale({0.3, 0.3, 0.3})),
+                    black, 8),
+         outer);
+    lamp(b.add_quadric(Sphere{.world_from_object = Transform::translate({0.5, -0.5, -0.3}) *
+                                                   Transform::scale({0.15, 0.15, 0.15})},
+                       black, 20),
+         outer);
+    b.bound(b.add_quadric(Sphere{.world_from_object = Transform::translate({-0.5, 0.2, 0.1}) *
+                                                      Transform::scale({0.7, 0.7, 0.7})},
+                          b.interface()),
+            inner, outer);
+    b.add_mesh(square(Transform::translate({0, 0, -1.2}) * Transform::scale({3, 3, 1})),
+               b.add(DiffuseMaterial{gray(0.6f)}));
+    b.add_sky(0.003f);
+    b.scene.lights.push_back(PointLight{SceneSpectrum(1.0f), 1, {0, 30, 10}});
+    b.look({0.3, -4, 0.6}, {0, 0, 0}, 35);
+    b.description.integrator.max_depth = 12;
+    return b;
+}
+
+RunningMoments hall_mean(VolumeScene& b, Strategy strategy, Heuristic heuristic, bool equiangular,
+                         std::uint64_t seed, int samples = 60000) {
+    b.description.integrator.strategy = strategy;
+    b.description.integrator.heuristic = heuristic;
+    b.description.integrator.equiangular = equiangular;
+    return camera_mean<VolumePathIntegrator>(b.description, samples, seed);
+}
+
+TEST(Equiangular, StrategiesAgree) {
+    VolumeScene b = hall_of_lamps();
+    const RunningMoments mis = hall_mean(b, Strategy::mis, Heuristic::power, true, 1);
+    expect_same_mean(mis, hall_mean(b, Strategy::mis, Heuristic::power, false, 2), "without");
+    expect_same_mean(mis, hall_mean(b, Strategy::mis, Heuristic::balance, true, 3), "balance");
+    expect_same_mean(mis, hall_mean(b, Strategy::light, Heuristic::power, true, 4), "light");
+    expect_same_mean(mis, hall_mean(b, Strategy::light, Heuristic::balance, true, 5), "light, balance");
+    expect_same_mean(mis, hall_mean(b, Strategy::bsdf, Heuristic::power, true, 6, 240000), "bsdf");
+    EXPECT_NEAR(hall_mean(b, Strategy::mis_bsdf, Heuristic::power, true, 1).mean() +
+                    hall_mean(b, Strategy::mis_light, Heuristic::power, true, 1).mean(),
+                mis.mean(), 1e-3 * mis.mean());
+}
+
+TEST(Equiangular, RecordsSumToTheRadiance) {
+    const VolumeScene b = hall_of_lamps();
+    const VolumeWorld world(b.description);
+    const VolumePathIntegrator integrator(world.description.integrator, world.camera);
+    RayTracer tracer(world.accelerator);
+    std::size_t on_rays = 0;
+    for (std::uint64_t i = 0; i < 1600; ++i) {
+        SampleStream stream({.seed = 2}, 3, 4, i), again = stream;
+        const CameraSample camera{world.camera.generate_ray(stream.next_2d() * 16, {}),
+                                  SampledWavelengths::sample_visible(stream.next_1d())};
+        again = stream;
+        PathRecord record;
+        const SampledSpectrum radiance =
+            integrator.estimate(world.tables.view(), tracer, camera, stream, &record).radiance;
+        EXPECT_EQ(radiance, integrator.estimate(world.tables.view(), tracer, camera, again).radiance);
+        SampledSpectrum sum = record.emission;
+        for (const PathVertex& v : record.vertices) {
+            for (const FoundLight& light : v.found) sum += light.contribution;
+            if (v.direct) sum += v.direct->contribution;
+        }
+        for (const RayLight& light : record.on_rays) sum += light.light.contribution;
+        on_rays += record.on_rays.size();
+        for (int k = 0; k < 4; ++k) EXPECT_NEAR(sum[k], radiance[k], 1e-4f * (1 + sum[k]));
+    }
+    EXPECT_GT(on_rays, 100u);
+}
+
+} // namespace
+} // namespace montelux::testing
