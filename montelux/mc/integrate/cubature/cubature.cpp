@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 
+#include "montelux/mc/integrate/cubature/cubature_confirmation.h"
 #include "montelux/mc/integrate/cubature/cubature_evaluation.h"
 #include "montelux/mc/integrate/cubature/cubature_halving.h"
 #include "montelux/mc/integrate/cubature/cubature_regions.h"
@@ -31,7 +32,8 @@ class CubatureEstimator final : public Estimator {
     CubatureEstimator(const Problem& problem, std::uint64_t max_memory, std::uint64_t check_points)
         : problem_(problem), n_(problem.evaluator.dimensions()), m_(problem.evaluator.components()),
           regions_(n_, m_), max_regions_(max_memory / regions_.bytes_each()), totals_(m_), nonzero_(m_, 0),
-          disagreement_(m_, 0.0), expected_(m_, 0.0), verification_(problem, check_points) {
+          disagreement_(m_, 0.0), expected_(m_, 0.0), verification_(problem, check_points),
+          check_points_(check_points), confirmation_(m_) {
         if (max_regions_ < 64)
             throw Error("cubature", "expected memory for at least 64 regions, " +
                                         std::to_string(64 * regions_.bytes_each()) + " bytes, got " +
@@ -60,15 +62,21 @@ class CubatureEstimator final : public Estimator {
         if (check && verification_.due(regions_, totals_.value, totals_.error, evaluations_, request,
                                        reached(request)))
             return verify(request);
+        const bool confirms = !retry && confirmation_.pending() && reached(request);
         if (regions_.empty() || retry) {
             fresh.add_cube();
             rules.push_back(regions_.empty() && started_coarse() ? &*coarse_ : &*fine_);
         } else {
+            if (confirms) parents = regions_to_confirm(request);
             // Halving regions does not reduce the error of equal values.
-            if (searching() || reached(request) || !reaches(totals_.rule_error, request))
+            else if (searching() || reached(request) || !reaches(totals_.rule_error, request))
                 parents = regions_to_halve(regions_, scales(request), searching());
             if (regions_.count() + parents.size() > max_regions_)
                 parents.resize(max_regions_ - regions_.count());
+            if (parents.empty() && confirms) {
+                confirmation_.skip();
+                return StepOutcome::advanced;
+            }
             if (parents.empty()) return end(request);
             for (std::size_t p : parents) rules.insert(rules.end(), 2, rule_for_halves(p));
         }
@@ -107,6 +115,7 @@ class CubatureEstimator final : public Estimator {
             correct_cube(regions_, fresh);
             regions_ = std::move(fresh);
         } else {
+            if (confirms) confirmation_.compare(regions_, parents, fresh, totals_.error);
             add_face_errors(work);
             replace(parents, fresh);
         }
@@ -130,7 +139,7 @@ class CubatureEstimator final : public Estimator {
         if (searching())
             for (std::size_t c = 0; c < components(); ++c)
                 if (nonzero_[c] == 0) tally.standard_error[c] = std::numeric_limits<double>::infinity();
-        tally.ready = !searching() && verification_.verified(totals_.value);
+        tally.ready = !searching() && verification_.verified(totals_.value) && !confirmation_.pending();
         tally.at_limit = at_limit_;
         // In one variable halving alone finds every feature of some width.
         tally.localised = n_ > 1 && verification_.evaluations() > 0 && verification_.blind();
@@ -161,6 +170,7 @@ class CubatureEstimator final : public Estimator {
         state.put(at_limit_);
         state.put(singular_);
         verification_.save(state);
+        confirmation_.save(state);
     }
     void load(StateReader& state) override {
         regions_.load(state);
@@ -185,6 +195,7 @@ class CubatureEstimator final : public Estimator {
         at_limit_ = state.get<int>() != 0;
         singular_ = state.get_word();
         verification_.load(state, regions_.count());
+        confirmation_.load(state);
         if (!regions_.empty()) add_up();
     }
 
@@ -220,7 +231,16 @@ class CubatureEstimator final : public Estimator {
         if (made == 0) return StepOutcome::cancelled;
         evaluations_ += made;
         add_up();
+        if (n_ > 1 && reached(request)) confirmation_.require(regions_);
         return StepOutcome::advanced;
+    }
+
+    // As many as cost about as much as a check; none if there are not enough evaluations left.
+    std::vector<std::size_t> regions_to_confirm(const StepRequest& request) {
+        const std::uint64_t pair = 2 * fine_->points();
+        const std::uint64_t most = std::min(check_points_, request.max_evaluations / 2) / pair;
+        if (most == 0) return {};
+        return confirmation_.choose(regions_, scales(request), most, problem_.seed);
     }
 
     // No region is left to halve. The error of equal values falls with the number of points.
@@ -322,6 +342,7 @@ class CubatureEstimator final : public Estimator {
                 expected_[c] > 0 ? std::max(1.0, std::sqrt(disagreement_[c] / expected_[c])) : 1;
             totals_.error[c] = error.value() * totals_.inflation[c] *
                                (1 + (caution_of_one_region - 1) / static_cast<double>(regions_.count()));
+            totals_.error[c] *= confirmation_.factor(c);
             totals_.error[c] += verification_.slack(c);
             totals_.rule_error[c] = totals_.error[c];
             totals_.equal[c] = lowest == highest && lowest != 0;
@@ -378,6 +399,8 @@ class CubatureEstimator final : public Estimator {
     bool at_limit_ = false;      // every region's error is rounding
     std::uint64_t singular_ = 0; // evaluations repeated beside singularities
     CubatureVerification verification_;
+    std::uint64_t check_points_;
+    CubatureConfirmation confirmation_;
 };
 
 std::uint64_t default_check_points(int dimensions) { return dimensions == 1 ? 128 : 4096; }

@@ -22,7 +22,11 @@ constexpr std::uint64_t most_rounds = 12;
 constexpr std::uint64_t fewest_points = 16;
 constexpr double plateau = 0.1;             // range of the values beside their mean
 constexpr std::uint64_t plateau_points = 4; // times as many points if only a plateau was seen
-constexpr std::size_t most_climbs = 8;      // of a check
+// Points for an integrand with jumps, times the relative target: a part that holds four targets of the volume is then
+// overlooked with a probability of e^-4.8; at most this many times as many.
+constexpr double points_per_target = 2;
+constexpr std::uint64_t most_of_jumps = 5;
+constexpr std::size_t most_climbs = 8; // of a check
 
 bool targeted(const StepRequest& request) { return request.relative_error > 0 || request.absolute_error > 0; }
 
@@ -149,7 +153,19 @@ std::uint64_t CubatureVerification::points(const CubatureRegions& regions, std::
         }
         flat = flat && high - low <= plateau * std::abs(value[c]);
     }
-    const std::uint64_t wanted = flat ? plateau_points * points_ : points_;
+    std::uint64_t wanted = flat ? plateau_points * points_ : points_;
+    // Where there is one jump there may be another, close to the faces of regions, where rules have no points.
+    bool jumps = false;
+    for (std::size_t r = 0; r < regions.count() && !jumps; ++r) jumps = regions.marks(r).rough;
+    if (jumps && problem_.evaluator.dimensions() > 1)
+        for (double v : value) {
+            const double target =
+                std::max(request.relative_error, v != 0 ? request.absolute_error / std::abs(v) : 0.0);
+            if (target > 0)
+                wanted = std::max(
+                    wanted, static_cast<std::uint64_t>(std::min(
+                                points_per_target / target, static_cast<double>(most_of_jumps * points_))));
+        }
     const std::uint64_t all = evaluations + request.max_evaluations;
     const std::uint64_t points =
         std::min({wanted, all / (targeted(request) ? 2 : 8), request.max_evaluations});

@@ -22,7 +22,7 @@ IntegrationResult run(const BenchIntegrand& f, double error, std::uint64_t evalu
 struct Goal {
     bench::Line line;
     double error;
-    std::uint64_t median; // of evaluations beside the check, at most
+    std::uint64_t median; // of evaluations beside the first check, at most
 };
 class CubatureGoal : public testing::TestWithParam<Goal> {};
 
@@ -45,12 +45,12 @@ TEST_P(CubatureGoal, IsHonestWithinTheEvaluations) {
 
 INSTANTIATE_TEST_SUITE_P(
     Families, CubatureGoal,
-    testing::Values(Goal{{Family::oscillatory, 2}, 1e-4, 200}, Goal{{Family::product_peak, 2}, 1e-3, 1000},
+    testing::Values(Goal{{Family::oscillatory, 2}, 1e-4, 200}, Goal{{Family::product_peak, 2}, 1e-3, 2100},
                     Goal{{Family::corner_peak, 2}, 1e-4, 200}, Goal{{Family::gaussian, 2}, 1e-3, 1200},
-                    Goal{{Family::continuous, 2}, 1e-3, 2000}, Goal{{Family::discontinuous, 2}, 1e-3, 6000},
-                    Goal{{Family::oscillatory, 5}, 1e-4, 800}, Goal{{Family::product_peak, 5}, 1e-3, 16000},
+                    Goal{{Family::continuous, 2}, 1e-3, 3500}, Goal{{Family::discontinuous, 2}, 1e-3, 6000},
+                    Goal{{Family::oscillatory, 5}, 1e-4, 1000}, Goal{{Family::product_peak, 5}, 1e-3, 16000},
                     Goal{{Family::corner_peak, 5}, 1e-4, 9400}, Goal{{Family::gaussian, 5}, 1e-3, 9800},
-                    Goal{{Family::oscillatory, 8}, 1e-4, 3300}, Goal{{Family::corner_peak, 8}, 1e-3, 7000},
+                    Goal{{Family::oscillatory, 8}, 1e-4, 3900}, Goal{{Family::corner_peak, 8}, 1e-3, 8400},
                     Goal{{Family::gaussian, 8}, 1e-3, 50000}, Goal{{Family::sine, 1}, 1e-4, 7},
                     Goal{{Family::exponential, 1}, 1e-4, 13}, Goal{{Family::quadratic, 1}, 1e-4, 7},
                     Goal{{Family::inverse_root, 1}, 1e-4, 800}, Goal{{Family::jump, 1}, 1e-4, 500},
@@ -207,7 +207,7 @@ TEST(Cubature, AllComponentsReachTheirTargets) {
     EXPECT_NEAR(r.value[0] / (1e-6 * gauss(0.2) * gauss(0.7)), 1, 1e-6);
     EXPECT_NEAR(r.value[1] / (1e7 * (std::atan(2) + std::atan(8))), 1, 1e-6);
     EXPECT_DOUBLE_EQ(r.value[2], 1);
-    EXPECT_LT(r.evaluations, 20'000u);
+    EXPECT_LT(r.evaluations, 32'000u);
 }
 
 TEST(Cubature, WarnsOfAnIntegrandThatSeemsZeroEverywhere) {
