@@ -142,6 +142,7 @@ class Directives {
     SceneBuilder builder_;
     SpectrumReader spectra_;
     TextureLibrary textures_;
+    DisplacementReader displacements_;
     MeasuredBrdfLibrary measured_brdfs_;
     LightReader lights_;
     MediumReader media_;

@@ -89,8 +89,9 @@ void Directives::shape(const std::string& name, std::vector<Parameter> parameter
     const Transform world_from_object = moves ? Transform() : state_.ctm->start;
     ParameterList list = with_defaults(std::move(parameters), PluginKind::shape);
     ParameterReader r(list, "shape " + in_quotes(name), at, diagnostics_);
-    Geometry geometry = read_shape(r, name, world_from_object, state_.reverse_orientation,
-                                   state_.emission != nullptr, files_, subdivided_);
+    Geometry geometry =
+        read_shape(r, name, world_from_object, state_.reverse_orientation, state_.emission != nullptr, files_,
+                   subdivided_, displacements_, state_.ctm->start);
 
     ShapeSettings settings;
     settings.flip_normal = state_.reverse_orientation != world_from_object.swaps_handedness();

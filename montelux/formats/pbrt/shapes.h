@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 
+#include "montelux/formats/pbrt/displacement.h"
 #include "montelux/formats/pbrt/files.h"
 #include "montelux/formats/pbrt/parameter_reader.h"
 #include "montelux/formats/pbrt/settings.h"
@@ -13,8 +14,10 @@ namespace montelux::pbrt {
 
 // The geometry of one Shape directive. Vertices of meshes are transformed by `world_from_object`; vertex normals too, and turned around with
 // `reverse_orientation`. A quadric keeps the transform. `subdivided` counts the triangles of all 'loopsubdiv'
-// shapes of the scene. `emits`: it is an area light.
+// shapes of the scene. `emits`: it is an area light. `displacement_space` is the transform for displacement: that of
+// the shape in the world, of a moving one at the start.
 Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transform& world_from_object,
-                    bool reverse_orientation, bool emits, Files& files, std::size_t& subdivided);
+                    bool reverse_orientation, bool emits, Files& files, std::size_t& subdivided,
+                    DisplacementReader& displacements, const Transform& displacement_space);
 
 } // namespace montelux::pbrt
