@@ -1,5 +1,3 @@
-#include "montelux/render/checkpoint.h"
-
 #include <array>
 #include <bit>
 #include <span>
@@ -11,6 +9,8 @@
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/random/hash.h"
+#include "montelux/render/checkpoint.h"
+#include "montelux/spectrum/camera_sensors.h"
 
 namespace montelux {
 namespace {
@@ -57,12 +57,18 @@ std::uint64_t hash_of_text(std::string_view text) {
     for (const char c : text) h = hash_key(h, static_cast<std::uint8_t>(c));
     return h;
 }
+// A film with a feature of its own adds its hash; the others keep theirs, so that their checkpoints stay valid.
+std::uint64_t hash_of_film(const FilmSettings& f) {
+    const std::uint64_t h =
+        hash_of(f.width, f.height, f.crop.x0, f.crop.y0, f.crop.x1, f.crop.y1, hash_of_filter(f.filter),
+                f.iso, f.exposure_time, f.white_balance, f.max_component_value);
+    return f.sensor == cie_sensor ? h : hash_of(h, hash_of_text(f.sensor));
+}
 // Another version of the program may take different samples.
 std::uint64_t version() { return hash_of(layout_version, hash_of_text(MONTELUX_VERSION)); }
 
 std::array<Fingerprint, 10> fingerprints(const SceneDigest& scene, const SceneDescription& d,
                                          const RenderTarget& target) {
-    const FilmSettings& f = d.film;
     auto of = [](const ContentDigest& part) { return hash_of(part.high, part.low); };
     return {
         {{"the scene's geometry differs", of(scene.geometry)},
@@ -70,9 +76,7 @@ std::array<Fingerprint, 10> fingerprints(const SceneDigest& scene, const SceneDe
          {"the scene's textures differ", of(scene.textures)},
          {"the scene's lights differ", of(scene.lights)},
          {"the scene's camera differs", of(scene.camera)},
-         {"the film differs",
-          hash_of(f.width, f.height, f.crop.x0, f.crop.y0, f.crop.x1, f.crop.y1, hash_of_filter(f.filter),
-                  f.iso, f.exposure_time, f.white_balance, f.max_component_value)},
+         {"the film differs", hash_of_film(d.film)},
          {"the sampler or seed differs", hash_of(static_cast<int>(d.sampler.kind), d.sampler.seed)},
          {"the integrator differs",
           hash_of(d.integrator.max_depth, static_cast<int>(d.integrator.strategy),

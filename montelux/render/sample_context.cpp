@@ -36,8 +36,8 @@ SampleContext::SampleContext(const SceneDescription& description, const SamplerS
     : sampler_(sampler), max_component_value_(description.film.max_component_value), scene_(scene),
       camera_(camera), moves_(moves(description.scene)),
       integrator_(make_integrator(description.integrator, scene, camera)), filter_(description.film.filter),
-      sensor_(RgbColorSpace::srgb(),
-              {description.film.exposure_time, description.film.iso, description.film.white_balance}),
+      sensor_(RgbColorSpace::srgb(), {description.film.exposure_time, description.film.iso,
+                                      description.film.white_balance, description.film.sensor}),
       white_(RgbColorSpace::srgb().illuminant()),
       white_scale_(static_cast<float>(1 / integrate_luminance(white_))) {}
 

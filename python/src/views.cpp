@@ -5,7 +5,9 @@
 #include <string>
 
 #include "montelux/image/image.h"
+#include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/setting_names.h"
+#include "montelux/spectrum/camera_sensors.h"
 
 namespace montelux::python {
 namespace {
@@ -171,7 +173,19 @@ void bind_film(nb::module_& m) {
            "Sensitivity; 100 leaves values as they are.");
     number(c, "exposure_time", &FilmSettings::exposure_time, positive, "a number above zero", "Seconds.");
     number(c, "white_balance", &FilmSettings::white_balance, not_negative, "a number that is not negative",
-           "Kelvin of the light that is to look white; 0: none.");
+           "Kelvin of the light that is to look white; 0: none, or 6500 K for a camera's sensor.");
+    attribute<FilmSettings>(
+        c, "sensor", "str", [](const FilmSettings& f, const auto&) { return nb::str(f.sensor.c_str()); },
+        [](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
+            if (!nb::isinstance<nb::str>(v))
+                throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected a name");
+            const auto name = nb::cast<std::string>(v);
+            const std::vector<std::string_view>& names = sensor_names();
+            if (std::find(names.begin(), names.end(), name) == names.end())
+                throw Error(what, "unknown sensor '" + name + "'" + did_you_mean(name, names));
+            f.sensor = name;
+        },
+        "The sensor by its name in pbrt-v4, such as \"nikon_d850\"; \"cie1931\" is the standard observer.");
     number(
         c, "max_component_value", &FilmSettings::max_component_value, [](double x) { return x > 0; },
         "a number above zero", "Largest RGB value of a sample; infinite: none.");

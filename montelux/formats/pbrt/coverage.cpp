@@ -23,7 +23,7 @@ std::vector<PluginCoverage> make_coverage() {
     constexpr std::string_view by_path = "rendered with the integrator 'path'";
     constexpr std::string_view own_tracer = "the ray tracer builds its own hierarchy";
 
-    add("Film", {plugin("rgb", in_part, "sensors other than 'cie1931' are refused"),
+    add("Film", {plugin("rgb"),
                  plugin("gbuffer", otherwise, "read as 'rgb'; every render has albedo, normal and depth"),
                  plugin("spectral", none)});
     add("PixelFilter",

@@ -7,6 +7,7 @@
 #include "montelux/formats/pbrt/settings.h"
 #include "montelux/image/image.h"
 #include "montelux/mc/math/nearest_name.h"
+#include "montelux/spectrum/camera_sensors.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
 namespace montelux::pbrt {
@@ -88,9 +89,10 @@ void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& fil
     film.max_component_value = r.number("maxcomponentvalue", std::numeric_limits<float>::infinity());
     if (!(film.max_component_value > 0))
         r.error("maxcomponentvalue", "parameter 'maxcomponentvalue' must be positive");
-    std::string sensor = r.string("sensor", "cie1931");
-    if (sensor != "cie1931")
-        r.error("sensor", "sensor " + in_quotes(sensor) + " is not supported yet; expected 'cie1931'");
+    film.sensor = r.string("sensor", cie_sensor);
+    const std::vector<std::string_view>& sensors = sensor_names();
+    if (std::find(sensors.begin(), sensors.end(), film.sensor) == sensors.end())
+        r.error("sensor", "unknown sensor " + in_quotes(film.sensor) + did_you_mean(film.sensor, sensors));
     if (r.boolean("savefp16") == true)
         diagnostics.warn_once("savefp16", r.at("savefp16"),
                               "'savefp16' is ignored: EXR files hold 32-bit floats");

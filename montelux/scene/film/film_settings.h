@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <string>
 #include <variant>
 
 #include "montelux/mc/math/vec.h"
@@ -45,6 +46,7 @@ struct FilmSettings {
     float iso = 100, exposure_time = 1;
     float diagonal = 0.035f; // metres; realistic cameras alone use it
     float white_balance = 0; // kelvin; 0: none
+    std::string sensor = "cie1931"; // see SensorSettings
     float max_component_value = std::numeric_limits<float>::infinity();
 };
 
