@@ -408,8 +408,9 @@ class SceneHasher {
         all(radius, thickness, eta, aperture_radius);
     }
     void add(const RealisticCamera& c) {
-        const auto& [surfaces, focus_distance, film_diagonal] = c;
+        const auto& [surfaces, focus_distance, film_diagonal, aperture] = c;
         all(surfaces, focus_distance, film_diagonal);
+        if (aperture) all(aperture->width, aperture->height, aperture->values);
     }
     void add(const CameraSettings& c) {
         const auto& [model, world_from_camera, motion, shutter_open, shutter_close, medium] = c;

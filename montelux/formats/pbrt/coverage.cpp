@@ -28,8 +28,7 @@ std::vector<PluginCoverage> make_coverage() {
                  plugin("spectral", none)});
     add("PixelFilter",
         {plugin("box"), plugin("gaussian"), plugin("mitchell"), plugin("sinc"), plugin("triangle")});
-    add("Camera", {plugin("perspective"), plugin("orthographic"), plugin("spherical"),
-                   plugin("realistic", in_part, "pictures of 'aperture' are refused")});
+    add("Camera", {plugin("perspective"), plugin("orthographic"), plugin("spherical"), plugin("realistic")});
     add("Sampler",
         {plugin("independent"), plugin("stratified"), plugin("halton"), plugin("sobol"),
          plugin("paddedsobol"), plugin("zsobol"), plugin("pmj02bn", otherwise, "read as 'zsobol'")});

@@ -9,6 +9,7 @@
 #include "montelux/formats/pbrt/parameter_reader.h"
 #include "montelux/formats/pbrt/settings.h"
 #include "montelux/formats/pbrt/tokenizer.h"
+#include "montelux/image/image_read.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/camera/lens_system.h"
@@ -74,6 +75,21 @@ std::vector<LensSurface> read_lens(ParameterReader& r, Files& files, Diagnostics
     return surfaces;
 }
 
+// One of pbrt-v4's shapes by name, or a picture by its file.
+std::optional<AperturePicture> read_aperture(ParameterReader& r, Files& files) {
+    const std::string name = r.string("aperture", "");
+    if (name.empty()) return std::nullopt;
+    if (std::optional<AperturePicture> known = find_aperture(name)) return known;
+    const Location at = r.at("aperture");
+    const std::filesystem::path path = files.find(name, at);
+    const std::vector<std::uint8_t> bytes = files.read(path, at);
+    try {
+        return aperture_of(read_image(bytes, path.string()));
+    } catch (const Error& e) {
+        r.error("aperture", e.what());
+    }
+}
+
 } // namespace
 
 void read_camera(const Plugin& plugin, Files& files, Diagnostics& diagnostics, FilmSettings& film,
@@ -111,9 +127,7 @@ void read_camera(const Plugin& plugin, Files& files, Diagnostics& diagnostics, F
         if (!(camera.focus_distance > 0))
             r.error("focusdistance", "parameter 'focusdistance' must be positive");
         camera.film_diagonal = film.diagonal;
-        if (!r.string("aperture", "").empty())
-            r.error("aperture",
-                    "pictures of apertures are not supported yet; without 'aperture' it is round");
+        camera.aperture = read_aperture(r, files);
         camera.surfaces = read_lens(r, files, diagnostics, diameter);
         try {
             static_cast<void>(LensSystem(camera));
