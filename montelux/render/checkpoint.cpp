@@ -1,3 +1,5 @@
+#include "montelux/render/checkpoint.h"
+
 #include <array>
 #include <bit>
 #include <span>
@@ -9,7 +11,6 @@
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/random/hash.h"
-#include "montelux/render/checkpoint.h"
 #include "montelux/spectrum/camera_sensors.h"
 
 namespace montelux {
@@ -64,27 +65,29 @@ std::uint64_t hash_of_film(const FilmSettings& f) {
                 f.iso, f.exposure_time, f.white_balance, f.max_component_value);
     return f.sensor == cie_sensor ? h : hash_of(h, hash_of_text(f.sensor));
 }
+std::uint64_t hash_of_integrator(const IntegratorSettings& s) {
+    const std::uint64_t h =
+        hash_of(s.max_depth, static_cast<int>(s.strategy), static_cast<int>(s.heuristic),
+                static_cast<int>(s.light_sampling), static_cast<int>(s.environment_sampling),
+                s.environment_compensation, static_cast<int>(s.environment_lookup));
+    return s.regularize ? hash_of(h, 1) : h;
+}
 // Another version of the program may take different samples.
 std::uint64_t version() { return hash_of(layout_version, hash_of_text(MONTELUX_VERSION)); }
 
 std::array<Fingerprint, 10> fingerprints(const SceneDigest& scene, const SceneDescription& d,
                                          const RenderTarget& target) {
     auto of = [](const ContentDigest& part) { return hash_of(part.high, part.low); };
-    return {
-        {{"the scene's geometry differs", of(scene.geometry)},
-         {"the scene's materials differ", of(scene.materials)},
-         {"the scene's textures differ", of(scene.textures)},
-         {"the scene's lights differ", of(scene.lights)},
-         {"the scene's camera differs", of(scene.camera)},
-         {"the film differs", hash_of_film(d.film)},
-         {"the sampler or seed differs", hash_of(static_cast<int>(d.sampler.kind), d.sampler.seed)},
-         {"the integrator differs",
-          hash_of(d.integrator.max_depth, static_cast<int>(d.integrator.strategy),
-                  static_cast<int>(d.integrator.heuristic), static_cast<int>(d.integrator.light_sampling),
-                  static_cast<int>(d.integrator.environment_sampling), d.integrator.environment_compensation,
-                  static_cast<int>(d.integrator.environment_lookup))},
-         {"the allocation of samples (--adaptive) differs", hash_of(target.adaptive)},
-         {"the slice differs", hash_of(target.slice.index, target.slice.count)}}};
+    return {{{"the scene's geometry differs", of(scene.geometry)},
+             {"the scene's materials differ", of(scene.materials)},
+             {"the scene's textures differ", of(scene.textures)},
+             {"the scene's lights differ", of(scene.lights)},
+             {"the scene's camera differs", of(scene.camera)},
+             {"the film differs", hash_of_film(d.film)},
+             {"the sampler or seed differs", hash_of(static_cast<int>(d.sampler.kind), d.sampler.seed)},
+             {"the integrator differs", hash_of_integrator(d.integrator)},
+             {"the allocation of samples (--adaptive) differs", hash_of(target.adaptive)},
+             {"the slice differs", hash_of(target.slice.index, target.slice.count)}}};
 }
 
 } // namespace

@@ -33,6 +33,9 @@ struct IntegratorSettings {
     Strategy strategy = Strategy::mis;
     Heuristic heuristic = Heuristic::power;
     LightSampling light_sampling = LightSampling::tree;
+    // Widens the microfacet lobes of surfaces that the path meets after an event that was not specular (Ggx::widened):
+    // biased, without the fireflies of caustics.
+    bool regularize = false;
     EnvironmentSampling environment_sampling = EnvironmentSampling::automatic;
     // MIS compensation; effective only with mis and its terms.
     bool environment_compensation = true;

@@ -217,6 +217,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
         state.throughput = throughput.lane(i);
         state.bsdf_pdf = scattered.pdf[i];
         state.sees_lights = false;
+        state.scattered_roughly = true;
         state.ray.o = lane_of(origin, i);
         state.ray.d = lane_of(wi, i);
         state.ray.t_max = std::numeric_limits<float>::infinity();

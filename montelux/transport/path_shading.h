@@ -128,7 +128,8 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     }
 
     const TextureContext context = textured ? texture_context(s) : TextureContext();
-    const SurfaceBsdf surface = make_bsdf(scene, s, -w, context, state.lambda);
+    const SurfaceBsdf surface =
+        make_bsdf(scene, s, -w, context, state.lambda, settings_.regularize && state.scattered_roughly);
     const Vec3f wo = surface.frame.to_local(-w);
     if (recorder) recorder.made_bsdf(surface, wo);
     if (state.depth == 1)
@@ -156,6 +157,7 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     state.throughput *= scattered->weight;
     state.bsdf_pdf = scattered->pdf;
     state.sees_lights = scattered->specular;
+    if (!scattered->specular) state.scattered_roughly = true;
     if (scattered->transmission) state.eta_scale *= scattered->eta * scattered->eta;
     const Vec3f wi = surface.frame.to_world(scattered->wi);
     if (recorder) recorder.scattered({*scattered, wi});

@@ -164,6 +164,7 @@ class VolumePath {
             },
             phase);
         state_.sees_lights = in_body;
+        state_.scattered_roughly = true;
         state_.alive = survives();
     }
 
@@ -203,7 +204,8 @@ class VolumePath {
             textured ? texture_context(*integrator_.camera_, integrator_.footprint_scale_, s)
                      : TextureContext();
         const bool was_terminated = state_.lambda.secondary_terminated();
-        const SurfaceBsdf surface = make_bsdf(scene_, s, -w, context, state_.lambda);
+        const SurfaceBsdf surface = make_bsdf(scene_, s, -w, context, state_.lambda,
+                                              settings_.regularize && state_.scattered_roughly);
         if (!was_terminated && state_.lambda.secondary_terminated()) state_.terminate_secondary();
         const Vec3f wo = surface.frame.to_local(-w);
         if (recorder_) recorder_.made_bsdf(surface, wo);
@@ -240,6 +242,7 @@ class VolumePath {
         state_.scatter();
         state_.bsdf_pdf = scattered->pdf;
         state_.sees_lights = scattered->specular;
+        if (!scattered->specular) state_.scattered_roughly = true;
         if (scattered->transmission) state_.eta_scale *= scattered->eta * scattered->eta;
         const Vec3f wi = surface.frame.to_world(scattered->wi);
         if (recorder_) recorder_.scattered({*scattered, wi});

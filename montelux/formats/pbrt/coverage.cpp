@@ -1,7 +1,8 @@
+#include "montelux/formats/pbrt/coverage.h"
+
 #include <algorithm>
 #include <map>
 
-#include "montelux/formats/pbrt/coverage.h"
 #include "montelux/scene/material/material_model.h"
 
 namespace montelux::pbrt {
@@ -33,8 +34,7 @@ std::vector<PluginCoverage> make_coverage() {
         {plugin("independent"), plugin("stratified"), plugin("halton"), plugin("sobol"),
          plugin("paddedsobol"), plugin("zsobol"), plugin("pmj02bn", otherwise, "read as 'zsobol'")});
     add("Integrator",
-        {plugin("path", in_part, "'regularize' is ignored"),
-         plugin("volpath", in_part, "'regularize' is ignored"), plugin("simplepath"), plugin("randomwalk"),
+        {plugin("path"), plugin("volpath"), plugin("simplepath"), plugin("randomwalk"),
          plugin("simplevolpath", otherwise, by_path), plugin("bdpt", otherwise, by_path),
          plugin("mlt", otherwise, by_path), plugin("sppm", otherwise, by_path),
          plugin("lightpath", otherwise, by_path), plugin("ambientocclusion", otherwise, by_path),

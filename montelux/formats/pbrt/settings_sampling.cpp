@@ -71,9 +71,11 @@ IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostic
     s.max_depth = r.integer("maxdepth", 5);
     if (s.max_depth < 0) r.error("maxdepth", "parameter 'maxdepth' is negative");
     if (plugin.name == "path" || plugin.name == "volpath") {
-        if (r.boolean("regularize", false))
+        s.regularize = r.boolean("regularize", false);
+        if (s.regularize)
             diagnostics.warn(r.at("regularize"),
-                             "'regularize' is not supported: the picture is rendered without that bias");
+                             "'regularize' widens the reflections of indirect light: the picture "
+                             "is biased, and its standard errors do not contain the bias");
         const std::string_view lights =
             r.choice("lightsampler", {"uniform", "power", "bvh", "exhaustive"}, "");
         if (lights == "uniform") s.light_sampling = LightSampling::uniform;

@@ -21,6 +21,12 @@ struct Ggx {
 
     bool is_smooth() const { return std::max(alpha_x, alpha_y) < smooth_limit; }
 
+    // Twice as rough, but between 0.1 and 0.3; rougher ones as they are (pbrt-v4's regularization).
+    Ggx widened() const {
+        const auto widen = [](float a) { return a < 0.3f ? std::clamp(2 * a, 0.1f, 0.3f) : a; };
+        return {widen(alpha_x), widen(alpha_y)};
+    }
+
     // D(m), per solid angle of m (1/sr); m on the upper hemisphere.
     // In components instead of tan(theta): exact also for narrow lobes.
     float d(Vec3f m) const {

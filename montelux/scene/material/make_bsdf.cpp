@@ -17,8 +17,9 @@ Index material_at(const SceneView& scene, const SurfacePoint& surface, Vec3f wo,
 }
 
 Frame plain_frame(const SceneView& scene, Index material, const SurfacePoint& surface) {
-    return scene.frame_follows_tangents(material) ? Frame::from_normal_and_tangent(surface.ns, surface.tangent())
-                                                  : Frame::from_normal(surface.ns);
+    return scene.frame_follows_tangents(material)
+               ? Frame::from_normal_and_tangent(surface.ns, surface.tangent())
+               : Frame::from_normal(surface.ns);
 }
 
 // `normal`: the geometric normal in the frame of the BSDF.
@@ -36,9 +37,9 @@ Bsdf tilted(const Bsdf& bsdf, Normal3f normal) {
 } // namespace
 
 SurfaceBsdf make_bsdf(const SceneView& scene, const SurfacePoint& surface, Vec3f wo,
-                      const TextureContext& context, SampledWavelengths& lambda) {
+                      const TextureContext& context, SampledWavelengths& lambda, bool widen) {
     const Index index = material_at(scene, surface, wo, context);
-    const ParameterEvaluator at(scene, index, context, lambda);
+    const ParameterEvaluator at(scene, index, context, lambda, widen);
     return std::visit(
         [&](const auto& m) -> SurfaceBsdf {
             if (!m.detail.is_flat())
