@@ -66,6 +66,7 @@ std::uint64_t hash_of_film(const FilmSettings& f) {
     return f.sensor == cie_sensor ? h : hash_of(h, hash_of_text(f.sensor));
 }
 std::uint64_t hash_of_integrator(const IntegratorSettings& s) {
+    if (s.occlusion) return hash_of(s.occlusion->cosine, s.occlusion->max_distance);
     const std::uint64_t h =
         hash_of(s.max_depth, static_cast<int>(s.strategy), static_cast<int>(s.heuristic),
                 static_cast<int>(s.light_sampling), static_cast<int>(s.environment_sampling),

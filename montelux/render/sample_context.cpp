@@ -25,6 +25,7 @@ constexpr float footprint_scale = 0.125f;
 
 // Scenes without media pay nothing for them.
 Integrator make_integrator(const IntegratorSettings& settings, const SceneView& scene, const Camera& camera) {
+    if (settings.occlusion) return OcclusionIntegrator(settings, camera, footprint_scale);
     if (scene.has_media()) return VolumePathIntegrator(settings, camera, footprint_scale);
     return PathIntegrator(settings, camera, footprint_scale);
 }

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -28,6 +30,12 @@ enum class Heuristic : std::uint8_t { balance, power };
 // How one light is chosen among many (scene/light/sampler).
 enum class LightSampling : std::uint8_t { uniform, power, tree };
 
+// Ambient occlusion instead of light (transport/occlusion_integrator.h).
+struct OcclusionSettings {
+    bool cosine = true; // samples directions by their cosine, or evenly
+    float max_distance = std::numeric_limits<float>::infinity();
+};
+
 struct IntegratorSettings {
     int max_depth = 5; // scattering events of a path
     Strategy strategy = Strategy::mis;
@@ -36,6 +44,7 @@ struct IntegratorSettings {
     // Widens the microfacet lobes of surfaces that the path meets after an event that was not specular (Ggx::widened):
     // biased, without the fireflies of caustics.
     bool regularize = false;
+    std::optional<OcclusionSettings> occlusion{}; // the other settings then have no effect
     EnvironmentSampling environment_sampling = EnvironmentSampling::automatic;
     // MIS compensation; effective only with mis and its terms.
     bool environment_compensation = true;

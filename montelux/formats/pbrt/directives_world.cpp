@@ -227,7 +227,7 @@ SceneDescription Directives::finish(Location end) {
     finish_materials();
     finish_media();
     textures_.warn_of_unused();
-    builder_.finish(end);
+    builder_.finish(end, !result_.integrator.occlusion);
     return std::move(result_);
 }
 

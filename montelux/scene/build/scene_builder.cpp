@@ -160,7 +160,7 @@ void SceneBuilder::place_instances() {
     instances_.clear();
 }
 
-void SceneBuilder::finish(SourceLocation end) {
+void SceneBuilder::finish(SourceLocation end, bool lights_matter) {
     place_instances();
     for (std::size_t i = 0; i < scene_.shapes.size(); ++i) {
         const Shape& shape = scene_.shapes[i];
@@ -176,7 +176,7 @@ void SceneBuilder::finish(SourceLocation end) {
     } catch (const Error& e) {
         messages_.error(end, e.what());
     }
-    if (scene_.lights.empty()) messages_.warn(end, "the scene has no light; its picture is black");
+    if (lights_matter && scene_.lights.empty()) messages_.warn(end, "the scene has no light; its picture is black");
 }
 
 } // namespace montelux

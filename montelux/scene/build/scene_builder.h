@@ -68,8 +68,9 @@ class SceneBuilder {
     // The same of any size, for lights that project a picture.
     Index add_light_picture(const Image& picture, const std::string& name, SourceLocation at = {});
 
-    // Resolves the instances and makes the remaining checks. `end` is the end of the file.
-    void finish(SourceLocation end = {});
+    // Resolves the instances and makes the remaining checks. `end` is the end of the file. Warns of a scene without
+    // lights, unless they do not matter.
+    void finish(SourceLocation end = {}, bool lights_matter = true);
 
   private:
     struct InstanceUse {
