@@ -83,8 +83,11 @@ void check_memory(const FilmSettings& film, bool with_checkpoints) {
     double there = pages * static_cast<double>(sysconf(_SC_PAGESIZE));
     constexpr double layers = 26, copies = 2; // the picture, and its encoding
     double pixels = static_cast<double>(film.crop.width()) * film.crop.height();
-    double needed = pixels * ((with_checkpoints ? 2 : 1) * (sizeof(Pixel) + sizeof(std::uint32_t)) +
-                              layers * copies * sizeof(float));
+    const double buckets = film.spectral ? film.spectral->buckets : 0;
+    double needed =
+        pixels * buckets * ((with_checkpoints ? 2 : 1) * sizeof(BucketMoments) + 2 * copies * sizeof(float));
+    needed += pixels * ((with_checkpoints ? 2 : 1) * (sizeof(Pixel) + sizeof(std::uint32_t)) +
+                        layers * copies * sizeof(float));
     if (pages <= 0 || needed <= there) return;
     constexpr double gib = 1 << 30;
     char text[160];

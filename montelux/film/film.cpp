@@ -1,5 +1,6 @@
 #include "montelux/film/film.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "montelux/film/pixel_warnings.h"
@@ -30,6 +31,35 @@ Film::Film(const FilmSettings& settings) : settings_(settings) {
         c.height() < 1)
         throw Error("film", "the crop window holds no pixel of the film");
     pixels_.resize(static_cast<std::size_t>(c.width()) * static_cast<std::size_t>(c.height()));
+    if (const auto& spectral = settings.spectral) {
+        if (!(spectral->lambda_min >= lambda_min && spectral->lambda_min < spectral->lambda_max &&
+              spectral->lambda_max <= lambda_max))
+            throw Error("film", "the wavelengths of a spectral film must lie between 360 nm and 830 nm");
+        if (spectral->buckets < 1 || spectral->buckets > SpectralSettings::most_buckets)
+            throw Error("film", "a spectral film has 1 to " + std::to_string(SpectralSettings::most_buckets) +
+                                    " buckets");
+        buckets_.resize(pixels_.size() * static_cast<std::size_t>(spectral->buckets));
+    }
+}
+
+void Film::copy_row(const Film& from, int x, int y, int width) {
+    std::copy_n(&from.pixel(x, y), width, &pixel(x, y));
+    const std::size_t n = buckets_per_pixel();
+    if (n > 0)
+        std::copy_n(&from.buckets_[index(x, y) * n], static_cast<std::size_t>(width) * n,
+                    &buckets_[index(x, y) * n]);
+}
+
+void Film::end_bucket_replicates(std::uint32_t points) {
+    const std::size_t n = buckets_per_pixel();
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        const std::uint32_t samples = pixels_[i].open_samples();
+        const bool drops = pixels_[i].drops_last(points);
+        for (BucketMoments& b : std::span(buckets_).subspan(i * n, n)) {
+            if (samples > 0 && !drops) b.end_replicate(samples, pixels_[i].replicates().count() + 1);
+            b.open = 0;
+        }
+    }
 }
 
 std::vector<std::string> film_layers(bool of_slice) {
@@ -62,6 +92,7 @@ Image Film::develop(bool as_slice) const {
         if (as_slice)
             for (int c = 0; c < 3; ++c) put(p.brightest()[c]);
     }
+    if (!buckets_.empty()) append_spectral_layers(image, *this);
     return image;
 }
 

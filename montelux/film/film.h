@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "montelux/film/film_error.h"
+#include "montelux/film/spectral_buckets.h"
 #include "montelux/image/image.h"
 #include "montelux/mc/stats/skew_moments.h"
 #include "montelux/scene/film/film_settings.h"
@@ -71,11 +72,17 @@ class Pixel {
     // weigh as much as a whole one and be as noisy as single samples. The rule depends on counts only, so it
     // adds no bias.
     void end_last_replicate(std::uint32_t points) {
-        if (2 * replicate_samples_ < points && replicates_.count() >= 2) {
+        if (drops_last(points)) {
             replicate_sum_ = {};
             replicate_samples_ = 0;
         }
         end_replicate();
+    }
+
+    std::uint32_t open_samples() const { return replicate_samples_; }
+    // Whether end_last_replicate drops the open replicate.
+    bool drops_last(std::uint32_t points) const {
+        return 2 * replicate_samples_ < points && replicates_.count() >= 2;
     }
 
     // All replicates must be closed.
@@ -115,9 +122,16 @@ class Film {
     // Row by row.
     std::span<Pixel> pixels() { return pixels_; }
     std::span<const Pixel> pixels() const { return pixels_; }
+    // Of a spectral film, those of a pixel side by side; otherwise empty.
+    std::span<BucketMoments> buckets() { return buckets_; }
+    std::span<const BucketMoments> buckets() const { return buckets_; }
+    std::size_t buckets_per_pixel() const { return buckets_.size() / pixels_.size(); }
+    // Copies pixels of a row from a film of the same settings.
+    void copy_row(const Film& from, int x, int y, int width);
 
     // Ends the open replicate of every pixel; whole replicates have this many points.
     void end_replicates(std::uint32_t points = 1) {
+        if (!buckets_.empty()) end_bucket_replicates(points);
         for (Pixel& p : pixels_) p.end_last_replicate(points);
     }
     FilmError error() const { return error_of(*this); }
@@ -125,7 +139,7 @@ class Film {
     // the standard error is computed); outlier (Pixel::largest_share); warning (PixelWarning); albedo.R, G,
     // B; N.X, Y, Z; depth.Z, of the cropped pixels. The standard error is infinite below two replicates. A
     // slice of a render also has the layers brightest.R, G, B (Pixel::brightest): the outlier of the whole
-    // picture cannot be computed from those of its slices.
+    // picture cannot be computed from those of its slices. A spectral film has the layers of append_spectral_layers.
     Image develop(bool as_slice = false) const;
 
   private:
@@ -135,8 +149,11 @@ class Film {
                static_cast<std::size_t>(x - settings_.crop.x0);
     }
 
+    void end_bucket_replicates(std::uint32_t points);
+
     FilmSettings settings_;
     std::vector<Pixel> pixels_;
+    std::vector<BucketMoments> buckets_;
 };
 
 } // namespace montelux

@@ -63,7 +63,9 @@ std::uint64_t hash_of_film(const FilmSettings& f) {
     const std::uint64_t h =
         hash_of(f.width, f.height, f.crop.x0, f.crop.y0, f.crop.x1, f.crop.y1, hash_of_filter(f.filter),
                 f.iso, f.exposure_time, f.white_balance, f.max_component_value);
-    return f.sensor == cie_sensor ? h : hash_of(h, hash_of_text(f.sensor));
+    std::uint64_t all = f.sensor == cie_sensor ? h : hash_of(h, hash_of_text(f.sensor));
+    if (f.spectral) all = hash_of(all, f.spectral->lambda_min, f.spectral->lambda_max, f.spectral->buckets);
+    return all;
 }
 std::uint64_t hash_of_integrator(const IntegratorSettings& s) {
     if (s.occlusion) return hash_of(s.occlusion->cosine, s.occlusion->max_distance);
@@ -96,7 +98,8 @@ std::array<Fingerprint, 10> fingerprints(const SceneDigest& scene, const SceneDe
 void save_checkpoint(const std::filesystem::path& path, const Renderer& renderer, const RenderState& state) {
     ByteWriter out;
     const std::span<const Pixel> pixels = state.film.pixels();
-    out.reserve(pixels.size_bytes() + state.target_samples.size() * sizeof(std::uint32_t) + 1024);
+    out.reserve(pixels.size_bytes() + state.film.buckets().size_bytes() +
+                state.target_samples.size() * sizeof(std::uint32_t) + 1024);
     out.put(version());
     for (const Fingerprint& f :
          fingerprints(renderer.scene_digest(), renderer.description(), renderer.target()))
@@ -107,6 +110,7 @@ void save_checkpoint(const std::filesystem::path& path, const Renderer& renderer
     out.put(static_cast<std::uint64_t>(state.target_samples.size()));
     out.put_all(std::span<const std::uint32_t>(state.target_samples));
     out.put_all(pixels);
+    out.put_all(state.film.buckets());
     write_generation(path, kind, out.take());
 }
 
@@ -124,7 +128,9 @@ RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDes
     const std::span<Pixel> pixels = state.film.pixels();
     // An upper bound of the size for this film, generous so that a checkpoint of a larger film is refused by
     // the right message. Larger files are not read into memory.
-    const std::size_t most = 64 * (pixels.size_bytes() + pixels.size() * sizeof(std::uint32_t)) + 1024;
+    const std::size_t most = 64 * (pixels.size_bytes() + pixels.size() * sizeof(std::uint32_t) +
+                                   state.film.buckets().size_bytes()) +
+                             1024;
     const Generation generation = read_generation(path, kind, most);
     restored.newest_refused_because = generation.newest_refused_because;
     ByteReader in(generation.payload, "checkpoint");
@@ -142,6 +148,7 @@ RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDes
     state.target_samples.resize(target_samples);
     in.get_all(std::span<std::uint32_t>(state.target_samples));
     in.get_all(pixels);
+    in.get_all(state.film.buckets());
     if (!in.at_end() || restored.replicate_points == 0)
         throw Error(path.string(), "the checkpoint is not what its header says");
     return restored;

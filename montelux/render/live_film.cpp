@@ -36,7 +36,7 @@ void LiveFilm::wait_for_copies() const {
 void LiveFilm::copy_tile(const Tile& tile, Film& into) const {
     const Film& from = state_->film;
     for (int y = tile.bounds.y0; y < tile.bounds.y1; ++y)
-        std::copy_n(&from.pixel(tile.bounds.x0, y), tile.bounds.width(), &into.pixel(tile.bounds.x0, y));
+        into.copy_row(from, tile.bounds.x0, y, tile.bounds.width());
 }
 
 void LiveFilm::hand_over(std::size_t tile) {

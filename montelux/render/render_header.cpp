@@ -58,6 +58,8 @@ void add_render_header(Image& image, const std::string& scene_name, const Render
     a["environmentSampling"] = std::string(name_of(description.integrator.environment_sampling));
     a["environmentCompensation"] = description.integrator.environment_compensation ? 1 : 0;
     a["environmentLookup"] = std::string(name_of(description.integrator.environment_lookup));
+    if (description.integrator.regularize) a["regularize"] = 1; // a bias that no standard error contains
+    if (description.integrator.occlusion) a["ambientOcclusion"] = 1;
     a["maxDepth"] = description.integrator.max_depth;
     a["seed"] = std::to_string(description.sampler.seed);
     a["renderSeconds"] = static_cast<float>(report.seconds);

@@ -184,6 +184,8 @@ class RenderLoop {
             tile_renderer_.render({.bounds = tile,
                                    .pixels = &state_.film.pixels()[first],
                                    .stride = stride,
+                                   .buckets = buckets_at(first),
+                                   .bucket_count = state_.film.buckets_per_pixel(),
                                    .target_samples = &state_.target_samples[first],
                                    .target_stride = stride},
                                   tally, stopped, [&] {
@@ -197,6 +199,11 @@ class RenderLoop {
         // Only after some samples: short intervals must not stop progress.
         if (tally.samples > 0) pause_if_due();
         if (seconds_since(last_progress_) > 0.2) report_progress(std::nullopt);
+    }
+
+    BucketMoments* buckets_at(std::size_t pixel) {
+        const std::size_t n = state_.film.buckets_per_pixel();
+        return n > 0 ? &state_.film.buckets()[pixel * n] : nullptr;
     }
 
     void report_if_finished(std::size_t index) {
@@ -312,6 +319,9 @@ Renderer::Renderer(const SceneDescription& description, const RenderTarget& targ
       camera_(description.scene.camera, description.film.width, description.film.height) {
     if (description.sampler.spp < 1) throw Error("sampler", "at least 1 sample per pixel is needed");
     check_slice(with_points(description.sampler, replicate_points), target);
+    if (description.film.spectral && target.slice.count > 1)
+        throw Error("film",
+                    "a spectral film cannot be rendered in slices: merge has no layers of wavelengths");
     auto begin = Clock::now();
     scene_digest_ = digest_of(description.scene);
     tables_ = std::make_unique<SceneTables>(description.scene, description.integrator.environments(),
@@ -326,6 +336,9 @@ void Renderer::serve(const std::function<void(const TileRenderer&)>& work) const
 }
 
 void Renderer::render(RenderState& state, const RenderControl& control) const {
+    if (description_.film.spectral && control.executor != nullptr)
+        throw Error("film",
+                    "a spectral film cannot be rendered by several processes: they exchange RGB alone");
     const SampleContext context(description_, sampler_, tables_->view(), camera_);
     RenderLoop(*this, context, state, control).run();
 }

@@ -40,7 +40,9 @@ SampleContext::SampleContext(const SceneDescription& description, const SamplerS
       sensor_(RgbColorSpace::srgb(), {description.film.exposure_time, description.film.iso,
                                       description.film.white_balance, description.film.sensor}),
       white_(RgbColorSpace::srgb().illuminant()),
-      white_scale_(static_cast<float>(1 / integrate_luminance(white_))) {}
+      white_scale_(static_cast<float>(1 / integrate_luminance(white_))) {
+    if (description.film.spectral) buckets_.emplace(*description.film.spectral);
+}
 
 PathStart<SampleStream> SampleContext::begin(const Key& key, FilmPoint& point) const {
     SampleStream stream(sampler_, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y),
@@ -58,7 +60,8 @@ PathStart<SampleStream> SampleContext::begin(const Key& key, FilmPoint& point) c
 }
 
 SampleContext::Result SampleContext::finish(const FilmContribution& path, const SampledWavelengths& lambda,
-                                            const FilmPoint& point, SampleRecord* record) const {
+                                            const FilmPoint& point, SpectralSample* spectral,
+                                            SampleRecord* record) const {
     Result result;
     const FilterSample& filter = point.filter;
     const Vec3f sensor_rgb = sensor_.to_rgb(path.radiance * point.weight, path.lambda);
@@ -77,6 +80,9 @@ SampleContext::Result SampleContext::finish(const FilmContribution& path, const 
     }
     if (result.bad) return result;
     result.film.radiance = rgb;
+    if (spectral != nullptr) [[unlikely]]
+        *spectral =
+            spectral_sample(*buckets_, path.radiance, path.lambda, point.weight * clamp * filter.weight);
     if (clamp < 1) [[unlikely]]
         result.clamped =
             static_cast<float>(dot(Vec3d(sensor_rgb), luminance_weight)) * (1 - clamp) * filter.weight;
@@ -105,8 +111,10 @@ void SampleContext::take(RayTracer& tracer, std::span<const Key> keys, Batch& ba
                                 std::span(batch.paths));
         },
         integrator_);
+    if (buckets_) batch.spectral.assign(keys.size(), {});
     for (std::size_t i = 0; i < keys.size(); ++i)
-        results[i] = finish(batch.paths[i], batch.starts[i].camera.lambda, batch.points[i]);
+        results[i] = finish(batch.paths[i], batch.starts[i].camera.lambda, batch.points[i],
+                            buckets_ ? &batch.spectral[i] : nullptr);
 }
 
 SampleRecord SampleContext::record(RayTracer& tracer, const Key& key) const {
@@ -124,7 +132,7 @@ SampleRecord SampleContext::record(RayTracer& tracer, const Key& key) const {
     record.film = point.film;
     record.lens = point.lens;
     record.time = point.time;
-    record.contribution = finish(path, start.camera.lambda, point, &record).film;
+    record.contribution = finish(path, start.camera.lambda, point, nullptr, &record).film;
     return record;
 }
 

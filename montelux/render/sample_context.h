@@ -56,7 +56,7 @@ class SampleContext {
     };
     PathStart<SampleStream> begin(const Key& key, FilmPoint& point) const;
     Result finish(const FilmContribution& path, const SampledWavelengths& lambda, const FilmPoint& point,
-                  SampleRecord* record = nullptr) const;
+                  SpectralSample* spectral, SampleRecord* record = nullptr) const;
 
     const SamplerSettings& sampler_;
     float max_component_value_;
@@ -69,6 +69,7 @@ class SampleContext {
     Sensor albedo_sensor_;
     // Spectrum of the white light of albedos.
     const SpectrumTable& white_;
+    std::optional<BucketLayout> buckets_; // of a spectral film
     float white_scale_;
 };
 
@@ -76,6 +77,8 @@ struct SampleContext::Batch {
     std::vector<FilmPoint> points;
     std::vector<PathStart<SampleStream>> starts;
     std::vector<FilmContribution> paths;
+    std::vector<SpectralSample>
+        spectral; // of each sample, of a spectral film; 0 for samples that are left out
     PathBatch integrator;
 };
 

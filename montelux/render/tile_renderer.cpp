@@ -48,7 +48,13 @@ void TileRenderer::take(RayTracer& tracer, SampleBatch& batch, TileTally& tally)
             ++tally.clamped_samples;
             pixel.add_clamped(r.clamped);
         }
-        if (order_.closed(batch.places[k].number + 1)) pixel.end_replicate();
+        const std::span<BucketMoments> buckets = batch.places[k].buckets;
+        if (!buckets.empty()) add_sample(buckets, batch.memory.spectral[k]);
+        if (order_.closed(batch.places[k].number + 1)) {
+            for (BucketMoments& b : buckets)
+                b.end_replicate(pixel.open_samples(), pixel.replicates().count() + 1);
+            pixel.end_replicate();
+        }
     }
     tally.samples += batch.keys.size();
     batch.clear();

@@ -26,7 +26,7 @@ std::vector<PluginCoverage> make_coverage() {
 
     add("Film", {plugin("rgb"),
                  plugin("gbuffer", otherwise, "read as 'rgb'; every render has albedo, normal and depth"),
-                 plugin("spectral", none)});
+                 plugin("spectral")});
     add("PixelFilter",
         {plugin("box"), plugin("gaussian"), plugin("mitchell"), plugin("sinc"), plugin("triangle")});
     add("Camera", {plugin("perspective"), plugin("orthographic"), plugin("spherical"), plugin("realistic")});

@@ -56,6 +56,20 @@ int read_resolution(ParameterReader& r, std::string_view name, int otherwise) {
     return size;
 }
 
+SpectralSettings read_buckets(ParameterReader& r) {
+    SpectralSettings s;
+    s.buckets = r.integer("nbuckets", s.buckets);
+    if (s.buckets < 1 || s.buckets > SpectralSettings::most_buckets)
+        r.error("nbuckets", "parameter 'nbuckets' is " + std::to_string(s.buckets) + "; expected 1 to " +
+                                std::to_string(SpectralSettings::most_buckets));
+    s.lambda_min = r.number("lambdamin", s.lambda_min);
+    s.lambda_max = r.number("lambdamax", s.lambda_max);
+    if (!(s.lambda_min >= lambda_min && s.lambda_min < s.lambda_max && s.lambda_max <= lambda_max))
+        r.error(s.lambda_min >= lambda_min && s.lambda_min < lambda_max ? "lambdamax" : "lambdamin",
+                "'lambdamin' and 'lambdamax' must lie between 360 and 830 nm, in this order");
+    return s;
+}
+
 } // namespace
 
 void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& film, std::string& output_file) {
@@ -63,7 +77,7 @@ void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& fil
         diagnostics.error(plugin.at, "unknown film " + in_quotes(plugin.name) +
                                          did_you_mean(plugin.name, plugin_names("Film")));
     ParameterReader r(plugin.parameters, "film " + in_quotes(plugin.name), plugin.at, diagnostics);
-    if (plugin.name == "spectral") r.error("film 'spectral' is not supported yet; expected 'rgb'");
+    if (plugin.name == "spectral") film.spectral = read_buckets(r);
     if (plugin.name == "gbuffer") {
         diagnostics.warn(plugin.at,
                          "film 'gbuffer' is rendered as 'rgb': of its layers the EXR file has albedo, "

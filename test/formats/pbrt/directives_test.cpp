@@ -128,6 +128,44 @@ TEST(PbrtOptions, LightSamplers) {
     EXPECT_THROW(sampling("tree"), Error);
 }
 
+TEST(PbrtOptions, SensorsBucketsAndOcclusion) {
+    const std::string end = " WorldBegin LightSource \"point\"";
+    SceneDescription d = parse("Film \"rgb\"" + end);
+    EXPECT_EQ(d.film.sensor, "cie1931");
+    EXPECT_FALSE(d.film.spectral);
+    EXPECT_FALSE(d.integrator.occlusion);
+    EXPECT_FALSE(d.integrator.regularize);
+    d = parse("Film \"spectral\" \"string sensor\" \"sony_ilce_7m3\" \"integer nbuckets\" 30 \"float "
+              "lambdamin\" 400 "
+              "\"float lambdamax\" 700 Integrator \"path\" \"bool regularize\" true" +
+              end);
+    EXPECT_EQ(d.film.sensor, "sony_ilce_7m3");
+    ASSERT_TRUE(d.film.spectral);
+    EXPECT_EQ(d.film.spectral->buckets, 30);
+    EXPECT_EQ(d.film.spectral->lambda_min, 400);
+    EXPECT_EQ(d.film.spectral->lambda_max, 700);
+    EXPECT_TRUE(d.integrator.regularize);
+    d = parse("Film \"spectral\"" + end);
+    EXPECT_EQ(d.film.spectral->buckets, 16);
+    EXPECT_EQ(d.film.spectral->lambda_min, 360);
+    EXPECT_EQ(d.film.spectral->lambda_max, 830);
+
+    Warnings warnings;
+    d = parse("Integrator \"ambientocclusion\" \"bool cossample\" false \"float maxdistance\" 3 WorldBegin",
+              &warnings);
+    ASSERT_TRUE(d.integrator.occlusion);
+    EXPECT_FALSE(d.integrator.occlusion->cosine);
+    EXPECT_EQ(d.integrator.occlusion->max_distance, 3);
+    EXPECT_TRUE(warnings.messages().empty()); // no light is needed
+    EXPECT_EQ(test::error_of("Integrator \"ao\" \"float maxdistance\" 0 WorldBegin"),
+              "scene:1:17: parameter 'maxdistance' must be positive");
+    warnings = {};
+    parse("Integrator \"bdpt\"" + end, &warnings);
+    ASSERT_EQ(warnings.messages().size(), 1u);
+    EXPECT_NE(warnings.messages()[0].find("integrator 'bdpt': the scene is rendered with 'path'"),
+              std::string::npos);
+}
+
 TEST(PbrtOptions, IgnoredOptionsGiveAWarning) {
     Warnings warnings;
     parse(R"(ColorSpace "rec2020"
