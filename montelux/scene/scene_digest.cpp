@@ -245,9 +245,12 @@ class SceneHasher {
     void add(const ScalarGrid& g) { add(static_cast<const Grid3<float>&>(g)); }
     void add(const ColorGrid& g) { add(static_cast<const Grid3<RgbUnboundedSpectrum>&>(g)); }
     void add(const HomogeneousMedium& m) {
-        const auto& [sigma_a, sigma_s, scale, le, le_scale, phase, is_body] = m;
+        const auto& [sigma_a, sigma_s, scale, le, le_scale, phase, is_body, surface] = m;
         all(sigma_a, sigma_s, scale, le, le_scale, phase);
         if (is_body) add(is_body);
+        if (!surface.is_given()) return;
+        const auto& [kind, first, second, surface_scale, eta, g] = surface;
+        all(kind, first, second, surface_scale, eta, g);
     }
     void add(const GridMedium& m) {
         const auto& [box, density, sigma_a, sigma_s, scale, le, le_scale, le_grid, temperature, offset,

@@ -108,11 +108,19 @@ void SceneTables::add_media(const Scene& scene) {
         media_.push_back(std::visit([&](const auto& m) { return m.table(scene); }, medium));
 }
 
+// The interior of a translucent body depends on the surface.
+bool has_textured_body(const Scene& scene, const Material& material) {
+    const auto* m = std::get_if<SubsurfaceMaterial>(&material);
+    if (m == nullptr || !m->interior.is_given()) return false;
+    const auto* body = std::get_if<HomogeneousMedium>(&scene.media[m->interior.index]);
+    return body != nullptr && body->surface.is_given();
+}
+
 void SceneTables::add_materials(const Scene& scene) {
     std::map<CoatingKey, Index> index_of;
     std::vector<CoatingKey> keys;
     for (const Material& material : scene.materials) {
-        textured_.push_back(uses_coordinates(material) ? 1 : 0);
+        textured_.push_back(uses_coordinates(material) || has_textured_body(scene, material) ? 1 : 0);
         follows_tangents_.push_back(has_textured_bsdf(material) || is_anisotropic(material) ? 1 : 0);
         Index table = no_index;
         if (auto key = closed_form(SceneView(scene), material)) {

@@ -53,7 +53,9 @@ class VolumePath {
 
     template <MediumModel M>
     bool passes(const M& medium, float distance) {
-        const auto local = medium.at(scene_, state_.medium, state_.lambda);
+        auto local = medium.at(scene_, state_.medium, state_.lambda);
+        if constexpr (M::homogeneous)
+            if (medium.surface.is_given()) local.point = state_.body;
         const Ray ray{state_.ray.o, state_.ray.d, distance};
         if constexpr (M::homogeneous)
             if (is_black(local.point.sigma_s)) return absorbs(local.point, distance);
@@ -228,7 +230,7 @@ class VolumePath {
                             return bsdf.evaluate(wo, surface.frame.to_local(wi), TransportMode::radiance,
                                                  stream_);
                         },
-                        &s);
+                        &s, &context);
                 if (settings_.strategy == Strategy::uniform && !bsdf.is_specular())
                     return sample_uniform(bsdf, wo, stream_);
                 return bsdf.sample(wo, TransportMode::radiance, stream_);
@@ -247,7 +249,16 @@ class VolumePath {
         const Vec3f wi = surface.frame.to_world(scattered->wi);
         if (recorder_) recorder_.scattered({*scattered, wi});
         leave(s, wi);
+        if (scattered->transmission) state_.body = body_at(state_.medium, context);
         state_.alive = survives();
+    }
+
+    // The coefficients of a body below a surface point; those of the path where they do not vary.
+    MediumPoint body_at(Index medium, const TextureContext& context) const {
+        if (medium == no_index) return state_.body;
+        const auto* m = std::get_if<HomogeneousMedium>(&scene_.media[medium]);
+        if (m == nullptr || !m->surface.is_given()) return state_.body;
+        return m->surface.at(scene_, context, state_.lambda);
     }
 
     // The ray continues from a surface in direction w.
@@ -289,9 +300,10 @@ class VolumePath {
     }
 
     // Next-event estimation: one light, one point on it. evaluate(wi) gives value and density of scattering.
-    // `surface`: what scatters, if it is no medium.
+    // `surface` and `context`: of what scatters, if it is no medium.
     template <typename Evaluate>
-    void sample_light(Index medium, const Evaluate& evaluate, const SurfacePoint* surface = nullptr) {
+    void sample_light(Index medium, const Evaluate& evaluate, const SurfacePoint* surface = nullptr,
+                      const TextureContext* context = nullptr) {
         using Outcome = DirectLight::Outcome;
         if (scene_.light_sampler->empty()) return;
         const ChosenLight chosen = choose_light(scene_, state_.previous, state_.lambda, stream_);
@@ -315,8 +327,10 @@ class VolumePath {
         if (surface != nullptr) medium = medium_beyond(*surface, light->wi, medium);
         Ray shadow = light->shadow;
         shadow.time = state_.ray.time;
+        const MediumPoint body =
+            context != nullptr && medium != state_.medium ? body_at(medium, *context) : state_.body;
         const std::optional<ShadowTransmittance> through =
-            shadow_transmittance(scene_, tracer_, shadow, medium, state_.lambda, stream_);
+            shadow_transmittance(scene_, tracer_, shadow, medium, state_.lambda, stream_, body);
         if (!through) return finish(Outcome::occluded);
         // Densities relative to that of the path so far, averaged over the wavelengths.
         const float before = average(state_.r_u);

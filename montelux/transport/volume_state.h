@@ -3,6 +3,7 @@
 
 #include <type_traits>
 
+#include "montelux/scene/medium/medium_model.h"
 #include "montelux/transport/path_state.h"
 
 namespace montelux {
@@ -16,6 +17,7 @@ struct VolumeState : PathState {
     // the light. PathState::bsdf_pdf is the density of the direction there.
     SampledSpectrum r_l{1};
     Index medium = no_index; // around the ray
+    MediumPoint body{};      // coefficients of the body that surrounds the ray, if they vary over its surface
     float distance = 0;      // from the camera to the ray's origin, until the first scattering event
 
     VolumeState(const CameraSample& camera, Index camera_medium) : PathState(camera), medium(camera_medium) {}
@@ -47,6 +49,8 @@ struct VolumeState : PathState {
         throughput = SampledSpectrum(4 * throughput[0], 0, 0, 0);
         r_u = SampledSpectrum(r_u[0]);
         r_l = SampledSpectrum(r_l[0]);
+        body.sigma_a = SampledSpectrum(body.sigma_a[0]);
+        body.sigma_s = SampledSpectrum(body.sigma_s[0]);
     }
 };
 static_assert(std::is_trivially_copyable_v<VolumeState>);

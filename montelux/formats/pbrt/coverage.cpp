@@ -1,8 +1,7 @@
-#include "montelux/formats/pbrt/coverage.h"
-
 #include <algorithm>
 #include <map>
 
+#include "montelux/formats/pbrt/coverage.h"
 #include "montelux/scene/material/material_model.h"
 
 namespace montelux::pbrt {
@@ -44,8 +43,7 @@ std::vector<PluginCoverage> make_coverage() {
                   plugin("curve"), plugin("trianglemesh"), plugin("loopsubdiv"), plugin("plymesh")});
     for_each_material_kind([&]<typename M>(std::type_identity<M>) {
         const std::string type = material_type(M::name);
-        add("Material", {type == "subsurface" ? plugin(type, in_part, "textures inside the body are refused")
-                                              : plugin(type)});
+        add("Material", {plugin(type)});
     });
     add("Texture",
         {plugin("constant"), plugin("imagemap"), plugin("scale"), plugin("mix"), plugin("directionmix"),
