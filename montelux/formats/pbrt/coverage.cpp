@@ -1,7 +1,9 @@
+#include "montelux/formats/pbrt/coverage.h"
+
 #include <algorithm>
 #include <map>
 
-#include "montelux/formats/pbrt/coverage.h"
+#include "montelux/formats/nanovdb_file.h"
 #include "montelux/scene/material/material_model.h"
 
 namespace montelux::pbrt {
@@ -55,7 +57,9 @@ std::vector<PluginCoverage> make_coverage() {
     add("AreaLightSource", {plugin("diffuse")});
     add("MakeNamedMedium",
         {plugin("homogeneous"), plugin("uniformgrid"), plugin("rgbgrid"), plugin("cloud"),
-         plugin("nanovdb", in_part, "Blosc, and grids other than of floats, are refused")});
+         NanovdbFile::reads_blosc
+             ? plugin("nanovdb")
+             : plugin("nanovdb", in_part, "compression by Blosc is refused: built without it")});
     return all;
 }
 
