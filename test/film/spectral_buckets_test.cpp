@@ -3,6 +3,7 @@
 
 #include "montelux/film/film.h"
 #include "montelux/film/spectral_buckets.h"
+#include "montelux/mc/math/error.h"
 #include "montelux/mc/random/philox_stream.h"
 #include "montelux/mc/stats/moments.h"
 #include "montelux/mc/stats/z_test.h"
@@ -38,8 +39,8 @@ TEST(SpectralBuckets, SamplesAreUnbiased) {
         std::vector<RunningMoments> moments(5);
         for (int k = 0; k < 200000; ++k) {
             auto w = SampledWavelengths::sample_visible(stream.next_1d());
-            SampledSpectrum l;
-            for (int i = 0; i < 4; ++i) l[i] = radiance(w.lambda[i]);
+            const SampledSpectrum l(radiance(w.lambda[0]), radiance(w.lambda[1]), radiance(w.lambda[2]),
+                                    radiance(w.lambda[3]));
             if (terminate) w.terminate_secondary();
             std::vector<BucketMoments> buckets(5);
             add_sample(buckets, spectral_sample(layout, l, w, 2));
