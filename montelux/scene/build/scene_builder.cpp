@@ -176,7 +176,8 @@ void SceneBuilder::finish(SourceLocation end, bool lights_matter) {
     } catch (const Error& e) {
         messages_.error(end, e.what());
     }
-    if (lights_matter && scene_.lights.empty()) messages_.warn(end, "the scene has no light; its picture is black");
+    if (lights_matter && scene_.lights.empty())
+        messages_.warn(end, "the scene has no light; its picture is black");
 }
 
 } // namespace montelux
