@@ -44,6 +44,9 @@ struct RenderOptions {
     std::optional<EnvironmentSampling> environment_sampling;
     std::optional<bool> environment_compensation;
     std::optional<EnvironmentLookup> environment_lookup;
+    std::optional<LayerSet> layers;
+    std::optional<LightGrouping> light_grouping;
+    std::optional<bool> layers_in_camera_space, half;
     std::optional<SampleAddress> debug_sample; // traced alone, instead of a render
     int threads = 0;
     double rank_timeout = 60; // seconds

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "montelux/film/film_error.h"
+#include "montelux/film/film_layers.h"
 #include "montelux/image/image.h"
 #include "montelux/mc/stats/skew_moments.h"
 #include "montelux/scene/film/film_settings.h"
@@ -67,11 +68,15 @@ class Pixel {
         replicate_samples_ = 0;
     }
 
-    // The same, but drops an open replicate of fewer than half of `points` where there are others: it would
-    // weigh as much as a whole one and be as noisy as single samples. The rule depends on counts only, so it
-    // adds no bias.
+    // Whether end_last_replicate() drops the open replicate: one of fewer than half of `points` where there are
+    // others would weigh as much as a whole one and be as noisy as single samples. The rule depends on counts
+    // only, so it adds no bias.
+    bool drops_last_replicate(std::uint32_t points) const {
+        return 2 * replicate_samples_ < points && replicates_.count() >= 2;
+    }
+    // end_replicate(), or forgets the open one.
     void end_last_replicate(std::uint32_t points) {
-        if (2 * replicate_samples_ < points && replicates_.count() >= 2) {
+        if (drops_last_replicate(points)) {
             replicate_sum_ = {};
             replicate_samples_ = 0;
         }
@@ -84,6 +89,7 @@ class Pixel {
     Vec3d brightest() const { return brightest_; }
     std::uint32_t samples() const { return samples_; }
     std::uint32_t bad() const { return bad_; }
+    std::uint32_t samples_of_open_replicate() const { return replicate_samples_; }
     // Mean luminance that clamping removed.
     double clamped() const { return samples_ > 0 ? clamped_ / samples_ : 0; }
     double largest_share() const { return share_of_replicate(replicates_, brightest_); }
@@ -101,14 +107,20 @@ class Pixel {
     std::uint32_t replicate_samples_ = 0, samples_ = 0, bad_ = 0;
 };
 
-// The layers that Film::develop() makes, in order.
+// The channels that Film::develop() makes of the standard layers, in order.
 std::vector<std::string> film_layers(bool of_slice = false);
 
 class Film {
   public:
-    explicit Film(const FilmSettings& settings);
+    // With the layers of the settings, but for light groups, whose names belong to a scene.
+    explicit Film(const FilmSettings& settings) : Film(settings, FilmLayers(settings.layers.set)) {}
+    Film(const FilmSettings& settings, FilmLayers layers);
 
     const FilmSettings& settings() const { return settings_; }
+    const FilmLayers& layers() const { return layers_; }
+    // FilmLayers::sums() numbers for each pixel, in the order of the pixels.
+    std::span<double> layer_sums() { return layer_sums_; }
+    std::span<const double> layer_sums() const { return layer_sums_; }
     const PixelBounds& bounds() const { return settings_.crop; }
     Pixel& pixel(int x, int y) { return pixels_[index(x, y)]; }
     const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
@@ -117,14 +129,13 @@ class Film {
     std::span<const Pixel> pixels() const { return pixels_; }
 
     // Ends the open replicate of every pixel; whole replicates have this many points.
-    void end_replicates(std::uint32_t points = 1) {
-        for (Pixel& p : pixels_) p.end_last_replicate(points);
-    }
+    void end_replicates(std::uint32_t points = 1);
     FilmError error() const { return error_of(*this); }
-    // Layers R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples; replicates (from which
-    // the standard error is computed); outlier (Pixel::largest_share); warning (PixelWarning); albedo.R, G,
-    // B; N.X, Y, Z; depth.Z, of the cropped pixels. The standard error is infinite below two replicates. A
-    // slice of a render also has the layers brightest.R, G, B (Pixel::brightest): the outlier of the whole
+    // Of the layers of the film: R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples;
+    // replicates (from which the standard error is computed); outlier (Pixel::largest_share); warning
+    // (PixelWarning); albedo.R, G, B; N.X, Y, Z; depth.Z; variance.R, G, B (of a sample); relativeVariance.R, G, B
+    // (variance over mean); those of FilmLayers; of the cropped pixels. The standard error is infinite below two
+    // replicates. A slice of a render also has brightest.R, G, B (Pixel::brightest): the outlier of the whole
     // picture cannot be computed from those of its slices.
     Image develop(bool as_slice = false) const;
 
@@ -136,7 +147,9 @@ class Film {
     }
 
     FilmSettings settings_;
+    FilmLayers layers_;
     std::vector<Pixel> pixels_;
+    std::vector<double> layer_sums_;
 };
 
 } // namespace montelux

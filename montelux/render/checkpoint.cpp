@@ -11,6 +11,8 @@
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/random/hash.h"
+#include "montelux/scene/light/light_groups.h"
+#include "montelux/scene/scene_names.h"
 
 namespace montelux {
 namespace {
@@ -83,12 +85,37 @@ std::array<Fingerprint, 10> fingerprints(const SceneDigest& scene, const SceneDe
          {"the slice differs", hash_of(target.slice.index, target.slice.count)}}};
 }
 
+// Of everything that the sums of the film's layers depend on and the mean does not; 0 for the standard layers.
+std::uint64_t hash_of_layers(const SceneDescription& d, const FilmLayers& layers) {
+    const LayerSettings& settings = d.film.layers;
+    if (layers.sums() == 0 && !settings.in_camera_space) return 0;
+    std::uint64_t h = hash_of(layers.sums(), settings.in_camera_space);
+    for (const std::string& group : layers.light_groups()) h = hash_of(h, hash_of_text(group));
+    for (const Layer layer :
+         {Layer::geometric_normal, Layer::position, Layer::uv, Layer::depth_slopes, Layer::motion,
+          Layer::alpha, Layer::direct, Layer::indirect, Layer::shape, Layer::material})
+        h = hash_of(h, layers.set().has(layer));
+    const auto add_names = [&](const std::vector<std::string>& names) {
+        for (const std::string& name : names) h = hash_of(h, hash_of_text(name));
+    };
+    if (settings.set.has(Layer::light_groups))
+        for (const Index group : light_groups(d.scene, settings.light_grouping).of_light)
+            h = hash_of(h, group);
+    if (settings.set.has(Layer::shape)) {
+        add_names(d.scene.shape_names);
+        add_names(instance_names(d.scene));
+    }
+    if (settings.set.has(Layer::material)) add_names(d.scene.material_names);
+    return h == 0 ? 1 : h;
+}
+
 } // namespace
 
 void save_checkpoint(const std::filesystem::path& path, const Renderer& renderer, const RenderState& state) {
     ByteWriter out;
     const std::span<const Pixel> pixels = state.film.pixels();
-    out.reserve(pixels.size_bytes() + state.target_samples.size() * sizeof(std::uint32_t) + 1024);
+    out.reserve(pixels.size_bytes() + state.film.layer_sums().size_bytes() +
+                state.target_samples.size() * sizeof(std::uint32_t) + 1024);
     out.put(version());
     for (const Fingerprint& f :
          fingerprints(renderer.scene_digest(), renderer.description(), renderer.target()))
@@ -99,6 +126,11 @@ void save_checkpoint(const std::filesystem::path& path, const Renderer& renderer
     out.put(static_cast<std::uint64_t>(state.target_samples.size()));
     out.put_all(std::span<const std::uint32_t>(state.target_samples));
     out.put_all(pixels);
+    if (const std::uint64_t layers = hash_of_layers(renderer.description(), state.film.layers());
+        layers != 0) {
+        out.put(layers);
+        out.put_all(state.film.layer_sums());
+    }
     write_generation(path, kind, out.take());
 }
 
@@ -111,12 +143,14 @@ std::uint64_t render_fingerprint(const Renderer& renderer) {
 
 RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDescription& description,
                                const RenderTarget& target) {
-    RestoredRender restored{RenderState(description.film), 0, {}};
+    RestoredRender restored{RenderState(description), 0, {}};
     RenderState& state = restored.state;
     const std::span<Pixel> pixels = state.film.pixels();
     // An upper bound of the size for this film, generous so that a checkpoint of a larger film is refused by
     // the right message. Larger files are not read into memory.
-    const std::size_t most = 64 * (pixels.size_bytes() + pixels.size() * sizeof(std::uint32_t)) + 1024;
+    const std::size_t most = 64 * (pixels.size_bytes() + pixels.size() * sizeof(std::uint32_t) +
+                                   state.film.layer_sums().size_bytes()) +
+                             1024;
     const Generation generation = read_generation(path, kind, most);
     restored.newest_refused_because = generation.newest_refused_because;
     ByteReader in(generation.payload, "checkpoint");
@@ -134,6 +168,11 @@ RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDes
     state.target_samples.resize(target_samples);
     in.get_all(std::span<std::uint32_t>(state.target_samples));
     in.get_all(pixels);
+    const std::uint64_t layers = hash_of_layers(description, state.film.layers());
+    if ((in.at_end() ? 0 : in.get<std::uint64_t>()) != layers)
+        throw Error(path.string(),
+                    "the checkpoint is of another render: the layers of the film (--layers) differ");
+    if (layers != 0) in.get_all(state.film.layer_sums());
     if (!in.at_end() || restored.replicate_points == 0)
         throw Error(path.string(), "the checkpoint is not what its header says");
     return restored;

@@ -11,6 +11,16 @@ namespace {
 
 constexpr std::chrono::microseconds poll_interval{100};
 
+void copy_row(const Film& from, int x, int y, int count, Film& into) {
+    const Pixel* const first = &from.pixel(x, y);
+    std::copy_n(first, count, &into.pixel(x, y));
+    const std::size_t sums = from.layers().sums();
+    const auto at = static_cast<std::size_t>(first - from.pixels().data()) * sums;
+    std::copy_n(from.layer_sums().begin() + static_cast<std::ptrdiff_t>(at),
+                static_cast<std::size_t>(count) * sums,
+                into.layer_sums().begin() + static_cast<std::ptrdiff_t>(at));
+}
+
 } // namespace
 
 void LiveFilm::open(const RenderState& state, std::span<const PixelBounds> tiles,
@@ -36,7 +46,7 @@ void LiveFilm::wait_for_copies() const {
 void LiveFilm::copy_tile(const Tile& tile, Film& into) const {
     const Film& from = state_->film;
     for (int y = tile.bounds.y0; y < tile.bounds.y1; ++y)
-        std::copy_n(&from.pixel(tile.bounds.x0, y), tile.bounds.width(), &into.pixel(tile.bounds.x0, y));
+        copy_row(from, tile.bounds.x0, y, tile.bounds.width(), into);
 }
 
 void LiveFilm::hand_over(std::size_t tile) {
@@ -58,7 +68,7 @@ std::optional<LiveCopy> LiveFilm::copy(double seconds) {
     } waiting(waiting_snapshots_);
     const std::unique_lock all(film_, deadline);
     if (!all.owns_lock() || state_ == nullptr) return std::nullopt;
-    LiveCopy copy{Film(state_->film.settings()), report_()};
+    LiveCopy copy{Film(state_->film.settings(), state_->film.layers()), report_()};
     if (copy.report.samples == 0) return std::nullopt;
     into_ = &copy.film;
     std::vector<Tile*> held; // by threads that have been asked for a copy

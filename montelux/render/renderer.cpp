@@ -181,15 +181,17 @@ class RenderLoop {
         };
         {
             const auto held = live != nullptr ? live->hold(index) : std::unique_lock<std::mutex>();
-            tile_renderer_.render({.bounds = tile,
-                                   .pixels = &state_.film.pixels()[first],
-                                   .stride = stride,
-                                   .target_samples = &state_.target_samples[first],
-                                   .target_stride = stride},
-                                  tally, stopped, [&] {
-                                      pause_if_due();
-                                      return stopped();
-                                  });
+            tile_renderer_.render(
+                {.bounds = tile,
+                 .pixels = &state_.film.pixels()[first],
+                 .stride = stride,
+                 .target_samples = &state_.target_samples[first],
+                 .target_stride = stride,
+                 .layer_sums = state_.film.layer_sums().data() + first * state_.film.layers().sums()},
+                tally, stopped, [&] {
+                    pause_if_due();
+                    return stopped();
+                });
         }
         report_if_finished(index);
         std::lock_guard lock(mutex_);
@@ -312,6 +314,8 @@ Renderer::Renderer(const SceneDescription& description, const RenderTarget& targ
       camera_(description.scene.camera, description.film.width, description.film.height) {
     if (description.sampler.spp < 1) throw Error("sampler", "at least 1 sample per pixel is needed");
     check_slice(with_points(description.sampler, replicate_points), target);
+    if (target.slice.count > 1 && description.film.layers.set != LayerSet::standard())
+        throw Error("slice", "slices are joined by their standard layers; no others can be chosen");
     auto begin = Clock::now();
     scene_digest_ = digest_of(description.scene);
     tables_ = std::make_unique<SceneTables>(description.scene, description.integrator.environments(),
@@ -327,11 +331,13 @@ void Renderer::serve(const std::function<void(const TileRenderer&)>& work) const
 
 void Renderer::render(RenderState& state, const RenderControl& control) const {
     const SampleContext context(description_, sampler_, tables_->view(), camera_);
+    if (state.film.layers().channels() != context.layers().channels())
+        throw Error("film", "its layers are not those of the scene's film");
     RenderLoop(*this, context, state, control).run();
 }
 
 RenderReport Renderer::render(Film& film, const ProgressCallback& progress, const CancelFlag* cancel) const {
-    RenderState state(film.settings());
+    RenderState state(description_);
     RenderControl control;
     control.progress = progress;
     control.cancel = cancel;

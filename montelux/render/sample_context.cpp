@@ -35,6 +35,7 @@ SampleContext::SampleContext(const SceneDescription& description, const SamplerS
                              const SceneView& scene, const Camera& camera)
     : sampler_(sampler), max_component_value_(description.film.max_component_value), scene_(scene),
       camera_(camera), moves_(moves(description.scene)),
+      normals_in_camera_space_(description.film.layers.in_camera_space), layers_(description, scene, camera),
       integrator_(make_integrator(description.integrator, scene, camera)), filter_(description.film.filter),
       sensor_(RgbColorSpace::srgb(),
               {description.film.exposure_time, description.film.iso, description.film.white_balance}),
@@ -64,6 +65,7 @@ SampleContext::Result SampleContext::finish(const FilmContribution& path, const 
     const float largest = max_component(sensor_rgb);
     const float clamp = largest > max_component_value_ ? max_component_value_ / largest : 1;
     const Vec3f rgb = sensor_rgb * clamp * filter.weight;
+    result.clamp = clamp;
     result.bad = badness(rgb, path.radiance);
     if (record != nullptr) [[unlikely]] {
         record->filter = filter;
@@ -83,9 +85,21 @@ SampleContext::Result SampleContext::finish(const FilmContribution& path, const 
         result.film.albedo =
             albedo_sensor_.to_rgb(first.albedo * white_.sample(lambda) * white_scale_, lambda);
         result.film.normal = first.normal;
+        if (normals_in_camera_space_) [[unlikely]]
+            result.film.normal = normalize(camera_.camera_from_world(point.time).normal(first.normal));
         result.film.depth = first.depth;
     }
     return result;
+}
+
+void SampleContext::sample_layers(const SampleExtras& extras, const FilmContribution& path,
+                                  const FilmPoint& point, float clamp, std::span<float> values) const {
+    layers_.sample(extras, point.film, point.lens, point.filter.weight, values);
+    float* to = values.data() + layers().first_part();
+    for (const SampledSpectrum& part : extras.parts) {
+        const Vec3f rgb = sensor_.to_rgb(part * point.weight, path.lambda) * clamp * point.filter.weight;
+        for (int c = 0; c < 3; ++c) *to++ = rgb[c];
+    }
 }
 
 void SampleContext::take(RayTracer& tracer, std::span<const Key> keys, Batch& batch,
@@ -98,6 +112,15 @@ void SampleContext::take(RayTracer& tracer, std::span<const Key> keys, Batch& ba
         const auto beginning = [&] { return begin(keys[i], batch.points[i]); };
         batch.starts.emplace_back(InPlace(beginning));
     }
+    if (layers_.wants_extras()) [[unlikely]] {
+        const std::size_t parts = layers().parts();
+        batch.parts.assign(keys.size() * parts, SampledSpectrum());
+        batch.extras.clear();
+        for (std::size_t i = 0; i < keys.size(); ++i)
+            batch.extras.push_back(layers_.extras(std::span(batch.parts).subspan(i * parts, parts)));
+        for (std::size_t i = 0; i < keys.size(); ++i) batch.starts[i].camera.extras = &batch.extras[i];
+        batch.layer_values.resize(keys.size() * layers().values());
+    }
     std::visit(
         [&](const auto& integrator) {
             integrator.estimate(scene_, tracer, std::span(batch.starts), batch.integrator,
@@ -106,12 +129,21 @@ void SampleContext::take(RayTracer& tracer, std::span<const Key> keys, Batch& ba
         integrator_);
     for (std::size_t i = 0; i < keys.size(); ++i)
         results[i] = finish(batch.paths[i], batch.starts[i].camera.lambda, batch.points[i]);
+    if (!layers_.wants_extras()) return;
+    const std::size_t values = layers().values();
+    for (std::size_t i = 0; i < keys.size(); ++i)
+        if (!results[i].bad)
+            sample_layers(batch.extras[i], batch.paths[i], batch.points[i], results[i].clamp,
+                          std::span(batch.layer_values).subspan(i * values, values));
 }
 
 SampleRecord SampleContext::record(RayTracer& tracer, const Key& key) const {
     SampleRecord record;
     FilmPoint point;
     PathStart<SampleStream> start = begin(key, point);
+    std::vector<SampledSpectrum> parts(layers().parts());
+    SampleExtras extras = layers_.extras(parts);
+    if (layers_.wants_extras()) start.camera.extras = &extras;
     const FilmContribution path = std::visit(
         [&](const auto& integrator) {
             return integrator.estimate(scene_, tracer, start.camera, start.stream, &record.path);
@@ -123,7 +155,12 @@ SampleRecord SampleContext::record(RayTracer& tracer, const Key& key) const {
     record.film = point.film;
     record.lens = point.lens;
     record.time = point.time;
-    record.contribution = finish(path, start.camera.lambda, point, &record).film;
+    const Result result = finish(path, start.camera.lambda, point, &record);
+    record.contribution = result.film;
+    if (layers_.wants_extras() && !result.bad) {
+        record.layer_values.resize(layers().values());
+        sample_layers(extras, path, point, result.clamp, record.layer_values);
+    }
     return record;
 }
 

@@ -41,6 +41,8 @@ struct TileView {
     std::size_t stride = 0;
     const std::uint32_t* target_samples = nullptr;
     std::size_t target_stride = 0;
+    // FilmLayers::sums() numbers for each pixel, in the same rows; unused if that is 0.
+    double* layer_sums = nullptr;
     // At most this many new samples per pixel.
     std::uint32_t most = ~std::uint32_t{0};
 };
@@ -52,6 +54,7 @@ class TileRenderer {
         : context_(context), accelerator_(accelerator), order_(order) {}
 
     const SampleOrder& order() const { return order_; }
+    const FilmLayers& layers() const { return context_.layers(); }
 
     // Adds its statistics to `tally`. Stops early when stop(), called before each pixel, or check(), called
     // after each full batch of samples, returns true. Pixels are always consistent: a batch is added whole.
@@ -71,11 +74,12 @@ class TileRenderer {
                 const auto row = static_cast<std::size_t>(y - tile.bounds.y0);
                 const auto column = static_cast<std::size_t>(x - tile.bounds.x0);
                 Pixel& pixel = tile.pixels[row * tile.stride + column];
+                double* const sums = tile.layer_sums + (row * tile.stride + column) * layers().sums();
                 const std::uint64_t target =
                     std::min<std::uint64_t>(tile.target_samples[row * tile.target_stride + column],
                                             std::uint64_t{pixel.samples()} + tile.most);
                 for (std::uint64_t i = pixel.samples(); i < target && !stopped; ++i) {
-                    batch.add(pixel, i, {x, y, order_.index(i)});
+                    batch.add(pixel, sums, i, {x, y, order_.index(i)});
                     if (batch.full()) {
                         take(tracer, batch, tally);
                         stopped = check();
@@ -100,6 +104,7 @@ class TileRenderer {
         static constexpr std::size_t capacity = 256;
         struct Place {
             Pixel* pixel = nullptr;
+            double* layer_sums = nullptr;
             std::uint64_t number = 0; // of the sample among the pixel's
         };
         std::vector<Place> places;
@@ -113,8 +118,8 @@ class TileRenderer {
             places.clear();
             keys.clear();
         }
-        void add(Pixel& pixel, std::uint64_t number, const SampleContext::Key& key) {
-            places.push_back({&pixel, number});
+        void add(Pixel& pixel, double* layer_sums, std::uint64_t number, const SampleContext::Key& key) {
+            places.push_back({&pixel, layer_sums, number});
             keys.push_back(key);
         }
     };

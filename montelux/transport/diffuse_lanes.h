@@ -111,6 +111,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
             if (textured) context = texture_context(point);
         }
         set_lane(w, i, state.ray.d);
+        state.meet(hit);
         const Index light = scene.shapes[hit.shape].light;
         if (hit.instance == no_index && light != no_index)
             add_met_light(scene, state, light,
@@ -156,6 +157,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
         SpectrumLanes<W> radiance;
         LaneMask<W> lit(false), invisible(false);
         std::array<Ray, W> shadows;
+        std::array<Index, W> chosen_lights{};
         for (int i = 0; i < size; ++i) {
             if (!stream.active[i]) continue;
             const auto k = static_cast<std::size_t>(i);
@@ -172,6 +174,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
             choice.set(i, chosen.probability);
             pdf.set(i, light->pdf);
             radiance.set_lane(i, light->radiance);
+            chosen_lights[k] = chosen.light;
             shadows[k] = light->shadow;
             shadows[k].time = state.ray.time;
         }
@@ -185,7 +188,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
             for (int i = 0; i < size; ++i) {
                 if (!lit[i]) continue;
                 const auto k = static_cast<std::size_t>(i);
-                batch.shadows.emplace_back(ShadowRay{shadows[k], contribution.lane(i)});
+                batch.shadows.emplace_back(ShadowRay{shadows[k], contribution.lane(i), chosen_lights[k]});
                 batch.shadow_owners.push_back(group.paths[k]);
             }
         }

@@ -76,6 +76,7 @@ struct PathIntegrator::Vertex {
         ray.ray = light->shadow;
         ray.ray.time = state.ray.time;
         ray.contribution = state.throughput * e.f * light->radiance * (weight / light_pdf);
+        ray.light = chosen.light;
     }
 
     template <BsdfModel B>
@@ -118,6 +119,7 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     const SurfacePoint s =
         surface_point(scene, state.ray, hit, textured || scene.frame_follows_tangents(material));
     if (recorder) recorder.hit_surface(state.ray, hit, s, state.throughput);
+    state.meet(hit);
     if (hit.instance == no_index && s.shape->light != no_index)
         add_met_light(scene, state, s.shape->light,
                       {.wi = w, .part = s.primitive, .p = s.p, .n = s.ng, .b = s.b}, recorder);
@@ -181,7 +183,7 @@ FilmContribution PathIntegrator::estimate(const SceneView& scene, RayTracer& tra
         const std::optional<ShadowRay> shadow = shade(scene, state, hit, stream, recorder);
         if (!shadow) continue;
         if (!tracer.occluded(shadow->ray))
-            state.radiance += shadow->contribution;
+            state.add(shadow->contribution, shadow->light);
         else if (recorder)
             recorder.occluded();
     }
@@ -240,7 +242,9 @@ void PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer, std::sp
         const std::span<bool> occluded(batch.occluded.get(), batch.rays.size());
         if (!batch.rays.empty()) tracer.occluded(batch.rays, occluded);
         for (std::size_t k = 0; k < occluded.size(); ++k)
-            if (!occluded[k]) batch.states[batch.shadow_owners[k]].radiance += batch.shadows[k]->contribution;
+            if (!occluded[k])
+                batch.states[batch.shadow_owners[k]].add(batch.shadows[k]->contribution,
+                                                         batch.shadows[k]->light);
         std::erase_if(batch.alive, [&](Index i) { return !batch.states[i].alive; });
     }
     for (std::size_t i = 0; i < starts.size(); ++i) {

@@ -18,9 +18,25 @@ struct PathState {
     bool sees_lights = true; // no other strategy can find the light that the ray hits
     bool alive = true;       // false: the path has ended; do not trace the ray
     FirstHit first;
+    SampleExtras* extras = nullptr; // null: not wanted
 
-    PathState(const CameraSample& camera) : ray(camera.ray), lambda(camera.lambda) {
+    PathState(const CameraSample& camera) : ray(camera.ray), lambda(camera.lambda), extras(camera.extras) {
         previous.p = camera.ray.o;
+    }
+    // Radiance of a light, or of a medium (no_index), after `depth` scattering events.
+    void add(SampledSpectrum contribution, Index light) {
+        radiance += contribution;
+        if (extras != nullptr) [[unlikely]]
+            extras->add(contribution, depth, light);
+    }
+    // The ray hits a surface, or leaves the scene.
+    void meet(const Hit& hit) {
+        if (extras != nullptr && depth == 0) [[unlikely]]
+            extras->meet(ray, hit);
+    }
+    void leave(SampledSpectrum carried) {
+        if (extras != nullptr && depth == 0) [[unlikely]]
+            extras->transparency = average(carried);
     }
 };
 static_assert(std::is_trivially_copyable_v<PathState>);
@@ -29,6 +45,7 @@ static_assert(std::is_trivially_copyable_v<PathState>);
 struct ShadowRay {
     Ray ray;
     SampledSpectrum contribution;
+    Index light = no_index;
 };
 
 } // namespace montelux

@@ -117,7 +117,7 @@ class VolumePath {
     // Of media: no strategy but following the path finds it.
     void emit(SampledSpectrum radiance) {
         if (settings_.strategy == Strategy::mis_light) return;
-        state_.radiance += radiance;
+        state_.add(radiance, no_index);
         if (recorder_) recorder_.emitted(radiance);
     }
 
@@ -194,6 +194,7 @@ class VolumePath {
         }
         interfaces_ = 0;
         const bool in_body = is_in_body();
+        if (!in_body) state_.meet(hit);
         if (in_body ? ++body_events_ == most_body_events : state_.depth++ == settings_.max_depth) {
             end(PathEnd::max_depth);
             return;
@@ -257,6 +258,7 @@ class VolumePath {
 
     void escape() {
         if (recorder_) recorder_.left_scene(state_.ray, state_.carried());
+        state_.leave(state_.carried());
         for (Index light : scene_.light_tables.infinite_lights) add_met_light(light, {.wi = state_.ray.d});
         end(PathEnd::left_scene);
     }
@@ -282,7 +284,7 @@ class VolumePath {
                                    .light_pdf = pdf,
                                    .weight = weight,
                                    .counted = counted});
-        if (counted) state_.radiance += state_.carried() * le * weight;
+        if (counted) state_.add(state_.carried() * le * weight, light);
     }
 
     // Next-event estimation: one light, one point on it. evaluate(wi) gives value and density of scattering.
@@ -325,7 +327,8 @@ class VolumePath {
                             : path_weight(settings_, record.light_pdf, record.bsdf_pdf);
         if (settings_.strategy == Strategy::mis_bsdf) return finish(Outcome::other_term);
         finish(Outcome::counted);
-        state_.radiance += state_.carried() * e.f * record.radiance * (record.weight / record.light_pdf);
+        state_.add(state_.carried() * e.f * record.radiance * (record.weight / record.light_pdf),
+                   chosen.light);
     }
 
     // Russian roulette on what the path carries to the film. Returns false if the path ends.

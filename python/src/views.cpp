@@ -175,6 +175,37 @@ void bind_film(nb::module_& m) {
     number(
         c, "max_component_value", &FilmSettings::max_component_value, [](double x) { return x > 0; },
         "a number above zero", "Largest RGB value of a sample; infinite: none.");
+    attribute<FilmSettings>(
+        c, "layers", "str",
+        [](const FilmSettings& f, const auto&) { return nb::cast(text_of(f.layers.set)); },
+        [](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
+            std::string list;
+            if (!nb::try_cast(v, list))
+                throw Error(what,
+                            std::string(nb::repr(v).c_str()) + " was given; expected names with commas");
+            try {
+                f.layers.set = parse_layers(list);
+            } catch (const Error& e) {
+                throw Error(what, e.what());
+            }
+        },
+        "Names of the layers of a picture with commas, as of `montelux render --layers`: "
+        "'default,position'.");
+    auto flag = [&](const char* name, bool LayerSettings::*member, const char* doc) {
+        attribute<FilmSettings>(
+            c, name, "bool",
+            [member](const FilmSettings& f, const auto&) { return nb::cast(f.layers.*member); },
+            [member](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
+                if (!nb::isinstance<nb::bool_>(v))
+                    throw Error(what,
+                                std::string(nb::repr(v).c_str()) + " was given; expected True or False");
+                f.layers.*member = nb::cast<bool>(v);
+            },
+            doc);
+    };
+    flag("layers_in_camera_space", &LayerSettings::in_camera_space,
+         "Positions and normals of the layers are those of the camera, not of the world.");
+    flag("half", &LayerSettings::half, "EXR files hold 16-bit floats where those suffice.");
     c.def_prop_rw(
         "filter",
         [](const Ref<FilmSettings>& r) {

@@ -25,7 +25,7 @@ std::vector<PluginCoverage> make_coverage() {
     constexpr std::string_view own_tracer = "the ray tracer builds its own hierarchy";
 
     add("Film", {plugin("rgb", in_part, "sensors other than 'cie1931' are refused"),
-                 plugin("gbuffer", otherwise, "read as 'rgb'; every render has albedo, normal and depth"),
+                 plugin("gbuffer", in_part, "as 'rgb', with its layers under names of Montelux"),
                  plugin("spectral", none)});
     add("PixelFilter",
         {plugin("box"), plugin("gaussian"), plugin("mitchell"), plugin("sinc"), plugin("triangle")});

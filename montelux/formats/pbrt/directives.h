@@ -106,6 +106,7 @@ class Directives {
         Curves::Kind kind;
         bool flip_normal;
         float alpha;
+        std::string name;
 
         bool operator==(const OpenCurves&) const = default;
     };

@@ -64,12 +64,8 @@ void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& fil
     ParameterReader r(plugin.parameters, "film " + in_quotes(plugin.name), plugin.at, diagnostics);
     if (plugin.name == "spectral") r.error("film 'spectral' is not supported yet; expected 'rgb'");
     if (plugin.name == "gbuffer") {
-        diagnostics.warn(plugin.at,
-                         "film 'gbuffer' is rendered as 'rgb': of its layers the EXR file has albedo, "
-                         "normal and depth, as every render");
-        if (r.choice("coordinatesystem", {"camera", "world"}, "world") == "camera")
-            diagnostics.warn(r.at("coordinatesystem"),
-                             "'coordinatesystem' is ignored: normals are in world space");
+        film.layers.set = LayerSet::gbuffer();
+        film.layers.in_camera_space = r.choice("coordinatesystem", {"camera", "world"}, "camera") == "camera";
     }
     film.width = read_resolution(r, "xresolution", 1280);
     film.height = read_resolution(r, "yresolution", 720);
@@ -91,9 +87,8 @@ void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& fil
     std::string sensor = r.string("sensor", "cie1931");
     if (sensor != "cie1931")
         r.error("sensor", "sensor " + in_quotes(sensor) + " is not supported yet; expected 'cie1931'");
-    if (r.boolean("savefp16") == true)
-        diagnostics.warn_once("savefp16", r.at("savefp16"),
-                              "'savefp16' is ignored: EXR files hold 32-bit floats");
+    // pbrt's default is true; a file that does not ask for it keeps its 32 bits.
+    film.layers.half = r.boolean("savefp16") == true;
     film.exposure_time = r.number("exposuretime", 1);
     if (!(film.exposure_time > 0)) r.error("exposuretime", "parameter 'exposuretime' must be positive");
     r.finish();

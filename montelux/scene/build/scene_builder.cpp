@@ -53,6 +53,10 @@ Index SceneBuilder::add_shape(Geometry geometry, const ShapeSettings& settings, 
     shape.flip_normal = settings.flip_normal;
     shape.media = settings.media;
     scene_.shapes.push_back(shape);
+    if (!settings.name.empty()) {
+        scene_.shape_names.resize(index + std::size_t{1});
+        scene_.shape_names[index] = settings.name;
+    }
     (in_object() ? scene_.objects[open_object_].shapes : scene_.world_shapes).push_back(index);
     if (settings.emission != nullptr) add_area_light(index, *settings.emission, geometry, at);
     scene_.shapes[index].geometry = std::visit(
@@ -92,13 +96,15 @@ void SceneBuilder::add_area_light(Index shape, const Emission& emission, const G
     if (count == 0) return;
     emissive_primitives_ += count;
     if (emissive_primitives_ >= no_index) messages_.error(at, "more than 2^32 emissive triangles");
-    scene_.shapes[shape].light = add_light(emission.light(shape, geometry), at);
+    scene_.shapes[shape].light = add_light(emission.light(shape, geometry), at, emission.group);
 }
 
 void SceneBuilder::begin_object(const std::string& name, SourceLocation at) {
     objects_.declare(name, static_cast<Index>(scene_.objects.size()), at, messages_);
     open_object_ = static_cast<Index>(scene_.objects.size());
     scene_.objects.emplace_back();
+    // Readers name objects that have no name in the file by a line break and a number.
+    if (!name.starts_with('\n')) scene_.objects.back().name = name;
 }
 
 void SceneBuilder::add_instance(const std::string& object, const Transform& world_from_object,
@@ -123,7 +129,7 @@ void SceneBuilder::add_instance(const std::string& object, const Transform& star
     instances_.back().motion = static_cast<Index>(scene_.motions.size() - 1);
 }
 
-Index SceneBuilder::add_light(const Light& light, SourceLocation at) {
+Index SceneBuilder::add_light(const Light& light, SourceLocation at, const std::string& group) {
     if (scene_.lights.size() >= no_index) messages_.error(at, "more than 2^32 lights");
     try {
         check_light(scene_, light);
@@ -131,6 +137,10 @@ Index SceneBuilder::add_light(const Light& light, SourceLocation at) {
         messages_.error(at, e.what());
     }
     scene_.lights.push_back(light);
+    if (!group.empty()) {
+        scene_.light_groups.resize(scene_.lights.size());
+        scene_.light_groups.back() = group;
+    }
     return static_cast<Index>(scene_.lights.size() - 1);
 }
 

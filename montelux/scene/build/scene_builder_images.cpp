@@ -99,7 +99,7 @@ void SceneBuilder::add_sky(const SkyLights& sky, SourceLocation at) {
                            SunDisc::of_radius(normalize(sky.world_from_light.vector(model.sun_direction())),
                                               sun_angular_radius),
                            normalize(sky.world_from_light.normal(Vec3f(0, 0, 1)))},
-                  at);
+                  at, sky.group);
     SkyLight light;
     light.sky = static_cast<Index>(scene_.skies.size());
     light.environment = static_cast<Index>(scene_.environments.size());
@@ -107,7 +107,7 @@ void SceneBuilder::add_sky(const SkyLights& sky, SourceLocation at) {
     light.world_from_light = sky.world_from_light;
     scene_.environments.push_back(sky_density_map(model, sky_density_rows));
     scene_.skies.push_back(model);
-    add_light(light, at);
+    add_light(light, at, sky.group);
 }
 
 } // namespace montelux

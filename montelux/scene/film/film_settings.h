@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "montelux/mc/math/vec.h"
+#include "montelux/scene/film/layer_set.h"
 
 namespace montelux {
 
@@ -46,6 +47,7 @@ struct FilmSettings {
     float diagonal = 0.035f; // metres; realistic cameras alone use it
     float white_balance = 0; // kelvin; 0: none
     float max_component_value = std::numeric_limits<float>::infinity();
+    LayerSettings layers{};
 };
 
 } // namespace montelux
