@@ -44,7 +44,6 @@ class FilmLayers {
     // Parts of the radiance: direct, indirect (where they are in the set), and the light groups.
     std::size_t parts() const { return parts_; }
     std::size_t first_part() const { return first_part_value_; } // three numbers each
-    std::size_t first_group() const { return parts_ - light_groups_.size(); }
 
     // Adds a sample.
     void add(double* sums, const float* values) const;
