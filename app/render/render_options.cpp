@@ -185,6 +185,14 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_choice(
         c, "--environment-lookup", o.environment_lookup, environment_lookup_names,
         "What environment maps are between the centres of their texels; nearest, the default, is pbrt's: ");
+    add_choice(c, "--microfacet-scattering", o.microfacet_scattering, microfacet_scattering_names,
+               "Light that the microfacets of rough surfaces throw at one another is lost, as in pbrt and by "
+               "default, "
+               "or followed until it leaves: ");
+    add_choice(c, "--shading-terminator", o.shading_terminator, shading_terminator_names,
+               "Coarse meshes with smooth normals are shadowed by their facets, as in pbrt and by default, "
+               "or as the "
+               "smooth surface that they stand for: ");
     add_whole_number(c, "--max-depth", o.max_depth, 0, 1'000'000, "Scattering events of a path at most");
     add_parsed(c, "--debug-sample", "x,y,index", o.debug_sample, parse_sample,
                "Render no picture: trace this one sample of the render and print its path, vertex by vertex");
@@ -235,6 +243,8 @@ void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.environment_sampling) d.integrator.environment_sampling = *o.environment_sampling;
     if (o.environment_compensation) d.integrator.environment_compensation = *o.environment_compensation;
     if (o.environment_lookup) d.integrator.environment_lookup = *o.environment_lookup;
+    if (o.microfacet_scattering) d.integrator.microfacet_scattering = *o.microfacet_scattering;
+    if (o.shading_terminator) d.integrator.shading_terminator = *o.shading_terminator;
     if (o.max_depth) d.integrator.max_depth = static_cast<int>(*o.max_depth);
     if (o.clamp) d.film.max_component_value = static_cast<float>(*o.clamp);
 }

@@ -41,6 +41,8 @@ struct RenderOptions {
     std::optional<Strategy> strategy;
     std::optional<Heuristic> heuristic;
     std::optional<LightSampling> light_sampling;
+    std::optional<MicrofacetScattering> microfacet_scattering;
+    std::optional<ShadingTerminator> shading_terminator;
     std::optional<EnvironmentSampling> environment_sampling;
     std::optional<bool> environment_compensation;
     std::optional<EnvironmentLookup> environment_lookup;

@@ -60,27 +60,35 @@ std::uint64_t hash_of_text(std::string_view text) {
 // Another version of the program may take different samples.
 std::uint64_t version() { return hash_of(layout_version, hash_of_text(MONTELUX_VERSION)); }
 
+// Without options of surfaces the hash is that of versions that did not have them: their checkpoints stay valid.
+std::uint64_t with_surfaces(SurfaceSettings s, std::uint64_t hash) {
+    if (s == SurfaceSettings{}) return hash;
+    return hash_of(hash, static_cast<int>(s.microfacets), static_cast<int>(s.terminator));
+}
+
 std::array<Fingerprint, 10> fingerprints(const SceneDigest& scene, const SceneDescription& d,
                                          const RenderTarget& target) {
     const FilmSettings& f = d.film;
     auto of = [](const ContentDigest& part) { return hash_of(part.high, part.low); };
-    return {
-        {{"the scene's geometry differs", of(scene.geometry)},
-         {"the scene's materials differ", of(scene.materials)},
-         {"the scene's textures differ", of(scene.textures)},
-         {"the scene's lights differ", of(scene.lights)},
-         {"the scene's camera differs", of(scene.camera)},
-         {"the film differs",
-          hash_of(f.width, f.height, f.crop.x0, f.crop.y0, f.crop.x1, f.crop.y1, hash_of_filter(f.filter),
-                  f.iso, f.exposure_time, f.white_balance, f.max_component_value)},
-         {"the sampler or seed differs", hash_of(static_cast<int>(d.sampler.kind), d.sampler.seed)},
-         {"the integrator differs",
-          hash_of(d.integrator.max_depth, static_cast<int>(d.integrator.strategy),
-                  static_cast<int>(d.integrator.heuristic), static_cast<int>(d.integrator.light_sampling),
-                  static_cast<int>(d.integrator.environment_sampling), d.integrator.environment_compensation,
-                  static_cast<int>(d.integrator.environment_lookup))},
-         {"the allocation of samples (--adaptive) differs", hash_of(target.adaptive)},
-         {"the slice differs", hash_of(target.slice.index, target.slice.count)}}};
+    return {{{"the scene's geometry differs", of(scene.geometry)},
+             {"the scene's materials differ", of(scene.materials)},
+             {"the scene's textures differ", of(scene.textures)},
+             {"the scene's lights differ", of(scene.lights)},
+             {"the scene's camera differs", of(scene.camera)},
+             {"the film differs",
+              hash_of(f.width, f.height, f.crop.x0, f.crop.y0, f.crop.x1, f.crop.y1, hash_of_filter(f.filter),
+                      f.iso, f.exposure_time, f.white_balance, f.max_component_value)},
+             {"the sampler or seed differs", hash_of(static_cast<int>(d.sampler.kind), d.sampler.seed)},
+             {"the integrator differs",
+              with_surfaces(d.integrator.surfaces(),
+                            hash_of(d.integrator.max_depth, static_cast<int>(d.integrator.strategy),
+                                    static_cast<int>(d.integrator.heuristic),
+                                    static_cast<int>(d.integrator.light_sampling),
+                                    static_cast<int>(d.integrator.environment_sampling),
+                                    d.integrator.environment_compensation,
+                                    static_cast<int>(d.integrator.environment_lookup)))},
+             {"the allocation of samples (--adaptive) differs", hash_of(target.adaptive)},
+             {"the slice differs", hash_of(target.slice.index, target.slice.count)}}};
 }
 
 } // namespace

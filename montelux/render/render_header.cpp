@@ -58,6 +58,8 @@ void add_render_header(Image& image, const std::string& scene_name, const Render
     a["environmentSampling"] = std::string(name_of(description.integrator.environment_sampling));
     a["environmentCompensation"] = description.integrator.environment_compensation ? 1 : 0;
     a["environmentLookup"] = std::string(name_of(description.integrator.environment_lookup));
+    a["microfacetScattering"] = std::string(name_of(description.integrator.microfacet_scattering));
+    a["shadingTerminator"] = std::string(name_of(description.integrator.shading_terminator));
     a["maxDepth"] = description.integrator.max_depth;
     a["seed"] = std::to_string(description.sampler.seed);
     a["renderSeconds"] = static_cast<float>(report.seconds);

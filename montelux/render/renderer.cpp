@@ -315,7 +315,8 @@ Renderer::Renderer(const SceneDescription& description, const RenderTarget& targ
     auto begin = Clock::now();
     scene_digest_ = digest_of(description.scene);
     tables_ = std::make_unique<SceneTables>(description.scene, description.integrator.environments(),
-                                            description.integrator.light_sampling);
+                                            description.integrator.light_sampling,
+                                            description.integrator.surfaces());
     accelerator_ = std::make_unique<Accelerator>(tables_->view());
     build_seconds_ = seconds_since(begin);
 }

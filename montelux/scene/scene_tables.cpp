@@ -19,8 +19,9 @@ namespace {
 using CoatingKey = std::tuple<float, float, float, int>; // eta, alpha, thickness, max_depth
 
 // The coating's parameters if CoatingTable's closed form applies: constant over the surface, isotropic, with
-// a clear layer and no dispersion.
-std::optional<CoatingKey> closed_form(const SceneView& scene, const Material& material) {
+// a clear layer, no dispersion and no scattering between microfacets.
+std::optional<CoatingKey> closed_form(const SceneView& scene, const Material& material,
+                                      MicrofacetScattering microfacets) {
     const auto* m = std::get_if<CoatedDiffuseMaterial>(&material);
     if (m == nullptr) return std::nullopt;
     const CoatingParameters& c = m->coating;
@@ -31,6 +32,7 @@ std::optional<CoatingKey> closed_form(const SceneView& scene, const Material& ma
         return std::nullopt;
     float alpha = c.roughness.u.value;
     if (c.roughness.remap) alpha = Ggx::alpha_from_roughness(alpha);
+    if (microfacets == MicrofacetScattering::multiple && !Ggx{alpha, alpha}.is_smooth()) return std::nullopt;
     float eta = scene.spectrum(c.eta)(550);
     if (!(eta > 0)) return std::nullopt;
     return CoatingKey{eta, alpha, std::max(c.thickness.value, 0.0f), c.max_depth};
@@ -68,12 +70,14 @@ LightSampler make_light_sampler(const SceneView& scene, LightSampling sampling) 
 } // namespace
 
 SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environments,
-                         LightSampling light_sampling)
+                         LightSampling light_sampling, const SurfaceSettings& surfaces)
     : lights_(scene, environments) {
     add_mipmaps(scene);
-    add_materials(scene);
+    add_materials(scene, surfaces.microfacets);
     add_media(scene);
     view_ = SceneView(scene);
+    view_.multiple_scattering = surfaces.microfacets == MicrofacetScattering::multiple;
+    view_.soft_terminator = surfaces.terminator == ShadingTerminator::soft;
     view_.textured = textured_;
     view_.follows_tangents = follows_tangents_;
     view_.coating_of_material = coating_of_material_;
@@ -108,14 +112,14 @@ void SceneTables::add_media(const Scene& scene) {
         media_.push_back(std::visit([&](const auto& m) { return m.table(scene); }, medium));
 }
 
-void SceneTables::add_materials(const Scene& scene) {
+void SceneTables::add_materials(const Scene& scene, MicrofacetScattering microfacets) {
     std::map<CoatingKey, Index> index_of;
     std::vector<CoatingKey> keys;
     for (const Material& material : scene.materials) {
         textured_.push_back(uses_coordinates(material) ? 1 : 0);
         follows_tangents_.push_back(has_textured_bsdf(material) || is_anisotropic(material) ? 1 : 0);
         Index table = no_index;
-        if (auto key = closed_form(SceneView(scene), material)) {
+        if (auto key = closed_form(SceneView(scene), material, microfacets)) {
             auto [found, inserted] = index_of.try_emplace(*key, static_cast<Index>(keys.size()));
             if (inserted) keys.push_back(*key);
             table = found->second;

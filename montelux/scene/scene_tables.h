@@ -14,7 +14,8 @@ class SceneTables {
     // Builds the pyramids of all images, even of those that no texture filters. Independent parts are built
     // in parallel.
     explicit SceneTables(const Scene& scene, const EnvironmentSettings& environments = {},
-                         LightSampling light_sampling = LightSampling::tree);
+                         LightSampling light_sampling = LightSampling::tree,
+                         const SurfaceSettings& surfaces = {});
 
     SceneTables(const SceneTables&) = delete;
     SceneTables& operator=(const SceneTables&) = delete;
@@ -24,7 +25,7 @@ class SceneTables {
 
   private:
     void add_mipmaps(const Scene& scene);
-    void add_materials(const Scene& scene);
+    void add_materials(const Scene& scene, MicrofacetScattering microfacets);
     void add_media(const Scene& scene);
 
     std::vector<MipMap> mipmaps_, alpha_mipmaps_;

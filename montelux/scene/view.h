@@ -52,6 +52,9 @@ struct SceneView {
 
     const LightSampler* light_sampler = nullptr;
 
+    // MicrofacetScattering::multiple and ShadingTerminator::soft.
+    bool multiple_scattering = false, soft_terminator = false;
+
     SceneView() = default;
     // Without tables: enough for geometry and constant parameters.
     explicit SceneView(const Scene& scene)

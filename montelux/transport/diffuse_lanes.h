@@ -10,6 +10,7 @@
 #include "montelux/scene/bsdf/diffuse.h"
 #include "montelux/scene/light/light_sampling.h"
 #include "montelux/scene/material/parameter_evaluator.h"
+#include "montelux/scene/shape/shading_terminator.h"
 #include "montelux/scene/shape/surface_point.h"
 #include "montelux/transport/path_integrator.h"
 
@@ -25,6 +26,7 @@ inline LaneShading lane_shading(const SceneView& scene, const Hit& hit) {
     const Shape& shape = scene.shapes[hit.shape];
     const auto* diffuse = std::get_if<DiffuseMaterial>(&scene.materials[shape.material]);
     if (diffuse == nullptr || !diffuse->detail.is_flat()) return LaneShading::none;
+    if (scene.soft_terminator && has_vertex_normals(scene, shape)) return LaneShading::none;
     const bool plain = hit.instance == no_index && std::holds_alternative<MeshIndex>(shape.geometry) &&
                        !scene.is_textured(shape.material) && !scene.frame_follows_tangents(shape.material);
     return plain ? LaneShading::all : LaneShading::scattering;

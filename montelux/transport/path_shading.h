@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "montelux/scene/material/make_bsdf.h"
+#include "montelux/scene/material/soft_terminator.h"
 #include "montelux/scene/shape/surface_point.h"
 #include "montelux/transport/diffuse_lanes.h"
 #include "montelux/transport/light_choice.h"
@@ -115,8 +116,7 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     const Vec3f w = state.ray.d;
     const Index material = scene.shapes[hit.shape].material;
     const bool textured = scene.is_textured(material);
-    const SurfacePoint s =
-        surface_point(scene, state.ray, hit, textured || scene.frame_follows_tangents(material));
+    SurfacePoint s = surface_point(scene, state.ray, hit, textured || scene.frame_follows_tangents(material));
     if (recorder) recorder.hit_surface(state.ray, hit, s, state.throughput);
     if (hit.instance == no_index && s.shape->light != no_index)
         add_met_light(scene, state, s.shape->light,
@@ -128,7 +128,9 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     }
 
     const TextureContext context = textured ? texture_context(s) : TextureContext();
-    const SurfaceBsdf surface = make_bsdf(scene, s, -w, context, state.lambda);
+    SurfaceBsdf surface = make_bsdf(scene, s, -w, context, state.lambda);
+    if (scene.soft_terminator) [[unlikely]]
+        soften_terminator(scene, state.ray, hit, context, state.lambda, s, surface);
     const Vec3f wo = surface.frame.to_local(-w);
     if (recorder) recorder.made_bsdf(surface, wo);
     if (state.depth == 1)

@@ -5,6 +5,7 @@
 
 #include "montelux/mc/warp/sphere.h"
 #include "montelux/scene/material/make_bsdf.h"
+#include "montelux/scene/material/soft_terminator.h"
 #include "montelux/transport/light_choice.h"
 #include "montelux/transport/path_weights.h"
 #include "montelux/transport/shadow_transmittance.h"
@@ -178,7 +179,7 @@ class VolumePath {
         const Vec3f w = state_.ray.d;
         const Index material = scene_.shapes[hit.shape].material;
         const bool interface = scene_.is_interface(hit.shape), textured = scene_.is_textured(material);
-        const SurfacePoint s =
+        SurfacePoint s =
             surface_point(scene_, state_.ray, hit, textured || scene_.frame_follows_tangents(material));
         if (recorder_) recorder_.hit_surface(state_.ray, hit, s, state_.carried());
         if (hit.instance == no_index && s.shape->light != no_index)
@@ -203,7 +204,9 @@ class VolumePath {
             textured ? texture_context(*integrator_.camera_, integrator_.footprint_scale_, s)
                      : TextureContext();
         const bool was_terminated = state_.lambda.secondary_terminated();
-        const SurfaceBsdf surface = make_bsdf(scene_, s, -w, context, state_.lambda);
+        SurfaceBsdf surface = make_bsdf(scene_, s, -w, context, state_.lambda);
+        if (scene_.soft_terminator) [[unlikely]]
+            soften_terminator(scene_, state_.ray, hit, context, state_.lambda, s, surface);
         if (!was_terminated && state_.lambda.secondary_terminated()) state_.terminate_secondary();
         const Vec3f wo = surface.frame.to_local(-w);
         if (recorder_) recorder_.made_bsdf(surface, wo);

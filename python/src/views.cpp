@@ -12,6 +12,9 @@ namespace {
 
 constexpr Names<SamplerKind, 6> sampler_kinds{"sampler", sampler_names};
 constexpr Names<LightSampling, 3> light_samplings{"light_sampling", light_sampling_names};
+constexpr Names<MicrofacetScattering, 2> microfacet_scatterings{"microfacet_scattering",
+                                                                microfacet_scattering_names};
+constexpr Names<ShadingTerminator, 2> shading_terminators{"shading_terminator", shading_terminator_names};
 constexpr Names<Strategy, 6> strategies{"strategy", strategy_names};
 constexpr Names<Heuristic, 2> heuristics{"heuristic", heuristic_names};
 constexpr Names<EnvironmentSampling, 4> environment_samplings{"environment_sampling",
@@ -278,6 +281,13 @@ void bind_views(nb::module_& m) {
         "With the strategy mis and its terms, maps are not sampled where BSDFs find them as well.");
     choice(integrator, "environment_lookup", &IntegratorSettings::environment_lookup, environment_lookups,
            "What environment maps are between the centres of their texels: 'nearest' or 'bilinear'.");
+    choice(integrator, "microfacet_scattering", &IntegratorSettings::microfacet_scattering,
+           microfacet_scatterings,
+           "Light that microfacets throw at one another: lost with 'single', followed with 'multiple'.");
+    choice(integrator, "shading_terminator", &IntegratorSettings::shading_terminator, shading_terminators,
+           "Coarse meshes with smooth normals are shadowed by their facets ('hard') or as the smooth surface "
+           "that they "
+           "stand for ('soft').");
 }
 
 } // namespace montelux::python
