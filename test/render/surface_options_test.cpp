@@ -164,6 +164,34 @@ TEST(ShadingTerminator, SoftDoesNotLetFacetsShadowASmoothSphere) {
     EXPECT_GT(soft.dark, 50);
 }
 
+// Normal maps are bounded by the smooth surface, not by the facet.
+TEST(ShadingTerminator, SoftServesTiltedNormals) {
+    SceneBuilder b = coarse_scene(ShadingTerminator::soft);
+    Image image(1, 1, {"R", "G", "B"});
+    const Vec3f tilted = normalize(Vec3f{0.3f, 0.1f, 1});
+    for (int c = 0; c < 3; ++c) image.set(0, 0, c, 0.5f * (tilted[c] + 1));
+    b.scene.images.push_back(image);
+    b.scene.normal_maps.push_back({.image = 0, .mapping = {}});
+    std::get<DiffuseMaterial>(b.scene.materials[0]).detail.normal_map.map = 0;
+    const Renderer renderer(b.description);
+    int beyond = 0; // samples where the facet faces away
+    for (int y = 0; y < 24; ++y)
+        for (int x = 0; x < 24; ++x)
+            for (std::uint64_t i = 0; i < 8; ++i) {
+                const PathRecord path = renderer.replay(x, y, i).path;
+                const PathVertex& first = path.vertices.front();
+                if (!first.bsdf || !first.direct || !first.surface) continue;
+                const Vec3f to_light = normalize(Vec3f{1, 0.09f, 0.1f});
+                if (!(dot(first.ray.d, first.surface->ns) < 0) ||
+                    !(dot(to_light, first.surface->ns) > 0.01f) ||
+                    !(dot(to_light, first.bsdf->frame.n) > 0.01f))
+                    continue;
+                EXPECT_EQ(first.direct->outcome, Outcome::counted) << x << ',' << y << ',' << i;
+                beyond += dot(to_light, first.surface->ng) < 0 ? 1 : 0;
+            }
+    EXPECT_GT(beyond, 20);
+}
+
 // Light from all sides reaches a convex body as it reaches a true sphere, and nothing is gained.
 TEST(ShadingTerminator, SoftSphereIsWhiteInAFurnace) {
     SceneBuilder b;

@@ -4,6 +4,7 @@
 
 #include "montelux/mc/math/special.h"
 #include "montelux/mc/stats/moments.h"
+#include "montelux/scene/bsdf/microsurface_walk.h"
 #include "montelux/scene/bsdf/multiple_scattering.h"
 
 namespace montelux::testing {
@@ -142,6 +143,29 @@ TEST(MultipleScattering, FurtherReflectionsAreSaturated) {
         EXPECT_GT(share, std::pow(fresnel[c], 4)) << c;
     }
     EXPECT_GT(multiple[0].mean() / multiple[3].mean(), single[0].mean() / single[3].mean() * 1.05);
+}
+
+// Walks of low throughput end by Russian roulette: the mean is that of walks to their end.
+TEST(MultipleScattering, RouletteKeepsTheMean) {
+    const ConductorBsdf metal{SampledSpectrum(2.5f), SampledSpectrum(3), {3, 3}};
+    const Vec3f wo = direction(25);
+    TestStream stream(27);
+    RunningMoments ended, followed;
+    for (int i = 0; i < 300000; ++i) {
+        const auto s = MultiscatterConductorBsdf{metal}.sample(wo, TransportMode::radiance, stream);
+        ended.add(s ? double(s->weight[0]) : 0);
+        MicrosurfaceWalk walk{metal.ggx, -wo};
+        float weight = 1;
+        while (walk.advance(stream.next_1d())) {
+            const Vec3f v = -walk.w, m = walk.sample_facet(stream.next_2d());
+            weight *= fresnel_conductor(dot(v, m), metal.eta, metal.k)[0];
+            walk.w = reflect(v, m);
+        }
+        followed.add(double(weight));
+    }
+    EXPECT_NEAR(ended.mean(), followed.mean(),
+                5.5 * std::hypot(ended.standard_error(), followed.standard_error()));
+    EXPECT_LT(ended.standard_error(), 2e-3);
 }
 
 // Samples of a white metal have weight 1, so their density is the value.
