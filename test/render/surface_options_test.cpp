@@ -192,6 +192,27 @@ TEST(ShadingTerminator, SoftServesTiltedNormals) {
     EXPECT_GT(beyond, 20);
 }
 
+// In hollows rays start where they did: above the facet, by more than the rounding error.
+TEST(ShadingTerminator, SoftHollowsDoNotShadowThemselves) {
+    SceneBuilder b;
+    const Vec3f center{70, -30, 110};
+    b.add_mesh(coarse_sphere(1, 10, 6, center), b.add(DiffuseMaterial{gray(0.5f)}));
+    b.scene.lights.push_back(PointLight{white_light(b.scene), white_scale(), center});
+    b.look(Vec3d(center) + Vec3d{0.3, 0.2, 0.1}, Vec3d(center) + Vec3d{1, 0, 0}, 90);
+    b.description.integrator.max_depth = 1;
+    b.description.integrator.shading_terminator = ShadingTerminator::soft;
+    const Renderer renderer(b.description);
+    int lit = 0;
+    for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 8; ++x)
+            for (std::uint64_t i = 0; i < 64; ++i) {
+                const PathRecord path = renderer.replay(x, y, i).path;
+                ASSERT_TRUE(path.vertices.front().direct);
+                lit += path.vertices.front().direct->outcome == Outcome::counted ? 1 : 0;
+            }
+    EXPECT_EQ(lit, 8 * 8 * 64);
+}
+
 // Light from all sides reaches a convex body as it reaches a true sphere, and nothing is gained.
 TEST(ShadingTerminator, SoftSphereIsWhiteInAFurnace) {
     SceneBuilder b;
