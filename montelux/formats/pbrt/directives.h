@@ -169,7 +169,7 @@ class Directives {
     NameTable named_media_{"medium"};
     std::vector<MediaUse> media_uses_; // of shapes in or between media
     MediaUse camera_media_{no_index, {}, {}};
-    std::size_t subdivided_ = 0; // triangles of 'loopsubdiv' shapes
+    SubdivisionBudget subdivision_; // of 'loopsubdiv' shapes
 };
 
 } // namespace montelux::pbrt

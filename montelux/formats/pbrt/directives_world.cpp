@@ -90,7 +90,7 @@ void Directives::shape(const std::string& name, std::vector<Parameter> parameter
     ParameterList list = with_defaults(std::move(parameters), PluginKind::shape);
     ParameterReader r(list, "shape " + in_quotes(name), at, diagnostics_);
     Geometry geometry = read_shape(r, name, world_from_object, state_.reverse_orientation,
-                                   state_.emission != nullptr, files_, subdivided_);
+                                   state_.emission != nullptr, files_, subdivision_);
 
     ShapeSettings settings;
     settings.flip_normal = state_.reverse_orientation != world_from_object.swaps_handedness();
