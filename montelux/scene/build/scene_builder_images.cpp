@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "montelux/mc/math/error.h"
@@ -14,6 +15,9 @@ namespace {
 
 // Height of the map for sampling directions to a sky. Radiance does not depend on it.
 constexpr int sky_density_rows = 256;
+
+// A file must not keep the reader busy for an hour; scenes have one.
+constexpr std::size_t most_skies = 16;
 
 constexpr const char* no_colors = " has neither channels R, G and B nor Y alone";
 
@@ -78,6 +82,8 @@ Index SceneBuilder::add_light_picture(const Image& picture, const std::string& n
 }
 
 void SceneBuilder::add_sky(const SkyLights& sky, SourceLocation at) {
+    if (scene_.skies.size() >= most_skies)
+        messages_.error(at, "more than " + std::to_string(most_skies) + " skies: each takes a second to compute");
     std::optional<SkyModel> made;
     try {
         made.emplace(sky.settings);

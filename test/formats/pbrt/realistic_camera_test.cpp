@@ -75,6 +75,9 @@ TEST_F(RealisticCameras, MistakesAreNamed) {
                   .find("not supported yet"),
               std::string::npos);
     EXPECT_NE(error(singlet, "\"string lensfile\" \"none.dat\"").find("none.dat"), std::string::npos);
+    std::string many;
+    for (int i = 0; i < 101; ++i) many += "1e5 1e-3 1 24\n";
+    EXPECT_NE(error(many).find("lens.dat' has more than 100 surfaces"), std::string::npos) << error(many);
 }
 
 } // namespace
