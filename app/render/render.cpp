@@ -6,6 +6,7 @@
 #include "app/output_files.h"
 #include "app/picture_notices.h"
 #include "app/render/cluster_render.h"
+#include "app/render/memory_text.h"
 #include "app/render/progress.h"
 #include "app/render/render_options.h"
 #include "app/render/sample_record_text.h"
@@ -18,7 +19,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include "montelux/formats/load_scene.h"
@@ -122,8 +122,6 @@ std::string ending_text(const RenderReport& report, const RenderTarget& target) 
 }
 
 void print_statistics(const RenderReport& report, double load_seconds, double build_seconds) {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
     auto samples = static_cast<double>(report.samples), rays = static_cast<double>(report.rays.rays());
     std::printf("load               %.3f s\n", load_seconds);
     std::printf("build              %.3f s\n", build_seconds);
@@ -137,7 +135,7 @@ void print_statistics(const RenderReport& report, double load_seconds, double bu
         static_cast<double>(report.rays.occlusion) / samples);
     std::printf("inside Embree      %.1f %% of the CPU time\n",
                 100 * report.ray_seconds / report.cpu_seconds);
-    std::printf("peak memory        %.1f MiB\n", static_cast<double>(usage.ru_maxrss) / 1024);
+    std::printf("peak memory        %.1f MiB\n", static_cast<double>(peak_memory()) / (1 << 20));
 }
 
 void check_slice_option(const SamplerSettings& sampler, const RenderTarget& target) {
@@ -257,6 +255,8 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
                 std::printf("environment        %s\n", map.description().c_str());
             shared.print_statistics();
         }
+        if (options.memory)
+            std::fputs(memory_text(session.renderer().memory_use(), peak_memory()).c_str(), stdout);
     }
     files.throw_failures();
     shared.end_job_if_failed(exit_interrupted);

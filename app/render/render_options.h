@@ -47,7 +47,7 @@ struct RenderOptions {
     std::optional<SampleAddress> debug_sample; // traced alone, instead of a render
     int threads = 0;
     double rank_timeout = 60; // seconds
-    bool denoise = false, stats = false, quiet = false;
+    bool denoise = false, stats = false, memory = false, quiet = false;
 };
 
 // An invalid value ends the parse with a CLI::ValidationError.

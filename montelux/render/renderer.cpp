@@ -320,6 +320,20 @@ Renderer::Renderer(const SceneDescription& description, const RenderTarget& targ
     build_seconds_ = seconds_since(begin);
 }
 
+std::vector<MemoryUse> Renderer::memory_use() const {
+    std::vector<MemoryUse> table = montelux::memory_use(description_.scene);
+    for (const MemoryUse& use : tables_->memory_use()) table.push_back(use);
+    table.push_back({"ray tracer", accelerator_->bytes(),
+                     description_.scene.shapes.size() + description_.scene.instances.size(),
+                     "shapes, instances"});
+    const PixelBounds& crop = description_.film.crop;
+    const std::size_t pixels =
+        static_cast<std::size_t>(crop.width()) * static_cast<std::size_t>(crop.height());
+    table.push_back(
+        {"film", pixels * (sizeof(Pixel) + sizeof(std::uint32_t)), pixels, "pixels"}); // and target counts
+    return table;
+}
+
 void Renderer::serve(const std::function<void(const TileRenderer&)>& work) const {
     const SampleContext context(description_, sampler_, tables_->view(), camera_);
     work(TileRenderer(context, *accelerator_, SampleOrder(sampler_, target_.slice)));

@@ -7,6 +7,7 @@
 #include <span>
 #include <tuple>
 
+#include "montelux/mc/math/vector_bytes.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/scene/light/light_sampling.h"
 #include "montelux/scene/light/scene_disk.h"
@@ -129,6 +130,25 @@ void SceneTables::add_materials(const Scene& scene) {
     });
     coatings_.reserve(tables.size());
     for (auto& table : tables) coatings_.push_back(std::move(*table));
+}
+
+std::vector<MemoryUse> SceneTables::memory_use() const {
+    std::size_t pyramids = vector_bytes(mipmaps_, alpha_mipmaps_, alpha_mipmap_of_image_),
+                coatings = vector_bytes(coatings_), media = vector_bytes(media_);
+    for (const MipMap& m : mipmaps_) pyramids += m.bytes();
+    for (const MipMap& m : alpha_mipmaps_) pyramids += m.bytes();
+    for (const CoatingTable& c : coatings_) coatings += c.bytes();
+    for (const MediumTable& m : media_) media += vector_bytes(m.majorants.values);
+    std::vector<MemoryUse> table;
+    const auto add = [&](std::string_view kind, std::size_t bytes, std::size_t count, std::string_view unit) {
+        if (count > 0) table.push_back({kind, bytes, count, unit});
+    };
+    add("pyramids of images", pyramids, mipmaps_.size() + alpha_mipmaps_.size(), "pyramids");
+    add("tables of coatings", coatings, coatings_.size(), "tables");
+    add("bounds of media", media, media_.size(), "media");
+    add("tables of lights", lights_.bytes(), view_.lights.size(), "lights");
+    add("choice of lights", light_sampler_.bytes(), light_sampler_.size(), "parts of lights");
+    return table;
 }
 
 } // namespace montelux

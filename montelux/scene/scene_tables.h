@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "montelux/scene/light/light_tables.h"
+#include "montelux/scene/memory_use.h"
 #include "montelux/scene/render_settings.h"
 #include "montelux/scene/view.h"
 
@@ -21,6 +22,8 @@ class SceneTables {
 
     // The scene with its tables; both must outlive the view.
     const SceneView& view() const { return view_; }
+    // Kinds of tables that the scene does not need are left out.
+    std::vector<MemoryUse> memory_use() const;
 
   private:
     void add_mipmaps(const Scene& scene);

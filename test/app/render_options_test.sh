@@ -73,4 +73,5 @@ for change in "--max-depth 1" "--spp 9" "--sampler halton" "--strategy bsdf" "--
 done
 [ -s out ] && fail "--quiet printed something: $(cat out)"
 expect 0 "inside Embree" render ok.pbrt --stats
+expect 0 "peak of the process" render ok.pbrt --memory
 finish

@@ -1,6 +1,7 @@
 #include "montelux/scene/build/scene_builder.h"
 
 #include <utility>
+#include <vector>
 
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/overloaded.h"
@@ -37,6 +38,12 @@ Bounds3 bounds_of(const ObjectDefinition& object, const Scene& scene) {
     return bounds;
 }
 
+// Gives back room that growing left over, if it is much. (An eighth: the copy that this needs is not worth less.)
+template <typename T>
+void trim(std::vector<T>& v) {
+    if (v.capacity() - v.size() > v.size() / 8 + 1) v.shrink_to_fit();
+}
+
 } // namespace
 
 Index SceneBuilder::add_shape(Geometry geometry, const ShapeSettings& settings, SourceLocation at) {
@@ -57,6 +64,11 @@ Index SceneBuilder::add_shape(Geometry geometry, const ShapeSettings& settings, 
     if (settings.emission != nullptr) add_area_light(index, *settings.emission, geometry, at);
     scene_.shapes[index].geometry = std::visit(
         Overloaded{[&](TriangleMesh& mesh) -> ShapeGeometry {
+                       trim(mesh.positions);
+                       trim(mesh.normals);
+                       trim(mesh.uvs);
+                       trim(mesh.indices);
+                       trim(mesh.tangents);
                        // Room for the ray tracer to read the positions in place.
                        if (!mesh.positions.empty()) mesh.positions.reserve(mesh.positions.size() + 1);
                        scene_.meshes.push_back(std::move(mesh));
