@@ -28,7 +28,8 @@ std::size_t sum_of(const std::vector<MemoryUse>& table) {
 TriangleMesh strip(std::size_t vertices) {
     TriangleMesh mesh;
     for (std::size_t i = 0; i < vertices; ++i) {
-        mesh.positions.emplace_back(static_cast<float>(i / 2), static_cast<float>(i % 2), 0.0f);
+        const std::size_t row = i / 2;
+        mesh.positions.emplace_back(static_cast<float>(row), static_cast<float>(i % 2), 0.0f);
         mesh.normals.emplace_back(0.0f, 0.0f, 1.0f);
         mesh.uvs.emplace_back(0.5f, 0.5f);
     }

@@ -8,7 +8,8 @@ namespace montelux {
 
 template <typename... T>
 std::size_t vector_bytes(const std::vector<T>&... vectors) {
-    return (std::size_t{0} + ... + (vectors.capacity() * sizeof(T)));
+    // Elements may be pointers.
+    return (std::size_t{0} + ... + (vectors.capacity() * sizeof(T))); // NOLINT(bugprone-sizeof-expression)
 }
 
 } // namespace montelux
