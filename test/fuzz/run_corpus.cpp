@@ -1,5 +1,5 @@
 // A main for fuzz targets without libFuzzer: hands each file of the folders in its arguments to the target, within
-// 2 GiB of memory and a time limit per file.
+// 2 GiB of memory and 10 seconds of processor time per file.
 // The last line of a run that dies names the file: "reading FILE".
 #include "test/fuzz/fuzz_target.h"
 #include "test/sanitized.h"
@@ -10,7 +10,7 @@
 #include <iterator>
 #include <memory>
 #include <sys/resource.h>
-#include <unistd.h>
+#include <sys/time.h>
 #include <vector>
 
 int main(int argc, char** argv) {
@@ -27,6 +27,8 @@ int main(int argc, char** argv) {
     if (!montelux::under_sanitizers)
         ::setrlimit(RLIMIT_AS, &memory); // the address sanitizer reserves terabytes
     ::setrlimit(RLIMIT_CORE, &no_core);
+    // Of processor time, so that a busy machine does not matter; SIGPROF ends the program.
+    const itimerval limit{{0, 0}, {montelux::under_sanitizers ? 60 : 10, 0}};
     for (const fs::path& file : files) {
         std::printf("reading %s\n", file.c_str());
         std::fflush(stdout);
@@ -35,7 +37,7 @@ int main(int argc, char** argv) {
         // Without the spare room of the vector, so that the address sanitizer sees reads beyond the end.
         const std::unique_ptr<std::uint8_t[]> input(new std::uint8_t[bytes.size()]);
         std::copy(bytes.begin(), bytes.end(), input.get());
-        ::alarm(montelux::under_sanitizers ? 60 : 10);
+        ::setitimer(ITIMER_PROF, &limit, nullptr);
         LLVMFuzzerTestOneInput(input.get(), bytes.size());
     }
     rusage used{};
