@@ -22,11 +22,11 @@ std::string memory_text(std::span<const MemoryUse> table, std::size_t peak) {
     std::size_t sum = 0;
     for (const MemoryUse& use : table) {
         std::string rest = std::to_string(use.count) + " " + std::string(use.unit);
-        if (use.count > 0) {
-            char each[64];
-            std::snprintf(each, sizeof each, ", %.4g bytes each",
-                          static_cast<double>(use.bytes) / static_cast<double>(use.count));
-            rest += each;
+        const double each = static_cast<double>(use.bytes) / static_cast<double>(use.count);
+        if (use.count > 1 && each < 10000) { // of larger ones few are alike
+            char number[40];
+            std::snprintf(number, sizeof number, ", %.3g bytes each", each);
+            rest += number;
         }
         text += memory_line(use.kind, use.bytes, rest);
         sum += use.bytes;
