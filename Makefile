@@ -2,11 +2,13 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo lab build test test-all bench bench-integrate bench-hard bench-render lint format install dependencies clean
+.PHONY: help demo lab build test test-all fuzz bench bench-integrate bench-hard bench-render lint format install dependencies clean
 
 JOBS ?= $(shell cmake/jobs.sh)
 BUILD := build/release
 DEMO_SPP ?= 64
+FUZZ_SECONDS ?= 1800
+LOADERS ?= $(sort $(patsubst test/fuzz/fuzz_%.cpp,%,$(wildcard test/fuzz/fuzz_*.cpp)))
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-15s %s\n", $$1, $$2}' Makefile
@@ -37,6 +39,13 @@ test-all: dependencies ## every test, the slow ones too, with each file compiled
 	cmake --preset test-all
 	cmake --build build/test-all --parallel $(JOBS)
 	cmake/run-tests.sh 'fast|slow' $(JOBS) build/test-all
+
+FUZZ := build/fuzz
+fuzz: dependencies ## libFuzzer on the loaders of files (half an hour each; less with FUZZ_SECONDS=60 LOADERS="ply exr")
+	cmake/install-dependencies.sh fuzz
+	cmake --preset fuzz
+	cmake --build $(FUZZ) --parallel $(JOBS) --target $(addprefix fuzz_,$(LOADERS))
+	test/fuzz/run_fuzzers.sh $(FUZZ) $(FUZZ_SECONDS) $(LOADERS)
 
 bench: dependencies ## speed of the parts, then of whole pictures
 	cmake --preset bench

@@ -23,6 +23,12 @@ if(MONTELUX_SANITIZE)
     # GCC 12 sees uninitialised members in std::regex once the sanitizers have instrumented it.
     target_compile_options(montelux_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()
+if(MONTELUX_FUZZ)
+    if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+        message(FATAL_ERROR "MONTELUX_FUZZ needs Clang, whose libFuzzer drives the targets: use the preset `fuzz`")
+    endif()
+    target_compile_options(montelux_flags INTERFACE -fsanitize=fuzzer-no-link) # branches are counted
+endif()
 if(CMAKE_UNITY_BUILD)
     # Several files as one (the presets of the tests, which compile everything twice). GCC then takes their
     # unnamed namespaces for those of a header, and warns falsely of a local variable in Pixel::end_replicate.

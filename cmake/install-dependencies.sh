@@ -1,11 +1,11 @@
 #!/bin/sh
 # Installs the Debian packages that are missing, and only those; as root, or with sudo.
-# Usage: install-dependencies.sh [build|bench|bench-render|lint] [--dry-run]
+# Usage: install-dependencies.sh [build|bench|bench-render|fuzz|lint] [--dry-run]
 set -eu
 
 # docs/dependencies.md says what each is for.
 packages="make cmake ninja-build g++ libtbb-dev libboost-math-dev libembree-dev libopenexr-dev libpng-dev
-    libjpeg62-turbo-dev zlib1g-dev libxxhash-dev libstb-dev nlohmann-json3-dev libnanovdb-dev libcli11-dev libmuparser-dev
+    libjpeg62-turbo-dev zlib1g-dev libxxhash-dev libstb-dev nlohmann-json3-dev libnanovdb-dev libblosc-dev libcli11-dev libmuparser-dev
     libgtest-dev libbenchmark-dev libopenmpi-dev openmpi-bin python3-dev python3-venv"
 dry_run=no
 for argument in "$@"; do
@@ -13,9 +13,10 @@ for argument in "$@"; do
     build) ;;
     bench) packages="$packages libgsl-dev libcubature-dev" ;;
     bench-render) packages="$packages libllvm19" ;;
+    fuzz) packages="$packages clang libclang-rt-14-dev" ;;
     lint) packages="$packages clang-format clang-tidy" ;;
     --dry-run) dry_run=yes ;;
-    *) echo "install-dependencies.sh: unknown argument '$argument' (expected build, bench, bench-render, lint or --dry-run)" >&2
+    *) echo "install-dependencies.sh: unknown argument '$argument' (expected build, bench, bench-render, fuzz, lint or --dry-run)" >&2
        exit 2 ;;
     esac
 done

@@ -6,11 +6,13 @@
 #include "app/output_files.h"
 #include "app/picture_notices.h"
 #include "app/render/cluster_render.h"
+#include "app/render/memory_text.h"
 #include "app/render/progress.h"
 #include "app/render/render_options.h"
 #include "app/render/sample_record_text.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -18,7 +20,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include "montelux/formats/load_scene.h"
@@ -77,20 +78,51 @@ void check_checkpoint(const RenderOptions& options, const std::vector<std::strin
         throw UsageError(checkpoint, "the file exists; add --resume to resume from it, or remove it");
 }
 
+bool is_exr(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension == ".exr";
+}
+
 // Without this check the kernel would kill a process for memory, seconds or hours later.
-void check_memory(const FilmSettings& film, bool with_checkpoints) {
+void check_memory(const FilmSettings& film, const FilmLayers& layers, bool with_checkpoints) {
     auto pages = static_cast<double>(sysconf(_SC_PHYS_PAGES));
     double there = pages * static_cast<double>(sysconf(_SC_PAGESIZE));
-    constexpr double layers = 26, copies = 2; // the picture, and its encoding
+    constexpr double copies = 2; // the picture, and its encoding
+    const auto channels =
+        static_cast<double>(layers.channels().size() + 6); // with those of slices and denoising
     double pixels = static_cast<double>(film.crop.width()) * film.crop.height();
-    double needed = pixels * ((with_checkpoints ? 2 : 1) * (sizeof(Pixel) + sizeof(std::uint32_t)) +
-                              layers * copies * sizeof(float));
+    const double buckets = film.spectral ? film.spectral->buckets : 0;
+    double needed =
+        pixels * buckets * ((with_checkpoints ? 2 : 1) * sizeof(BucketMoments) + 2 * copies * sizeof(float));
+    needed += pixels * ((with_checkpoints ? 2 : 1) * (sizeof(Pixel) + sizeof(std::uint32_t) +
+                                                      static_cast<double>(sizeof(double) * layers.sums())) +
+                        channels * copies * sizeof(float));
     if (pages <= 0 || needed <= there) return;
     constexpr double gib = 1 << 30;
     char text[160];
     std::snprintf(text, sizeof text, "%d x %d pixels need %.1f GiB of memory; this machine has %.1f GiB",
                   film.crop.width(), film.crop.height(), needed / gib, there / gib);
     throw Error("film", text);
+}
+
+// Layers that only EXR keeps do not change what other formats show.
+void write_output(const std::string& output, const RenderSnapshot& result, bool quiet) {
+    const Image& image = *result.image;
+    WriteOptions writing;
+    if (is_exr(output)) {
+        if (result.half) writing.exr_half = half_channels_of(image.channel_names());
+        const std::uint64_t beyond = half_overflows(image, writing.exr_half);
+        if (beyond > 0 && !quiet)
+            std::fprintf(stderr,
+                         "montelux: warning: %s: %llu values beyond the range of 16-bit floats became %g\n",
+                         output.c_str(), static_cast<unsigned long long>(beyond), double(largest_half));
+    } else if (image.find_channel("A")) {
+        const bool denoised = image.find_channel("denoised.R").has_value();
+        return write_image(output, denoised ? denoised_picture(image)
+                                            : image.select(std::vector<std::string>{"R", "G", "B"}));
+    }
+    write_picture(output, image, writing);
 }
 
 void print_warnings(const Warnings& warnings) {
@@ -122,8 +154,6 @@ std::string ending_text(const RenderReport& report, const RenderTarget& target) 
 }
 
 void print_statistics(const RenderReport& report, double load_seconds, double build_seconds) {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
     auto samples = static_cast<double>(report.samples), rays = static_cast<double>(report.rays.rays());
     std::printf("load               %.3f s\n", load_seconds);
     std::printf("build              %.3f s\n", build_seconds);
@@ -137,7 +167,7 @@ void print_statistics(const RenderReport& report, double load_seconds, double bu
         static_cast<double>(report.rays.occlusion) / samples);
     std::printf("inside Embree      %.1f %% of the CPU time\n",
                 100 * report.ray_seconds / report.cpu_seconds);
-    std::printf("peak memory        %.1f MiB\n", static_cast<double>(usage.ru_maxrss) / 1024);
+    std::printf("peak memory        %.1f MiB\n", static_cast<double>(peak_memory()) / (1 << 20));
 }
 
 void check_slice_option(const SamplerSettings& sampler, const RenderTarget& target) {
@@ -198,7 +228,9 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     const std::vector<std::string> outputs = outputs_of(options, description);
     for (const std::string& output : outputs) check_picture_path(output, files_read);
     if (!options.checkpoint.empty()) check_checkpoint(options, outputs, files_read);
-    check_memory(description.film, !options.checkpoint.empty());
+    if (target.slice.count > 1 && description.film.layers.set != LayerSet::standard())
+        throw UsageError("--slice", "slices are joined by their standard layers; add --layers default");
+    check_memory(description.film, film_layers_of(description), !options.checkpoint.empty());
     std::optional<Denoiser> denoiser; // if it is missing, the error comes before the render
     if (options.denoise) denoiser.emplace(Denoiser::load(options.threads));
 
@@ -236,7 +268,7 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     const RenderReport& report = result.report;
     OutputFiles files;
     for (const std::string& output : outputs)
-        files.write(output, [&] { write_picture(output, *result.image); });
+        files.write(output, [&] { write_output(output, result, options.quiet); });
     if (!options.quiet) {
         print_bad_samples(report.bad, sampler.seed);
         print_clamped(static_cast<double>(report.clamped_samples), result.clamped_luminance,
@@ -257,6 +289,8 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
                 std::printf("environment        %s\n", map.description().c_str());
             shared.print_statistics();
         }
+        if (options.memory)
+            std::fputs(memory_text(session.renderer().memory_use(), peak_memory()).c_str(), stdout);
     }
     files.throw_failures();
     shared.end_job_if_failed(exit_interrupted);

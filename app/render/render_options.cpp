@@ -26,6 +26,12 @@ std::string names(const Table& table) {
     return list;
 }
 
+std::string layer_list() {
+    std::string list = "default, gbuffer";
+    for (const std::string_view name : layer_names()) list += ", " + std::string(name);
+    return list;
+}
+
 // Healthy ranks may be silent for a second.
 double parse_rank_timeout(const std::string& option, const std::string& s) {
     const double seconds = parse_duration(option, s);
@@ -36,6 +42,24 @@ double parse_rank_timeout(const std::string& option, const std::string& s) {
 bool parse_on_off(const std::string& option, const std::string& s) {
     if (s != "on" && s != "off") refuse(option, s, "on or off is expected");
     return s == "on";
+}
+
+LayerSet parse_layer_list(const std::string& option, const std::string& s) {
+    try {
+        return parse_layers(s);
+    } catch (const Error& e) {
+        refuse(option, s, e.what());
+    }
+}
+
+bool parse_space(const std::string& option, const std::string& s) {
+    if (s != "world" && s != "camera") refuse(option, s, "world or camera is expected");
+    return s == "camera";
+}
+
+LightGrouping parse_light_grouping(const std::string& option, const std::string& s) {
+    if (s != "light" && s != "kind") refuse(option, s, "light or kind is expected");
+    return s == "kind" ? LightGrouping::kind : LightGrouping::light;
 }
 
 Slice parse_slice(const std::string& option, const std::string& s) {
@@ -168,6 +192,21 @@ void declare(CLI::App& c, RenderOptions& o) {
                "Size of the film in pixels; the scene's crop keeps its place");
     add_parsed(c, "--crop", "x0,x1,y0,y1", o.crop, parse_crop,
                "Render a part of the film alone, as fractions from the top left");
+    add_parsed(c, "--layers", "LIST", o.layers, parse_layer_list,
+               "Layers of the EXR file, in place of the scene's, for example default,position,uv: " +
+                   layer_list());
+    add_parsed(
+        c, "--layer-space", "world|camera", o.layers_in_camera_space, parse_space,
+        "Space of the layers normal, geometric-normal and position: world, camera. Default: the scene's, or "
+        "world");
+    add_parsed(
+        c, "--light-groups", "light|kind", o.light_grouping, parse_light_grouping,
+        "With the layer light-groups: lights that the scene puts into no group form one each (light), or one "
+        "of each kind (kind). Default: light");
+    c.add_flag_callback(
+        "--half", [&o] { o.half = true; }, "EXR files hold 16-bit floats where those suffice");
+    c.add_flag_callback(
+        "--no-half", [&o] { o.half = false; }, "They hold 32-bit floats, whatever the scene's savefp16 says");
     add_choice(c, "--sampler", o.sampler, sampler_names, "Where samples are taken: ");
     add_choice(c, "--strategy", o.strategy, strategy_names, "How light is found: ");
     add_choice(c, "--heuristic", o.heuristic, heuristic_names,
@@ -189,6 +228,14 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_choice(
         c, "--environment-lookup", o.environment_lookup, environment_lookup_names,
         "What environment maps are between the centres of their texels; nearest, the default, is pbrt's: ");
+    add_choice(c, "--microfacet-scattering", o.microfacet_scattering, microfacet_scattering_names,
+               "Light that the microfacets of rough surfaces throw at one another is lost, as in pbrt and by "
+               "default, "
+               "or followed until it leaves: ");
+    add_choice(c, "--shading-terminator", o.shading_terminator, shading_terminator_names,
+               "Coarse meshes with smooth normals are shadowed by their facets, as in pbrt and by default, "
+               "or as the "
+               "smooth surface that they stand for: ");
     add_whole_number(c, "--max-depth", o.max_depth, 0, 1'000'000, "Scattering events of a path at most");
     add_parsed(c, "--debug-sample", "x,y,index", o.debug_sample, parse_sample,
                "Render no picture: trace this one sample of the render and print its path, vertex by vertex");
@@ -196,16 +243,19 @@ void declare(CLI::App& c, RenderOptions& o) {
                "Also denoise the picture by Open Image Denoise ('montelux denoise --help'): .exr keeps the "
                "picture and gets the layers denoised.R, G, B; other formats show those");
     c.add_flag("--stats", o.stats, "Print times, rays per second, memory");
+    c.add_flag("--memory", o.memory, "Print what the parts of the scene take in memory");
     c.add_flag("--quiet", o.quiet, "Print nothing but errors");
-    c.footer("Examples:\n"
-             "  montelux render scene.pbrt --spp 64 -o out.exr -o out.png\n"
-             "  montelux render scene.pbrt --resolution 320x240 --crop 0.5,1,0,0.5 -o corner.exr\n"
-             "  montelux render scene.pbrt --spp 64 --debug-sample 320,240,7\n"
-             "\n"
-             "'mpirun -n 8 montelux render ...' shares the render among machines; the picture is the same.\n"
-             "An EXR file holds every layer: mean, standard error, samples, albedo, normal, depth.\n"
-             "SIGINT (Ctrl-C) or SIGTERM ends the render early and saves the picture; another one, a "
-             "second later or more, ends it at once: the picture is not saved.");
+    c.footer(
+        "Examples:\n"
+        "  montelux render scene.pbrt --spp 64 -o out.exr -o out.png\n"
+        "  montelux render scene.pbrt --resolution 320x240 --crop 0.5,1,0,0.5 -o corner.exr\n"
+        "  montelux render scene.pbrt --spp 64 --debug-sample 320,240,7\n"
+        "\n"
+        "'mpirun -n 8 montelux render ...' shares the render among machines; the picture is the same.\n"
+        "An EXR file holds every layer: mean, standard error, samples, albedo, normal, depth and those of "
+        "--layers.\n"
+        "SIGINT (Ctrl-C) or SIGTERM ends the render early and saves the picture; another one, a "
+        "second later or more, ends it at once: the picture is not saved.");
 }
 
 void apply(const RenderOptions& o, SceneDescription& d) {
@@ -240,7 +290,13 @@ void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.environment_sampling) d.integrator.environment_sampling = *o.environment_sampling;
     if (o.environment_compensation) d.integrator.environment_compensation = *o.environment_compensation;
     if (o.environment_lookup) d.integrator.environment_lookup = *o.environment_lookup;
+    if (o.microfacet_scattering) d.integrator.microfacet_scattering = *o.microfacet_scattering;
+    if (o.shading_terminator) d.integrator.shading_terminator = *o.shading_terminator;
     if (o.max_depth) d.integrator.max_depth = static_cast<int>(*o.max_depth);
+    if (o.layers) d.film.layers.set = *o.layers;
+    if (o.light_grouping) d.film.layers.light_grouping = *o.light_grouping;
+    if (o.layers_in_camera_space) d.film.layers.in_camera_space = *o.layers_in_camera_space;
+    if (o.half) d.film.layers.half = *o.half;
     if (o.clamp) d.film.max_component_value = static_cast<float>(*o.clamp);
 }
 

@@ -42,13 +42,18 @@ struct RenderOptions {
     std::optional<Heuristic> heuristic;
     std::optional<LightSampling> light_sampling;
     std::optional<bool> equiangular;
+    std::optional<MicrofacetScattering> microfacet_scattering;
+    std::optional<ShadingTerminator> shading_terminator;
     std::optional<EnvironmentSampling> environment_sampling;
     std::optional<bool> environment_compensation;
     std::optional<EnvironmentLookup> environment_lookup;
+    std::optional<LayerSet> layers;
+    std::optional<LightGrouping> light_grouping;
+    std::optional<bool> layers_in_camera_space, half;
     std::optional<SampleAddress> debug_sample; // traced alone, instead of a render
     int threads = 0;
     double rank_timeout = 60; // seconds
-    bool denoise = false, stats = false, quiet = false;
+    bool denoise = false, stats = false, memory = false, quiet = false;
 };
 
 // An invalid value ends the parse with a CLI::ValidationError.

@@ -36,7 +36,8 @@ double trace_packets(RTCScene scene, bool closest, const std::vector<Ray>& rays,
     for (std::size_t first = 0; first < rays.size(); first += RecordedRays::batch) {
         const std::size_t end = std::min(rays.size(), first + RecordedRays::batch);
         packets.clear();
-        for (std::size_t i = first; i < end; i += K) packets.emplace_back(std::span(pointers).subspan(i, std::min(K, end - i)));
+        for (std::size_t i = first; i < end; i += K)
+            packets.emplace_back(std::span(pointers).subspan(i, std::min(K, end - i)));
         const double begin = cpu_seconds();
         if (closest)
             for (Packet<K>& p : packets) p.closest(scene, context);

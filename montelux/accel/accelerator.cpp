@@ -42,6 +42,7 @@ Accelerator::~Accelerator() = default;
 Accelerator::Accelerator(Accelerator&&) noexcept = default;
 Accelerator& Accelerator::operator=(Accelerator&&) noexcept = default;
 
+std::size_t Accelerator::bytes() const { return scene_->bytes(); }
 const Bounds3& Accelerator::bounds() const { return scene_->bounds(); }
 
 // For moving instances Embree rounds otherwise in a packet than alone: there a ray alone is a packet with one

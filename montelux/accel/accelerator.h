@@ -1,6 +1,7 @@
 // Accelerator: closest hits and occlusion of rays in the scene. The only room that names Embree.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
 
@@ -32,6 +33,8 @@ class Accelerator {
     void occluded(std::span<const Ray* const> rays, std::span<bool> results) const;
     // Bounds of all surfaces, in world space.
     const Bounds3& bounds() const;
+    // Memory of the ray tracer's own structures, without the scene's arrays that it reads.
+    std::size_t bytes() const;
 
   private:
     std::unique_ptr<EmbreeScene> scene_;

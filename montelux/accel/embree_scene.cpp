@@ -39,6 +39,13 @@ void EmbreeScene::build() {
             if (message.empty()) message = text != nullptr ? text : "unknown error";
         },
         &error_);
+    rtcSetDeviceMemoryMonitorFunction(
+        device_,
+        [](void* user, ssize_t bytes, bool) {
+            *static_cast<std::atomic<std::int64_t>*>(user) += bytes;
+            return true;
+        },
+        &embree_bytes_);
     data_.resize(scene_.shapes.size());
     for (std::size_t i = 0; i < scene_.shapes.size(); ++i) {
         const Shape& shape = scene_.shapes[i];

@@ -1,10 +1,13 @@
 // EmbreeScene: a scene's surfaces in Embree's data structures.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "montelux/accel/geometry_callbacks.h"
+#include "montelux/mc/math/vector_bytes.h"
 #include "montelux/scene/shape/bounds.h"
 
 namespace montelux {
@@ -24,6 +27,10 @@ class EmbreeScene {
     const SceneView& scene() const { return scene_; }
     // Of all surfaces, in world space.
     const Bounds3& bounds() const { return bounds_; }
+    // Memory of Embree, by its own account, and of this object.
+    std::size_t bytes() const {
+        return static_cast<std::size_t>(embree_bytes_.load()) + vector_bytes(objects_, data_);
+    }
 
   private:
     RTCScene new_scene() const;
@@ -35,6 +42,7 @@ class EmbreeScene {
     void check() const;
     void release();
 
+    std::atomic<std::int64_t> embree_bytes_{0}; // its threads allocate
     RTCDevice device_ = nullptr;
     RTCScene world_ = nullptr;
     std::vector<RTCScene> objects_;

@@ -166,10 +166,16 @@ void Coordinator::assign(int rank, int tile, std::vector<std::uint8_t>& message)
     }
     ByteWriter out;
     out.put(a);
-    if (a.pixels == Assignment::Pixels::follow)
+    if (a.pixels == Assignment::Pixels::follow) {
         for_rows(film, bounds, [&](std::size_t first, std::size_t count, std::size_t) {
             out.put_all(pixels.subspan(first, count));
         });
+        const std::size_t sums = state_->film.layers().sums();
+        const std::span<const double> layer_sums = std::as_const(state_->film).layer_sums();
+        for_rows(film, bounds, [&](std::size_t first, std::size_t count, std::size_t) {
+            out.put_all(layer_sums.subspan(first * sums, count * sums));
+        });
+    }
     if (a.target_samples == Assignment::TargetSamples::uniform) {
         out.put(*uniform_target_);
     } else if (a.target_samples == Assignment::TargetSamples::each) {
@@ -262,6 +268,10 @@ void Coordinator::take_tiles(const Message& message) {
         something_done_ = something_done_ || tally.samples > 0;
         for_rows(state_->film.bounds(), bounds, [&](std::size_t first, std::size_t count, std::size_t) {
             in.get_all(pixels.subspan(first, count));
+        });
+        const std::size_t sums = state_->film.layers().sums();
+        for_rows(state_->film.bounds(), bounds, [&](std::size_t first, std::size_t count, std::size_t) {
+            in.get_all(state_->film.layer_sums().subspan(first * sums, count * sums));
         });
         t.home = true;
         if (t.wanted_by == TileSchedule::no_rank) continue;

@@ -45,7 +45,7 @@ struct TaskReport {
     double luminance = 0, squared_error = 0;
 };
 
-// Followed by as many pixels as the tile has.
+// Followed by as many pixels as the tile has, and FilmLayers::sums() numbers for each.
 struct TilePixelsHeader {
     std::uint32_t tile = 0, pixels = 0;
     // The TileTally since the tile was last sent follows too, before the pixels.

@@ -86,6 +86,7 @@ protocol::TaskReport TileWorker::perform(const Task& task) {
                       .stride = stride,
                       .target_samples = tile.target_samples.data(),
                       .target_stride = stride,
+                      .layer_sums = tile.layer_sums.data(),
                       .most = task.step},
                      tally, stop, stop);
     tile.tally.merge(tally);
@@ -138,8 +139,13 @@ void TileWorker::assign(const Message& message) {
         const std::size_t count = pixel_count(bounds_[a.tile]);
         if (a.pixels != Assignment::Pixels::known) {
             tiles_[a.tile] = std::make_unique<Tile>();
-            tiles_[a.tile]->pixels.resize(count);
-            if (a.pixels == Assignment::Pixels::follow) in.get_all(std::span<Pixel>(tiles_[a.tile]->pixels));
+            Tile& fresh = *tiles_[a.tile];
+            fresh.pixels.resize(count);
+            fresh.layer_sums.resize(count * renderer_.layers().sums());
+            if (a.pixels == Assignment::Pixels::follow) {
+                in.get_all(std::span<Pixel>(fresh.pixels));
+                in.get_all(std::span<double>(fresh.layer_sums));
+            }
         }
         Tile& tile = known(a.tile);
         if (a.target_samples == Assignment::TargetSamples::uniform) {
@@ -165,6 +171,7 @@ void TileWorker::send_tiles(std::span<const std::uint32_t> which) {
         out.put(protocol::TilePixelsHeader{t, static_cast<std::uint32_t>(tile.pixels.size())});
         out.put(tile.tally);
         out.put_all(std::span<const Pixel>(tile.pixels));
+        out.put_all(std::span<const double>(tile.layer_sums));
         tile.tally = {};
         tile.changed = false;
         if (out.size() < message_bytes) continue;

@@ -40,6 +40,7 @@ class TileWorker {
   private:
     struct Tile {
         std::vector<Pixel> pixels;
+        std::vector<double> layer_sums; // FilmLayers::sums() for each
         std::vector<std::uint32_t> target_samples;
         TileTally tally; // since the pixels were last sent
         bool changed = false;

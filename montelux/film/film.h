@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "montelux/film/film_error.h"
+#include "montelux/film/film_layers.h"
+#include "montelux/film/spectral_buckets.h"
 #include "montelux/image/image.h"
 #include "montelux/mc/stats/skew_moments.h"
 #include "montelux/scene/film/film_settings.h"
@@ -67,16 +69,22 @@ class Pixel {
         replicate_samples_ = 0;
     }
 
-    // The same, but drops an open replicate of fewer than half of `points` where there are others: it would
-    // weigh as much as a whole one and be as noisy as single samples. The rule depends on counts only, so it
-    // adds no bias.
+    // Whether end_last_replicate() drops the open replicate: one of fewer than half of `points` where there are
+    // others would weigh as much as a whole one and be as noisy as single samples. The rule depends on counts
+    // only, so it adds no bias.
+    bool drops_last_replicate(std::uint32_t points) const {
+        return 2 * replicate_samples_ < points && replicates_.count() >= 2;
+    }
+    // end_replicate(), or forgets the open one.
     void end_last_replicate(std::uint32_t points) {
-        if (2 * replicate_samples_ < points && replicates_.count() >= 2) {
+        if (drops_last_replicate(points)) {
             replicate_sum_ = {};
             replicate_samples_ = 0;
         }
         end_replicate();
     }
+
+    std::uint32_t open_samples() const { return replicate_samples_; }
 
     // All replicates must be closed.
     const SkewMoments<3>& replicates() const { return replicates_; }
@@ -101,31 +109,42 @@ class Pixel {
     std::uint32_t replicate_samples_ = 0, samples_ = 0, bad_ = 0;
 };
 
-// The layers that Film::develop() makes, in order.
+// The channels that Film::develop() makes of the standard layers, in order.
 std::vector<std::string> film_layers(bool of_slice = false);
 
 class Film {
   public:
-    explicit Film(const FilmSettings& settings);
+    // With the layers of the settings, but for light groups, whose names belong to a scene.
+    explicit Film(const FilmSettings& settings) : Film(settings, FilmLayers(settings.layers.set)) {}
+    Film(const FilmSettings& settings, FilmLayers layers);
 
     const FilmSettings& settings() const { return settings_; }
+    const FilmLayers& layers() const { return layers_; }
+    // FilmLayers::sums() numbers for each pixel, in the order of the pixels.
+    std::span<double> layer_sums() { return layer_sums_; }
+    std::span<const double> layer_sums() const { return layer_sums_; }
     const PixelBounds& bounds() const { return settings_.crop; }
     Pixel& pixel(int x, int y) { return pixels_[index(x, y)]; }
     const Pixel& pixel(int x, int y) const { return pixels_[index(x, y)]; }
     // Row by row.
     std::span<Pixel> pixels() { return pixels_; }
     std::span<const Pixel> pixels() const { return pixels_; }
+    // Of a spectral film, those of a pixel side by side; otherwise empty.
+    std::span<BucketMoments> buckets() { return buckets_; }
+    std::span<const BucketMoments> buckets() const { return buckets_; }
+    std::size_t buckets_per_pixel() const { return buckets_.size() / pixels_.size(); }
+    // Copies pixels of a row from a film of the same settings.
+    void copy_row(const Film& from, int x, int y, int width);
 
     // Ends the open replicate of every pixel; whole replicates have this many points.
-    void end_replicates(std::uint32_t points = 1) {
-        for (Pixel& p : pixels_) p.end_last_replicate(points);
-    }
+    void end_replicates(std::uint32_t points = 1);
     FilmError error() const { return error_of(*this); }
-    // Layers R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples; replicates (from which
-    // the standard error is computed); outlier (Pixel::largest_share); warning (PixelWarning); albedo.R, G,
-    // B; N.X, Y, Z; depth.Z, of the cropped pixels. The standard error is infinite below two replicates. A
-    // slice of a render also has the layers brightest.R, G, B (Pixel::brightest): the outlier of the whole
-    // picture cannot be computed from those of its slices.
+    // Of the layers of the film: R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples;
+    // replicates (from which the standard error is computed); outlier (Pixel::largest_share); warning
+    // (PixelWarning); albedo.R, G, B; N.X, Y, Z; depth.Z; variance.R, G, B (of a sample); relativeVariance.R, G, B
+    // (variance over mean); those of FilmLayers; of the cropped pixels. The standard error is infinite below two
+    // replicates. A slice of a render also has brightest.R, G, B (Pixel::brightest): the outlier of the whole
+    // picture cannot be computed from those of its slices. A spectral film has the layers of append_spectral_layers.
     Image develop(bool as_slice = false) const;
 
   private:
@@ -135,8 +154,13 @@ class Film {
                static_cast<std::size_t>(x - settings_.crop.x0);
     }
 
+    void end_bucket_replicates(std::uint32_t points);
+
     FilmSettings settings_;
+    FilmLayers layers_;
     std::vector<Pixel> pixels_;
+    std::vector<BucketMoments> buckets_;
+    std::vector<double> layer_sums_;
 };
 
 } // namespace montelux

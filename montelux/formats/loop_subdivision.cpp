@@ -193,6 +193,19 @@ std::size_t subdivided_count(std::size_t triangles, int levels) {
     return triangles;
 }
 
+std::size_t SubdivisionBudget::limit() const {
+    constexpr std::size_t unsuspicious = std::size_t{1} << 22;
+    return std::min(std::max(unsuspicious, subdivided_count(control, 5)), max_subdivided_triangles);
+}
+
+bool SubdivisionBudget::take(std::size_t triangles, int levels) {
+    const std::size_t count = subdivided_count(triangles, levels);
+    control += triangles;
+    if (count > limit() || refined > limit() - count) return false;
+    refined += count;
+    return true;
+}
+
 SubdividedMesh subdivide_loop(std::span<const Vec3f> positions, std::span<const Index> indices, int levels) {
     if (subdivided_count(indices.size() / 3, levels) > max_subdivided_triangles)
         throw Error("loop subdivision", std::to_string(levels) + " levels would give more than " +

@@ -16,6 +16,17 @@ inline constexpr std::size_t max_subdivided_triangles = std::size_t{1} << 25;
 // The number of triangles after subdivision; saturates at the largest integer.
 std::size_t subdivided_count(std::size_t triangles, int levels);
 
+// The triangles of all subdivided meshes of a scene, and how many there may be: a few lines of text must not make a
+// mesh of millions.
+struct SubdivisionBudget {
+    std::size_t control = 0, refined = 0; // triangles before and after subdivision
+
+    // 2^22, or 5 levels of all meshes if that is more, up to max_subdivided_triangles.
+    std::size_t limit() const;
+    // Whether a mesh of so many triangles may be refined too; if so, counts it.
+    bool take(std::size_t triangles, int levels);
+};
+
 struct SubdividedMesh {
     std::vector<Vec3f> positions; // on the limit surface
     std::vector<Vec3f> normals;   // of the limit surface, not of unit length

@@ -5,6 +5,9 @@
 #include <cstring>
 #include <nanovdb/NanoVDB.h>
 #include <zlib.h>
+#ifdef MONTELUX_BLOSC
+#include <blosc.h>
+#endif
 
 #include "montelux/formats/nanovdb_tree.h"
 #include "montelux/mc/math/error.h"
@@ -46,16 +49,49 @@ T from_bytes(std::span<const std::uint8_t> bytes) {
 
 enum : std::uint16_t { codec_none = 0, codec_zip = 1, codec_blosc = 2 };
 
-std::vector<std::uint8_t> unzip(std::span<const std::uint8_t> stored, std::uint64_t size) {
-    // Their number comes first.
+// Bytes that follow their number.
+std::span<const std::uint8_t> take_chunk(std::span<const std::uint8_t>& stored) {
     if (stored.size() < sizeof(std::uint64_t)) throw Error("the compressed data ends early");
     const auto count = from_bytes<std::uint64_t>(stored);
     stored = stored.subspan(sizeof count);
     if (count > stored.size()) throw Error("the compressed data ends early");
+    const std::span<const std::uint8_t> chunk = stored.first(count);
+    stored = stored.subspan(count);
+    return chunk;
+}
+
+void check_proportion(std::uint64_t size, std::uint64_t count) {
     constexpr std::uint64_t unsuspicious_bytes = std::uint64_t{16} << 20, largest_ratio = 128;
     if (size > std::max(unsuspicious_bytes, largest_ratio * count))
         throw Error("unpacks to " + std::to_string(size >> 20) + " MiB, which is out of proportion to its " +
                     std::to_string(count) + " bytes; save it without compression");
+}
+
+#ifdef MONTELUX_BLOSC
+// Chunks of at most 1 GiB of the grid.
+std::vector<std::uint8_t> unpack_blosc(std::span<const std::uint8_t> stored, std::uint64_t size) {
+    check_proportion(size, stored.size());
+    std::vector<std::uint8_t> result(size);
+    for (std::size_t done = 0; done < result.size();) {
+        const std::span<const std::uint8_t> chunk = take_chunk(stored);
+        std::size_t unpacked = 0;
+        if (blosc_cbuffer_validate(chunk.data(), chunk.size(), &unpacked) != 0 || unpacked == 0 ||
+            unpacked > result.size() - done ||
+            blosc_decompress_ctx(chunk.data(), result.data() + done, unpacked, 1) !=
+                static_cast<int>(unpacked))
+            throw Error("the compressed data is damaged");
+        done += unpacked;
+    }
+    return result;
+}
+#else
+std::vector<std::uint8_t> unpack_blosc(std::span<const std::uint8_t>, std::uint64_t) { return {}; }
+#endif
+
+std::vector<std::uint8_t> unzip(std::span<const std::uint8_t> stored, std::uint64_t size) {
+    stored = take_chunk(stored);
+    const std::size_t count = stored.size();
+    check_proportion(size, count);
     std::vector<std::uint8_t> result(size);
     uLongf written = size;
     if (uncompress(result.data(), &written, stored.data(), count) != Z_OK || written != size)
@@ -64,6 +100,12 @@ std::vector<std::uint8_t> unzip(std::span<const std::uint8_t> stored, std::uint6
 }
 
 } // namespace
+
+#ifdef MONTELUX_BLOSC
+const bool NanovdbFile::reads_blosc = true;
+#else
+const bool NanovdbFile::reads_blosc = false;
+#endif
 
 NanovdbFile::NanovdbFile(std::span<const std::uint8_t> bytes, std::string name) : name_(std::move(name)) {
     const auto take = [&](std::uint64_t count, const std::string& what) {
@@ -83,9 +125,10 @@ NanovdbFile::NanovdbFile(std::span<const std::uint8_t> bytes, std::string name) 
         if (major != NANOVDB_MAJOR_VERSION_NUMBER)
             throw Error(name_, "has NanoVDB's version " + std::to_string(major) + "; expected version " +
                                    std::to_string(NANOVDB_MAJOR_VERSION_NUMBER));
-        if (header.codec == codec_blosc)
-            throw Error(name_, "is compressed by Blosc, which is not supported; convert it with "
-                               "nanovdb_convert to zip or to no compression");
+        if (header.codec == codec_blosc && !reads_blosc)
+            throw Error(name_,
+                        "is compressed by Blosc, without which this program was built; convert it with "
+                        "nanovdb_convert to zip or to no compression");
         if (header.codec > codec_blosc)
             throw Error(name_, "has an unknown compression, " + std::to_string(header.codec));
         if (header.grid_count == 0) throw Error(name_, "has no grid");
@@ -97,7 +140,7 @@ NanovdbFile::NanovdbFile(std::span<const std::uint8_t> bytes, std::string name) 
             Entry entry;
             entry.name.assign(text.begin(), std::find(text.begin(), text.end(), std::uint8_t{0}));
             entry.unpacked_size = record.unpacked_size;
-            entry.zipped = header.codec == codec_zip;
+            entry.codec = header.codec;
             entries_.push_back(std::move(entry));
             stored_sizes.push_back(record.stored_size);
         }
@@ -105,7 +148,7 @@ NanovdbFile::NanovdbFile(std::span<const std::uint8_t> bytes, std::string name) 
             Entry& entry = entries_[first + i];
             const std::string early = "grid '" + entry.name + "' ends early";
             entry.stored = take(stored_sizes[i], early);
-            if (!entry.zipped && entry.unpacked_size > stored_sizes[i]) throw Error(name_, early);
+            if (entry.codec == codec_none && entry.unpacked_size > stored_sizes[i]) throw Error(name_, early);
         }
     }
 }
@@ -127,7 +170,9 @@ PlacedSparseGrid NanovdbFile::read(std::string_view grid) const {
     if (entry == nullptr)
         throw Error(name_, "has no grid '" + std::string(grid) + "'; it has " + grid_names());
     try {
-        if (!entry->zipped) return copy_nanovdb_grid(entry->stored.first(entry->unpacked_size));
+        if (entry->codec == codec_none) return copy_nanovdb_grid(entry->stored.first(entry->unpacked_size));
+        if (entry->codec == codec_blosc)
+            return copy_nanovdb_grid(unpack_blosc(entry->stored, entry->unpacked_size));
         return copy_nanovdb_grid(unzip(entry->stored, entry->unpacked_size));
     } catch (const Error& e) {
         throw Error(name_ + ", grid '" + entry->name + "'", e.what());

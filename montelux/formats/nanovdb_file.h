@@ -1,4 +1,4 @@
-// NanovdbFile: the grids of floats in a NanoVDB file, checked and copied into sparse grids.
+// NanovdbFile: the grids of numbers in a NanoVDB file, checked and copied into sparse grids.
 #pragma once
 
 #include <cstdint>
@@ -20,17 +20,19 @@ struct PlacedSparseGrid {
 };
 
 // Museth 2021, "NanoVDB: A GPU-Friendly and Portable VDB Data Structure For Real-Time Rendering And Simulation".
-// Files of version 32, uncompressed or compressed by zlib. They are not trusted: all sizes, offsets and values are
+// Files of version 32, uncompressed or compressed by zlib or, where the program was built with it, by Blosc. They are not trusted: all sizes, offsets and values are
 // checked, and no node may have two parents.
 class NanovdbFile {
   public:
+    static const bool reads_blosc;
+
     // Reads the table of contents. `bytes` must outlive it; `name` is that of the file, for messages. Throws Error.
     NanovdbFile(std::span<const std::uint8_t> bytes, std::string name);
 
     bool contains(std::string_view grid) const { return find(grid) != nullptr; }
     // Of all grids, for messages.
     std::string grid_names() const;
-    // The first grid of that name. Throws Error for none, for one of other values than floats, and for a level set.
+    // The first grid of that name. Throws Error for none, for one of values that are no numbers, and for a level set.
     PlacedSparseGrid read(std::string_view grid) const;
 
   private:
@@ -38,7 +40,7 @@ class NanovdbFile {
         std::string name;
         std::uint64_t unpacked_size = 0;
         std::span<const std::uint8_t> stored;
-        bool zipped = false;
+        std::uint16_t codec = 0;
     };
     const Entry* find(std::string_view grid) const;
 

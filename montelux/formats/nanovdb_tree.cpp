@@ -15,10 +15,6 @@
 namespace montelux {
 namespace {
 
-using NanoLeaf = nanovdb::NanoLeaf<float>::DataType;
-using NanoLower = nanovdb::NanoLower<float>::DataType;
-using NanoUpper = nanovdb::NanoUpper<float>::DataType;
-using NanoRoot = nanovdb::NanoRoot<float>::DataType;
 using NodePlace = std::array<int, 3>; // of a node of 128^3 voxels, in units of its width
 
 constexpr std::uint64_t nanovdb_newer_grid_magic = 0x314244566f6e614eu; // "NanoVDB1", from version 32.6 on
@@ -28,14 +24,40 @@ constexpr int most_nodes_along = 512, most_nodes = 1 << 22;
 
 constexpr const char* damaged_tree = "the tree is damaged: a node lies outside its place";
 
+// A leaf of quantised values begins with 80 bytes of place and mask, then minimum and step (float) and four numbers of 16
+// bits; the codes follow. Value = minimum + code * step.
+constexpr std::size_t quantised_minimum_at = 80, quantised_header = 96, leaf_flags_at = 15;
+
+// Bits of a code; 0: the values themselves. -1: as the leaf says.
+template <typename Build>
+constexpr int code_bits = 0;
+template <>
+constexpr int code_bits<nanovdb::Fp4> = 4;
+template <>
+constexpr int code_bits<nanovdb::Fp8> = 8;
+template <>
+constexpr int code_bits<nanovdb::Fp16> = 16;
+template <>
+constexpr int code_bits<nanovdb::FpN> = -1;
+
+// Build: float, double, or one of NanoVDB's quantised floats.
+template <typename Build>
 class TreeCopy {
+    using NanoLeaf = typename nanovdb::NanoLeaf<Build>::DataType;
+    using NanoLower = typename nanovdb::NanoLower<Build>::DataType;
+    using NanoUpper = typename nanovdb::NanoUpper<Build>::DataType;
+    using NanoRoot = typename nanovdb::NanoRoot<Build>::DataType;
+    using Tile = typename NanoRoot::Tile;
+    using Value = typename NanoRoot::ValueT;
+    static_assert(std::is_same_v<Value, float> || std::is_same_v<Value, double>);
+
   public:
     explicit TreeCopy(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
     PlacedSparseGrid copy() {
         read_header();
         check_sum();
-        grid_.constants = {finite(get<float>(root_at_ + offsetof(NanoRoot, mBackground)))};
+        grid_.constants = {finite(get<Value>(root_at_ + offsetof(NanoRoot, mBackground)))};
         constant_of_[std::bit_cast<std::uint32_t>(grid_.background())] = 0;
         collect_nodes();
         const NodePlace origin = allocate_nodes();
@@ -60,6 +82,8 @@ class TreeCopy {
     struct Level {
         std::size_t first = 0, count = 0, size = 0;
         std::vector<bool> visited;
+        // Of nodes of different sizes: where each begins, and the end of the last one.
+        std::vector<std::size_t> starts;
     };
 
     template <typename T>
@@ -72,26 +96,14 @@ class TreeCopy {
         if (offset > bytes_.size() || size > bytes_.size() - offset) throw Error("the grid ends early");
         std::memcpy(to, bytes_.data() + offset, size);
     }
-    static float finite(float value) {
-        if (!std::isfinite(value)) throw Error("has a value that is not finite");
-        return value;
+    static float finite(Value value) {
+        const auto single = static_cast<float>(value);
+        if (!std::isfinite(single)) throw Error("has a value that is not finite");
+        return single;
     }
 
     void read_header() {
         header_ = get<nanovdb::GridData>(0);
-        if (header_.mMagic != NANOVDB_MAGIC_NUMBER && header_.mMagic != nanovdb_newer_grid_magic)
-            throw Error("is no NanoVDB grid");
-        if (header_.mVersion.getMajor() != NANOVDB_MAJOR_VERSION_NUMBER)
-            throw Error("has NanoVDB's version " + std::to_string(header_.mVersion.getMajor()) +
-                        "; expected version " + std::to_string(NANOVDB_MAJOR_VERSION_NUMBER));
-        // Values of an enumeration in a file may be none of it.
-        const auto type = static_cast<std::uint32_t>(header_.mGridType);
-        if (type != static_cast<std::uint32_t>(nanovdb::GridType::Float)) {
-            const bool known = type < static_cast<std::uint32_t>(nanovdb::GridType::End);
-            throw Error("has values of type " +
-                        (known ? std::string(nanovdb::toStr(header_.mGridType)) : std::to_string(type)) +
-                        "; expected float");
-        }
         const auto grid_class = static_cast<std::uint32_t>(header_.mGridClass);
         if (grid_class != static_cast<std::uint32_t>(nanovdb::GridClass::FogVolume) &&
             grid_class != static_cast<std::uint32_t>(nanovdb::GridClass::Unknown)) {
@@ -114,14 +126,31 @@ class TreeCopy {
             level.first = tree + from_tree;
             if (level.count > (bytes_.size() - level.first) / level.size)
                 throw Error("the tree is damaged: it has more nodes than the file holds");
+            if (i == 0 && code_bits<Build> < 0) find_leaves(level);
             level.visited.resize(level.count);
         }
         if (tree_data.mNodeOffset[3] > bytes_.size() - tree) throw Error(damaged_tree);
         root_at_ = tree + tree_data.mNodeOffset[3];
         root_tiles_ = get<std::uint32_t>(root_at_ + offsetof(NanoRoot, mTableSize));
         if (sizeof(NanoRoot) > bytes_.size() - root_at_ ||
-            root_tiles_ > (bytes_.size() - root_at_ - sizeof(NanoRoot)) / sizeof(NanoRoot::Tile))
+            root_tiles_ > (bytes_.size() - root_at_ - sizeof(NanoRoot)) / sizeof(Tile))
             throw Error("the tree is damaged: it has more nodes than the file holds");
+    }
+
+    // Leaves of their own number of bits.
+    void find_leaves(Level& level) const {
+        std::size_t at = level.first;
+        for (std::size_t n = 0; n < level.count; ++n) {
+            level.starts.push_back(at);
+            at += quantised_header + 64 * static_cast<std::size_t>(bits_of_leaf(at));
+        }
+        level.starts.push_back(at);
+        if (at > bytes_.size()) throw Error("the tree is damaged: it has more nodes than the file holds");
+    }
+    int bits_of_leaf(std::size_t leaf) const {
+        const int log = get<std::uint8_t>(leaf + leaf_flags_at) >> 5;
+        if (log > 4) throw Error("the tree is damaged: a leaf has codes of more than 16 bits");
+        return 1 << log;
     }
 
     // Version 32.4 has CRC-32 of grid, tree and root, and one of those of all nodes. Others compute them otherwise.
@@ -134,14 +163,17 @@ class TreeCopy {
         const auto crc = [](std::span<const std::uint8_t> b) {
             return static_cast<std::uint32_t>(crc32_z(crc32_z(0, nullptr, 0), b.data(), b.size()));
         };
-        const std::size_t end = root + sizeof(NanoRoot) + root_tiles_ * sizeof(NanoRoot::Tile);
+        const std::size_t end = root + sizeof(NanoRoot) + root_tiles_ * sizeof(Tile);
         bool right = crc(bytes_.subspan(begin, end - begin)) == head;
         if (right && tail != none) {
             std::vector<std::uint64_t> sums;
             for (const std::size_t i : {2u, 1u, 0u})
-                for (std::size_t n = 0; n < levels_[i].count; ++n)
-                    sums.push_back(
-                        crc(bytes_.subspan(levels_[i].first + n * levels_[i].size, levels_[i].size)));
+                for (std::size_t n = 0; n < levels_[i].count; ++n) {
+                    // Of leaves with their own number of bits, NanoVDB counts what comes before the codes.
+                    const Level& l = levels_[i];
+                    const std::size_t at = l.starts.empty() ? l.first + n * l.size : l.starts[n];
+                    sums.push_back(crc(bytes_.subspan(at, l.size)));
+                }
             right = crc({reinterpret_cast<const std::uint8_t*>(sums.data()), sums.size() * 8}) == tail;
         }
         if (!right) throw Error("the checksum does not fit: the file is damaged");
@@ -151,8 +183,15 @@ class TreeCopy {
     std::size_t child_at(std::size_t level, std::size_t parent, std::int64_t difference) {
         Level& nodes = levels_[level];
         const std::uint64_t at = parent + static_cast<std::uint64_t>(difference) - nodes.first; // modulo 2^64
-        if (at % nodes.size != 0 || at / nodes.size >= nodes.count) throw Error(damaged_tree);
-        const std::size_t index = at / nodes.size;
+        std::size_t index = at / nodes.size;
+        if (nodes.starts.empty()) {
+            if (at % nodes.size != 0 || index >= nodes.count) throw Error(damaged_tree);
+        } else {
+            const auto found =
+                std::lower_bound(nodes.starts.begin(), nodes.starts.end() - 1, nodes.first + at);
+            if (found == nodes.starts.end() - 1 || *found != nodes.first + at) throw Error(damaged_tree);
+            index = static_cast<std::size_t>(found - nodes.starts.begin());
+        }
         if (nodes.visited[index]) throw Error("the tree is damaged: two nodes share a child");
         nodes.visited[index] = true;
         return nodes.first + at;
@@ -161,16 +200,18 @@ class TreeCopy {
     // visit(n, is a child, offset of the entry) for each entry of the table of an internal node.
     template <typename Node, typename Visit>
     void for_each_entry(std::size_t node, const Visit& visit) const {
-        constexpr std::size_t size = sizeof(Node::mTable) / 8;
+        constexpr std::size_t entry = sizeof(typename Node::Tile), size = sizeof(Node::mTable) / entry;
+        static_assert(entry == 8);
         std::vector<std::uint64_t> mask(size / 64);
         copy_bytes(node + offsetof(Node, mChildMask), mask.data(), size / 8);
         for (std::size_t n = 0; n < size; ++n)
-            visit(n, (mask[n / 64] >> (n % 64) & 1) != 0, node + offsetof(Node, mTable) + 8 * n);
+            visit(n, (mask[n / 64] >> (n % 64) & 1) != 0, node + offsetof(Node, mTable) + entry * n);
     }
 
-    std::uint32_t constant(float value) {
+    std::uint32_t constant(Value given) {
+        const float value = finite(given);
         const auto [place, is_new] = constant_of_.try_emplace(
-            std::bit_cast<std::uint32_t>(finite(value)), static_cast<std::uint32_t>(grid_.constants.size()));
+            std::bit_cast<std::uint32_t>(value), static_cast<std::uint32_t>(grid_.constants.size()));
         if (is_new) grid_.constants.push_back(value);
         return SparseGrid::constant_entry | place->second;
     }
@@ -178,7 +219,7 @@ class TreeCopy {
     void collect_nodes() {
         std::vector<std::uint64_t> keys;
         for (std::size_t i = 0; i < root_tiles_; ++i) {
-            const auto tile = get<NanoRoot::Tile>(root_at_ + sizeof(NanoRoot) + i * sizeof(NanoRoot::Tile));
+            const auto tile = get<Tile>(root_at_ + sizeof(NanoRoot) + i * sizeof(Tile));
             keys.push_back(tile.key);
             const nanovdb::Coord origin = NanoRoot::KeyToCoord(tile.key);
             const NodePlace first{origin[0] >> 7, origin[1] >> 7, origin[2] >> 7};
@@ -197,7 +238,7 @@ class TreeCopy {
                     p.lower = child_at(1, upper, get<std::int64_t>(entry));
                 } else {
                     p.is_constant = true;
-                    p.constant = constant(get<float>(entry));
+                    p.constant = constant(get<Value>(entry));
                     if (p.constant == SparseGrid::constant_entry) return;
                 }
                 placed_.push_back(p);
@@ -238,7 +279,7 @@ class TreeCopy {
             entry = static_cast<std::uint32_t>(grid_.blocks.size() / SparseGrid::node_size);
             for_each_entry<NanoLower>(p.lower, [&](std::size_t, bool is_child, std::size_t at) {
                 grid_.blocks.push_back(is_child ? copy_leaf(child_at(0, p.lower, get<std::int64_t>(at)))
-                                                : constant(get<float>(at)));
+                                                : constant(get<Value>(at)));
             });
         }
         for (int x = 0; x < p.width; ++x)
@@ -256,13 +297,33 @@ class TreeCopy {
 
     std::uint32_t copy_leaf(std::size_t leaf) {
         std::array<float, SparseGrid::block_size> values{};
-        static_assert(sizeof values == sizeof(NanoLeaf::mValues));
-        copy_bytes(leaf + offsetof(NanoLeaf, mValues), values.data(), sizeof values);
-        for (const float v : values) finite(v);
+        if constexpr (code_bits<Build> == 0) {
+            std::array<Value, SparseGrid::block_size> given{};
+            static_assert(sizeof given == sizeof(NanoLeaf::mValues));
+            copy_bytes(leaf + offsetof(NanoLeaf, mValues), given.data(), sizeof given);
+            std::transform(given.begin(), given.end(), values.begin(), finite);
+        } else {
+            static_assert(sizeof(NanoLeaf) ==
+                          quantised_header + (code_bits<Build> > 0 ? 64 * code_bits<Build> : 0));
+            const int bits = code_bits<Build> > 0 ? code_bits<Build> : bits_of_leaf(leaf);
+            const auto minimum = get<float>(leaf + quantised_minimum_at),
+                       step = get<float>(leaf + quantised_minimum_at + sizeof(float));
+            std::array<std::uint8_t, 2 * SparseGrid::block_size> codes{};
+            copy_bytes(leaf + quantised_header, codes.data(), 64 * static_cast<std::size_t>(bits));
+            for (std::size_t i = 0; i < values.size(); ++i)
+                values[i] = finite(static_cast<float>(code_of(codes, i, bits)) * step + minimum);
+        }
         if (std::all_of(values.begin(), values.end(), [&](float v) { return v == values[0]; }))
             return constant(values[0]);
         grid_.values.insert(grid_.values.end(), values.begin(), values.end());
         return static_cast<std::uint32_t>(grid_.block_count() - 1);
+    }
+
+    // Codes lie one after the other, from the lowest bit of each byte on.
+    static unsigned code_of(std::span<const std::uint8_t> codes, std::size_t i, int bits) {
+        if (bits == 16) return codes[2 * i] | static_cast<unsigned>(codes[2 * i + 1]) << 8;
+        const std::size_t bit = i * static_cast<std::size_t>(bits);
+        return static_cast<unsigned>(codes[bit / 8]) >> (bit % 8) & ((1u << bits) - 1);
     }
 
     Transform map() const {
@@ -290,6 +351,38 @@ class TreeCopy {
 
 } // namespace
 
-PlacedSparseGrid copy_nanovdb_grid(std::span<const std::uint8_t> bytes) { return TreeCopy(bytes).copy(); }
+PlacedSparseGrid copy_nanovdb_grid(std::span<const std::uint8_t> bytes) {
+    nanovdb::GridData header{};
+    if (bytes.size() < sizeof header) throw Error("the grid ends early");
+    std::memcpy(&header, bytes.data(), sizeof header);
+    if (header.mMagic != NANOVDB_MAGIC_NUMBER && header.mMagic != nanovdb_newer_grid_magic)
+        throw Error("is no NanoVDB grid");
+    if (header.mVersion.getMajor() != NANOVDB_MAJOR_VERSION_NUMBER)
+        throw Error("has NanoVDB's version " + std::to_string(header.mVersion.getMajor()) +
+                    "; expected version " + std::to_string(NANOVDB_MAJOR_VERSION_NUMBER));
+    using nanovdb::GridType;
+    switch (header.mGridType) {
+    case GridType::Float:
+        return TreeCopy<float>(bytes).copy();
+    case GridType::Double:
+        return TreeCopy<double>(bytes).copy();
+    case GridType::Fp4:
+        return TreeCopy<nanovdb::Fp4>(bytes).copy();
+    case GridType::Fp8:
+        return TreeCopy<nanovdb::Fp8>(bytes).copy();
+    case GridType::Fp16:
+        return TreeCopy<nanovdb::Fp16>(bytes).copy();
+    case GridType::FpN:
+        return TreeCopy<nanovdb::FpN>(bytes).copy();
+    default:
+        break;
+    }
+    // Values of an enumeration in a file may be none of it.
+    const auto type = static_cast<std::uint32_t>(header.mGridType);
+    const bool known = type < static_cast<std::uint32_t>(GridType::End);
+    throw Error("has values of type " +
+                (known ? std::string(nanovdb::toStr(header.mGridType)) : std::to_string(type)) +
+                "; expected float, double, or a quantised float (Fp4, Fp8, Fp16, FpN)");
+}
 
 } // namespace montelux

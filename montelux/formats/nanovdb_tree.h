@@ -8,7 +8,7 @@
 
 namespace montelux {
 
-// Copies the grid of floats that fills `bytes`. Values and blocks that are equal throughout become constants.
+// Copies the grid of floats, doubles or quantised floats that fills `bytes`. Values and blocks that are equal throughout become constants.
 // Throws Error without the name of the file.
 PlacedSparseGrid copy_nanovdb_grid(std::span<const std::uint8_t> bytes);
 

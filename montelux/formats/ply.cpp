@@ -212,6 +212,7 @@ class BodyParser {
                         "element 'vertex' needs the properties x, y and z");
         bool normals = have[3] && have[4] && have[5], uvs = have[6] && have[7];
         TriangleMesh& mesh = result_.mesh;
+        mesh.positions.reserve(e.count + 1); // so that Embree can read them in place
         mesh.positions.resize(e.count);
         if (normals) mesh.normals.resize(e.count);
         if (uvs) mesh.uvs.resize(e.count);

@@ -11,9 +11,12 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfVecAttribute.h>
+#include <algorithm>
 #include <cstring>
 #include <exception>
+#include <optional>
 #include <type_traits>
+#include <vector>
 
 #include "montelux/image/encoders.h"
 #include "montelux/image/placement.h"
@@ -90,6 +93,26 @@ void insert(Imf::Header& header, const std::string& name, const Attribute& attri
         attribute);
 }
 
+// A channel as 16-bit floats, row by row.
+struct HalfChannel {
+    int index = 0;
+    std::vector<std::uint16_t> bits;
+};
+std::vector<HalfChannel> half_channels(const Image& image, const std::vector<std::string>& names) {
+    std::vector<HalfChannel> halves;
+    for (const std::string& name : names) {
+        const std::optional<int> c = image.find_channel(name);
+        if (!c || std::ranges::find(halves, *c, &HalfChannel::index) != halves.end()) continue;
+        HalfChannel& half = halves.emplace_back();
+        half.index = *c;
+        half.bits.reserve(image.pixel_count());
+        const auto stride = static_cast<std::size_t>(image.channels());
+        for (std::size_t i = static_cast<std::size_t>(*c); i < image.sample_count(); i += stride)
+            half.bits.push_back(clamped_half(image.f32()[i]));
+    }
+    return halves;
+}
+
 } // namespace
 
 void encode_exr(AtomicFile& file, const std::string& name, const Image& image, const WriteOptions& options) {
@@ -106,7 +129,9 @@ void encode_exr(AtomicFile& file, const std::string& name, const Image& image, c
         header.compression() = compression_of(options.exr_compression);
         for (const auto& [key, value] : image.attributes())
             if (!is_of_placement(key)) insert(header, key, value);
-        Imf::PixelType type = half ? Imf::HALF : Imf::FLOAT;
+        const Imf::PixelType type = half ? Imf::HALF : Imf::FLOAT;
+        std::vector<HalfChannel> halves; // of a 32-bit image
+        if (!half) halves = half_channels(source, options.exr_half);
         std::size_t sample = half ? 2 : 4, pixel = sample * source.channels(), row = pixel * source.width();
         // The library only reads from the buffer, but its slices are not const.
         const char* data = half ? reinterpret_cast<const char*>(source.u16().data())
@@ -115,6 +140,12 @@ void encode_exr(AtomicFile& file, const std::string& name, const Image& image, c
         Imf::FrameBuffer buffer;
         for (int c = 0; c < source.channels(); ++c) {
             const std::string& channel = source.channel_names()[c];
+            if (const auto found = std::ranges::find(halves, c, &HalfChannel::index); found != halves.end()) {
+                header.channels().insert(channel, Imf::Channel(Imf::HALF));
+                buffer.insert(channel, Imf::Slice::Make(Imf::HALF, found->bits.data(), window, 2,
+                                                        2 * static_cast<std::size_t>(source.width())));
+                continue;
+            }
             header.channels().insert(channel, Imf::Channel(type));
             buffer.insert(channel, Imf::Slice::Make(type, base + c * sample, window, pixel, row));
         }

@@ -61,6 +61,18 @@ void write_image(const std::filesystem::path& path, const Image& image, const Wr
     file.commit();
 }
 
+std::uint64_t half_overflows(const Image& image, const std::vector<std::string>& channels) {
+    std::uint64_t count = 0;
+    for (const std::string& name : channels)
+        if (const auto c = image.find_channel(name))
+            for (int y = 0; y < image.height(); ++y)
+                for (int x = 0; x < image.width(); ++x) {
+                    const float v = image.value(x, y, *c);
+                    count += std::isfinite(v) && std::abs(v) > largest_half;
+                }
+    return count;
+}
+
 void check_writable(const std::filesystem::path& path) {
     format_of(path);
     // Creates and removes a temporary file, since permission bits alone are not conclusive.

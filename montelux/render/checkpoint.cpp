@@ -11,6 +11,9 @@
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/random/hash.h"
+#include "montelux/scene/light/light_groups.h"
+#include "montelux/scene/scene_names.h"
+#include "montelux/spectrum/camera_sensors.h"
 
 namespace montelux {
 namespace {
@@ -57,12 +60,33 @@ std::uint64_t hash_of_text(std::string_view text) {
     for (const char c : text) h = hash_key(h, static_cast<std::uint8_t>(c));
     return h;
 }
+// A film with a feature of its own adds its hash; the others keep theirs, so that their checkpoints stay valid.
+std::uint64_t hash_of_film(const FilmSettings& f) {
+    const std::uint64_t h =
+        hash_of(f.width, f.height, f.crop.x0, f.crop.y0, f.crop.x1, f.crop.y1, hash_of_filter(f.filter),
+                f.iso, f.exposure_time, f.white_balance, f.max_component_value);
+    std::uint64_t all = f.sensor == cie_sensor ? h : hash_of(h, hash_of_text(f.sensor));
+    if (f.spectral) all = hash_of(all, f.spectral->lambda_min, f.spectral->lambda_max, f.spectral->buckets);
+    return all;
+}
+std::uint64_t hash_of_integrator(const IntegratorSettings& s) {
+    if (s.occlusion) return hash_of(s.occlusion->cosine, s.occlusion->max_distance);
+    return hash_of(s.max_depth, static_cast<int>(s.strategy), static_cast<int>(s.heuristic),
+                   static_cast<int>(s.light_sampling), s.equiangular, s.regularize,
+                   static_cast<int>(s.environment_sampling), s.environment_compensation,
+                   static_cast<int>(s.environment_lookup));
+}
 // Another version of the program may take different samples.
 std::uint64_t version() { return hash_of(layout_version, hash_of_text(MONTELUX_VERSION)); }
 
+// Without options of surfaces the hash is that of versions that did not have them: their checkpoints stay valid.
+std::uint64_t with_surfaces(SurfaceSettings s, std::uint64_t hash) {
+    if (s == SurfaceSettings{}) return hash;
+    return hash_of(hash, static_cast<int>(s.microfacets), static_cast<int>(s.terminator));
+}
+
 std::array<Fingerprint, 10> fingerprints(const SceneDigest& scene, const SceneDescription& d,
                                          const RenderTarget& target) {
-    const FilmSettings& f = d.film;
     auto of = [](const ContentDigest& part) { return hash_of(part.high, part.low); };
     return {
         {{"the scene's geometry differs", of(scene.geometry)},
@@ -70,17 +94,35 @@ std::array<Fingerprint, 10> fingerprints(const SceneDigest& scene, const SceneDe
          {"the scene's textures differ", of(scene.textures)},
          {"the scene's lights differ", of(scene.lights)},
          {"the scene's camera differs", of(scene.camera)},
-         {"the film differs",
-          hash_of(f.width, f.height, f.crop.x0, f.crop.y0, f.crop.x1, f.crop.y1, hash_of_filter(f.filter),
-                  f.iso, f.exposure_time, f.white_balance, f.max_component_value)},
+         {"the film differs", hash_of_film(d.film)},
          {"the sampler or seed differs", hash_of(static_cast<int>(d.sampler.kind), d.sampler.seed)},
-         {"the integrator differs",
-          hash_of(d.integrator.max_depth, static_cast<int>(d.integrator.strategy),
-                  static_cast<int>(d.integrator.heuristic), static_cast<int>(d.integrator.light_sampling),
-                  static_cast<int>(d.integrator.environment_sampling), d.integrator.environment_compensation,
-                  static_cast<int>(d.integrator.environment_lookup), d.integrator.equiangular)},
+         {"the integrator differs", with_surfaces(d.integrator.surfaces(), hash_of_integrator(d.integrator))},
          {"the allocation of samples (--adaptive) differs", hash_of(target.adaptive)},
          {"the slice differs", hash_of(target.slice.index, target.slice.count)}}};
+}
+
+// Of everything that the sums of the film's layers depend on and the mean does not; 0 for the standard layers.
+std::uint64_t hash_of_layers(const SceneDescription& d, const FilmLayers& layers) {
+    const LayerSettings& settings = d.film.layers;
+    if (layers.sums() == 0 && !settings.in_camera_space) return 0;
+    std::uint64_t h = hash_of(layers.sums(), settings.in_camera_space);
+    for (const std::string& group : layers.light_groups()) h = hash_of(h, hash_of_text(group));
+    for (const Layer layer :
+         {Layer::geometric_normal, Layer::position, Layer::uv, Layer::depth_slopes, Layer::motion,
+          Layer::alpha, Layer::direct, Layer::indirect, Layer::shape, Layer::material})
+        h = hash_of(h, layers.set().has(layer));
+    const auto add_names = [&](const std::vector<std::string>& names) {
+        for (const std::string& name : names) h = hash_of(h, hash_of_text(name));
+    };
+    if (settings.set.has(Layer::light_groups))
+        for (const Index group : light_groups(d.scene, settings.light_grouping).of_light)
+            h = hash_of(h, group);
+    if (settings.set.has(Layer::shape)) {
+        add_names(d.scene.shape_names);
+        add_names(instance_names(d.scene));
+    }
+    if (settings.set.has(Layer::material)) add_names(d.scene.material_names);
+    return h == 0 ? 1 : h;
 }
 
 } // namespace
@@ -88,7 +130,9 @@ std::array<Fingerprint, 10> fingerprints(const SceneDigest& scene, const SceneDe
 void save_checkpoint(const std::filesystem::path& path, const Renderer& renderer, const RenderState& state) {
     ByteWriter out;
     const std::span<const Pixel> pixels = state.film.pixels();
-    out.reserve(pixels.size_bytes() + state.target_samples.size() * sizeof(std::uint32_t) + 1024);
+    out.reserve(pixels.size_bytes() + state.film.buckets().size_bytes() +
+                state.film.layer_sums().size_bytes() + state.target_samples.size() * sizeof(std::uint32_t) +
+                1024);
     out.put(version());
     for (const Fingerprint& f :
          fingerprints(renderer.scene_digest(), renderer.description(), renderer.target()))
@@ -99,6 +143,12 @@ void save_checkpoint(const std::filesystem::path& path, const Renderer& renderer
     out.put(static_cast<std::uint64_t>(state.target_samples.size()));
     out.put_all(std::span<const std::uint32_t>(state.target_samples));
     out.put_all(pixels);
+    out.put_all(state.film.buckets());
+    if (const std::uint64_t layers = hash_of_layers(renderer.description(), state.film.layers());
+        layers != 0) {
+        out.put(layers);
+        out.put_all(state.film.layer_sums());
+    }
     write_generation(path, kind, out.take());
 }
 
@@ -111,12 +161,14 @@ std::uint64_t render_fingerprint(const Renderer& renderer) {
 
 RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDescription& description,
                                const RenderTarget& target) {
-    RestoredRender restored{RenderState(description.film), 0, {}};
+    RestoredRender restored{RenderState(description), 0, {}};
     RenderState& state = restored.state;
     const std::span<Pixel> pixels = state.film.pixels();
     // An upper bound of the size for this film, generous so that a checkpoint of a larger film is refused by
     // the right message. Larger files are not read into memory.
-    const std::size_t most = 64 * (pixels.size_bytes() + pixels.size() * sizeof(std::uint32_t)) + 1024;
+    const std::size_t most = 64 * (pixels.size_bytes() + pixels.size() * sizeof(std::uint32_t) +
+                                   state.film.buckets().size_bytes() + state.film.layer_sums().size_bytes()) +
+                             1024;
     const Generation generation = read_generation(path, kind, most);
     restored.newest_refused_because = generation.newest_refused_because;
     ByteReader in(generation.payload, "checkpoint");
@@ -134,6 +186,12 @@ RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDes
     state.target_samples.resize(target_samples);
     in.get_all(std::span<std::uint32_t>(state.target_samples));
     in.get_all(pixels);
+    in.get_all(state.film.buckets());
+    const std::uint64_t layers = hash_of_layers(description, state.film.layers());
+    if ((in.at_end() ? 0 : in.get<std::uint64_t>()) != layers)
+        throw Error(path.string(),
+                    "the checkpoint is of another render: the layers of the film (--layers) differ");
+    if (layers != 0) in.get_all(state.film.layer_sums());
     if (!in.at_end() || restored.replicate_points == 0)
         throw Error(path.string(), "the checkpoint is not what its header says");
     return restored;

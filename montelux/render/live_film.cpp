@@ -36,7 +36,7 @@ void LiveFilm::wait_for_copies() const {
 void LiveFilm::copy_tile(const Tile& tile, Film& into) const {
     const Film& from = state_->film;
     for (int y = tile.bounds.y0; y < tile.bounds.y1; ++y)
-        std::copy_n(&from.pixel(tile.bounds.x0, y), tile.bounds.width(), &into.pixel(tile.bounds.x0, y));
+        into.copy_row(from, tile.bounds.x0, y, tile.bounds.width());
 }
 
 void LiveFilm::hand_over(std::size_t tile) {
@@ -58,7 +58,7 @@ std::optional<LiveCopy> LiveFilm::copy(double seconds) {
     } waiting(waiting_snapshots_);
     const std::unique_lock all(film_, deadline);
     if (!all.owns_lock() || state_ == nullptr) return std::nullopt;
-    LiveCopy copy{Film(state_->film.settings()), report_()};
+    LiveCopy copy{Film(state_->film.settings(), state_->film.layers()), report_()};
     if (copy.report.samples == 0) return std::nullopt;
     into_ = &copy.film;
     std::vector<Tile*> held; // by threads that have been asked for a copy

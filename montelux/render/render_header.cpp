@@ -4,8 +4,11 @@
 #include <cstdio>
 #include <vector>
 
+#include "montelux/film/film_layers.h"
+#include "montelux/image/cryptomatte.h"
 #include "montelux/image/placement.h"
 #include "montelux/render/checkpoint.h"
+#include "montelux/render/layer_sampler.h"
 #include "montelux/render/sample_order.h"
 #include "montelux/scene/setting_names.h"
 
@@ -59,6 +62,10 @@ void add_render_header(Image& image, const std::string& scene_name, const Render
     a["environmentSampling"] = std::string(name_of(description.integrator.environment_sampling));
     a["environmentCompensation"] = description.integrator.environment_compensation ? 1 : 0;
     a["environmentLookup"] = std::string(name_of(description.integrator.environment_lookup));
+    if (description.integrator.regularize) a["regularize"] = 1; // a bias that no standard error contains
+    if (description.integrator.occlusion) a["ambientOcclusion"] = 1;
+    a["microfacetScattering"] = std::string(name_of(description.integrator.microfacet_scattering));
+    a["shadingTerminator"] = std::string(name_of(description.integrator.shading_terminator));
     a["maxDepth"] = description.integrator.max_depth;
     a["seed"] = std::to_string(description.sampler.seed);
     a["renderSeconds"] = static_cast<float>(report.seconds);
@@ -66,6 +73,12 @@ void add_render_header(Image& image, const std::string& scene_name, const Render
     a["badSamples"] = static_cast<int>(std::min<std::uint64_t>(report.bad.count(), 1u << 30));
     a["worldToCamera"] = renderer.camera().world_from_camera().inverse_matrix();
     const FilmSettings& film = description.film;
+    if (film.layers.set != LayerSet::standard()) a["layers"] = text_of(film.layers.set);
+    if (film.layers.in_camera_space) a["layerSpace"] = std::string("camera");
+    if (film.layers.set.has(Layer::shape))
+        add_cryptomatte_metadata(image, shape_matte, shape_id_names(description.scene));
+    if (film.layers.set.has(Layer::material))
+        add_cryptomatte_metadata(image, material_matte, material_id_names(description.scene));
     set_placement(image, film.crop.x0, film.crop.y0, {0, 0, film.width, film.height});
     a["fullResolution"] = numbers({film.width, film.height});
     a["cropPixels"] = numbers({film.crop.x0, film.crop.y0, film.crop.x1, film.crop.y1});

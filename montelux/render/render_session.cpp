@@ -27,7 +27,7 @@ RenderSession::RenderSession(std::shared_ptr<const SceneDescription> description
         state_.emplace(std::move(restored.state));
         samples_before_ = state_->film.error().mean_samples;
     } else {
-        state_.emplace(description_->film);
+        state_.emplace(*description_);
     }
 }
 
@@ -99,7 +99,9 @@ RenderSnapshot RenderSession::picture_of(const Film& film, const RenderReport& r
     const FilmError error = film.error();
     const double clamped = clamped_luminance(film);
     add_render_header(*image, settings_.scene_name, *renderer_, report, error, clamped);
-    return {std::move(image), error, report, clamped};
+    RenderSnapshot snapshot{std::move(image), error, report, clamped};
+    snapshot.half = description_->film.layers.half;
+    return snapshot;
 }
 
 } // namespace montelux

@@ -32,6 +32,7 @@ struct RenderSnapshot {
     double clamped_luminance = 0;            // mean over pixels, removed by the film's limit
     std::optional<OutlierReport> outliers{}; // of the finished picture
     std::string denoise_failure{};           // why requested denoising failed
+    bool half = false; // an EXR file of it holds 16-bit floats where those suffice (half_channels_of)
 };
 
 // The callbacks, cancel flag and executor of a render.

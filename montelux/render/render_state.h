@@ -41,6 +41,9 @@ struct RenderState {
     RenderReport report; // so far
 
     explicit RenderState(const FilmSettings& settings) : film(settings) {}
+    // Throws Error as film_layers_of() does.
+    explicit RenderState(const SceneDescription& description)
+        : film(description.film, film_layers_of(description)) {}
 };
 
 } // namespace montelux

@@ -181,15 +181,19 @@ class RenderLoop {
         };
         {
             const auto held = live != nullptr ? live->hold(index) : std::unique_lock<std::mutex>();
-            tile_renderer_.render({.bounds = tile,
-                                   .pixels = &state_.film.pixels()[first],
-                                   .stride = stride,
-                                   .target_samples = &state_.target_samples[first],
-                                   .target_stride = stride},
-                                  tally, stopped, [&] {
-                                      pause_if_due();
-                                      return stopped();
-                                  });
+            tile_renderer_.render(
+                {.bounds = tile,
+                 .pixels = &state_.film.pixels()[first],
+                 .stride = stride,
+                 .buckets = buckets_at(first),
+                 .bucket_count = state_.film.buckets_per_pixel(),
+                 .target_samples = &state_.target_samples[first],
+                 .target_stride = stride,
+                 .layer_sums = state_.film.layer_sums().data() + first * state_.film.layers().sums()},
+                tally, stopped, [&] {
+                    pause_if_due();
+                    return stopped();
+                });
         }
         report_if_finished(index);
         std::lock_guard lock(mutex_);
@@ -197,6 +201,11 @@ class RenderLoop {
         // Only after some samples: short intervals must not stop progress.
         if (tally.samples > 0) pause_if_due();
         if (seconds_since(last_progress_) > 0.2) report_progress(std::nullopt);
+    }
+
+    BucketMoments* buckets_at(std::size_t pixel) {
+        const std::size_t n = state_.film.buckets_per_pixel();
+        return n > 0 ? &state_.film.buckets()[pixel * n] : nullptr;
     }
 
     void report_if_finished(std::size_t index) {
@@ -312,12 +321,32 @@ Renderer::Renderer(const SceneDescription& description, const RenderTarget& targ
       camera_(description.scene.camera, description.film.width, description.film.height) {
     if (description.sampler.spp < 1) throw Error("sampler", "at least 1 sample per pixel is needed");
     check_slice(with_points(description.sampler, replicate_points), target);
+    if (description.film.spectral && target.slice.count > 1)
+        throw Error("film",
+                    "a spectral film cannot be rendered in slices: merge has no layers of wavelengths");
+    if (target.slice.count > 1 && description.film.layers.set != LayerSet::standard())
+        throw Error("slice", "slices are joined by their standard layers; no others can be chosen");
     auto begin = Clock::now();
     scene_digest_ = digest_of(description.scene);
     tables_ = std::make_unique<SceneTables>(description.scene, description.integrator.environments(),
-                                            description.integrator.light_sampling);
+                                            description.integrator.light_sampling,
+                                            description.integrator.surfaces());
     accelerator_ = std::make_unique<Accelerator>(tables_->view());
     build_seconds_ = seconds_since(begin);
+}
+
+std::vector<MemoryUse> Renderer::memory_use() const {
+    std::vector<MemoryUse> table = montelux::memory_use(description_.scene);
+    for (const MemoryUse& use : tables_->memory_use()) table.push_back(use);
+    table.push_back({"ray tracer", accelerator_->bytes(),
+                     description_.scene.shapes.size() + description_.scene.instances.size(),
+                     "shapes, instances"});
+    const PixelBounds& crop = description_.film.crop;
+    const std::size_t pixels =
+        static_cast<std::size_t>(crop.width()) * static_cast<std::size_t>(crop.height());
+    table.push_back(
+        {"film", pixels * (sizeof(Pixel) + sizeof(std::uint32_t)), pixels, "pixels"}); // and target counts
+    return table;
 }
 
 void Renderer::serve(const std::function<void(const TileRenderer&)>& work) const {
@@ -326,12 +355,17 @@ void Renderer::serve(const std::function<void(const TileRenderer&)>& work) const
 }
 
 void Renderer::render(RenderState& state, const RenderControl& control) const {
+    if (description_.film.spectral && control.executor != nullptr)
+        throw Error("film",
+                    "a spectral film cannot be rendered by several processes: they exchange RGB alone");
     const SampleContext context(description_, sampler_, tables_->view(), camera_);
+    if (state.film.layers().channels() != context.layers().channels())
+        throw Error("film", "its layers are not those of the scene's film");
     RenderLoop(*this, context, state, control).run();
 }
 
 RenderReport Renderer::render(Film& film, const ProgressCallback& progress, const CancelFlag* cancel) const {
-    RenderState state(film.settings());
+    RenderState state(description_);
     RenderControl control;
     control.progress = progress;
     control.cancel = cancel;

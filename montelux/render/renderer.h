@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "montelux/accel/accelerator.h"
 #include "montelux/film/film.h"
@@ -11,6 +12,7 @@
 #include "montelux/render/render_state.h"
 #include "montelux/render/render_target.h"
 #include "montelux/scene/camera/camera.h"
+#include "montelux/scene/memory_use.h"
 #include "montelux/scene/render_settings.h"
 #include "montelux/scene/scene_digest.h"
 #include "montelux/scene/scene_tables.h"
@@ -38,6 +40,8 @@ class Renderer {
     // The description's, with the number of replicates decided.
     const SamplerSettings& sampler() const { return sampler_; }
     double build_seconds() const { return build_seconds_; }
+    // Of the scene, its tables, the ray tracer and a film, by kind.
+    std::vector<MemoryUse> memory_use() const;
 
     const RenderTarget& target() const { return target_; }
 

@@ -25,6 +25,7 @@ constexpr float footprint_scale = 0.125f;
 
 // Scenes without media pay nothing for them.
 Integrator make_integrator(const IntegratorSettings& settings, const SceneView& scene, const Camera& camera) {
+    if (settings.occlusion) return OcclusionIntegrator(settings, camera, footprint_scale);
     if (scene.has_media()) return VolumePathIntegrator(settings, camera, footprint_scale);
     return PathIntegrator(settings, camera, footprint_scale);
 }
@@ -35,11 +36,14 @@ SampleContext::SampleContext(const SceneDescription& description, const SamplerS
                              const SceneView& scene, const Camera& camera)
     : sampler_(sampler), max_component_value_(description.film.max_component_value), scene_(scene),
       camera_(camera), moves_(moves(description.scene)),
+      normals_in_camera_space_(description.film.layers.in_camera_space), layers_(description, scene, camera),
       integrator_(make_integrator(description.integrator, scene, camera)), filter_(description.film.filter),
-      sensor_(RgbColorSpace::srgb(),
-              {description.film.exposure_time, description.film.iso, description.film.white_balance}),
+      sensor_(RgbColorSpace::srgb(), {description.film.exposure_time, description.film.iso,
+                                      description.film.white_balance, description.film.sensor}),
       white_(RgbColorSpace::srgb().illuminant()),
-      white_scale_(static_cast<float>(1 / integrate_luminance(white_))) {}
+      white_scale_(static_cast<float>(1 / integrate_luminance(white_))) {
+    if (description.film.spectral) buckets_.emplace(*description.film.spectral);
+}
 
 PathStart<SampleStream> SampleContext::begin(const Key& key, FilmPoint& point) const {
     SampleStream stream(sampler_, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y),
@@ -57,13 +61,15 @@ PathStart<SampleStream> SampleContext::begin(const Key& key, FilmPoint& point) c
 }
 
 SampleContext::Result SampleContext::finish(const FilmContribution& path, const SampledWavelengths& lambda,
-                                            const FilmPoint& point, SampleRecord* record) const {
+                                            const FilmPoint& point, SpectralSample* spectral,
+                                            SampleRecord* record) const {
     Result result;
     const FilterSample& filter = point.filter;
     const Vec3f sensor_rgb = sensor_.to_rgb(path.radiance * point.weight, path.lambda);
     const float largest = max_component(sensor_rgb);
     const float clamp = largest > max_component_value_ ? max_component_value_ / largest : 1;
     const Vec3f rgb = sensor_rgb * clamp * filter.weight;
+    result.clamp = clamp;
     result.bad = badness(rgb, path.radiance);
     if (record != nullptr) [[unlikely]] {
         record->filter = filter;
@@ -76,6 +82,9 @@ SampleContext::Result SampleContext::finish(const FilmContribution& path, const 
     }
     if (result.bad) return result;
     result.film.radiance = rgb;
+    if (spectral != nullptr) [[unlikely]]
+        *spectral =
+            spectral_sample(*buckets_, path.radiance, path.lambda, point.weight * clamp * filter.weight);
     if (clamp < 1) [[unlikely]]
         result.clamped =
             static_cast<float>(dot(Vec3d(sensor_rgb), luminance_weight)) * (1 - clamp) * filter.weight;
@@ -83,9 +92,21 @@ SampleContext::Result SampleContext::finish(const FilmContribution& path, const 
         result.film.albedo =
             albedo_sensor_.to_rgb(first.albedo * white_.sample(lambda) * white_scale_, lambda);
         result.film.normal = first.normal;
+        if (normals_in_camera_space_) [[unlikely]]
+            result.film.normal = normalize(camera_.camera_from_world(point.time).normal(first.normal));
         result.film.depth = first.depth;
     }
     return result;
+}
+
+void SampleContext::sample_layers(const SampleExtras& extras, const FilmContribution& path,
+                                  const FilmPoint& point, float clamp, std::span<float> values) const {
+    layers_.sample(extras, point.film, point.lens, point.filter.weight, values);
+    float* to = values.data() + layers().first_part();
+    for (const SampledSpectrum& part : extras.parts) {
+        const Vec3f rgb = sensor_.to_rgb(part * point.weight, path.lambda) * clamp * point.filter.weight;
+        for (int c = 0; c < 3; ++c) *to++ = rgb[c];
+    }
 }
 
 void SampleContext::take(RayTracer& tracer, std::span<const Key> keys, Batch& batch,
@@ -98,20 +119,40 @@ void SampleContext::take(RayTracer& tracer, std::span<const Key> keys, Batch& ba
         const auto beginning = [&] { return begin(keys[i], batch.points[i]); };
         batch.starts.emplace_back(InPlace(beginning));
     }
+    if (layers_.wants_extras()) [[unlikely]] {
+        const std::size_t parts = layers().parts();
+        batch.parts.assign(keys.size() * parts, SampledSpectrum());
+        batch.extras.clear();
+        for (std::size_t i = 0; i < keys.size(); ++i)
+            batch.extras.push_back(layers_.extras(std::span(batch.parts).subspan(i * parts, parts)));
+        for (std::size_t i = 0; i < keys.size(); ++i) batch.starts[i].camera.extras = &batch.extras[i];
+        batch.layer_values.resize(keys.size() * layers().values());
+    }
     std::visit(
         [&](const auto& integrator) {
             integrator.estimate(scene_, tracer, std::span(batch.starts), batch.integrator,
                                 std::span(batch.paths));
         },
         integrator_);
+    if (buckets_) batch.spectral.assign(keys.size(), {});
     for (std::size_t i = 0; i < keys.size(); ++i)
-        results[i] = finish(batch.paths[i], batch.starts[i].camera.lambda, batch.points[i]);
+        results[i] = finish(batch.paths[i], batch.starts[i].camera.lambda, batch.points[i],
+                            buckets_ ? &batch.spectral[i] : nullptr);
+    if (!layers_.wants_extras()) return;
+    const std::size_t values = layers().values();
+    for (std::size_t i = 0; i < keys.size(); ++i)
+        if (!results[i].bad)
+            sample_layers(batch.extras[i], batch.paths[i], batch.points[i], results[i].clamp,
+                          std::span(batch.layer_values).subspan(i * values, values));
 }
 
 SampleRecord SampleContext::record(RayTracer& tracer, const Key& key) const {
     SampleRecord record;
     FilmPoint point;
     PathStart<SampleStream> start = begin(key, point);
+    std::vector<SampledSpectrum> parts(layers().parts());
+    SampleExtras extras = layers_.extras(parts);
+    if (layers_.wants_extras()) start.camera.extras = &extras;
     const FilmContribution path = std::visit(
         [&](const auto& integrator) {
             return integrator.estimate(scene_, tracer, start.camera, start.stream, &record.path);
@@ -123,7 +164,12 @@ SampleRecord SampleContext::record(RayTracer& tracer, const Key& key) const {
     record.film = point.film;
     record.lens = point.lens;
     record.time = point.time;
-    record.contribution = finish(path, start.camera.lambda, point, &record).film;
+    const Result result = finish(path, start.camera.lambda, point, nullptr, &record);
+    record.contribution = result.film;
+    if (layers_.wants_extras() && !result.bad) {
+        record.layer_values.resize(layers().values());
+        sample_layers(extras, path, point, result.clamp, record.layer_values);
+    }
     return record;
 }
 

@@ -9,6 +9,7 @@
 #include "montelux/film/film.h"
 #include "montelux/film/pixel_filter.h"
 #include "montelux/mc/random/sample_stream.h"
+#include "montelux/render/layer_sampler.h"
 #include "montelux/render/sample_record.h"
 #include "montelux/scene/render_settings.h"
 #include "montelux/spectrum/rgb_colorspace.h"
@@ -26,6 +27,7 @@ class SampleContext {
         // Why the sample is left out; `film` is then empty.
         std::optional<BadSample::Kind> bad;
         float clamped = 0; // luminance removed by the film's limit, filter weight applied
+        float clamp = 1;   // factor of the film's limit
     };
 
     // A sample of a pixel, by its index.
@@ -36,12 +38,14 @@ class SampleContext {
     // The memory for many samples at once; allocated once and used again.
     struct Batch;
 
-    // All arguments must outlive the context.
+    // All arguments must outlive the context. Throws Error as light_groups() does.
     SampleContext(const SceneDescription& description, const SamplerSettings& sampler, const SceneView& scene,
                   const Camera& camera);
 
-    // Each result is a pure function of its key (the tracer counts rays); `results` has the size of `keys`.
+    // Each result is a pure function of its key (the tracer counts rays); `results` has the size of `keys`. The
+    // numbers of the film's layers (FilmLayers::values() for each sample) are in the batch.
     void take(RayTracer& tracer, std::span<const Key> keys, Batch& batch, std::span<Result> results) const;
+    const FilmLayers& layers() const { return layers_.layers(); }
     // One sample by itself, with every step of its path; the contribution is the same to the last bit.
     SampleRecord record(RayTracer& tracer, const Key& key) const;
 
@@ -56,19 +60,25 @@ class SampleContext {
     };
     PathStart<SampleStream> begin(const Key& key, FilmPoint& point) const;
     Result finish(const FilmContribution& path, const SampledWavelengths& lambda, const FilmPoint& point,
-                  SampleRecord* record = nullptr) const;
+                  SpectralSample* spectral, SampleRecord* record = nullptr) const;
+    // Of a good sample.
+    void sample_layers(const SampleExtras& extras, const FilmContribution& path, const FilmPoint& point,
+                       float clamp, std::span<float> values) const;
 
     const SamplerSettings& sampler_;
     float max_component_value_;
     SceneView scene_;
     const Camera& camera_;
     bool moves_; // the scene; otherwise samples have no time
+    bool normals_in_camera_space_;
+    LayerSampler layers_;
     Integrator integrator_;
     PixelFilterSampler filter_;
     Sensor sensor_;
     Sensor albedo_sensor_;
     // Spectrum of the white light of albedos.
     const SpectrumTable& white_;
+    std::optional<BucketLayout> buckets_; // of a spectral film
     float white_scale_;
 };
 
@@ -76,7 +86,13 @@ struct SampleContext::Batch {
     std::vector<FilmPoint> points;
     std::vector<PathStart<SampleStream>> starts;
     std::vector<FilmContribution> paths;
+    std::vector<SpectralSample>
+        spectral; // of each sample, of a spectral film; 0 for samples that are left out
     PathBatch integrator;
+    // Empty unless the film has layers that need them.
+    std::vector<SampleExtras> extras;
+    std::vector<SampledSpectrum> parts; // of the radiance
+    std::vector<float> layer_values;
 };
 
 } // namespace montelux

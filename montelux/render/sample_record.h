@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "montelux/film/film.h"
 #include "montelux/film/pixel_filter.h"
@@ -31,6 +32,7 @@ struct SampleRecord {
     // The contribution to the pixel, or why the sample is left out.
     FilmSample contribution;
     std::optional<BadSample::Kind> bad;
+    std::vector<float> layer_values; // of the film's layers (FilmLayers), of a good sample
 };
 
 // Throws Error, naming the valid range, if the pixel is outside the crop or the index beyond the samples of

@@ -34,6 +34,8 @@ TileRenderer::SampleBatch& TileRenderer::batch_of_this_thread() {
 void TileRenderer::take(RayTracer& tracer, SampleBatch& batch, TileTally& tally) const {
     batch.results.resize(batch.keys.size());
     context_.take(tracer, batch.keys, batch.memory, batch.results);
+    const FilmLayers& layers = context_.layers();
+    const bool has_sums = layers.sums() > 0;
     for (std::size_t k = 0; k < batch.keys.size(); ++k) {
         const SampleContext::Result& r = batch.results[k];
         const SampleContext::Key& key = batch.keys[k];
@@ -43,12 +45,21 @@ void TileRenderer::take(RayTracer& tracer, SampleBatch& batch, TileTally& tally)
             tally.bad.add({*r.bad, key.x, key.y, key.index});
         } else {
             pixel.add_sample(r.film);
+            if (has_sums)
+                layers.add(batch.places[k].layer_sums, &batch.memory.layer_values[k * layers.values()]);
         }
         if (r.clamped != 0) {
             ++tally.clamped_samples;
             pixel.add_clamped(r.clamped);
         }
-        if (order_.closed(batch.places[k].number + 1)) pixel.end_replicate();
+        const std::span<BucketMoments> buckets = batch.places[k].buckets;
+        if (!buckets.empty()) add_sample(buckets, batch.memory.spectral[k]);
+        if (order_.closed(batch.places[k].number + 1)) {
+            for (BucketMoments& b : buckets)
+                b.end_replicate(pixel.open_samples(), pixel.replicates().count() + 1);
+            if (has_sums) layers.end_replicate(batch.places[k].layer_sums, pixel.open_samples());
+            pixel.end_replicate();
+        }
     }
     tally.samples += batch.keys.size();
     batch.clear();

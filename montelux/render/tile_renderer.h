@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <ctime>
+#include <span>
 #include <vector>
 
 #include "montelux/accel/accelerator.h"
@@ -39,8 +40,13 @@ struct TileView {
     PixelBounds bounds;
     Pixel* pixels = nullptr;
     std::size_t stride = 0;
+    // Of a spectral film, `bucket_count` for each pixel and in the order of the pixels; or null.
+    BucketMoments* buckets = nullptr;
+    std::size_t bucket_count = 0;
     const std::uint32_t* target_samples = nullptr;
     std::size_t target_stride = 0;
+    // FilmLayers::sums() numbers for each pixel, in the same rows; unused if that is 0.
+    double* layer_sums = nullptr;
     // At most this many new samples per pixel.
     std::uint32_t most = ~std::uint32_t{0};
 };
@@ -52,6 +58,7 @@ class TileRenderer {
         : context_(context), accelerator_(accelerator), order_(order) {}
 
     const SampleOrder& order() const { return order_; }
+    const FilmLayers& layers() const { return context_.layers(); }
 
     // Adds its statistics to `tally`. Stops early when stop(), called before each pixel, or check(), called
     // after each full batch of samples, returns true. Pixels are always consistent: a batch is added whole.
@@ -70,12 +77,17 @@ class TileRenderer {
                 }
                 const auto row = static_cast<std::size_t>(y - tile.bounds.y0);
                 const auto column = static_cast<std::size_t>(x - tile.bounds.x0);
-                Pixel& pixel = tile.pixels[row * tile.stride + column];
+                const std::size_t place = row * tile.stride + column;
+                Pixel& pixel = tile.pixels[place];
+                const std::span<BucketMoments> buckets(
+                    tile.buckets != nullptr ? tile.buckets + place * tile.bucket_count : nullptr,
+                    tile.bucket_count);
+                double* const sums = tile.layer_sums + place * layers().sums();
                 const std::uint64_t target =
                     std::min<std::uint64_t>(tile.target_samples[row * tile.target_stride + column],
                                             std::uint64_t{pixel.samples()} + tile.most);
                 for (std::uint64_t i = pixel.samples(); i < target && !stopped; ++i) {
-                    batch.add(pixel, i, {x, y, order_.index(i)});
+                    batch.add(pixel, buckets, sums, i, {x, y, order_.index(i)});
                     if (batch.full()) {
                         take(tracer, batch, tally);
                         stopped = check();
@@ -100,6 +112,8 @@ class TileRenderer {
         static constexpr std::size_t capacity = 256;
         struct Place {
             Pixel* pixel = nullptr;
+            std::span<BucketMoments> buckets;
+            double* layer_sums = nullptr;
             std::uint64_t number = 0; // of the sample among the pixel's
         };
         std::vector<Place> places;
@@ -113,8 +127,9 @@ class TileRenderer {
             places.clear();
             keys.clear();
         }
-        void add(Pixel& pixel, std::uint64_t number, const SampleContext::Key& key) {
-            places.push_back({&pixel, number});
+        void add(Pixel& pixel, std::span<BucketMoments> buckets, double* layer_sums, std::uint64_t number,
+                 const SampleContext::Key& key) {
+            places.push_back({&pixel, buckets, layer_sums, number});
             keys.push_back(key);
         }
     };

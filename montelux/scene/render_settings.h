@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -27,6 +29,25 @@ enum class Strategy : std::uint8_t {
 enum class Heuristic : std::uint8_t { balance, power };
 // How one light is chosen among many (scene/light/sampler).
 enum class LightSampling : std::uint8_t { uniform, power, tree };
+// What becomes of light that microfacets throw at one another: lost, as pbrt means rough surfaces, or followed until
+// it leaves (scene/bsdf/multiple_scattering.h).
+enum class MicrofacetScattering : std::uint8_t { single, multiple };
+// Where the facets of a mesh with smooth normals turn away from a light: shadow at once, as pbrt means it, or a
+// gradual one (scene/shape/shading_terminator.h).
+enum class ShadingTerminator : std::uint8_t { hard, soft };
+
+struct SurfaceSettings {
+    MicrofacetScattering microfacets = MicrofacetScattering::single;
+    ShadingTerminator terminator = ShadingTerminator::hard;
+
+    bool operator==(const SurfaceSettings&) const = default;
+};
+
+// Ambient occlusion instead of light (transport/occlusion_integrator.h).
+struct OcclusionSettings {
+    bool cosine = true; // samples directions by their cosine, or evenly
+    float max_distance = std::numeric_limits<float>::infinity();
+};
 
 struct IntegratorSettings {
     int max_depth = 5; // scattering events of a path
@@ -36,15 +57,22 @@ struct IntegratorSettings {
     // Lamps are looked for along rays through homogeneous media, too (transport/segment_light.h). Effective where
     // lights are sampled.
     bool equiangular = true;
+    // Widens the microfacet lobes of surfaces that the path meets after an event that was not specular (Ggx::widened):
+    // biased, without the fireflies of caustics.
+    bool regularize = false;
+    std::optional<OcclusionSettings> occlusion{}; // the other settings then have no effect
     EnvironmentSampling environment_sampling = EnvironmentSampling::automatic;
     // MIS compensation; effective only with mis and its terms.
     bool environment_compensation = true;
     EnvironmentLookup environment_lookup = EnvironmentLookup::nearest;
+    MicrofacetScattering microfacet_scattering = MicrofacetScattering::single;
+    ShadingTerminator shading_terminator = ShadingTerminator::hard;
 
     EnvironmentSettings environments() const {
         return {environment_sampling, environment_compensation && strategy >= Strategy::mis,
                 environment_lookup};
     }
+    SurfaceSettings surfaces() const { return {microfacet_scattering, shading_terminator}; }
 };
 
 struct SceneDescription {

@@ -22,6 +22,7 @@ namespace montelux {
 // A group of shapes in its own space, placed by instances.
 struct ObjectDefinition {
     std::vector<Index> shapes;
+    std::string name{}; // may be empty
 };
 struct Instance {
     Index object = no_index;
@@ -52,6 +53,10 @@ struct Scene {
 
     std::vector<Light> lights;
     CameraSettings camera;
+
+    // Names for the layers of a picture (scene_names.h, light_groups.h): one per shape, material and light, empty
+    // where there is none. They may end early.
+    std::vector<std::string> shape_names, material_names, light_groups;
 
     std::vector<Medium> media;
     std::vector<ScalarGrid> scalar_grids; // of media

@@ -7,6 +7,7 @@
 #include <span>
 #include <tuple>
 
+#include "montelux/mc/math/vector_bytes.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/scene/light/light_sampling.h"
 #include "montelux/scene/light/scene_disk.h"
@@ -19,8 +20,9 @@ namespace {
 using CoatingKey = std::tuple<float, float, float, int>; // eta, alpha, thickness, max_depth
 
 // The coating's parameters if CoatingTable's closed form applies: constant over the surface, isotropic, with
-// a clear layer and no dispersion.
-std::optional<CoatingKey> closed_form(const SceneView& scene, const Material& material) {
+// a clear layer, no dispersion and no scattering between microfacets.
+std::optional<CoatingKey> closed_form(const SceneView& scene, const Material& material,
+                                      MicrofacetScattering microfacets) {
     const auto* m = std::get_if<CoatedDiffuseMaterial>(&material);
     if (m == nullptr) return std::nullopt;
     const CoatingParameters& c = m->coating;
@@ -31,6 +33,7 @@ std::optional<CoatingKey> closed_form(const SceneView& scene, const Material& ma
         return std::nullopt;
     float alpha = c.roughness.u.value;
     if (c.roughness.remap) alpha = Ggx::alpha_from_roughness(alpha);
+    if (microfacets == MicrofacetScattering::multiple && !Ggx{alpha, alpha}.is_smooth()) return std::nullopt;
     float eta = scene.spectrum(c.eta)(550);
     if (!(eta > 0)) return std::nullopt;
     return CoatingKey{eta, alpha, std::max(c.thickness.value, 0.0f), c.max_depth};
@@ -96,12 +99,14 @@ std::optional<PowerLightSampler> make_segment_lights(const SceneView& scene) {
 } // namespace
 
 SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environments,
-                         LightSampling light_sampling)
+                         LightSampling light_sampling, const SurfaceSettings& surfaces)
     : lights_(scene, environments) {
     add_mipmaps(scene);
-    add_materials(scene);
+    add_materials(scene, surfaces.microfacets);
     add_media(scene);
     view_ = SceneView(scene);
+    view_.multiple_scattering = surfaces.microfacets == MicrofacetScattering::multiple;
+    view_.soft_terminator = surfaces.terminator == ShadingTerminator::soft;
     view_.textured = textured_;
     view_.follows_tangents = follows_tangents_;
     view_.coating_of_material = coating_of_material_;
@@ -138,14 +143,22 @@ void SceneTables::add_media(const Scene& scene) {
         media_.push_back(std::visit([&](const auto& m) { return m.table(scene); }, medium));
 }
 
-void SceneTables::add_materials(const Scene& scene) {
+// The interior of a translucent body depends on the surface.
+bool has_textured_body(const Scene& scene, const Material& material) {
+    const auto* m = std::get_if<SubsurfaceMaterial>(&material);
+    if (m == nullptr || !m->interior.is_given()) return false;
+    const auto* body = std::get_if<HomogeneousMedium>(&scene.media[m->interior.index]);
+    return body != nullptr && body->surface.is_given();
+}
+
+void SceneTables::add_materials(const Scene& scene, MicrofacetScattering microfacets) {
     std::map<CoatingKey, Index> index_of;
     std::vector<CoatingKey> keys;
     for (const Material& material : scene.materials) {
-        textured_.push_back(uses_coordinates(material) ? 1 : 0);
+        textured_.push_back(uses_coordinates(material) || has_textured_body(scene, material) ? 1 : 0);
         follows_tangents_.push_back(has_textured_bsdf(material) || is_anisotropic(material) ? 1 : 0);
         Index table = no_index;
-        if (auto key = closed_form(SceneView(scene), material)) {
+        if (auto key = closed_form(SceneView(scene), material, microfacets)) {
             auto [found, inserted] = index_of.try_emplace(*key, static_cast<Index>(keys.size()));
             if (inserted) keys.push_back(*key);
             table = found->second;
@@ -159,6 +172,25 @@ void SceneTables::add_materials(const Scene& scene) {
     });
     coatings_.reserve(tables.size());
     for (auto& table : tables) coatings_.push_back(std::move(*table));
+}
+
+std::vector<MemoryUse> SceneTables::memory_use() const {
+    std::size_t pyramids = vector_bytes(mipmaps_, alpha_mipmaps_, alpha_mipmap_of_image_),
+                coatings = vector_bytes(coatings_), media = vector_bytes(media_);
+    for (const MipMap& m : mipmaps_) pyramids += m.bytes();
+    for (const MipMap& m : alpha_mipmaps_) pyramids += m.bytes();
+    for (const CoatingTable& c : coatings_) coatings += c.bytes();
+    for (const MediumTable& m : media_) media += vector_bytes(m.majorants.values);
+    std::vector<MemoryUse> table;
+    const auto add = [&](std::string_view kind, std::size_t bytes, std::size_t count, std::string_view unit) {
+        if (count > 0) table.push_back({kind, bytes, count, unit});
+    };
+    add("pyramids of images", pyramids, mipmaps_.size() + alpha_mipmaps_.size(), "pyramids");
+    add("tables of coatings", coatings, coatings_.size(), "tables");
+    add("bounds of media", media, media_.size(), "media");
+    add("tables of lights", lights_.bytes(), view_.lights.size(), "lights");
+    add("choice of lights", light_sampler_.bytes(), light_sampler_.size(), "parts of lights");
+    return table;
 }
 
 } // namespace montelux

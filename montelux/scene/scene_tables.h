@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "montelux/scene/light/light_tables.h"
+#include "montelux/scene/memory_use.h"
 #include "montelux/scene/render_settings.h"
 #include "montelux/scene/view.h"
 
@@ -14,17 +15,20 @@ class SceneTables {
     // Builds the pyramids of all images, even of those that no texture filters. Independent parts are built
     // in parallel.
     explicit SceneTables(const Scene& scene, const EnvironmentSettings& environments = {},
-                         LightSampling light_sampling = LightSampling::tree);
+                         LightSampling light_sampling = LightSampling::tree,
+                         const SurfaceSettings& surfaces = {});
 
     SceneTables(const SceneTables&) = delete;
     SceneTables& operator=(const SceneTables&) = delete;
 
     // The scene with its tables; both must outlive the view.
     const SceneView& view() const { return view_; }
+    // Kinds of tables that the scene does not need are left out.
+    std::vector<MemoryUse> memory_use() const;
 
   private:
     void add_mipmaps(const Scene& scene);
-    void add_materials(const Scene& scene);
+    void add_materials(const Scene& scene, MicrofacetScattering microfacets);
     void add_media(const Scene& scene);
 
     std::vector<MipMap> mipmaps_, alpha_mipmaps_;

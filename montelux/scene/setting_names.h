@@ -36,6 +36,10 @@ inline constexpr SettingNames<EnvironmentSampling, 4> environment_sampling_names
      {"structured", EnvironmentSampling::structured}}};
 inline constexpr SettingNames<EnvironmentLookup, 2> environment_lookup_names{
     {{"nearest", EnvironmentLookup::nearest}, {"bilinear", EnvironmentLookup::bilinear}}};
+inline constexpr SettingNames<MicrofacetScattering, 2> microfacet_scattering_names{
+    {{"single", MicrofacetScattering::single}, {"multiple", MicrofacetScattering::multiple}}};
+inline constexpr SettingNames<ShadingTerminator, 2> shading_terminator_names{
+    {{"hard", ShadingTerminator::hard}, {"soft", ShadingTerminator::soft}}};
 
 template <typename Setting, std::size_t n>
 constexpr std::string_view name_in(const SettingNames<Setting, n>& names, Setting value) {
@@ -52,6 +56,12 @@ constexpr std::string_view name_of(EnvironmentSampling sampling) {
 }
 constexpr std::string_view name_of(EnvironmentLookup lookup) {
     return name_in(environment_lookup_names, lookup);
+}
+constexpr std::string_view name_of(MicrofacetScattering scattering) {
+    return name_in(microfacet_scattering_names, scattering);
+}
+constexpr std::string_view name_of(ShadingTerminator terminator) {
+    return name_in(shading_terminator_names, terminator);
 }
 
 } // namespace montelux

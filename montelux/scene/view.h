@@ -54,6 +54,9 @@ struct SceneView {
     // Parts of lights that have a position, for rays through media; null without media or without such lights.
     const PowerLightSampler* segment_lights = nullptr;
 
+    // MicrofacetScattering::multiple and ShadingTerminator::soft.
+    bool multiple_scattering = false, soft_terminator = false;
+
     SceneView() = default;
     // Without tables: enough for geometry and constant parameters.
     explicit SceneView(const Scene& scene)

@@ -1,5 +1,7 @@
 #include "montelux/spectrum/sensor.h"
 
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/math/nearest_name.h"
 #include "montelux/spectrum/illuminants.h"
 #include "montelux/spectrum/spectrum_table.h"
 
@@ -17,14 +19,21 @@ Matrix3 chromatic_adaptation(Vec2d from_white, Vec2d to_white) {
 Sensor::Sensor(const RgbColorSpace& space, const SensorSettings& settings)
     : imaging_ratio_(settings.exposure_time * settings.iso / 100) {
     Matrix3 balance;
-    if (settings.white_balance > 0) {
+    if (settings.name != cie_sensor) {
+        camera_ = find_camera_sensor(settings.name);
+        if (!camera_)
+            throw Error("sensor", "unknown sensor '" + settings.name + "'" +
+                                      did_you_mean(settings.name, sensor_names()));
+        const float temperature = settings.white_balance > 0 ? settings.white_balance : 6500;
+        balance = xyz_from_camera(*camera_, daylight(temperature), space.illuminant());
+    } else if (settings.white_balance > 0) {
         Vec2d source = chromaticity(integrate_xyz(daylight(settings.white_balance)));
         balance = chromatic_adaptation(source, space.white());
     }
     double ratio = static_cast<double>(imaging_ratio_);
-    rgb_from_xyz_ = Matrix3::diagonal({ratio, ratio, ratio}) * space.rgb_from_xyz() * balance;
+    rgb_from_sensor_ = Matrix3::diagonal({ratio, ratio, ratio}) * space.rgb_from_xyz() * balance;
     for (int i = 0; i < visible_samples; ++i) {
-        Vec3d rgb = rgb_from_xyz_ * cie_xyz(i) * 0.25;
+        Vec3d rgb = rgb_from_sensor_ * (camera_ ? camera_->response(i) : cie_xyz(i)) * 0.25;
         response_[i] =
             Float4{static_cast<float>(rgb.x), static_cast<float>(rgb.y), static_cast<float>(rgb.z), 0};
     }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <string>
 
+#include "montelux/spectrum/camera_sensors.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 #include "montelux/spectrum/wavelengths.h"
 
@@ -14,12 +16,16 @@ struct SensorSettings {
     float iso = 100;         // sensitivity
     // Colour temperature (K) of the light that appears white; 0: no white balance.
     float white_balance = 0;
+    // One of sensor_names().
+    std::string name{cie_sensor};
 };
 
-// The CIE 1931 observer as a sensor. Lights are divided by their integral against the CIE's Y
+// The CIE 1931 observer as a sensor, or that of a camera, whose white balance is 6500 K where none is given. Lights are
+// divided by their integral against the CIE's Y
 // (to_photometric), so an RGB light of (1, 1, 1) gives RGB (1, 1, 1).
 class Sensor {
   public:
+    // Throws Error for an unknown sensor.
     explicit Sensor(const RgbColorSpace& space = RgbColorSpace::srgb(), const SensorSettings& settings = {});
 
     // Unbiased estimate of linear RGB from radiance at sampled wavelengths: the mean of
@@ -31,11 +37,13 @@ class Sensor {
     // Linear RGB of a spectrum by quadrature, as the expectation of to_rgb.
     template <typename F>
     Vec3d integrate_rgb(F&& radiance) const {
-        return rgb_from_xyz_ * (integrate_xyz(radiance) * cie_y_integral);
+        if (camera_) return rgb_from_sensor_ * camera_->integrate(radiance);
+        return rgb_from_sensor_ * (integrate_xyz(radiance) * cie_y_integral);
     }
 
   private:
-    Matrix3 rgb_from_xyz_; // with white balance and imaging ratio
+    std::optional<CameraSensor> camera_; // empty: the CIE's observer
+    Matrix3 rgb_from_sensor_;            // with white balance and imaging ratio
     float imaging_ratio_;
     // One quarter of the response of R, G and B at each nanometre, ready to be summed over four wavelengths.
     std::array<Float4, visible_samples> response_;

@@ -10,6 +10,7 @@
 #include "montelux/scene/bsdf/diffuse.h"
 #include "montelux/scene/light/light_sampling.h"
 #include "montelux/scene/material/parameter_evaluator.h"
+#include "montelux/scene/shape/shading_terminator.h"
 #include "montelux/scene/shape/surface_point.h"
 #include "montelux/transport/path_integrator.h"
 
@@ -25,6 +26,7 @@ inline LaneShading lane_shading(const SceneView& scene, const Hit& hit) {
     const Shape& shape = scene.shapes[hit.shape];
     const auto* diffuse = std::get_if<DiffuseMaterial>(&scene.materials[shape.material]);
     if (diffuse == nullptr || !diffuse->detail.is_flat()) return LaneShading::none;
+    if (scene.soft_terminator && has_vertex_normals(scene, shape)) return LaneShading::none;
     const bool plain = hit.instance == no_index && std::holds_alternative<MeshIndex>(shape.geometry) &&
                        !scene.is_textured(shape.material) && !scene.frame_follows_tangents(shape.material);
     return plain ? LaneShading::all : LaneShading::scattering;
@@ -111,6 +113,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
             if (textured) context = texture_context(point);
         }
         set_lane(w, i, state.ray.d);
+        state.meet(hit);
         const Index light = scene.shapes[hit.shape].light;
         if (hit.instance == no_index && light != no_index)
             add_met_light(scene, state, light,
@@ -156,6 +159,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
         SpectrumLanes<W> radiance;
         LaneMask<W> lit(false), invisible(false);
         std::array<Ray, W> shadows;
+        std::array<Index, W> chosen_lights{};
         for (int i = 0; i < size; ++i) {
             if (!stream.active[i]) continue;
             const auto k = static_cast<std::size_t>(i);
@@ -172,6 +176,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
             choice.set(i, chosen.probability);
             pdf.set(i, light->pdf);
             radiance.set_lane(i, light->radiance);
+            chosen_lights[k] = chosen.light;
             shadows[k] = light->shadow;
             shadows[k].time = state.ray.time;
         }
@@ -185,7 +190,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
             for (int i = 0; i < size; ++i) {
                 if (!lit[i]) continue;
                 const auto k = static_cast<std::size_t>(i);
-                batch.shadows.emplace_back(ShadowRay{shadows[k], contribution.lane(i)});
+                batch.shadows.emplace_back(ShadowRay{shadows[k], contribution.lane(i), chosen_lights[k]});
                 batch.shadow_owners.push_back(group.paths[k]);
             }
         }
@@ -217,6 +222,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
         state.throughput = throughput.lane(i);
         state.bsdf_pdf = scattered.pdf[i];
         state.sees_lights = false;
+        state.scattered_roughly = true;
         state.ray.o = lane_of(origin, i);
         state.ray.d = lane_of(wi, i);
         state.ray.t_max = std::numeric_limits<float>::infinity();

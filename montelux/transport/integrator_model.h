@@ -10,6 +10,7 @@
 #include "montelux/scene/view.h"
 #include "montelux/spectrum/wavelengths.h"
 #include "montelux/transport/ray_tracer.h"
+#include "montelux/transport/sample_extras.h"
 
 namespace montelux {
 
@@ -18,6 +19,7 @@ struct PathRecord;
 struct CameraSample {
     Ray ray;
     SampledWavelengths lambda;
+    SampleExtras* extras = nullptr; // null: not wanted
 };
 
 // A sample before its path: the stream has given the camera's numbers.

@@ -26,11 +26,12 @@ void PathIntegrator::add_met_light(const SceneView& scene, PathState& state, Ind
                               .light_pdf = pdf,
                               .weight = weight,
                               .counted = counted});
-    if (counted) state.radiance += state.throughput * le * weight;
+    if (counted) state.add(state.throughput * le * weight, light);
 }
 
 void PathIntegrator::escape(const SceneView& scene, PathState& state, PathRecorder recorder) const {
     if (recorder) recorder.left_scene(state.ray, state.throughput);
+    state.leave(state.throughput);
     for (Index light : scene.light_tables.infinite_lights)
         add_met_light(scene, state, light, {.wi = state.ray.d}, recorder);
     if (recorder) recorder.ended(PathEnd::left_scene);

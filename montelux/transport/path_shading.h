@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "montelux/scene/material/make_bsdf.h"
+#include "montelux/scene/material/soft_terminator.h"
 #include "montelux/scene/shape/surface_point.h"
 #include "montelux/transport/diffuse_lanes.h"
 #include "montelux/transport/light_choice.h"
@@ -76,6 +77,7 @@ struct PathIntegrator::Vertex {
         ray.ray = light->shadow;
         ray.ray.time = state.ray.time;
         ray.contribution = state.throughput * e.f * light->radiance * (weight / light_pdf);
+        ray.light = chosen.light;
     }
 
     template <BsdfModel B>
@@ -115,9 +117,9 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     const Vec3f w = state.ray.d;
     const Index material = scene.shapes[hit.shape].material;
     const bool textured = scene.is_textured(material);
-    const SurfacePoint s =
-        surface_point(scene, state.ray, hit, textured || scene.frame_follows_tangents(material));
+    SurfacePoint s = surface_point(scene, state.ray, hit, textured || scene.frame_follows_tangents(material));
     if (recorder) recorder.hit_surface(state.ray, hit, s, state.throughput);
+    state.meet(hit);
     if (hit.instance == no_index && s.shape->light != no_index)
         add_met_light(scene, state, s.shape->light,
                       {.wi = w, .part = s.primitive, .p = s.p, .n = s.ng, .b = s.b}, recorder);
@@ -128,7 +130,10 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     }
 
     const TextureContext context = textured ? texture_context(s) : TextureContext();
-    const SurfaceBsdf surface = make_bsdf(scene, s, -w, context, state.lambda);
+    const bool widen = settings_.regularize && state.scattered_roughly;
+    SurfaceBsdf surface = make_bsdf(scene, s, -w, context, state.lambda, widen);
+    if (scene.soft_terminator) [[unlikely]]
+        soften_terminator(scene, state.ray, hit, context, state.lambda, s, surface, widen);
     const Vec3f wo = surface.frame.to_local(-w);
     if (recorder) recorder.made_bsdf(surface, wo);
     if (state.depth == 1)
@@ -156,6 +161,7 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     state.throughput *= scattered->weight;
     state.bsdf_pdf = scattered->pdf;
     state.sees_lights = scattered->specular;
+    if (!scattered->specular) state.scattered_roughly = true;
     if (scattered->transmission) state.eta_scale *= scattered->eta * scattered->eta;
     const Vec3f wi = surface.frame.to_world(scattered->wi);
     if (recorder) recorder.scattered({*scattered, wi});
@@ -181,7 +187,7 @@ FilmContribution PathIntegrator::estimate(const SceneView& scene, RayTracer& tra
         const std::optional<ShadowRay> shadow = shade(scene, state, hit, stream, recorder);
         if (!shadow) continue;
         if (!tracer.occluded(shadow->ray))
-            state.radiance += shadow->contribution;
+            state.add(shadow->contribution, shadow->light);
         else if (recorder)
             recorder.occluded();
     }
@@ -240,7 +246,9 @@ void PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer, std::sp
         const std::span<bool> occluded(batch.occluded.get(), batch.rays.size());
         if (!batch.rays.empty()) tracer.occluded(batch.rays, occluded);
         for (std::size_t k = 0; k < occluded.size(); ++k)
-            if (!occluded[k]) batch.states[batch.shadow_owners[k]].radiance += batch.shadows[k]->contribution;
+            if (!occluded[k])
+                batch.states[batch.shadow_owners[k]].add(batch.shadows[k]->contribution,
+                                                         batch.shadows[k]->light);
         std::erase_if(batch.alive, [&](Index i) { return !batch.states[i].alive; });
     }
     for (std::size_t i = 0; i < starts.size(); ++i) {

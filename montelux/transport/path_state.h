@@ -11,16 +11,33 @@ struct PathState {
     Ray ray;                   // to be traced next
     SampledWavelengths lambda; // may lose its secondary wavelengths
     SampledSpectrum radiance{}, throughput{1};
-    ReferencePoint previous; // the last scattering vertex; at first the origin of the camera ray
-    float bsdf_pdf = 0;      // of the ray's direction there
-    float eta_scale = 1;     // squared index of refraction along the path, undone for Russian roulette
-    int depth = 0;           // scattering events so far
-    bool sees_lights = true; // no other strategy can find the light that the ray hits
-    bool alive = true;       // false: the path has ended; do not trace the ray
+    ReferencePoint previous;        // the last scattering vertex; at first the origin of the camera ray
+    float bsdf_pdf = 0;             // of the ray's direction there
+    float eta_scale = 1;            // squared index of refraction along the path, undone for Russian roulette
+    int depth = 0;                  // scattering events so far
+    bool sees_lights = true;        // no other strategy can find the light that the ray hits
+    bool scattered_roughly = false; // some event so far was not specular
+    bool alive = true;              // false: the path has ended; do not trace the ray
     FirstHit first;
+    SampleExtras* extras = nullptr; // null: not wanted
 
-    PathState(const CameraSample& camera) : ray(camera.ray), lambda(camera.lambda) {
+    PathState(const CameraSample& camera) : ray(camera.ray), lambda(camera.lambda), extras(camera.extras) {
         previous.p = camera.ray.o;
+    }
+    // Radiance of a light, or of a medium (no_index), after `depth` scattering events, and `more` on the ray.
+    void add(SampledSpectrum contribution, Index light, int more = 0) {
+        radiance += contribution;
+        if (extras != nullptr) [[unlikely]]
+            extras->add(contribution, depth + more, light);
+    }
+    // The ray hits a surface, or leaves the scene.
+    void meet(const Hit& hit) {
+        if (extras != nullptr && depth == 0) [[unlikely]]
+            extras->meet(ray, hit);
+    }
+    void leave(SampledSpectrum carried) {
+        if (extras != nullptr && depth == 0) [[unlikely]]
+            extras->transparency = average(carried);
     }
 };
 static_assert(std::is_trivially_copyable_v<PathState>);
@@ -29,6 +46,7 @@ static_assert(std::is_trivially_copyable_v<PathState>);
 struct ShadowRay {
     Ray ray;
     SampledSpectrum contribution;
+    Index light = no_index;
 };
 
 } // namespace montelux

@@ -32,12 +32,14 @@ struct ShadowTransmittance {
 
 namespace shadow_detail {
 
-// Multiplies by a medium along a ray with a direction of unit length. False if nothing gets through.
+// Multiplies by a medium along a ray with a direction of unit length. False if nothing gets through. `body`: the
+// coefficients of a body that vary over its surface.
 template <MediumModel M, RandomStream Stream>
 bool pass(const M& medium, const SceneView& scene, Index index, const SampledWavelengths& lambda,
-          const Ray& ray, Stream& stream, ShadowTransmittance& through) {
-    const auto local = medium.at(scene, index, lambda);
+          const Ray& ray, const MediumPoint& body, Stream& stream, ShadowTransmittance& through) {
+    auto local = medium.at(scene, index, lambda);
     if constexpr (M::homogeneous) {
+        if (medium.surface.is_given()) local.point = body;
         const SampledSpectrum sigma_t = local.point.sigma_a + local.point.sigma_s;
         const float distance = std::min(ray.t_max, std::numeric_limits<float>::max());
         const SampledSpectrum transmittance = exp(sigma_t * -distance);
@@ -77,11 +79,11 @@ bool pass(const M& medium, const SceneView& scene, Index index, const SampledWav
 
 } // namespace shadow_detail
 
-// Along the shadow ray of a light, which starts in `medium`. Empty if a surface or a medium blocks it.
+// Along the shadow ray of a light, which starts in `medium`. `body`: VolumeState::body of that medium. Empty if a surface or a medium blocks it.
 template <RandomStream Stream>
 std::optional<ShadowTransmittance> shadow_transmittance(const SceneView& scene, RayTracer& tracer, Ray ray,
                                                         Index medium, const SampledWavelengths& lambda,
-                                                        Stream& stream) {
+                                                        Stream& stream, const MediumPoint& body = {}) {
     const bool finite = ray.t_max < std::numeric_limits<float>::infinity();
     const Point3f end = finite ? ray.o + ray.d : Point3f();
     std::optional<ShadowTransmittance> through(std::in_place);
@@ -95,7 +97,7 @@ std::optional<ShadowTransmittance> shadow_transmittance(const SceneView& scene, 
             const Ray part{ray.o, ray.d / scale, (found ? hit.t : ray.t_max) * scale};
             const bool passes = std::visit(
                 [&](const auto& m) {
-                    return shadow_detail::pass(m, scene, medium, lambda, part, stream, *through);
+                    return shadow_detail::pass(m, scene, medium, lambda, part, body, stream, *through);
                 },
                 scene.media[medium]);
             if (!passes) return std::nullopt;

@@ -5,6 +5,7 @@
 
 #include "montelux/mc/warp/sphere.h"
 #include "montelux/scene/material/make_bsdf.h"
+#include "montelux/scene/material/soft_terminator.h"
 #include "montelux/transport/light_choice.h"
 #include "montelux/transport/path_weights.h"
 #include "montelux/transport/shadow_transmittance.h"
@@ -53,7 +54,9 @@ class VolumePath {
 
     template <MediumModel M>
     bool passes(const M& medium, float distance) {
-        const auto local = medium.at(scene_, state_.medium, state_.lambda);
+        auto local = medium.at(scene_, state_.medium, state_.lambda);
+        if constexpr (M::homogeneous)
+            if (medium.surface.is_given()) local.point = state_.body;
         const Ray ray{state_.ray.o, state_.ray.d, distance};
         SegmentLight segment;
         if constexpr (M::homogeneous) {
@@ -129,7 +132,7 @@ class VolumePath {
     // Of media: no strategy but following the path finds it.
     void emit(SampledSpectrum radiance) {
         if (settings_.strategy == Strategy::mis_light) return;
-        state_.radiance += radiance;
+        state_.add(radiance, no_index);
         if (recorder_) recorder_.emitted(radiance);
     }
 
@@ -176,6 +179,7 @@ class VolumePath {
             },
             phase);
         state_.sees_lights = in_body;
+        state_.scattered_roughly = true;
         state_.alive = survives();
     }
 
@@ -190,7 +194,7 @@ class VolumePath {
         const Vec3f w = state_.ray.d;
         const Index material = scene_.shapes[hit.shape].material;
         const bool interface = scene_.is_interface(hit.shape), textured = scene_.is_textured(material);
-        const SurfacePoint s =
+        SurfacePoint s =
             surface_point(scene_, state_.ray, hit, textured || scene_.frame_follows_tangents(material));
         if (recorder_) recorder_.hit_surface(state_.ray, hit, s, state_.carried());
         if (hit.instance == no_index && s.shape->light != no_index)
@@ -206,6 +210,7 @@ class VolumePath {
         }
         interfaces_ = 0;
         const bool in_body = is_in_body();
+        if (!in_body) state_.meet(hit);
         if (in_body ? ++body_events_ == most_body_events : state_.depth++ == settings_.max_depth) {
             end(PathEnd::max_depth);
             return;
@@ -215,7 +220,10 @@ class VolumePath {
             textured ? texture_context(*integrator_.camera_, integrator_.footprint_scale_, s)
                      : TextureContext();
         const bool was_terminated = state_.lambda.secondary_terminated();
-        const SurfaceBsdf surface = make_bsdf(scene_, s, -w, context, state_.lambda);
+        const bool widen = settings_.regularize && state_.scattered_roughly;
+        SurfaceBsdf surface = make_bsdf(scene_, s, -w, context, state_.lambda, widen);
+        if (scene_.soft_terminator) [[unlikely]]
+            soften_terminator(scene_, state_.ray, hit, context, state_.lambda, s, surface, widen);
         if (!was_terminated && state_.lambda.secondary_terminated()) state_.terminate_secondary();
         const Vec3f wo = surface.frame.to_local(-w);
         if (recorder_) recorder_.made_bsdf(surface, wo);
@@ -238,7 +246,7 @@ class VolumePath {
                             return bsdf.evaluate(wo, surface.frame.to_local(wi), TransportMode::radiance,
                                                  stream_);
                         },
-                        &s);
+                        &s, &context);
                 if (settings_.strategy == Strategy::uniform && !bsdf.is_specular())
                     return sample_uniform(bsdf, wo, stream_);
                 return bsdf.sample(wo, TransportMode::radiance, stream_);
@@ -252,11 +260,21 @@ class VolumePath {
         state_.scatter();
         state_.bsdf_pdf = scattered->pdf;
         state_.sees_lights = scattered->specular;
+        if (!scattered->specular) state_.scattered_roughly = true;
         if (scattered->transmission) state_.eta_scale *= scattered->eta * scattered->eta;
         const Vec3f wi = surface.frame.to_world(scattered->wi);
         if (recorder_) recorder_.scattered({*scattered, wi});
         leave(s, wi);
+        if (scattered->transmission) state_.body = body_at(state_.medium, context);
         state_.alive = survives();
+    }
+
+    // The coefficients of a body below a surface point; those of the path where they do not vary.
+    MediumPoint body_at(Index medium, const TextureContext& context) const {
+        if (medium == no_index) return state_.body;
+        const auto* m = std::get_if<HomogeneousMedium>(&scene_.media[medium]);
+        if (m == nullptr || !m->surface.is_given()) return state_.body;
+        return m->surface.at(scene_, context, state_.lambda);
     }
 
     // The ray continues from a surface in direction w.
@@ -269,6 +287,7 @@ class VolumePath {
 
     void escape() {
         if (recorder_) recorder_.left_scene(state_.ray, state_.carried());
+        state_.leave(state_.carried());
         for (Index light : scene_.light_tables.infinite_lights) add_met_light(light, {.wi = state_.ray.d});
         end(PathEnd::left_scene);
     }
@@ -299,7 +318,7 @@ class VolumePath {
                                    .light_pdf = pdf,
                                    .weight = weight,
                                    .counted = counted});
-        if (counted) state_.radiance += state_.carried() * le * weight;
+        if (counted) state_.add(state_.carried() * le * weight, light);
     }
 
     // Next-event estimation from a point of the ray that is chosen for a lamp (SegmentLight). Returns what its
@@ -357,7 +376,8 @@ class VolumePath {
         record.weight = path_weight(settings_, record.light_pdf,
                                     joint_density(settings_, record.bsdf_pdf, record.other_pdf));
         if (settings_.strategy == Strategy::mis_bsdf) return finish(Outcome::other_term);
-        state_.radiance += state_.carried() * record.f * record.radiance * (record.weight / record.light_pdf);
+        state_.add(state_.carried() * record.f * record.radiance * (record.weight / record.light_pdf),
+                   chosen.light, 1);
         return finish(Outcome::counted);
     }
 
@@ -370,9 +390,10 @@ class VolumePath {
     }
 
     // Next-event estimation: one light, one point on it. evaluate(wi) gives value and density of scattering.
-    // `surface`: what scatters, if it is no medium.
+    // `surface` and `context`: of what scatters, if it is no medium.
     template <typename Evaluate>
-    void sample_light(Index medium, const Evaluate& evaluate, const SurfacePoint* surface = nullptr) {
+    void sample_light(Index medium, const Evaluate& evaluate, const SurfacePoint* surface = nullptr,
+                      const TextureContext* context = nullptr) {
         using Outcome = DirectLight::Outcome;
         if (scene_.light_sampler->empty()) return;
         const ChosenLight chosen = choose_light(scene_, state_.previous, state_.lambda, stream_);
@@ -396,8 +417,10 @@ class VolumePath {
         if (surface != nullptr) medium = medium_beyond(*surface, light->wi, medium);
         Ray shadow = light->shadow;
         shadow.time = state_.ray.time;
+        const MediumPoint body =
+            context != nullptr && medium != state_.medium ? body_at(medium, *context) : state_.body;
         const std::optional<ShadowTransmittance> through =
-            shadow_transmittance(scene_, tracer_, shadow, medium, state_.lambda, stream_);
+            shadow_transmittance(scene_, tracer_, shadow, medium, state_.lambda, stream_, body);
         if (!through) return finish(Outcome::occluded);
         // Densities relative to that of the path so far, averaged over the wavelengths.
         const float before = average(state_.r_u);
@@ -410,7 +433,8 @@ class VolumePath {
         record.weight = alone && others == 0 ? 1 : path_weight(settings_, record.light_pdf, others);
         if (settings_.strategy == Strategy::mis_bsdf) return finish(Outcome::other_term);
         finish(Outcome::counted);
-        state_.radiance += state_.carried() * e.f * record.radiance * (record.weight / record.light_pdf);
+        state_.add(state_.carried() * e.f * record.radiance * (record.weight / record.light_pdf),
+                   chosen.light);
     }
 
     // Russian roulette on what the path carries to the film. Returns false if the path ends.

@@ -3,6 +3,7 @@
 
 #include <type_traits>
 
+#include "montelux/scene/medium/medium_model.h"
 #include "montelux/transport/path_state.h"
 #include "montelux/transport/segment_light.h"
 
@@ -21,6 +22,7 @@ struct VolumeState : PathState {
     SampledSpectrum r_s{1};
     SegmentLight segment;    // on which the last scattering vertex lies, if it is one in a medium
     Index medium = no_index; // around the ray
+    MediumPoint body{};      // coefficients of the body that surrounds the ray, if they vary over its surface
     float distance = 0;      // from the camera to the ray's origin, until the first scattering event
 
     VolumeState(const CameraSample& camera, Index camera_medium) : PathState(camera), medium(camera_medium) {}
@@ -65,6 +67,8 @@ struct VolumeState : PathState {
         r_u = SampledSpectrum(r_u[0]);
         r_l = SampledSpectrum(r_l[0]);
         r_s = SampledSpectrum(r_s[0]);
+        body.sigma_a = SampledSpectrum(body.sigma_a[0]);
+        body.sigma_s = SampledSpectrum(body.sigma_s[0]);
     }
 };
 static_assert(std::is_trivially_copyable_v<VolumeState>);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "montelux/image/cryptomatte.h"
 #include "montelux/image/image_write.h"
 #include "montelux/image/tone_curve.h"
 #include "montelux/mc/io/generation_file.h"
@@ -67,17 +68,26 @@ std::vector<std::string> warnings_of(const RenderJob& job) {
 
 // Layers by their names in Python, as arrays on the picture's own memory.
 nb::dict layers_of(const RenderSnapshot& snapshot) {
-    static constexpr std::pair<const char*, const char*> colors[] = {{"mean", "R"},
-                                                                     {"standard_error", "stderr.R"},
-                                                                     {"skewness", "skewness.R"},
-                                                                     {"denoised", "denoised.R"},
-                                                                     {"albedo", "albedo.R"},
-                                                                     {"normal", "N.X"}};
-    static constexpr std::pair<const char*, const char*> numbers[] = {{"samples", "samples"},
-                                                                      {"replicates", "replicates"},
-                                                                      {"outlier", "outlier"},
-                                                                      {"warning", "warning"},
-                                                                      {"depth", "depth.Z"}};
+    static constexpr std::pair<const char*, const char*> colors[] = {
+        {"mean", "R"},
+        {"standard_error", "stderr.R"},
+        {"skewness", "skewness.R"},
+        {"denoised", "denoised.R"},
+        {"albedo", "albedo.R"},
+        {"normal", "N.X"},
+        {"variance", "variance.R"},
+        {"relative_variance", "relativeVariance.R"},
+        {"geometric_normal", "Ng.X"},
+        {"position", "P.X"},
+        {"direct", "direct.R"},
+        {"indirect", "indirect.R"}};
+    static constexpr std::pair<const char*, const char*> pairs[] = {
+        {"uv", "uv.U"}, {"depth_slopes", "dzdx"}, {"motion", "motion.X"}};
+    static constexpr std::pair<const char*, const char*> mattes[] = {{"shape", "CryptoShape00.R"},
+                                                                     {"material", "CryptoMaterial00.R"}};
+    static constexpr std::pair<const char*, const char*> numbers[] = {
+        {"samples", "samples"}, {"replicates", "replicates"}, {"outlier", "outlier"},
+        {"warning", "warning"}, {"depth", "depth.Z"},         {"alpha", "A"}};
     nb::dict d;
     for (const auto& [name, first] : colors)
         if (const std::optional<int> c = snapshot.image->find_channel(first))
@@ -85,12 +95,24 @@ nb::dict layers_of(const RenderSnapshot& snapshot) {
     for (const auto& [name, channel] : numbers)
         if (const std::optional<int> c = snapshot.image->find_channel(channel))
             d[name] = channels_of(snapshot.image, *c, 1);
+    for (const auto& [name, channel] : pairs)
+        if (const std::optional<int> c = snapshot.image->find_channel(channel))
+            d[name] = channels_of(snapshot.image, *c, 2);
+    for (const auto& [name, channel] : mattes)
+        if (const std::optional<int> c = snapshot.image->find_channel(channel))
+            d[name] = channels_of(snapshot.image, *c, static_cast<int>(2 * cryptomatte_ranks));
+    const std::vector<std::string>& channels = snapshot.image->channel_names();
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        if (channels[c].starts_with("light.") && channels[c].ends_with(".R"))
+            d[channels[c].substr(0, channels[c].size() - 2).c_str()] =
+                channels_of(snapshot.image, static_cast<int>(c), 3);
     return d;
 }
 
 // For screens and formats without layers: the denoised picture, if there is one.
 Image shown(const RenderSnapshot& snapshot) {
-    return snapshot.image->find_channel("denoised.R") ? denoised_picture(*snapshot.image) : *snapshot.image;
+    if (snapshot.image->find_channel("denoised.R")) return denoised_picture(*snapshot.image);
+    return snapshot.image->select(std::vector<std::string>{"R", "G", "B"});
 }
 
 nb::tuple screen(const RenderSnapshot& snapshot, double exposure) {
@@ -119,7 +141,13 @@ void bind_render(nb::module_& m) {
             "save",
             [](const RenderSnapshot& l, const std::filesystem::path& path, double exposure) {
                 nb::gil_scoped_release unlocked;
-                write_picture(path, *l.image, {.exposure = static_cast<float>(exposure)});
+                WriteOptions writing{.exposure = static_cast<float>(exposure)};
+                if (l.half) writing.exr_half = half_channels_of(l.image->channel_names());
+                const std::string extension = path.extension().string();
+                if (extension == ".exr" || extension == ".EXR")
+                    write_picture(path, *l.image, writing);
+                else
+                    write_image(path, shown(l), writing);
             },
             "path"_a, "exposure"_a);
     nb::class_<RenderJob>(m, "RenderJob", "A render in the background.")

@@ -98,6 +98,8 @@ nb::object positions_of(const ShapeRef& r) {
 
 void erase_light(SceneDescription& d, Index light) {
     d.scene.lights.erase(d.scene.lights.begin() + light);
+    std::vector<std::string>& groups = d.scene.light_groups;
+    if (light < groups.size()) groups.erase(groups.begin() + light);
     for (Shape& s : d.scene.shapes) {
         if (s.light == no_index || s.light < light) continue;
         s.light = s.light == light ? no_index : s.light - 1;

@@ -5,13 +5,18 @@
 #include <string>
 
 #include "montelux/image/image.h"
+#include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/setting_names.h"
+#include "montelux/spectrum/camera_sensors.h"
 
 namespace montelux::python {
 namespace {
 
 constexpr Names<SamplerKind, 6> sampler_kinds{"sampler", sampler_names};
 constexpr Names<LightSampling, 3> light_samplings{"light_sampling", light_sampling_names};
+constexpr Names<MicrofacetScattering, 2> microfacet_scatterings{"microfacet_scattering",
+                                                                microfacet_scattering_names};
+constexpr Names<ShadingTerminator, 2> shading_terminators{"shading_terminator", shading_terminator_names};
 constexpr Names<Strategy, 6> strategies{"strategy", strategy_names};
 constexpr Names<Heuristic, 2> heuristics{"heuristic", heuristic_names};
 constexpr Names<EnvironmentSampling, 4> environment_samplings{"environment_sampling",
@@ -34,18 +39,6 @@ void choice(nb::class_<Ref<T>>& c, const char* name, M T::*member, const Table& 
             if (!nb::isinstance<nb::str>(v))
                 throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected a name");
             t.*member = table.value(nb::cast<std::string>(v));
-        },
-        doc);
-}
-
-template <typename T>
-void flag(nb::class_<Ref<T>>& c, const char* name, bool T::*member, const char* doc) {
-    attribute<T>(
-        c, name, "bool", [member](const T& t, const auto&) { return nb::cast(t.*member); },
-        [member](T& t, nb::handle v, auto&, const std::string& what) {
-            if (!nb::isinstance<nb::bool_>(v))
-                throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected True or False");
-            t.*member = nb::cast<bool>(v);
         },
         doc);
 }
@@ -183,10 +176,53 @@ void bind_film(nb::module_& m) {
            "Sensitivity; 100 leaves values as they are.");
     number(c, "exposure_time", &FilmSettings::exposure_time, positive, "a number above zero", "Seconds.");
     number(c, "white_balance", &FilmSettings::white_balance, not_negative, "a number that is not negative",
-           "Kelvin of the light that is to look white; 0: none.");
+           "Kelvin of the light that is to look white; 0: none, or 6500 K for a camera's sensor.");
+    attribute<FilmSettings>(
+        c, "sensor", "str", [](const FilmSettings& f, const auto&) { return nb::str(f.sensor.c_str()); },
+        [](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
+            if (!nb::isinstance<nb::str>(v))
+                throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected a name");
+            const auto name = nb::cast<std::string>(v);
+            const std::vector<std::string_view>& names = sensor_names();
+            if (std::find(names.begin(), names.end(), name) == names.end())
+                throw Error(what, "unknown sensor '" + name + "'" + did_you_mean(name, names));
+            f.sensor = name;
+        },
+        "The sensor by its name in pbrt-v4, such as \"nikon_d850\"; \"cie1931\" is the standard observer.");
     number(
         c, "max_component_value", &FilmSettings::max_component_value, [](double x) { return x > 0; },
         "a number above zero", "Largest RGB value of a sample; infinite: none.");
+    attribute<FilmSettings>(
+        c, "layers", "str",
+        [](const FilmSettings& f, const auto&) { return nb::cast(text_of(f.layers.set)); },
+        [](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
+            std::string list;
+            if (!nb::try_cast(v, list))
+                throw Error(what,
+                            std::string(nb::repr(v).c_str()) + " was given; expected names with commas");
+            try {
+                f.layers.set = parse_layers(list);
+            } catch (const Error& e) {
+                throw Error(what, e.what());
+            }
+        },
+        "Names of the layers of a picture with commas, as of `montelux render --layers`: "
+        "'default,position'.");
+    auto flag = [&](const char* name, bool LayerSettings::*member, const char* doc) {
+        attribute<FilmSettings>(
+            c, name, "bool",
+            [member](const FilmSettings& f, const auto&) { return nb::cast(f.layers.*member); },
+            [member](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
+                if (!nb::isinstance<nb::bool_>(v))
+                    throw Error(what,
+                                std::string(nb::repr(v).c_str()) + " was given; expected True or False");
+                f.layers.*member = nb::cast<bool>(v);
+            },
+            doc);
+    };
+    flag("layers_in_camera_space", &LayerSettings::in_camera_space,
+         "Positions and normals of the layers are those of the camera, not of the world.");
+    flag("half", &LayerSettings::half, "EXR files hold 16-bit floats where those suffice.");
     c.def_prop_rw(
         "filter",
         [](const Ref<FilmSettings>& r) {
@@ -287,6 +323,13 @@ void bind_views(nb::module_& m) {
          "With the strategy mis and its terms, maps are not sampled where BSDFs find them as well.");
     choice(integrator, "environment_lookup", &IntegratorSettings::environment_lookup, environment_lookups,
            "What environment maps are between the centres of their texels: 'nearest' or 'bilinear'.");
+    choice(integrator, "microfacet_scattering", &IntegratorSettings::microfacet_scattering,
+           microfacet_scatterings,
+           "Light that microfacets throw at one another: lost with 'single', followed with 'multiple'.");
+    choice(integrator, "shading_terminator", &IntegratorSettings::shading_terminator, shading_terminators,
+           "Coarse meshes with smooth normals are shadowed by their facets ('hard') or as the smooth surface "
+           "that they "
+           "stand for ('soft').");
 }
 
 } // namespace montelux::python

@@ -37,6 +37,11 @@ def test_attributes_read_what_was_set(scene):
     assert scene.film.filter.radius == (2, 1) and scene.film.filter.sigma == pytest.approx(0.7)
     film.filter.sigma = 0.5
     assert scene.film.filter.sigma == 0.5
+    assert film.sensor == "cie1931"
+    film.sensor = "nikon_d850"
+    assert scene.film.sensor == "nikon_d850"
+    with pytest.raises(montelux.Error, match="did you mean 'nikon_d850'"):
+        film.sensor = "nikon_d85"
     scene.materials[0].reflectance = montelux.Spectrum(0.25)
     assert scene.materials[0].reflectance(550) == 0.25
     scene.materials[0] = montelux.Dielectric(eta="glass-BK7", roughness=0.1)

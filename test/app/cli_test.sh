@@ -41,7 +41,7 @@ expect 1 "it is a folder" info .
 printf 'no picture' >text.png
 expect 1 "montelux: error: text.png: is not a picture" info text.png
 
-expect 0 "gbuffer              otherwise: read as 'rgb'" formats pbrt
+expect 0 "gbuffer              yes: as 'rgb', with its layers" formats pbrt
 expect 0 '"plugin": "bilinearmesh"' formats pbrt --json
 expect 2 "a formats command is expected: pbrt" formats
 expect 2 "there is no formats command 'pbr' (did you mean 'pbrt'?); expected one of pbrt" formats pbr

@@ -26,7 +26,7 @@ expect 2 "--checkpoint: the name of a file is expected" render ok.pbrt --checkpo
 expect 2 "--spp: '0' was given; a whole number from 1 to" render ok.pbrt --spp 0
 expect 2 "--threads: '5000'" render ok.pbrt --threads 5000
 expect 2 "--rank-timeout: '1' was given; a time of at least 2s" render ok.pbrt --rank-timeout 1
-for option in --sampler --strategy --heuristic --light-sampling; do
+for option in --sampler --strategy --heuristic --light-sampling --microfacet-scattering --shading-terminator; do
     expect 2 "$option: 'foo' was given; one of" render ok.pbrt $option foo
 done
 expect 2 "mis, mis-bsdf, mis-light is expected" render ok.pbrt --strategy mis_bsdf
@@ -73,4 +73,27 @@ for change in "--max-depth 1" "--spp 9" "--sampler halton" "--strategy bsdf" "--
 done
 [ -s out ] && fail "--quiet printed something: $(cat out)"
 expect 0 "inside Embree" render ok.pbrt --stats
+
+# Options of surfaces change what they are for, and by default nothing.
+scene rough "LightSource \"distant\" \"point3 from\" [3 1 -0.3]
+Material \"conductor\" \"float roughness\" 0.5 Translate -0.9 0 0 Shape \"sphere\" \"float radius\" 0.7
+Material \"diffuse\" Translate 1.7 0 0
+Shape \"trianglemesh\" \"point3 P\" [-0.7 -0.7 0  0.7 -0.7 0  0 0.7 0] \"integer indices\" [0 1 2]
+    \"normal N\" [-0.9 -0.2 0.2  0.9 -0.2 0.2  0 0.9 0.2]" 64 48
+render_rough() { "$montelux" render rough.pbrt --quiet --spp 8 "$@" >out 2>&1 || fail "montelux render $*: $(cat out)"; }
+render_rough -o one.pfm
+render_rough -o two.pfm --microfacet-scattering single --shading-terminator hard
+cmp -s one.pfm two.pfm || fail "the defaults of surfaces, given as options, change the picture"
+for change in "--microfacet-scattering multiple" "--shading-terminator soft"; do
+    render_rough -o two.pfm $change
+    cmp -s one.pfm two.pfm && fail "$change changes nothing"
+done
+render_rough -o two.exr --microfacet-scattering multiple --shading-terminator soft --checkpoint two.ckpt
+expect 0 '"microfacetScattering" = "multiple"' info two.exr
+expect 0 '"shadingTerminator" = "soft"' info two.exr
+expect 1 "the integrator differs" render rough.pbrt --spp 16 -o two.exr --microfacet-scattering multiple \
+    --checkpoint two.ckpt --resume
+expect 0 "16 samples per pixel" render rough.pbrt --spp 16 -o two.exr --microfacet-scattering multiple \
+    --shading-terminator soft --checkpoint two.ckpt --resume
+expect 0 "peak of the process" render ok.pbrt --memory
 finish

@@ -2,6 +2,7 @@
 #include "test/cluster/local_job.h"
 #include "test/render/mixed_scene.h"
 #include "test/sanitized.h"
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <gtest/gtest.h>
@@ -86,6 +87,23 @@ TEST(SharedRender, AnyNumberOfRanksGivesTheSameBits) {
                 EXPECT_EQ(state.report.stop, whole.report.stop);
             }
         }
+}
+
+// The sums of layers travel with the pixels.
+TEST(SharedRender, LayersHaveTheSameBits) {
+    SceneBuilder b = scene(SamplerKind::sobol, 48);
+    b.description.film.layers.set = {Layer::position, Layer::direct, Layer::light_groups, Layer::shape};
+    for (const RenderTarget& target : {RenderTarget{}, RenderTarget{.error = 0.2, .adaptive = true}}) {
+        RenderState whole(b.description);
+        Renderer(b.description, target).render(whole);
+        ASSERT_GT(whole.film.layer_sums().size(), 0u);
+        for (int ranks = 1; ranks <= 3; ++ranks) {
+            RenderState state(b.description);
+            render_on(ranks, b.description, target, state);
+            EXPECT_EQ(differing(whole.film, state.film), 0);
+            EXPECT_TRUE(std::ranges::equal(whole.film.layer_sums(), state.film.layer_sums())) << ranks;
+        }
+    }
 }
 
 // Interrupted after some thousand samples and resumed by another number of ranks, none of which knows the

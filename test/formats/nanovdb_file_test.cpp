@@ -71,6 +71,82 @@ TEST(NanovdbFile, LookUpsEqualThoseOfNanovdb) {
     }
 }
 
+// Voxel by voxel, as NanoVDB decodes them.
+template <typename Value, typename Build>
+void expect_decoded(nanovdb::GridBuilder<Value, Build>& builder, double largest_error) {
+    auto accessor = builder.getAccessor();
+    const auto value = [](int i, int j, int k) { return 0.5 + 0.5 * std::sin(0.37 * i + 0.11 * j * k); };
+    for (int i = -20; i < 20; ++i)
+        for (int j = 0; j < 30; ++j)
+            for (int k = 120; k < 140; ++k)
+                accessor.setValue(nanovdb::Coord(i, j, k), static_cast<Value>(value(i, j, k)));
+    // A leaf of one value but for one voxel: few bits.
+    for (int n = 0; n < 512; ++n)
+        accessor.setValue(nanovdb::Coord(80 + n / 64, n / 8 % 8, n % 8),
+                          static_cast<Value>(n == 7 ? 1 : 0.25));
+    const auto grids = handles(builder.getHandle(1.0, nanovdb::Vec3d(0), "density"));
+    const auto bytes = nanovdb_bytes(grids, nanovdb::io::Codec::ZIP);
+    const PlacedSparseGrid read = NanovdbFile(bytes, "f").read("density");
+    EXPECT_TRUE(read.grid.is_consistent());
+    const auto& tree = grids[0].template grid<Build>()->tree();
+    const Transform grid_from_file = read.file_from_grid.inverse();
+    double largest = 0;
+    for (int i = -22; i < 90; ++i)
+        for (int j = -2; j < 32; ++j)
+            for (int k = -1; k < 141; ++k) {
+                const Point3f p(grid_from_file.point(Vec3d(i, j, k)));
+                const auto expected = static_cast<float>(tree.getValue(nanovdb::Coord(i, j, k)));
+                ASSERT_EQ(read.grid(p), expected) << i << ' ' << j << ' ' << k;
+                if (i >= -20 && i < 20 && j >= 0 && j < 30 && k >= 120 && k < 140)
+                    largest = std::max(largest, std::abs(double(expected) - value(i, j, k)));
+            }
+    EXPECT_LT(largest, largest_error);
+    // Damaged bytes are refused or harmless.
+    std::mt19937 random(8);
+    const auto plain = nanovdb_bytes(grids);
+    for (int n = 0; n < 300; ++n) {
+        auto broken = plain;
+        for (int c = 0; c < 3; ++c)
+            broken[random() % broken.size()] ^= static_cast<std::uint8_t>(1 + random() % 255);
+        try {
+            EXPECT_TRUE(NanovdbFile(broken, "f").read("density").grid.is_consistent());
+        } catch (const Error&) {
+        }
+    }
+}
+
+TEST(NanovdbFile, ValuesOfEveryType) {
+    nanovdb::GridBuilder<double> doubles(0.0, nanovdb::GridClass::FogVolume);
+    expect_decoded(doubles, 1e-7);
+    nanovdb::GridBuilder<float, nanovdb::Fp4> fp4(0.0f, nanovdb::GridClass::FogVolume);
+    expect_decoded(fp4, 0.07);
+    nanovdb::GridBuilder<float, nanovdb::Fp8> fp8(0.0f, nanovdb::GridClass::FogVolume);
+    expect_decoded(fp8, 0.005);
+    nanovdb::GridBuilder<float, nanovdb::Fp16> fp16(0.0f, nanovdb::GridClass::FogVolume);
+    expect_decoded(fp16, 2e-5);
+    nanovdb::GridBuilder<float, nanovdb::FpN> fpn(0.0f, nanovdb::GridClass::FogVolume);
+    expect_decoded(fpn, 0.05);
+}
+
+#ifdef NANOVDB_USE_BLOSC
+TEST(NanovdbFile, CompressedByBlosc) {
+    const auto grids = handles(small_nanovdb("density"));
+    const auto bytes = nanovdb_bytes(grids, nanovdb::io::Codec::BLOSC);
+    ASSERT_TRUE(NanovdbFile::reads_blosc);
+    expect_same_values(grids[0], NanovdbFile(bytes, "f").read("density"));
+    std::mt19937 random(3);
+    for (int n = 0; n < 300; ++n) {
+        auto broken = bytes;
+        for (int c = 0; c < 2; ++c)
+            broken[200 + random() % (broken.size() - 200)] ^= static_cast<std::uint8_t>(1 + random() % 255);
+        try {
+            EXPECT_TRUE(NanovdbFile(broken, "f").read("density").grid.is_consistent());
+        } catch (const Error&) {
+        }
+    }
+}
+#endif
+
 // Large tiles of one value inside.
 TEST(NanovdbFile, LookUpsInTilesEqualThoseOfNanovdb) {
     const auto grids = handles(nanovdb::createFogVolumeSphere<float>(90.0f, nanovdb::Vec3f(40, -70, 10), 1.0,
@@ -140,8 +216,10 @@ TEST(NanovdbFile, WhatItCannotReadIsSaid) {
     EXPECT_EQ(changed([](Bytes& b) { b.pop_back(); }), "f.nvdb: grid 'density' ends early");
     EXPECT_EQ(changed([](Bytes& b) { b[11] = 31 << 5 >> 3; }).substr(0, 29), "f.nvdb: has NanoVDB's version");
     EXPECT_EQ(changed([](Bytes& b) { b[14] = 2; }),
-              "f.nvdb: is compressed by Blosc, which is not supported; convert it with "
-              "nanovdb_convert to zip or to no compression");
+              NanovdbFile::reads_blosc
+                  ? "f.nvdb, grid 'density': the compressed data ends early"
+                  : "f.nvdb: is compressed by Blosc, without which this program was built; convert it with "
+                    "nanovdb_convert to zip or to no compression");
     EXPECT_EQ(changed([](Bytes& b) { b[14] = 7; }), "f.nvdb: has an unknown compression, 7");
     EXPECT_EQ(changed([](Bytes& b) { b[b.size() - 1] ^= 1; }),
               "f.nvdb, grid 'density': the checksum does not fit: the file is damaged");
@@ -151,10 +229,16 @@ TEST(NanovdbFile, WhatItCannotReadIsSaid) {
     EXPECT_EQ(error_of_file(nanovdb_bytes(handles(
                   small_nanovdb("density", nanovdb::ChecksumMode::Full, nanovdb::GridClass::LevelSet)))),
               "f.nvdb, grid 'density': has class SDF; expected a fog volume (FOG)");
+    nanovdb::GridBuilder<std::int32_t> integers(0, nanovdb::GridClass::Unknown);
+    integers.getAccessor().setValue(nanovdb::Coord(1, 2, 3), 1);
+    EXPECT_EQ(
+        error_of_file(nanovdb_bytes(handles(integers.getHandle(1.0, nanovdb::Vec3d(0), "density")))),
+        "f.nvdb, grid 'density': has values of type int32; expected float, double, or a quantised float "
+        "(Fp4, Fp8, Fp16, FpN)");
     nanovdb::GridBuilder<double> doubles(0.0, nanovdb::GridClass::FogVolume);
-    doubles.getAccessor().setValue(nanovdb::Coord(1, 2, 3), 1);
+    doubles.getAccessor().setValue(nanovdb::Coord(1, 2, 3), 1e300);
     EXPECT_EQ(error_of_file(nanovdb_bytes(handles(doubles.getHandle(1.0, nanovdb::Vec3d(0), "density")))),
-              "f.nvdb, grid 'density': has values of type double; expected float");
+              "f.nvdb, grid 'density': has a value that is not finite");
     const auto of_values = [](std::vector<std::pair<nanovdb::Coord, float>> values) {
         nanovdb::GridBuilder<float> builder(0.0f, nanovdb::GridClass::FogVolume);
         auto accessor = builder.getAccessor();

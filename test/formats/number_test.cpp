@@ -43,6 +43,8 @@ TEST(Number, FormsOfFloats) {
     expect_float("-1e-4000", -0.0f);
     expect_float("1e-99999999999", 0);
     expect_float("1e-40", 1e-40f); // subnormal
+    expect_float("00000000000000000000000000000001.50", 1.5f);
+    expect_float("3e0005", 300000);
 }
 
 TEST(Number, NotANumber) {
@@ -71,9 +73,53 @@ TEST(Number, StopsBehindTheNumber) {
     std::string text = "1.5x";
     float f;
     EXPECT_EQ(parse(text, f).end, text.data() + 3);
+    for (const char* ends_early : {"1e", "1e+", "1ex"}) {
+        text = ends_early;
+        EXPECT_EQ(parse(text, f).end, text.data() + 1);
+        EXPECT_EQ(f, 1);
+    }
     text = "3.7";
     std::int32_t i;
     EXPECT_EQ(parse(text, i).end, text.data() + 1);
+}
+
+// Midway between two floats, and so close to it that a double is midway.
+TEST(Number, TwoRoundingsAreOne) {
+    for (const char* text :
+         {"16777217", "16777217.0", "16777217.000001", "16777217.00000001", "16777216.99999999", "16777219",
+          "16777219.00000001", "16777218.99999999", "1677721700000001e-8", "1677721699999999e-8",
+          "0.100000001490116", "1.00000005960464478", "1.00000017881393433"})
+        expect_float(text, std::strtof(text, nullptr));
+    std::mt19937_64 random(11);
+    char text[64];
+    for (int n = 0; n < 100000; ++n) { // 16 digits of midways
+        const auto bits = static_cast<std::uint32_t>(random() % (30u << 23)) + (115u << 23);
+        const auto x = static_cast<double>(std::bit_cast<float>(bits)),
+                   y = static_cast<double>(std::bit_cast<float>(bits + 1));
+        std::snprintf(text, sizeof text, "%.16g", (x + y) / 2);
+        expect_float(text, std::strtof(text, nullptr));
+    }
+}
+
+TEST(Number, Integers) {
+    std::mt19937_64 random(3);
+    for (int n = 0; n < 100000; ++n) {
+        const auto expected =
+            static_cast<std::int32_t>(static_cast<std::uint32_t>(random()) >> random() % 32);
+        std::string text = std::to_string(expected);
+        if (n % 3 == 0) text.insert(expected < 0 ? 1 : 0, std::string(random() % 25, '0'));
+        if (n % 2 == 0) text += std::string(random() % 10, ' ');
+        std::int32_t value = 0;
+        const NumberResult r = parse(text, value);
+        ASSERT_EQ(r.status, NumberStatus::ok) << text;
+        ASSERT_EQ(value, expected) << text;
+        ASSERT_EQ(r.end, text.data() + std::min(text.find(' '), text.size())) << text;
+    }
+    for (const char* text :
+         {"2147483648", "-2147483649", "00000000000000002147483648", "99999999999", "18446744073709551617"}) {
+        std::int32_t i;
+        EXPECT_EQ(parse(std::string(text), i).status, NumberStatus::out_of_range) << text;
+    }
 }
 
 // Against the C library, which rounds correctly, on short, long and random numbers.

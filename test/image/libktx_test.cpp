@@ -31,7 +31,7 @@ struct KtxTexture {
     std::uint8_t* data;
 };
 
-class LibKtx : public testing::Test {
+class LibKtx : public ::testing::Test {
   protected:
     void SetUp() override {
         if (const char* path = std::getenv("MONTELUX_LIBKTX")) {

@@ -1,8 +1,10 @@
 #include "test/image/image_testing.h"
+#include <cmath>
 #include <limits>
 
 #include "montelux/image/image_read.h"
 #include "montelux/image/image_write.h"
+#include "montelux/image/placement.h"
 
 namespace montelux {
 namespace {
@@ -27,6 +29,48 @@ TEST(ExrFile, KeepsEveryBitOfEveryChannel) {
         EXPECT_EQ(back.channel_names()[2], "B");
         EXPECT_EQ(back.color_channels("stderr.").size(), 3u);
     }
+}
+
+// Chosen channels are rounded to 16 bits, to nearest even, and the others keep theirs.
+TEST(ExrFile, RoundsChosenChannelsToHalfs) {
+    TemporaryFolder folder;
+    Image image = make_picture(19, 23, {"R", "G", "depth.Z"});
+    const float infinity = std::numeric_limits<float>::infinity();
+    struct Rounding {
+        float from, to;
+    };
+    // 11 bits of mantissa: 1 + 2^-11 lies in the middle and goes to the even neighbour, as 1 + 3 * 2^-11 does.
+    const Rounding roundings[] = {{1 + 0x1p-11f, 1},
+                                  {1 + 3 * 0x1p-11f, 1 + 0x1p-9f},
+                                  {1 + 0x1.002p-11f, 1 + 0x1p-10f},
+                                  {-2049, -2048},
+                                  {0x1p-25f, 0},
+                                  {0x1.8p-24f, 0x1p-23f},
+                                  {65504, 65504},
+                                  {65519, 65504},
+                                  {65520, 65504},
+                                  {-1e30f, -65504},
+                                  {infinity, infinity}};
+    for (std::size_t i = 0; i < std::size(roundings); ++i)
+        for (int c = 0; c < 3; ++c) image.set(static_cast<int>(i), 2, c, roundings[i].from);
+    image.set(12, 2, 0, std::numeric_limits<float>::quiet_NaN());
+    const std::vector<std::string> halves{"R", "missing", "R"};
+    EXPECT_EQ(half_overflows(cut_out(image, {7, 2, 11, 3}), {"R", "missing"}), 3u);
+    write_image(folder / "a.exr", image, {.exr_half = halves});
+    const Image back = read_image(folder / "a.exr");
+    EXPECT_EQ(back.format(), PixelFormat::f32); // not all are halfs
+    const int r = *back.find_channel("R"), g = *back.find_channel("G"), z = *back.find_channel("depth.Z");
+    for (std::size_t i = 0; i < std::size(roundings); ++i) {
+        const int x = static_cast<int>(i);
+        EXPECT_EQ(back.value(x, 2, r), roundings[i].to) << roundings[i].from;
+        EXPECT_EQ(back.value(x, 2, g), roundings[i].from);
+        EXPECT_EQ(back.value(x, 2, z), roundings[i].from);
+    }
+    EXPECT_TRUE(std::isnan(back.value(12, 2, r)));
+    for (int x = 0; x < 19; ++x)
+        EXPECT_EQ(back.value(x, 7, r), half_to_float(float_to_half(image.value(x, 7, 0))));
+    write_image(folder / "b.exr", image, {.exr_half = {"R", "G", "depth.Z"}});
+    EXPECT_EQ(read_image(folder / "b.exr").format(), PixelFormat::f16);
 }
 
 TEST(ExrFile, KeepsAttributes) {

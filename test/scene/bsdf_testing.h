@@ -10,6 +10,7 @@
 
 #include "montelux/mc/stats/chi_squared.h"
 #include "montelux/scene/bsdf/bsdf.h"
+#include "montelux/scene/bsdf/multiple_scattering.h"
 
 namespace montelux::testing {
 
@@ -91,6 +92,11 @@ template <typename Base>
 LayeredBsdf<Base> cut_at(LayeredBsdf<Base> b, int max_depth) {
     b.max_depth = max_depth;
     return b;
+}
+
+template <typename Base>
+LayeredBsdf<Base, MultiscatterDielectricBsdf> multiscatter_layers(const auto& single) {
+    return std::get<LayeredBsdf<Base, MultiscatterDielectricBsdf>>(with_multiple_scattering(single));
 }
 
 inline std::vector<BsdfCase> bsdf_cases() {
@@ -185,6 +191,38 @@ inline std::vector<BsdfCase> bsdf_cases() {
          [=] {
              return SubsurfaceBsdf::make(1.33f, {0.3f, 0.5f});
          }},
+        {"multiscatter_conductor",
+         [=] {
+             return MultiscatterConductorBsdf{{eta, k, {0.6f, 0.6f}}};
+         },
+         false},
+        {"multiscatter_conductor_anisotropic",
+         [=] {
+             return MultiscatterConductorBsdf{{eta, k, {0.15f, 0.9f}}};
+         },
+         false},
+        {"multiscatter_dielectric",
+         [=] {
+             return MultiscatterDielectricBsdf{{1.5f, {0.6f, 0.6f}}};
+         },
+         false},
+        {"multiscatter_dielectric_anisotropic",
+         [=] {
+             return MultiscatterDielectricBsdf{{1.8f, {0.3f, 1.0f}}};
+         },
+         false},
+        {"multiscatter_layered_diffuse",
+         [=] { return multiscatter_layers<DiffuseBsdf>(layered_diffuse(0.5f, 0.8f)); }, false},
+        {"multiscatter_layered_conductor",
+         [=] { return multiscatter_layers<MultiscatterConductorBsdf>(layered_conductor(0.4f, 0.5f)); },
+         false},
+        {"multiscatter_layered_conductor_fog",
+         [=] {
+             return multiscatter_layers<MultiscatterConductorBsdf>(in_fog(layered_conductor(0.4f, 0.5f), 6));
+         },
+         false},
+        {"multiscatter_layered_conductor_smooth_coat",
+         [=] { return multiscatter_layers<MultiscatterConductorBsdf>(layered_conductor(0, 0.5f)); }, false},
         {"hair_glossy", [=] { return HairBsdf::make(0, 1.55f, 0.1f * eta, 0.15f, 0.2f, 0); }, true, false},
     };
 }

@@ -5,6 +5,7 @@
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/random/philox_stream.h"
+#include "montelux/scene/camera/aperture_picture.h"
 #include "montelux/scene/camera/camera.h"
 #include "montelux/scene/camera/lens_system.h"
 
@@ -133,6 +134,70 @@ TEST(LensSystem, RefusesWhatIsNoLens) {
     RealisticCamera plane = singlet(0.002f, 2);
     plane.surfaces = {plane.surfaces[2]};
     EXPECT_THROW(LensSystem{plane}, Error);
+}
+
+// Each built-in picture has the mean of the disc, and its shape: by its second moments and the symmetry of its edge.
+TEST(AperturePicture, ShapesAreDrawn) {
+    EXPECT_FALSE(find_aperture("hexagon"));
+    for (const char* name : {"gaussian", "square", "pentagon", "star"}) {
+        const AperturePicture p = *find_aperture(name);
+        double sum = 0;
+        for (const float v : p.values) sum += static_cast<double>(v);
+        EXPECT_NEAR(sum / static_cast<double>(p.values.size()), pi / 4, 1e-5) << name;
+        EXPECT_GT(p.at(0, 0), 0) << name;
+        EXPECT_EQ(p.at(1.01, 0), 0) << name;
+    }
+    const AperturePicture square = *find_aperture("square"), pentagon = *find_aperture("pentagon"),
+                          star = *find_aperture("star"), gaussian = *find_aperture("gaussian");
+    EXPECT_NEAR(square.at(0.4, -0.4), pi, 1e-5); // a quarter of the picture
+    EXPECT_EQ(square.at(0.6, 0), 0);
+    EXPECT_GT(pentagon.at(0, 0.75), 0); // its corner is up, its edge down at 0.8 cos 36
+    EXPECT_GT(pentagon.at(0, -0.63), 0);
+    EXPECT_EQ(pentagon.at(0, -0.67), 0);
+    // Area of the regular pentagon of radius 0.8: 5/2 r^2 sin 72 degrees.
+    EXPECT_NEAR(pentagon.at(0, 0), pi / (2.5 * 0.64 * std::sin(2 * pi / 5)), 1e-3);
+    EXPECT_GT(star.at(-0.95, 0), 0); // a point of the star is at the left, a notch at the right
+    EXPECT_EQ(star.at(0.5, 0), 0);
+    EXPECT_GT(star.at(0.36, 0), 0);
+    EXPECT_NEAR(gaussian.at(0.5, 0) / gaussian.at(0, 0),
+                (std::exp(-0.25) - std::exp(-1.0)) / (1 - std::exp(-1.0)), 1e-3);
+}
+
+// On the axis the mean weight, irradiance of a white scene, is that of the round stop for any picture, up to the cosines
+// across the pupil; rays that pass lie in the picture's shape at the stop, the last surface here.
+TEST(LensSystem, PicturesShapeTheStop) {
+    const auto mean_weight = [](const RealisticCamera& camera, double& largest_x) {
+        const LensSystem lens(camera);
+        PhiloxStream stream(7);
+        double sum = 0;
+        largest_x = 0;
+        constexpr int n = 200000;
+        for (int i = 0; i < n; ++i) {
+            const Vec2f u = stream.next_2d();
+            const auto s = lens.sample({0, 0}, u);
+            if (!s) continue;
+            sum += static_cast<double>(s->weight);
+            largest_x = std::max(largest_x, std::abs(static_cast<double>(s->ray.o.x)));
+        }
+        return sum / n;
+    };
+    RealisticCamera camera = singlet(0.002f, 2);
+    double round_x = 0, square_x = 0;
+    const double round = mean_weight(camera, round_x);
+    for (const char* name : {"gaussian", "square", "pentagon", "star"}) {
+        camera.aperture = find_aperture(name);
+        double x = 0;
+        EXPECT_NEAR(mean_weight(camera, x) / round, 1, 0.03) << name;
+        if (name == std::string("square")) square_x = x;
+    }
+    EXPECT_NEAR(square_x / round_x, 0.5, 0.03);
+    // A picture in a corner of the square, outside the disc, lets light through all the same, but for the part of its pixel
+    // that is blurred over the border.
+    AperturePicture corner{8, 8, std::vector<float>(64)};
+    corner.values[0] = 64 * pi_f / 4;
+    camera.aperture = corner;
+    double x = 0;
+    EXPECT_NEAR(mean_weight(camera, x) / round, 49.0 / 64, 0.03);
 }
 
 } // namespace

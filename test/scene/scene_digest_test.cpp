@@ -123,7 +123,9 @@ TEST(SceneDigest, GeometryCounts) {
                     [](Scene& s) { s.meshes[0].normals[1].x = -0.0f; },
                     [](Scene& s) { s.meshes[0].normals.clear(); },
                     [](Scene& s) { s.meshes[0].uvs[0].y = 1; },
-                    [](Scene& s) { s.meshes[0].tangents = {{1, 0, 0}, {1, 0, 0}, {1, 0, 0}}; },
+                    [](Scene& s) {
+                        s.meshes[0].tangents = {{1, 0, 0}, {1, 0, 0}, {1, 0, 0}};
+                    },
                     [](Scene& s) { std::swap(s.meshes[0].indices[0], s.meshes[0].indices[1]); },
                     [](Scene& s) { std::get<Sphere>(s.quadrics[0]).z_max = 0.5f; },
                     [](Scene& s) { std::get<Disk>(s.quadrics[1]).inner_radius = 0.5f; },

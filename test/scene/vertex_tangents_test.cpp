@@ -21,8 +21,8 @@ Scene scene_of_triangle(const std::vector<Vec3f>& tangents) {
     m.roughness.v.value = 0.5f;
     s.materials = {m, DiffuseMaterial{.detail = {.normal_map = {0}}}};
     Image normal(1, 1, {"R", "G", "B"}, PixelFormat::f32, ColorEncoding::linear());
-    const float tilted[] = {0.8f, 0.5f, 0.9f}; // along the first axis
-    std::copy(std::begin(tilted), std::end(tilted), normal.f32().begin());
+    const float leaning[] = {0.8f, 0.5f, 0.9f}; // along the first axis
+    std::copy(std::begin(leaning), std::end(leaning), normal.f32().begin());
     s.images = {normal};
     s.normal_maps = {ImageTexture{.image = 0, .mapping = {}}};
     s.shapes = {{.geometry = MeshIndex{0}, .material = 0}, {.geometry = MeshIndex{0}, .material = 1}};
@@ -49,7 +49,9 @@ Hit hit_of(Index shape, Index instance = no_index) {
     h.instance = instance;
     return h;
 }
-void expect_same_direction(Vec3f a, Vec3f b) { EXPECT_LT(length(a - b), 1e-5f) << a.x << ' ' << a.y << ' ' << a.z; }
+void expect_same_direction(Vec3f a, Vec3f b) {
+    EXPECT_LT(length(a - b), 1e-5f) << a.x << ' ' << a.y << ' ' << a.z;
+}
 
 TEST(VertexTangents, TurnTheShadingFrame) {
     expect_same_direction(bsdf_at(scene_of_triangle({}), hit_of(0)).frame.s, {1, 0, 0});
@@ -59,13 +61,13 @@ TEST(VertexTangents, TurnTheShadingFrame) {
     expect_same_direction(bsdf_at(turned, hit_of(0, 0)).frame.s, {-1, 0, 0});
     // Without a sum there is none.
     expect_same_direction(bsdf_at(scene_of_triangle({{0, 1, 0}, {0, -1, 0}, {0, -1, 0}}), hit_of(0)).frame.s,
-                {1, 0, 0});
+                          {1, 0, 0});
 }
 
 TEST(VertexTangents, AreTheAxisOfNormalMaps) {
     expect_same_direction(bsdf_at(scene_of_triangle({}), hit_of(1)).frame.n, normalize(Vec3f(0.6f, 0, 0.8f)));
     expect_same_direction(bsdf_at(scene_of_triangle({{0, 2, 0}, {0, 2, 0}, {0, 2, 0}}), hit_of(1)).frame.n,
-                normalize(Vec3f(0, 0.6f, 0.8f)));
+                          normalize(Vec3f(0, 0.6f, 0.8f)));
 }
 
 } // namespace

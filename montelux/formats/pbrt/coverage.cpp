@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "montelux/formats/nanovdb_file.h"
 #include "montelux/scene/material/material_model.h"
 
 namespace montelux::pbrt {
@@ -24,32 +25,27 @@ std::vector<PluginCoverage> make_coverage() {
     constexpr std::string_view by_path = "rendered with the integrator 'path'";
     constexpr std::string_view own_tracer = "the ray tracer builds its own hierarchy";
 
-    add("Film", {plugin("rgb", in_part, "sensors other than 'cie1931' are refused"),
-                 plugin("gbuffer", otherwise, "read as 'rgb'; every render has albedo, normal and depth"),
-                 plugin("spectral", none)});
+    add("Film",
+        {plugin("rgb"), plugin("gbuffer", Support::full, "as 'rgb', with its layers under names of Montelux"),
+         plugin("spectral")});
     add("PixelFilter",
         {plugin("box"), plugin("gaussian"), plugin("mitchell"), plugin("sinc"), plugin("triangle")});
-    add("Camera", {plugin("perspective"), plugin("orthographic"), plugin("spherical"),
-                   plugin("realistic", in_part, "pictures of 'aperture' are refused")});
+    add("Camera", {plugin("perspective"), plugin("orthographic"), plugin("spherical"), plugin("realistic")});
     add("Sampler",
         {plugin("independent"), plugin("stratified"), plugin("halton"), plugin("sobol"),
          plugin("paddedsobol"), plugin("zsobol"), plugin("pmj02bn", otherwise, "read as 'zsobol'")});
-    add("Integrator",
-        {plugin("path", in_part, "'regularize' is ignored"),
-         plugin("volpath", in_part, "'regularize' is ignored"), plugin("simplepath"), plugin("randomwalk"),
-         plugin("simplevolpath", otherwise, by_path), plugin("bdpt", otherwise, by_path),
-         plugin("mlt", otherwise, by_path), plugin("sppm", otherwise, by_path),
-         plugin("lightpath", otherwise, by_path), plugin("ambientocclusion", otherwise, by_path),
-         plugin("ao", otherwise, by_path), plugin("function", otherwise, by_path)});
+    add("Integrator", {plugin("path"), plugin("volpath"), plugin("simplepath"), plugin("randomwalk"),
+                       plugin("simplevolpath", otherwise, by_path), plugin("bdpt", otherwise, by_path),
+                       plugin("mlt", otherwise, by_path), plugin("sppm", otherwise, by_path),
+                       plugin("lightpath", otherwise, by_path), plugin("ambientocclusion"), plugin("ao"),
+                       plugin("function", otherwise, by_path)});
     add("Accelerator", {plugin("bvh", otherwise, own_tracer), plugin("kdtree", otherwise, own_tracer)});
     add("ColorSpace", {plugin("srgb"), plugin("dci-p3"), plugin("rec2020"), plugin("aces2065-1")});
     add("Shape", {plugin("sphere"), plugin("disk"), plugin("cylinder"), plugin("bilinearmesh"),
-                  plugin("curve"), plugin("trianglemesh"), plugin("loopsubdiv"),
-                  plugin("plymesh", in_part, "'displacement' is ignored")});
+                  plugin("curve"), plugin("trianglemesh"), plugin("loopsubdiv"), plugin("plymesh")});
     for_each_material_kind([&]<typename M>(std::type_identity<M>) {
         const std::string type = material_type(M::name);
-        add("Material", {type == "subsurface" ? plugin(type, in_part, "textures inside the body are refused")
-                                              : plugin(type)});
+        add("Material", {plugin(type)});
     });
     add("Texture",
         {plugin("constant"), plugin("imagemap"), plugin("scale"), plugin("mix"), plugin("directionmix"),
@@ -61,7 +57,9 @@ std::vector<PluginCoverage> make_coverage() {
     add("AreaLightSource", {plugin("diffuse")});
     add("MakeNamedMedium",
         {plugin("homogeneous"), plugin("uniformgrid"), plugin("rgbgrid"), plugin("cloud"),
-         plugin("nanovdb", in_part, "Blosc, and grids other than of floats, are refused")});
+         NanovdbFile::reads_blosc
+             ? plugin("nanovdb")
+             : plugin("nanovdb", in_part, "compression by Blosc is refused: built without it")});
     return all;
 }
 

@@ -19,8 +19,8 @@ constexpr std::size_t max_blocks = 1000000;
 Directives::Directives(Files& files, Diagnostics& diagnostics)
     : files_(files), diagnostics_(diagnostics), builder_(result_.scene, diagnostics),
       spectra_(files, diagnostics), textures_(builder_, files, spectra_, diagnostics),
-      measured_brdfs_(builder_, files, diagnostics), lights_(builder_, files, spectra_, diagnostics),
-      media_(builder_, files, spectra_, diagnostics) {
+      displacements_(builder_, textures_), measured_brdfs_(builder_, files, diagnostics),
+      lights_(builder_, files, spectra_, diagnostics), media_(builder_, files, spectra_, diagnostics) {
     state_.color_space = &RgbColorSpace::srgb();
     materials_.push_back({"diffuse", {}, {}}); // the material of shapes before any Material directive
 }
@@ -258,6 +258,13 @@ void Directives::set_render_option(const Parameter& p) {
     if (option == "seed") {
         expect_one(ParameterType::integer, "integer");
         seed_ = static_cast<std::uint32_t>(p.integers[0]);
+        return;
+    }
+    if (option == "displacementedgescale") {
+        expect_one(ParameterType::floating, "float");
+        if (!(p.numbers[0] > 0))
+            diagnostics_.error(p.at, "option " + in_quotes(p.name) + " must be positive");
+        displacements_.scale_edges(p.numbers[0]);
         return;
     }
     // The space of the computations does not change the picture here.

@@ -106,6 +106,7 @@ class Directives {
         Curves::Kind kind;
         bool flip_normal;
         float alpha;
+        std::string name;
 
         bool operator==(const OpenCurves&) const = default;
     };
@@ -142,6 +143,7 @@ class Directives {
     SceneBuilder builder_;
     SpectrumReader spectra_;
     TextureLibrary textures_;
+    DisplacementReader displacements_;
     MeasuredBrdfLibrary measured_brdfs_;
     LightReader lights_;
     MediumReader media_;
@@ -169,7 +171,7 @@ class Directives {
     NameTable named_media_{"medium"};
     std::vector<MediaUse> media_uses_; // of shapes in or between media
     MediaUse camera_media_{no_index, {}, {}};
-    std::size_t subdivided_ = 0; // triangles of 'loopsubdiv' shapes
+    SubdivisionBudget subdivision_; // of 'loopsubdiv' shapes
 };
 
 } // namespace montelux::pbrt

@@ -1,5 +1,6 @@
 // Directives that put something into the world, and how a scene ends.
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "montelux/formats/pbrt/curves.h"
@@ -24,7 +25,7 @@ void Directives::make_named_material(const std::string& name, std::vector<Parame
     if (!type)
         diagnostics_.error(at, "named material " + in_quotes(name) + " needs a parameter 'string type'");
     named_materials_.declare(name, static_cast<Index>(materials_.size()), at, diagnostics_);
-    materials_.push_back({*type, std::move(list), at});
+    materials_.push_back({*type, std::move(list), at, name});
 }
 
 void Directives::named_material(const std::string& name, Location at) {
@@ -63,7 +64,8 @@ bool Directives::joins_open_curves(const Geometry& geometry, const ShapeSettings
         return false;
     }
     OpenCurves open{next - 1,     state_.material,      state_.media,
-                    curves->kind, settings.flip_normal, settings.alpha.value};
+                    curves->kind, settings.flip_normal, settings.alpha.value,
+                    settings.name};
     if (open_curves_ == open) {
         try {
             check_geometry(geometry);
@@ -89,12 +91,16 @@ void Directives::shape(const std::string& name, std::vector<Parameter> parameter
     const Transform world_from_object = moves ? Transform() : state_.ctm->start;
     ParameterList list = with_defaults(std::move(parameters), PluginKind::shape);
     ParameterReader r(list, "shape " + in_quotes(name), at, diagnostics_);
-    Geometry geometry = read_shape(r, name, world_from_object, state_.reverse_orientation,
-                                   state_.emission != nullptr, files_, subdivided_);
+    Geometry geometry =
+        read_shape(r, name, world_from_object, state_.reverse_orientation, state_.emission != nullptr, files_,
+                   subdivision_, displacements_, state_.ctm->start);
 
     ShapeSettings settings;
     settings.flip_normal = state_.reverse_orientation != world_from_object.swaps_handedness();
     settings.emission = state_.emission.get();
+    settings.name = r.string("name", "");
+    if (settings.name.empty() && name == "plymesh")
+        settings.name = std::filesystem::path(r.string("filename", "")).stem().string();
     const auto index = static_cast<Index>(result_.scene.shapes.size());
     bool alpha_varies = false;
     if (const Parameter* alpha = r.any("alpha", {ParameterType::texture, ParameterType::floating})) {
@@ -159,6 +165,7 @@ Index Directives::material_index(const MaterialReference& reference, Location at
                                             spectra_, find, diagnostics_);
         open_materials_.pop_back();
         result_.scene.materials.push_back(made);
+        result_.scene.material_names.push_back(materials_[declaration].name);
         index = static_cast<Index>(result_.scene.materials.size() - 1);
     }
     return index;
@@ -226,7 +233,7 @@ SceneDescription Directives::finish(Location end) {
     finish_materials();
     finish_media();
     textures_.warn_of_unused();
-    builder_.finish(end);
+    builder_.finish(end, !result_.integrator.occlusion);
     return std::move(result_);
 }
 

@@ -77,6 +77,7 @@ Emission LightReader::read_area(const Plugin& plugin, const RgbColorSpace& color
     if (file && r.ignored("L")) r.error("L", "'L' together with 'filename'; expected one or the other");
     Source s = source(r, "L", file ? RgbColorSpace::srgb() : color_space);
     Emission e{s.spectrum, s.scale, r.boolean("twosided", false), r.number("power", -1)};
+    e.group = r.string("group", "");
     if (file) {
         e.picture = picture(*file, r.at("filename"), MapUse::projection);
         const Image& image = builder_.scene().environments[e.picture];
@@ -142,11 +143,14 @@ void LightReader::read(const Plugin& plugin, const Transform& world_from_light,
         r.error("unknown light " + in_quotes(plugin.name) +
                 did_you_mean(plugin.name, plugin_names("LightSource")));
     }
+    const std::string group = r.string("group", "");
     r.finish();
-    if (auto* sky = std::get_if<SceneBuilder::SkyLights>(&light))
+    if (auto* sky = std::get_if<SceneBuilder::SkyLights>(&light)) {
+        sky->group = group;
         builder_.add_sky(*sky, plugin.at);
-    else
-        builder_.add_light(std::get<Light>(light), plugin.at);
+    } else {
+        builder_.add_light(std::get<Light>(light), plugin.at, group);
+    }
 }
 
 // Corners are in world space, whatever the transformation that turns the map.

@@ -120,7 +120,8 @@ class MaterialMaker {
 
     void read(const ParameterInfo&, MediumIndex& interior) {
         std::vector<Medium>& media = builder_.scene().media;
-        media.push_back(read_subsurface(r_, builder_, spectra_, r_.number("eta", SubsurfaceMaterial().eta)));
+        media.push_back(
+            read_subsurface(r_, builder_, spectra_, textures_, r_.number("eta", SubsurfaceMaterial().eta)));
         interior.index = static_cast<Index>(media.size() - 1);
     }
 

@@ -13,6 +13,7 @@ struct MaterialDeclaration {
     std::string type;
     ParameterList parameters;
     Location at;
+    std::string name{}; // of a named material
 };
 
 // The index in the scene of a named material, for the directive at a place.

@@ -9,6 +9,7 @@ template <typename Mesh>
 void read_values(ParameterReader& r, Mesh& mesh) {
     mesh.normals = r.triples("N", ParameterType::normal);
     const std::span<const float> uv = r.numbers("uv", ParameterType::point2, 2);
+    mesh.uvs.reserve(uv.size() / 2);
     for (std::size_t i = 0; i < uv.size(); i += 2) mesh.uvs.emplace_back(uv[i], uv[i + 1]);
     const auto drop_unless_one_a_vertex = [&](auto& values, std::string_view name) {
         if (values.empty() || values.size() == mesh.positions.size()) return;

@@ -113,7 +113,9 @@ std::span<const float> ParameterReader::numbers(std::string_view name, Parameter
 
 std::vector<Vec3f> ParameterReader::triples(std::string_view name, ParameterType type) {
     const std::span<const float> values = numbers(name, type, 3);
-    std::vector<Vec3f> v(values.size() / 3);
+    std::vector<Vec3f> v;
+    v.reserve(values.size() / 3 + 1); // so that Embree can read positions in place
+    v.resize(values.size() / 3);
     for (std::size_t i = 0; i < v.size(); ++i) v[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
     return v;
 }

@@ -20,6 +20,7 @@ constexpr std::string_view shape_parameters[] = {"N",
                                                  "indices",
                                                  "innerradius",
                                                  "levels",
+                                                 "name",
                                                  "phimax",
                                                  "radius",
                                                  "scheme",
@@ -33,9 +34,10 @@ constexpr std::string_view shape_parameters[] = {"N",
                                                  "zmin"};
 
 constexpr std::string_view light_parameters[] = {
-    "I",   "L",       "azimuth",      "conedeltaangle", "coneangle", "elevation", "filename",
-    "fov", "from",    "groundalbedo", "illuminance",    "portal",    "power",     "scale",
-    "sun", "sundisc", "to",           "turbidity",      "twosided"};
+    "I",         "L",           "azimuth", "conedeltaangle", "coneangle",
+    "elevation", "filename",    "fov",     "from",           "groundalbedo",
+    "group",     "illuminance", "portal",  "power",          "scale",
+    "sun",       "sundisc",     "to",      "turbidity",      "twosided"};
 
 constexpr std::string_view material_parameters[] = {"albedo",
                                                     "alpha",

@@ -9,6 +9,7 @@
 #include "montelux/formats/pbrt/parameter_reader.h"
 #include "montelux/formats/pbrt/settings.h"
 #include "montelux/formats/pbrt/tokenizer.h"
+#include "montelux/image/image_read.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/camera/lens_system.h"
@@ -57,7 +58,10 @@ std::vector<LensSurface> read_lens(ParameterReader& r, Files& files, Diagnostics
         diagnostics.error(at, "'" + path.string() + "' has " + std::to_string(numbers.size()) +
                                   " numbers; expected rows of 4 (radius of curvature, thickness, index of "
                                   "refraction, diameter of the aperture)");
-    if (numbers.size() > 4000) diagnostics.error(at, "'" + path.string() + "' has more than 1000 surfaces");
+    constexpr std::size_t most_surfaces = 100; // lenses have some tens; each costs 20 ms
+    if (numbers.size() > 4 * most_surfaces)
+        diagnostics.error(at, "'" + path.string() + "' has more than " + std::to_string(most_surfaces) +
+                                  " surfaces");
     std::vector<LensSurface> surfaces;
     for (std::size_t i = 0; i < numbers.size(); i += 4) {
         float diameter = numbers[i + 3];
@@ -72,6 +76,21 @@ std::vector<LensSurface> read_lens(ParameterReader& r, Files& files, Diagnostics
             {numbers[i] * 0.001f, numbers[i + 1] * 0.001f, numbers[i + 2], diameter * 0.0005f});
     }
     return surfaces;
+}
+
+// One of pbrt-v4's shapes by name, or a picture by its file.
+std::optional<AperturePicture> read_aperture(ParameterReader& r, Files& files) {
+    const std::string name = r.string("aperture", "");
+    if (name.empty()) return std::nullopt;
+    if (std::optional<AperturePicture> known = find_aperture(name)) return known;
+    const Location at = r.at("aperture");
+    const std::filesystem::path path = files.find(name, at);
+    const std::vector<std::uint8_t> bytes = files.read(path, at);
+    try {
+        return aperture_of(read_image(bytes, path.string()));
+    } catch (const Error& e) {
+        r.error("aperture", e.what());
+    }
 }
 
 } // namespace
@@ -111,9 +130,7 @@ void read_camera(const Plugin& plugin, Files& files, Diagnostics& diagnostics, F
         if (!(camera.focus_distance > 0))
             r.error("focusdistance", "parameter 'focusdistance' must be positive");
         camera.film_diagonal = film.diagonal;
-        if (!r.string("aperture", "").empty())
-            r.error("aperture",
-                    "pictures of apertures are not supported yet; without 'aperture' it is round");
+        camera.aperture = read_aperture(r, files);
         camera.surfaces = read_lens(r, files, diagnostics, diameter);
         try {
             static_cast<void>(LensSystem(camera));

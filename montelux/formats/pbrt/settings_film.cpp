@@ -7,6 +7,7 @@
 #include "montelux/formats/pbrt/settings.h"
 #include "montelux/image/image.h"
 #include "montelux/mc/math/nearest_name.h"
+#include "montelux/spectrum/camera_sensors.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
 namespace montelux::pbrt {
@@ -55,6 +56,20 @@ int read_resolution(ParameterReader& r, std::string_view name, int otherwise) {
     return size;
 }
 
+SpectralSettings read_buckets(ParameterReader& r) {
+    SpectralSettings s;
+    s.buckets = r.integer("nbuckets", s.buckets);
+    if (s.buckets < 1 || s.buckets > SpectralSettings::most_buckets)
+        r.error("nbuckets", "parameter 'nbuckets' is " + std::to_string(s.buckets) + "; expected 1 to " +
+                                std::to_string(SpectralSettings::most_buckets));
+    s.lambda_min = r.number("lambdamin", s.lambda_min);
+    s.lambda_max = r.number("lambdamax", s.lambda_max);
+    if (!(s.lambda_min >= lambda_min && s.lambda_min < s.lambda_max && s.lambda_max <= lambda_max))
+        r.error(s.lambda_min >= lambda_min && s.lambda_min < lambda_max ? "lambdamax" : "lambdamin",
+                "'lambdamin' and 'lambdamax' must lie between 360 and 830 nm, in this order");
+    return s;
+}
+
 } // namespace
 
 void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& film, std::string& output_file) {
@@ -62,14 +77,10 @@ void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& fil
         diagnostics.error(plugin.at, "unknown film " + in_quotes(plugin.name) +
                                          did_you_mean(plugin.name, plugin_names("Film")));
     ParameterReader r(plugin.parameters, "film " + in_quotes(plugin.name), plugin.at, diagnostics);
-    if (plugin.name == "spectral") r.error("film 'spectral' is not supported yet; expected 'rgb'");
+    if (plugin.name == "spectral") film.spectral = read_buckets(r);
     if (plugin.name == "gbuffer") {
-        diagnostics.warn(plugin.at,
-                         "film 'gbuffer' is rendered as 'rgb': of its layers the EXR file has albedo, "
-                         "normal and depth, as every render");
-        if (r.choice("coordinatesystem", {"camera", "world"}, "world") == "camera")
-            diagnostics.warn(r.at("coordinatesystem"),
-                             "'coordinatesystem' is ignored: normals are in world space");
+        film.layers.set = LayerSet::gbuffer();
+        film.layers.in_camera_space = r.choice("coordinatesystem", {"camera", "world"}, "camera") == "camera";
     }
     film.width = read_resolution(r, "xresolution", 1280);
     film.height = read_resolution(r, "yresolution", 720);
@@ -88,12 +99,12 @@ void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& fil
     film.max_component_value = r.number("maxcomponentvalue", std::numeric_limits<float>::infinity());
     if (!(film.max_component_value > 0))
         r.error("maxcomponentvalue", "parameter 'maxcomponentvalue' must be positive");
-    std::string sensor = r.string("sensor", "cie1931");
-    if (sensor != "cie1931")
-        r.error("sensor", "sensor " + in_quotes(sensor) + " is not supported yet; expected 'cie1931'");
-    if (r.boolean("savefp16") == true)
-        diagnostics.warn_once("savefp16", r.at("savefp16"),
-                              "'savefp16' is ignored: EXR files hold 32-bit floats");
+    film.sensor = r.string("sensor", cie_sensor);
+    const std::vector<std::string_view>& sensors = sensor_names();
+    if (std::find(sensors.begin(), sensors.end(), film.sensor) == sensors.end())
+        r.error("sensor", "unknown sensor " + in_quotes(film.sensor) + did_you_mean(film.sensor, sensors));
+    // pbrt's default is true; a file that does not ask for it keeps its 32 bits.
+    film.layers.half = r.boolean("savefp16") == true;
     film.exposure_time = r.number("exposuretime", 1);
     if (!(film.exposure_time > 0)) r.error("exposuretime", "parameter 'exposuretime' must be positive");
     r.finish();

@@ -18,6 +18,17 @@ std::uint32_t read_count(ParameterReader& r, std::string_view name, int otherwis
     return static_cast<std::uint32_t>(n);
 }
 
+// What the path tracer does in place of another integrator.
+std::string_view substitute_of(std::string_view integrator) {
+    if (integrator == "function")
+        return "it integrates test functions and no scene; the scene is rendered with 'path'";
+    if (integrator == "simplevolpath")
+        return "the scene is rendered with 'volpath', which computes the same picture with less noise";
+    // bdpt, mlt, sppm, lightpath
+    return "the scene is rendered with 'path', which computes the same picture; caustics of small lights are "
+           "noisier";
+}
+
 } // namespace
 
 SamplerSettings read_sampler(const Plugin& plugin, Diagnostics& diagnostics, std::uint64_t seed) {
@@ -68,12 +79,23 @@ SamplerSettings read_sampler(const Plugin& plugin, Diagnostics& diagnostics, std
 IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostics) {
     ParameterReader r(plugin.parameters, "integrator " + in_quotes(plugin.name), plugin.at, diagnostics);
     IntegratorSettings s;
+    if (plugin.name == "ambientocclusion" || plugin.name == "ao") {
+        OcclusionSettings o;
+        o.cosine = r.boolean("cossample", true);
+        o.max_distance = r.number("maxdistance", o.max_distance);
+        if (!(o.max_distance > 0)) r.error("maxdistance", "parameter 'maxdistance' must be positive");
+        s.occlusion = o;
+        r.finish();
+        return s;
+    }
     s.max_depth = r.integer("maxdepth", 5);
     if (s.max_depth < 0) r.error("maxdepth", "parameter 'maxdepth' is negative");
     if (plugin.name == "path" || plugin.name == "volpath") {
-        if (r.boolean("regularize", false))
+        s.regularize = r.boolean("regularize", false);
+        if (s.regularize)
             diagnostics.warn(r.at("regularize"),
-                             "'regularize' is not supported: the picture is rendered without that bias");
+                             "'regularize' widens the reflections of indirect light: the picture "
+                             "is biased, and its standard errors do not contain the bias");
         const std::string_view lights =
             r.choice("lightsampler", {"uniform", "power", "bvh", "exhaustive"}, "");
         if (lights == "uniform") s.light_sampling = LightSampling::uniform;
@@ -94,8 +116,8 @@ IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostic
         s.strategy = Strategy::uniform;
         r.finish();
     } else if (is_plugin("Integrator", plugin.name)) {
-        diagnostics.warn(plugin.at, "integrator " + in_quotes(plugin.name) +
-                                        " is not supported yet; the scene is rendered with 'path'");
+        diagnostics.warn(plugin.at, "integrator " + in_quotes(plugin.name) + ": " +
+                                        std::string(substitute_of(plugin.name)));
     } else {
         r.error("unknown integrator " + in_quotes(plugin.name) +
                 did_you_mean(plugin.name, plugin_names("Integrator")));

@@ -72,16 +72,11 @@ TriangleMesh read_triangle_mesh(ParameterReader& r) {
     return mesh;
 }
 
-TriangleMesh read_ply_mesh(ParameterReader& r, Files& files) {
+TriangleMesh read_ply_mesh(ParameterReader& r, Files& files, DisplacementReader& displacements,
+                           const Transform& world_from_object) {
     std::optional<std::string> name = r.string("filename");
     if (!name) r.error("shape 'plymesh' needs a parameter 'filename'");
     Location at = r.at("filename");
-    for (std::string_view parameter : {"displacement", "edgelength"})
-        if (r.ignored(parameter))
-            r.diagnostics().warn_once(
-                "plymesh displacement", r.at(parameter),
-                "displacement is not supported yet: the mesh is rendered without it, and "
-                "the picture differs");
     std::filesystem::path path = files.find(*name, at);
     std::vector<std::uint8_t> bytes = files.read(path, at);
     PlyMesh ply;
@@ -96,10 +91,11 @@ TriangleMesh read_ply_mesh(ParameterReader& r, Files& files) {
     note(ply.quads, " quadrilaterals are split into two triangles each");
     note(ply.polygons, " faces of more than four corners are split into fans of triangles");
     note(ply.degenerate, " faces of fewer than three corners are left out");
+    displacements.displace(r, ply.mesh, world_from_object);
     return std::move(ply.mesh);
 }
 
-TriangleMesh read_loop_subdivision(ParameterReader& r, std::size_t& subdivided) {
+TriangleMesh read_loop_subdivision(ParameterReader& r, SubdivisionBudget& budget) {
     int levels = r.integer("levels", 3);
     if (levels < 0) r.error("levels", "parameter 'levels' is negative");
     r.choice("scheme", {"loop"}, "loop");
@@ -107,12 +103,10 @@ TriangleMesh read_loop_subdivision(ParameterReader& r, std::size_t& subdivided) 
     if (positions.empty()) r.error("shape 'loopsubdiv' needs vertex positions 'P'");
     std::vector<Index> indices = read_indices(r, positions.size(), 3, "triangle");
     if (indices.empty()) r.error("shape 'loopsubdiv' needs 'indices'");
-    const std::size_t count = subdivided_count(indices.size() / 3, levels);
-    if (count > max_subdivided_triangles - subdivided)
+    if (!budget.take(indices.size() / 3, levels))
         r.error("levels", std::to_string(levels) +
                               " levels would take the triangles of all 'loopsubdiv' shapes together beyond " +
-                              std::to_string(max_subdivided_triangles));
-    subdivided += count;
+                              std::to_string(budget.limit()));
     TriangleMesh mesh;
     try {
         SubdividedMesh fine = subdivide_loop(positions, indices, levels);
@@ -128,7 +122,8 @@ TriangleMesh read_loop_subdivision(ParameterReader& r, std::size_t& subdivided) 
 } // namespace
 
 Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transform& world_from_object,
-                    bool reverse_orientation, bool emits, Files& files, std::size_t& subdivided) {
+                    bool reverse_orientation, bool emits, Files& files, SubdivisionBudget& budget,
+                    DisplacementReader& displacements, const Transform& displacement_space) {
     if (plugin == "sphere") return read_sphere(r, world_from_object);
     if (plugin == "disk") return read_disk(r, world_from_object);
     if (plugin == "cylinder") return read_cylinder(r, world_from_object);
@@ -138,9 +133,9 @@ Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transfo
     if (plugin == "trianglemesh")
         mesh = read_triangle_mesh(r);
     else if (plugin == "plymesh")
-        mesh = read_ply_mesh(r, files);
+        mesh = read_ply_mesh(r, files, displacements, displacement_space);
     else if (plugin == "loopsubdiv")
-        mesh = read_loop_subdivision(r, subdivided);
+        mesh = read_loop_subdivision(r, budget);
     else
         r.error("unknown shape " + in_quotes(plugin) + did_you_mean(plugin, plugin_names("Shape")));
     transform_mesh(mesh, world_from_object, reverse_orientation);

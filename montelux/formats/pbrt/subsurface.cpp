@@ -17,10 +17,7 @@ std::optional<Spectrum> interior_spectrum(ParameterReader& r, SpectrumReader& sp
                                           RgbMeaning meaning) {
     if (const Parameter* p =
             r.any(name, {ParameterType::rgb, ParameterType::spectrum, ParameterType::texture});
-        p != nullptr && p->type == ParameterType::texture)
-        r.error(name, "parameter " + in_quotes(name) +
-                          " of 'subsurface' is a texture; expected a colour or spectrum for the whole body");
-    else if (p != nullptr) {
+        p != nullptr && p->type != ParameterType::texture) {
         const Spectrum s = spectra.read(*p, meaning);
         for (float lambda = lambda_min; lambda <= lambda_max; ++lambda)
             if (!(s(lambda) >= 0) || !std::isfinite(s(lambda)))
@@ -29,6 +26,11 @@ std::optional<Spectrum> interior_spectrum(ParameterReader& r, SpectrumReader& sp
         return s;
     }
     return std::nullopt;
+}
+
+bool is_texture(ParameterReader& r, std::string_view name) {
+    const Parameter* p = r.any(name, {ParameterType::rgb, ParameterType::spectrum, ParameterType::texture});
+    return p != nullptr && p->type == ParameterType::texture;
 }
 
 // At each nanometre.
@@ -54,7 +56,7 @@ const MediumPreset& body_preset(ParameterReader& r, const std::string& name) {
 } // namespace
 
 HomogeneousMedium read_subsurface(ParameterReader& r, SceneBuilder& builder, SpectrumReader& spectra,
-                                  float eta) {
+                                  TextureLibrary& textures, float eta) {
     HomogeneousMedium m;
     m.is_body = true;
     float g = r.number("g", 0);
@@ -71,10 +73,13 @@ HomogeneousMedium read_subsurface(ParameterReader& r, SceneBuilder& builder, Spe
     const auto sigma_s = interior_spectrum(r, spectra, "sigma_s", RgbMeaning::unbounded);
     const auto reflectance = interior_spectrum(r, spectra, "reflectance", RgbMeaning::albedo);
     const auto mfp = interior_spectrum(r, spectra, "mfp", RgbMeaning::unbounded);
-    if (sigma_a.has_value() != sigma_s.has_value())
-        r.error(sigma_a ? "sigma_a" : "sigma_s", "'sigma_a' and 'sigma_s' must be given together");
+    const bool vary = is_texture(r, "sigma_a") || is_texture(r, "sigma_s"),
+               reflects = is_texture(r, "reflectance") || (reflectance && is_texture(r, "mfp"));
+    const bool has_a = sigma_a || is_texture(r, "sigma_a"), has_s = sigma_s || is_texture(r, "sigma_s");
+    if (has_a != has_s)
+        r.error(has_a ? "sigma_a" : "sigma_s", "'sigma_a' and 'sigma_s' must be given together");
     const bool named = name && !name->empty();
-    if ((named ? 1 : 0) + (sigma_a ? 1 : 0) + (reflectance ? 1 : 0) > 1)
+    if ((named ? 1 : 0) + (has_a ? 1 : 0) + (reflectance || reflects ? 1 : 0) > 1)
         r.diagnostics().warn(r.at(),
                              std::string("'subsurface' has several of 'name', 'sigma_a' with 'sigma_s', and "
                                          "'reflectance'; '") +
@@ -85,19 +90,27 @@ HomogeneousMedium read_subsurface(ParameterReader& r, SceneBuilder& builder, Spe
             r.diagnostics().warn(r.at("g"), "'g' is ignored: the coefficients of 'name' are reduced ones");
         g = 0;
         from_rgb(preset.sigma_a, preset.sigma_s);
-    } else if (sigma_a) {
+    } else if (vary) {
+        m.surface = {.kind = BodySurface::Kind::coefficients,
+                     .first = textures.spectrum_or(r, "sigma_a", RgbMeaning::unbounded, 0),
+                     .second = textures.spectrum_or(r, "sigma_s", RgbMeaning::unbounded, 0),
+                     .scale = m.scale};
+    } else if (has_a) {
         m.sigma_a = builder.add_spectrum(*sigma_a);
         m.sigma_s = builder.add_spectrum(*sigma_s);
+    } else if (reflects) {
+        m.surface = {.kind = BodySurface::Kind::reflectance,
+                     .first = textures.spectrum_or(r, "reflectance", RgbMeaning::albedo, 0),
+                     .second = textures.spectrum_or(r, "mfp", RgbMeaning::unbounded, 1),
+                     .scale = m.scale,
+                     .eta = eta,
+                     .g = g};
     } else if (reflectance) {
         if (mfp)
             for (float lambda = lambda_min; lambda <= lambda_max; ++lambda)
                 if (!((*mfp)(lambda) > 0)) r.error("mfp", "parameter 'mfp' is 0 at a visible wavelength");
-        // `scale` is that of the mean free path here. A medium with g is as one of the reduced scattering coefficient
-        // (van de Hulst's similarity).
-        const auto albedo = [&](float lambda) {
-            const float reduced = single_scattering_albedo((*reflectance)(lambda), eta);
-            return reduced / (1 - g + g * reduced);
-        };
+        // `scale` is that of the mean free path here.
+        const auto albedo = [&](float lambda) { return body_albedo((*reflectance)(lambda), eta, g); };
         const auto extinction = [&](float lambda) { return 1 / (m.scale * (mfp ? (*mfp)(lambda) : 1.0f)); };
         m.sigma_s = builder.add_spectrum(tabulated([&](float l) { return albedo(l) * extinction(l); }));
         m.sigma_a = builder.add_spectrum(tabulated([&](float l) { return (1 - albedo(l)) * extinction(l); }));

@@ -1,5 +1,8 @@
 #include "montelux/formats/pbrt/tokenizer.h"
 
+#include <algorithm>
+#include <array>
+#include <cstring>
 #include <type_traits>
 
 #include "montelux/formats/number.h"
@@ -7,10 +10,16 @@
 namespace montelux::pbrt {
 namespace {
 
-bool ends_word(char c) {
-    return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '"' || c == '[' || c == ']' || c == '#' ||
-           c == '\0';
-}
+constexpr std::array<bool, 256> ends = [] {
+    std::array<bool, 256> table{};
+    for (const char c : {' ', '\n', '\t', '\r', '"', '[', ']', '#', '\0'})
+        table[static_cast<unsigned char>(c)] = true;
+    return table;
+}();
+// A list is measured after so many numbers.
+constexpr std::size_t counted_numbers = 4096;
+
+bool ends_word(char c) { return ends[static_cast<unsigned char>(c)]; }
 
 } // namespace
 
@@ -123,6 +132,18 @@ Token Tokenizer::scan_string(Location at) {
     return {Token::Kind::string, unescaped_.emplace_back(std::move(result)), at};
 }
 
+// Room for the rest of a list, whose numbers are as long as the `count` before, which took `bytes`.
+template <typename T>
+void Tokenizer::reserve_like(std::vector<T>& out, std::size_t count, std::size_t bytes) const {
+    const auto left = static_cast<std::size_t>(end_ - position_);
+    const auto* close = static_cast<const char*>(std::memchr(position_, ']', left));
+    const std::size_t rest = close != nullptr ? static_cast<std::size_t>(close - position_) : left;
+    const double expected =
+        1.01 * static_cast<double>(count) * static_cast<double>(rest) / static_cast<double>(bytes);
+    out.reserve(
+        std::max(out.capacity() + out.capacity() / 2, out.size() + static_cast<std::size_t>(expected) + 1));
+}
+
 template <typename T>
 std::size_t Tokenizer::read_all(std::vector<T>& out) {
     std::size_t before = out.size();
@@ -131,6 +152,7 @@ std::size_t Tokenizer::read_all(std::vector<T>& out) {
         position_ = peeked_->text.data();
         peeked_.reset();
     }
+    const char* first = position_;
     for (;;) {
         skip_space();
         if (position_ == end_ || *position_ == '"' || *position_ == '[' || *position_ == ']') break;
@@ -138,6 +160,8 @@ std::size_t Tokenizer::read_all(std::vector<T>& out) {
         NumberResult result = parse_number(position_, end_, value);
         bool whole = result.end == end_ || ends_word(*result.end);
         if (result.status == NumberStatus::ok && whole && *position_ != '\0') {
+            if (out.size() == out.capacity() && out.size() - before >= counted_numbers)
+                reserve_like(out, out.size() - before, static_cast<std::size_t>(position_ - first));
             out.push_back(value);
             position_ = result.end;
             continue;

@@ -41,6 +41,8 @@ class Tokenizer {
   private:
     template <typename T>
     std::size_t read_all(std::vector<T>& out);
+    template <typename T>
+    void reserve_like(std::vector<T>& out, std::size_t count, std::size_t bytes) const;
     void skip_space();
     Token scan();
     Token scan_string(Location at);

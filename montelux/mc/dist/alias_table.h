@@ -38,6 +38,8 @@ class AliasTable {
                 std::min((within - threshold) / (1 - threshold), largest_below_one<T>)};
     }
 
+    std::size_t bytes() const { return bins_.size() * sizeof(Bin); }
+
   private:
     struct Bin {
         // Share of the bin that returns its own index. A double: an index that many bins return has the

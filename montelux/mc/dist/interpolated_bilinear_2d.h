@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "montelux/mc/math/vec.h"
+#include "montelux/mc/math/vector_bytes.h"
 
 namespace montelux {
 
@@ -39,6 +40,9 @@ class InterpolatedBilinear2D {
     Sample sample(const InterpolationWeights& at, Vec2f u) const;
     Sample invert(const InterpolationWeights& at, Vec2f p) const;
     float pdf(const InterpolationWeights& at, Vec2f p) const;
+
+    // Memory of the tables.
+    std::size_t bytes() const { return vector_bytes(values_, row_cdf_, marginal_); }
 
   private:
     struct Cell {

@@ -23,7 +23,10 @@ class PhiloxStream {
     // takes one pair of numbers from its parent however long it runs.
     template <typename Stream>
     static PhiloxStream split(Stream& parent) {
-        const auto u = parent.next_2d();
+        return of_pair(parent.next_2d());
+    }
+    // The same for a pair that was drawn already.
+    static PhiloxStream of_pair(Vec2f u) {
         const auto high = static_cast<std::uint64_t>(u.x * 0x1p24f);
         const auto low = static_cast<std::uint64_t>(u.y * 0x1p24f);
         return PhiloxStream(hash_key((high << 24) | low), {0, 0, 1});

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "montelux/mc/math/vector_bytes.h"
 #include "montelux/mc/warp/hemisphere.h"
 #include "montelux/scene/bsdf/dielectric.h"
 
@@ -44,6 +45,9 @@ class CoatingTable {
         }
         return rho * (1.0f - power) / (1.0f - x) * (1 / (coat_.eta * coat_.eta));
     }
+
+    // Memory of the tables.
+    std::size_t bytes() const { return vector_bytes(transmittance_, reflectance_); }
 
   private:
     static float interpolate(const std::vector<float>& table, float mu) {

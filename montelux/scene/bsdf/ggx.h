@@ -21,6 +21,12 @@ struct Ggx {
 
     bool is_smooth() const { return std::max(alpha_x, alpha_y) < smooth_limit; }
 
+    // Twice as rough, but between 0.1 and 0.3; rougher ones as they are (pbrt-v4's regularization).
+    Ggx widened() const {
+        const auto widen = [](float a) { return a < 0.3f ? std::clamp(2 * a, 0.1f, 0.3f) : a; };
+        return {widen(alpha_x), widen(alpha_y)};
+    }
+
     // D(m), per solid angle of m (1/sr); m on the upper hemisphere.
     // In components instead of tan(theta): exact also for narrow lobes.
     float d(Vec3f m) const {
@@ -41,10 +47,13 @@ struct Ggx {
     // Density of the normals visible from w: G1(w) / |cos theta| D(m) |w.m|, per solid angle of m.
     float visible_pdf(Vec3f w, Vec3f m) const { return g1(w) / std::abs(w.z) * d(m) * std::abs(dot(w, m)); }
 
-    // Samples the visible normals. Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical
-    // Caps", Computer Graphics Forum 42(8). w may lie on either side; m has z >= 0.
-    Vec3f sample_visible(Vec3f w, Vec2f u) const {
-        if (w.z < 0) w = -w;
+    // Samples the visible normals. w may lie on either side, which is then the outside; m has z >= 0.
+    Vec3f sample_visible(Vec3f w, Vec2f u) const { return sample_facing(w.z < 0 ? -w : w, u); }
+
+    // The same for a direction of microscopic light, which also comes from below (w.z < 0): the normals with z > 0
+    // that face w. Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", Computer Graphics
+    // Forum 42(8).
+    Vec3f sample_facing(Vec3f w, Vec2f u) const {
         Vec3f standard = normalize(Vec3f{w.x * alpha_x, w.y * alpha_y, w.z});
         float phi = two_pi_f * u.x;
         float z = (1 - u.y) * (1 + standard.z) - standard.z;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <optional>
 
@@ -18,10 +19,10 @@ namespace montelux {
 // flat and infinite, so the state of a walk is its depth z (base at 0, coat at `thickness`) and its
 // direction. `evaluate` is an unbiased estimate, not the value. Its density is not known in closed form.
 // evaluate and sample report as pdf a fixed positive function of the two directions; MIS weights may use it
-// (they sum to 1 for any). The weight of sample is f |cos| over the true density.
-template <typename Base>
+// (they sum to 1 for any). The weight of sample is f |cos| over the true density. A coat may be stochastic itself.
+template <typename Base, typename Coat = DielectricBsdf>
 struct LayeredBsdf {
-    DielectricBsdf coat;
+    Coat coat;
     Base base;
     Ggx proxy;                     // roughness of light reflected by the base, for the reported pdf
     SampledSpectrum medium_albedo; // single-scattering albedo between the layers; its extinction is 1 per
@@ -35,9 +36,9 @@ struct LayeredBsdf {
     static constexpr BsdfTraits traits{.uses_tangents = true, .stochastic = true};
     template <typename Visit>
     void visit_fields(Visit&& visit) const {
-        visit("eta", coat.eta);
+        visit("eta", facets_of_coat().eta);
         visit("thickness", thickness);
-        visit("coat", coat.ggx);
+        visit("coat", facets_of_coat().ggx);
         if (!is_black(medium_albedo)) visit("medium albedo", medium_albedo);
         visit("base", base);
     }
@@ -46,7 +47,7 @@ struct LayeredBsdf {
     bool has_specular() const { return coat.is_specular(); }
     // Without interreflections between the layers.
     SampledSpectrum albedo(Vec3f wo) const {
-        float r = fresnel_dielectric(abs_cos_theta(wo), coat.eta);
+        float r = fresnel_dielectric(abs_cos_theta(wo), facets_of_coat().eta);
         return r + (1 - r) * base.albedo(wo);
     }
 
@@ -61,7 +62,7 @@ struct LayeredBsdf {
         SampledSpectrum walks;
         PhiloxStream rng = PhiloxStream::split(stream);
         for (int i = 0; i < sample_count; ++i) walks += walk(wo, wi, mode, rng);
-        BsdfEvaluation result = coat.evaluate_lobes(wo, wi, mode, Lobes::reflection);
+        BsdfEvaluation result = coat_value(wo, wi, mode, Lobes::reflection, rng);
         result.f += walks / static_cast<float>(sample_count);
         result.pdf = proxy_pdf(wo, wi);
         return result;
@@ -86,16 +87,33 @@ struct LayeredBsdf {
     }
 
   private:
+    const DielectricBsdf& facets_of_coat() const {
+        if constexpr (std::same_as<Coat, DielectricBsdf>)
+            return coat;
+        else
+            return coat.facets;
+    }
+    BsdfEvaluation coat_value(Vec3f wo, Vec3f wi, TransportMode mode, Lobes lobes, PhiloxStream& rng) const {
+        if constexpr (Coat::traits.stochastic)
+            return coat.evaluate_lobes(wo, wi, mode, lobes, rng);
+        else
+            return coat.evaluate_lobes(wo, wi, mode, lobes);
+    }
+    float coat_pdf(Vec3f wo, Vec3f wi, TransportMode mode, Lobes lobes) const {
+        if constexpr (Coat::traits.stochastic)
+            return coat.pdf_lobes(wo, wi, mode, lobes);
+        else
+            return coat.evaluate_lobes(wo, wi, mode, lobes).pdf;
+    }
+
     float absorption(float dz, Vec3f w) const { return std::exp(-std::abs(dz / w.z)); }
 
     float proxy_pdf(Vec3f wo, Vec3f wi) const {
-        float r = std::clamp(fresnel_dielectric(wo.z, coat.eta), 0.1f, 0.9f);
+        float r = std::clamp(fresnel_dielectric(wo.z, facets_of_coat().eta), 0.1f, 0.9f);
         float cosine = inv_pi_f * wi.z;
         Vec3f m = normalize(wo + wi);
         float lobe = proxy.visible_pdf(wo, m) / (4 * std::max(dot(wo, m), 1e-6f));
-        float top = coat.is_specular()
-                        ? lobe
-                        : coat.evaluate_lobes(wo, wi, TransportMode::radiance, Lobes::reflection).pdf;
+        float top = coat.is_specular() ? lobe : coat_pdf(wo, wi, TransportMode::radiance, Lobes::reflection);
         return r * top + (1 - r) * (0.8f * lobe + 0.2f * cosine);
     }
 
@@ -165,17 +183,24 @@ struct LayeredBsdf {
         auto in = coat.sample_lobes(wo, uc_o, u_o, mode, Lobes::transmission);
         // The exit path that ends in wi, traced backwards.
         auto out = coat.sample_lobes(wi, uc_i, u_i, adjoint(mode), Lobes::transmission);
-        if (!in || !out || in->wi.z == 0 || out->wi.z == 0) return {};
+        if (!in || in->wi.z == 0) return {};
+        // A stochastic coat may reflect the path from wi: its weight is 0 then, and exits are found by chance alone.
+        const bool has_out = out && out->wi.z != 0;
+        if (!has_out && !Coat::traits.stochastic) return {};
         bool rough = !coat.is_specular();
-        Vec3f to_exit = -out->wi;
-        SampledSpectrum exit_weight = out->weight * (abs_cos_theta(wi) / abs_cos_theta(out->wi));
+        Vec3f to_exit{0, 0, 1};
+        SampledSpectrum exit_weight;
+        if (has_out) {
+            to_exit = -out->wi;
+            exit_weight = out->weight * (abs_cos_theta(wi) / abs_cos_theta(out->wi));
+        }
         auto out_weight = [&](float other_pdf) {
             return rough ? power_heuristic(1, out->pdf, 1, other_pdf) : 1.0f;
         };
         auto exit_by_chance = [&](Vec3f w, float pdf, float dz, bool delta) {
-            BsdfEvaluation exit = coat.evaluate_lobes(-w, wi, mode, Lobes::transmission);
+            BsdfEvaluation exit = coat_value(-w, wi, mode, Lobes::transmission, rng);
             // The competing strategy starts from wi: its density is that of sampling -w there.
-            float out_pdf = coat.evaluate_lobes(wi, -w, adjoint(mode), Lobes::transmission).pdf;
+            float out_pdf = coat_pdf(wi, -w, adjoint(mode), Lobes::transmission);
             float weight = delta ? 1 : power_heuristic(1, pdf, 1, out_pdf);
             return exit.f * (absorption(dz, w) * weight);
         };
@@ -214,7 +239,7 @@ struct LayeredBsdf {
                 if (mirrors)
                     sum += beta * medium_albedo * exit_weight *
                            ways_out(p, phase.pdf(-w, {to_exit.x, to_exit.y, -to_exit.z}), z, depth);
-                else
+                else if (has_out)
                     sum += beta * medium_albedo * exit_weight *
                            (p * out_weight(p) * absorption(z - thickness, to_exit));
                 Vec2f u = rng.next_2d();
@@ -230,7 +255,7 @@ struct LayeredBsdf {
                 beta *= event->weight;
                 w = event->wi;
             } else {
-                if (!base.is_specular()) {
+                if (has_out && !base.is_specular()) {
                     BsdfEvaluation e = base.evaluate(-w, to_exit, mode, rng);
                     sum += beta * e.f * exit_weight * (out_weight(e.pdf) * absorption(thickness, to_exit));
                 }

@@ -8,6 +8,7 @@
 #include "montelux/mc/dist/search.h"
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/math/vector_bytes.h"
 
 namespace montelux {
 namespace {
@@ -159,6 +160,12 @@ std::optional<BsdfSample> MeasuredBrdf::sample(Vec3f wo, Float4 lambda, Vec2f u)
     s.wi = below ? -wi : wi;
     s.pdf = pdf;
     return s;
+}
+
+std::size_t MeasuredBrdf::bytes() const {
+    return vector_bytes(data_.theta, data_.phi, data_.wavelengths, data_.ndf.values, data_.sigma.values,
+                        data_.visible_normals.values, data_.luminance.values, data_.spectra.values) +
+           visible_normals_.bytes() + luminance_.bytes();
 }
 
 SampledSpectrum MeasuredBrdf::albedo(Vec3f wo, Float4 lambda) const {

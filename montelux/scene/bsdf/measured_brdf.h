@@ -40,6 +40,8 @@ class MeasuredBrdf {
 
     bool is_isotropic() const { return data_.phi.size() <= 2; }
     const MeasuredBrdfData& data() const { return data_; }
+    // Memory of the tables.
+    std::size_t bytes() const;
 
     // Wavelengths in nm. Both sides reflect.
     BsdfEvaluation evaluate(Vec3f wo, Vec3f wi, Float4 lambda) const;

@@ -11,13 +11,18 @@
 #include "montelux/scene/bsdf/hair.h"
 #include "montelux/scene/bsdf/layered.h"
 #include "montelux/scene/bsdf/measured_brdf.h"
+#include "montelux/scene/bsdf/multiscatter_conductor.h"
+#include "montelux/scene/bsdf/multiscatter_dielectric.h"
 #include "montelux/scene/bsdf/subsurface_boundary.h"
 #include "montelux/scene/bsdf/thin_dielectric.h"
 
 namespace montelux {
 
-using UntiltedBsdf = std::variant<DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf,
-                                  ThinDielectricBsdf, CoatedDiffuseBsdf, LayeredBsdf<DiffuseBsdf>,
-                                  LayeredBsdf<ConductorBsdf>, HairBsdf, MeasuredBsdf, SubsurfaceBsdf>;
+using UntiltedBsdf =
+    std::variant<DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf, ThinDielectricBsdf,
+                 CoatedDiffuseBsdf, LayeredBsdf<DiffuseBsdf>, LayeredBsdf<ConductorBsdf>, HairBsdf,
+                 MeasuredBsdf, SubsurfaceBsdf, MultiscatterConductorBsdf, MultiscatterDielectricBsdf,
+                 LayeredBsdf<DiffuseBsdf, MultiscatterDielectricBsdf>,
+                 LayeredBsdf<MultiscatterConductorBsdf, MultiscatterDielectricBsdf>>;
 
 } // namespace montelux

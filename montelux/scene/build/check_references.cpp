@@ -235,6 +235,10 @@ void check_media(const Scene& scene) {
                     check_sparse_grid(check, "density", m.density);
                     check_sparse_grid(check, "temperature", m.temperature);
                 }
+                if constexpr (requires { m.surface; }) {
+                    check("surface", m.surface.first);
+                    check("surface", m.surface.second);
+                }
                 if constexpr (requires { check("le", m.le); }) check("le", m.le);
             },
             scene.media[i]);

@@ -1,6 +1,8 @@
 // Emission: the emission of lights in photometric units: spectra scaled so that the film's RGB is luminance.
 #pragma once
 
+#include <string>
+
 #include "montelux/scene/build/geometry.h"
 #include "montelux/scene/light/area_light.h"
 
@@ -26,6 +28,7 @@ struct Emission {
     float power = 0; // lm of each primitive, if positive: scale is then multiplied by power / emitted power
     Index picture = no_index; // AreaLight::picture
     double picture_mean = 1;  // luminance, by which the emitted power is multiplied
+    std::string group{};      // of lights that share a layer (light_groups.h); may be empty
 
     // The light of a shape with this geometry.
     AreaLight light(Index shape, const Geometry& geometry) const;

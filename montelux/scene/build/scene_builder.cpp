@@ -1,6 +1,7 @@
 #include "montelux/scene/build/scene_builder.h"
 
 #include <utility>
+#include <vector>
 
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/overloaded.h"
@@ -37,6 +38,12 @@ Bounds3 bounds_of(const ObjectDefinition& object, const Scene& scene) {
     return bounds;
 }
 
+// Gives back room that growing left over, if it is much. (An eighth: the copy that this needs is not worth less.)
+template <typename T>
+void trim(std::vector<T>& v) {
+    if (v.capacity() - v.size() > v.size() / 8 + 1) v.shrink_to_fit();
+}
+
 } // namespace
 
 Index SceneBuilder::add_shape(Geometry geometry, const ShapeSettings& settings, SourceLocation at) {
@@ -53,10 +60,19 @@ Index SceneBuilder::add_shape(Geometry geometry, const ShapeSettings& settings, 
     shape.flip_normal = settings.flip_normal;
     shape.media = settings.media;
     scene_.shapes.push_back(shape);
+    if (!settings.name.empty()) {
+        scene_.shape_names.resize(index + std::size_t{1});
+        scene_.shape_names[index] = settings.name;
+    }
     (in_object() ? scene_.objects[open_object_].shapes : scene_.world_shapes).push_back(index);
     if (settings.emission != nullptr) add_area_light(index, *settings.emission, geometry, at);
     scene_.shapes[index].geometry = std::visit(
         Overloaded{[&](TriangleMesh& mesh) -> ShapeGeometry {
+                       trim(mesh.positions);
+                       trim(mesh.normals);
+                       trim(mesh.uvs);
+                       trim(mesh.indices);
+                       trim(mesh.tangents);
                        // Room for the ray tracer to read the positions in place.
                        if (!mesh.positions.empty()) mesh.positions.reserve(mesh.positions.size() + 1);
                        scene_.meshes.push_back(std::move(mesh));
@@ -92,13 +108,15 @@ void SceneBuilder::add_area_light(Index shape, const Emission& emission, const G
     if (count == 0) return;
     emissive_primitives_ += count;
     if (emissive_primitives_ >= no_index) messages_.error(at, "more than 2^32 emissive triangles");
-    scene_.shapes[shape].light = add_light(emission.light(shape, geometry), at);
+    scene_.shapes[shape].light = add_light(emission.light(shape, geometry), at, emission.group);
 }
 
 void SceneBuilder::begin_object(const std::string& name, SourceLocation at) {
     objects_.declare(name, static_cast<Index>(scene_.objects.size()), at, messages_);
     open_object_ = static_cast<Index>(scene_.objects.size());
     scene_.objects.emplace_back();
+    // Readers name objects that have no name in the file by a line break and a number.
+    if (!name.starts_with('\n')) scene_.objects.back().name = name;
 }
 
 void SceneBuilder::add_instance(const std::string& object, const Transform& world_from_object,
@@ -123,7 +141,7 @@ void SceneBuilder::add_instance(const std::string& object, const Transform& star
     instances_.back().motion = static_cast<Index>(scene_.motions.size() - 1);
 }
 
-Index SceneBuilder::add_light(const Light& light, SourceLocation at) {
+Index SceneBuilder::add_light(const Light& light, SourceLocation at, const std::string& group) {
     if (scene_.lights.size() >= no_index) messages_.error(at, "more than 2^32 lights");
     try {
         check_light(scene_, light);
@@ -131,6 +149,10 @@ Index SceneBuilder::add_light(const Light& light, SourceLocation at) {
         messages_.error(at, e.what());
     }
     scene_.lights.push_back(light);
+    if (!group.empty()) {
+        scene_.light_groups.resize(scene_.lights.size());
+        scene_.light_groups.back() = group;
+    }
     return static_cast<Index>(scene_.lights.size() - 1);
 }
 
@@ -160,7 +182,7 @@ void SceneBuilder::place_instances() {
     instances_.clear();
 }
 
-void SceneBuilder::finish(SourceLocation end) {
+void SceneBuilder::finish(SourceLocation end, bool lights_matter) {
     place_instances();
     for (std::size_t i = 0; i < scene_.shapes.size(); ++i) {
         const Shape& shape = scene_.shapes[i];
@@ -176,7 +198,8 @@ void SceneBuilder::finish(SourceLocation end) {
     } catch (const Error& e) {
         messages_.error(end, e.what());
     }
-    if (scene_.lights.empty()) messages_.warn(end, "the scene has no light; its picture is black");
+    if (lights_matter && scene_.lights.empty())
+        messages_.warn(end, "the scene has no light; its picture is black");
 }
 
 } // namespace montelux

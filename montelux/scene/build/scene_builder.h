@@ -22,6 +22,7 @@ struct ShapeSettings {
     bool flip_normal = false;           // Shape::flip_normal
     const Emission* emission = nullptr; // null: no emission
     MediumInterface media{};
+    std::string name{}; // in the layer of shapes (scene_names.h); may be empty
 };
 
 // A reader calls it for each object in the file; `at` is its place, for messages. The builder checks what the
@@ -46,7 +47,8 @@ class SceneBuilder {
     void add_instance(const std::string& object, const Transform& world_from_object_at_start,
                       const Transform& world_from_object_at_end, SourceLocation at = {});
 
-    Index add_light(const Light& light, SourceLocation at = {});
+    // `group`: of lights that share a layer (light_groups.h); may be empty.
+    Index add_light(const Light& light, SourceLocation at = {}, const std::string& group = {});
     // A clear sky and, if requested and above the horizon, its sun. Luminances are multiplied by `scale`; a
     // positive illuminance replaces that of both on the ground.
     struct SkyLights {
@@ -54,6 +56,7 @@ class SceneBuilder {
         bool sun = true;
         float scale = 1, illuminance = 0;
         Transform world_from_light;
+        std::string group{}; // as of add_light
     };
     void add_sky(const SkyLights& sky, SourceLocation at = {});
 
@@ -68,8 +71,9 @@ class SceneBuilder {
     // The same of any size, for lights that project a picture.
     Index add_light_picture(const Image& picture, const std::string& name, SourceLocation at = {});
 
-    // Resolves the instances and makes the remaining checks. `end` is the end of the file.
-    void finish(SourceLocation end = {});
+    // Resolves the instances and makes the remaining checks. `end` is the end of the file. Warns of a scene without
+    // lights, unless they do not matter.
+    void finish(SourceLocation end = {}, bool lights_matter = true);
 
   private:
     struct InstanceUse {

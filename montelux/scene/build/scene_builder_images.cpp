@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "montelux/mc/math/error.h"
@@ -14,6 +15,9 @@ namespace {
 
 // Height of the map for sampling directions to a sky. Radiance does not depend on it.
 constexpr int sky_density_rows = 256;
+
+// A file must not keep the reader busy for an hour; scenes have one.
+constexpr std::size_t most_skies = 16;
 
 constexpr const char* no_colors = " has neither channels R, G and B nor Y alone";
 
@@ -78,6 +82,9 @@ Index SceneBuilder::add_light_picture(const Image& picture, const std::string& n
 }
 
 void SceneBuilder::add_sky(const SkyLights& sky, SourceLocation at) {
+    if (scene_.skies.size() >= most_skies)
+        messages_.error(at,
+                        "more than " + std::to_string(most_skies) + " skies: each takes a second to compute");
     std::optional<SkyModel> made;
     try {
         made.emplace(sky.settings);
@@ -99,7 +106,7 @@ void SceneBuilder::add_sky(const SkyLights& sky, SourceLocation at) {
                            SunDisc::of_radius(normalize(sky.world_from_light.vector(model.sun_direction())),
                                               sun_angular_radius),
                            normalize(sky.world_from_light.normal(Vec3f(0, 0, 1)))},
-                  at);
+                  at, sky.group);
     SkyLight light;
     light.sky = static_cast<Index>(scene_.skies.size());
     light.environment = static_cast<Index>(scene_.environments.size());
@@ -107,7 +114,7 @@ void SceneBuilder::add_sky(const SkyLights& sky, SourceLocation at) {
     light.world_from_light = sky.world_from_light;
     scene_.environments.push_back(sky_density_map(model, sky_density_rows));
     scene_.skies.push_back(model);
-    add_light(light, at);
+    add_light(light, at, sky.group);
 }
 
 } // namespace montelux

@@ -129,6 +129,46 @@ CameraRay Camera::generate_ray(Point2f film, Point2f lens, float time) const {
     return ray;
 }
 
+std::optional<Vec2d> Camera::project(Vec3d p) const {
+    const Vec2d step{double(dx_), double(dy_)}, start{double(x0_), double(y0_)};
+    const auto on_film = [&](double x, double y) {
+        return Vec2d{(x - start.x) / step.x, (y - start.y) / step.y};
+    };
+    switch (kind_) {
+    case Kind::perspective:
+        if (!(p.z > 0)) return std::nullopt;
+        return on_film(p.x / p.z, p.y / p.z);
+    case Kind::orthographic:
+        return on_film(p.x, p.y);
+    case Kind::realistic: {
+        if (!(p.z > 0)) return std::nullopt;
+        const double f = double(lens_->focal_length());
+        return on_film(-p.x / p.z * f, -p.y / p.z * f);
+    }
+    case Kind::equal_area:
+    case Kind::equirectangular:
+        break;
+    }
+    const double distance = length(p);
+    if (!(distance > 0)) return std::nullopt;
+    const Vec3d w = p / distance;
+    if (kind_ == Kind::equal_area) {
+        const Vec2d square = equal_area_sphere_to_square(Vec3d{w.x, w.z, w.y});
+        return on_film(square.x, square.y);
+    }
+    const double phi = std::atan2(w.z, w.x);
+    return on_film((phi < 0 ? phi + 2 * pi : phi) / (2 * pi), std::acos(std::clamp(w.y, -1.0, 1.0)) / pi);
+}
+
+Vec2d Camera::film_step(Vec2d from, Vec2d to) const {
+    Vec2d step{to.x - from.x, to.y - from.y};
+    if (kind_ == Kind::equirectangular) {
+        const double width = 1 / double(dx_);
+        step.x -= width * std::round(step.x / width);
+    }
+    return step;
+}
+
 Camera::Footprint Camera::footprint(Point3f p, Normal3f n, float scale) const {
     Vec3f axis = kind_ == Kind::orthographic ? normalize(placed_.axes[2]) : p - placed_.origin;
     float distance = kind_ == Kind::orthographic ? 1 : length(axis);

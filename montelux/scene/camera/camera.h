@@ -30,6 +30,15 @@ class Camera {
     }
     bool has_lens() const { return lens_radius_ > 0 || lens_; }
     const Transform& world_from_camera() const { return world_from_camera_; }
+    // At a time of motions.
+    Transform camera_from_world(float time) const {
+        return (motion_ ? motion_->at(time) : world_from_camera_).inverse();
+    }
+    // Where points of camera space appear on the film through the centre of the lens, in pixels; empty behind the
+    // camera. A realistic camera counts as a pinhole at its focal length.
+    std::optional<Vec2d> project(Vec3d p) const;
+    // The step on the film from one projection to another; the shorter way around a latitude-longitude map.
+    Vec2d film_step(Vec2d from, Vec2d to) const;
 
     // Steps on the tangent plane at p (normal n) that correspond to one pixel to the right and one down, as
     // seen directly from the camera; `scale` shrinks the pixel. Accurate enough to choose a level of detail.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "montelux/mc/math/transform.h"
+#include "montelux/scene/camera/aperture_picture.h"
 #include "montelux/scene/index.h"
 #include "montelux/scene/shape/motion.h"
 
@@ -47,9 +48,10 @@ struct LensSurface {
 // A lens as it is built; camera space is in metres, the film in its plane z = 0. Pixels show irradiance: with a white
 // scene of radiance 1, the solid angle of the exit pupil times its mean cosine.
 struct RealisticCamera {
-    std::vector<LensSurface> surfaces; // from the scene to the film
-    float focus_distance = 10;         // from the film, metres
-    float film_diagonal = 0.035f;      // metres
+    std::vector<LensSurface> surfaces;         // from the scene to the film
+    float focus_distance = 10;                 // from the film, metres
+    float film_diagonal = 0.035f;              // metres
+    std::optional<AperturePicture> aperture{}; // of the stops, which are round without it
 };
 
 using CameraModel = std::variant<PerspectiveCamera, OrthographicCamera, SphericalCamera, RealisticCamera>;

@@ -23,7 +23,8 @@ std::optional<Vec3d> refracted(Vec3d d, Vec3d n, double eta) {
 } // namespace
 
 LensSystem::LensSystem(const RealisticCamera& camera)
-    : surfaces_(camera.surfaces), z_(surfaces_.size()), half_diagonal_(camera.film_diagonal / 2) {
+    : aperture_(camera.aperture), surfaces_(camera.surfaces), z_(surfaces_.size()),
+      half_diagonal_(camera.film_diagonal / 2) {
     if (surfaces_.empty()) throw Error("camera", "the lens has no surfaces");
     for (LensSurface& s : surfaces_) {
         const bool finite = std::isfinite(s.radius) && std::isfinite(s.thickness) && std::isfinite(s.eta);
@@ -55,7 +56,7 @@ void LensSystem::place(float film_distance) {
     }
 }
 
-std::optional<Ray> LensSystem::trace(Ray ray, bool from_film) const {
+std::optional<Ray> LensSystem::trace(Ray ray, bool from_film, float* transmittance) const {
     Vec3d o(ray.o), d = normalize(Vec3d(ray.d));
     const std::size_t n = surfaces_.size();
     for (std::size_t k = 0; k < n; ++k) {
@@ -80,7 +81,11 @@ std::optional<Ray> LensSystem::trace(Ray ray, bool from_film) const {
         }
         if (!(t >= 0)) return std::nullopt;
         o = o + d * t;
-        const double aperture = static_cast<double>(s.aperture_radius);
+        double aperture = static_cast<double>(s.aperture_radius);
+        if (radius == 0 && aperture_) {
+            if (transmittance != nullptr) *transmittance *= aperture_->at(o.x / aperture, o.y / aperture);
+            aperture *= std::sqrt(2.0); // around the corners of the picture
+        }
         if (!(o.x * o.x + o.y * o.y <= aperture * aperture)) return std::nullopt;
         // `eta` is that of the space between a surface and the next one towards the film.
         const double before = i == 0 ? 1.0 : static_cast<double>(surfaces_[i - 1].eta);
@@ -176,10 +181,11 @@ std::optional<LensSystem::Sample> LensSystem::sample(Point2f film, Vec2f lens) c
     const float cosine = distance > 0 ? film.x / distance : 1, sine = distance > 0 ? film.y / distance : 0;
     const Point3f pupil{cosine * at.x - sine * at.y, sine * at.x + cosine * at.y, z_.back()};
     const Vec3f d = pupil - Point3f{film.x, film.y, 0};
-    const std::optional<Ray> ray = trace_from_film({{film.x, film.y, 0}, d});
-    if (!ray) return std::nullopt;
+    float through = 1;
+    const std::optional<Ray> ray = trace({{film.x, film.y, 0}, d}, true, &through);
+    if (!ray || !(through > 0)) return std::nullopt;
     const float r2 = length_squared(d), cos2 = d.z * d.z / r2;
-    return Sample{*ray, cos2 / r2 * area};
+    return Sample{*ray, cos2 / r2 * area * through};
 }
 
 } // namespace montelux

@@ -27,7 +27,8 @@ class LensSystem {
     };
     std::optional<Sample> sample(Point2f film, Vec2f lens) const;
 
-    // From the film to the scene, or empty if a stop or a surface blocks it.
+    // From the film to the scene, or empty if a stop or a surface blocks it. A picture of the stop counts as the round
+    // one around it.
     std::optional<Ray> trace_from_film(const Ray& ray) const;
     // From the scene to the film; the ray points towards the film.
     std::optional<Ray> trace_from_scene(const Ray& ray) const;
@@ -44,7 +45,8 @@ class LensSystem {
         float x0 = 0, y0 = 0, x1 = 0, y1 = 0;
     };
 
-    std::optional<Ray> trace(Ray ray, bool from_film) const;
+    // Multiplies `transmittance`, if given, by what pictures of stops let through.
+    std::optional<Ray> trace(Ray ray, bool from_film, float* transmittance = nullptr) const;
     void place(float film_distance);
     // Positions of the focal and the principal plane of parallel light that leaves the lens on one side.
     struct Cardinal {
@@ -55,6 +57,7 @@ class LensSystem {
     PupilBounds pupil_of(float from, float to) const;
     const PupilBounds& pupil_at(float distance) const;
 
+    std::optional<AperturePicture> aperture_;
     std::vector<LensSurface> surfaces_; // from the scene to the film
     std::vector<float> z_;              // of each surface's vertex
     float half_diagonal_;

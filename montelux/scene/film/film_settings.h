@@ -2,9 +2,12 @@
 #pragma once
 
 #include <limits>
+#include <optional>
+#include <string>
 #include <variant>
 
 #include "montelux/mc/math/vec.h"
+#include "montelux/scene/film/layer_set.h"
 
 namespace montelux {
 
@@ -38,14 +41,25 @@ struct PixelBounds {
     bool operator==(const PixelBounds&) const = default;
 };
 
+// Radiance in equal buckets of wavelengths (nm) beside RGB (film/spectral_buckets.h).
+struct SpectralSettings {
+    static constexpr int most_buckets = 512;
+
+    float lambda_min = 360, lambda_max = 830; // within the range of the visible wavelengths
+    int buckets = 16;
+};
+
 struct FilmSettings {
     int width = 1280, height = 720;
     PixelBounds crop{0, 0, 1280, 720}; // the rendered pixels
     PixelFilter filter = GaussianFilter{};
     float iso = 100, exposure_time = 1;
-    float diagonal = 0.035f; // metres; realistic cameras alone use it
-    float white_balance = 0; // kelvin; 0: none
+    float diagonal = 0.035f;        // metres; realistic cameras alone use it
+    float white_balance = 0;        // kelvin; 0: none
+    std::string sensor = "cie1931"; // see SensorSettings
+    std::optional<SpectralSettings> spectral{};
     float max_component_value = std::numeric_limits<float>::infinity();
+    LayerSettings layers{};
 };
 
 } // namespace montelux

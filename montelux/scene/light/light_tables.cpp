@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "montelux/mc/math/overloaded.h"
+#include "montelux/mc/math/vector_bytes.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/scene/shape/alpha.h"
 #include "montelux/scene/shape/surface_point.h"
@@ -178,6 +179,17 @@ void LightTables::add_environment(const Scene& scene, Index light, Index map, En
         known_environments_.try_emplace({map, layout}, static_cast<Index>(environments_.size()));
     if (is_new) environments_.emplace_back(scene.environments[map], layout, settings);
     environment_of_light_[light] = known->second;
+}
+
+std::size_t LightTables::bytes() const {
+    std::size_t sum = vector_bytes(triangles_, first_triangle_, patch_areas_, first_patch_, spheres_, disks_,
+                                   environments_, portals_, projections_, environment_of_light_, map_spectra_,
+                                   infinite_lights_, in_world_);
+    for (const EnvironmentSampler& e : environments_) sum += e.bytes();
+    for (const PortalSampler& p : portals_) sum += p.bytes();
+    for (const ProjectionTable& p : projections_) sum += p.bytes();
+    for (const auto& spectra : map_spectra_) sum += vector_bytes(spectra);
+    return sum;
 }
 
 LightTablesView LightTables::view(const Scene& scene) const {

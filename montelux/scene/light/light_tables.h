@@ -17,6 +17,8 @@ class LightTables {
 
     // The scene and this object outlive it.
     LightTablesView view(const Scene& scene) const;
+    // Memory of the tables.
+    std::size_t bytes() const;
 
   private:
     void add_shape(const Scene& scene, Index light, const AreaLight& area);

@@ -48,6 +48,9 @@ class ProjectionTable {
     // Integral of the mean of the colours over all directions, sr.
     double flux() const { return density_.integral(); }
 
+    // Memory of the table.
+    std::size_t bytes() const { return density_.bytes(); }
+
   private:
     ProjectionScreen screen_;
     PiecewiseConstant2D density_;

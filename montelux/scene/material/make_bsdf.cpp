@@ -1,5 +1,6 @@
 #include "montelux/scene/material/make_bsdf.h"
 
+#include "montelux/scene/bsdf/multiple_scattering.h"
 #include "montelux/scene/material/parameter_evaluator.h"
 #include "montelux/scene/material/shading_frame.h"
 
@@ -17,8 +18,9 @@ Index material_at(const SceneView& scene, const SurfacePoint& surface, Vec3f wo,
 }
 
 Frame plain_frame(const SceneView& scene, Index material, const SurfacePoint& surface) {
-    return scene.frame_follows_tangents(material) ? Frame::from_normal_and_tangent(surface.ns, surface.tangent())
-                                                  : Frame::from_normal(surface.ns);
+    return scene.frame_follows_tangents(material)
+               ? Frame::from_normal_and_tangent(surface.ns, surface.tangent())
+               : Frame::from_normal(surface.ns);
 }
 
 // `normal`: the geometric normal in the frame of the BSDF.
@@ -33,12 +35,11 @@ Bsdf tilted(const Bsdf& bsdf, Normal3f normal) {
         bsdf);
 }
 
-} // namespace
-
-SurfaceBsdf make_bsdf(const SceneView& scene, const SurfacePoint& surface, Vec3f wo,
-                      const TextureContext& context, SampledWavelengths& lambda) {
+// As the material describes it: with single scattering between microfacets.
+SurfaceBsdf plain_bsdf(const SceneView& scene, const SurfacePoint& surface, Vec3f wo,
+                       const TextureContext& context, SampledWavelengths& lambda, bool widen) {
     const Index index = material_at(scene, surface, wo, context);
-    const ParameterEvaluator at(scene, index, context, lambda);
+    const ParameterEvaluator at(scene, index, context, lambda, widen);
     return std::visit(
         [&](const auto& m) -> SurfaceBsdf {
             if (!m.detail.is_flat())
@@ -47,6 +48,16 @@ SurfaceBsdf make_bsdf(const SceneView& scene, const SurfacePoint& surface, Vec3f
             return {m.bsdf(at), plain_frame(scene, index, surface)};
         },
         scene.materials[index]);
+}
+
+} // namespace
+
+SurfaceBsdf make_bsdf(const SceneView& scene, const SurfacePoint& surface, Vec3f wo,
+                      const TextureContext& context, SampledWavelengths& lambda, bool widen) {
+    SurfaceBsdf made = plain_bsdf(scene, surface, wo, context, lambda, widen);
+    if (scene.multiple_scattering) [[unlikely]]
+        made.bsdf = with_multiple_scattering(made.bsdf);
+    return made;
 }
 
 } // namespace montelux

@@ -13,8 +13,8 @@ struct SurfaceBsdf {
 };
 
 // `wo`: world space, towards the previous vertex of the path. If the index of refraction depends on the
-// wavelength, all wavelengths but the hero are terminated.
+// wavelength, all wavelengths but the hero are terminated. `widen`: of IntegratorSettings::regularize.
 SurfaceBsdf make_bsdf(const SceneView& scene, const SurfacePoint& surface, Vec3f wo,
-                      const TextureContext& context, SampledWavelengths& lambda);
+                      const TextureContext& context, SampledWavelengths& lambda, bool widen = false);
 
 } // namespace montelux

@@ -8,12 +8,13 @@
 
 namespace montelux {
 
-// If an index of refraction depends on the wavelength, all wavelengths but the hero are terminated.
+// If an index of refraction depends on the wavelength, all wavelengths but the hero are terminated. `widen`: microfacet
+// lobes become Ggx::widened ones.
 class ParameterEvaluator {
   public:
     ParameterEvaluator(const SceneView& scene, Index material, const TextureContext& context,
-                       SampledWavelengths& lambda)
-        : scene_(scene), material_(material), context_(context), lambda_(lambda) {}
+                       SampledWavelengths& lambda, bool widen = false)
+        : scene_(scene), material_(material), context_(context), lambda_(lambda), widen_(widen) {}
 
     float operator()(const FloatParameter& p) const { return evaluate(scene_, p, context_); }
     SampledSpectrum operator()(const SpectrumParameter& p) const {
@@ -30,7 +31,7 @@ class ParameterEvaluator {
         // A lobe narrower than this along one axis would overflow floats.
         Ggx ggx{u, v};
         if (!ggx.is_smooth()) ggx = {std::max(u, 1e-4f), std::max(v, 1e-4f)};
-        return ggx;
+        return widen_ ? ggx.widened() : ggx;
     }
 
     float refractive_index(SceneSpectrum eta) const {
@@ -90,13 +91,14 @@ class ParameterEvaluator {
     }
 
     // Null where the closed form of CoatingTable does not hold for the material.
-    const CoatingTable* coating_table() const { return scene_.coating(material_); }
+    const CoatingTable* coating_table() const { return widen_ ? nullptr : scene_.coating(material_); }
 
   private:
     const SceneView& scene_;
     Index material_;
     const TextureContext& context_;
     SampledWavelengths& lambda_;
+    bool widen_;
 };
 
 } // namespace montelux

@@ -1,6 +1,7 @@
 // HomogeneousMedium: the same coefficients everywhere.
 #pragma once
 
+#include "montelux/scene/medium/body_surface.h"
 #include "montelux/scene/medium/medium_model.h"
 
 namespace montelux {
@@ -17,6 +18,7 @@ struct HomogeneousMedium {
     // The interior of a translucent body: what happens in it counts as one scattering event of a path with that of
     // entering, and lights are looked for only where the path leaves it.
     bool is_body = false;
+    BodySurface surface{}; // of a body; its coefficients are used instead, if given
 
     struct Sampled {
         MediumPoint point;

@@ -59,11 +59,16 @@ float single_scattering_albedo(float reflectance, float eta) {
     const double albedo = rho / (1 - r + rho * r);
     const auto& table = albedo_table();
     const auto above =
-        std::find_if(table.begin() + 1, table.end() - 1, [&](double x) { return x <= albedo; });
+        std::partition_point(table.begin() + 1, table.end() - 1, [&](double x) { return x > albedo; });
     const double low = *above, high = *(above - 1);
     const double t = std::clamp((high - albedo) / (high - low), 0.0, 1.0);
     const double s = (static_cast<double>(above - table.begin()) - 1 + t) / (albedo_knots - 1);
     return static_cast<float>(1 - s * s);
+}
+
+float body_albedo(float reflectance, float eta, float g) {
+    const float reduced = single_scattering_albedo(reflectance, eta);
+    return reduced / (1 - g + g * reduced);
 }
 
 } // namespace montelux

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "montelux/mc/math/vec.h"
+#include "montelux/mc/math/vector_bytes.h"
 
 namespace montelux {
 
@@ -30,6 +31,7 @@ class SparseGrid {
 
     float background() const { return constants[0]; }
     std::size_t block_count() const { return values.size() / block_size; }
+    std::size_t bytes() const { return vector_bytes(nodes, blocks, values, constants); }
 
     float value(int i, int j, int k) const {
         const std::uint32_t entry = block_entry(i, j, k);

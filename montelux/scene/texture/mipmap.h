@@ -17,6 +17,12 @@ class MipMap {
     explicit MipMap(const Image& image, ImageChannels channels = ImageChannels::color);
 
     bool is_color() const { return channels_[1] >= 0; }
+    // Memory of all levels but those that are the image's own.
+    std::size_t bytes() const {
+        std::size_t sum = converted_.byte_count();
+        for (const Image& level : levels_) sum += level.byte_count();
+        return sum;
+    }
     // dst0, dst1: the sides of a pixel in texture coordinates; the filter point ignores them.
     Vec3f lookup(Point2f st, Vec2f dst0, Vec2f dst1, TextureFilter filter, TextureWrap wrap,
                  float max_anisotropy) const;

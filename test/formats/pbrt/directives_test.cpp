@@ -6,6 +6,7 @@
 #include <string>
 
 #include "montelux/scene/scene_digest.h"
+#include "montelux/scene/scene_names.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
 namespace montelux {
@@ -128,6 +129,44 @@ TEST(PbrtOptions, LightSamplers) {
     EXPECT_THROW(sampling("tree"), Error);
 }
 
+TEST(PbrtOptions, SensorsBucketsAndOcclusion) {
+    const std::string end = " WorldBegin LightSource \"point\"";
+    SceneDescription d = parse("Film \"rgb\"" + end);
+    EXPECT_EQ(d.film.sensor, "cie1931");
+    EXPECT_FALSE(d.film.spectral);
+    EXPECT_FALSE(d.integrator.occlusion);
+    EXPECT_FALSE(d.integrator.regularize);
+    d = parse("Film \"spectral\" \"string sensor\" \"sony_ilce_7m3\" \"integer nbuckets\" 30 \"float "
+              "lambdamin\" 400 "
+              "\"float lambdamax\" 700 Integrator \"path\" \"bool regularize\" true" +
+              end);
+    EXPECT_EQ(d.film.sensor, "sony_ilce_7m3");
+    ASSERT_TRUE(d.film.spectral);
+    EXPECT_EQ(d.film.spectral->buckets, 30);
+    EXPECT_EQ(d.film.spectral->lambda_min, 400);
+    EXPECT_EQ(d.film.spectral->lambda_max, 700);
+    EXPECT_TRUE(d.integrator.regularize);
+    d = parse("Film \"spectral\"" + end);
+    EXPECT_EQ(d.film.spectral->buckets, 16);
+    EXPECT_EQ(d.film.spectral->lambda_min, 360);
+    EXPECT_EQ(d.film.spectral->lambda_max, 830);
+
+    Warnings warnings;
+    d = parse("Integrator \"ambientocclusion\" \"bool cossample\" false \"float maxdistance\" 3 WorldBegin",
+              &warnings);
+    ASSERT_TRUE(d.integrator.occlusion);
+    EXPECT_FALSE(d.integrator.occlusion->cosine);
+    EXPECT_EQ(d.integrator.occlusion->max_distance, 3);
+    EXPECT_TRUE(warnings.messages().empty()); // no light is needed
+    EXPECT_EQ(test::error_of("Integrator \"ao\" \"float maxdistance\" 0 WorldBegin"),
+              "scene:1:17: parameter 'maxdistance' must be positive");
+    warnings = {};
+    parse("Integrator \"bdpt\"" + end, &warnings);
+    ASSERT_EQ(warnings.messages().size(), 1u);
+    EXPECT_NE(warnings.messages()[0].find("integrator 'bdpt': the scene is rendered with 'path'"),
+              std::string::npos);
+}
+
 TEST(PbrtOptions, IgnoredOptionsGiveAWarning) {
     Warnings warnings;
     parse(R"(ColorSpace "rec2020"
@@ -143,12 +182,7 @@ WorldEnd)",
         "scene:2:1: the film's colour space is sRGB",
         "scene:3:1: 'Accelerator' is ignored",
         "scene:6:8: option 'disablepixeljitter' is not supported; it is ignored",
-        "scene:2:1: film 'gbuffer' is rendered as 'rgb': of its layers the EXR file has albedo, normal and "
-        "depth, as "
-        "every render",
-        "scene:2:37: 'coordinatesystem' is ignored: normals are in world space",
-        "scene:2:16: 'savefp16' is ignored: EXR files hold 32-bit floats",
-        "scene:4:22: 'regularize' is not supported",
+        "scene:4:22: 'regularize' widens the reflections",
         "scene:4:45: lights are chosen by a tree",
         "scene:5:17: the points are randomised all the same",
         "scene:7:12: TransformBegin is deprecated",
@@ -157,6 +191,51 @@ WorldEnd)",
     ASSERT_EQ(warnings.messages().size(), std::size(expected));
     for (std::size_t i = 0; i < std::size(expected); ++i)
         EXPECT_EQ(warnings.messages()[i].substr(0, std::string(expected[i]).size()), expected[i]);
+}
+
+TEST(PbrtOptions, FilmChoosesLayersAndTheirSpace) {
+    const auto layers = [](const std::string& film) {
+        return parse("Film " + film + "\nWorldBegin\n").film.layers;
+    };
+    EXPECT_EQ(layers("\"rgb\""), LayerSettings{});
+    EXPECT_EQ(layers("\"rgb\" \"bool savefp16\" true"), LayerSettings{.half = true});
+    EXPECT_EQ(layers("\"rgb\" \"bool savefp16\" false"), LayerSettings{});
+    EXPECT_EQ(layers("\"gbuffer\""), (LayerSettings{.set = LayerSet::gbuffer(), .in_camera_space = true}));
+    EXPECT_EQ(layers("\"gbuffer\" \"string coordinatesystem\" \"world\""),
+              LayerSettings{.set = LayerSet::gbuffer()});
+    EXPECT_THROW(layers("\"gbuffer\" \"string coordinatesystem\" \"object\""), Error);
+}
+
+TEST(PbrtOptions, ShapesMaterialsObjectsAndLightsHaveNames) {
+    const Scene scene = parse_world(R"(
+        MakeNamedMaterial "gold" "string type" "conductor"
+        Material "diffuse" Shape "sphere"
+        NamedMaterial "gold"
+        AttributeBegin
+            Attribute "shape" "string name" "globe"
+            Shape "sphere"
+            Shape "sphere" "string name" "moon"
+        AttributeEnd
+        ObjectBegin "tree" Shape "disk" ObjectEnd
+        ObjectInstance "tree"
+        LightSource "point" "string group" "key"
+        LightSource "distant"
+        AttributeBegin
+            Attribute "light" "string group" "lamps"
+            AreaLightSource "diffuse" Shape "disk"
+            LightSource "spot"
+        AttributeEnd
+        LightSource "sky" "string group" "outside")")
+                            .scene;
+    EXPECT_EQ(scene.shape_names, (std::vector<std::string>{"", "globe", "moon"}));
+    EXPECT_EQ(shape_name(scene, 1), "globe");
+    EXPECT_EQ(material_name(scene, scene.shapes[1].material), "gold");
+    EXPECT_NE(material_name(scene, scene.shapes[0].material), "gold");
+    EXPECT_EQ(instance_names(scene), std::vector<std::string>{"tree:0"});
+    ASSERT_GE(scene.lights.size(), 5u);
+    const std::vector<std::string> groups{"key", "", "lamps", "lamps", "outside"};
+    for (std::size_t i = 0; i < groups.size(); ++i) EXPECT_EQ(scene.light_groups[i], groups[i]) << i;
+    EXPECT_EQ(scene.light_groups.back(), "outside");
 }
 
 TEST(PbrtTransforms, OrderAndStack) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <string>
 
+#include "montelux/formats/loop_subdivision.h"
+
 namespace montelux {
 namespace {
 
@@ -64,19 +66,29 @@ TEST(PbrtLimits, TexturesThatBranch) {
 }
 
 const std::string one_triangle = "\"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 0 ] \"integer indices\" [ 0 1 2 ]\n";
-const std::string two_triangles =
-    "\"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 0 ] \"integer indices\" [ 0 1 2 2 1 3 ]\n";
 
 TEST(PbrtLimits, SubdividedTriangles) {
-    auto sentence = [](const std::string& at, int levels) {
+    auto sentence = [](const std::string& at, int levels, int most = 4194304) {
         return at + ": " + std::to_string(levels) +
-               " levels would take the triangles of all 'loopsubdiv' shapes together beyond 33554432";
+               " levels would take the triangles of all 'loopsubdiv' shapes together beyond " +
+               std::to_string(most);
     };
-    EXPECT_EQ(bounded_error("Shape \"loopsubdiv\" \"integer levels\" 13 " + one_triangle),
-              sentence("scene:2:20", 13));
+    EXPECT_EQ(bounded_error("Shape \"loopsubdiv\" \"integer levels\" 12 " + one_triangle),
+              sentence("scene:2:20", 12));
     EXPECT_EQ(bounded_error("Shape \"loopsubdiv\" \"integer levels\" 0 " + one_triangle +
-                            "Shape \"loopsubdiv\" \"integer levels\" 12 " + two_triangles),
-              sentence("scene:3:20", 12));
+                            "Shape \"loopsubdiv\" \"integer levels\" 11 " + one_triangle),
+              sentence("scene:3:20", 11));
+    // Large control meshes may become larger ones.
+    std::string many = "\"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ ";
+    for (int i = 0; i < 5000; ++i) many += "0 1 2 ";
+    EXPECT_EQ(bounded_error("Shape \"loopsubdiv\" \"integer levels\" 6 " + many + "]"),
+              sentence("scene:2:20", 6, 5120000));
+    SubdivisionBudget budget;
+    EXPECT_TRUE(budget.take(5000, 5));
+    EXPECT_FALSE(budget.take(1, 8));
+    EXPECT_TRUE(budget.take(100000, 1));
+    EXPECT_EQ(budget.limit(), max_subdivided_triangles);
+    EXPECT_FALSE(budget.take(100000, 5));
     EXPECT_EQ(bounded_error("Shape \"loopsubdiv\" \"integer levels\" 2000000000 " + one_triangle),
               sentence("scene:2:20", 2000000000));
 }

@@ -318,9 +318,9 @@ TEST(PbrtMaterials, SubsurfaceErrors) {
               "scene:2:54: parameter 'mfp' is 0 at a visible wavelength");
     EXPECT_EQ(error("\"string name\" \"Skimmilc\""),
               "scene:2:23: there is no medium preset 'Skimmilc' (did you mean 'Skimmilk'?)");
-    EXPECT_EQ(error("\"texture reflectance\" \"t\""),
-              "scene:2:23: parameter 'reflectance' of 'subsurface' is a texture; expected a colour or "
-              "spectrum for the whole body");
+    EXPECT_EQ(error("\"texture reflectance\" \"t\""), "scene:2:23: there is no spectrum texture 't'");
+    EXPECT_EQ(error("\"texture sigma_a\" \"t\""),
+              "scene:2:23: 'sigma_a' and 'sigma_s' must be given together");
     EXPECT_EQ(error("\"spectrum sigma_a\" [ 400 -1 500 1 ] \"rgb sigma_s\" [ 1 1 1 ]"),
               "scene:2:23: parameter 'sigma_a' is negative or not finite at 400 nm");
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "montelux/formats/load_scene.h"
+#include "montelux/image/image_write.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux::testing {
@@ -60,6 +61,22 @@ TEST_F(RealisticCameras, CannotOpenWiderThanTheLens) {
     EXPECT_NE(warnings_.messages()[0].find("no wider aperture than 12"), std::string::npos);
 }
 
+TEST_F(RealisticCameras, AperturesByNameAndByFile) {
+    for (const char* name : {"gaussian", "square", "pentagon", "star"}) {
+        const SceneDescription d = load(singlet, "\"string lensfile\" \"lens.dat\" \"string aperture\" \"" +
+                                                     std::string(name) + "\"");
+        EXPECT_EQ(std::get<RealisticCamera>(d.scene.camera.model).aperture, find_aperture(name));
+    }
+    Image half(2, 2, {"Y"}, PixelFormat::f32, ColorEncoding::linear());
+    half.f32()[0] = 4; // the upper left pixel alone
+    write_image(folder_ / "half.pfm", half);
+    const SceneDescription d =
+        load(singlet, "\"string lensfile\" \"lens.dat\" \"string aperture\" \"half.pfm\"");
+    const AperturePicture& picture = *std::get<RealisticCamera>(d.scene.camera.model).aperture;
+    EXPECT_FLOAT_EQ(picture.at(-0.5, 0.5), 3.1415927f);
+    EXPECT_EQ(picture.at(0.5, -0.5), 0);
+}
+
 TEST_F(RealisticCameras, MistakesAreNamed) {
     EXPECT_EQ(error("50 3 1.5\n").substr(0, 40),
               "scene.pbrt:2:20: '" + (folder_ / "lens.dat").string().substr(0, 22));
@@ -71,10 +88,18 @@ TEST_F(RealisticCameras, MistakesAreNamed) {
     EXPECT_NE(error(singlet, "\"string lensfile\" \"lens.dat\" \"float focusdistance\" 0.1")
                   .find("cannot focus at"),
               std::string::npos);
-    EXPECT_NE(error(singlet, "\"string lensfile\" \"lens.dat\" \"string aperture\" \"star\"")
-                  .find("not supported yet"),
+    EXPECT_NE(
+        error(singlet, "\"string lensfile\" \"lens.dat\" \"string aperture\" \"hexagon\"").find("hexagon"),
+        std::string::npos);
+    Image black(2, 2, {"Y"}, PixelFormat::u8, ColorEncoding::srgb());
+    write_image(folder_ / "black.png", black);
+    EXPECT_NE(error(singlet, "\"string lensfile\" \"lens.dat\" \"string aperture\" \"black.png\"")
+                  .find("lets no light through"),
               std::string::npos);
     EXPECT_NE(error(singlet, "\"string lensfile\" \"none.dat\"").find("none.dat"), std::string::npos);
+    std::string many;
+    for (int i = 0; i < 101; ++i) many += "1e5 1e-3 1 24\n";
+    EXPECT_NE(error(many).find("lens.dat' has more than 100 surfaces"), std::string::npos) << error(many);
 }
 
 } // namespace

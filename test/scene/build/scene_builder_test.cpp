@@ -268,5 +268,17 @@ TEST(NameTable, ReferencesAreResolvedOnce) {
     EXPECT_THROW(table.resolve(a, {}, messages, "this line's "), LocatedError);
 }
 
+TEST(SceneBuilder, SkiesAreFew) {
+    Scene scene;
+    scene.skies.assign(16, SkyModel());
+    CallMessages messages("a test");
+    try {
+        SceneBuilder(scene, messages).add_sky({});
+        ADD_FAILURE();
+    } catch (const Error& e) {
+        EXPECT_STREQ(e.what(), "a test: more than 16 skies: each takes a second to compute");
+    }
+}
+
 } // namespace
 } // namespace montelux

@@ -54,8 +54,8 @@ std::vector<std::size_t> CubatureConfirmation::choose(const CubatureRegions& reg
         const double equal = 1 / static_cast<double>(divisible);
         const double by_error = sum > 0 ? share[r] / sum : equal;
         const double by_spread = all_spread > 0 ? spread[r] / all_spread : equal;
-        const double own =
-            part_by_error * by_error + part_by_spread * by_spread + (1 - part_by_error - part_by_spread) * equal;
+        const double own = part_by_error * by_error + part_by_spread * by_spread +
+                           (1 - part_by_error - part_by_spread) * equal;
         const double p = std::min(1.0, static_cast<double>(most) * own);
         measure += p;
         if (!(next < measure)) continue;

@@ -88,22 +88,23 @@ const StructuredEnvironment* EnvironmentSampler::structured() const {
     return d ? &d->rest() : nullptr;
 }
 
+std::size_t EnvironmentSampler::bytes() const {
+    return std::visit(
+        [](const auto& density) {
+            if constexpr (requires { density.rest(); })
+                return density.rest().bytes();
+            else
+                return density.bytes();
+        },
+        density_);
+}
+
 std::string EnvironmentSampler::description() const {
-    std::size_t bytes = 0;
-    std::string text;
-    if (const auto* t = std::get_if<TabulatedEnvironment>(&density_)) {
-        text = "tabulated";
-        bytes = t->bytes();
-    } else if (const auto* b = std::get_if<BilinearEnvironment>(&density_)) {
-        text = "tabulated";
-        bytes = b->bytes();
-    } else if (const auto* m = std::get_if<WithSun<MedianCutEnvironment>>(&density_)) {
+    std::string text = "tabulated";
+    if (const auto* m = std::get_if<WithSun<MedianCutEnvironment>>(&density_))
         text = "median-cut, " + std::to_string(m->rest().regions().size()) + " regions";
-        bytes = m->rest().bytes();
-    } else if (const auto* s = std::get_if<WithSun<StructuredEnvironment>>(&density_)) {
+    else if (const auto* s = std::get_if<WithSun<StructuredEnvironment>>(&density_))
         text = "structured, " + std::to_string(s->rest().strata()) + " strata";
-        bytes = s->rest().bytes();
-    }
     char numbers[160];
     if (const Sun* s = sun()) {
         std::snprintf(numbers, sizeof numbers, ", a sun of %zu texels with %.1f %% of the light", s->texels(),
@@ -113,7 +114,7 @@ std::string EnvironmentSampler::description() const {
     std::snprintf(numbers, sizeof numbers, "%s; %d x %d texels, %s%s, %.1f MiB",
                   compensated_ ? ", compensated" : "", grid_->width(), grid_->height(),
                   name_of(grid_->layout()).data(), lookup_ == EnvironmentLookup::bilinear ? ", bilinear" : "",
-                  static_cast<double>(bytes) / (1 << 20));
+                  static_cast<double>(bytes()) / (1 << 20));
     return text + numbers;
 }
 

@@ -42,6 +42,8 @@ class EnvironmentSampler {
     const StructuredEnvironment* structured() const;
     // Mean of R, G and B over the sphere.
     double mean_radiance() const { return mean_radiance_; }
+    // Memory of the density.
+    std::size_t bytes() const;
     // For messages: "tabulated, compensated; 1024 x 1024 texels, equal-area, 4.5 MiB".
     std::string description() const;
 

@@ -44,6 +44,9 @@ class PortalSampler {
     // For messages: "portal, 1024 x 1024 cells; 1024 x 512 texels, equirectangular, 8.0 MiB".
     std::string description() const;
 
+    // Memory of the table.
+    std::size_t bytes() const { return table_.bytes(); }
+
   private:
     std::optional<Sample> sample(const Window2D& window, Vec2f u) const;
     float pdf(const Window2D& window, Vec3f wi) const;

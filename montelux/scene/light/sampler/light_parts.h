@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "montelux/mc/math/vector_bytes.h"
 #include "montelux/scene/light/light_model.h"
 
 namespace montelux {
@@ -32,6 +33,8 @@ class LightParts {
         const auto light = static_cast<Index>(after - first_.begin() - 1);
         return {.light = light, .part = row - first_[light]};
     }
+
+    std::size_t bytes() const { return vector_bytes(first_); }
 
   private:
     std::vector<Index> first_{0}; // of each light, and the number of all

@@ -16,7 +16,8 @@ namespace montelux {
 template <typename S>
 concept LightSamplerModel = requires(const S& sampler, const ReferencePoint& from, double u, Index light,
                                      Index part) {
-    { sampler.size() } -> std::same_as<Index>; // parts of all lights
+    { sampler.size() } -> std::same_as<Index>;        // parts of all lights
+    { sampler.bytes() } -> std::same_as<std::size_t>; // memory
     { sampler.sample(from, u) } -> std::same_as<LightChoice>;
     { sampler.probability(from, light, part) } -> std::same_as<float>;
 };
@@ -35,6 +36,9 @@ class LightSampler {
         return std::visit([](const auto& m) { return m.size(); }, model_);
     }
     bool empty() const { return size() == 0; }
+    std::size_t bytes() const {
+        return std::visit([](const auto& m) { return m.bytes(); }, model_);
+    }
     LightChoice sample(const ReferencePoint& from, double u) const {
         return std::visit([&](const auto& m) { return m.sample(from, u); }, model_);
     }

@@ -46,6 +46,8 @@ class LightTree {
     // Sum of the intensities of all lights over the squared unit of length: of this the importances are shares.
     double irradiance_scale() const { return irradiance_scale_; }
 
+    std::size_t bytes() const { return vector_bytes(nodes_, places_); }
+
   private:
     std::vector<LightTreeNode> nodes_;
     std::vector<Index> places_; // of each light

@@ -29,6 +29,8 @@ class PowerLightSampler {
         return table_->probability(parts_.row(light, part));
     }
 
+    std::size_t bytes() const { return parts_.bytes() + (table_ ? table_->bytes() : 0); }
+
   private:
     LightParts parts_;
     std::optional<AliasTable> table_;

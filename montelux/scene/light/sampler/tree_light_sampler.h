@@ -29,6 +29,11 @@ class TreeLightSampler {
     LightChoice sample(const ReferencePoint& from, double u) const;
     float probability(const ReferencePoint& from, Index light, Index part) const;
 
+    std::size_t bytes() const {
+        return parts_.bytes() + (tree_ ? tree_->bytes() : 0) + (infinite_ ? infinite_->bytes() : 0) +
+               vector_bytes(row_of_light_, place_of_row_, infinite_rows_);
+    }
+
   private:
     using Importances = Lanes<LightTreeNode::width>;
 

@@ -24,6 +24,8 @@ class UniformLightSampler {
     }
     float probability(const ReferencePoint&, Index, Index) const { return 1 / static_cast<float>(size()); }
 
+    std::size_t bytes() const { return parts_.bytes(); }
+
   private:
     LightParts parts_;
 };

@@ -48,6 +48,9 @@ class SkyModel {
     SpectrumTable sky_irradiance() const { return in_sunlight(sky_irradiance_); }
     SpectrumTable sun_irradiance() const { return in_sunlight(sun_irradiance_); }
 
+    // Memory of the tables.
+    std::size_t bytes() const { return (smooth_.capacity() + aureole_.capacity()) * sizeof(Bands); }
+
   private:
     static constexpr int rows = 65, columns = 33;
 
