@@ -25,7 +25,8 @@ std::string memory_text(std::span<const MemoryUse> table, std::size_t peak) {
         const double each = static_cast<double>(use.bytes) / static_cast<double>(use.count);
         if (use.count > 1 && each < 10000) { // of larger ones few are alike
             char number[40];
-            std::snprintf(number, sizeof number, ", %.3g bytes each", each);
+            std::snprintf(number, sizeof number, each < 100 ? ", %.3g bytes each" : ", %.0f bytes each",
+                          each);
             rest += number;
         }
         text += memory_line(use.kind, use.bytes, rest);

@@ -27,7 +27,7 @@ constexpr std::uint64_t plateau_points = 4; // times as many points if only a pl
 constexpr double points_per_target = 2;
 constexpr std::uint64_t most_of_jumps = 5;
 constexpr double least_of_jumps = 0.01; // volume of the regions that are not smooth: less is a singular point
-constexpr std::size_t most_climbs = 8; // of a check
+constexpr std::size_t most_climbs = 8;  // of a check
 
 bool targeted(const StepRequest& request) { return request.relative_error > 0 || request.absolute_error > 0; }
 
