@@ -49,8 +49,10 @@ def test_options_of_render_have_the_names_of_python():
     of_scene = {n for kind in (montelux.Sampler, montelux.Integrator, montelux.Film) for n in settings_of(kind)}
     known, ours = options("render"), arguments(montelux.Scene.render)
     assert ours - known == {"progress", "every"}
-    of_the_program = {"output", "rank_timeout", "debug_sample", "stats", "quiet"}
-    assert known - ours - of_scene - of_the_program == {"sampler", "clamp"}  # sampler.kind, film.max_component_value
+    of_the_program = {"output", "rank_timeout", "debug_sample", "stats", "memory", "quiet"}
+    # sampler.kind, film.max_component_value, film.layers_in_camera_space, film.half, the groups of the lights
+    others = {"sampler", "clamp", "layer_space", "no_half", "light_groups"}
+    assert known - ours - of_scene - of_the_program == others
     assert {"spp", "max_spp", "time"} <= known & ours and "spp" in settings_of(montelux.Sampler)
 
 
