@@ -326,6 +326,8 @@ Renderer::Renderer(const SceneDescription& description, const RenderTarget& targ
                     "a spectral film cannot be rendered in slices: merge has no layers of wavelengths");
     if (target.slice.count > 1 && description.film.layers.set != LayerSet::standard())
         throw Error("slice", "slices are joined by their standard layers; no others can be chosen");
+    if (description.integrator.occlusion && description.film.layers.set.has(Layer::light_groups))
+        throw Error("film", "ambient occlusion is no light of the scene: 'light-groups' cannot be chosen");
     auto begin = Clock::now();
     scene_digest_ = digest_of(description.scene);
     tables_ = std::make_unique<SceneTables>(description.scene, description.integrator.environments(),

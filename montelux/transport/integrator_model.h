@@ -59,4 +59,12 @@ concept IntegratorModel = RandomStream<Stream> &&
     integrator.estimate(scene, tracer, starts, batch, results);
 };
 
+// For integrators that do not trace the rays of many samples together.
+template <typename I, RandomStream Stream>
+void estimate_one_by_one(const I& integrator, const SceneView& scene, RayTracer& tracer,
+                         std::span<PathStart<Stream>> starts, std::span<FilmContribution> results) {
+    for (std::size_t i = 0; i < starts.size(); ++i)
+        results[i] = integrator.estimate(scene, tracer, starts[i].camera, starts[i].stream);
+}
+
 } // namespace montelux

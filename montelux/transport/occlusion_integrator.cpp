@@ -63,11 +63,13 @@ FilmContribution OcclusionIntegrator::estimate(const SceneView& scene, RayTracer
     const SampledSpectrum white = white_->sample(camera.lambda) * white_scale_;
     const std::optional<MetSurface> met = first_surface(scene, tracer, camera.ray);
     if (!met) {
+        if (camera.extras != nullptr) camera.extras->transparency = 1;
         if (recorder) recorder.left_scene(camera.ray, white);
         return finish(PathEnd::left_scene);
     }
     const SurfacePoint& s = met->point;
     const Vec3f wo = -met->ray.d;
+    if (camera.extras != nullptr) camera.extras->meet(met->ray, met->hit);
     if (recorder) recorder.hit_surface(met->ray, met->hit, s, white);
     const TextureContext context = scene.is_textured(s.shape->material)
                                        ? texture_context(*camera_, footprint_scale_, s)
@@ -90,6 +92,7 @@ FilmContribution OcclusionIntegrator::estimate(const SceneView& scene, RayTracer
     if (first_surface(scene, tracer, ray)) return finish(PathEnd::max_depth);
     // cosine / (pi pdf)
     result.radiance = white * (settings_.cosine ? 1 : 2 * w.z);
+    if (camera.extras != nullptr) camera.extras->add(result.radiance, 1, no_index);
     if (recorder) recorder.left_scene(ray, result.radiance);
     return finish(PathEnd::left_scene);
 }

@@ -27,13 +27,11 @@ class OcclusionIntegrator {
     FilmContribution estimate(const SceneView& scene, RayTracer& tracer, const CameraSample& camera,
                               Stream& stream, PathRecord* record = nullptr) const;
 
-    // One by one.
     using Batch = PathBatch;
     template <RandomStream Stream>
     void estimate(const SceneView& scene, RayTracer& tracer, std::span<PathStart<Stream>> starts, Batch&,
                   std::span<FilmContribution> results) const {
-        for (std::size_t i = 0; i < starts.size(); ++i)
-            results[i] = estimate(scene, tracer, starts[i].camera, starts[i].stream);
+        estimate_one_by_one(*this, scene, tracer, starts, results);
     }
 
   private:

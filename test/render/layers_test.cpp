@@ -155,6 +155,33 @@ TEST(Layers, DirectAndIndirectAndLightGroupsSumToTheMean) {
             }
 }
 
+// Its light belongs to no lamp.
+TEST(Layers, AmbientOcclusionHasThem) {
+    SceneBuilder b = mixed_scene(1, 12, 12);
+    b.description.sampler = {.kind = SamplerKind::independent, .spp = 16};
+    b.description.film.layers.set = {Layer::direct, Layer::indirect, Layer::position, Layer::alpha,
+                                     Layer::shape};
+    const Image paths = render_state(b.description).film.develop();
+    b.description.integrator.occlusion = OcclusionSettings{};
+    const Image image = render_state(b.description).film.develop();
+    EXPECT_LT(distance_from_mean(image, {"direct", "indirect"}), 1e-5);
+    const auto at = [](const Image& picture, int x, int y, const char* channel) {
+        return picture.value(x, y, *picture.find_channel(channel));
+    };
+    float largest = 0;
+    for (int y = 0; y < 12; ++y)
+        for (int x = 0; x < 12; ++x) {
+            largest = std::max(largest, at(image, x, y, "direct.G"));
+            EXPECT_EQ(at(image, x, y, "indirect.G"), 0);
+            // The camera rays are the same.
+            for (const char* channel : {"P.X", "P.Y", "P.Z", "A", "CryptoShape00.R", "CryptoShape00.G"})
+                EXPECT_EQ(at(image, x, y, channel), at(paths, x, y, channel)) << channel;
+        }
+    EXPECT_GT(largest, 0.1f);
+    b.description.film.layers.set.add(Layer::light_groups);
+    EXPECT_THROW(Renderer{b.description}, Error);
+}
+
 // Light after at most one scattering event is what a path of one event finds, by the same random numbers.
 TEST(Layers, DirectIsThePictureOfOneScatteringEvent) {
     SceneBuilder b = layered_scene();
