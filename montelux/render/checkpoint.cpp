@@ -13,7 +13,6 @@
 #include "montelux/mc/random/hash.h"
 #include "montelux/scene/light/light_groups.h"
 #include "montelux/scene/scene_names.h"
-#include "montelux/spectrum/camera_sensors.h"
 
 namespace montelux {
 namespace {
@@ -60,45 +59,36 @@ std::uint64_t hash_of_text(std::string_view text) {
     for (const char c : text) h = hash_key(h, static_cast<std::uint8_t>(c));
     return h;
 }
-// A film with a feature of its own adds its hash; the others keep theirs, so that their checkpoints stay valid.
 std::uint64_t hash_of_film(const FilmSettings& f) {
-    const std::uint64_t h =
-        hash_of(f.width, f.height, f.crop.x0, f.crop.y0, f.crop.x1, f.crop.y1, hash_of_filter(f.filter),
-                f.iso, f.exposure_time, f.white_balance, f.max_component_value);
-    std::uint64_t all = f.sensor == cie_sensor ? h : hash_of(h, hash_of_text(f.sensor));
-    if (f.spectral) all = hash_of(all, f.spectral->lambda_min, f.spectral->lambda_max, f.spectral->buckets);
-    return all;
+    const SpectralSettings spectral = f.spectral.value_or(SpectralSettings{});
+    return hash_of(f.width, f.height, f.crop.x0, f.crop.y0, f.crop.x1, f.crop.y1, hash_of_filter(f.filter),
+                   f.iso, f.exposure_time, f.white_balance, f.max_component_value, hash_of_text(f.sensor),
+                   f.spectral.has_value(), spectral.lambda_min, spectral.lambda_max, spectral.buckets);
 }
 std::uint64_t hash_of_integrator(const IntegratorSettings& s) {
     if (s.occlusion) return hash_of(s.occlusion->cosine, s.occlusion->max_distance);
     return hash_of(s.max_depth, static_cast<int>(s.strategy), static_cast<int>(s.heuristic),
                    static_cast<int>(s.light_sampling), s.equiangular, s.regularize,
                    static_cast<int>(s.environment_sampling), s.environment_compensation,
-                   static_cast<int>(s.environment_lookup));
+                   static_cast<int>(s.environment_lookup), static_cast<int>(s.microfacet_scattering),
+                   static_cast<int>(s.shading_terminator));
 }
 // Another version of the program may take different samples.
 std::uint64_t version() { return hash_of(layout_version, hash_of_text(MONTELUX_VERSION)); }
 
-// Without options of surfaces the hash is that of versions that did not have them: their checkpoints stay valid.
-std::uint64_t with_surfaces(SurfaceSettings s, std::uint64_t hash) {
-    if (s == SurfaceSettings{}) return hash;
-    return hash_of(hash, static_cast<int>(s.microfacets), static_cast<int>(s.terminator));
-}
-
 std::array<Fingerprint, 10> fingerprints(const SceneDigest& scene, const SceneDescription& d,
                                          const RenderTarget& target) {
     auto of = [](const ContentDigest& part) { return hash_of(part.high, part.low); };
-    return {
-        {{"the scene's geometry differs", of(scene.geometry)},
-         {"the scene's materials differ", of(scene.materials)},
-         {"the scene's textures differ", of(scene.textures)},
-         {"the scene's lights differ", of(scene.lights)},
-         {"the scene's camera differs", of(scene.camera)},
-         {"the film differs", hash_of_film(d.film)},
-         {"the sampler or seed differs", hash_of(static_cast<int>(d.sampler.kind), d.sampler.seed)},
-         {"the integrator differs", with_surfaces(d.integrator.surfaces(), hash_of_integrator(d.integrator))},
-         {"the allocation of samples (--adaptive) differs", hash_of(target.adaptive)},
-         {"the slice differs", hash_of(target.slice.index, target.slice.count)}}};
+    return {{{"the scene's geometry differs", of(scene.geometry)},
+             {"the scene's materials differ", of(scene.materials)},
+             {"the scene's textures differ", of(scene.textures)},
+             {"the scene's lights differ", of(scene.lights)},
+             {"the scene's camera differs", of(scene.camera)},
+             {"the film differs", hash_of_film(d.film)},
+             {"the sampler or seed differs", hash_of(static_cast<int>(d.sampler.kind), d.sampler.seed)},
+             {"the integrator differs", hash_of_integrator(d.integrator)},
+             {"the allocation of samples (--adaptive) differs", hash_of(target.adaptive)},
+             {"the slice differs", hash_of(target.slice.index, target.slice.count)}}};
 }
 
 // Of everything that the sums of the film's layers depend on and the mean does not; 0 for the standard layers.

@@ -88,10 +88,11 @@ std::optional<PowerLightSampler> make_segment_lights(const SceneView& scene) {
     if (!homogeneous) return std::nullopt;
     const std::vector<Index> counts = part_counts(scene);
     LightParts parts(counts);
-    std::vector<double> powers = part_powers(scene, counts, parts);
+    // Maps at infinity take long to sum up, and are not wanted.
+    std::vector<Index> with_position = counts;
     for (Index i = 0; i < static_cast<Index>(counts.size()); ++i)
-        for (Index k = 0; k < counts[i]; ++k)
-            if (!light_bounds({scene, i}, k)) powers[parts.row(i, k)] = 0;
+        if (counts[i] > 0 && !light_bounds({scene, i}, 0)) with_position[i] = 0;
+    const std::vector<double> powers = part_powers(scene, with_position, parts);
     if (std::ranges::none_of(powers, [](double power) { return power > 0; })) return std::nullopt;
     return PowerLightSampler(std::move(parts), powers);
 }

@@ -1,8 +1,6 @@
 // How light sampling and scattering share the light of a path, by the settings of an integrator.
 #pragma once
 
-#include <cmath>
-
 #include "montelux/mc/integrate/mis.h"
 #include "montelux/scene/render_settings.h"
 
@@ -21,8 +19,8 @@ T path_weight(const IntegratorSettings& settings, T f, T g) {
 
 // The density of one strategy that weighs as much as two.
 inline float joint_density(const IntegratorSettings& settings, float f, float g) {
-    if (g == 0) return f;
-    return settings.heuristic == Heuristic::power ? std::hypot(f, g) : f + g;
+    if (g == 0) return f; // the usual case, which need not pay for the root
+    return settings.heuristic == Heuristic::power ? power_joint_pdf(f, g) : balance_joint_pdf(f, g);
 }
 
 // MIS weight of light that a path hit after scattering with density `scatter_pdf`.

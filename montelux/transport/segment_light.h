@@ -30,9 +30,12 @@ struct SegmentLight {
     ReferencePoint middle() const { return {o + d * std::min(0.5f * length, 1 / extinction)}; }
     // u in [0, 1).
     LightChoice choose(const SceneView& scene, double u) const {
-        LightChoice chosen = u < 0.5 ? scene.light_sampler->sample(middle(), 2 * u)
-                                     : scene.segment_lights->sample({}, 2 * u - 1);
-        chosen.probability = choice(scene, chosen.light, chosen.part);
+        const ReferencePoint from = middle();
+        LightChoice chosen =
+            u < 0.5 ? scene.light_sampler->sample(from, 2 * u) : scene.segment_lights->sample({}, 2 * u - 1);
+        const float other = u < 0.5 ? scene.segment_lights->probability({}, chosen.light, chosen.part)
+                                    : scene.light_sampler->probability(from, chosen.light, chosen.part);
+        chosen.probability = 0.5f * (chosen.probability + other);
         return chosen;
     }
     float choice(const SceneView& scene, Index light, Index part) const {

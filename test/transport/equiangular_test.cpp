@@ -87,11 +87,18 @@ TEST(Equiangular, SingleScatteringOfABeam) {
 
 // Scattering hits these lamps, too: three strategies share the light.
 TEST(Equiangular, SingleScatteringOfLampsThatRaysHit) {
-    for (const bool mesh : {false, true}) {
+    enum class Lamp { sphere, mesh, in_other_fog };
+    for (const Lamp lamp : {Lamp::sphere, Lamp::mesh, Lamp::in_other_fog}) {
         VolumeScene b = lamp_in_fog(true);
         const Transform place = Transform::translate({0.5, 0, 2.5});
         const Index black = b.add(DiffuseMaterial{gray(0)});
-        if (mesh)
+        if (lamp == Lamp::in_other_fog) // the ray passes it by
+            b.bound(b.add_quadric(Sphere{.world_from_object = place * Transform::scale({0.45, 0.45, 0.45})},
+                                  b.interface()),
+                    b.add_medium(
+                        HomogeneousMedium{.sigma_a = b.spectrum(1.5f, 0.2f), .sigma_s = b.spectrum(4, 1)}),
+                    0);
+        if (lamp == Lamp::mesh)
             b.add_mesh(square(place * Transform::rotate(-90, {0, 1, 0}) * Transform::scale({0.3, 0.3, 0.3})),
                        black, 8);
         else
@@ -102,7 +109,7 @@ TEST(Equiangular, SingleScatteringOfLampsThatRaysHit) {
             b.description.integrator.equiangular = equiangular;
             return volume_radiance(b.description, through_fog, samples).total;
         };
-        const std::string what = mesh ? "mesh, " : "sphere, ";
+        const std::string what = "lamp " + std::to_string(static_cast<int>(lamp)) + ", ";
         const RunningMoments bsdf = mean(Strategy::bsdf, Heuristic::power, true, 1000000);
         expect_same_mean(bsdf, mean(Strategy::mis, Heuristic::power, true, 100000), what + "power");
         expect_same_mean(bsdf, mean(Strategy::mis, Heuristic::balance, true, 100000), what + "balance");

@@ -1,3 +1,4 @@
+#include <array>
 #include <gtest/gtest.h>
 #include <limits>
 #include <vector>
@@ -58,6 +59,21 @@ TEST(MisWeight, TwoStrategyFormsAgreeWithTheGeneralOne) {
         EXPECT_NEAR(power_heuristic(nf, pf, ng, pg),
                     mis_weight(MisHeuristic::power(2), std::span<const double>(q), 0), 1e-15);
     }
+}
+
+TEST(MisWeight, JointDensitiesGiveTheWeightsOfThreeStrategies) {
+    for (const double f : {0.0, 1e-200, 0.3, 7.0})
+        for (const double g : {0.0, 0.2, 1e150})
+            for (const double h : {0.0, 0.5, 40.0}) {
+                const std::array<double, 3> q{f, g, h};
+                EXPECT_NEAR(power_heuristic(1, f, 1, power_joint_pdf(g, h)),
+                            mis_weight<double>(MisHeuristic::power(), q, 0), 1e-14);
+                EXPECT_NEAR(balance_heuristic(1, f, 1, balance_joint_pdf(g, h)),
+                            mis_weight<double>(MisHeuristic::balance(), q, 0), 1e-14);
+            }
+    const float infinite = std::numeric_limits<float>::infinity();
+    EXPECT_EQ(power_joint_pdf(infinite, 0.0f), infinite);
+    EXPECT_LT(power_joint_pdf(1e30f, 1e30f), infinite); // the square overflows
 }
 
 TEST(MisWeight, TwoStrategyFormsSurviveExtremes) {
