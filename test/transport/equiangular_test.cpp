@@ -85,36 +85,57 @@ TEST(Equiangular, SingleScatteringOfABeam) {
         "spot light", 5e-4);
 }
 
-// Scattering hits these lamps, too: three strategies share the light.
+// Scattering hits these lamps, too: three strategies share the light, by similar parts since the lamps are large.
+enum class Lamp { sphere, mesh, in_other_fog, in_grid };
+constexpr Lamp lamps[] = {Lamp::sphere, Lamp::mesh, Lamp::in_other_fog, Lamp::in_grid};
+
+std::string name_of(Lamp lamp) { return "lamp " + std::to_string(static_cast<int>(lamp)); }
+
+VolumeScene large_lamp_in_fog(Lamp lamp) {
+    VolumeScene b = lamp_in_fog(true, 3);
+    std::get<HomogeneousMedium>(b.scene.media[0]).phase = HenyeyGreenstein{0.6f};
+    const Transform place = Transform::translate({1.15, 0, 2.3});
+    const Index black = b.add(DiffuseMaterial{gray(0)});
+    // The ray passes these by.
+    if (lamp == Lamp::in_other_fog || lamp == Lamp::in_grid) {
+        Medium medium = HomogeneousMedium{.sigma_a = b.spectrum(1, 0.5f), .sigma_s = b.spectrum(3, 2)};
+        if (lamp == Lamp::in_grid) {
+            GridMedium grid = b.grid_medium(b.add_grid(2, 2, 2, {3, 0.5f, 1, 4, 2, 0.2f, 5, 1}));
+            grid.box.p0 = {0, -1.2f, 1.1f};
+            grid.box.p1 = {2.3f, 1.2f, 3.5f};
+            grid.sigma_a = b.spectrum(0.3f, 0.2f);
+            grid.sigma_s = b.spectrum(1.5f, 1);
+            medium = grid;
+        }
+        b.bound(b.add_quadric(Sphere{.world_from_object = place * Transform::scale({1.05, 1.05, 1.05})},
+                              b.interface()),
+                b.add_medium(medium), 0);
+    }
+    const Transform size = Transform::scale({0.8, 0.8, 0.8});
+    if (lamp == Lamp::mesh)
+        b.add_mesh(square(place * Transform::rotate(-90, {0, 1, 0}) * size), black, 8);
+    else
+        b.add_quadric(Sphere{.world_from_object = place * size}, black, 8);
+    return b;
+}
+const Ray beside_large_lamp{{0, 0, 1.2f}, {0, 0, 1}};
+
 TEST(Equiangular, SingleScatteringOfLampsThatRaysHit) {
-    enum class Lamp { sphere, mesh, in_other_fog };
-    for (const Lamp lamp : {Lamp::sphere, Lamp::mesh, Lamp::in_other_fog}) {
-        VolumeScene b = lamp_in_fog(true);
-        const Transform place = Transform::translate({0.5, 0, 2.5});
-        const Index black = b.add(DiffuseMaterial{gray(0)});
-        if (lamp == Lamp::in_other_fog) // the ray passes it by
-            b.bound(b.add_quadric(Sphere{.world_from_object = place * Transform::scale({0.45, 0.45, 0.45})},
-                                  b.interface()),
-                    b.add_medium(
-                        HomogeneousMedium{.sigma_a = b.spectrum(1.5f, 0.2f), .sigma_s = b.spectrum(4, 1)}),
-                    0);
-        if (lamp == Lamp::mesh)
-            b.add_mesh(square(place * Transform::rotate(-90, {0, 1, 0}) * Transform::scale({0.3, 0.3, 0.3})),
-                       black, 8);
-        else
-            b.add_quadric(Sphere{.world_from_object = place * Transform::scale({0.3, 0.3, 0.3})}, black, 8);
-        const auto mean = [&](Strategy strategy, Heuristic heuristic, bool equiangular, int samples) {
+    for (const Lamp lamp : lamps) {
+        VolumeScene b = large_lamp_in_fog(lamp);
+        const auto mean = [&](Strategy strategy, Heuristic heuristic, bool equiangular) {
             b.description.integrator.strategy = strategy;
             b.description.integrator.heuristic = heuristic;
             b.description.integrator.equiangular = equiangular;
-            return volume_radiance(b.description, through_fog, samples).total;
+            return volume_radiance(b.description, beside_large_lamp, 100000).total;
         };
-        const std::string what = "lamp " + std::to_string(static_cast<int>(lamp)) + ", ";
-        const RunningMoments bsdf = mean(Strategy::bsdf, Heuristic::power, true, 1000000);
-        expect_same_mean(bsdf, mean(Strategy::mis, Heuristic::power, true, 100000), what + "power");
-        expect_same_mean(bsdf, mean(Strategy::mis, Heuristic::balance, true, 100000), what + "balance");
-        expect_same_mean(bsdf, mean(Strategy::mis, Heuristic::power, false, 100000), what + "without");
-        expect_same_mean(bsdf, mean(Strategy::light, Heuristic::power, true, 100000), what + "light");
+        const RunningMoments without = mean(Strategy::mis, Heuristic::balance, false);
+        for (const auto& [strategy, heuristic] : {std::pair{Strategy::bsdf, Heuristic::power},
+                                                  {Strategy::mis, Heuristic::balance},
+                                                  {Strategy::mis, Heuristic::power},
+                                                  {Strategy::light, Heuristic::power}})
+            expect_same_mean(without, mean(strategy, heuristic, true),
+                             name_of(lamp) + ", strategy " + std::to_string(static_cast<int>(strategy)));
     }
 }
 
@@ -181,6 +202,73 @@ TEST(Equiangular, StrategiesAgree) {
     EXPECT_NEAR(hall_mean(b, Strategy::mis_bsdf, Heuristic::power, true, 1).mean() +
                     hall_mean(b, Strategy::mis_light, Heuristic::power, true, 1).mean(),
                 mis.mean(), 1e-3 * mis.mean());
+}
+
+// What the densities of the strategies say about one another: with the balance heuristic a sample of strategy S
+// contributes f / (p_S + p_T + ...), so E_S[c p_T] = E_T[c p_S]; divided by a sum of densities both stay bounded. Each
+// is the difference of a path's two sides, and 0 on average.
+struct SharesOfPath {
+    double light_and_segment = 0;   // light sampling at a vertex, and SegmentLight on the ray to it
+    double scattering_and_both = 0; // scattering, and these two together
+};
+
+SharesOfPath shares_of(const PathRecord& record, const SampledWavelengths& lambda) {
+    SharesOfPath shares;
+    const auto value = [&](const SampledSpectrum& c) { return double(average(safe_div(c, lambda.pdf))); };
+    const auto sampled = [&](const DirectLight& light, double sign) {
+        if (light.weight <= 0 || light.delta) return;
+        const double c = value(light.contribution), own = double(light.light_pdf),
+                     other = double(light.other_pdf), scattering = double(light.bsdf_pdf);
+        shares.light_and_segment += sign * c * other / (own + other);
+        shares.scattering_and_both -= c * scattering / (own + other + scattering);
+    };
+    for (const PathVertex& v : record.vertices) {
+        for (const FoundLight& light : v.found)
+            if (light.shared)
+                shares.scattering_and_both +=
+                    value(light.contribution) * double(light.light_pdf / (light.light_pdf + light.bsdf_pdf));
+        if (v.direct) sampled(*v.direct, 1);
+    }
+    for (const RayLight& light : record.on_rays) sampled(light.light, -1);
+    return shares;
+}
+
+template <typename Camera>
+void expect_shares(VolumeScene& b, int samples, const std::string& what, const Camera& camera_ray) {
+    b.description.integrator.strategy = Strategy::mis;
+    b.description.integrator.heuristic = Heuristic::balance;
+    const VolumeWorld world(b.description);
+    const VolumePathIntegrator integrator(world.description.integrator, world.camera);
+    RayTracer tracer(world.accelerator);
+    RunningMoments light_and_segment, scattering_and_both;
+    for (int i = 0; i < samples; ++i) {
+        SampleStream stream({.seed = 7}, 0, 0, static_cast<std::uint64_t>(i));
+        const auto lambda = SampledWavelengths::sample_visible(stream.next_1d());
+        const Ray ray = camera_ray(world, stream);
+        PathRecord record;
+        const FilmContribution c =
+            integrator.estimate(world.tables.view(), tracer, {ray, lambda}, stream, &record);
+        const SharesOfPath shares = shares_of(record, c.lambda);
+        light_and_segment.add(shares.light_and_segment);
+        scattering_and_both.add(shares.scattering_and_both);
+    }
+    for (const auto& [m, name] :
+         {std::pair{light_and_segment, "light and segment"}, {scattering_and_both, "scattering and both"}}) {
+        EXPECT_GT(m.variance(), 0) << what << ", " << name;
+        EXPECT_NEAR(m.mean(), 0, 5 * std::sqrt(m.variance_of_mean())) << what << ", " << name;
+    }
+}
+
+TEST(Equiangular, DensitiesOfTheStrategiesAgree) {
+    for (const Lamp lamp : lamps) {
+        VolumeScene b = large_lamp_in_fog(lamp);
+        expect_shares(b, lamp == Lamp::in_grid ? 400000 : 100000, name_of(lamp),
+                      [](const VolumeWorld&, SampleStream&) { return beside_large_lamp; });
+    }
+    VolumeScene hall = hall_of_lamps();
+    expect_shares(hall, 60000, "hall", [](const VolumeWorld& world, SampleStream& stream) {
+        return world.camera.generate_ray(stream.next_2d() * 16, {});
+    });
 }
 
 TEST(Equiangular, RecordsSumToTheRadiance) {
