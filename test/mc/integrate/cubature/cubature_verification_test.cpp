@@ -85,6 +85,34 @@ TEST(CubatureVerification, FindsSpikesOnPlateaus) {
     EXPECT_EQ(missed, 0);
 }
 
+// Points of the last check before the target is claimed.
+std::uint64_t points_of_check(const Integrand& f, int dimensions, double target,
+                              std::uint64_t points_of_others) {
+    const Evaluator evaluator(f, Domain::unit_cube(dimensions));
+    const auto estimator = Cubature{.check_points = points_of_others}.estimator({evaluator, 1});
+    std::uint64_t before = 0, points = 0;
+    while (estimator->step({.max_evaluations = 3'000'000, .relative_error = target}) !=
+           StepOutcome::finished) {
+        const std::uint64_t checked = estimator->tally().check_evaluations;
+        if (checked > before) points = checked - before;
+        before = checked;
+    }
+    const std::uint64_t checked = estimator->tally().check_evaluations;
+    return checked > before ? checked - before : points;
+}
+
+// A jump shows nothing of another that lies between the points of all rules.
+TEST(CubatureVerification, JumpsAskForMorePoints) {
+    const Integrand disk(
+        [](std::span<const double> x) { return x[0] * x[0] + x[1] * x[1] < 0.7 ? 1.0 : 0.5; });
+    EXPECT_EQ(points_of_check(disk, 2, 2e-2, 300), 300u);
+    EXPECT_EQ(points_of_check(disk, 2, 4e-3, 300), 500u);
+    EXPECT_EQ(points_of_check(disk, 2, 4e-3, 80), 400u); // at most five times as many
+    // Smooth integrands do not.
+    const Integrand smooth([](std::span<const double> x) { return std::exp(3 * x[0] * x[1]); });
+    EXPECT_EQ(points_of_check(smooth, 2, 1e-3, 1000), 1000u);
+}
+
 TEST(CubatureVerification, EqualValuesHaveAnError) {
     // 1.2e-4 of the square is missing, which 65 points do not see.
     const Integrand f([](std::span<const double> x) { return x[0] * x[1] < 1.3e-5 ? 0.0 : 1.0; });
