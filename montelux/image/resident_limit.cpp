@@ -21,6 +21,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t stretch = std::size_t{1} << 20; // given back at once
 // Bytes per second that become resident where a thread only hashes them; measured: 23e9.
 constexpr double fastest_reading = 3e10;
+constexpr double forgetting = 0.98; // per look
 constexpr double shortest_wait = 0.001, longest_wait = 0.01, seconds_between_counts = 1;
 
 std::size_t page_size() {
@@ -110,7 +111,7 @@ std::size_t ResidentLimit::resident_locked() const {
     return sum;
 }
 
-void ResidentLimit::give_back(std::size_t bytes) {
+std::size_t ResidentLimit::give_back(std::size_t bytes) {
     std::size_t given = 0;
     for (int ends = 0; given < bytes && ends < 2;) {
         // The mapping of the hand, or the next one.
@@ -131,12 +132,15 @@ void ResidentLimit::give_back(std::size_t bytes) {
         }
         hand_ += size;
     }
+    return given;
 }
 
 void ResidentLimit::watch() {
-    const std::size_t high = limit_ / 8 * 7, low = limit_ / 4 * 3;
     std::size_t others = 0; // libraries and other files
-    Clock::time_point counted{};
+    Clock::time_point counted{}, last = Clock::now();
+    double wait = 0, left = 0;     // of the last look: until this one, and what was resident after it
+    double rate = 0, lateness = 0; // largest of late: bytes per second, and seconds
+    const auto limit = static_cast<double>(limit_);
     std::unique_lock lock(mutex_);
     while (!stop_) {
         if (mappings_.empty()) {
@@ -144,19 +148,26 @@ void ResidentLimit::watch() {
             continue;
         }
         const std::size_t of_process = file_bytes_of_process(statm_);
-        std::size_t resident = of_process > others ? of_process - others : 0;
+        double resident = static_cast<double>(of_process > others ? of_process - others : 0);
         const auto now = Clock::now();
-        if (resident > high / 2 && now - counted > std::chrono::duration<double>(seconds_between_counts)) {
-            resident = resident_locked();
-            others = of_process > resident ? of_process - resident : 0;
+        if (resident > limit / 2 && now - counted > std::chrono::duration<double>(seconds_between_counts)) {
+            const std::size_t exact = resident_locked();
+            others = of_process > exact ? of_process - exact : 0;
+            resident = static_cast<double>(exact);
             counted = now;
+        } else {
+            const double seconds = std::chrono::duration<double>(now - last).count();
+            rate = std::max(forgetting * rate, (resident - left) / std::max(seconds, shortest_wait));
+            lateness = std::max(forgetting * lateness, seconds - wait);
         }
-        double wait = shortest_wait;
+        // Room for what becomes resident until the next look.
+        const double high = limit - std::clamp(rate * (shortest_wait + lateness), limit / 8, limit * 3 / 4);
+        left = resident;
         if (resident > high)
-            give_back(resident - low);
-        else
-            wait = static_cast<double>(high - resident) / fastest_reading;
-        changed_.wait_for(lock, std::chrono::duration<double>(std::clamp(wait, shortest_wait, longest_wait)));
+            left -= static_cast<double>(give_back(static_cast<std::size_t>(resident - high + limit / 8)));
+        wait = std::clamp((high - left) / fastest_reading, shortest_wait, longest_wait);
+        last = now;
+        changed_.wait_for(lock, std::chrono::duration<double>(wait));
     }
 }
 

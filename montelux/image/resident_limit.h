@@ -13,8 +13,9 @@ namespace montelux {
 
 // Mappings must be clean, read-only and shared: what is given back comes from the file again when it is next read,
 // so that no reader waits for this class or sees a difference. The thread looks at the resident memory every 1 to
-// 10 ms, the more often the less is left, and gives pages back from 7/8 of the limit on, down to 3/4, in the order
-// of their addresses. The limit is exceeded by what becomes resident between two looks.
+// 10 ms, the more often the less is left, and gives back pages, in the order of their addresses, where more than 7/8
+// of the limit is resident; or less, down to 1/4, where at the rate seen the rest would not last until the next look.
+// Readers that are faster than that exceed the limit for some milliseconds.
 class ResidentLimit {
   public:
     // Throws Error where the system does not tell what is resident.
@@ -33,7 +34,8 @@ class ResidentLimit {
   private:
     void watch();
     std::size_t resident_locked() const;
-    void give_back(std::size_t bytes);
+    // Of the pages at the hand; returns the bytes that were resident.
+    std::size_t give_back(std::size_t bytes);
 
     std::size_t limit_;
     int statm_ = -1, pagemap_ = -1; // files of /proc/self

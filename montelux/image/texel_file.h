@@ -20,8 +20,8 @@ class TexelFile : public std::enable_shared_from_this<TexelFile> {
   public:
     static constexpr std::size_t least_limit = std::size_t{16} << 20;
 
-    // At most about `limit` bytes of it are resident (ResidentLimit). Throws Error below least_limit, where no file can
-    // be made in the folder, and where the folder itself is in memory.
+    // At most about `limit` bytes of it are resident (ResidentLimit). Throws Error below least_limit, where no
+    // file can be made in the folder, and where the folder itself is in memory.
     static std::shared_ptr<TexelFile> create(std::size_t limit,
                                              const std::filesystem::path& folder = default_folder());
     ~TexelFile();

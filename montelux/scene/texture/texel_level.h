@@ -31,10 +31,10 @@ struct RowLayout {
     }
 };
 
-// Tiles follow one another by rows, texels within a tile likewise; those at the right and lower edge are filled up. A
-// look-up makes a neighbourhood of 64 KiB resident, 16 pages, so that a tile has this size or the power of two below:
-// pictures of a large texture touch a half to an eighth of the neighbourhoods that rows of texels would make them touch,
-// and half of those of tiles of one page (docs/measurements/performance.md).
+// Tiles follow one another by rows, texels within a tile likewise; those at the right and lower edge are filled
+// up. A look-up makes a neighbourhood of 64 KiB resident, 16 pages, so a tile has about this size: pictures of a
+// large texture touch up to eight times more neighbourhoods where texels lie by rows, and twice as many with tiles
+// of one page (docs/measurements/performance.md).
 struct TileLayout {
     static constexpr std::size_t most_bytes = std::size_t{1} << 16;
 
