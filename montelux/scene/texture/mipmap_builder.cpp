@@ -29,6 +29,7 @@ class MipMap::Builder {
         if (!alpha_ && image.format() == PixelFormat::u8) {
             for (std::size_t i = 0; i < 256; ++i) map.decode8_[i] = static_cast<float>(i) / 255;
             if (!linear) map.decode8_ = image.encoding().table8();
+            by_table_ = !Image::is_alpha(image.channel_names()[static_cast<std::size_t>(channels_[0])]);
         } else {
             converts_ = alpha_ || !linear || image.format() == PixelFormat::u16;
         }
@@ -108,6 +109,7 @@ class MipMap::Builder {
 
     float decoded(int x, int y, int component) const {
         const int channel = channels_[static_cast<std::size_t>(component)];
+        if (by_table_) return map_.decode8_[image_.u8()[image_.index(x, y, channel)]];
         return alpha_ ? image_.encoding().to_linear(image_.value(x, y, channel))
                       : image_.linear(x, y, channel);
     }
@@ -161,6 +163,7 @@ class MipMap::Builder {
     const Image& image_;
     bool alpha_;
     bool converts_ = false; // the finest level, to linear floats
+    bool by_table_ = false; // decode8_ is what decoding each sample would give
     int components_ = 1;
     std::array<int, 3> channels_{0, -1, -1}; // of the image
 };
