@@ -139,12 +139,14 @@ void ResidentLimit::watch() {
     std::size_t others = 0; // libraries and other files
     Clock::time_point counted{}, last = Clock::now();
     double wait = 0, left = 0;     // of the last look: until this one, and what was resident after it
-    double rate = 0, lateness = 0; // largest of late: bytes per second, and seconds
+    double rate = 0, lateness = 0; // the largest of the last looks: bytes per second, and seconds
     const auto limit = static_cast<double>(limit_);
     std::unique_lock lock(mutex_);
     while (!stop_) {
         if (mappings_.empty()) {
             changed_.wait(lock);
+            last = Clock::now();
+            wait = 0;
             continue;
         }
         const std::size_t of_process = file_bytes_of_process(statm_);

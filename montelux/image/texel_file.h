@@ -62,8 +62,8 @@ class TexelBlock {
     std::span<const std::byte> bytes() const { return mapping_; }
     // Threads may write different parts at the same time. Throws Error.
     void write(std::size_t offset, std::span<const std::byte> bytes);
-    // Makes nothing of it resident until it is read again. For readers of whole blocks, which are faster than the thread
-    // of ResidentLimit.
+    // Makes nothing of it resident until it is read again. For readers of whole blocks, which are faster than the
+    // thread of ResidentLimit.
     void give_back() const;
     const std::shared_ptr<TexelFile>& file() const { return file_; }
 
