@@ -1,9 +1,11 @@
 #include "app/option_values.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <string_view>
 
 namespace montelux::app {
 
@@ -66,6 +68,19 @@ double parse_time_limit(const std::string& option, const std::string& s) {
     const double seconds = parse_duration(option, s);
     if (!(seconds > 0)) refuse(option, s, "a time above 0 is expected, for example 90, 90s, 10m or 1h30m");
     return seconds;
+}
+
+std::size_t parse_size(const std::string& option, const std::string& s, std::size_t lowest) {
+    const std::string_view units = "KMGT";
+    const std::size_t unit = s.empty() ? std::string_view::npos : units.find(s.back());
+    const bool has_unit = unit != std::string_view::npos;
+    const auto v = number(s, s.size() - (has_unit ? 1 : 0));
+    const double bytes = v.value_or(-1) * std::exp2(has_unit ? 10 * static_cast<double>(unit + 1) : 0);
+    // Larger ones than any address mean the same.
+    if (!v || !(bytes >= static_cast<double>(lowest)))
+        refuse(option, s,
+               "a size from " + std::to_string(lowest >> 20) + "M on is expected, for example 500M or 2G");
+    return static_cast<std::size_t>(std::min(bytes, 0x1p60));
 }
 
 std::uint64_t parse_whole_number(const std::string& option, const std::string& s, std::uint64_t lowest,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <type_traits>
@@ -20,6 +21,8 @@ double parse_share(const std::string& option, const std::string& s);
 // Seconds, not negative: 90, 90s, 1.5m, 1h30m; and above 0.
 double parse_duration(const std::string& option, const std::string& s);
 double parse_time_limit(const std::string& option, const std::string& s);
+// Bytes: 500M, 1.5G; K, M, G and T are powers of 1024. At least `lowest`.
+std::size_t parse_size(const std::string& option, const std::string& s, std::size_t lowest);
 // A whole number of [lowest, highest], also as 1e6; signs and fractions make none.
 std::uint64_t parse_whole_number(const std::string& option, const std::string& s, std::uint64_t lowest,
                                  std::uint64_t highest);

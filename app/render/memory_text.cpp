@@ -23,7 +23,12 @@ std::string memory_text(std::span<const MemoryUse> table, std::size_t peak) {
     for (const MemoryUse& use : table) {
         std::string rest = std::to_string(use.count) + " " + std::string(use.unit);
         const double each = static_cast<double>(use.bytes) / static_cast<double>(use.count);
-        if (use.count > 1 && each < 10000) { // of larger ones few are alike
+        if (use.in_file > 0) {
+            char number[60];
+            std::snprintf(number, sizeof number, ", %.2f MiB in a temporary file",
+                          static_cast<double>(use.in_file) / mib);
+            rest += number;
+        } else if (use.count > 1 && each < 10000) { // of larger ones few are alike
             char number[40];
             std::snprintf(number, sizeof number, each < 100 ? ", %.3g bytes each" : ", %.0f bytes each",
                           each);

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "montelux/image/image.h"
+#include "montelux/image/texel_file.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/scene/setting_names.h"
 
@@ -185,6 +185,13 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_whole_number(
         c, "--threads", o.threads, 0, most_threads,
         "Threads, also more than processors; 0: one per processor. The picture does not depend on it");
+    add_parsed(
+        c, "--texture-memory", "SIZE", o.texture_memory,
+        [](const std::string& option, const std::string& s) {
+            return parse_size(option, s, TexelFile::least_limit);
+        },
+        "Image textures are kept in a temporary file (in TMPDIR), of which about this much is in memory, for "
+        "example 500M or 2G. The picture does not depend on it. Default: all are in memory");
     add_parsed(c, "--rank-timeout", "TIME", o.rank_timeout, parse_rank_timeout,
                "Under mpirun: a rank that is silent for this long is given up, and the render ends with what "
                "the others did. Default: 60s");
@@ -298,6 +305,10 @@ void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.layers_in_camera_space) d.film.layers.in_camera_space = *o.layers_in_camera_space;
     if (o.half) d.film.layers.half = *o.half;
     if (o.clamp) d.film.max_component_value = static_cast<float>(*o.clamp);
+}
+
+std::shared_ptr<TexelFile> texel_file_of(const RenderOptions& o) {
+    return o.texture_memory ? TexelFile::create(*o.texture_memory) : nullptr;
 }
 
 RenderTarget target_of(const RenderOptions& o) {

@@ -3,7 +3,9 @@
 
 #include "app/usage_error.h"
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -51,6 +53,7 @@ struct RenderOptions {
     std::optional<LightGrouping> light_grouping;
     std::optional<bool> layers_in_camera_space, half;
     std::optional<SampleAddress> debug_sample; // traced alone, instead of a render
+    std::optional<std::size_t> texture_memory; // bytes
     int threads = 0;
     double rank_timeout = 60; // seconds
     bool denoise = false, stats = false, memory = false, quiet = false;
@@ -61,6 +64,8 @@ void declare(CLI::App& command, RenderOptions& options);
 
 // Throws UsageError if a crop contains no pixel of the film.
 void apply(const RenderOptions& options, SceneDescription& description);
+// Where the scene's images are kept; null: in memory.
+std::shared_ptr<TexelFile> texel_file_of(const RenderOptions& options);
 // Throws UsageError for incompatible options.
 RenderTarget target_of(const RenderOptions& options);
 

@@ -1,6 +1,7 @@
 #include "montelux/formats/load_scene.h"
 
 #include <string>
+#include <utility>
 
 #include "montelux/formats/file_kind.h"
 #include "montelux/formats/pbrt/load_pbrt.h"
@@ -9,7 +10,8 @@
 namespace montelux {
 
 SceneDescription load_scene(const std::filesystem::path& path, Warnings& warnings,
-                            std::vector<std::filesystem::path>* files_read, FileSource* source) {
+                            std::vector<std::filesystem::path>* files_read, FileSource* source,
+                            std::shared_ptr<TexelFile> texel_file) {
     DiskFiles disk;
     FileSource& files = source != nullptr ? *source : disk;
     std::vector<std::uint8_t> bytes = read_unpacked(files, path);
@@ -19,7 +21,7 @@ SceneDescription load_scene(const std::filesystem::path& path, Warnings& warning
                                        "; expected a scene of pbrt-v4 (.pbrt or .pbrt.gz)" +
                                        (kind.hint.empty() ? "" : ": " + kind.hint));
     // All other text goes to the pbrt reader, which reports what it does not understand.
-    return load_pbrt(std::move(bytes), path, warnings, files_read, files);
+    return load_pbrt(std::move(bytes), path, warnings, files_read, files, std::move(texel_file));
 }
 
 } // namespace montelux

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <vector>
 
 #include "montelux/formats/file_source.h"
@@ -15,6 +16,6 @@ namespace montelux {
 // (pbrt/load_pbrt.h, which explains the other arguments).
 SceneDescription load_scene(const std::filesystem::path& path, Warnings& warnings,
                             std::vector<std::filesystem::path>* files_read = nullptr,
-                            FileSource* source = nullptr);
+                            FileSource* source = nullptr, std::shared_ptr<TexelFile> texel_file = nullptr);
 
 } // namespace montelux

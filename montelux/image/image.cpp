@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "montelux/image/texel_file.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
@@ -80,6 +81,24 @@ std::vector<int> Image::color_channels(std::string_view layer) const {
     return {};
 }
 
+void Image::move_to(TexelFile& file) {
+    f32_.move_to(file);
+    u16_.move_to(file);
+    u8_.move_to(file);
+}
+
+const TexelBlock* Image::block() const {
+    for (const auto* block : {&f32_.block(), &u16_.block(), &u8_.block()})
+        if (*block) return block->get();
+    return nullptr;
+}
+
+std::shared_ptr<TexelFile> Image::file() const { return block() ? block()->file() : nullptr; }
+
+void Image::give_back() const {
+    if (const TexelBlock* samples = block()) samples->give_back();
+}
+
 Image Image::to_linear_f32() const {
     Image out(width_, height_, names_, PixelFormat::f32);
     out.attributes_ = attributes_;
@@ -92,11 +111,12 @@ Image Image::to_linear_f32() const {
         table.assign(t.begin(), t.end());
     }
     std::size_t channel_count = names_.size();
+    const std::span<float> samples = out.f32();
     for (std::size_t i = 0, c = 0; i < sample_count(); ++i, c = c + 1 == channel_count ? 0 : c + 1) {
         if (!encoded[c])
-            out.f32_[i] = value_at(i);
+            samples[i] = value_at(i);
         else
-            out.f32_[i] = table.empty() ? encoding_.to_linear(value_at(i)) : table[u8_[i]];
+            samples[i] = table.empty() ? encoding_.to_linear(value_at(i)) : table[u8_[i]];
     }
     return out;
 }
@@ -105,9 +125,10 @@ namespace {
 
 // Copies channel `from` of one interleaved array to channel `to` of another.
 template <typename T>
-void copy_channel(const std::vector<T>& source, std::size_t from, std::size_t source_channels,
-                  std::vector<T>& target, std::size_t to, std::size_t target_channels) {
+void copy_channel(const SampleArray<T>& source, std::size_t from, std::size_t source_channels,
+                  SampleArray<T>& target_samples, std::size_t to, std::size_t target_channels) {
     if (source.empty()) return;
+    const std::span<T> target = target_samples.writable();
     std::size_t pixels = source.size() / source_channels;
     for (std::size_t i = 0; i < pixels; ++i)
         target[i * target_channels + to] = source[i * source_channels + from];

@@ -13,6 +13,7 @@
 
 #include "montelux/image/color_encoding.h"
 #include "montelux/image/half.h"
+#include "montelux/image/sample_array.h"
 #include "montelux/mc/math/transform.h"
 
 namespace montelux {
@@ -46,6 +47,8 @@ class Image {
     std::size_t pixel_count() const { return static_cast<std::size_t>(width_) * height_; }
     std::size_t sample_count() const { return pixel_count() * names_.size(); }
     std::size_t byte_count() const { return sample_count() * bytes_per_sample(format_); }
+    // Those of the samples that are not in a file.
+    std::size_t memory_bytes() const { return file() ? 0 : byte_count(); }
 
     PixelFormat format() const { return format_; }
     // Applies to colour channels; an alpha channel ("A" or "*.A") is always linear.
@@ -88,15 +91,23 @@ class Image {
                    : encoding_.to_linear(v);
     }
     // Only for f32 images.
-    void set(int x, int y, int channel, float v) { f32_[index(x, y, channel)] = v; }
+    void set(int x, int y, int channel, float v) { f32_.writable()[index(x, y, channel)] = v; }
 
     // The samples of the format that the image has; the other spans are empty. f16 samples are their bits.
-    std::span<float> f32() { return f32_; }
-    std::span<const float> f32() const { return f32_; }
-    std::span<std::uint16_t> u16() { return u16_; }
-    std::span<const std::uint16_t> u16() const { return u16_; }
-    std::span<std::uint8_t> u8() { return u8_; }
-    std::span<const std::uint8_t> u8() const { return u8_; }
+    std::span<float> f32() { return f32_.writable(); }
+    std::span<const float> f32() const { return f32_.span(); }
+    std::span<std::uint16_t> u16() { return u16_.writable(); }
+    std::span<const std::uint16_t> u16() const { return u16_.span(); }
+    std::span<std::uint8_t> u8() { return u8_.writable(); }
+    std::span<const std::uint8_t> u8() const { return u8_.span(); }
+
+    // Writes the samples to a file and frees their memory. Spans that were taken before become invalid; nothing else
+    // changes. Functions that write samples bring them back into memory.
+    void move_to(TexelFile& file);
+    // After a read of all samples that will not be read again soon: frees what of a file is resident.
+    void give_back() const;
+    // Null: the samples are in memory.
+    std::shared_ptr<TexelFile> file() const;
 
     // A 32-bit linear copy with the same channels and attributes.
     Image to_linear_f32() const;
@@ -110,10 +121,13 @@ class Image {
     PixelFormat format_ = PixelFormat::f32;
     ColorEncoding encoding_ = ColorEncoding::linear();
     std::vector<std::string> names_;
+    // Null if the samples are in memory.
+    const TexelBlock* block() const;
+
     Attributes attributes_;
-    std::vector<float> f32_;
-    std::vector<std::uint16_t> u16_;
-    std::vector<std::uint8_t> u8_;
+    SampleArray<float> f32_;
+    SampleArray<std::uint16_t> u16_;
+    SampleArray<std::uint8_t> u8_;
 };
 
 } // namespace montelux

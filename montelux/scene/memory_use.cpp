@@ -1,5 +1,6 @@
 #include "montelux/scene/memory_use.h"
 
+#include "montelux/image/texel_file.h"
 #include "montelux/mc/math/vector_bytes.h"
 #include "montelux/scene/scene.h"
 
@@ -14,7 +15,7 @@ std::size_t sum(const Elements& elements, const Value& value) {
     return total;
 }
 
-std::size_t image_bytes(const Image& image) { return image.byte_count(); }
+std::size_t image_bytes(const Image& image) { return image.memory_bytes(); }
 
 // A spectrum that several share is counted for each of them.
 std::size_t shared_bytes(const Spectrum& spectrum) {
@@ -63,7 +64,11 @@ std::vector<MemoryUse> memory_use(const Scene& s) {
     add("measured BRDFs", sum(s.measured_brdfs, [](const MeasuredBrdf& m) { return sizeof(m) + m.bytes(); }),
         s.measured_brdfs.size(), "BRDFs");
     add("spectra", vector_bytes(s.spectra) + sum(s.spectra, shared_bytes), s.spectra.size(), "spectra");
-    add("images", sum(s.images, image_bytes), s.images.size(), "images");
+    const std::size_t mapped = sum(s.images, [](const Image& image) { return image.file() ? 1 : 0; });
+    add("images", sum(s.images, image_bytes), s.images.size() - mapped, "images");
+    if (mapped > 0)
+        table.push_back(
+            {"mapped textures", s.texel_file->resident(), mapped, "images", s.texel_file->bytes()});
     add("pictures of lights", sum(s.environments, image_bytes), s.environments.size(), "images");
     add("skies", sum(s.skies, [](const SkyModel& sky) { return sizeof(sky) + sky.bytes(); }), s.skies.size(),
         "skies");

@@ -14,6 +14,7 @@ struct MemoryUse {
     std::size_t bytes = 0;
     std::size_t count = 0;   // of `unit`
     std::string_view unit{}; // "triangles"
+    std::size_t in_file = 0; // bytes in a mapped file, of which `bytes` are resident
 };
 
 // Kinds that the scene does not use are left out.

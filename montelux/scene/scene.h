@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -62,6 +63,9 @@ struct Scene {
     std::vector<ScalarGrid> scalar_grids; // of media
     std::vector<ColorGrid> color_grids;   // of media
     std::vector<SparseGrid> sparse_grids; // of media
+
+    // Where SceneBuilder puts large images of textures; null: they stay in memory.
+    std::shared_ptr<TexelFile> texel_file;
 };
 
 // Whether anything depends on time.

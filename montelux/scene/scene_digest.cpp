@@ -185,6 +185,7 @@ class SceneHasher {
             image.encoding().exponent(), static_cast<std::uint64_t>(image.channels()));
         for (const std::string& name : image.channel_names()) add(std::string_view(name));
         all(image.u8(), image.u16(), image.f32());
+        image.give_back();
     }
 
     // Materials, by their lists of parameters.
@@ -458,11 +459,12 @@ SceneDigest digest_of(const Scene& scene) {
     const auto& [meshes, quadrics, curves, bilinear_meshes, shapes, world_shapes, objects, instances, motions,
                  spectra, materials, float_textures, spectrum_textures, normal_maps, images, environments,
                  skies, measured_brdfs, lights, camera, shape_names, material_names, light_groups, media,
-                 scalar_grids, color_grids, sparse_grids] = scene;
+                 scalar_grids, color_grids, sparse_grids, texel_file] = scene;
     // Of layers alone; checkpoints compare them where they matter.
     static_cast<void>(shape_names);
     static_cast<void>(material_names);
     static_cast<void>(light_groups);
+    static_cast<void>(texel_file); // where samples are is no part of them
     SceneHasher of_materials(spectra);
     of_materials.all(materials);
     if (!measured_brdfs.empty()) of_materials.all(measured_brdfs);

@@ -126,8 +126,12 @@ SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environm
 void SceneTables::add_mipmaps(const Scene& scene) {
     std::vector<std::optional<MipMap>> mipmaps(scene.images.size());
     parallel_for(static_cast<std::int64_t>(scene.images.size()), [&](std::int64_t i) {
-        mipmaps[static_cast<std::size_t>(i)].emplace(scene.images[static_cast<std::size_t>(i)]);
+        const Image& image = scene.images[static_cast<std::size_t>(i)];
+        if (!image.file()) mipmaps[static_cast<std::size_t>(i)].emplace(image);
     });
+    // Those in a file are built by several threads each.
+    for (std::size_t i = 0; i < mipmaps.size(); ++i)
+        if (!mipmaps[i]) mipmaps[i].emplace(scene.images[i]);
     mipmaps_.reserve(mipmaps.size());
     for (auto& m : mipmaps) mipmaps_.push_back(std::move(*m));
     alpha_mipmap_of_image_.assign(scene.images.size(), no_index);

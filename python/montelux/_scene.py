@@ -130,21 +130,30 @@ class Scene(_core.SceneBase):
         )
 
 
-def load(path: str | os.PathLike[str]) -> Scene:
+def load(path: str | os.PathLike[str], *, texture_memory: int | None = None) -> Scene:
     """Reads a pbrt-v4 scene file and all files that it refers to. What it ignores is reported by
-    warnings, and in `scene.warnings`."""
+    warnings, and in `scene.warnings`. With `texture_memory`, image textures are kept in a temporary file, of which
+    about this many bytes are in memory."""
     scene = Scene()
-    scene._load(os.fspath(path))
+    scene._load(os.fspath(path), _size(texture_memory, "montelux.load"))
     _tell(scene)
     return scene
 
 
-def parse(text: str, name: str = "scene", folder: str | os.PathLike[str] = ".") -> Scene:
+def parse(
+    text: str, name: str = "scene", folder: str | os.PathLike[str] = ".", *, texture_memory: int | None = None
+) -> Scene:
     """The same from text in pbrt-v4's format; files that it refers to are looked for in `folder`."""
     scene = Scene()
-    scene._parse(text, name, os.fspath(folder))
+    scene._parse(text, name, os.fspath(folder), _size(texture_memory, "montelux.parse"))
     _tell(scene)
     return scene
+
+
+def _size(value: int | None, function: str) -> int | None:
+    if value is not None and (isinstance(value, bool) or not isinstance(value, int) or not 0 <= value < 1 << 60):
+        raise Error(f"{function}, texture_memory: {value!r} was given; expected a number of bytes, such as 500 << 20")
+    return value
 
 
 def _tell(scene: Scene) -> None:

@@ -10,6 +10,7 @@
 #include "montelux/formats/measured_brdf_file.h"
 #include "montelux/formats/pbrt/load_pbrt.h"
 #include "montelux/image/image_read.h"
+#include "montelux/image/texel_file.h"
 #include "montelux/mc/math/overloaded.h"
 #include "montelux/scene/build/scene_builder.h"
 
@@ -133,6 +134,10 @@ void take(SceneObject& s, SceneDescription description, const Warnings& warnings
     s.holder->warnings = warnings.messages();
 }
 
+std::shared_ptr<TexelFile> texel_file(std::optional<std::size_t> texture_memory) {
+    return texture_memory ? TexelFile::create(*texture_memory) : nullptr;
+}
+
 ImageTexture texture_of(const std::string& filter, const std::string& wrap, const std::vector<double>& uv,
                         const std::string& what) {
     ImageTexture t;
@@ -252,29 +257,29 @@ void bind_scene(nb::module_& m) {
     c.def(nb::init<>())
         .def(
             "_load",
-            [](SceneObject& s, const std::filesystem::path& path) {
+            [](SceneObject& s, const std::filesystem::path& path, std::optional<std::size_t> texture_memory) {
                 Warnings warnings;
                 SceneDescription d;
                 {
                     nb::gil_scoped_release unlocked;
-                    d = load_scene(path, warnings);
+                    d = load_scene(path, warnings, nullptr, nullptr, texel_file(texture_memory));
                 }
                 take(s, std::move(d), warnings, path.filename().string());
             },
-            "path"_a)
+            "path"_a, "texture_memory"_a.none())
         .def(
             "_parse",
             [](SceneObject& s, const std::string& text, const std::string& name,
-               const std::filesystem::path& folder) {
+               const std::filesystem::path& folder, std::optional<std::size_t> texture_memory) {
                 Warnings warnings;
                 SceneDescription d;
                 {
                     nb::gil_scoped_release unlocked;
-                    d = parse_pbrt(text, name, folder, warnings);
+                    d = parse_pbrt(text, name, folder, warnings, texel_file(texture_memory));
                 }
                 take(s, std::move(d), warnings, name);
             },
-            "text"_a, "name"_a, "folder"_a)
+            "text"_a, "name"_a, "folder"_a, "texture_memory"_a.none())
         .def_prop_rw(
             "name", [](const SceneObject& s) { return s.holder->name; },
             [](SceneObject& s, const std::string& name) { s.holder->name = name; },

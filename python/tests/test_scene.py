@@ -414,6 +414,27 @@ def test_files_that_are_wrong(tmp_path):
         assert "the scene has no light" in montelux.load(tmp_path / "dark.pbrt").warnings[0]
 
 
+def test_textures_in_a_file_change_nothing(tmp_path):
+    ball = montelux.parse(TEXT)
+    ball.film.resolution = (200, 150)
+    ball.render(spp=16).save(tmp_path / "map.exr")
+    text = TEXT.replace(
+        'Shape "sphere"', 'Texture "t" "spectrum" "imagemap" "string filename" "map.exr"\n'
+        'Material "diffuse" "texture reflectance" "t" Shape "sphere"')
+    (tmp_path / "scene.pbrt").write_text(text)
+    usual = montelux.load(tmp_path / "scene.pbrt").render(spp=4).mean
+    for scene in (
+        montelux.load(tmp_path / "scene.pbrt", texture_memory=16 << 20),
+        montelux.parse(text, folder=tmp_path, texture_memory=1 << 40),
+    ):
+        assert (scene.render(spp=4).mean == usual).all()
+    for wrong in (-1, 1.5, "500M", True, 1 << 70):
+        with pytest.raises(montelux.Error, match="texture_memory: .* was given; expected a number of bytes"):
+            montelux.load(tmp_path / "scene.pbrt", texture_memory=wrong)
+    with pytest.raises(montelux.Error, match="the limit must be at least 16777216 bytes, but is 1000"):
+        montelux.parse(text, folder=tmp_path, texture_memory=1000)
+
+
 def test_indices_beyond_the_end(scene):
     with pytest.raises(IndexError, match="material 9 of"):
         scene.materials[9]

@@ -96,4 +96,37 @@ expect 1 "the integrator differs" render rough.pbrt --spp 16 -o two.exr --microf
 expect 0 "16 samples per pixel" render rough.pbrt --spp 16 -o two.exr --microfacet-scattering multiple \
     --shading-terminator soft --checkpoint two.ckpt --resume
 expect 0 "peak of the process" render ok.pbrt --memory
+
+# Textures in a temporary file: the same bits, digest and checkpoints, for any number of threads; no file is left.
+for value in 1M 15.9M 500 M -20M 20MB 20m nanG '' 1e; do
+    expect 2 "--texture-memory: '$value' was given; a size from 16M on is expected" render ok.pbrt --texture-memory "$value"
+done
+render -o map.exr -o map.png --resolution 300x200
+textured="$sky"
+for filter in point bilinear trilinear ewa; do
+    for file in map.png map.exr; do
+        textured="$textured
+Texture \"$filter $file\" \"spectrum\" \"imagemap\" \"string filename\" \"$file\" \"string filter\" \"$filter\"
+Material \"diffuse\" \"texture reflectance\" \"$filter $file\" Translate 0.4 0 0.1 Shape \"sphere\""
+    done
+done
+scene textured "$textured" 64 48
+render_textured() { "$montelux" render textured.pbrt --quiet --spp 8 "$@" >out 2>&1 || fail "montelux render $*: $(cat out)"; }
+mkdir temporary
+render_textured -o one.pfm -o one.exr --threads 1
+for threads in 1 3; do
+    TMPDIR="$PWD/temporary" render_textured -o two.pfm -o two.exr --threads $threads --texture-memory 16M
+    cmp -s one.pfm two.pfm || fail "--texture-memory changes the picture of $threads threads"
+done
+[ "$(ls -A temporary)" ] && fail "a temporary file is left"
+hash_of() { "$montelux" info "$1" | grep '"sceneHash"'; }
+[ "$(hash_of one.exr)" = "$(hash_of two.exr)" ] || fail "--texture-memory changes the hash of the scene"
+render_textured -o one.exr --checkpoint textured.ckpt --texture-memory 1.5G
+expect 0 "16 samples per pixel" render textured.pbrt --spp 16 -o one.exr --checkpoint textured.ckpt --resume
+expect 0 "MiB in a temporary file" render textured.pbrt --memory --texture-memory 0.5G
+expect 0 "2 images, " render textured.pbrt --memory --texture-memory 0.5G
+TMPDIR="$PWD/missing"
+export TMPDIR
+expect 1 "set TMPDIR to another folder" render textured.pbrt --texture-memory 16M
+unset TMPDIR
 finish

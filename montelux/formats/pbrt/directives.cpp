@@ -16,11 +16,12 @@ constexpr std::size_t max_blocks = 1000000;
 
 } // namespace
 
-Directives::Directives(Files& files, Diagnostics& diagnostics)
+Directives::Directives(Files& files, Diagnostics& diagnostics, std::shared_ptr<TexelFile> texel_file)
     : files_(files), diagnostics_(diagnostics), builder_(result_.scene, diagnostics),
       spectra_(files, diagnostics), textures_(builder_, files, spectra_, diagnostics),
       displacements_(builder_, textures_), measured_brdfs_(builder_, files, diagnostics),
       lights_(builder_, files, spectra_, diagnostics), media_(builder_, files, spectra_, diagnostics) {
+    result_.scene.texel_file = std::move(texel_file);
     state_.color_space = &RgbColorSpace::srgb();
     materials_.push_back({"diffuse", {}, {}}); // the material of shapes before any Material directive
 }

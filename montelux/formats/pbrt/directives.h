@@ -22,7 +22,8 @@ namespace montelux::pbrt {
 // textures and instances at the end of the file, since they may be named before they are declared.
 class Directives {
   public:
-    Directives(Files& files, Diagnostics& diagnostics);
+    // `texel_file` becomes Scene::texel_file.
+    Directives(Files& files, Diagnostics& diagnostics, std::shared_ptr<TexelFile> texel_file);
 
     // Blocks.
     void world_begin(Location at);

@@ -63,6 +63,7 @@ class SceneBuilder {
     // Equal spectra share an entry of Scene::spectra.
     SceneSpectrum add_spectrum(const Spectrum& spectrum);
     // A picture for image textures. Non-finite values become 0, with a warning. Errors: neither RGB nor grey.
+    // A large one is moved to Scene::texel_file, if there is one.
     // Messages call it `name`.
     Index add_image(Image picture, const std::string& name, SourceLocation at = {});
     // A picture as the map of an infinite light; R, G and B are linear. Negative values become 0, with a

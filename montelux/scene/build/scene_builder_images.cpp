@@ -19,6 +19,9 @@ constexpr int sky_density_rows = 256;
 // A file must not keep the reader busy for an hour; scenes have one.
 constexpr std::size_t most_skies = 16;
 
+// Blocks of a TexelFile begin at multiples of this, and a process has only 65530 maps.
+constexpr std::size_t least_bytes_in_file = std::size_t{1} << 16;
+
 constexpr const char* no_colors = " has neither channels R, G and B nor Y alone";
 
 // A NaN would spread to all texels that filtering combines with it.
@@ -52,6 +55,7 @@ Index SceneBuilder::add_image(Image picture, const std::string& name, SourceLoca
     if (const std::size_t replaced = zero_what_is_not_finite(picture))
         messages_.warn(at, name + " has " + std::to_string(replaced) +
                                " values that are not finite; they count as 0");
+    if (scene_.texel_file && picture.byte_count() >= least_bytes_in_file) picture.move_to(*scene_.texel_file);
     scene_.images.push_back(std::move(picture));
     return static_cast<Index>(scene_.images.size() - 1);
 }

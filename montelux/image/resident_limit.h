@@ -1,0 +1,50 @@
+// ResidentLimit: keeps the resident part of mapped files below a number of bytes, by a thread of its own.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <span>
+#include <thread>
+
+namespace montelux {
+
+// Mappings must be clean, read-only and shared: what is given back comes from the file again when it is next read,
+// so that no reader waits for this class or sees a difference. The thread looks at the resident memory every 1 to
+// 10 ms, the more often the less is left, and gives back pages, in the order of their addresses, where more than 7/8
+// of the limit is resident; or less, down to 1/4, where at the rate seen the rest would not last until the next look.
+// Readers that are faster than that exceed the limit for some milliseconds.
+class ResidentLimit {
+  public:
+    // Throws Error where the system does not tell what is resident.
+    explicit ResidentLimit(std::size_t bytes);
+    ~ResidentLimit();
+    ResidentLimit(const ResidentLimit&) = delete;
+    ResidentLimit& operator=(const ResidentLimit&) = delete;
+
+    std::size_t bytes() const { return limit_; }
+    void add(std::span<const std::byte> mapping);
+    // Call before it is unmapped.
+    void remove(std::span<const std::byte> mapping);
+    // Bytes of all mappings that are resident.
+    std::size_t resident() const;
+
+  private:
+    void watch();
+    std::size_t resident_locked() const;
+    // Of the pages at the hand; returns the bytes that were resident.
+    std::size_t give_back(std::size_t bytes);
+
+    std::size_t limit_;
+    int statm_ = -1, pagemap_ = -1; // files of /proc/self
+    mutable std::mutex mutex_;      // of what follows
+    std::condition_variable changed_;
+    bool stop_ = false;
+    std::map<std::uintptr_t, std::size_t> mappings_; // their sizes by their addresses
+    std::uintptr_t hand_ = 0;                        // what is given back next
+    std::thread thread_;
+};
+
+} // namespace montelux

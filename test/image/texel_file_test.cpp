@@ -1,0 +1,200 @@
+// Images in a temporary file: nothing changes but where their samples are, and little of the file is resident.
+#include "test/sanitized.h"
+#include "test/temporary_folder.h"
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <string>
+#include <sys/resource.h>
+#include <sys/statfs.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+#include "montelux/image/image.h"
+#include "montelux/image/texel_file.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+namespace {
+
+constexpr std::size_t mib = std::size_t{1} << 20;
+
+std::string refusal(std::size_t limit, const std::filesystem::path& folder) {
+    try {
+        TexelFile::create(limit, folder);
+    } catch (const Error& e) {
+        return e.what();
+    }
+    return {};
+}
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+// The byte at a place, different for neighbours and pages.
+std::byte byte_at(std::size_t i) { return static_cast<std::byte>(i * 7 + i / 4096 * 13); }
+
+std::shared_ptr<TexelBlock> filled_block(TexelFile& file, std::size_t size) {
+    auto block = file.allocate(size);
+    std::vector<std::byte> part;
+    for (std::size_t i = 0; i < size; i += part.size()) {
+        part.resize(std::min(mib, size - i));
+        for (std::size_t k = 0; k < part.size(); ++k) part[k] = byte_at(i + k);
+        block->write(i, part);
+    }
+    return block;
+}
+
+TEST(TexelFile, BlocksHoldWhatIsWritten) {
+    const TemporaryFolder folder;
+    const auto file = TexelFile::create(16 * mib, folder.path());
+    std::vector<std::shared_ptr<TexelBlock>> blocks;
+    for (const std::size_t size : {1, 4095, 65537, 300000}) blocks.push_back(filled_block(*file, size));
+    EXPECT_EQ(folder.file_count(), 0); // the file has no name
+    blocks.erase(blocks.begin() + 1);
+    EXPECT_EQ(file->bytes(), 1u + 65537 + 300000);
+    for (const auto& block : blocks) {
+        const auto bytes = block->bytes();
+        std::size_t wrong = 0;
+        for (std::size_t i = 0; i < bytes.size(); ++i) wrong += bytes[i] != byte_at(i);
+        EXPECT_EQ(wrong, 0u) << bytes.size();
+        EXPECT_THROW(block->write(bytes.size(), std::vector<std::byte>(1)), Error);
+    }
+    EXPECT_GT(file->resident(), 300000u);
+    for (const auto& block : blocks) block->give_back();
+    EXPECT_EQ(file->resident(), 0u);
+    EXPECT_EQ(blocks.back()->bytes()[299999], byte_at(299999));
+    blocks.clear();
+    EXPECT_EQ(file->bytes(), 0u);
+}
+
+TEST(TexelFile, RefusalsSayWhatToDo) {
+    const TemporaryFolder folder;
+    EXPECT_TRUE(contains(refusal(16 * mib - 1, folder.path()), "at least 16777216 bytes, but is 16777215"));
+    EXPECT_TRUE(contains(refusal(16 * mib, folder / "missing"), "set TMPDIR to another folder"));
+    EXPECT_TRUE(contains(refusal(16 * mib, folder.write("a", "file")), "set TMPDIR to another folder"));
+    struct statfs info {};
+    if (::statfs("/dev/shm", &info) == 0 && info.f_type == 0x01021994) {
+        EXPECT_TRUE(contains(refusal(16 * mib, "/dev/shm"), "is itself in memory; set TMPDIR"));
+    }
+}
+
+// A limit of a file's size stands for the space of a disk.
+TEST(TexelFile, MissingSpaceIsAnErrorBeforeAnythingIsRead) {
+    const TemporaryFolder folder;
+    const pid_t child = ::fork();
+    if (child == 0) {
+        std::signal(SIGXFSZ, SIG_IGN);
+        const rlimit limit{mib, mib};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        int code = 1;
+        try {
+            const auto file = TexelFile::create(16 * mib, folder.path());
+            Image image(512, 1024, {"Y"}, PixelFormat::u8);
+            image.move_to(*file);
+            code = 2;
+            Image(700, 1000, {"Y"}, PixelFormat::u8).move_to(*file);
+        } catch (const Error& e) {
+            if (contains(e.what(), "0.668 MiB of texels cannot be written to the temporary folder"))
+                code += 10;
+        }
+        ::_exit(code);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 12);
+}
+
+TEST(TexelFile, ImagesStayTheSame) {
+    const TemporaryFolder folder;
+    const auto file = TexelFile::create(16 * mib, folder.path());
+    for (const PixelFormat format : {PixelFormat::u8, PixelFormat::u16, PixelFormat::f16, PixelFormat::f32}) {
+        Image image(37, 21, {"R", "G", "B", "A"}, format, ColorEncoding::srgb());
+        for (std::size_t i = 0; i < image.sample_count(); ++i) {
+            if (format == PixelFormat::u8)
+                image.u8()[i] = static_cast<std::uint8_t>(i * 7);
+            else if (format == PixelFormat::f32)
+                image.f32()[i] = static_cast<float>(i % 91) / 7;
+            else
+                image.u16()[i] = static_cast<std::uint16_t>(i * 5);
+        }
+        const Image before = image;
+        image.move_to(*file);
+        EXPECT_EQ(image.file(), file);
+        EXPECT_EQ(image.memory_bytes(), 0u);
+        EXPECT_EQ(image.byte_count(), before.byte_count());
+        const auto expect_same = [&](const Image& after) {
+            ASSERT_EQ(after.sample_count(), before.sample_count());
+            for (std::size_t i = 0; i < before.sample_count(); ++i)
+                ASSERT_EQ(after.value_at(i), before.value_at(i)) << i;
+        };
+        expect_same(image);
+        expect_same(image.select(image.channel_names()));
+        // A copy shares the block; to be written it comes back into memory, alone.
+        Image copy = image;
+        EXPECT_EQ(file->bytes(), image.byte_count());
+        static_cast<void>(copy.f32());
+        static_cast<void>(copy.u16());
+        static_cast<void>(copy.u8());
+        EXPECT_EQ(copy.file(), nullptr);
+        expect_same(copy);
+        const Image moved = std::move(image);
+        EXPECT_EQ(moved.file(), file);
+        expect_same(moved);
+    }
+    EXPECT_EQ(file->bytes(), 0u);
+}
+
+// Two readers that make another 64 KiB resident every 20 us: ten times as often as the render of a large picture.
+TEST(TexelFile, LittleIsResident) {
+    if (under_sanitizers) GTEST_SKIP() << "the sanitizer's threads are too slow to keep the limit";
+    const TemporaryFolder folder;
+    const std::size_t limit = 128 * mib, size = 512 * mib;
+    const auto file = TexelFile::create(limit, folder.path());
+    std::vector<std::shared_ptr<TexelBlock>> blocks;
+    for (int i = 0; i < 4; ++i) blocks.push_back(filled_block(*file, size / 4));
+    std::atomic<std::size_t> wrong{0}, rounds{0};
+    std::atomic<bool> stop{false};
+    std::vector<std::thread> readers;
+    for (std::size_t t = 0; t < 2; ++t)
+        readers.emplace_back([&, t] {
+            while (!stop) {
+                for (std::size_t b = t; b < blocks.size() && !stop; b += 2) {
+                    const auto bytes = blocks[b]->bytes();
+                    for (std::size_t i = 0; i < bytes.size() && !stop; i += 65536 + t) {
+                        wrong += bytes[i] != byte_at(i);
+                        const auto begin = std::chrono::steady_clock::now();
+                        while (std::chrono::steady_clock::now() - begin < std::chrono::microseconds(20)) {
+                        }
+                    }
+                }
+                ++rounds;
+            }
+        });
+    std::vector<std::size_t> seen;
+    for (int i = 0; i < 200; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        seen.push_back(file->resident() / mib);
+    }
+    stop = true;
+    for (std::thread& reader : readers) reader.join();
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_GT(rounds, 4u) << "the readers were too slow to exceed the limit";
+    std::sort(seen.begin(), seen.end());
+    std::string quantiles;
+    for (const std::size_t i : {0, 50, 100, 150, 180, 199}) quantiles += std::to_string(seen[i]) + " ";
+    RecordProperty("residentMiB", quantiles);
+    // Single moments of a loaded machine may show more.
+    EXPECT_LE(seen[100], limit / mib) << "MiB, quantiles " << quantiles;
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    EXPECT_LE(file->resident(), limit) << "at rest";
+}
+
+} // namespace
+} // namespace montelux
