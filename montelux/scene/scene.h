@@ -23,6 +23,8 @@ namespace montelux {
 struct ObjectDefinition {
     std::vector<Index> shapes;
     std::string name{}; // may be empty
+    // The object that these shapes belong to, which move in its space: each use of it has an instance of both.
+    Index part_of = no_index;
 };
 struct Instance {
     Index object = no_index;

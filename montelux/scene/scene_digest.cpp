@@ -325,15 +325,19 @@ class SceneHasher {
         all(geometry, material, light, alpha, flip_normal);
     }
     void add(const ObjectDefinition& o) {
-        const auto& [shapes, name] = o;
+        const auto& [shapes, name, part_of] = o;
         static_cast<void>(name); // the mean does not depend on names
+        static_cast<void>(part_of);
         add(shapes);
     }
     void add(const Instance& i) {
         const auto& [object, world_from_object, motion] = i;
         all(object, world_from_object, motion);
     }
-    void add(const Motion& m) { all(m.start(), m.end()); }
+    void add(const Motion& m) {
+        all(m.start(), m.end());
+        if (m.is_product()) add(m.keys());
+    }
 
     // Lights.
     void add(const AreaLight& l) {

@@ -3,6 +3,7 @@
 #include "test/render/scene_testing.h"
 #include <functional>
 #include <gtest/gtest.h>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -153,9 +154,101 @@ TEST(MotionBlur, OfTheCameraIsTheMeanOfPicturesThatStandStill) {
     });
 }
 
+// A lamp over a floor, and an object that is used once as it is and once mirrored: a still square, and a
+// square and a sphere that move. The second use moves, too.
+struct TurningArms {
+    static constexpr int uses = 2;
+    static Transform arm(double t) {
+        return Transform::translate({0.9 - 1.2 * t, 0.7 * t, 0}) * Transform::rotate(100 * t, {0, 0.2, 1});
+    }
+    static Transform use(int i, double t) {
+        if (i == 0) return Transform::translate({-1.2, 0, 1});
+        return Transform::translate({1.2 - 0.5 * t, 0.5, 1.4}) * Transform::rotate(-70 * t, {1, 0, 0}) *
+               Transform::scale({-0.8, 0.8, 1.1});
+    }
+    static SceneBuilder lamp_and_floor() {
+        SceneBuilder b;
+        b.description.film.width = b.description.film.height = 12;
+        b.description.film.crop = {0, 0, 12, 12};
+        b.add_mesh(square(Transform::scale({4, 4, 1})), b.add(DiffuseMaterial{gray(0.7f)}));
+        b.add_mesh(square(Transform::translate({0, 0, 4}) * Transform::rotate(180, {1, 0, 0})),
+                   b.add(DiffuseMaterial{gray(0)}), 5);
+        b.add(DiffuseMaterial{gray(0.4f)});
+        b.look({0, -7, 5}, {0, 0, 0.7}, 45);
+        return b;
+    }
+    static TriangleMesh card() { return square(Transform::scale({0.5, 0.3, 1})); }
+    static Quadric ball() {
+        return Sphere{.radius = 0.4f, .z_min = -0.4f, .z_max = 0.4f, .world_from_object = {}};
+    }
+    static SceneBuilder moving() {
+        SceneBuilder b = lamp_and_floor();
+        CallMessages messages("scene of a test");
+        montelux::SceneBuilder builder(b.scene, messages);
+        builder.begin_object("arm");
+        builder.add_shape(card(), {.material = 2});
+        builder.add_moving_shape(ball(), {.material = 2}, arm(0), arm(1));
+        builder.add_moving_shape(card(), {.material = 2}, arm(0), arm(1));
+        builder.end_object();
+        builder.add_instance("arm", use(0, 0));
+        builder.add_instance("arm", use(1, 0), use(1, 1));
+        builder.finish();
+        return b;
+    }
+    static SceneBuilder still(double t) {
+        SceneBuilder b = lamp_and_floor();
+        CallMessages messages("scene of a test");
+        montelux::SceneBuilder builder(b.scene, messages);
+        for (int i = 0; i < uses; ++i) {
+            const std::string name = std::to_string(i);
+            builder.begin_object(name);
+            builder.add_shape(card(), {.material = 2});
+            builder.end_object();
+            builder.add_instance(name, use(i, t));
+            builder.begin_object("arm" + name);
+            builder.add_shape(ball(), {.material = 2});
+            builder.add_shape(card(), {.material = 2});
+            builder.end_object();
+            builder.add_instance("arm" + name, use(i, t) * arm(t));
+        }
+        builder.finish();
+        return b;
+    }
+};
+
+TEST(MotionBlur, OfShapesInObjectsIsTheMeanOfPicturesThatStandStill) {
+    SceneBuilder b = TurningArms::moving();
+    EXPECT_EQ(b.scene.instances.size(), 4u);
+    b.description.sampler.spp = 2048;
+    expect_mean_of_frames(b.description, [](float t) {
+        SceneDescription d = TurningArms::still(double(t)).description;
+        d.sampler.spp = 64;
+        return d;
+    });
+}
+
+// In an object that is used once, where it is.
+TEST(MotionBlur, OfAShapeInAnObjectIsThatOfTheShapeInTheWorld) {
+    const auto film = [](bool in_object) {
+        SceneBuilder b = TurningArms::lamp_and_floor();
+        CallMessages messages("scene of a test");
+        montelux::SceneBuilder builder(b.scene, messages);
+        const Transform up = Transform::translate({0, 0, 1});
+        if (in_object) builder.begin_object("o");
+        builder.add_moving_shape(TurningArms::card(), {.material = 2}, up * TurningArms::arm(0),
+                                 up * TurningArms::arm(1));
+        builder.end_object();
+        if (in_object) builder.add_instance("o", Transform());
+        builder.finish();
+        return render(b.description);
+    };
+    const Film a = film(false), b = film(true);
+    for (std::size_t i = 0; i < a.pixels().size(); ++i)
+        EXPECT_TRUE(same_pixel(a.pixels()[i], b.pixels()[i])) << i;
+}
+
 // Diffuse surfaces are shaded in lanes, replays are not.
-TEST(MotionBlur, ReplaysHaveTheSameBits) {
-    SceneBuilder b = tumbling_box();
+void expect_replays(SceneBuilder b) {
     b.description.sampler.spp = 8;
     const Renderer renderer(b.description);
     Film film(b.description.film);
@@ -172,6 +265,11 @@ TEST(MotionBlur, ReplaysHaveTheSameBits) {
             }
             EXPECT_TRUE(same_pixel(pixel, film.pixel(x, y))) << x << "," << y;
         }
+}
+
+TEST(MotionBlur, ReplaysHaveTheSameBits) {
+    expect_replays(tumbling_box());
+    expect_replays(TurningArms::moving());
 }
 
 // Without motion the samples do not spend a number on time.
