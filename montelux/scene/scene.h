@@ -1,6 +1,7 @@
 // Scene: plain values in flat arrays, immutable once built.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -67,7 +68,10 @@ struct Scene {
 };
 
 // Whether anything depends on time.
-inline bool moves(const Scene& scene) { return !scene.motions.empty() || scene.camera.motion.has_value(); }
+inline bool moves(const Scene& scene) {
+    return !scene.motions.empty() || scene.camera.motion.has_value() ||
+           std::ranges::any_of(scene.meshes, &TriangleMesh::deforms);
+}
 
 inline SceneSpectrum add_spectrum(Scene& scene, Spectrum spectrum) {
     return add_spectrum(scene.spectra, std::move(spectrum));

@@ -279,9 +279,10 @@ class SceneHasher {
 
     // Geometry.
     void add(const TriangleMesh& m) {
-        const auto& [positions, normals, uvs, indices, tangents] = m;
+        const auto& [positions, normals, uvs, indices, tangents, end_positions, end_normals] = m;
         all(positions, normals, uvs, indices);
         if (!tangents.empty()) add(tangents);
+        if (m.deforms()) all(end_positions, end_normals);
     }
     void add(const Sphere& s) {
         const auto& [radius, z_min, z_max, phi_max, world_from_object] = s;

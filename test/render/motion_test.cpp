@@ -1,8 +1,10 @@
 // Motion blur: closed forms, the mean of pictures that stand still, and the same bits on any path of the code.
 // Each comparison of means is at 5 standard errors.
 #include "test/render/scene_testing.h"
+#include <algorithm>
 #include <functional>
 #include <gtest/gtest.h>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -247,6 +249,78 @@ TEST(MotionBlur, OfAShapeInAnObjectIsThatOfTheShapeInTheWorld) {
         EXPECT_TRUE(same_pixel(a.pixels()[i], b.pixels()[i])) << i;
 }
 
+// As passing_square, of a square that grows by `growth` to either side instead.
+SceneBuilder growing_square(float growth) {
+    SceneBuilder b = passing_square(0);
+    b.scene.motions.clear();
+    b.scene.instances.clear();
+    b.scene.objects.clear();
+    b.scene.world_shapes = {0};
+    TriangleMesh& mesh = b.scene.meshes[0];
+    mesh.end_positions = mesh.positions;
+    for (Point3f& p : mesh.end_positions) p.x *= 1 + growth;
+    return b;
+}
+
+// The share of the exposure during which |x| > 1 + growth * t.
+double not_grown_to(double x, double growth, double from, double to) {
+    return std::clamp(((std::abs(x) - 1) / growth - from) / (to - from), 0.0, 1.0);
+}
+
+TEST(MotionBlur, AGrowingSquareBlursToARamp) {
+    for (const SamplerKind sampler : {SamplerKind::independent, SamplerKind::sobol, SamplerKind::halton}) {
+        const std::pair<float, float> shutters[] = {{0.0f, 1.0f}, {0.25f, 0.5f}, {2.0f, 3.0f}};
+        for (const auto& [open, close] : shutters) {
+            constexpr double growth = 2;
+            SceneBuilder b = growing_square(growth);
+            b.description.sampler.kind = sampler;
+            b.scene.camera.shutter_open = open;
+            b.scene.camera.shutter_close = close;
+            const Film film = render(b.description);
+            for (int x = 0; x < 16; ++x) {
+                double truth = 0; // the mean over the pixel
+                for (int i = 0; i < 1000; ++i) {
+                    const double at = -4 + (x + (i + 0.5) / 1000) * 0.5;
+                    truth += open > 1 ? double(std::abs(at) > 1 + growth) / 1000
+                                      : not_grown_to(at, growth, double(open), double(close)) / 1000;
+                }
+                const auto& pixel = film.pixel(x, 0).replicates();
+                EXPECT_NEAR(pixel.mean(1), truth, 5 * std::sqrt(pixel.variance_of_mean(1)) + 2e-3)
+                    << x << " " << open;
+            }
+        }
+    }
+}
+
+// A lamp over a floor, and between them a mesh whose corners and normals change; `t`: as it is at that time.
+SceneBuilder flapping_sheet(std::optional<float> t = {}) {
+    SceneBuilder b = TurningArms::lamp_and_floor();
+    TriangleMesh mesh = square(Transform::translate({0, 0, 1.2}));
+    mesh.normals.assign(4, {0, 0, 1});
+    mesh.end_positions = {{-0.4f, -1.2f, 1}, {1.6f, -0.6f, 2}, {0.7f, 1, 0.6f}, {-1.2f, 0.4f, 1.7f}};
+    mesh.end_normals = {{-0.3f, 0, 0.9f}, {0.4f, 0.1f, 1}, {0, 0.5f, 0.8f}, {0, 0, 1}};
+    if (t) {
+        for (Index v = 0; v < 4; ++v) {
+            mesh.positions[v] = mesh.position(v, *t);
+            mesh.normals[v] = mesh.normal(v, *t);
+        }
+        mesh.end_positions.clear();
+        mesh.end_normals.clear();
+    }
+    b.add_mesh(std::move(mesh), 2);
+    return b;
+}
+
+TEST(MotionBlur, OfADeformingMeshIsTheMeanOfPicturesThatStandStill) {
+    SceneBuilder b = flapping_sheet();
+    b.description.sampler.spp = 2048;
+    expect_mean_of_frames(b.description, [](float t) {
+        SceneDescription d = flapping_sheet(t).description;
+        d.sampler.spp = 64;
+        return d;
+    });
+}
+
 // Diffuse surfaces are shaded in lanes, replays are not.
 void expect_replays(SceneBuilder b) {
     b.description.sampler.spp = 8;
@@ -270,6 +344,10 @@ void expect_replays(SceneBuilder b) {
 TEST(MotionBlur, ReplaysHaveTheSameBits) {
     expect_replays(tumbling_box());
     expect_replays(TurningArms::moving());
+    expect_replays(flapping_sheet());
+    SceneBuilder soft = flapping_sheet();
+    soft.description.integrator.shading_terminator = ShadingTerminator::soft;
+    expect_replays(soft);
 }
 
 // Without motion the samples do not spend a number on time.

@@ -18,6 +18,7 @@ Bounds3 bounds_of(const ObjectDefinition& object, const Scene& scene) {
         visit_geometry(scene, scene.shapes[i],
                        Overloaded{[&](const TriangleMesh& mesh) {
                                       for (const Point3f p : mesh.positions) bounds.add(Vec3d(p));
+                                      for (const Point3f p : mesh.end_positions) bounds.add(Vec3d(p));
                                   },
                                   [&](const Quadric& quadric) {
                                       const Bounds3 b = world_bounds(quadric);
@@ -42,6 +43,12 @@ Bounds3 bounds_of(const ObjectDefinition& object, const Scene& scene) {
 template <typename T>
 void trim(std::vector<T>& v) {
     if (v.capacity() - v.size() > v.size() / 8 + 1) v.shrink_to_fit();
+}
+
+// With room for the ray tracer to read them in place.
+void trim_positions(std::vector<Point3f>& positions) {
+    trim(positions);
+    if (!positions.empty()) positions.reserve(positions.size() + 1);
 }
 
 constexpr std::string_view dark_in_objects = "area lights inside object definitions do not shine";
@@ -78,6 +85,7 @@ Index SceneBuilder::add_shape_to(Index object, Geometry geometry, const ShapeSet
                                  std::string_view dark, SourceLocation at) {
     try {
         check_geometry(geometry);
+        if (settings.emission != nullptr && dark.empty()) check_emitter(geometry);
     } catch (const Error& e) {
         messages_.error(at, e.what());
     }
@@ -97,13 +105,13 @@ Index SceneBuilder::add_shape_to(Index object, Geometry geometry, const ShapeSet
     const std::optional<AreaLight> light = area_light(index, settings, geometry, dark, at);
     scene_.shapes[index].geometry = std::visit(
         Overloaded{[&](TriangleMesh& mesh) -> ShapeGeometry {
-                       trim(mesh.positions);
+                       trim_positions(mesh.positions);
+                       trim_positions(mesh.end_positions);
                        trim(mesh.normals);
+                       trim(mesh.end_normals);
                        trim(mesh.uvs);
                        trim(mesh.indices);
                        trim(mesh.tangents);
-                       // Room for the ray tracer to read the positions in place.
-                       if (!mesh.positions.empty()) mesh.positions.reserve(mesh.positions.size() + 1);
                        scene_.meshes.push_back(std::move(mesh));
                        return MeshIndex{static_cast<Index>(scene_.meshes.size() - 1)};
                    },
