@@ -45,8 +45,8 @@ Accelerator& Accelerator::operator=(Accelerator&&) noexcept = default;
 std::size_t Accelerator::bytes() const { return scene_->bytes(); }
 const Bounds3& Accelerator::bounds() const { return scene_->bounds(); }
 
-// For what moves Embree rounds otherwise in a packet than alone: there a ray alone is a packet with one
-// ray, so that replays have the same bits.
+// For moving instances Embree rounds otherwise in a packet than alone, and for meshes that deform it promises nothing:
+// there a ray alone is a packet with one ray, so that replays have the same bits.
 bool Accelerator::intersect(const Ray& ray, Hit& hit) const {
     if (scene_->moves()) {
         const Ray* one = &ray;

@@ -130,7 +130,11 @@ TEST_F(MovingShapes, TheirDigestsKnowTheWay) {
         return digest_of(scene);
     };
     EXPECT_NE(turned(30, 10), turned(31, 10));
-    EXPECT_NE(turned(170, 170), turned(-10, -10)); // 340 degrees are -20
+    const Motion product = Motion::product(Transform::scale({4, 1, 1}), Motion({}, quarter_turn));
+    Scene along_product, direct;
+    along_product.motions.push_back(product);
+    direct.motions.emplace_back(product.start(), product.end());
+    EXPECT_NE(digest_of(along_product), digest_of(direct));
 }
 
 TEST_F(MovingShapes, DoNotShine) {
