@@ -91,7 +91,7 @@ TEST(MotionProduct, OfAStillTransformationPlacesTheMotion) {
     EXPECT_LT(far_from_direct(Transform::scale({-1, 1, 1})), 1e-5);
 }
 
-// In the worst case of the points tested, as a share of their distance from the inner axis and of its from the outer one.
+// Of the worst of some points, as a share of their distance from the inner axis and of that axis from the outer one.
 double worst_deviation(const Motion& motion, const Transform& a, const Transform& b, const Transform& c,
                        const Transform& d) {
     const MotionPath outer(a, b), inner(c, d);
