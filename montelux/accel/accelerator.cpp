@@ -45,10 +45,10 @@ Accelerator& Accelerator::operator=(Accelerator&&) noexcept = default;
 std::size_t Accelerator::bytes() const { return scene_->bytes(); }
 const Bounds3& Accelerator::bounds() const { return scene_->bounds(); }
 
-// For moving instances Embree rounds otherwise in a packet than alone: there a ray alone is a packet with one
-// ray, so that replays have the same bits.
+// For moving instances Embree rounds otherwise in a packet than alone, and for meshes that deform it promises nothing:
+// there a ray alone is a packet with one ray, so that replays have the same bits.
 bool Accelerator::intersect(const Ray& ray, Hit& hit) const {
-    if (!scene_->scene().motions.empty()) {
+    if (scene_->moves()) {
         const Ray* one = &ray;
         intersect(std::span(&one, 1), std::span(&hit, 1));
         return hit.shape != no_index;
@@ -60,7 +60,7 @@ bool Accelerator::intersect(const Ray& ray, Hit& hit) const {
 }
 
 bool Accelerator::occluded(const Ray& ray) const {
-    if (!scene_->scene().motions.empty()) {
+    if (scene_->moves()) {
         const Ray* one = &ray;
         bool result = false;
         occluded(std::span(&one, 1), std::span(&result, 1));

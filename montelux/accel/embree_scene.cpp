@@ -1,5 +1,7 @@
 #include "montelux/accel/embree_scene.h"
 
+#include <algorithm>
+
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/overloaded.h"
 #include "montelux/scene/shape/alpha.h"
@@ -8,7 +10,30 @@ namespace montelux {
 
 static_assert(sizeof(Point3f) == 3 * sizeof(float)); // read in place
 
-EmbreeScene::EmbreeScene(const SceneView& scene, bool robust) : scene_(scene), robust_(robust) {
+namespace {
+
+void set_vertices(RTCGeometry geometry, unsigned time_step, const std::vector<Point3f>& positions) {
+    const std::size_t count = positions.size();
+    // Embree reads 16 bytes per vertex, so four beyond the last one: they must be allocated.
+    if (count > 0 && positions.capacity() > count) {
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, time_step, RTC_FORMAT_FLOAT3,
+                                   positions.data(), 0, sizeof(Point3f), count);
+    } else if (auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+                   geometry, RTC_BUFFER_TYPE_VERTEX, time_step, RTC_FORMAT_FLOAT3, 3 * sizeof(float), count));
+               vertices != nullptr) {
+        for (std::size_t i = 0; i < count; ++i) {
+            vertices[3 * i] = positions[i].x;
+            vertices[3 * i + 1] = positions[i].y;
+            vertices[3 * i + 2] = positions[i].z;
+        }
+    }
+}
+
+} // namespace
+
+EmbreeScene::EmbreeScene(const SceneView& scene, bool robust)
+    : scene_(scene), robust_(robust),
+      moves_(!scene.motions.empty() || std::ranges::any_of(scene.meshes, &TriangleMesh::deforms)) {
     try {
         build();
     } catch (...) {
@@ -92,20 +117,9 @@ RTCScene EmbreeScene::new_scene() const {
 
 RTCGeometry EmbreeScene::mesh_geometry(const TriangleMesh& mesh, bool cut_out) const {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    const std::size_t count = mesh.positions.size();
-    // Embree reads 16 bytes per vertex, so four beyond the last one: they must be allocated.
-    if (count > 0 && mesh.positions.capacity() > count) {
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                   mesh.positions.data(), 0, sizeof(Point3f), count);
-    } else if (auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-                   geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), count));
-               vertices != nullptr) {
-        for (std::size_t i = 0; i < count; ++i) {
-            vertices[3 * i] = mesh.positions[i].x;
-            vertices[3 * i + 1] = mesh.positions[i].y;
-            vertices[3 * i + 2] = mesh.positions[i].z;
-        }
-    }
+    rtcSetGeometryTimeStepCount(geometry, mesh.deforms() ? 2 : 1);
+    set_vertices(geometry, 0, mesh.positions);
+    if (mesh.deforms()) set_vertices(geometry, 1, mesh.end_positions);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices.data(), 0,
                                3 * sizeof(Index), mesh.triangle_count());
     if (cut_out) {

@@ -25,6 +25,8 @@ class EmbreeScene {
     // Its geometries are the shapes in SceneView::world_shapes, then the instances.
     RTCScene world() const { return world_; }
     const SceneView& scene() const { return scene_; }
+    // Whether surfaces depend on the time of a ray.
+    bool moves() const { return moves_; }
     // Of all surfaces, in world space.
     const Bounds3& bounds() const { return bounds_; }
     // Memory of Embree, by its own account, and of this object.
@@ -48,7 +50,7 @@ class EmbreeScene {
     std::vector<RTCScene> objects_;
     std::vector<GeometryData> data_; // one per shape
     SceneView scene_;
-    bool robust_;
+    bool robust_, moves_;
     Bounds3 bounds_;
     std::string error_;
 };

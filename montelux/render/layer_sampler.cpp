@@ -93,9 +93,15 @@ Vec2d LayerSampler::depth_slopes(const SurfacePoint& s, Point2f film, Vec2f lens
 Vec2d LayerSampler::motion(const SampleExtras& extras, Vec3d p) const {
     const Index moving =
         extras.hit.instance == no_index ? no_index : scene_.instances[extras.hit.instance].motion;
+    const TriangleMesh* mesh = mesh_of(scene_, scene_.shapes[extras.hit.shape]);
+    const bool deforms = mesh != nullptr && mesh->deforms();
     const auto on_film = [&](float time) {
         Vec3d q = p;
-        if (moving != no_index) {
+        if (deforms) { // its points are given by the triangle alone
+            Ray ray = extras.ray;
+            ray.time = time;
+            q = Vec3d(surface_point(scene_, ray, extras.hit, false).p);
+        } else if (moving != no_index) {
             const Motion& motion = scene_.motions[moving];
             q = motion.at(time).point(motion.at(extras.ray.time).inverse_point(p));
         }

@@ -1,6 +1,7 @@
 // Scene: plain values in flat arrays, immutable once built.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -24,6 +25,8 @@ namespace montelux {
 struct ObjectDefinition {
     std::vector<Index> shapes;
     std::string name{}; // may be empty
+    // The object that these shapes belong to, which move in its space: each use of it has an instance of both.
+    Index part_of = no_index;
 };
 struct Instance {
     Index object = no_index;
@@ -69,7 +72,10 @@ struct Scene {
 };
 
 // Whether anything depends on time.
-inline bool moves(const Scene& scene) { return !scene.motions.empty() || scene.camera.motion.has_value(); }
+inline bool moves(const Scene& scene) {
+    return !scene.motions.empty() || scene.camera.motion.has_value() ||
+           std::ranges::any_of(scene.meshes, &TriangleMesh::deforms);
+}
 
 inline SceneSpectrum add_spectrum(Scene& scene, Spectrum spectrum) {
     return add_spectrum(scene.spectra, std::move(spectrum));

@@ -280,9 +280,10 @@ class SceneHasher {
 
     // Geometry.
     void add(const TriangleMesh& m) {
-        const auto& [positions, normals, uvs, indices, tangents] = m;
+        const auto& [positions, normals, uvs, indices, tangents, end_positions, end_normals] = m;
         all(positions, normals, uvs, indices);
         if (!tangents.empty()) add(tangents);
+        if (m.deforms()) all(end_positions, end_normals);
     }
     void add(const Sphere& s) {
         const auto& [radius, z_min, z_max, phi_max, world_from_object] = s;
@@ -326,15 +327,19 @@ class SceneHasher {
         all(geometry, material, light, alpha, flip_normal);
     }
     void add(const ObjectDefinition& o) {
-        const auto& [shapes, name] = o;
+        const auto& [shapes, name, part_of] = o;
         static_cast<void>(name); // the mean does not depend on names
+        static_cast<void>(part_of);
         add(shapes);
     }
     void add(const Instance& i) {
         const auto& [object, world_from_object, motion] = i;
         all(object, world_from_object, motion);
     }
-    void add(const Motion& m) { all(m.start(), m.end()); }
+    void add(const Motion& m) {
+        all(m.start(), m.end());
+        if (m.is_product()) add(m.keys());
+    }
 
     // Lights.
     void add(const AreaLight& l) {

@@ -24,11 +24,13 @@ std::vector<std::string> instance_names(const Scene& scene) {
     std::vector<std::string> names;
     names.reserve(scene.instances.size());
     for (const Instance& instance : scene.instances) {
-        const ObjectDefinition& object = scene.objects[instance.object];
+        const Index part_of = scene.objects[instance.object].part_of;
+        const Index named = part_of == no_index ? instance.object : part_of;
+        const ObjectDefinition& object = scene.objects[named];
         const std::size_t k = seen[instance.object]++;
         std::string name = object.name;
         if (name.empty()) {
-            name = object.shapes.empty() ? "object-" + std::to_string(instance.object)
+            name = object.shapes.empty() ? "object-" + std::to_string(named)
                                          : shape_name(scene, object.shapes.front());
             if (uses[instance.object] == 1) {
                 names.push_back(std::move(name));

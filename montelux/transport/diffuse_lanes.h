@@ -20,15 +20,16 @@ namespace montelux {
 enum class LaneShading : std::uint8_t {
     none,
     scattering, // a diffuse material without bumps and normal map
-    all,        // ... without textures, on a triangle of the world
+    all,        // ... without textures, on a triangle of the world that does not deform
 };
 inline LaneShading lane_shading(const SceneView& scene, const Hit& hit) {
     const Shape& shape = scene.shapes[hit.shape];
     const auto* diffuse = std::get_if<DiffuseMaterial>(&scene.materials[shape.material]);
     if (diffuse == nullptr || !diffuse->detail.is_flat()) return LaneShading::none;
     if (scene.soft_terminator && has_vertex_normals(scene, shape)) return LaneShading::none;
-    const bool plain = hit.instance == no_index && std::holds_alternative<MeshIndex>(shape.geometry) &&
-                       !scene.is_textured(shape.material) && !scene.frame_follows_tangents(shape.material);
+    const TriangleMesh* mesh = hit.instance == no_index ? mesh_of(scene, shape) : nullptr;
+    const bool plain = mesh != nullptr && !mesh->deforms() && !scene.is_textured(shape.material) &&
+                       !scene.frame_follows_tangents(shape.material);
     return plain ? LaneShading::all : LaneShading::scattering;
 }
 

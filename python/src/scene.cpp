@@ -329,16 +329,19 @@ void bind_scene(nb::module_& m) {
             "add_mesh",
             [](const SceneObject& s, const nb::object& positions, const nb::object& triangles,
                const nb::object& material, const nb::object& normals, const nb::object& uvs,
-               const nb::object& transform, const nb::object& light) {
-                return add_mesh(s.holder, positions, triangles, material, normals, uvs, transform, light);
+               const nb::object& end_positions, const nb::object& end_normals, const nb::object& transform,
+               const nb::object& light) {
+                return add_mesh(s.holder, positions, triangles, material,
+                                {normals, uvs, end_positions, end_normals, transform, light});
             },
             "positions"_a, "triangles"_a, "material"_a, nb::kw_only(), "normals"_a = nb::none(),
-            "uvs"_a = nb::none(), "transform"_a = nb::none(), "light"_a = nb::none(),
+            "uvs"_a = nb::none(), "end_positions"_a = nb::none(), "end_normals"_a = nb::none(),
+            "transform"_a = nb::none(), "light"_a = nb::none(),
             "Triangles: positions of shape (n, 3), triangles of shape (m, 3) indices into them; normals (n, "
-            "3) and "
-            "uvs (n, 2) are one per position. transform: a matrix of shape (4, 4). light: an AreaLight or a "
-            "spectrum. "
-            "Returns the Shape.")
+            "3) and uvs (n, 2) are one per position. end_positions: of a mesh that deforms while the shutter "
+            "is open, from positions (at time 0) on straight lines; end_normals with them, if normals are "
+            "given. Such a mesh has no light. transform: a matrix of shape (4, 4). light: an AreaLight or a "
+            "spectrum. Returns the Shape.")
         .def(
             "add_sphere",
             [](const SceneObject& s, double radius, const nb::object& material, const nb::object& centre,

@@ -65,7 +65,14 @@ void set_light(const SceneRef& holder, Index shape, const nb::object& emission) 
 nb::object added(const SceneRef& holder, const char* call, Geometry geometry, bool flip_normal,
                  const nb::object& material, const nb::object& emission) {
     std::optional<AreaLight> light;
-    if (!emission.is_none()) light = area_light_of(holder, emission);
+    if (!emission.is_none()) {
+        try {
+            check_emitter(geometry);
+        } catch (const Error& e) {
+            throw Error(call, e.what());
+        }
+        light = area_light_of(holder, emission);
+    }
     ShapeSettings settings;
     settings.material = material_index(holder, material, "material of a shape");
     settings.flip_normal = flip_normal;
@@ -84,11 +91,12 @@ Numbers rows(const nb::object& given, std::size_t n, const std::string& what) {
     return numbers;
 }
 
-nb::object positions_of(const ShapeRef& r) {
-    const auto* mesh = std::get_if<MeshIndex>(&r.value().geometry);
-    if (mesh == nullptr) return nb::none();
+// Of a mesh; None for other shapes, and where there are none.
+nb::object positions_of(const ShapeRef& r, std::vector<Point3f> TriangleMesh::*positions) {
+    const TriangleMesh* mesh = mesh_of(r.scene()->read().scene, r.value());
+    if (mesh == nullptr || (mesh->*positions).empty()) return nb::none();
     std::vector<double> rows;
-    for (const Point3f& p : r.scene()->read().scene.meshes[mesh->index].positions)
+    for (const Point3f& p : mesh->*positions)
         rows.insert(rows.end(),
                     {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
     return new_array(rows, rows.size() / 3, 3);
@@ -121,36 +129,40 @@ Index material_index(const SceneRef& scene, const nb::object& material, const st
 }
 
 nb::object add_mesh(const SceneRef& scene, const nb::object& positions, const nb::object& triangles,
-                    const nb::object& material, const nb::object& normals, const nb::object& uvs,
-                    const nb::object& transform, const nb::object& emission) {
-    const Numbers p = rows(positions, 3, "add_mesh, positions"),
-                  t = rows(triangles, 3, "add_mesh, triangles");
-    const Transform world = transform_of(transform, "add_mesh, transform");
+                    const nb::object& material, const MeshAttributes& attributes) {
+    const Transform world = transform_of(attributes.transform, "add_mesh, transform");
+    // Points, or normals, in world space; None: none.
+    const auto vectors = [&](const nb::object& given, const char* what, bool are_points) {
+        std::vector<Vec3f> result;
+        if (given.is_none()) return result;
+        const Numbers numbers = rows(given, 3, std::string("add_mesh, ") + what);
+        for (std::size_t i = 0; i < numbers.shape[0]; ++i) {
+            const Vec3d v{numbers.values[3 * i], numbers.values[3 * i + 1], numbers.values[3 * i + 2]};
+            result.push_back(Vec3f(are_points ? world.point(v) : world.normal(v)));
+        }
+        return result;
+    };
     TriangleMesh mesh;
-    const std::size_t n = p.shape[0];
-    for (std::size_t i = 0; i < n; ++i)
-        mesh.positions.push_back(
-            Vec3f(world.point(Vec3d{p.values[3 * i], p.values[3 * i + 1], p.values[3 * i + 2]})));
-    for (const double v : t.values) {
+    mesh.positions = vectors(positions, "positions", true);
+    mesh.normals = vectors(attributes.normals, "normals", false);
+    mesh.end_positions = vectors(attributes.end_positions, "end_positions", true);
+    mesh.end_normals = vectors(attributes.end_normals, "end_normals", false);
+    if (!attributes.end_positions.is_none() && mesh.end_positions.empty())
+        throw Error("add_mesh, end_positions", "expected one per position");
+    for (const double v : rows(triangles, 3, "add_mesh, triangles").values) {
         if (!(v >= 0 && v < double{no_index} && v == std::floor(v)))
             throw Error("add_mesh, triangles",
                         "the index " + std::to_string(v) + " was given; expected whole numbers from 0 on");
         mesh.indices.push_back(static_cast<Index>(v));
     }
     if (mesh.indices.empty()) throw Error("add_mesh, triangles", "expected at least one triangle");
-    if (!normals.is_none()) {
-        const Numbers given = rows(normals, 3, "add_mesh, normals");
-        for (std::size_t i = 0; i < given.shape[0]; ++i)
-            mesh.normals.push_back(Vec3f(
-                world.normal(Vec3d{given.values[3 * i], given.values[3 * i + 1], given.values[3 * i + 2]})));
-    }
-    if (!uvs.is_none()) {
-        const Numbers given = rows(uvs, 2, "add_mesh, uvs");
+    if (!attributes.uvs.is_none()) {
+        const Numbers given = rows(attributes.uvs, 2, "add_mesh, uvs");
         for (std::size_t i = 0; i < given.shape[0]; ++i)
             mesh.uvs.push_back(
                 {static_cast<float>(given.values[2 * i]), static_cast<float>(given.values[2 * i + 1])});
     }
-    return added(scene, "add_mesh", std::move(mesh), world.swaps_handedness(), material, emission);
+    return added(scene, "add_mesh", std::move(mesh), world.swaps_handedness(), material, attributes.light);
 }
 
 nb::object add_sphere(const SceneRef& scene, double radius, const nb::object& centre,
@@ -268,7 +280,12 @@ void bind_shapes(nb::module_& m) {
             "light", &light_of, [](ShapeRef& r, const nb::object& e) { set_light(r.scene(), r.first(), e); },
             nb::for_setter(nb::arg("emission").none()),
             "The AreaLight of all its primitives, or None; set an AreaLight, a spectrum or None.")
-        .def_prop_ro("positions", &positions_of, "Vertices of a mesh, shape (n, 3); else None.")
+        .def_prop_ro(
+            "positions", [](const ShapeRef& r) { return positions_of(r, &TriangleMesh::positions); },
+            "Vertices of a mesh, shape (n, 3); else None.")
+        .def_prop_ro(
+            "end_positions", [](const ShapeRef& r) { return positions_of(r, &TriangleMesh::end_positions); },
+            "Those at the end of the motion, of a mesh that deforms; else None.")
         .def(
             "__eq__",
             [](const ShapeRef& a, nb::handle b) {

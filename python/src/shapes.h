@@ -8,10 +8,14 @@ namespace montelux::python {
 
 using SceneRef = std::shared_ptr<SceneHolder>;
 
+// What a mesh may have beside its triangles; each may be None.
+struct MeshAttributes {
+    nb::object normals, uvs, end_positions, end_normals, transform, light;
+};
+
 // Each adds a shape to the world and returns it; detached materials are added, too.
 nb::object add_mesh(const SceneRef& scene, const nb::object& positions, const nb::object& triangles,
-                    const nb::object& material, const nb::object& normals, const nb::object& uvs,
-                    const nb::object& transform, const nb::object& emission);
+                    const nb::object& material, const MeshAttributes& attributes);
 nb::object add_sphere(const SceneRef& scene, double radius, const nb::object& centre,
                       const nb::object& material, const nb::object& transform, const nb::object& emission);
 nb::object add_disk(const SceneRef& scene, double radius, double inner_radius, double height,

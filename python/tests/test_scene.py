@@ -183,6 +183,30 @@ def test_a_scene_built_in_python_equals_the_file_s():
     assert np.array_equal(built.render(spp=16).mean, loaded.render(spp=16).mean)
 
 
+def test_meshes_deform_while_the_shutter_is_open():
+    scene = montelux.Scene()
+    scene.camera = montelux.OrthographicCamera(look_at=((0, 0, 4), (0, 0, 0), (0, 1, 0)))
+    scene.film.resolution = 16, 16
+    scene.sampler.spp = 256
+    scene.lights.append(montelux.UniformInfiniteLight(spectrum=(1, 1, 1)))
+    corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], float)
+    up, ups = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 1], [0, 0, 0, 1.0]]), [[0, 0, 1]] * 4
+    shape = scene.add_mesh(
+        corners, [[0, 1, 2], [0, 2, 3]], montelux.Diffuse(reflectance=0), normals=ups, transform=up,
+        end_positions=corners * [0, 1, 1], end_normals=ups,
+    )  # fmt: skip
+    assert shape.positions == pytest.approx(corners + [0, 0, 1])
+    assert shape.end_positions == pytest.approx(corners * [0, 1, 1] + [0, 0, 1])
+    # |x| is covered until time 1 - |x|.
+    x = np.abs((np.arange(16) + 0.5) / 8 - 1)
+    row = scene.render(spp=1024).mean[8, :, 1]
+    assert row == pytest.approx(x, abs=0.08)
+    assert scene.add_sphere(1, montelux.Diffuse()).end_positions is None
+    with pytest.raises(montelux.Error, match="a mesh that deforms does not emit light"):
+        shape.light = (1, 1, 1)
+    assert shape.light is None and len(scene.lights) == 1
+
+
 def test_meshes_textures_and_environments():
     scene = montelux.Scene()
     scene.camera = montelux.OrthographicCamera(look_at=((0, 0, 4), (0, 0, 0), (0, 1, 0)))
@@ -459,6 +483,11 @@ def test_messages_name_the_kind_of_files_that_are_not_scenes(tmp_path):
         ({"normals": [[0, 0, 1]]}, "add_mesh: the mesh has 1 normals for 3 vertices"),
         ({"uvs": [[0, 0]]}, "add_mesh: the mesh has 1 texture coordinates for 3 vertices"),
         ({"positions": [[0, 0, 0], [1, 0, 0], [0, 1e300, 0]]}, "add_mesh: vertex 2 lies at infinity"),
+        ({"end_positions": [[0, 0, 0]]}, "add_mesh: the mesh has 1 positions at the end for 3 vertices"),
+        ({"end_positions": np.empty((0, 3))}, "add_mesh, end_positions: expected one per position"),
+        ({"end_positions": np.full((3, 3), np.nan)}, "add_mesh: vertex 0 lies at infinity in world space at the end"),
+        ({"end_normals": [[0, 0, 1]] * 3}, "add_mesh: the mesh has normals at the end, but no positions"),
+        ({"end_positions": np.eye(3), "light": (1, 1, 1)}, "add_mesh: a mesh that deforms does not emit light"),
         ({"light": montelux.Spectrum(-1)}, "Shape.light: the light's spectrum has no positive luminance"),
     ],
 )

@@ -311,6 +311,40 @@ TEST(Layers, MotionFollowsInstances) {
     }
 }
 
+// A card that grows to twice its size: its points move away from the middle, whichever the time they are seen at.
+TEST(Layers, MotionFollowsMeshesThatDeform) {
+    for (const bool in_instance : {false, true}) {
+        SceneBuilder b = square_below();
+        CallMessages messages("scene of a test");
+        montelux::SceneBuilder builder(b.scene, messages);
+        const Transform place = Transform::translate({0, 0, 2});
+        TriangleMesh card = square(in_instance ? Transform() : place);
+        card.end_positions = card.positions;
+        for (Point3f& p : card.positions) p = {1.5f * p.x, 1.5f * p.y, p.z};
+        for (Point3f& p : card.end_positions) p = {3 * p.x, 3 * p.y, p.z};
+        if (in_instance) builder.begin_object("card");
+        builder.add_shape(std::move(card), {.material = 0});
+        builder.end_object();
+        // By 8 pixels to the right while it grows: a pixel is 1/8 wide.
+        const Vec3d step = b.scene.camera.world_from_camera.vector(Vec3d{1, 0, 0});
+        if (in_instance) builder.add_instance("card", place, Transform::translate(step) * place);
+        builder.finish();
+        b.description.film.layers.in_camera_space = true;
+        b.description.sampler.spp = 1;
+        const Film film = render_state(b.description).film;
+        const Image image = film.develop();
+        const Renderer renderer(b.description);
+        for (int x = 2; x < 14; ++x) {
+            const SampleRecord r = renderer.replay(x, 8, 0);
+            // The camera is 2 above it. A point at distance d from the middle of the card was at d / (1 + t).
+            const double d = value_of(image, x, 8, "P.X") - (in_instance ? double(r.time) : 0);
+            const double grown = d / (1 + double(r.time));
+            EXPECT_NEAR(value_of(image, x, 8, "motion.X"), 8 * (grown + (in_instance ? 1 : 0)), 2e-3)
+                << x << " " << in_instance;
+        }
+    }
+}
+
 // Projection is the inverse of the camera's rays.
 TEST(Layers, ProjectionInvertsTheCamera) {
     const auto expect_inverse = [](const CameraModel& model, double tolerance) {

@@ -60,6 +60,21 @@ TEST(MemoryUse, MeshesTakeLittleMoreThanTheirData) {
     }
 }
 
+TEST(MemoryUse, MeshesThatDeformTakeTheirEndsAsWell) {
+    Scene scene;
+    CallMessages messages("a test");
+    TriangleMesh mesh = strip(40000);
+    mesh.end_positions = mesh.positions;
+    mesh.end_normals = mesh.normals;
+    const std::size_t raw = raw_bytes(mesh) + 40000 * 24;
+    mesh.end_positions.reserve(80000);
+    mesh.end_normals.reserve(80000);
+    SceneBuilder(scene, messages).add_shape(std::move(mesh), {});
+    const std::size_t taken = bytes_of(memory_use(scene), "triangle meshes");
+    EXPECT_GE(taken, raw + sizeof(TriangleMesh));
+    EXPECT_LE(taken, raw + raw / 8);
+}
+
 #if defined(__GLIBC__) && __GLIBC_PREREQ(2, 33)
 std::size_t heap_bytes() {
     const struct mallinfo2 info = mallinfo2();

@@ -126,6 +126,15 @@ TEST(SceneDigest, GeometryCounts) {
                     [](Scene& s) {
                         s.meshes[0].tangents = {{1, 0, 0}, {1, 0, 0}, {1, 0, 0}};
                     },
+                    [](Scene& s) { s.meshes[0].end_positions = s.meshes[0].positions; },
+                    [](Scene& s) {
+                        s.meshes[0].end_positions = s.meshes[0].positions;
+                        s.meshes[0].end_positions[1].y = 1e-30f;
+                    },
+                    [](Scene& s) {
+                        s.meshes[0].end_positions = s.meshes[0].positions;
+                        s.meshes[0].end_normals = s.meshes[0].normals;
+                    },
                     [](Scene& s) { std::swap(s.meshes[0].indices[0], s.meshes[0].indices[1]); },
                     [](Scene& s) { std::get<Sphere>(s.quadrics[0]).z_max = 0.5f; },
                     [](Scene& s) { std::get<Disk>(s.quadrics[1]).inner_radius = 0.5f; },

@@ -67,6 +67,33 @@ TEST(RaisedPosition, StaysAtVerticesAndInHollows) {
     EXPECT_EQ(*dent, (Vec3f{0.3f, 0.25f, 0}));
 }
 
+// As the mesh is at the ray's time.
+TEST(RaisedPosition, FollowsMeshesThatDeform) {
+    Scene scene = triangle_with(hollow());
+    TriangleMesh& mesh = scene.meshes[0];
+    mesh.end_positions = {{0, 0, 1}, {1, 0, 2}, {0, 2, 1}};
+    mesh.end_normals = bulging;
+    Scene still = triangle_with(hollow());
+    constexpr float time = 0.75f;
+    for (Index v = 0; v < 3; ++v) {
+        still.meshes[0].positions[v] = mesh.position(v, time);
+        still.meshes[0].normals[v] = mesh.normal(v, time);
+    }
+    for (const Index instance : {no_index, Index{0}}) {
+        const Hit hit = hit_at(0.3f, 0.25f, instance);
+        const Ray ray{{0.2f, 0.2f, 5}, {0, 0, -1}, 1e30f, time};
+        const auto raise_in = [&](const Scene& s) {
+            const SceneView view(s);
+            return raised_position(view, ray, hit, surface_point(view, ray, hit, false));
+        };
+        const auto a = raise_in(scene), b = raise_in(still);
+        EXPECT_EQ(a.has_value(), b.has_value());
+        if (!a || !b) continue;
+        EXPECT_LT(length(*a - *b), 1e-6f);
+    }
+    EXPECT_TRUE(raise(still, hit_at(0.3f, 0.25f)));
+}
+
 // From behind, bulges are hollows and hollows bulges; normals that point inwards serve as well.
 TEST(RaisedPosition, RisesTowardsTheRay) {
     const auto above = raise(triangle_with(bulging), hit_at(0.3f, 0.25f)),

@@ -160,7 +160,6 @@ class Directives {
     std::optional<Plugin> camera_, film_, filter_, sampler_, integrator_;
     std::optional<std::uint64_t> seed_;
     double transform_start_ = 0, transform_end_ = 1;
-    std::size_t moving_shapes_ = 0;
 
     std::vector<MaterialDeclaration> materials_;
     std::vector<Index> material_indices_; // into Scene::materials, of each declaration

@@ -82,10 +82,9 @@ bool Directives::joins_open_curves(const Geometry& geometry, const ShapeSettings
 
 void Directives::shape(const std::string& name, std::vector<Parameter> parameters, Location at) {
     require_world("Shape", at);
-    // A shape that moves is an object of its own, with one instance.
     bool moves = is_moving();
-    if (moves && (state_.emission || builder_.in_object())) {
-        start_transform(state_.emission ? "a shape that emits light" : "a shape inside an object", at);
+    if (moves && state_.emission && !builder_.in_object()) {
+        start_transform("a shape that emits light", at);
         moves = false;
     }
     const Transform world_from_object = moves ? Transform() : state_.ctm->start;
@@ -114,15 +113,10 @@ void Directives::shape(const std::string& name, std::vector<Parameter> parameter
     if (joins_open_curves(geometry, settings, !moves && !alpha_varies && !state_.emission, at)) return;
     material_uses_.push_back({index, state_.material, at});
     if (state_.media != MediaReference()) media_uses_.push_back({index, state_.media, at});
-    if (!moves) {
+    if (moves)
+        builder_.add_moving_shape(std::move(geometry), settings, state_.ctm->start, state_.ctm->end, at);
+    else
         builder_.add_shape(std::move(geometry), settings, at);
-        return;
-    }
-    const std::string object = "\n" + std::to_string(moving_shapes_++); // no name in a file
-    builder_.begin_object(object, at);
-    builder_.add_shape(std::move(geometry), settings, at);
-    builder_.end_object();
-    builder_.add_instance(object, state_.ctm->start, state_.ctm->end, at);
 }
 
 void Directives::finish_options() {

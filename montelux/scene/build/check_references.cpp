@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "montelux/mc/math/error.h"
+#include "montelux/scene/build/geometry.h"
 #include "montelux/scene/material/material_model.h"
 
 namespace montelux {
@@ -169,6 +171,10 @@ void check_light(const Scene& scene, const Light& light) {
                                    numbered("light", scene.lights.size()) + " (" + std::string(l.name) + ')');
             if constexpr (requires { l.spectrum; }) check("spectrum", l.spectrum);
             if constexpr (requires { l.shape; }) check.index("shape", "shape", l.shape, scene.shapes.size());
+            if constexpr (std::is_same_v<std::decay_t<decltype(l)>, AreaLight>)
+                if (const auto* mesh = std::get_if<MeshIndex>(&scene.shapes[l.shape].geometry);
+                    mesh != nullptr && mesh->index < scene.meshes.size())
+                    check_emitter(scene.meshes[mesh->index]);
             if constexpr (requires { l.environment; })
                 check.index("environment", "environment map", l.environment, scene.environments.size());
             if constexpr (requires { l.picture; })

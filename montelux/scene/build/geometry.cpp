@@ -14,6 +14,24 @@ void check_one_a_vertex(std::size_t count, std::size_t vertices, const char* wha
                     std::to_string(vertices) + " vertices; expected one per vertex");
 }
 
+void check_deformation(const TriangleMesh& mesh) {
+    const std::size_t vertices = mesh.positions.size();
+    check_one_a_vertex(mesh.end_positions.size(), vertices, "positions at the end");
+    check_one_a_vertex(mesh.end_normals.size(), vertices, "normals at the end");
+    if (!mesh.end_normals.empty() && !mesh.deforms())
+        throw Error("the mesh has normals at the end, but no positions");
+    if (!mesh.deforms()) return;
+    if (mesh.normals.empty() != mesh.end_normals.empty())
+        throw Error(std::string("the mesh has normals at the ") +
+                    (mesh.normals.empty() ? "end, but none at the start" : "start, but none at the end"));
+    if (!mesh.tangents.empty()) throw Error("a mesh that deforms has no vertex tangents");
+    for (std::size_t i = 0; i < vertices; ++i)
+        if (!is_finite(mesh.end_positions[i]))
+            throw Error("vertex " + std::to_string(i) + " lies at infinity in world space at the end");
+    for (const Normal3f& n : mesh.end_normals)
+        if (!is_finite(n)) throw Error("a vertex normal is not finite in world space at the end");
+}
+
 // Of triangles or patches.
 template <typename Mesh>
 void check_mesh(const Mesh& mesh, std::size_t corners, const std::string& primitive) {
@@ -40,6 +58,7 @@ void check_mesh(const Mesh& mesh, std::size_t corners, const std::string& primit
             throw Error("vertex " + std::to_string(i) + " lies at infinity in world space");
     for (const Normal3f& n : mesh.normals)
         if (!is_finite(n)) throw Error("a vertex normal is not finite in world space");
+    if constexpr (requires { mesh.end_positions; }) check_deformation(mesh);
 }
 
 void check_curves(const Curves& curves) {
@@ -61,11 +80,21 @@ void check_curves(const Curves& curves) {
 template <typename Mesh>
 void transform_vertices(Mesh& mesh, const Transform& t, bool reverse_orientation) {
     const bool stays = t.matrix() == Matrix4{};
-    if (!stays)
-        for (Point3f& p : mesh.positions) p = t.point(p);
-    for (Normal3f& n : mesh.normals) {
-        if (!stays) n = t.normal(n);
-        if (reverse_orientation) n = -n;
+    const auto move_points = [&](std::vector<Point3f>& points) {
+        if (!stays)
+            for (Point3f& p : points) p = t.point(p);
+    };
+    const auto move_normals = [&](std::vector<Normal3f>& normals) {
+        for (Normal3f& n : normals) {
+            if (!stays) n = t.normal(n);
+            if (reverse_orientation) n = -n;
+        }
+    };
+    move_points(mesh.positions);
+    move_normals(mesh.normals);
+    if constexpr (requires { mesh.end_positions; }) {
+        move_points(mesh.end_positions);
+        move_normals(mesh.end_normals);
     }
     if constexpr (requires { mesh.tangents; })
         for (Vec3f& tangent : mesh.tangents) tangent = t.vector(tangent);
@@ -94,6 +123,15 @@ void check_geometry(const Geometry& geometry) {
     if (const auto* mesh = std::get_if<BilinearMesh>(&geometry)) return check_mesh(*mesh, 4, "patch");
     if (!fits_float(world_bounds(std::get<Quadric>(geometry))))
         throw Error("the shape reaches to infinity in world space");
+}
+
+void check_emitter(const TriangleMesh& mesh) {
+    if (mesh.deforms())
+        throw Error("a mesh that deforms does not emit light; give it no light, or no positions at the end");
+}
+
+void check_emitter(const Geometry& geometry) {
+    if (const auto* mesh = std::get_if<TriangleMesh>(&geometry)) check_emitter(*mesh);
 }
 
 float object_area(const Quadric& quadric) {

@@ -18,6 +18,7 @@ Bounds3 bounds_of(const ObjectDefinition& object, const Scene& scene) {
         visit_geometry(scene, scene.shapes[i],
                        Overloaded{[&](const TriangleMesh& mesh) {
                                       for (const Point3f p : mesh.positions) bounds.add(Vec3d(p));
+                                      for (const Point3f p : mesh.end_positions) bounds.add(Vec3d(p));
                                   },
                                   [&](const Quadric& quadric) {
                                       const Bounds3 b = world_bounds(quadric);
@@ -44,11 +45,47 @@ void trim(std::vector<T>& v) {
     if (v.capacity() - v.size() > v.size() / 8 + 1) v.shrink_to_fit();
 }
 
+// With room for the ray tracer to read them in place.
+void trim_positions(std::vector<Point3f>& positions) {
+    trim(positions);
+    if (!positions.empty()) positions.reserve(positions.size() + 1);
+}
+
+constexpr std::string_view dark_in_objects = "area lights inside object definitions do not shine";
+
+// A use of an object needs memory for each of its moving parts, so a short file could ask for any amount: 4 GiB of keys
+// in all.
+constexpr std::size_t most_part_keys = std::size_t{1} << 25;
+constexpr std::size_t keys_beside = 8; // what an instance and its motion need beside the keys, in keys
+
 } // namespace
 
 Index SceneBuilder::add_shape(Geometry geometry, const ShapeSettings& settings, SourceLocation at) {
+    return add_shape_to(open_object_, std::move(geometry), settings, in_object() ? dark_in_objects : "", at);
+}
+
+Index SceneBuilder::add_moving_shape(Geometry geometry, const ShapeSettings& settings, const Transform& start,
+                                     const Transform& end, SourceLocation at) {
+    if (in_object()) {
+        const Index part = moving_part(start, end, at);
+        return add_shape_to(part, std::move(geometry), settings, dark_in_objects, at);
+    }
+    // An object of its own, with one instance.
+    const auto object = static_cast<Index>(scene_.objects.size());
+    const std::string name = "\n" + std::to_string(object); // no name in a file
+    objects_.declare(name, object, at, messages_);
+    scene_.objects.emplace_back();
+    const Index shape =
+        add_shape_to(object, std::move(geometry), settings, "shapes that move do not emit light", at);
+    add_instance(name, start, end, at);
+    return shape;
+}
+
+Index SceneBuilder::add_shape_to(Index object, Geometry geometry, const ShapeSettings& settings,
+                                 std::string_view dark, SourceLocation at) {
     try {
         check_geometry(geometry);
+        if (settings.emission != nullptr && dark.empty()) check_emitter(geometry);
     } catch (const Error& e) {
         messages_.error(at, e.what());
     }
@@ -64,17 +101,17 @@ Index SceneBuilder::add_shape(Geometry geometry, const ShapeSettings& settings, 
         scene_.shape_names.resize(index + std::size_t{1});
         scene_.shape_names[index] = settings.name;
     }
-    (in_object() ? scene_.objects[open_object_].shapes : scene_.world_shapes).push_back(index);
-    if (settings.emission != nullptr) add_area_light(index, *settings.emission, geometry, at);
+    (object != no_index ? scene_.objects[object].shapes : scene_.world_shapes).push_back(index);
+    const std::optional<AreaLight> light = area_light(index, settings, geometry, dark, at);
     scene_.shapes[index].geometry = std::visit(
         Overloaded{[&](TriangleMesh& mesh) -> ShapeGeometry {
-                       trim(mesh.positions);
+                       trim_positions(mesh.positions);
+                       trim_positions(mesh.end_positions);
                        trim(mesh.normals);
+                       trim(mesh.end_normals);
                        trim(mesh.uvs);
                        trim(mesh.indices);
                        trim(mesh.tangents);
-                       // Room for the ray tracer to read the positions in place.
-                       if (!mesh.positions.empty()) mesh.positions.reserve(mesh.positions.size() + 1);
                        scene_.meshes.push_back(std::move(mesh));
                        return MeshIndex{static_cast<Index>(scene_.meshes.size() - 1)};
                    },
@@ -91,24 +128,27 @@ Index SceneBuilder::add_shape(Geometry geometry, const ShapeSettings& settings, 
                        return BilinearMeshIndex{static_cast<Index>(scene_.bilinear_meshes.size() - 1)};
                    }},
         geometry);
+    if (light) scene_.shapes[index].light = add_light(*light, at, settings.emission->group);
     return index;
 }
 
-void SceneBuilder::add_area_light(Index shape, const Emission& emission, const Geometry& geometry,
-                                  SourceLocation at) {
-    if (in_object()) {
-        messages_.warn_once("area light in object", at, "area lights inside object definitions do not shine");
-        return;
+std::optional<AreaLight> SceneBuilder::area_light(Index shape, const ShapeSettings& settings,
+                                                  const Geometry& geometry, std::string_view dark,
+                                                  SourceLocation at) {
+    if (settings.emission == nullptr) return std::nullopt;
+    if (!dark.empty()) {
+        messages_.warn_once(dark, at, dark);
+        return std::nullopt;
     }
     if (std::holds_alternative<Curves>(geometry)) {
         messages_.warn_once("area light on curves", at, "curves do not emit light");
-        return;
+        return std::nullopt;
     }
     const std::size_t count = primitive_count(geometry);
-    if (count == 0) return;
+    if (count == 0) return std::nullopt;
     emissive_primitives_ += count;
     if (emissive_primitives_ >= no_index) messages_.error(at, "more than 2^32 emissive triangles");
-    scene_.shapes[shape].light = add_light(emission.light(shape, geometry), at, emission.group);
+    return settings.emission->light(shape, geometry);
 }
 
 void SceneBuilder::begin_object(const std::string& name, SourceLocation at) {
@@ -117,6 +157,36 @@ void SceneBuilder::begin_object(const std::string& name, SourceLocation at) {
     scene_.objects.emplace_back();
     // Readers name objects that have no name in the file by a line break and a number.
     if (!name.starts_with('\n')) scene_.objects.back().name = name;
+}
+
+void SceneBuilder::end_object() {
+    open_object_ = no_index;
+    open_parts_.clear();
+}
+
+bool SceneBuilder::MotionOrder::operator()(const MotionKey& a, const MotionKey& b) const {
+    for (std::size_t end = 0; end < 2; ++end)
+        if (a[end].m != b[end].m) return a[end].m < b[end].m;
+    return false;
+}
+
+Motion SceneBuilder::motion(const Transform& start, const Transform& end, SourceLocation at) const {
+    try {
+        return {start, end};
+    } catch (const Error& e) {
+        messages_.error(at, e.what());
+    }
+}
+
+Index SceneBuilder::moving_part(const Transform& start, const Transform& end, SourceLocation at) {
+    if (!fits_float(start) || !fits_float(end))
+        messages_.error(at, "the shape's transformation is beyond what single-precision numbers hold");
+    const MotionKey ends{start.matrix(), end.matrix()};
+    if (const auto known = open_parts_.find(ends); known != open_parts_.end()) return known->second;
+    const auto object = static_cast<Index>(scene_.objects.size());
+    parts_[open_object_].push_back({object, motion(start, end, at)});
+    scene_.objects.push_back({.shapes = {}, .name = {}, .part_of = open_object_});
+    return open_parts_[ends] = object;
 }
 
 void SceneBuilder::add_instance(const std::string& object, const Transform& world_from_object,
@@ -133,12 +203,8 @@ void SceneBuilder::add_instance(const std::string& object, const Transform& star
     if (!fits_float(end))
         messages_.error(at,
                         "the instance's last transformation is beyond what single-precision numbers hold");
-    try {
-        scene_.motions.emplace_back(start, end);
-    } catch (const Error& e) {
-        messages_.error(at, e.what());
-    }
-    instances_.back().motion = static_cast<Index>(scene_.motions.size() - 1);
+    motions_.push_back(motion(start, end, at));
+    instances_.back().motion = static_cast<Index>(motions_.size() - 1);
 }
 
 Index SceneBuilder::add_light(const Light& light, SourceLocation at, const std::string& group) {
@@ -163,23 +229,73 @@ SceneSpectrum SceneBuilder::add_spectrum(const Spectrum& spectrum) {
     return known->second;
 }
 
+void SceneBuilder::place_instance(const InstanceUse& use, Index object, const Transform& at_start,
+                                  std::optional<Motion> motion, const Bounds3& bounds) {
+    const auto check = [&](const Transform& t) {
+        bool far = false;
+        for (int i = 0; i < 8 && !bounds.empty(); ++i) far = far || !fits_float(t.point(bounds.corner(i)));
+        if (far) messages_.error(use.at, "the instance reaches to infinity in world space");
+    };
+    check(at_start);
+    Index moving = no_index;
+    if (motion) {
+        check(motion->end());
+        moving = static_cast<Index>(scene_.motions.size());
+        scene_.motions.push_back(std::move(*motion));
+    }
+    scene_.instances.push_back({object, at_start, moving});
+}
+
+void SceneBuilder::check_part_count() {
+    std::map<Index, std::size_t> keys_of_object; // of its parts in a still instance
+    for (const auto& [object, parts] : parts_)
+        for (const MovingPart& part : parts)
+            keys_of_object[object] += part.motion.keys().size() + keys_beside;
+    std::size_t keys = 0;
+    for (const InstanceUse& use : instances_) {
+        const Index object = objects_.resolve(use.object, use.at, messages_);
+        const auto parts = parts_.find(object);
+        if (parts == parts_.end()) continue;
+        keys += keys_of_object[object];
+        if (use.motion != no_index) keys += parts->second.size() * motions_[use.motion].keys().size();
+        if (keys > most_part_keys)
+            messages_.error(use.at,
+                            "the instances of objects whose shapes move need more than 4 GiB; expected "
+                            "fewer instances, or fewer shapes that move");
+    }
+}
+
 void SceneBuilder::place_instances() {
+    check_part_count();
     std::vector<Bounds3> bounds;
     for (const ObjectDefinition& object : scene_.objects) bounds.push_back(bounds_of(object, scene_));
     for (const InstanceUse& use : instances_) {
         const Index object = objects_.resolve(use.object, use.at, messages_);
-        const Bounds3& b = bounds[object];
-        const auto reaches_too_far = [&](const Transform& t) {
-            bool far = false;
-            for (int i = 0; i < 8 && !b.empty(); ++i) far = far || !fits_float(t.point(b.corner(i)));
-            return far;
-        };
-        if (reaches_too_far(use.world_from_object) ||
-            (use.motion != no_index && reaches_too_far(scene_.motions[use.motion].end())))
-            messages_.error(use.at, "the instance reaches to infinity in world space");
-        scene_.instances.push_back({object, use.world_from_object, use.motion});
+        const auto parts = parts_.find(object);
+        const Motion* outer = use.motion != no_index ? &motions_[use.motion] : nullptr;
+        if (parts == parts_.end() || !scene_.objects[object].shapes.empty())
+            place_instance(use, object, use.world_from_object,
+                           outer != nullptr ? std::optional(*outer) : std::nullopt, bounds[object]);
+        if (parts == parts_.end()) continue;
+        for (const MovingPart& part : parts->second) {
+            const Transform start = use.world_from_object * part.motion.start(),
+                            end =
+                                (outer != nullptr ? outer->end() : use.world_from_object) * part.motion.end();
+            if (!fits_float(start) || !fits_float(end))
+                messages_.error(use.at,
+                                "the instance's transformation is beyond what single-precision numbers hold");
+            std::optional<Motion> motion;
+            try {
+                motion = outer != nullptr ? Motion::product(*outer, part.motion)
+                                          : Motion::product(use.world_from_object, part.motion);
+            } catch (const Error& e) {
+                messages_.error(use.at, e.what());
+            }
+            place_instance(use, part.object, start, std::move(motion), bounds[part.object]);
+        }
     }
     instances_.clear();
+    motions_.clear();
 }
 
 void SceneBuilder::finish(SourceLocation end, bool lights_matter) {

@@ -1,9 +1,12 @@
 // SceneBuilder: assembles a scene from the values of any format: shapes with their lights, objects, maps.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "montelux/scene/build/build_messages.h"
@@ -12,6 +15,7 @@
 #include "montelux/scene/build/name_table.h"
 #include "montelux/scene/content_digest.h"
 #include "montelux/scene/scene.h"
+#include "montelux/scene/shape/bounds.h"
 
 namespace montelux {
 
@@ -37,9 +41,14 @@ class SceneBuilder {
     // Adds a shape to the world, or to the open object. Errors as in check_geometry.
     Index add_shape(Geometry geometry, const ShapeSettings& settings, SourceLocation at = {});
 
+    // Adds a shape that moves: `geometry` is in its own space. In an open object the transformations lead into the
+    // object's space, which may move as well. It emits no light, with a warning.
+    Index add_moving_shape(Geometry geometry, const ShapeSettings& settings, const Transform& start,
+                           const Transform& end, SourceLocation at = {});
+
     // Shapes between these two calls form a group that instances refer to by name.
     void begin_object(const std::string& name, SourceLocation at = {});
-    void end_object() { open_object_ = no_index; }
+    void end_object();
     bool in_object() const { return open_object_ != no_index; }
     // The object may be declared later.
     void add_instance(const std::string& object, const Transform& world_from_object, SourceLocation at = {});
@@ -80,17 +89,42 @@ class SceneBuilder {
     struct InstanceUse {
         Index object; // a reference of objects_
         Transform world_from_object;
-        Index motion; // into Scene::motions
+        Index motion; // into motions_
         SourceLocation at;
     };
-    void add_area_light(Index shape, const Emission& emission, const Geometry& geometry, SourceLocation at);
+    // Shapes of an object with the same motion in its space.
+    struct MovingPart {
+        Index object; // of these shapes, into Scene::objects
+        Motion motion;
+    };
+    // Both ends of its motion.
+    using MotionKey = std::array<Matrix4, 2>;
+    struct MotionOrder {
+        bool operator()(const MotionKey& a, const MotionKey& b) const;
+    };
+
+    // `object`: into Scene::objects; no_index: to the world. `dark`: why the shape cannot emit light; empty if it can.
+    Index add_shape_to(Index object, Geometry geometry, const ShapeSettings& settings, std::string_view dark,
+                       SourceLocation at);
+    std::optional<AreaLight> area_light(Index shape, const ShapeSettings& settings, const Geometry& geometry,
+                                        std::string_view dark, SourceLocation at);
+    Motion motion(const Transform& start, const Transform& end, SourceLocation at) const;
+    // The part of the open object with that motion.
+    Index moving_part(const Transform& start, const Transform& end, SourceLocation at);
+    void place_instance(const InstanceUse& use, Index object, const Transform& at_start,
+                        std::optional<Motion> motion, const Bounds3& bounds);
+    void check_part_count();
     void place_instances();
 
     Scene& scene_;
     BuildMessages& messages_;
     NameTable objects_{"object"};
     Index open_object_ = no_index;
+    std::map<MotionKey, Index, MotionOrder> open_parts_; // of the open object: MovingPart::object
+    std::map<Index, std::vector<MovingPart>> parts_;     // of objects
     std::vector<InstanceUse> instances_;
+    std::vector<Motion> motions_;                    // of instances_
+    std::size_t part_keys_ = 0;                      // of the motions of parts in all instances
     std::map<ContentDigest, SceneSpectrum> spectra_; // added so far
     std::size_t emissive_primitives_ = 0;
 };

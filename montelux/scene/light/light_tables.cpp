@@ -52,6 +52,7 @@ Bounds3 bounds_of(const Scene& scene) {
         visit_geometry(scene, shape,
                        Overloaded{[&](const TriangleMesh& mesh) {
                                       for (Point3f p : mesh.positions) add(Vec3d(p));
+                                      for (Point3f p : mesh.end_positions) add(Vec3d(p));
                                   },
                                   [&](const Quadric& quadric) {
                                       const Bounds3 b = world_bounds(quadric);

@@ -13,13 +13,13 @@ struct Corner {
     Normal3f n; // unit, or zero where the mesh has no usable one
 };
 
-std::array<Corner, 3> corners_of(const TriangleMesh& mesh, Index primitive,
+std::array<Corner, 3> corners_of(const TriangleMesh& mesh, Index primitive, float time,
                                  const Transform* world_from_object) {
     std::array<Corner, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) {
         const Index v = mesh.indices[3 * std::size_t{primitive} + i];
         Corner& c = corners[i];
-        c = {mesh.positions[v], mesh.normals[v]};
+        c = {mesh.position(v, time), mesh.normal(v, time)};
         if (world_from_object != nullptr) c = {world_from_object->point(c.p), world_from_object->normal(c.n)};
         const float len2 = length_squared(c.n);
         c.n = len2 > 0 ? c.n / std::sqrt(len2) : Normal3f{};
@@ -42,8 +42,8 @@ Point3f raised(const std::array<Corner, 3>& corners, Point3f p, Vec2f b, float s
 } // namespace
 
 bool has_vertex_normals(const SceneView& scene, const Shape& shape) {
-    const auto* mesh = std::get_if<MeshIndex>(&shape.geometry);
-    return mesh != nullptr && !scene.meshes[mesh->index].normals.empty();
+    const TriangleMesh* mesh = mesh_of(scene, shape);
+    return mesh != nullptr && !mesh->normals.empty();
 }
 
 std::optional<Point3f> raised_position(const SceneView& scene, const Ray& ray, const Hit& hit,
@@ -51,9 +51,9 @@ std::optional<Point3f> raised_position(const SceneView& scene, const Ray& ray, c
     if (!has_vertex_normals(scene, *s.shape) || s.ng == s.ns) return std::nullopt;
     const float side = -dot(ray.d, s.ns);
     if (!(side * dot(ray.d, s.ng) < 0)) return std::nullopt;
-    const TriangleMesh& mesh = scene.meshes[std::get_if<MeshIndex>(&s.shape->geometry)->index];
+    const TriangleMesh& mesh = *mesh_of(scene, *s.shape);
     const auto raise = [&](const Transform* t) {
-        return raised(corners_of(mesh, hit.primitive, t), s.p, s.b, std::copysign(1.0f, side));
+        return raised(corners_of(mesh, hit.primitive, ray.time, t), s.p, s.b, std::copysign(1.0f, side));
     };
     if (hit.instance == no_index) return raise(nullptr);
     const Instance& instance = scene.instances[hit.instance];

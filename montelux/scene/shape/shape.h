@@ -21,8 +21,22 @@ struct TriangleMesh {
     std::vector<Index> indices; // three per triangle
     // Of vertices, along the first axis of the shading frame; empty: along dp/du.
     std::vector<Vec3f> tangents{};
+    // Of a mesh that deforms: at time 1. `positions` and `normals` are then those at time 0, and both change linearly.
+    // Else empty.
+    std::vector<Point3f> end_positions{};
+    std::vector<Normal3f> end_normals{};
 
     std::size_t triangle_count() const { return indices.size() / 3; }
+    bool deforms() const { return !end_positions.empty(); }
+    // Time in [0, 1].
+    Point3f position(Index vertex, float time) const {
+        if (!deforms()) return positions[vertex];
+        return (1 - time) * positions[vertex] + time * end_positions[vertex];
+    }
+    Normal3f normal(Index vertex, float time) const {
+        if (!deforms()) return normals[vertex];
+        return (1 - time) * normals[vertex] + time * end_normals[vertex];
+    }
 };
 
 // All points at `radius` from the origin of object space with z in [z_min, z_max] and azimuth in [0, phi_max]
@@ -101,6 +115,11 @@ template <typename S>
 const Quadric* quadric_of(const S& scene, const Shape& shape) {
     const auto* i = std::get_if<QuadricIndex>(&shape.geometry);
     return i != nullptr ? &scene.quadrics[i->index] : nullptr;
+}
+template <typename S>
+const TriangleMesh* mesh_of(const S& scene, const Shape& shape) {
+    const auto* i = std::get_if<MeshIndex>(&shape.geometry);
+    return i != nullptr ? &scene.meshes[i->index] : nullptr;
 }
 template <typename S>
 const Curves* curves_of(const S& scene, const Shape& shape) {

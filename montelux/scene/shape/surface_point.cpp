@@ -27,16 +27,24 @@ void set_tangents(SurfacePoint& s, Vec3f e1, Vec3f e2, Vec2f duv1, Vec2f duv2) {
     s.dpdv = frame.t;
 }
 
-SurfacePoint mesh_point(const TriangleMesh& mesh, const Shape& shape, const Hit& hit, bool coordinates) {
+SurfacePoint mesh_point(const TriangleMesh& mesh, const Shape& shape, const Hit& hit, float time,
+                        bool coordinates) {
     SurfacePoint s;
     const Index* v = &mesh.indices[3 * std::size_t{hit.primitive}];
-    const Point3f p0 = mesh.positions[v[0]], p1 = mesh.positions[v[1]], p2 = mesh.positions[v[2]];
-    const Vec3f normal = mesh.normals.empty() ? Vec3f{} : interpolated_normal(mesh, v, hit.b1, hit.b2);
+    const Point3f p0 = mesh.position(v[0], time), p1 = mesh.position(v[1], time),
+                  p2 = mesh.position(v[2], time);
+    const Vec3f normal = mesh.normals.empty() ? Vec3f{} : interpolated_normal(mesh, v, hit.b1, hit.b2, time);
     const TrianglePoint<float> point = triangle_point(p0, p1, p2, hit.b1, hit.b2, shape.flip_normal, normal);
     s.p = point.p;
     s.ng = point.ng;
     s.ns = point.ns;
     s.error = point.error;
+    if (mesh.deforms()) { // rounded in proportion to the ends
+        Vec3f reach;
+        for (std::size_t k = 0; k < 3; ++k)
+            reach = max(reach, max(abs(mesh.positions[v[k]]), abs(mesh.end_positions[v[k]])));
+        s.error = coordinate_error(s.ng, reach);
+    }
     if (!coordinates) return s;
     Point2f uv0{0, 0}, uv1{1, 0}, uv2{1, 1};
     if (!mesh.uvs.empty()) {
@@ -183,12 +191,13 @@ SurfacePoint surface_point(const SceneView& scene, const Ray& ray, const Hit& hi
     auto point = [&](const Ray& local) {
         return visit_geometry(
             scene, shape,
-            Overloaded{[&](const TriangleMesh& mesh) { return mesh_point(mesh, shape, hit, coordinates); },
-                       [&](const Quadric& quadric) {
-                           return quadric_point(quadric, shape, local, hit, coordinates);
-                       },
-                       [&](const Curves& curves) { return curve_point(curves, shape, local, hit); },
-                       [&](const BilinearMesh& mesh) { return patch_point(mesh, shape, hit, coordinates); }});
+            Overloaded{
+                [&](const TriangleMesh& mesh) { return mesh_point(mesh, shape, hit, ray.time, coordinates); },
+                [&](const Quadric& quadric) {
+                    return quadric_point(quadric, shape, local, hit, coordinates);
+                },
+                [&](const Curves& curves) { return curve_point(curves, shape, local, hit); },
+                [&](const BilinearMesh& mesh) { return patch_point(mesh, shape, hit, coordinates); }});
     };
     SurfacePoint s;
     if (hit.instance == no_index) {

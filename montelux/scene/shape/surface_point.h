@@ -36,9 +36,10 @@ struct TrianglePoint {
 
 // The interpolated vertex normal of a triangle with vertices `v`, at weights b1 and b2 of the second and
 // third vertex; not of unit length.
-inline Vec3f interpolated_normal(const TriangleMesh& mesh, const Index* v, float b1, float b2) {
+inline Vec3f interpolated_normal(const TriangleMesh& mesh, const Index* v, float b1, float b2,
+                                 float time = 0) {
     const float b0 = 1 - b1 - b2;
-    return b0 * mesh.normals[v[0]] + b1 * mesh.normals[v[1]] + b2 * mesh.normals[v[2]];
+    return b0 * mesh.normal(v[0], time) + b1 * mesh.normal(v[1], time) + b2 * mesh.normal(v[2], time);
 }
 // Whether the triangle's geometric normal there is -n rather than n. Decides which side of an emitter emits,
 // for hits and light samples alike.

@@ -77,6 +77,40 @@ TEST_F(SceneBuilding, GeometryIsChecked) {
                   m.normals[1].x = std::nanf("");
               })),
               "line 7: a vertex normal is not finite in world space");
+    auto deforming = [&](auto change) {
+        return changed([&](TriangleMesh& m) {
+            m.end_positions = m.positions;
+            m.normals.assign(4, {0, 0, 1});
+            m.end_normals = m.normals;
+            change(m);
+        });
+    };
+    EXPECT_EQ(shape_error(deforming([](TriangleMesh& m) { m.end_positions.pop_back(); })),
+              "line 7: the mesh has 3 positions at the end for 4 vertices; expected one per vertex");
+    EXPECT_EQ(shape_error(deforming([](TriangleMesh& m) { m.end_normals.emplace_back(); })),
+              "line 7: the mesh has 5 normals at the end for 4 vertices; expected one per vertex");
+    EXPECT_EQ(shape_error(deforming([](TriangleMesh& m) { m.end_normals.clear(); })),
+              "line 7: the mesh has normals at the start, but none at the end");
+    EXPECT_EQ(shape_error(deforming([](TriangleMesh& m) { m.normals.clear(); })),
+              "line 7: the mesh has normals at the end, but none at the start");
+    EXPECT_EQ(shape_error(deforming([](TriangleMesh& m) { m.end_positions.clear(); })),
+              "line 7: the mesh has normals at the end, but no positions");
+    EXPECT_EQ(shape_error(deforming([](TriangleMesh& m) {
+                  m.tangents.assign(4, {1, 0, 0});
+              })),
+              "line 7: a mesh that deforms has no vertex tangents");
+    EXPECT_EQ(shape_error(deforming([&](TriangleMesh& m) { m.end_positions[2].x = -infinity; })),
+              "line 7: vertex 2 lies at infinity in world space at the end");
+    EXPECT_EQ(shape_error(deforming([&](TriangleMesh& m) { m.end_normals[0].x = std::nanf(""); })),
+              "line 7: a vertex normal is not finite in world space at the end");
+    EXPECT_EQ(
+        error_of([&] {
+            const Emission emission{1.0f};
+            builder_.add_shape(deforming([](TriangleMesh&) {}), {.alpha = {1}, .emission = &emission},
+                               line(7));
+        }),
+        "line 7: a mesh that deforms does not emit light; give it no light, or no positions at the end");
+    EXPECT_TRUE(scene_.lights.empty());
     EXPECT_EQ(shape_error(Sphere{.world_from_object = Transform::translate({1e39, 0, 0})}),
               "line 7: the shape reaches to infinity in world space");
     // Nothing of what was refused is left behind.
@@ -91,6 +125,12 @@ TEST_F(SceneBuilding, TransformsMoveNormalsAsWell) {
     transform_mesh(mesh, Transform::translate({1, 2, 3}) * Transform::scale({1, 1, 2}), true);
     EXPECT_EQ(mesh.positions[3], (Point3f{2, 3, 3}));
     EXPECT_EQ(mesh.normals[0], (Normal3f{0, 0, -0.5f}));
+    EXPECT_FALSE(mesh.deforms());
+    mesh.end_positions = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {1, 1, 1}};
+    mesh.end_normals.assign(4, {0, 0, 1});
+    transform_mesh(mesh, Transform::scale({1, 1, 2}), true);
+    EXPECT_EQ(mesh.end_positions[3], (Point3f{1, 1, 2}));
+    EXPECT_EQ(mesh.end_normals[0], (Normal3f{0, 0, -0.5f}));
 }
 
 // Lambertian flux is pi times area times luminance.
@@ -174,6 +214,31 @@ TEST_F(SceneBuilding, InstancesAtInfinityAreRefused) {
     builder_.add_instance("o", Transform::scale({9, 9, 9}), line(5));
     EXPECT_EQ(error_of([&] { builder_.finish(line(9)); }),
               "line 5: the instance reaches to infinity in world space");
+}
+
+// Where a mesh ends counts as well.
+TEST_F(SceneBuilding, InstancesThatDeformToInfinityAreRefused) {
+    TriangleMesh mesh = two_triangles();
+    mesh.end_positions = mesh.positions;
+    mesh.end_positions[0].x = 3e38f;
+    builder_.begin_object("o");
+    builder_.add_shape(mesh, {});
+    builder_.end_object();
+    builder_.add_instance("o", Transform::scale({9, 9, 9}), line(5));
+    EXPECT_EQ(error_of([&] { builder_.finish(line(9)); }),
+              "line 5: the instance reaches to infinity in world space");
+}
+
+// A light that is given to the shape later.
+TEST_F(SceneBuilding, LightsOfMeshesThatDeformAreRefused) {
+    TriangleMesh mesh = two_triangles();
+    mesh.end_positions = mesh.positions;
+    const Index shape = builder_.add_shape(mesh, {});
+    EXPECT_EQ(
+        error_of([&] {
+            builder_.add_light(AreaLight{1.0f, 1, false, shape}, line(3));
+        }),
+        "line 3: a mesh that deforms does not emit light; give it no light, or no positions at the end");
 }
 
 TEST_F(SceneBuilding, ShapesWithoutMaterialAreRefused) {

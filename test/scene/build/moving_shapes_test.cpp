@@ -1,0 +1,194 @@
+// Shapes that move: their objects, parts of objects and instances, and the errors they give.
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+#include "montelux/scene/build/scene_builder.h"
+#include "montelux/scene/scene_digest.h"
+#include "montelux/scene/scene_names.h"
+
+namespace montelux {
+namespace {
+
+const Transform to_right = Transform::translate({1, 0, 0}), upwards = Transform::translate({0, 2, 0}),
+                quarter_turn = Transform::rotate(90, {0, 0, 1});
+
+class MovingShapes : public ::testing::Test {
+  protected:
+    MovingShapes() { scene_.materials.resize(1); }
+
+    void still(std::string name = {}) {
+        builder_.add_shape(Sphere{.world_from_object = {}}, {.material = 0, .alpha = {1}, .name = name});
+    }
+    void moving(const Transform& start, const Transform& end) {
+        builder_.add_moving_shape(Sphere{.world_from_object = {}}, {.material = 0, .alpha = {1}}, start, end,
+                                  {0, 4, 2});
+    }
+    static std::string error_of(const std::function<void()>& build) {
+        try {
+            build();
+        } catch (const LocatedError& e) {
+            return e.what();
+        }
+        return {};
+    }
+
+    Scene scene_;
+    std::vector<std::string> warnings_;
+    CallMessages messages_{"a test", &warnings_};
+    SceneBuilder builder_{scene_, messages_};
+};
+
+TEST_F(MovingShapes, OfTheWorldAreObjectsOfTheirOwn) {
+    still();
+    moving(to_right, upwards);
+    moving(to_right, to_right);
+    builder_.finish();
+    EXPECT_EQ(scene_.world_shapes, (std::vector<Index>{0}));
+    ASSERT_EQ(scene_.instances.size(), 2u);
+    ASSERT_EQ(scene_.motions.size(), 1u);
+    EXPECT_EQ(scene_.motions[0].start(), to_right);
+    EXPECT_EQ(scene_.motions[0].end(), upwards);
+    EXPECT_EQ(scene_.instances[1].motion, no_index);
+    EXPECT_EQ(scene_.instances[1].world_from_object, to_right);
+    EXPECT_EQ(instance_names(scene_), (std::vector<std::string>{"shape-1", "shape-2"}));
+}
+
+// One instance for the still shapes of each use and one for each motion, all with the use's name.
+TEST_F(MovingShapes, OfObjectsHaveInstancesForEachUse) {
+    builder_.add_instance("cart", to_right); // which comes later
+    builder_.begin_object("cart");
+    still();
+    moving({}, quarter_turn);
+    moving({}, upwards);
+    moving({}, quarter_turn); // as the first
+    builder_.end_object();
+    builder_.begin_object("wheel");
+    moving({}, quarter_turn); // of another object
+    builder_.end_object();
+    builder_.add_instance("cart", Transform(), upwards);
+    builder_.add_instance("wheel", to_right);
+    builder_.finish();
+
+    EXPECT_TRUE(scene_.world_shapes.empty());
+    ASSERT_EQ(scene_.objects.size(), 5u);
+    const std::vector<Index> shapes[] = {{0}, {1, 3}, {2}, {}, {4}};
+    const Index part_of[] = {no_index, 0, 0, no_index, 3};
+    for (std::size_t i = 0; i < 5; ++i) {
+        EXPECT_EQ(scene_.objects[i].shapes, shapes[i]) << i;
+        EXPECT_EQ(scene_.objects[i].part_of, part_of[i]) << i;
+    }
+    std::vector<Index> objects;
+    for (const Instance& instance : scene_.instances) objects.push_back(instance.object);
+    EXPECT_EQ(objects, (std::vector<Index>{0, 1, 2, 0, 1, 2, 4})); // none of the wheel without its shape
+    EXPECT_EQ(instance_names(scene_), (std::vector<std::string>{"cart:0", "cart:0", "cart:0", "cart:1",
+                                                                "cart:1", "cart:1", "wheel:0"}));
+
+    EXPECT_EQ(scene_.instances[0].motion, no_index);
+    ASSERT_EQ(scene_.motions.size(), 6u); // nothing unused
+    for (std::size_t i = 1; i < 7; ++i) {
+        ASSERT_EQ(scene_.instances[i].motion, i - 1);
+        EXPECT_EQ(scene_.instances[i].world_from_object, scene_.motions[i - 1].start());
+    }
+    const Vec3d p{1, 0, 0};
+    const auto at = [&](std::size_t i, float time) {
+        return scene_.motions[scene_.instances[i].motion].at(time).point(p);
+    };
+    const auto expect_at = [&](std::size_t i, float time, Vec3d expected) {
+        EXPECT_LT(length(at(i, time) - expected), 3e-4) << i << " " << time;
+    };
+    const double root = std::sqrt(0.5);
+    expect_at(1, 0, {2, 0, 0});
+    expect_at(1, 0.5f, {1 + root, root, 0});
+    expect_at(2, 0.5f, {2, 1, 0});
+    expect_at(3, 0.5f, {1, 1, 0});
+    expect_at(4, 0.5f, {root, 1 + root, 0});
+    expect_at(4, 1, {0, 3, 0});
+    expect_at(5, 1, {1, 4, 0});
+    expect_at(6, 1, {1, 1, 0});
+}
+
+// The same ends, another way.
+TEST_F(MovingShapes, TheirDigestsKnowTheWay) {
+    const auto digest = [](double outer, double inner) {
+        Scene scene;
+        scene.motions.push_back(
+            Motion::product(Motion({}, Transform::translate({outer, 0, 0})),
+                            Motion(Transform::scale({1, 1, 2}),
+                                   Transform::translate({inner, 0, 0}) * Transform::scale({1, 1, 2}))));
+        return digest_of(scene);
+    };
+    EXPECT_EQ(digest(1, 2), digest(2, 1)); // along lines: the same keys
+    EXPECT_NE(digest(1, 2), digest(1, 3));
+    const auto turned = [](double outer, double inner) {
+        Scene scene;
+        scene.motions.push_back(Motion::product(Motion({}, Transform::rotate(outer, {0, 0, 1})),
+                                                Motion({}, Transform::rotate(inner, {0, 0, 1}))));
+        EXPECT_EQ(scene.motions[0].is_product(), true);
+        return digest_of(scene);
+    };
+    EXPECT_NE(turned(30, 10), turned(31, 10));
+    const Motion product = Motion::product(Transform::scale({4, 1, 1}), Motion({}, quarter_turn));
+    Scene along_product, direct;
+    along_product.motions.push_back(product);
+    direct.motions.emplace_back(product.start(), product.end());
+    EXPECT_NE(digest_of(along_product), digest_of(direct));
+}
+
+TEST_F(MovingShapes, DoNotShine) {
+    const Emission emission{1.0f};
+    const ShapeSettings shining{.material = 0, .alpha = {1}, .emission = &emission};
+    builder_.add_moving_shape(Sphere{.world_from_object = {}}, shining, {}, to_right);
+    builder_.begin_object("o");
+    builder_.add_moving_shape(Sphere{.world_from_object = {}}, shining, {}, to_right);
+    builder_.end_object();
+    EXPECT_TRUE(scene_.lights.empty());
+    EXPECT_EQ(warnings_,
+              (std::vector<std::string>{"a test: shapes that move do not emit light",
+                                        "a test: area lights inside object definitions do not shine"}));
+}
+
+TEST_F(MovingShapes, ErrorsHaveAPlace) {
+    const Transform mirror = Transform::scale({-1, 1, 1}), vast = Transform::scale({1e39, 1, 1});
+    builder_.begin_object("o");
+    EXPECT_EQ(
+        error_of([&] { moving({}, mirror); }),
+        "a test: motion: one end is mirrored and the other is not; between them the object would be flat");
+    EXPECT_EQ(error_of([&] { moving({}, vast); }),
+              "a test: the shape's transformation is beyond what single-precision numbers hold");
+    EXPECT_NE(error_of([&] { moving({}, mirror); }), ""); // again
+    moving(mirror, mirror * quarter_turn);
+    moving({}, Transform::translate({1e30, 0, 0}));
+    builder_.end_object();
+    builder_.add_instance("o", Transform::scale({1e10, 1, 1}));
+    EXPECT_EQ(error_of([&] { builder_.finish(); }),
+              "a test: the instance's transformation is beyond what single-precision numbers hold");
+}
+
+TEST_F(MovingShapes, ReachOnlyToWhereFloatsEnd) {
+    builder_.begin_object("o");
+    builder_.add_moving_shape(
+        Sphere{.radius = 3e30f, .z_min = -3e30f, .z_max = 3e30f, .world_from_object = {}},
+        {.material = 0, .alpha = {1}}, {}, Transform::scale({1e5, 1, 1}));
+    builder_.end_object();
+    builder_.add_instance("o", Transform::scale({1e5, 1, 1}));
+    EXPECT_EQ(error_of([&] { builder_.finish(); }),
+              "a test: the instance reaches to infinity in world space");
+}
+
+// Uses times parts: few lines of a file must not ask for all memory.
+TEST_F(MovingShapes, OfManyUsesAreLimited) {
+    builder_.begin_object("o");
+    for (int i = 0; i < 1000; ++i) moving({}, Transform::translate({i + 1.0, 0, 0}));
+    builder_.end_object();
+    for (int i = 0; i < 4000; ++i) builder_.add_instance("o", to_right);
+    EXPECT_EQ(error_of([&] { builder_.finish(); }),
+              "a test: the instances of objects whose shapes move need more than 4 GiB; expected fewer "
+              "instances, or fewer shapes that move");
+    EXPECT_TRUE(scene_.instances.empty());
+}
+
+} // namespace
+} // namespace montelux
