@@ -235,6 +235,11 @@ class CubatureEstimator final : public Estimator {
         return StepOutcome::advanced;
     }
 
+    // Few regions have tested one another yet.
+    double caution_of_few_regions() const {
+        return 1 + (caution_of_one_region - 1) / static_cast<double>(regions_.count());
+    }
+
     // As many as cost about as much as a check; none if there are not enough evaluations left.
     std::vector<std::size_t> regions_to_confirm(const StepRequest& request) {
         const std::uint64_t pair = 2 * fine_->points();
@@ -340,8 +345,7 @@ class CubatureEstimator final : public Estimator {
             totals_.value[c] = value.value();
             totals_.inflation[c] =
                 expected_[c] > 0 ? std::max(1.0, std::sqrt(disagreement_[c] / expected_[c])) : 1;
-            totals_.error[c] = error.value() * totals_.inflation[c] *
-                               (1 + (caution_of_one_region - 1) / static_cast<double>(regions_.count()));
+            totals_.error[c] = error.value() * totals_.inflation[c] * caution_of_few_regions();
             totals_.error[c] *= confirmation_.factor(c);
             totals_.error[c] += verification_.slack(c);
             totals_.rule_error[c] = totals_.error[c];
@@ -372,7 +376,7 @@ class CubatureEstimator final : public Estimator {
             tally.warnings.push_back("the integrand was the same at each of " + std::to_string(evaluations_) +
                                      " points; the error is a bound on what they missed");
         for (std::size_t c = 0; c < components(); ++c) {
-            if (totals_.inflation[c] < 4) continue;
+            if (totals_.inflation[c] < 4 * caution_of_few_regions()) continue;
             std::ostringstream text;
             text.precision(2);
             text << "the errors of recently halved regions were " << totals_.inflation[c]

@@ -26,8 +26,11 @@ constexpr std::uint64_t plateau_points = 4; // times as many points if only a pl
 // overlooked with a probability of e^-4.8; at most this many times as many.
 constexpr double points_per_target = 2;
 constexpr std::uint64_t most_of_jumps = 5;
-constexpr double least_of_jumps = 0.01; // volume of the regions that are not smooth: less is a singular point
-constexpr std::size_t most_climbs = 8;  // of a check
+// The regions that are not smooth: with less volume they are about a singular point, and in a few large regions smooth
+// integrands look no different from jumps.
+constexpr double least_of_jumps = 0.01;
+constexpr std::size_t fewest_of_jumps = 32;
+constexpr std::size_t most_climbs = 8; // of a check
 
 bool targeted(const StepRequest& request) { return request.relative_error > 0 || request.absolute_error > 0; }
 
@@ -156,10 +159,14 @@ std::uint64_t CubatureVerification::points(const CubatureRegions& regions, std::
     }
     std::uint64_t wanted = flat ? plateau_points * points_ : points_;
     // Where there is one jump there may be another, close to the faces of regions, where rules have no points.
-    double rough = 0; // volume
+    double volume = 0;
+    std::size_t rough = 0;
     for (std::size_t r = 0; r < regions.count(); ++r)
-        if (regions.marks(r).rough) rough += regions.volume(r);
-    if (rough > least_of_jumps && problem_.evaluator.dimensions() > 1)
+        if (regions.marks(r).rough) {
+            volume += regions.volume(r);
+            ++rough;
+        }
+    if (volume > least_of_jumps && rough >= fewest_of_jumps && problem_.evaluator.dimensions() > 1)
         for (double v : value) {
             const double target =
                 std::max(request.relative_error, v != 0 ? request.absolute_error / std::abs(v) : 0.0);
