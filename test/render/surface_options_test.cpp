@@ -8,6 +8,20 @@
 namespace montelux::testing {
 namespace {
 
+// Six standard errors.
+void expect_same_of_strategies(SceneDescription description) {
+    std::vector<PictureMean> means;
+    for (Strategy s : {Strategy::mis, Strategy::light, Strategy::bsdf, Strategy::uniform}) {
+        description.integrator.strategy = s;
+        means.push_back(picture_mean(render(description)));
+    }
+    EXPECT_GT(means[0].mean, 0.01);
+    for (std::size_t i = 1; i < means.size(); ++i)
+        EXPECT_NEAR(means[i].mean, means[0].mean,
+                    6 * std::hypot(means[i].standard_error, means[0].standard_error) + 1e-4 * means[0].mean)
+            << i;
+}
+
 using Outcome = DirectLight::Outcome;
 
 RoughnessParameter roughness_of(float u, float v) { return {FloatParameter{u}, FloatParameter{v}, false}; }
@@ -97,17 +111,7 @@ TEST(MicrofacetScattering, StrategiesAgree) {
         b.description.integrator.max_depth = 4;
         b.description.integrator.microfacet_scattering = MicrofacetScattering::multiple;
         b.description.sampler.spp = 256;
-        std::vector<PictureMean> means;
-        for (Strategy s : {Strategy::mis, Strategy::light, Strategy::bsdf, Strategy::uniform}) {
-            b.description.integrator.strategy = s;
-            means.push_back(picture_mean(render(b.description)));
-        }
-        for (std::size_t i = 1; i < means.size(); ++i)
-            EXPECT_NEAR(means[i].mean, means[0].mean,
-                        6 * std::hypot(means[i].standard_error, means[0].standard_error) +
-                            1e-4 * means[0].mean)
-                << i;
-        EXPECT_GT(means[0].mean, 0.01);
+        expect_same_of_strategies(b.description);
     }
 }
 
@@ -242,16 +246,7 @@ TEST(ShadingTerminator, StrategiesAgree) {
     b.description.integrator.max_depth = 3;
     b.description.integrator.shading_terminator = ShadingTerminator::soft;
     b.description.sampler.spp = 400;
-    std::vector<PictureMean> means;
-    for (Strategy s : {Strategy::mis, Strategy::light, Strategy::bsdf, Strategy::uniform}) {
-        b.description.integrator.strategy = s;
-        means.push_back(picture_mean(render(b.description)));
-    }
-    for (std::size_t i = 1; i < means.size(); ++i)
-        EXPECT_NEAR(means[i].mean, means[0].mean,
-                    6 * std::hypot(means[i].standard_error, means[0].standard_error) + 1e-4 * means[0].mean)
-            << i;
-    EXPECT_GT(means[0].mean, 0.01);
+    expect_same_of_strategies(b.description);
 }
 
 // Flat meshes, and bodies that light passes, are what they were.
