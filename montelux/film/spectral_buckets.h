@@ -83,8 +83,8 @@ inline void add_sample(std::span<BucketMoments> buckets, const SpectralSample& s
             buckets[static_cast<std::size_t>(s.bucket[i])].open += static_cast<double>(s.value[i]);
 }
 
-// Names of the layers after Fichet, Pacanowski, Wilkie 2021, "An OpenEXR Layout for Spectral Images": S0.550,000nm, with
-// a comma as decimal point.
+// Names of the layers after Fichet, Pacanowski, Wilkie 2021, "An OpenEXR Layout for Spectral Images": S0.550,000nm,
+// with a comma as decimal point.
 std::string spectral_layer(float lambda);
 
 class Film;

@@ -20,8 +20,8 @@ struct PlacedSparseGrid {
 };
 
 // Museth 2021, "NanoVDB: A GPU-Friendly and Portable VDB Data Structure For Real-Time Rendering And Simulation".
-// Files of version 32, uncompressed or compressed by zlib or, where the program was built with it, by Blosc. They are not trusted: all sizes, offsets and values are
-// checked, and no node may have two parents.
+// Files of version 32, uncompressed or compressed by zlib or, where the program was built with it, by Blosc. They are
+// not trusted: all sizes, offsets and values are checked, and no node may have two parents.
 class NanovdbFile {
   public:
     static const bool reads_blosc;

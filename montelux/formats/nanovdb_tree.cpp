@@ -24,8 +24,8 @@ constexpr int most_nodes_along = 512, most_nodes = 1 << 22;
 
 constexpr const char* damaged_tree = "the tree is damaged: a node lies outside its place";
 
-// A leaf of quantised values begins with 80 bytes of place and mask, then minimum and step (float) and four numbers of 16
-// bits; the codes follow. Value = minimum + code * step.
+// A leaf of quantised values begins with 80 bytes of place and mask, then minimum and step (float) and four numbers
+// of 16 bits; the codes follow. Value = minimum + code * step.
 constexpr std::size_t quantised_minimum_at = 80, quantised_header = 96, leaf_flags_at = 15;
 
 // Bits of a code; 0: the values themselves. -1: as the leaf says.

@@ -8,8 +8,8 @@
 
 namespace montelux {
 
-// Copies the grid of floats, doubles or quantised floats that fills `bytes`. Values and blocks that are equal throughout become constants.
-// Throws Error without the name of the file.
+// Copies the grid of floats, doubles or quantised floats that fills `bytes`. Values and blocks that are equal
+// throughout become constants. Throws Error without the name of the file.
 PlacedSparseGrid copy_nanovdb_grid(std::span<const std::uint8_t> bytes);
 
 } // namespace montelux

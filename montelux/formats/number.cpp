@@ -46,9 +46,9 @@ constexpr std::uint64_t integer_powers[] = {1, 10, 100, 1000, 10000, 100000, 100
     return p;
 }
 
-// Clinger 1990, "How to Read Floating Point Numbers Accurately": digits that fit the significand, times or over an exact
-// power of ten, need one rounding. For a float a double may stand between, unless it lies midway between two floats:
-// only there would a second rounding not know where the exact value is. Null for other numbers.
+// Clinger 1990, "How to Read Floating Point Numbers Accurately": digits that fit the significand, times or over an
+// exact power of ten, need one rounding. For a float a double may stand between, unless it lies midway between two
+// floats: only there would a second rounding not know where the exact value is. Null for other numbers.
 template <typename T>
 const char* parse_short(const char* p, const char* end, T& value) {
     const bool negative = *p == '-';

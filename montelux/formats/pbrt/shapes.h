@@ -12,8 +12,8 @@
 
 namespace montelux::pbrt {
 
-// The geometry of one Shape directive. Vertices of meshes are transformed by `world_from_object`; vertex normals too, and turned around with
-// `reverse_orientation`. A quadric keeps the transform. `budget` is that of all 'loopsubdiv'
+// The geometry of one Shape directive. Vertices of meshes are transformed by `world_from_object`; vertex normals too,
+// and turned around with `reverse_orientation`. A quadric keeps the transform. `budget` is that of all 'loopsubdiv'
 // shapes of the scene. `emits`: it is an area light. `displacement_space` is the transform for displacement: that of
 // the shape in the world, of a moving one at the start.
 Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transform& world_from_object,

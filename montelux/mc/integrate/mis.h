@@ -38,8 +38,8 @@ constexpr T power_heuristic(int nf, T f_pdf, int ng, T g_pdf) {
     return weight_of_two(nf, f_pdf, ng, g_pdf, [](T ratio) { return ratio * ratio; });
 }
 
-// The density of one strategy that weighs as much as two, one sample each: weights of three strategies follow from those
-// of two. Infinite densities stay infinite.
+// The density of one strategy that weighs as much as two, one sample each: weights of three strategies follow from
+// those of two. Infinite densities stay infinite.
 template <std::floating_point T>
 constexpr T balance_joint_pdf(T f_pdf, T g_pdf) {
     return f_pdf + g_pdf;

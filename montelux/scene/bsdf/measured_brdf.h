@@ -27,8 +27,9 @@ struct MeasuredBrdfData {
     std::vector<float> wavelengths; // nm, increasing
     BrdfTables ndf;                 // density of microfacet normals
     BrdfTables sigma;               // projected area of the microfacets over wo
-    // For each (phi, theta), theta first: the density of visible normals over directions (relative to phi of wo where the
-    // surface is isotropic), up to a factor; and of the squares that it maps to those: the luminance up to a factor.
+    // For each (phi, theta), theta first: the density of visible normals over directions (relative to phi of wo where
+    // the surface is isotropic), up to a factor; and of the squares that it maps to those: the luminance up to a
+    // factor.
     BrdfTables visible_normals, luminance;
     BrdfTables spectra; // for each (phi, theta, wavelength), the last first: 4 f cos(theta_i) sigma / ndf
 };

@@ -22,8 +22,8 @@ struct MicrosurfaceWalk {
     Vec3f w;              // direction of travel
     float log_height = 0; // ln C1(h), at most 0: above all facets
 
-    // After this number of events a walk is given up. Walks reach it at alpha above 50 only: of 4 million at alpha 1 the
-    // longest has 12 events, at alpha 10 it has 54.
+    // After this number of events a walk is given up. Walks reach it at alpha above 50 only: of 4 million at alpha 1
+    // the longest has 12 events, at alpha 10 it has 54.
     static constexpr int most_events = 256;
 
     // Flies to the next facet; false if the light leaves the surface.
@@ -84,7 +84,8 @@ inline bool survives_roulette(int event, SampledSpectrum& beta, PhiloxStream& rn
     return true;
 }
 
-// Roughly the share of the light that meets more than one facet, above 0: weight of a diffuse lobe in reported densities.
+// Roughly the share of the light that meets more than one facet, above 0: weight of a diffuse lobe in reported
+// densities.
 inline float share_of_further_events(const Ggx& ggx) {
     const float x = 1.5f * ggx.alpha_x * ggx.alpha_y;
     return 0.01f + 0.98f * x / (1 + x);

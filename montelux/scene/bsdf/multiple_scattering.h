@@ -5,9 +5,9 @@
 
 namespace montelux {
 
-// The BSDF with conductors and dielectrics replaced by MultiscatterConductorBsdf and MultiscatterDielectricBsdf where they
-// are rough, bases and coats of layers included. All others have no microfacets, or stay as they are: measured ones
-// contain all scattering, and a rough SubsurfaceBsdf still loses what its facets shadow.
+// The BSDF with conductors and dielectrics replaced by MultiscatterConductorBsdf and MultiscatterDielectricBsdf where
+// they are rough, bases and coats of layers included. All others have no microfacets, or stay as they are: measured
+// ones contain all scattering, and a rough SubsurfaceBsdf still loses what its facets shadow.
 Bsdf with_multiple_scattering(const Bsdf& bsdf);
 
 } // namespace montelux

@@ -8,10 +8,10 @@
 
 namespace montelux {
 
-// Light that meets one facet is evaluated in closed form, all other by random walks between the facets, on both sides of
-// the surface (microsurface_walk.h). Reflection at one facet is that of DielectricBsdf. Transmission differs in its
-// masking: a facet at height C1 seen from one side is at 1 - C1 from the other, so the masking is a Beta function, the mean
-// of C1^a (1 - C1)^b, instead of the height-correlated one for two directions on the same side.
+// Light that meets one facet is evaluated in closed form, all other by random walks between the facets, on both sides
+// of the surface (microsurface_walk.h). Reflection at one facet is that of DielectricBsdf. Transmission differs in
+// its masking: a facet at height C1 seen from one side is at 1 - C1 from the other, so the masking is a Beta
+// function, the mean of C1^a (1 - C1)^b, instead of the height-correlated one for two directions on the same side.
 //
 // `evaluate` is an unbiased estimate, not the value; its density is reported as MultiscatterConductorBsdf does.
 struct MultiscatterDielectricBsdf {

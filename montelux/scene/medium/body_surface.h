@@ -8,8 +8,8 @@ namespace montelux {
 
 struct TextureContext;
 
-// A path keeps the coefficients of the point at which it has entered the body until it leaves: there are textures on the
-// surface alone. Negative values count as 0; reflectances are limited to 0 to 1.
+// A path keeps the coefficients of the point at which it has entered the body until it leaves: there are textures on
+// the surface alone. Negative values count as 0; reflectances are limited to 0 to 1.
 struct BodySurface {
     enum class Kind : std::uint8_t {
         none,         // the same everywhere: those of the medium

@@ -11,8 +11,8 @@ double semi_infinite_diffuse_albedo(double single_scattering_albedo);
 // The single-scattering albedo of the medium below the boundary of SubsurfaceBsdf, so that the given share of the light
 // that has entered leaves again. Both lie in [0, 1]; eta >= 1. Accurate to 1e-4.
 float single_scattering_albedo(float reflectance, float eta);
-// The same for a phase function of mean cosine g: the medium has the reduced scattering coefficient of the isotropic one
-// (van de Hulst's similarity) and the same extinction.
+// The same for a phase function of mean cosine g: the medium has the reduced scattering coefficient of the isotropic
+// one (van de Hulst's similarity) and the same extinction.
 float body_albedo(float reflectance, float eta, float g);
 
 } // namespace montelux
