@@ -14,8 +14,8 @@ namespace montelux {
 
 class TexelBlock;
 
-// The file has no name and disappears with its process. What is not resident is read from it when it is needed, or
-// from the system's cache of files, which takes the memory that nobody else wants.
+// The file has no name and disappears with its process. Pages that are not resident are read when a look-up needs
+// them: from the kernel's page cache, or from the disk.
 class TexelFile : public std::enable_shared_from_this<TexelFile> {
   public:
     static constexpr std::size_t least_limit = std::size_t{16} << 20;
