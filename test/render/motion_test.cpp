@@ -41,27 +41,31 @@ double uncovered(double x, double way, double from, double to) {
     return 1 - std::max(0.0, std::min(end, to) - std::max(begin, from)) / (to - from);
 }
 
-TEST(MotionBlur, ASquareBlursToATrapezoid) {
-    for (const SamplerKind sampler : {SamplerKind::independent, SamplerKind::sobol, SamplerKind::halton}) {
-        const std::pair<float, float> shutters[] = {{0.0f, 1.0f}, {0.25f, 0.5f}};
+// The picture of 16 pixels over -4, ..., 4 with every sampler; truth(x, open, close) is radiance on the film.
+template <typename Truth>
+void expect_blur(SceneBuilder b, std::initializer_list<std::pair<float, float>> shutters,
+                 const Truth& truth) {
+    for (const SamplerKind sampler : {SamplerKind::independent, SamplerKind::sobol, SamplerKind::halton})
         for (const auto& [open, close] : shutters) {
-            constexpr double way = 3;
-            SceneBuilder b = passing_square(way);
             b.description.sampler.kind = sampler;
             b.scene.camera.shutter_open = open;
             b.scene.camera.shutter_close = close;
             const Film film = render(b.description);
             for (int x = 0; x < 16; ++x) {
-                double truth = 0; // the mean over the pixel
+                double mean = 0; // over the pixel
                 for (int i = 0; i < 1000; ++i)
-                    truth +=
-                        uncovered(-4 + (x + (i + 0.5) / 1000) * 0.5, way, double(open), double(close)) / 1000;
+                    mean += truth(-4 + (x + (i + 0.5) / 1000) * 0.5, double(open), double(close)) / 1000;
                 const auto& pixel = film.pixel(x, 0).replicates();
-                EXPECT_NEAR(pixel.mean(1), truth, 5 * std::sqrt(pixel.variance_of_mean(1)) + 2e-3)
+                EXPECT_NEAR(pixel.mean(1), mean, 5 * std::sqrt(pixel.variance_of_mean(1)) + 2e-3)
                     << x << " " << open;
             }
         }
-    }
+}
+
+TEST(MotionBlur, ASquareBlursToATrapezoid) {
+    constexpr double way = 3;
+    expect_blur(passing_square(way), {{0.0f, 1.0f}, {0.25f, 0.5f}},
+                [](double x, double open, double close) { return uncovered(x, way, open, close); });
 }
 
 // Before the motion's time it stands at its start, after it at its end.
@@ -268,28 +272,11 @@ double not_grown_to(double x, double growth, double from, double to) {
 }
 
 TEST(MotionBlur, AGrowingSquareBlursToARamp) {
-    for (const SamplerKind sampler : {SamplerKind::independent, SamplerKind::sobol, SamplerKind::halton}) {
-        const std::pair<float, float> shutters[] = {{0.0f, 1.0f}, {0.25f, 0.5f}, {2.0f, 3.0f}};
-        for (const auto& [open, close] : shutters) {
-            constexpr double growth = 2;
-            SceneBuilder b = growing_square(growth);
-            b.description.sampler.kind = sampler;
-            b.scene.camera.shutter_open = open;
-            b.scene.camera.shutter_close = close;
-            const Film film = render(b.description);
-            for (int x = 0; x < 16; ++x) {
-                double truth = 0; // the mean over the pixel
-                for (int i = 0; i < 1000; ++i) {
-                    const double at = -4 + (x + (i + 0.5) / 1000) * 0.5;
-                    truth += open > 1 ? double(std::abs(at) > 1 + growth) / 1000
-                                      : not_grown_to(at, growth, double(open), double(close)) / 1000;
-                }
-                const auto& pixel = film.pixel(x, 0).replicates();
-                EXPECT_NEAR(pixel.mean(1), truth, 5 * std::sqrt(pixel.variance_of_mean(1)) + 2e-3)
-                    << x << " " << open;
-            }
-        }
-    }
+    constexpr double growth = 2;
+    expect_blur(growing_square(growth), {{0.0f, 1.0f}, {0.25f, 0.5f}, {2.0f, 3.0f}},
+                [](double x, double open, double close) {
+                    return open > 1 ? double(std::abs(x) > 1 + growth) : not_grown_to(x, growth, open, close);
+                });
 }
 
 // A lamp over a floor, and between them a mesh whose corners and normals change; `t`: as it is at that time.
