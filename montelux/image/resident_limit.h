@@ -18,7 +18,7 @@ namespace montelux {
 // Readers that are faster than that exceed the limit for some milliseconds.
 class ResidentLimit {
   public:
-    // Throws Error where the system does not tell what is resident.
+    // Throws Error where the system does not tell what is resident, or starts no thread.
     explicit ResidentLimit(std::size_t bytes);
     ~ResidentLimit();
     ResidentLimit(const ResidentLimit&) = delete;
