@@ -60,6 +60,21 @@ TEST(Motion, TranslationsNeedTwoKeysAndRotationsEnough) {
     EXPECT_LE(keys, 129u); // Embree's limit
 }
 
+TEST(MotionPath, IsExactAtAllScalesOfFloats) {
+    for (const double scale : {1e-37, 1e-31, 1e-20, 1.0, 1e20, 1e31, 1e37}) {
+        const auto turned = [&](double degrees) {
+            return Transform::rotate(degrees, {1, 2, 3}) * Transform::scale({scale, 2 * scale, scale});
+        };
+        const MotionPath path(turned(20), turned(80));
+        for (const double t : {0.0, 0.25, 0.5, 1.0})
+            for (std::size_t r = 0; r < 3; ++r)
+                for (std::size_t c = 0; c < 3; ++c)
+                    EXPECT_NEAR(path.at(t).m[r][c] / scale, turned(20 + 60 * t).matrix().m[r][c] / scale,
+                                1e-9)
+                        << scale << " " << t;
+    }
+}
+
 const Transform stretched =
     Transform::translate({3, -1, 2}) * Transform::rotate(70, {1, 1, 0}) * Transform::scale({4, 0.5, 1});
 const Transform mirrored = Transform::translate({0, 1, 0}) * Transform::scale({1, -2, 1});

@@ -59,11 +59,12 @@ Linear rotation_of(const Quaternion& q) {
 }
 
 // Higham 1986, "Computing the Polar Decomposition - with Applications": the mean with the inverse transpose,
-// repeated, converges quadratically to the orthogonal factor.
+// repeated, converges quadratically to the orthogonal factor. Far from it a step halves the
+// stretch or its inverse: no double is more than about 1100 steps away.
 Parts take_apart(const Transform& t) {
     const Matrix4& m = t.matrix();
     Matrix4 orthogonal = affine(linear_part(m), {});
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < 1200; ++i) {
         const std::optional<Matrix4> inverse = orthogonal.inverse();
         if (!inverse) throw Error("motion", "the transformation has no inverse");
         const Matrix4 other = inverse->transposed();
