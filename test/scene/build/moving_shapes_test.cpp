@@ -161,6 +161,32 @@ TEST_F(MovingShapes, ErrorsHaveAPlace) {
               "a test: the instance's transformation is beyond what single-precision numbers hold");
 }
 
+TEST_F(MovingShapes, AndInstancesThatAreRefusedLeaveNothing) {
+    const Transform mirror = Transform::scale({-1, 1, 1}), vast = Transform::scale({1e39, 1, 1});
+    const auto moving_to_infinity = [&] {
+        builder_.add_moving_shape(Sphere{.world_from_object = Transform::translate({1e39, 0, 0})},
+                                  {.material = 0, .alpha = {1}}, {}, upwards);
+    };
+    EXPECT_NE(located_error([&] { moving({}, mirror); }), "");
+    EXPECT_NE(located_error([&] { moving({}, vast); }), "");
+    EXPECT_NE(located_error([&] { moving(vast, {}); }), "");
+    EXPECT_NE(located_error(moving_to_infinity), "");
+    EXPECT_TRUE(scene_.objects.empty());
+    builder_.begin_object("o");
+    still();
+    EXPECT_NE(located_error([&] { moving({}, mirror); }), "");
+    EXPECT_NE(located_error(moving_to_infinity), "");
+    builder_.end_object();
+    EXPECT_NE(located_error([&] { builder_.add_instance("o", Transform(), mirror); }), "");
+    EXPECT_NE(located_error([&] { builder_.add_instance("o", Transform(), vast); }), "");
+    EXPECT_NE(located_error([&] { builder_.add_instance("o", vast, Transform()); }), "");
+    builder_.finish();
+    EXPECT_EQ(scene_.objects.size(), 1u);
+    EXPECT_EQ(scene_.shapes.size(), 1u);
+    EXPECT_TRUE(scene_.instances.empty());
+    EXPECT_TRUE(scene_.motions.empty());
+}
+
 TEST_F(MovingShapes, ReachOnlyToWhereFloatsEnd) {
     builder_.begin_object("o");
     builder_.add_moving_shape(
