@@ -75,7 +75,7 @@ Index SceneBuilder::add_moving_shape(Geometry geometry, const ShapeSettings& set
     // An object of its own, with one instance.
     std::optional<Motion> motion = motion_of_instance(start, end, at);
     const auto object = static_cast<Index>(scene_.objects.size());
-    const std::string name = "\n" + std::to_string(object); // no name in a file
+    const std::string name = std::string(1, '\0') + std::to_string(object); // no name in a file
     objects_.declare(name, object, at, messages_);
     scene_.objects.emplace_back();
     const Index shape =
@@ -161,8 +161,7 @@ void SceneBuilder::begin_object(const std::string& name, SourceLocation at) {
     objects_.declare(name, static_cast<Index>(scene_.objects.size()), at, messages_);
     open_object_ = static_cast<Index>(scene_.objects.size());
     scene_.objects.emplace_back();
-    // Readers name objects that have no name in the file by a line break and a number.
-    if (!name.starts_with('\n')) scene_.objects.back().name = name;
+    scene_.objects.back().name = name;
 }
 
 void SceneBuilder::end_object() {

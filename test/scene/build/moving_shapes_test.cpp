@@ -187,6 +187,20 @@ TEST_F(MovingShapes, AndInstancesThatAreRefusedLeaveNothing) {
     EXPECT_TRUE(scene_.motions.empty());
 }
 
+// Strings in files may contain line breaks.
+TEST_F(MovingShapes, AreObjectsWithoutANameThatAFileCouldUse) {
+    moving({}, upwards);
+    builder_.begin_object("\n0");
+    still();
+    builder_.end_object();
+    builder_.add_instance("\n0", to_right);
+    builder_.finish();
+    ASSERT_EQ(scene_.objects.size(), 2u);
+    EXPECT_EQ(scene_.objects[1].name, "\n0");
+    ASSERT_EQ(scene_.instances.size(), 2u);
+    EXPECT_EQ(scene_.instances[1].object, 1u);
+}
+
 TEST_F(MovingShapes, ReachOnlyToWhereFloatsEnd) {
     builder_.begin_object("o");
     builder_.add_moving_shape(
