@@ -39,7 +39,7 @@ Bounds3 bounds_of(const ObjectDefinition& object, const Scene& scene) {
     return bounds;
 }
 
-// Gives back room that growing left over, if it is much. (An eighth: the copy that this needs is not worth less.)
+// Gives back unused capacity if it is more than an eighth of the values: less is not worth the copy.
 template <typename T>
 void trim(std::vector<T>& v) {
     if (v.capacity() - v.size() > v.size() / 8 + 1) v.shrink_to_fit();

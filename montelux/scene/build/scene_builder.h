@@ -130,7 +130,6 @@ class SceneBuilder {
     std::map<Index, std::vector<MovingPart>> parts_;     // of objects
     std::vector<InstanceUse> instances_;
     std::vector<Motion> motions_;                    // of instances_
-    std::size_t part_keys_ = 0;                      // of the motions of parts in all instances
     std::map<ContentDigest, SceneSpectrum> spectra_; // added so far
     std::size_t emissive_primitives_ = 0;
 };
