@@ -8,7 +8,9 @@
 #include <cstdlib>
 #include <fcntl.h>
 #include <iterator>
+#include <string>
 #include <sys/mman.h>
+#include <system_error>
 #include <unistd.h>
 
 #include "montelux/mc/math/error.h"
@@ -65,17 +67,24 @@ std::uintptr_t address_of(std::span<const std::byte> mapping) {
 ResidentLimit::ResidentLimit(std::size_t bytes) : limit_(bytes) {
     statm_ = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
     pagemap_ = ::open("/proc/self/pagemap", O_RDONLY | O_CLOEXEC);
-    if (statm_ < 0 || pagemap_ < 0) {
+    const auto fail = [&](const std::string& why) {
         ::close(statm_);
         ::close(pagemap_);
-        throw Error("memory of textures", "a limit needs Linux with /proc; leave it out");
-    }
+        throw Error("memory of textures", why);
+    };
+    if (statm_ < 0 || pagemap_ < 0) fail("a limit needs Linux with /proc; leave it out");
     // Signals go to the threads that expect them.
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
-    thread_ = std::thread([this] { watch(); });
+    std::string error;
+    try {
+        thread_ = std::thread([this] { watch(); });
+    } catch (const std::system_error& e) {
+        error = e.code().message();
+    }
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    if (!error.empty()) fail("the thread that keeps the limit cannot be started: " + error);
 }
 
 ResidentLimit::~ResidentLimit() {

@@ -13,12 +13,12 @@ namespace montelux {
 
 // Mappings must be clean, read-only and shared: what is given back comes from the file again when it is next read,
 // so that no reader waits for this class or sees a difference. The thread looks at the resident memory every 1 to
-// 10 ms, the more often the less is left, and gives back pages, in the order of their addresses, where more than 7/8
-// of the limit is resident; or less, down to 1/4, where at the rate seen the rest would not last until the next look.
-// Readers that are faster than that exceed the limit for some milliseconds.
+// 10 ms, more often the closer it is to the limit. It gives back pages, in the order of their addresses, where more
+// than 7/8 of the limit is resident; at high rates of reading earlier, from 1/4 on, so that the limit is not reached
+// before the next look. Readers that are faster than that exceed the limit for some milliseconds.
 class ResidentLimit {
   public:
-    // Throws Error where the system does not tell what is resident.
+    // Throws Error where the system does not tell what is resident, or starts no thread.
     explicit ResidentLimit(std::size_t bytes);
     ~ResidentLimit();
     ResidentLimit(const ResidentLimit&) = delete;
@@ -34,7 +34,7 @@ class ResidentLimit {
   private:
     void watch();
     std::size_t resident_locked() const;
-    // Of the pages at the hand; returns the bytes that were resident.
+    // Continues at the hand until that many resident bytes are given back, or none is left. Returns how many were.
     std::size_t give_back(std::size_t bytes);
 
     std::size_t limit_;

@@ -39,6 +39,8 @@ void bind_lights(nb::module_& m);
 void bind_shapes(nb::module_& m);
 void bind_filters(nb::module_& m);
 void bind_views(nb::module_& m); // camera, film, sampler, integrator
+void bind_textures(nb::module_& m);
+void bind_scene_lists(nb::module_& m);
 void bind_scene(nb::module_& m);
 void bind_render(nb::module_& m);
 void bind_compare(nb::module_& m);

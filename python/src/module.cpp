@@ -52,6 +52,8 @@ NB_MODULE(_core, m) {
     bind_shapes(m);
     bind_filters(m);
     bind_views(m);
+    bind_textures(m);
+    bind_scene_lists(m);
     bind_scene(m);
     bind_render(m);
     bind_compare(m);

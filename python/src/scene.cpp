@@ -1,131 +1,24 @@
 #include "python/src/bindings.h"
 #include "python/src/images.h"
+#include "python/src/scene_lists.h"
 #include "python/src/scene_object.h"
+#include "python/src/scene_textures.h"
 #include "python/src/scene_values.h"
 #include "python/src/shapes.h"
-#include <algorithm>
-#include <set>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "montelux/formats/load_scene.h"
-#include "montelux/formats/measured_brdf_file.h"
 #include "montelux/formats/pbrt/load_pbrt.h"
-#include "montelux/image/image_read.h"
 #include "montelux/image/texel_file.h"
-#include "montelux/mc/math/overloaded.h"
 #include "montelux/scene/build/scene_builder.h"
 
 namespace montelux::python {
 namespace {
-
-// A list of slots of a scene, as Python sees it. Lights of one shape are one entry.
-struct MaterialList {
-    SceneRef scene;
-};
-struct LightList {
-    SceneRef scene;
-};
-struct ShapeList {
-    SceneRef scene;
-};
-
-std::size_t checked(std::int64_t i, std::size_t count, const char* what) {
-    const std::int64_t at = i < 0 ? i + static_cast<std::int64_t>(count) : i;
-    if (at < 0 || at >= static_cast<std::int64_t>(count))
-        throw nb::index_error(
-            (std::string(what) + " " + std::to_string(i) + " of " + std::to_string(count)).c_str());
-    return static_cast<std::size_t>(at);
-}
-
-Light plain_light(const SceneRef& scene, const nb::object& o) {
-    const Slot<Light>* given = light_slot(o);
-    if (!given)
-        throw Error("lights", "an object of type '" + std::string(nb::type_name(o.type()).c_str()) +
-                                  "' was given; expected a light, such as PointLight()");
-    const auto refuse_sky = [] {
-        throw Error("lights", "a SkyLight or SunLight belongs to the sky of its scene file");
-    };
-    const auto refuse_picture = [] {
-        throw Error("lights", "a GoniometricLight or ProjectionLight refers to a picture of its scene file");
-    };
-    std::visit(
-        Overloaded{[](const AreaLight&) {
-                       throw Error("lights", "an AreaLight belongs to a shape; set the light of that shape");
-                   },
-                   [](const ImageInfiniteLight&) {
-                       throw Error(
-                           "lights",
-                           "an EnvironmentLight refers to a map of its scene; make one by add_environment()");
-                   },
-                   [&](const GoniometricLight&) { refuse_picture(); },
-                   [&](const ProjectionLight&) { refuse_picture(); }, [&](const SkyLight&) { refuse_sky(); },
-                   [&](const SunLight&) { refuse_sky(); }, [](const PointLight&) {}, [](const SpotLight&) {},
-                   [](const DistantLight&) {}, [](const UniformInfiniteLight&) {},
-                   []<typename L>(const L&) {
-                       static_assert(sizeof(L) == 0, "say whether scene.lights takes this light from Python");
-                   }},
-        given->read());
-    return value_for(scene, *given);
-}
-
-void bind_lists(nb::module_& m) {
-    nb::class_<MaterialList>(m, "Materials", "The materials of a scene.")
-        .def("__len__", [](const MaterialList& l) { return l.scene->read().scene.materials.size(); })
-        .def("__getitem__",
-             [](const MaterialList& l, std::int64_t i) {
-                 const std::size_t at = checked(i, l.scene->read().scene.materials.size(), "material");
-                 return as_python(Slot<Material>(l.scene, static_cast<Index>(at)));
-             })
-        .def("__setitem__",
-             [](const MaterialList& l, std::int64_t i, const nb::object& o) {
-                 const std::size_t at = checked(i, l.scene->read().scene.materials.size(), "material");
-                 const Index from = material_index(l.scene, o, "materials");
-                 std::vector<Material>& all = l.scene->edit().scene.materials;
-                 const Material value = all[from];
-                 if (const Slot<Material>* slot = material_slot(o); slot->scene() != l.scene) all.pop_back();
-                 all[at] = value;
-             })
-        .def(
-            "append",
-            [](const MaterialList& l, const nb::object& o) {
-                return as_python(Slot<Material>(l.scene, material_index(l.scene, o, "materials")));
-            },
-            "material"_a, "Adds a material, and returns the place it has in the scene.");
-    nb::class_<LightList>(m, "Lights", "The lights of a scene; those of one shape are one AreaLight.")
-        .def("__len__", [](const LightList& l) { return l.scene->read().scene.lights.size(); })
-        .def("__getitem__",
-             [](const LightList& l, std::int64_t i) {
-                 const std::size_t at = checked(i, l.scene->read().scene.lights.size(), "light");
-                 return as_python(Slot<Light>(l.scene, static_cast<Index>(at)));
-             })
-        .def("__setitem__",
-             [](const LightList& l, std::int64_t i, const nb::object& o) {
-                 const std::size_t at = checked(i, l.scene->read().scene.lights.size(), "light");
-                 if (std::holds_alternative<AreaLight>(l.scene->read().scene.lights[at]))
-                     throw Error("lights", "this light belongs to a shape; set the light of that shape");
-                 const Light light = plain_light(l.scene, o);
-                 l.scene->edit().scene.lights[at] = light;
-             })
-        .def("__delitem__",
-             [](const LightList& l, std::int64_t i) {
-                 const std::size_t at = checked(i, l.scene->read().scene.lights.size(), "light");
-                 erase_light(l.scene->edit(), static_cast<Index>(at));
-             })
-        .def(
-            "append",
-            [](const LightList& l, const nb::object& o) {
-                const Light light = plain_light(l.scene, o);
-                std::vector<Light>& all = l.scene->edit().scene.lights;
-                all.push_back(light);
-                return as_python(Slot<Light>(l.scene, static_cast<Index>(all.size() - 1)));
-            },
-            "light"_a, "Adds a light, and returns the place it has in the scene.");
-    nb::class_<ShapeList>(m, "Shapes", "The shapes of a scene.")
-        .def("__len__", [](const ShapeList& l) { return l.scene->read().scene.shapes.size(); })
-        .def("__getitem__", [](const ShapeList& l, std::int64_t i) {
-            const std::size_t at = checked(i, l.scene->read().scene.shapes.size(), "shape");
-            return Ref<Shape>(Slot<Shape>(l.scene, static_cast<Index>(at)));
-        });
-}
 
 void take(SceneObject& s, SceneDescription description, const Warnings& warnings, std::string name) {
     s.holder->description = std::make_shared<SceneDescription>(std::move(description));
@@ -136,88 +29,6 @@ void take(SceneObject& s, SceneDescription description, const Warnings& warnings
 
 std::shared_ptr<TexelFile> texel_file(std::optional<std::size_t> texture_memory) {
     return texture_memory ? TexelFile::create(*texture_memory) : nullptr;
-}
-
-ImageTexture texture_of(const std::string& filter, const std::string& wrap, const std::vector<double>& uv,
-                        const std::string& what) {
-    ImageTexture t;
-    const std::vector<std::pair<std::string, TextureFilter>> filters{{"point", TextureFilter::point},
-                                                                     {"bilinear", TextureFilter::bilinear},
-                                                                     {"trilinear", TextureFilter::trilinear},
-                                                                     {"ewa", TextureFilter::ewa}};
-    const std::vector<std::pair<std::string, TextureWrap>> wraps{
-        {"repeat", TextureWrap::repeat}, {"black", TextureWrap::black}, {"clamp", TextureWrap::clamp}};
-    auto pick = [&](const auto& table, const std::string& name, const char* kind) {
-        for (const auto& [text, value] : table)
-            if (text == name) return value;
-        throw Error(what, "there is no " + std::string(kind) + " '" + name + "'");
-    };
-    t.filter = pick(filters, filter, "filter");
-    t.wrap = pick(wraps, wrap, "wrap");
-    if (uv.size() != 4) throw Error(what + ", uv", "expected four numbers: su, sv, du, dv");
-    t.mapping.su = static_cast<float>(uv[0]);
-    t.mapping.sv = static_cast<float>(uv[1]);
-    t.mapping.du = static_cast<float>(uv[2]);
-    t.mapping.dv = static_cast<float>(uv[3]);
-    return t;
-}
-
-nb::object image_texture(const SceneObject& s, const nb::object& image, const std::string& filter,
-                         const std::string& wrap, double scale, bool invert, const std::vector<double>& uv,
-                         bool as_float) {
-    ImageTexture t = texture_of(filter, wrap, uv, "image_texture");
-    if (!(scale >= 0 && std::isfinite(scale)))
-        throw Error("image_texture, scale", "expected a number that is not negative");
-    t.scale = static_cast<float>(scale);
-    t.invert = invert;
-    Image picture = picture_of(image, "image_texture");
-    Scene& now = s.holder->edit().scene;
-    CallMessages messages("image_texture", &s.holder->warnings);
-    t.image = SceneBuilder(now, messages).add_image(std::move(picture), "the picture");
-    if (as_float) {
-        now.float_textures.emplace_back(t);
-        return nb::cast(FloatTextureHandle{s.holder, static_cast<Index>(now.float_textures.size() - 1)});
-    }
-    now.spectrum_textures.emplace_back(t);
-    return nb::cast(SpectrumTextureHandle{s.holder, static_cast<Index>(now.spectrum_textures.size() - 1)});
-}
-
-NormalMapHandle normal_map(const SceneObject& s, const nb::object& image, const std::string& filter,
-                           const std::string& wrap, const std::vector<double>& uv) {
-    ImageTexture t = texture_of(filter, wrap, uv, "normal_map");
-    Image picture = picture_of(image, "normal_map");
-    if (picture.color_channels().size() != 3)
-        throw Error("normal_map", "the picture has no channels R, G and B");
-    if (picture.format() == PixelFormat::u8 || picture.format() == PixelFormat::u16)
-        picture.set_encoding(ColorEncoding::linear());
-    CallMessages messages("normal_map", &s.holder->warnings);
-    t.image = SceneBuilder(s.holder->edit().scene, messages).add_image(std::move(picture), "the picture");
-    std::vector<ImageTexture>& all = s.holder->edit().scene.normal_maps;
-    all.push_back(t);
-    return {s.holder, static_cast<Index>(all.size() - 1)};
-}
-
-MeasuredBrdfHandle measured_brdf(const SceneObject& s, const std::filesystem::path& path) {
-    DiskFiles disk;
-    const std::vector<std::uint8_t> bytes = read_unpacked(disk, path);
-    std::vector<MeasuredBrdf>& all = s.holder->edit().scene.measured_brdfs;
-    all.push_back(read_measured_brdf(bytes, path.string()));
-    return {s.holder, static_cast<Index>(all.size() - 1)};
-}
-
-SpectrumTextureHandle checkerboard(const SceneObject& s, const nb::object& a, const nb::object& b, double su,
-                                   double sv) {
-    const Spectrum first = spectrum_of(a, RgbMeaning::albedo, "checkerboard_texture"),
-                   second = spectrum_of(b, RgbMeaning::albedo, "checkerboard_texture");
-    Scene& scene = s.holder->edit().scene;
-    CheckerboardTexture<SpectrumParameter> t;
-    t.values = {SpectrumParameter{add_spectrum(scene, first)},
-                SpectrumParameter{add_spectrum(scene, second)}};
-    t.mapping.su = static_cast<float>(su);
-    t.mapping.sv = static_cast<float>(sv);
-    std::vector<SpectrumTexture>& all = scene.spectrum_textures;
-    all.emplace_back(t);
-    return {s.holder, static_cast<Index>(all.size() - 1)};
 }
 
 nb::object add_environment(const SceneObject& s, const nb::object& image, double scale,
@@ -239,20 +50,6 @@ nb::object add_environment(const SceneObject& s, const nb::object& image, double
 } // namespace
 
 void bind_scene(nb::module_& m) {
-    nb::class_<SpectrumTextureHandle>(m, "SpectrumTexture", "A texture of colours, of one scene.")
-        .def("__repr__", [](const SpectrumTextureHandle& t) {
-            return "<SpectrumTexture " + std::to_string(t.index) + ">";
-        });
-    nb::class_<FloatTextureHandle>(m, "FloatTexture", "A texture of numbers, of one scene.")
-        .def("__repr__",
-             [](const FloatTextureHandle& t) { return "<FloatTexture " + std::to_string(t.index) + ">"; });
-    nb::class_<NormalMapHandle>(m, "NormalMap", "Shading normals over surfaces, of one scene.")
-        .def("__repr__",
-             [](const NormalMapHandle& t) { return "<NormalMap " + std::to_string(t.index) + ">"; });
-    nb::class_<MeasuredBrdfHandle>(m, "MeasuredBrdf", "The measurements of a surface, of one scene.")
-        .def("__repr__",
-             [](const MeasuredBrdfHandle& b) { return "<MeasuredBrdf " + std::to_string(b.index) + ">"; });
-    bind_lists(m);
     nb::class_<SceneObject> c(m, "SceneBase", "What montelux.Scene is made of.");
     c.def(nb::init<>())
         .def(

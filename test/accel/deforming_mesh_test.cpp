@@ -1,6 +1,7 @@
 // Meshes that deform: hits and their points are those of a mesh that stands still as it is at the ray's time, in the
 // world and in instances, and rays that leave do not meet it again.
 #include "test/accel/accel_testing.h"
+#include "test/accel/still_comparison.h"
 #include <gtest/gtest.h>
 #include <memory>
 #include <optional>
@@ -56,38 +57,19 @@ TEST(DeformingMeshes, AreHitAsTheyAreAtThatTime) {
         for (const bool holes : {false, true}) {
             if (holes && scale != 1) continue; // the pattern has a size of its own
             const World moving(deforming_soup(scale, holes, {}));
-            Draws draws(9);
-            const auto s = static_cast<float>(scale);
-            int hits[3] = {}, other = 0, rays = 0;
-            for (const float time : {0.0f, 0.123f, 0.5f, 0.77f, 1.0f}) {
-                const World still(deforming_soup(scale, holes, time));
-                for (int i = 0; i < 6000; ++i, ++rays) {
-                    const Ray ray{s * draws.in_cube(4), draws.direction(), 1e30f, time};
-                    Hit a, b;
-                    const bool hit_a = moving.accelerator.intersect(ray, a);
-                    const bool hit_b = still.accelerator.intersect(ray, b);
-                    ASSERT_EQ(moving.accelerator.occluded(ray), hit_a);
-                    if (hit_a != hit_b || (hit_a && (a.shape != b.shape || a.primitive != b.primitive ||
-                                                     a.instance != b.instance))) {
-                        ++other;
-                        continue;
-                    }
-                    if (!hit_a) continue;
-                    ++hits[a.instance + 1];
-                    const SurfacePoint p = surface_point(moving.tables.view(), ray, a, true);
-                    const SurfacePoint q = surface_point(still.tables.view(), ray, b, true);
-                    ASSERT_LT(length(p.p - q.p), 1e-4f * s) << scale << " " << time;
-                    ASSERT_LT(length(p.p - (ray.o + ray.d * a.t)), 1e-4f * s) << scale << " " << time;
-                    ASSERT_GT(dot(p.ng, q.ng), 0.999f);
-                    ASSERT_GT(dot(p.ns, q.ns), 0.999f);
+            HitCounts counts;
+            ASSERT_NO_FATAL_FAILURE(compare_with_still(
+                moving, [&](float time) { return deforming_soup(scale, holes, time); }, scale, 4, 6000,
+                counts,
+                [](const SurfacePoint& p, const SurfacePoint& q) {
                     ASSERT_NEAR(p.uv.x, q.uv.x, 1e-3f);
                     ASSERT_NEAR(p.uv.y, q.uv.y, 1e-3f);
                     ASSERT_LT(length(p.dpdu - q.dpdu), 2e-3f * length(q.dpdu));
                     ASSERT_LT(length(p.dpdv - q.dpdv), 2e-3f * length(q.dpdv));
-                }
-            }
-            for (const int n : hits) EXPECT_GT(n, rays / 50) << scale;
-            EXPECT_LT(other, rays / 500) << scale; // at edges rounding decides
+                }));
+            for (const Index instance : {no_index, Index{0}, Index{1}})
+                EXPECT_GT(counts.instances[instance], counts.rays / 50) << scale;
+            EXPECT_LT(counts.other, counts.rays / 500) << scale; // at edges rounding decides
         }
 }
 

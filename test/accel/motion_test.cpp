@@ -1,6 +1,7 @@
 // Moving instances: hits lie on the surface at the ray's time, leave it without meeting it again, and are those
 // of a scene that stands still at that time.
 #include "test/accel/accel_testing.h"
+#include "test/accel/still_comparison.h"
 #include <gtest/gtest.h>
 #include <vector>
 
@@ -51,33 +52,12 @@ struct MovingWorld {
 TEST(MovingInstances, AreHitWhereTheyAreAtThatTime) {
     for (const double scale : {1.0, 1e-3, 1e4}) {
         const World moving(MovingWorld::moving(scale));
-        Draws draws(9);
-        const auto s = static_cast<float>(scale);
-        int hits = 0, other = 0, rays = 0;
-        for (const float time : {0.0f, 0.123f, 0.5f, 0.77f, 1.0f}) {
-            const World still(MovingWorld::still(scale, time));
-            for (int i = 0; i < 4000; ++i, ++rays) {
-                const Ray ray{s * draws.in_cube(3), draws.direction(), 1e30f, time};
-                Hit a, b;
-                const bool hit_a = moving.accelerator.intersect(ray, a);
-                const bool hit_b = still.accelerator.intersect(ray, b);
-                if (hit_a != hit_b || (hit_a && (a.shape != b.shape || a.primitive != b.primitive ||
-                                                 a.instance != b.instance))) {
-                    ++other;
-                    continue;
-                }
-                if (!hit_a) continue;
-                ++hits;
-                const SurfacePoint p = surface_point(moving.tables.view(), ray, a, true);
-                const SurfacePoint q = surface_point(still.tables.view(), ray, b, true);
-                ASSERT_LT(length(p.p - q.p), 1e-4f * s) << scale << " " << time;
-                ASSERT_LT(length(p.p - (ray.o + ray.d * a.t)), 1e-4f * s) << scale << " " << time;
-                ASSERT_GT(dot(p.ng, q.ng), 0.999f);
-                ASSERT_GT(dot(p.ns, q.ns), 0.999f);
-            }
-        }
-        EXPECT_GT(hits, rays / 10) << scale;
-        EXPECT_LT(other, rays / 500) << scale; // at edges rounding decides
+        HitCounts counts;
+        ASSERT_NO_FATAL_FAILURE(compare_with_still(
+            moving, [&](float time) { return MovingWorld::still(scale, time); }, scale, 3, 4000, counts,
+            [](const SurfacePoint&, const SurfacePoint&) {}));
+        EXPECT_GT(counts.hits(), counts.rays / 10) << scale;
+        EXPECT_LT(counts.other, counts.rays / 500) << scale; // at edges rounding decides
     }
 }
 

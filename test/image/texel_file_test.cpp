@@ -5,8 +5,11 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
+#include <exception>
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <string>
 #include <sys/resource.h>
 #include <sys/statfs.h>
@@ -82,6 +85,36 @@ TEST(TexelFile, RefusalsSayWhatToDo) {
     if (::statfs("/dev/shm", &info) == 0 && info.f_type == 0x01021994) {
         EXPECT_TRUE(contains(refusal(16 * mib, "/dev/shm"), "is itself in memory; set TMPDIR"));
     }
+}
+
+std::ptrdiff_t open_files() {
+    return std::ranges::distance(std::filesystem::directory_iterator("/proc/self/fd"));
+}
+
+// Nothing is changed where no thread can be started, here because its stack does not fit into the memory.
+TEST(TexelFile, AThreadThatCannotBeStartedIsAnError) {
+    pthread_attr_t usual, vast;
+    ASSERT_EQ(pthread_getattr_default_np(&usual), 0);
+    ASSERT_EQ(pthread_getattr_default_np(&vast), 0);
+    ASSERT_EQ(pthread_attr_setstacksize(&vast, std::size_t{1} << 50), 0);
+    TemporaryFolder folder;
+    const std::ptrdiff_t files = open_files();
+    ASSERT_EQ(pthread_setattr_default_np(&vast), 0);
+    std::string error;
+    try {
+        TexelFile::create(TexelFile::least_limit, folder.path());
+    } catch (const std::exception& e) {
+        error = e.what();
+    }
+    ASSERT_EQ(pthread_setattr_default_np(&usual), 0);
+    EXPECT_EQ(error.rfind("memory of textures: the thread that keeps the limit cannot be started: ", 0), 0u)
+        << error;
+    EXPECT_EQ(open_files(), files);
+    sigset_t blocked;
+    ASSERT_EQ(pthread_sigmask(SIG_SETMASK, nullptr, &blocked), 0);
+    EXPECT_EQ(sigismember(&blocked, SIGINT), 0);
+    pthread_attr_destroy(&usual);
+    pthread_attr_destroy(&vast);
 }
 
 // A limit of a file's size stands for the space of a disk.

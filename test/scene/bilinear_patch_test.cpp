@@ -84,7 +84,7 @@ TEST(BilinearPatch, NoGapAtSharedEdges) {
 
 TEST(BilinearPatch, DegenerateOnesAreNoTrouble) {
     const Vec3d p{1, 2, 3};
-    EXPECT_FALSE(intersect({p, p, p, p}, {0, 0, 0}, p, 0, 10));
+    EXPECT_FALSE(intersect(BilinearPatch{p, p, p, p}, {0, 0, 0}, p, 0, 10));
     EXPECT_EQ(area_of({p, p, p, p}), 0);
     EXPECT_EQ(sample_area({p, p, p, p}, {0.3, 0.7}).pdf, 0);
     // Edge on: no hit, or one on the plane.

@@ -60,6 +60,48 @@ TEST(Motion, TranslationsNeedTwoKeysAndRotationsEnough) {
     EXPECT_LE(keys, 129u); // Embree's limit
 }
 
+// Also of what is long in one direction and grows in another.
+TEST(Motion, LeavesThePathOfStretchesByItsToleranceAtMost) {
+    const Transform turn = Transform::rotate(70, {0, 0, 1}), tilt = Transform::rotate(35, {1, 2, 0});
+    const auto tilted = [&](const Transform& t) { return tilt * t * tilt.inverse(); };
+    const Transform bar = Transform::scale({10, 1, 1}), thicker = Transform::scale({10, 3, 1});
+    const Transform cases[][2] = {{bar, turn * thicker},
+                                  {turn * thicker, bar},
+                                  {tilted(bar), turn * tilted(thicker)},
+                                  {Transform::scale({3, 0.1, 1}), turn * Transform::scale({3, 0.2, 1})}};
+    for (const auto& [start, end] : cases) {
+        const Motion motion(start, end);
+        const MotionPath path(start, end);
+        ASSERT_LT(motion.keys().size(), 129u); // Embree's limit
+        double worst = 0;
+        for (int i = 0; i <= 2000; ++i) {
+            const double t = i / 2000.0;
+            const Transform truth(path.at(t), Matrix4{});
+            for (const Vec3d direction : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}, Vec3d{1, 1, 1}})
+                for (const Vec3d p : {direction, tilt.point(direction)})
+                    worst =
+                        std::max(worst, distance(motion.at(static_cast<float>(t)).point(p), truth.point(p)) /
+                                            length(truth.point(p)));
+        }
+        EXPECT_LT(worst, 1.21e-4) << &start - &cases[0][0];
+    }
+}
+
+TEST(MotionPath, IsExactAtAllScalesOfFloats) {
+    for (const double scale : {1e-37, 1e-31, 1e-20, 1.0, 1e20, 1e31, 1e37}) {
+        const auto turned = [&](double degrees) {
+            return Transform::rotate(degrees, {1, 2, 3}) * Transform::scale({scale, 2 * scale, scale});
+        };
+        const MotionPath path(turned(20), turned(80));
+        for (const double t : {0.0, 0.25, 0.5, 1.0})
+            for (std::size_t r = 0; r < 3; ++r)
+                for (std::size_t c = 0; c < 3; ++c)
+                    EXPECT_NEAR(path.at(t).m[r][c] / scale, turned(20 + 60 * t).matrix().m[r][c] / scale,
+                                1e-9)
+                        << scale << " " << t;
+    }
+}
+
 const Transform stretched =
     Transform::translate({3, -1, 2}) * Transform::rotate(70, {1, 1, 0}) * Transform::scale({4, 0.5, 1});
 const Transform mirrored = Transform::translate({0, 1, 0}) * Transform::scale({1, -2, 1});

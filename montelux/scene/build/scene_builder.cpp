@@ -39,7 +39,7 @@ Bounds3 bounds_of(const ObjectDefinition& object, const Scene& scene) {
     return bounds;
 }
 
-// Gives back room that growing left over, if it is much. (An eighth: the copy that this needs is not worth less.)
+// Gives back unused capacity if it is more than an eighth of the values: less is not worth the copy.
 template <typename T>
 void trim(std::vector<T>& v) {
     if (v.capacity() - v.size() > v.size() / 8 + 1) v.shrink_to_fit();
@@ -61,34 +61,40 @@ constexpr std::size_t keys_beside = 8; // what an instance and its motion need b
 } // namespace
 
 Index SceneBuilder::add_shape(Geometry geometry, const ShapeSettings& settings, SourceLocation at) {
+    check_shape(geometry, settings.emission != nullptr && !in_object(), at);
     return add_shape_to(open_object_, std::move(geometry), settings, in_object() ? dark_in_objects : "", at);
 }
 
 Index SceneBuilder::add_moving_shape(Geometry geometry, const ShapeSettings& settings, const Transform& start,
                                      const Transform& end, SourceLocation at) {
+    check_shape(geometry, false, at);
     if (in_object()) {
         const Index part = moving_part(start, end, at);
         return add_shape_to(part, std::move(geometry), settings, dark_in_objects, at);
     }
     // An object of its own, with one instance.
+    std::optional<Motion> motion = motion_of_instance(start, end, at);
     const auto object = static_cast<Index>(scene_.objects.size());
-    const std::string name = "\n" + std::to_string(object); // no name in a file
+    const std::string name = std::string(1, '\0') + std::to_string(object); // no name in a file
     objects_.declare(name, object, at, messages_);
     scene_.objects.emplace_back();
     const Index shape =
         add_shape_to(object, std::move(geometry), settings, "shapes that move do not emit light", at);
-    add_instance(name, start, end, at);
+    use_object(name, start, std::move(motion), at);
     return shape;
+}
+
+void SceneBuilder::check_shape(const Geometry& geometry, bool emits, SourceLocation at) const {
+    try {
+        check_geometry(geometry);
+        if (emits) check_emitter(geometry);
+    } catch (const Error& e) {
+        messages_.error(at, e.what());
+    }
 }
 
 Index SceneBuilder::add_shape_to(Index object, Geometry geometry, const ShapeSettings& settings,
                                  std::string_view dark, SourceLocation at) {
-    try {
-        check_geometry(geometry);
-        if (settings.emission != nullptr && dark.empty()) check_emitter(geometry);
-    } catch (const Error& e) {
-        messages_.error(at, e.what());
-    }
     if (scene_.shapes.size() >= no_index) messages_.error(at, "more than 2^32 shapes");
     const auto index = static_cast<Index>(scene_.shapes.size());
     Shape shape;
@@ -155,8 +161,7 @@ void SceneBuilder::begin_object(const std::string& name, SourceLocation at) {
     objects_.declare(name, static_cast<Index>(scene_.objects.size()), at, messages_);
     open_object_ = static_cast<Index>(scene_.objects.size());
     scene_.objects.emplace_back();
-    // Readers name objects that have no name in the file by a line break and a number.
-    if (!name.starts_with('\n')) scene_.objects.back().name = name;
+    scene_.objects.back().name = name;
 }
 
 void SceneBuilder::end_object() {
@@ -183,28 +188,42 @@ Index SceneBuilder::moving_part(const Transform& start, const Transform& end, So
         messages_.error(at, "the shape's transformation is beyond what single-precision numbers hold");
     const MotionKey ends{start.matrix(), end.matrix()};
     if (const auto known = open_parts_.find(ends); known != open_parts_.end()) return known->second;
+    Motion in_object = motion(start, end, at);
     const auto object = static_cast<Index>(scene_.objects.size());
-    parts_[open_object_].push_back({object, motion(start, end, at)});
+    parts_[open_object_].push_back({object, std::move(in_object)});
     scene_.objects.push_back({.shapes = {}, .name = {}, .part_of = open_object_});
     return open_parts_[ends] = object;
 }
 
 void SceneBuilder::add_instance(const std::string& object, const Transform& world_from_object,
                                 SourceLocation at) {
-    if (!fits_float(world_from_object))
-        messages_.error(at, "the instance's transformation is beyond what single-precision numbers hold");
-    instances_.push_back({objects_.refer(object), world_from_object, no_index, at});
+    add_instance(object, world_from_object, world_from_object, at);
 }
 
 void SceneBuilder::add_instance(const std::string& object, const Transform& start, const Transform& end,
                                 SourceLocation at) {
-    add_instance(object, start, at);
-    if (start == end) return;
+    use_object(object, start, motion_of_instance(start, end, at), at);
+}
+
+std::optional<Motion> SceneBuilder::motion_of_instance(const Transform& start, const Transform& end,
+                                                       SourceLocation at) const {
+    if (!fits_float(start))
+        messages_.error(at, "the instance's transformation is beyond what single-precision numbers hold");
+    if (start == end) return std::nullopt;
     if (!fits_float(end))
         messages_.error(at,
                         "the instance's last transformation is beyond what single-precision numbers hold");
-    motions_.push_back(motion(start, end, at));
-    instances_.back().motion = static_cast<Index>(motions_.size() - 1);
+    return motion(start, end, at);
+}
+
+void SceneBuilder::use_object(const std::string& object, const Transform& at_start,
+                              std::optional<Motion> motion, SourceLocation at) {
+    Index moving = no_index;
+    if (motion) {
+        moving = static_cast<Index>(motions_.size());
+        motions_.push_back(std::move(*motion));
+    }
+    instances_.push_back({objects_.refer(object), at_start, moving, at});
 }
 
 Index SceneBuilder::add_light(const Light& light, SourceLocation at, const std::string& group) {

@@ -108,7 +108,13 @@ class SceneBuilder {
                        SourceLocation at);
     std::optional<AreaLight> area_light(Index shape, const ShapeSettings& settings, const Geometry& geometry,
                                         std::string_view dark, SourceLocation at);
+    void check_shape(const Geometry& geometry, bool emits, SourceLocation at) const;
     Motion motion(const Transform& start, const Transform& end, SourceLocation at) const;
+    // None for an instance that stands still.
+    std::optional<Motion> motion_of_instance(const Transform& start, const Transform& end,
+                                             SourceLocation at) const;
+    void use_object(const std::string& object, const Transform& at_start, std::optional<Motion> motion,
+                    SourceLocation at);
     // The part of the open object with that motion.
     Index moving_part(const Transform& start, const Transform& end, SourceLocation at);
     void place_instance(const InstanceUse& use, Index object, const Transform& at_start,
@@ -124,7 +130,6 @@ class SceneBuilder {
     std::map<Index, std::vector<MovingPart>> parts_;     // of objects
     std::vector<InstanceUse> instances_;
     std::vector<Motion> motions_;                    // of instances_
-    std::size_t part_keys_ = 0;                      // of the motions of parts in all instances
     std::map<ContentDigest, SceneSpectrum> spectra_; // added so far
     std::size_t emissive_primitives_ = 0;
 };

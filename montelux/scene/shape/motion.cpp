@@ -29,21 +29,6 @@ Matrix4 about_axis(const MotionPath& outer, const MotionPath& inner, double t) {
     return turned * inner.at(t);
 }
 
-// A bound of the spectral norm of the linear part.
-double norm_of(const Matrix4& m) {
-    double of_rows = 0, of_columns = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        double row = 0, column = 0;
-        for (std::size_t j = 0; j < 3; ++j) {
-            row += std::abs(m.m[i][j]);
-            column += std::abs(m.m[j][i]);
-        }
-        of_rows = std::max(of_rows, row);
-        of_columns = std::max(of_columns, column);
-    }
-    return std::sqrt(of_rows * of_columns);
-}
-
 Vec3d translation_of(const Matrix4& m) { return {m.m[0][3], m.m[1][3], m.m[2][3]}; }
 
 // How far the middles of that many chords leave the path of the product: the inner axis as a share of its largest

@@ -17,8 +17,8 @@ class MotionPath {
 
     // Time in [0, 1].
     Matrix4 at(double t) const;
-    // How many chords between equal distances of time leave it by at most that share of the distance from the axis;
-    // at least one.
+    // The number of chords, of equal times, with which each point stays within `tolerance` times its distance from the
+    // axis of the path; at least one.
     int chords(double tolerance) const;
 
     using Linear = std::array<std::array<double, 3>, 3>;
@@ -32,8 +32,14 @@ class MotionPath {
     };
 
   private:
+    // By which share of what it is in `from`, one of the ends, the stretch changes on the way.
+    double change_of_stretch(const Linear& from) const;
+
     Parts start_, end_;
     double angle_ = 0; // between the quaternions
 };
+
+// A bound of the spectral norm of the linear part.
+double norm_of(const Matrix4& m);
 
 } // namespace montelux

@@ -1,8 +1,10 @@
-// Fixtures of the pbrt tests: scenes from text, and the error message of a broken one.
+// Fixtures of the pbrt tests: scenes from text, their values, and the error message of a broken one.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "montelux/formats/pbrt/load_pbrt.h"
@@ -18,6 +20,11 @@ inline SceneDescription parse(std::string_view text, Warnings* warnings = nullpt
 // The scene with `world` after WorldBegin, which is on line 1.
 inline SceneDescription parse_world(std::string_view world, Warnings* warnings = nullptr) {
     return parse("WorldBegin\n" + std::string(world), warnings);
+}
+
+// The quadric with that index.
+inline const Sphere& sphere(const SceneDescription& d, std::size_t i = 0) {
+    return std::get<Sphere>(d.scene.quadrics.at(i));
 }
 
 // A material or light of type T, with the spectra of its scene.

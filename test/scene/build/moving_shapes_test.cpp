@@ -1,6 +1,6 @@
 // Shapes that move: their objects, parts of objects and instances, and the errors they give.
+#include "test/scene/build/located_error.h"
 #include <cmath>
-#include <functional>
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
@@ -11,6 +11,8 @@
 
 namespace montelux {
 namespace {
+
+using testing::located_error;
 
 const Transform to_right = Transform::translate({1, 0, 0}), upwards = Transform::translate({0, 2, 0}),
                 quarter_turn = Transform::rotate(90, {0, 0, 1});
@@ -25,14 +27,6 @@ class MovingShapes : public ::testing::Test {
     void moving(const Transform& start, const Transform& end) {
         builder_.add_moving_shape(Sphere{.world_from_object = {}}, {.material = 0, .alpha = {1}}, start, end,
                                   {0, 4, 2});
-    }
-    static std::string error_of(const std::function<void()>& build) {
-        try {
-            build();
-        } catch (const LocatedError& e) {
-            return e.what();
-        }
-        return {};
     }
 
     Scene scene_;
@@ -154,17 +148,57 @@ TEST_F(MovingShapes, ErrorsHaveAPlace) {
     const Transform mirror = Transform::scale({-1, 1, 1}), vast = Transform::scale({1e39, 1, 1});
     builder_.begin_object("o");
     EXPECT_EQ(
-        error_of([&] { moving({}, mirror); }),
+        located_error([&] { moving({}, mirror); }),
         "a test: motion: one end is mirrored and the other is not; between them the object would be flat");
-    EXPECT_EQ(error_of([&] { moving({}, vast); }),
+    EXPECT_EQ(located_error([&] { moving({}, vast); }),
               "a test: the shape's transformation is beyond what single-precision numbers hold");
-    EXPECT_NE(error_of([&] { moving({}, mirror); }), ""); // again
+    EXPECT_NE(located_error([&] { moving({}, mirror); }), ""); // again
     moving(mirror, mirror * quarter_turn);
     moving({}, Transform::translate({1e30, 0, 0}));
     builder_.end_object();
     builder_.add_instance("o", Transform::scale({1e10, 1, 1}));
-    EXPECT_EQ(error_of([&] { builder_.finish(); }),
+    EXPECT_EQ(located_error([&] { builder_.finish(); }),
               "a test: the instance's transformation is beyond what single-precision numbers hold");
+}
+
+TEST_F(MovingShapes, AndInstancesThatAreRefusedLeaveNothing) {
+    const Transform mirror = Transform::scale({-1, 1, 1}), vast = Transform::scale({1e39, 1, 1});
+    const auto moving_to_infinity = [&] {
+        builder_.add_moving_shape(Sphere{.world_from_object = Transform::translate({1e39, 0, 0})},
+                                  {.material = 0, .alpha = {1}}, {}, upwards);
+    };
+    EXPECT_NE(located_error([&] { moving({}, mirror); }), "");
+    EXPECT_NE(located_error([&] { moving({}, vast); }), "");
+    EXPECT_NE(located_error([&] { moving(vast, {}); }), "");
+    EXPECT_NE(located_error(moving_to_infinity), "");
+    EXPECT_TRUE(scene_.objects.empty());
+    builder_.begin_object("o");
+    still();
+    EXPECT_NE(located_error([&] { moving({}, mirror); }), "");
+    EXPECT_NE(located_error(moving_to_infinity), "");
+    builder_.end_object();
+    EXPECT_NE(located_error([&] { builder_.add_instance("o", Transform(), mirror); }), "");
+    EXPECT_NE(located_error([&] { builder_.add_instance("o", Transform(), vast); }), "");
+    EXPECT_NE(located_error([&] { builder_.add_instance("o", vast, Transform()); }), "");
+    builder_.finish();
+    EXPECT_EQ(scene_.objects.size(), 1u);
+    EXPECT_EQ(scene_.shapes.size(), 1u);
+    EXPECT_TRUE(scene_.instances.empty());
+    EXPECT_TRUE(scene_.motions.empty());
+}
+
+// Strings in files may contain line breaks.
+TEST_F(MovingShapes, AreObjectsWithoutANameThatAFileCouldUse) {
+    moving({}, upwards);
+    builder_.begin_object("\n0");
+    still();
+    builder_.end_object();
+    builder_.add_instance("\n0", to_right);
+    builder_.finish();
+    ASSERT_EQ(scene_.objects.size(), 2u);
+    EXPECT_EQ(scene_.objects[1].name, "\n0");
+    ASSERT_EQ(scene_.instances.size(), 2u);
+    EXPECT_EQ(scene_.instances[1].object, 1u);
 }
 
 TEST_F(MovingShapes, ReachOnlyToWhereFloatsEnd) {
@@ -174,7 +208,7 @@ TEST_F(MovingShapes, ReachOnlyToWhereFloatsEnd) {
         {.material = 0, .alpha = {1}}, {}, Transform::scale({1e5, 1, 1}));
     builder_.end_object();
     builder_.add_instance("o", Transform::scale({1e5, 1, 1}));
-    EXPECT_EQ(error_of([&] { builder_.finish(); }),
+    EXPECT_EQ(located_error([&] { builder_.finish(); }),
               "a test: the instance reaches to infinity in world space");
 }
 
@@ -184,7 +218,7 @@ TEST_F(MovingShapes, OfManyUsesAreLimited) {
     for (int i = 0; i < 1000; ++i) moving({}, Transform::translate({i + 1.0, 0, 0}));
     builder_.end_object();
     for (int i = 0; i < 4000; ++i) builder_.add_instance("o", to_right);
-    EXPECT_EQ(error_of([&] { builder_.finish(); }),
+    EXPECT_EQ(located_error([&] { builder_.finish(); }),
               "a test: the instances of objects whose shapes move need more than 4 GiB; expected fewer "
               "instances, or fewer shapes that move");
     EXPECT_TRUE(scene_.instances.empty());

@@ -1,4 +1,5 @@
 // SceneBuilder: spectra are shared, and indices that lead nowhere are refused.
+#include "test/scene/build/located_error.h"
 #include "test/scene/light_testing.h"
 #include "test/scene/measured_brdf_testing.h"
 #include <functional>
@@ -27,12 +28,7 @@ std::string finish_error(const std::function<void(Scene&)>& change) {
     scene.measured_brdfs = {testing::measured_case(0.5f, 0.5f)};
     change(scene);
     CallMessages messages("test");
-    try {
-        SceneBuilder(scene, messages).finish();
-    } catch (const LocatedError& e) {
-        return e.what();
-    }
-    return {};
+    return testing::located_error([&] { SceneBuilder(scene, messages).finish(); });
 }
 
 std::string error_of_material(const Material& material) {
@@ -250,12 +246,7 @@ TEST(SceneReferences, LightsAreCheckedWhenAdded) {
     CallMessages messages("test");
     SceneBuilder builder(scene, messages);
     auto error = [&](const Light& light) -> std::string {
-        try {
-            builder.add_light(light);
-        } catch (const LocatedError& e) {
-            return e.what();
-        }
-        return {};
+        return testing::located_error([&] { builder.add_light(light); });
     };
     EXPECT_EQ(error(with_spectrum<PointLight>(SceneSpectrum::at(0))), "");
     EXPECT_EQ(error(with_spectrum<PointLight>(no_spectrum)),

@@ -1,7 +1,7 @@
 // SceneBuilder: the scene it makes, the errors it gives, and their places.
+#include "test/scene/build/located_error.h"
 #include <array>
 #include <cmath>
-#include <functional>
 #include <gtest/gtest.h>
 #include <limits>
 #include <set>
@@ -13,6 +13,8 @@
 
 namespace montelux {
 namespace {
+
+using testing::located_error;
 
 class Recorded final : public BuildMessages {
   public:
@@ -35,16 +37,16 @@ TriangleMesh two_triangles() {
 
 class SceneBuilding : public ::testing::Test {
   protected:
-    std::string error_of(const std::function<void()>& build) {
-        try {
-            build();
-        } catch (const LocatedError& e) {
-            return e.what();
-        }
-        return {};
-    }
     std::string shape_error(Geometry geometry) {
-        return error_of([&] { builder_.add_shape(std::move(geometry), {}, line(7)); });
+        return located_error([&] { builder_.add_shape(std::move(geometry), {}, line(7)); });
+    }
+    // Of a scene with an instance, nine times as large, of an object with that shape.
+    std::string instance_error(Geometry geometry) {
+        builder_.begin_object("o");
+        builder_.add_shape(std::move(geometry), {});
+        builder_.end_object();
+        builder_.add_instance("o", Transform::scale({9, 9, 9}), line(5));
+        return located_error([&] { builder_.finish(line(9)); });
     }
 
     Scene scene_;
@@ -104,7 +106,7 @@ TEST_F(SceneBuilding, GeometryIsChecked) {
     EXPECT_EQ(shape_error(deforming([&](TriangleMesh& m) { m.end_normals[0].x = std::nanf(""); })),
               "line 7: a vertex normal is not finite in world space at the end");
     EXPECT_EQ(
-        error_of([&] {
+        located_error([&] {
             const Emission emission{1.0f};
             builder_.add_shape(deforming([](TriangleMesh&) {}), {.alpha = {1}, .emission = &emission},
                                line(7));
@@ -181,7 +183,7 @@ TEST_F(SceneBuilding, ObjectsAreKnownByName) {
     }
     builder_.add_shape(two_triangles(), {});
     builder_.add_instance("stone", {}, line(5));
-    EXPECT_EQ(error_of([&] { builder_.begin_object("tree", line(6)); }),
+    EXPECT_EQ(located_error([&] { builder_.begin_object("tree", line(6)); }),
               "line 6: object 'tree' is defined twice");
     EXPECT_EQ(messages_.warnings,
               (std::vector<std::string>{"line 4: area lights inside object definitions do not shine"}));
@@ -196,23 +198,19 @@ TEST_F(SceneBuilding, ObjectsAreKnownByName) {
     EXPECT_EQ(scene_.instances[1].object, 0u);
     EXPECT_EQ(messages_.warnings.back(), "line 9: the scene has no light; its picture is black");
 
-    EXPECT_EQ(error_of([&] {
+    EXPECT_EQ(located_error([&] {
                   builder_.add_instance("trees", {}, line(8));
                   builder_.finish(line(9));
               }),
               "line 8: object 'trees' is not defined (did you mean 'tree'?)");
-    EXPECT_EQ(error_of([&] {
+    EXPECT_EQ(located_error([&] {
                   builder_.add_instance("tree", Transform::scale({1e39, 1, 1}), line(8));
               }),
               "line 8: the instance's transformation is beyond what single-precision numbers hold");
 }
 
 TEST_F(SceneBuilding, InstancesAtInfinityAreRefused) {
-    builder_.begin_object("o");
-    builder_.add_shape(Disk{.radius = 3e38f, .world_from_object = {}}, {});
-    builder_.end_object();
-    builder_.add_instance("o", Transform::scale({9, 9, 9}), line(5));
-    EXPECT_EQ(error_of([&] { builder_.finish(line(9)); }),
+    EXPECT_EQ(instance_error(Disk{.radius = 3e38f, .world_from_object = {}}),
               "line 5: the instance reaches to infinity in world space");
 }
 
@@ -221,12 +219,7 @@ TEST_F(SceneBuilding, InstancesThatDeformToInfinityAreRefused) {
     TriangleMesh mesh = two_triangles();
     mesh.end_positions = mesh.positions;
     mesh.end_positions[0].x = 3e38f;
-    builder_.begin_object("o");
-    builder_.add_shape(mesh, {});
-    builder_.end_object();
-    builder_.add_instance("o", Transform::scale({9, 9, 9}), line(5));
-    EXPECT_EQ(error_of([&] { builder_.finish(line(9)); }),
-              "line 5: the instance reaches to infinity in world space");
+    EXPECT_EQ(instance_error(mesh), "line 5: the instance reaches to infinity in world space");
 }
 
 // A light that is given to the shape later.
@@ -235,7 +228,7 @@ TEST_F(SceneBuilding, LightsOfMeshesThatDeformAreRefused) {
     mesh.end_positions = mesh.positions;
     const Index shape = builder_.add_shape(mesh, {});
     EXPECT_EQ(
-        error_of([&] {
+        located_error([&] {
             builder_.add_light(AreaLight{1.0f, 1, false, shape}, line(3));
         }),
         "line 3: a mesh that deforms does not emit light; give it no light, or no positions at the end");
@@ -243,11 +236,12 @@ TEST_F(SceneBuilding, LightsOfMeshesThatDeformAreRefused) {
 
 TEST_F(SceneBuilding, ShapesWithoutMaterialAreRefused) {
     builder_.add_shape(two_triangles(), {});
-    EXPECT_EQ(error_of([&] { builder_.finish(line(9)); }), "line 9: shape 0 has no material");
+    EXPECT_EQ(located_error([&] { builder_.finish(line(9)); }), "line 9: shape 0 has no material");
     scene_.shapes[0].material = 0;
     scene_.materials.resize(1);
     scene_.shapes[0].alpha.texture = 3;
-    EXPECT_EQ(error_of([&] { builder_.finish(line(9)); }), "line 9: the alpha of shape 0 has no texture");
+    EXPECT_EQ(located_error([&] { builder_.finish(line(9)); }),
+              "line 9: the alpha of shape 0 has no texture");
 }
 
 TEST_F(SceneBuilding, ImagesAreMadeFit) {
@@ -261,7 +255,7 @@ TEST_F(SceneBuilding, ImagesAreMadeFit) {
     EXPECT_EQ(scene_.images[0].f32()[5], 0);
     EXPECT_EQ(messages_.warnings, (std::vector<std::string>{
                                       "line 2: wood.exr has 2 values that are not finite; they count as 0"}));
-    EXPECT_EQ(error_of([&] {
+    EXPECT_EQ(located_error([&] {
                   builder_.add_image(Image(2, 2, {"X", "Y", "Z"}), "xyz.exr", line(3));
               }),
               "line 3: xyz.exr has neither channels R, G and B nor Y alone");
@@ -282,12 +276,12 @@ TEST_F(SceneBuilding, EnvironmentsAreMadeFit) {
               (std::vector<std::string>{"line 2: sky.exr has negative pixels; they count as 0"}));
     builder_.add_environment(Image(8, 4, {"R", "G", "B"}), "night.exr", line(3));
     EXPECT_EQ(messages_.warnings.back(), "line 3: night.exr is black; the light gives nothing");
-    EXPECT_NE(error_of([&] {
+    EXPECT_NE(located_error([&] {
                   builder_.add_environment(Image(3, 4, {"Y"}), "odd.exr", line(4));
               }).find("line 4: odd.exr has 3 x 4 pixels; an environment map must be square"),
               std::string::npos);
     grey.f32()[0] = std::nanf("");
-    EXPECT_EQ(error_of([&] { builder_.add_environment(grey, "bad.exr", line(5)); }),
+    EXPECT_EQ(located_error([&] { builder_.add_environment(grey, "bad.exr", line(5)); }),
               "line 5: bad.exr has a pixel that is not finite");
 }
 
@@ -306,7 +300,7 @@ TEST_F(SceneBuilding, SkiesBringTheirSun) {
     EXPECT_EQ(scene_.skies.size(), 3u);
     EXPECT_EQ(std::get<SkyLight>(scene_.lights[3]).sky, 2u);
     sky.settings.elevation = 100;
-    EXPECT_EQ(error_of([&] { builder_.add_sky(sky, line(3)); }).substr(0, 7), "line 3:");
+    EXPECT_EQ(located_error([&] { builder_.add_sky(sky, line(3)); }).substr(0, 7), "line 3:");
 }
 
 TEST_F(SceneBuilding, SkiesGiveTheRequestedIlluminance) {

@@ -12,10 +12,9 @@
 #include "montelux/mc/integrate/cubature/cubature_halving.h"
 #include "montelux/mc/integrate/cubature/cubature_regions.h"
 #include "montelux/mc/integrate/cubature/cubature_rules.h"
+#include "montelux/mc/integrate/cubature/cubature_totals.h"
 #include "montelux/mc/integrate/cubature/cubature_verification.h"
-#include "montelux/mc/integrate/extreme_values.h"
 #include "montelux/mc/integrate/sampling.h"
-#include "montelux/mc/math/compensated.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
@@ -32,8 +31,7 @@ class CubatureEstimator final : public Estimator {
     CubatureEstimator(const Problem& problem, std::uint64_t max_memory, std::uint64_t check_points)
         : problem_(problem), n_(problem.evaluator.dimensions()), m_(problem.evaluator.components()),
           regions_(n_, m_), max_regions_(max_memory / regions_.bytes_each()), totals_(m_), nonzero_(m_, 0),
-          disagreement_(m_, 0.0), expected_(m_, 0.0), verification_(problem, check_points),
-          check_points_(check_points), confirmation_(m_) {
+          verification_(problem, check_points), check_points_(check_points), confirmation_(m_) {
         if (max_regions_ < 64)
             throw Error("cubature", "expected memory for at least 64 regions, " +
                                         std::to_string(64 * regions_.bytes_each()) + " bytes, got " +
@@ -59,7 +57,7 @@ class CubatureEstimator final : public Estimator {
         // suffice.
         const bool retry = regions_.count() == 1 && started_coarse() && !regions_.marks(0).rough && !refined_;
         const bool check = !regions_.empty() && !searching();
-        if (check && verification_.due(regions_, totals_.value, totals_.error, evaluations_, request,
+        if (check && verification_.due(regions_, totals_.value(), totals_.error(), evaluations_, request,
                                        reached(request)))
             return verify(request);
         const bool confirms = !retry && confirmation_.pending() && reached(request);
@@ -69,7 +67,7 @@ class CubatureEstimator final : public Estimator {
         } else {
             if (confirms) parents = regions_to_confirm(request);
             // Halving regions does not reduce the error of equal values.
-            else if (searching() || reached(request) || !reaches(totals_.rule_error, request))
+            else if (searching() || reached(request) || !reaches(totals_.rule_error(), request))
                 parents = regions_to_halve(regions_, scales(request), searching());
             if (regions_.count() + parents.size() > max_regions_)
                 parents.resize(max_regions_ - regions_.count());
@@ -99,7 +97,7 @@ class CubatureEstimator final : public Estimator {
                                 nested.count() > 0 && non_finite_.count > 0,
                                 request.max_evaluations / 2 >= points};
         std::uint64_t shifted = 0;
-        if (!evaluate_regions(problem_.evaluator, work, totals_.value, non_finite, shifted, nonzero,
+        if (!evaluate_regions(problem_.evaluator, work, totals_.value(), non_finite, shifted, nonzero,
                               request.cancel))
             return StepOutcome::cancelled;
 
@@ -115,7 +113,7 @@ class CubatureEstimator final : public Estimator {
             correct_cube(regions_, fresh);
             regions_ = std::move(fresh);
         } else {
-            if (confirms) confirmation_.compare(regions_, parents, fresh, totals_.error);
+            if (confirms) confirmation_.compare(regions_, parents, fresh, totals_.error());
             add_face_errors(work);
             replace(parents, fresh);
         }
@@ -134,12 +132,12 @@ class CubatureEstimator final : public Estimator {
             tally.ready = false;
             return tally;
         }
-        tally.value = totals_.value;
-        tally.standard_error = totals_.error;
+        tally.value = totals_.value();
+        tally.standard_error = totals_.error();
         if (searching())
             for (std::size_t c = 0; c < components(); ++c)
                 if (nonzero_[c] == 0) tally.standard_error[c] = std::numeric_limits<double>::infinity();
-        tally.ready = !searching() && verification_.verified(totals_.value) && !confirmation_.pending();
+        tally.ready = !searching() && verification_.verified(totals_.value()) && !confirmation_.pending();
         tally.at_limit = at_limit_;
         // In one variable halving alone finds every feature of some width.
         tally.localised = n_ > 1 && verification_.evaluations() > 0 && verification_.blind();
@@ -149,8 +147,8 @@ class CubatureEstimator final : public Estimator {
         if (m_ > 1 && verification_.knows_correlations())
             for (std::size_t a = 0; a < components(); ++a)
                 for (std::size_t b = 0; b < components(); ++b)
-                    tally.covariance.push_back(verification_.correlation(a, b) * totals_.error[a] *
-                                               totals_.error[b]);
+                    tally.covariance.push_back(verification_.correlation(a, b) * totals_.error()[a] *
+                                               totals_.error()[b]);
         add_warnings(tally);
         return tally;
     }
@@ -165,8 +163,7 @@ class CubatureEstimator final : public Estimator {
         }
         montelux::save(state, non_finite_);
         state.put_all(std::vector<std::uint64_t>(nonzero_.begin(), nonzero_.end()));
-        state.put(disagreement_);
-        state.put(expected_);
+        totals_.save(state);
         state.put(at_limit_);
         state.put(singular_);
         verification_.save(state);
@@ -186,12 +183,8 @@ class CubatureEstimator final : public Estimator {
         montelux::load(state, non_finite_);
         const auto nonzero = state.get_all<std::uint64_t>();
         nonzero_.assign(nonzero.begin(), nonzero.end());
-        disagreement_ = state.get_doubles();
-        expected_ = state.get_doubles();
-        const auto components = static_cast<std::size_t>(m_);
-        if (nonzero_.size() != components || disagreement_.size() != components ||
-            expected_.size() != components)
-            throw Error("the saved state has another number of components");
+        totals_.load(state);
+        if (nonzero_.size() != components()) throw Error("the saved state has another number of components");
         at_limit_ = state.get<int>() != 0;
         singular_ = state.get_word();
         verification_.load(state, regions_.count());
@@ -200,44 +193,32 @@ class CubatureEstimator final : public Estimator {
     }
 
   private:
-    struct Totals {
-        explicit Totals(int components)
-            : value(static_cast<std::size_t>(components)), error(value.size()), rule_error(value.size()),
-              inflation(value.size(), 1.0), equal(value.size(), 0) {}
-        std::vector<double> value, error, rule_error, inflation;
-        std::vector<char> equal; // were all values the same, other than zero?
-    };
-
     std::size_t components() const { return static_cast<std::size_t>(m_); }
     bool started_coarse() const { return n_ == 1 || n_ >= 4; }
 
-    bool reached(const StepRequest& request) const { return reaches(totals_.error, request); }
+    bool reached(const StepRequest& request) const { return reaches(totals_.error(), request); }
     bool reaches(const std::vector<double>& error, const StepRequest& request) const {
         if (!(request.relative_error > 0 || request.absolute_error > 0)) return false;
         for (std::size_t c = 0; c < components(); ++c)
             if (!(error[c] <=
-                  std::max(request.absolute_error, request.relative_error * std::abs(totals_.value[c]))))
+                  std::max(request.absolute_error, request.relative_error * std::abs(totals_.value()[c]))))
                 return false;
         return true;
     }
 
     StepOutcome verify(const StepRequest& request) {
-        const std::uint64_t points = verification_.points(regions_, totals_.value, evaluations_, request);
+        const std::uint64_t points = verification_.points(regions_, totals_.value(), evaluations_, request);
         if (points == 0) {
-            verification_.skip(totals_.value, totals_.error);
+            verification_.skip(totals_.value(), totals_.error());
             return request.max_evaluations > 0 ? StepOutcome::advanced : StepOutcome::exhausted;
         }
-        const std::uint64_t made = verification_.run(regions_, totals_.value, totals_.error, points, request);
+        const std::uint64_t made =
+            verification_.run(regions_, totals_.value(), totals_.error(), points, request);
         if (made == 0) return StepOutcome::cancelled;
         evaluations_ += made;
         add_up();
         if (n_ > 1 && reached(request)) confirmation_.require(regions_);
         return StepOutcome::advanced;
-    }
-
-    // Few regions have tested one another yet.
-    double caution_of_few_regions() const {
-        return 1 + (caution_of_one_region - 1) / static_cast<double>(regions_.count());
     }
 
     // As many as cost about as much as a check; none if there are not enough evaluations left.
@@ -250,10 +231,10 @@ class CubatureEstimator final : public Estimator {
 
     // No region is left to halve. The error of equal values falls with the number of points.
     StepOutcome end(const StepRequest& request) {
-        if (verification_.due(regions_, totals_.value, totals_.error, evaluations_, request, true))
+        if (verification_.due(regions_, totals_.value(), totals_.error(), evaluations_, request, true))
             return verify(request);
-        if (equal_values() && evaluations_ < most_equal_values && !reached(request) &&
-            verification_.points(regions_, totals_.value, evaluations_, request) > 0) {
+        if (totals_.equal_values() && evaluations_ < most_equal_values && !reached(request) &&
+            verification_.points(regions_, totals_.value(), evaluations_, request) > 0) {
             verification_.renew();
             return verify(request);
         }
@@ -261,12 +242,6 @@ class CubatureEstimator final : public Estimator {
         for (std::size_t r = 0; r < regions_.count(); ++r)
             at_limit_ = at_limit_ && regions_.marks(r).exhausted;
         return StepOutcome::finished;
-    }
-
-    // Was the integrand the same at all points, and not zero? A constant beside other components, as for a
-    // normalisation, does not count.
-    bool equal_values() const {
-        return std::ranges::all_of(totals_.equal, [](char equal) { return equal != 0; });
     }
 
     // All values of a component were zero so far: its part may not have been found.
@@ -286,30 +261,26 @@ class CubatureEstimator final : public Estimator {
         bool all_reached = true;
         const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
         for (std::size_t c = 0; c < scale.size(); ++c) {
-            const double size = std::abs(totals_.value[c]);
+            const double size = std::abs(totals_.value()[c]);
             scale[c] = targeted ? std::max(request.absolute_error, request.relative_error * size) : size;
-            if (scale[c] == 0) scale[c] = totals_.error[c];
-            all_reached = all_reached && totals_.error[c] <= scale[c];
+            if (scale[c] == 0) scale[c] = totals_.error()[c];
+            all_reached = all_reached && totals_.error()[c] <= scale[c];
         }
         if (targeted && !all_reached)
             for (std::size_t c = 0; c < scale.size(); ++c)
-                if (totals_.error[c] <= scale[c]) scale[c] = 0;
+                if (totals_.error()[c] <= scale[c]) scale[c] = 0;
         return scale;
     }
 
     // Puts the halves in the place of the regions that were halved.
     void replace(const std::vector<std::size_t>& parents, CubatureRegions& halves) {
-        constexpr double memory = 0.9; // of a step, in the comparison of regions with their halves
-        for (double& x : disagreement_) x *= memory;
-        for (double& x : expected_) x *= memory;
+        totals_.begin_comparison();
         for (std::size_t p = 0; p < parents.size(); ++p) {
             const std::size_t parent = parents[p], a = 2 * p, b = a + 1;
             for (std::size_t c = 0; c < components(); ++c) {
-                const double expected = regions_.error(parent)[c];
                 const double difference =
                     std::abs(regions_.value(parent)[c] - halves.value(a)[c] - halves.value(b)[c]);
-                disagreement_[c] += difference * difference;
-                expected_[c] += expected * expected;
+                totals_.compare(c, regions_.error(parent)[c], difference);
                 double &of_a = halves.error(a)[c], &of_b = halves.error(b)[c];
                 if (const double sum = of_a + of_b; sum > 0) {
                     const double factor = 1 + difference / 4 / sum;
@@ -331,32 +302,7 @@ class CubatureEstimator final : public Estimator {
         verification_.follow(regions_, parents, regions_.count() - parents.size());
     }
 
-    void add_up() {
-        for (std::size_t c = 0; c < components(); ++c) {
-            CompensatedSum value, error;
-            double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
-            for (std::size_t r = 0; r < regions_.count(); ++r) {
-                value.add(regions_.value(r)[c]);
-                error.add(regions_.error(r)[c]);
-                lowest = std::min(lowest, regions_.lowest(r)[c]);
-                highest = std::max(highest, regions_.highest(r)[c]);
-            }
-            verification_.widen(c, lowest, highest);
-            totals_.value[c] = value.value();
-            totals_.inflation[c] =
-                expected_[c] > 0 ? std::max(1.0, std::sqrt(disagreement_[c] / expected_[c])) : 1;
-            totals_.error[c] = error.value() * totals_.inflation[c] * caution_of_few_regions();
-            totals_.error[c] *= confirmation_.factor(c);
-            totals_.error[c] += verification_.slack(c);
-            totals_.rule_error[c] = totals_.error[c];
-            totals_.equal[c] = lowest == highest && lowest != 0;
-        }
-        if (equal_values())
-            for (std::size_t c = 0; c < components(); ++c)
-                totals_.error[c] =
-                    std::max(totals_.error[c],
-                             equal_values_error(totals_.value[c], static_cast<double>(evaluations_)));
-    }
+    void add_up() { totals_.add_up(regions_, verification_, confirmation_, evaluations_); }
 
     void add_warnings(Tally& tally) const {
         std::size_t unseen = 0;
@@ -372,14 +318,14 @@ class CubatureEstimator final : public Estimator {
             tally.warnings.push_back("the memory for regions is used up at " + std::to_string(max_regions_) +
                                      " regions; raise max_memory, or take a method that samples");
         if (!verification_.warning().empty()) tally.warnings.push_back(verification_.warning());
-        if (equal_values() && evaluations_ >= most_equal_values)
+        if (totals_.equal_values() && evaluations_ >= most_equal_values)
             tally.warnings.push_back("the integrand was the same at each of " + std::to_string(evaluations_) +
                                      " points; the error is a bound on what they missed");
         for (std::size_t c = 0; c < components(); ++c) {
-            if (totals_.inflation[c] < 4 * caution_of_few_regions()) continue;
+            if (totals_.inflation(c) < 4 * CubatureTotals::caution(regions_.count())) continue;
             std::ostringstream text;
             text.precision(2);
-            text << "the errors of recently halved regions were " << totals_.inflation[c]
+            text << "the errors of recently halved regions were " << totals_.inflation(c)
                  << " times too small, and were enlarged by that factor; the integrand is rougher than the "
                     "rules assume";
             tally.warnings.push_back(text.str());
@@ -392,14 +338,12 @@ class CubatureEstimator final : public Estimator {
     std::optional<SymmetricRule> coarse_, fine_;
     CubatureRegions regions_;
     std::size_t max_regions_;
-    Totals totals_;
+    CubatureTotals totals_;
     std::uint64_t evaluations_ = 0;
     ValueBuffer nested_;   // in one dimension: those of the cube, as long as it is the only region
     bool refined_ = false; // the cube was evaluated again by the fine rule
     NonFiniteCount non_finite_;
-    std::vector<char> nonzero_; // a component: was it ever seen to be other than zero?
-    // Recent squared differences of regions from their halves, and the squares that their errors predicted.
-    std::vector<double> disagreement_, expected_;
+    std::vector<char> nonzero_;  // a component: was it ever seen to be other than zero?
     bool at_limit_ = false;      // every region's error is rounding
     std::uint64_t singular_ = 0; // evaluations repeated beside singularities
     CubatureVerification verification_;
