@@ -83,11 +83,20 @@ def test_textures_in_a_file_change_nothing(tmp_path):
         'Shape "sphere"', 'Texture "t" "spectrum" "imagemap" "string filename" "map.exr"\n'
         'Material "diffuse" "texture reflectance" "t" Shape "sphere"')
     (tmp_path / "scene.pbrt").write_text(text)
-    usual = montelux.load(tmp_path / "scene.pbrt").render(spp=4).mean
-    for scene in (
-        montelux.load(tmp_path / "scene.pbrt", texture_memory=16 << 20),
-        montelux.parse(text, folder=tmp_path, texture_memory=1 << 40),
+    plain = montelux.load(tmp_path / "scene.pbrt")
+    usual = plain.render(spp=4).mean
+
+    def unnamed_files():
+        with open("/proc/self/maps") as maps:
+            return sum("(deleted)" in line for line in maps)
+
+    for load in (
+        lambda: montelux.load(tmp_path / "scene.pbrt", texture_memory=16 << 20),
+        lambda: montelux.parse(text, folder=tmp_path, texture_memory=1 << 40),
     ):
+        before = unnamed_files()
+        scene = load()
+        assert unnamed_files() > before
         assert (scene.render(spp=4).mean == usual).all()
     for wrong in (-1, 1.5, "500M", True, 1 << 70):
         with pytest.raises(montelux.Error, match="texture_memory: .* was given; expected a number of bytes"):

@@ -44,6 +44,8 @@ sed 's/Film "rgb"/Film "rgb" "bool savefp16" true/' ball.pbrt >fp16.pbrt
 expect 0 "" render fp16.pbrt --layers mean -o fp16.exr
 cmp -s fp16.exr full_mean.exr && fail "savefp16 has no effect"
 expect 0 "16-bit float" info fp16.exr
+expect 0 "" render fp16.pbrt --layers mean --no-half -o wide.exr
+expect 0 "32-bit float" info wide.exr
 sed 's/"rgb I" \[9 9 9\]/"rgb I" [9e9 9e9 9e9]/' ball.pbrt >bright.pbrt
 expect 0 "values beyond the range of 16-bit floats became 65504" render bright.pbrt --layers mean --half -o bright.exr
 

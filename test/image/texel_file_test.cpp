@@ -6,17 +6,28 @@
 #include <chrono>
 #include <csignal>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <exception>
+#include <fcntl.h>
 #include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <pthread.h>
+#include <span>
 #include <string>
+#include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/statfs.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
 #include <vector>
+
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 #include "montelux/image/image.h"
 #include "montelux/image/texel_file.h"
@@ -42,11 +53,41 @@ bool contains(const std::string& text, const std::string& part) {
 // The byte at a place, different for neighbours and pages.
 std::byte byte_at(std::size_t i) { return static_cast<std::byte>(i * 7 + i / 4096 * 13); }
 
+// Of the unnamed file in the folder: bytes on the disk, and how many of its blocks are mapped.
+struct Usage {
+    std::uintmax_t on_disk = 0;
+    int mappings = 0;
+};
+Usage usage_of(const TemporaryFolder& folder) {
+    Usage usage;
+    const std::string begin = folder.path().string() + "/";
+    for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+        std::error_code gone;
+        struct stat info {};
+        if (std::filesystem::read_symlink(entry, gone).string().starts_with(begin) &&
+            ::stat(entry.path().c_str(), &info) == 0)
+            usage.on_disk += static_cast<std::uintmax_t>(info.st_blocks) * 512;
+    }
+    std::ifstream maps("/proc/self/maps");
+    for (std::string line; std::getline(maps, line);) usage.mappings += contains(line, begin);
+    return usage;
+}
+
+// Whether the file system can free a part of a file.
+bool punches_holes(const TemporaryFolder& folder) {
+    const int file = ::open((folder / "holes").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    const bool can = ::posix_fallocate(file, 0, 65536) == 0 &&
+                     ::fallocate(file, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0, 65536) == 0;
+    ::close(file);
+    std::filesystem::remove(folder / "holes");
+    return can;
+}
+
 std::shared_ptr<TexelBlock> filled_block(TexelFile& file, std::size_t size) {
     auto block = file.allocate(size);
     std::vector<std::byte> part;
     for (std::size_t i = 0; i < size; i += part.size()) {
-        part.resize(std::min(mib, size - i));
+        part.resize(std::min<std::size_t>(100000, size - i));
         for (std::size_t k = 0; k < part.size(); ++k) part[k] = byte_at(i + k);
         block->write(i, part);
     }
@@ -72,8 +113,26 @@ TEST(TexelFile, BlocksHoldWhatIsWritten) {
     for (const auto& block : blocks) block->give_back();
     EXPECT_EQ(file->resident(), 0u);
     EXPECT_EQ(blocks.back()->bytes()[299999], byte_at(299999));
+    const Usage before = usage_of(folder);
+    EXPECT_GT(before.on_disk, 300000u);
+    EXPECT_GT(before.mappings, 0);
+    const std::span<const std::byte> last = blocks.back()->bytes();
     blocks.clear();
     EXPECT_EQ(file->bytes(), 0u);
+    // What is mapped where a block was is none of the file's.
+    void* const there = const_cast<std::byte*>(last.data());
+    void* const other = ::mmap(there, last.size(), PROT_READ | PROT_WRITE,
+                               MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED_NOREPLACE, -1, 0);
+    if (other != MAP_FAILED) {
+        std::memset(other, 1, last.size());
+        EXPECT_EQ(file->resident(), 0u);
+        ::munmap(other, last.size());
+    }
+    const Usage after = usage_of(folder);
+    EXPECT_EQ(after.mappings, 0);
+    if (punches_holes(folder)) {
+        EXPECT_LT(after.on_disk, before.on_disk / 4);
+    }
 }
 
 TEST(TexelFile, RefusalsSayWhatToDo) {
@@ -131,7 +190,7 @@ TEST(TexelFile, MissingSpaceIsAnErrorBeforeAnythingIsRead) {
             Image image(512, 1024, {"Y"}, PixelFormat::u8);
             image.move_to(*file);
             code = 2;
-            Image(700, 1000, {"Y"}, PixelFormat::u8).move_to(*file);
+            static_cast<void>(file->allocate(700 * 1000)); // not written yet
         } catch (const Error& e) {
             if (contains(e.what(), "0.668 MiB of texels cannot be written to the temporary folder"))
                 code += 10;
@@ -184,12 +243,29 @@ TEST(TexelFile, ImagesStayTheSame) {
     EXPECT_EQ(file->bytes(), 0u);
 }
 
+#if defined(__GLIBC__) && __GLIBC_PREREQ(2, 33)
+TEST(TexelFile, TakesImagesOutOfMemory) {
+    if (under_sanitizers) GTEST_SKIP() << "the sanitizer has a heap of its own";
+    const TemporaryFolder folder;
+    const auto file = TexelFile::create(16 * mib, folder.path());
+    Image image(1024, 1024, {"R", "G", "B", "A"}, PixelFormat::f32);
+    const auto heap = [] {
+        const struct mallinfo2 info = mallinfo2();
+        return info.uordblks + info.hblkhd;
+    };
+    const std::size_t before = heap();
+    image.move_to(*file);
+    EXPECT_LT(heap() + 15 * mib, before);
+}
+#endif
+
 // Two readers that make another 64 KiB resident every 20 us: ten times as often as the render of a large picture.
 TEST(TexelFile, LittleIsResident) {
     if (under_sanitizers) GTEST_SKIP() << "the sanitizer's threads are too slow to keep the limit";
     const TemporaryFolder folder;
     const std::size_t limit = 128 * mib, size = 512 * mib;
     const auto file = TexelFile::create(limit, folder.path());
+    std::this_thread::sleep_for(std::chrono::milliseconds(30)); // its thread sleeps until there is a block
     std::vector<std::shared_ptr<TexelBlock>> blocks;
     for (int i = 0; i < 4; ++i) blocks.push_back(filled_block(*file, size / 4));
     std::atomic<std::size_t> wrong{0}, rounds{0};

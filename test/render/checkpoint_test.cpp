@@ -131,6 +131,24 @@ TEST_F(Checkpoint, OtherRendersAreRefusedWithTheReason) {
             {}, "film");
     refused(changed([](SceneDescription& d) { ++d.sampler.seed; }), {}, "sampler or seed");
     refused(changed([](SceneDescription& d) { ++d.integrator.max_depth; }), {}, "integrator");
+    const auto refused_integrator = [&](auto change) {
+        refused(changed([&](SceneDescription& d) { change(d.integrator); }), {}, "integrator");
+    };
+    refused_integrator([](IntegratorSettings& s) { s.regularize = true; });
+    refused_integrator([](IntegratorSettings& s) { s.equiangular = !s.equiangular; });
+    refused_integrator([](IntegratorSettings& s) { s.shading_terminator = ShadingTerminator::soft; });
+    refused_integrator(
+        [](IntegratorSettings& s) { s.microfacet_scattering = MicrofacetScattering::multiple; });
+    refused_integrator([](IntegratorSettings& s) { s.occlusion = OcclusionSettings{}; });
+    const SceneDescription occlusion =
+        changed([](SceneDescription& d) { d.integrator.occlusion = OcclusionSettings{}; });
+    save_checkpoint(path_, Renderer(occlusion), RenderState(occlusion.film));
+    EXPECT_NO_THROW(load_checkpoint(path_, occlusion, {}));
+    refused_integrator([](IntegratorSettings& s) { s.occlusion = OcclusionSettings{.max_distance = 1}; });
+    refused_integrator([](IntegratorSettings& s) { s.occlusion = OcclusionSettings{.cosine = false}; });
+    save_checkpoint(path_, renderer, RenderState(b.description.film));
+    refused(changed([](SceneDescription& d) { d.film.sensor = "nikon_d850"; }), {}, "film");
+    refused(changed([](SceneDescription& d) { d.film.spectral = SpectralSettings{}; }), {}, "film");
     refused(b.description, {.adaptive = true}, "allocation");
     refused(b.description, {.slice = {0, 2}}, "slice");
     refused(changed([](SceneDescription& d) {

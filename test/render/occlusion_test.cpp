@@ -39,9 +39,29 @@ TEST(AmbientOcclusion, OfASphereAboveAFloor) {
 // cos(theta) = (h^2 + d^2 - r^2) / (2 h d).
 TEST(AmbientOcclusion, EndsAtTheMaximumDistance) {
     const double r = 1, h = 2, d = 1.2, c = (h * h + d * d - r * r) / (2 * h * d);
-    const PictureMean m =
-        picture_mean(render(floor_below_sphere(r, h, {.max_distance = static_cast<float>(d)})));
+    SceneDescription scene = floor_below_sphere(r, h, {.max_distance = static_cast<float>(d)});
+    const PictureMean m = picture_mean(render(scene));
     EXPECT_NEAR(m.mean, c * c, 5.5 * m.standard_error + 1e-4);
+    // The distance is that from the floor, with an interface on the way as well.
+    CallMessages messages("scene of a test");
+    scene.scene.materials.push_back(InterfaceMaterial{});
+    montelux::SceneBuilder(scene.scene, messages)
+        .add_shape(square(Transform::translate({0, 0, 0.4}) * Transform::scale({9, 9, 1})), {.material = 2});
+    const PictureMean through = picture_mean(render(scene));
+    EXPECT_NEAR(through.mean, c * c, 5.5 * through.standard_error + 1e-4);
+}
+
+// The sphere has moved away when the shutter opens.
+TEST(AmbientOcclusion, SeesTheSceneAtTheTimeOfTheSample) {
+    SceneDescription d = floor_below_sphere(1, 2, {});
+    d.scene.world_shapes = {0};
+    d.scene.objects.push_back({.shapes = {1}});
+    d.scene.motions.emplace_back(Transform(), Transform::translate({0, 0, 1e6}));
+    d.scene.instances.push_back({0, Transform(), 0});
+    d.scene.camera.shutter_open = 1;
+    d.scene.camera.shutter_close = 2;
+    const PictureMean m = picture_mean(render(d));
+    EXPECT_NEAR(m.mean, 1, 5.5 * m.standard_error + 1e-4);
 }
 
 TEST(AmbientOcclusion, InterfacesAndLightsDoNotMatter) {

@@ -168,6 +168,20 @@ TEST(ShadingTerminator, SoftDoesNotLetFacetsShadowASmoothSphere) {
     EXPECT_GT(soft.dark, 50);
 }
 
+// A medium in no shape: the picture is made by the integrator of volumes.
+TEST(ShadingTerminator, SoftServesPathsThroughMedia) {
+    SceneBuilder b = coarse_scene(ShadingTerminator::soft);
+    b.description.sampler.spp = 1024;
+    const PictureMean surfaces = picture_mean(render(b.description));
+    b.scene.media.push_back(HomogeneousMedium{});
+    const PictureMean volumes = picture_mean(render(b.description));
+    b.description.integrator.shading_terminator = ShadingTerminator::hard;
+    const PictureMean hard = picture_mean(render(b.description));
+    const double error = std::hypot(surfaces.standard_error, volumes.standard_error);
+    EXPECT_NEAR(volumes.mean, surfaces.mean, 5 * error);
+    EXPECT_GT(volumes.mean - hard.mean, 20 * error);
+}
+
 // Normal maps are bounded by the smooth surface, not by the facet.
 TEST(ShadingTerminator, SoftServesTiltedNormals) {
     SceneBuilder b = coarse_scene(ShadingTerminator::soft);

@@ -130,5 +130,27 @@ TEST(RaisedPosition, FollowsInstances) {
     EXPECT_GT(length(*a - t.point(Vec3f{0.3f, 0.25f, 0})), 0.01f);
 }
 
+// Where they are at the ray's time.
+TEST(RaisedPosition, FollowsInstancesThatMove) {
+    Scene moving = triangle_with(bulging);
+    moving.instances[0].motion = 0;
+    moving.motions.emplace_back(moving.instances[0].world_from_object,
+                                Transform::translate({1, 3, 0}) * moving.instances[0].world_from_object *
+                                    Transform::rotate(40, {1, 2, 0}));
+    Scene still = triangle_with(bulging);
+    constexpr float time = 0.625f;
+    still.instances[0].world_from_object = moving.motions[0].at(time);
+    const Hit hit = hit_at(0.3f, 0.25f, 0);
+    const auto raised_in = [&](const Scene& s) {
+        const SceneView view(s);
+        const Vec3f n = still.instances[0].world_from_object.normal(Normal3f{0, 0, 1});
+        const Ray ray{Vec3f{}, -normalize(n), 1e30f, time};
+        return raised_position(view, ray, hit, surface_point(view, ray, hit, false));
+    };
+    const auto a = raised_in(moving), b = raised_in(still);
+    ASSERT_TRUE(a && b);
+    EXPECT_LT(length(*a - *b), 1e-6f);
+}
+
 } // namespace
 } // namespace montelux

@@ -224,5 +224,14 @@ TEST_F(MovingShapes, OfManyUsesAreLimited) {
     EXPECT_TRUE(scene_.instances.empty());
 }
 
+// The motion of a use has more keys than those of the parts.
+TEST_F(MovingShapes, OfManyMovingUsesAreLimited) {
+    builder_.begin_object("o");
+    for (int i = 0; i < 1000; ++i) moving({}, Transform::translate({i + 1.0, 0, 0}));
+    builder_.end_object();
+    for (int i = 0; i < 320; ++i) builder_.add_instance("o", {}, Transform::rotate(180, {0, 0, 1}));
+    EXPECT_NE(error_of([&] { builder_.finish(); }).find("need more than 4 GiB"), std::string::npos);
+}
+
 } // namespace
 } // namespace montelux
