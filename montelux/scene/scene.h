@@ -43,7 +43,7 @@ struct Scene {
     std::vector<Index> world_shapes; // shapes directly in the world
     std::vector<ObjectDefinition> objects;
     std::vector<Instance> instances;
-    std::vector<Motion> motions; // of instances
+    std::vector<Motion> motions; // of instances and lights
 
     std::vector<Spectrum> spectra; // of materials, textures, lights, media; their order has no meaning
     std::vector<Material> materials;

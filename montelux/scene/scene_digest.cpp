@@ -348,16 +348,19 @@ class SceneHasher {
         if (picture != no_index) add(picture);
     }
     void add(const PointLight& l) {
-        const auto& [spectrum, scale, position] = l;
+        const auto& [spectrum, scale, position, motion] = l;
         all(spectrum, scale, position);
+        if (motion != no_index) add(motion);
     }
     void add(const SpotLight& l) {
-        const auto& [spectrum, scale, position, axis, cos_falloff_start, cos_total_width] = l;
+        const auto& [spectrum, scale, position, axis, cos_falloff_start, cos_total_width, motion] = l;
         all(spectrum, scale, position, axis, cos_falloff_start, cos_total_width);
+        if (motion != no_index) add(motion);
     }
     void add(const DistantLight& l) {
-        const auto& [spectrum, scale, to_light] = l;
+        const auto& [spectrum, scale, to_light, motion] = l;
         all(spectrum, scale, to_light);
+        if (motion != no_index) add(motion);
     }
     void add(const Portal& p) { add(p.corners()); }
     void add(const UniformInfiniteLight& l) {
@@ -365,28 +368,33 @@ class SceneHasher {
         all(spectrum, scale, portal);
     }
     void add(const ImageInfiniteLight& l) {
-        const auto& [environment, layout, scale, world_from_light, portal] = l;
+        const auto& [environment, layout, scale, world_from_light, portal, motion] = l;
         all(environment, layout, scale, world_from_light, portal);
+        if (motion != no_index) add(motion);
     }
     void add(const SkyLight& l) {
-        const auto& [sky, environment, scale, world_from_light] = l;
+        const auto& [sky, environment, scale, world_from_light, motion] = l;
         all(sky, environment, scale, world_from_light);
+        if (motion != no_index) add(motion);
     }
     void add(const SunDisc& d) {
         const auto& [centre, versine] = d;
         all(centre, versine);
     }
     void add(const SunLight& l) {
-        const auto& [spectrum, scale, disc, up] = l;
+        const auto& [spectrum, scale, disc, up, motion] = l;
         all(spectrum, scale, disc, up);
+        if (motion != no_index) add(motion);
     }
     void add(const GoniometricLight& l) {
-        const auto& [spectrum, scale, environment, layout, world_from_map] = l;
+        const auto& [spectrum, scale, environment, layout, world_from_map, motion] = l;
         all(spectrum, scale, environment, layout, world_from_map);
+        if (motion != no_index) add(motion);
     }
     void add(const ProjectionLight& l) {
-        const auto& [environment, scale, fov, world_from_light] = l;
+        const auto& [environment, scale, fov, world_from_light, motion] = l;
         all(environment, scale, fov, world_from_light);
+        if (motion != no_index) add(motion);
     }
     // Its tables follow from its settings.
     void add(const SkyModel& sky) {

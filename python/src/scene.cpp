@@ -64,6 +64,13 @@ Light plain_light(const SceneRef& scene, const nb::object& o) {
                        static_assert(sizeof(L) == 0, "say whether scene.lights takes this light from Python");
                    }},
         given->read());
+    std::visit(
+        [&](const auto& light) {
+            if constexpr (requires { light.motion; })
+                if (light.motion != no_index && given->scene() != scene)
+                    throw Error("lights", "a light that moves belongs to its scene file");
+        },
+        given->read());
     return value_for(scene, *given);
 }
 
@@ -340,8 +347,7 @@ void bind_scene(nb::module_& m) {
             "Triangles: positions of shape (n, 3), triangles of shape (m, 3) indices into them; normals (n, "
             "3) and uvs (n, 2) are one per position. end_positions: of a mesh that deforms while the shutter "
             "is open, from positions (at time 0) on straight lines; end_normals with them, if normals are "
-            "given. Such a mesh has no light. transform: a matrix of shape (4, 4). light: an AreaLight or a "
-            "spectrum. Returns the Shape.")
+            "given. transform: a matrix of shape (4, 4). light: an AreaLight or a spectrum. Returns the Shape.")
         .def(
             "add_sphere",
             [](const SceneObject& s, double radius, const nb::object& material, const nb::object& centre,

@@ -202,9 +202,10 @@ def test_meshes_deform_while_the_shutter_is_open():
     row = scene.render(spp=1024).mean[8, :, 1]
     assert row == pytest.approx(x, abs=0.08)
     assert scene.add_sphere(1, montelux.Diffuse()).end_positions is None
-    with pytest.raises(montelux.Error, match="a mesh that deforms does not emit light"):
-        shape.light = (1, 1, 1)
-    assert shape.light is None and len(scene.lights) == 1
+    # It may shine: |x| sees it until the time 1 - |x|, and the sky of the same radiance afterwards.
+    shape.light = (1, 1, 1)
+    assert len(scene.lights) == 2
+    assert scene.render(spp=256).mean[8, :, 1] == pytest.approx(np.ones(16), abs=0.02)
 
 
 def test_meshes_textures_and_environments():
@@ -487,7 +488,6 @@ def test_messages_name_the_kind_of_files_that_are_not_scenes(tmp_path):
         ({"end_positions": np.empty((0, 3))}, "add_mesh, end_positions: expected one per position"),
         ({"end_positions": np.full((3, 3), np.nan)}, "add_mesh: vertex 0 lies at infinity in world space at the end"),
         ({"end_normals": [[0, 0, 1]] * 3}, "add_mesh: the mesh has normals at the end, but no positions"),
-        ({"end_positions": np.eye(3), "light": (1, 1, 1)}, "add_mesh: a mesh that deforms does not emit light"),
         ({"light": montelux.Spectrum(-1)}, "Shape.light: the light's spectrum has no positive luminance"),
     ],
 )

@@ -229,18 +229,6 @@ TEST_F(SceneBuilding, InstancesThatDeformToInfinityAreRefused) {
               "line 5: the instance reaches to infinity in world space");
 }
 
-// A light that is given to the shape later.
-TEST_F(SceneBuilding, LightsOfMeshesThatDeformAreRefused) {
-    TriangleMesh mesh = two_triangles();
-    mesh.end_positions = mesh.positions;
-    const Index shape = builder_.add_shape(mesh, {});
-    EXPECT_EQ(
-        error_of([&] {
-            builder_.add_light(AreaLight{1.0f, 1, false, shape}, line(3));
-        }),
-        "line 3: a mesh that deforms does not emit light; give it no light, or no positions at the end");
-}
-
 TEST_F(SceneBuilding, ShapesWithoutMaterialAreRefused) {
     builder_.add_shape(two_triangles(), {});
     EXPECT_EQ(error_of([&] { builder_.finish(line(9)); }), "line 9: shape 0 has no material");
