@@ -191,10 +191,10 @@ TEST(MovingLights, StrategiesAndChoicesAgree) {
     };
     std::vector<PictureMean> means;
     for (const Way& way :
-         {Way{Strategy::mis, LightSampling::tree, 512}, Way{Strategy::mis, LightSampling::power, 512},
-          Way{Strategy::mis, LightSampling::uniform, 512}, Way{Strategy::light, LightSampling::tree, 1024},
-          Way{Strategy::light, LightSampling::power, 1024}, Way{Strategy::bsdf, LightSampling::tree, 4096},
-          Way{Strategy::mis, LightSampling::tree, 512}}) {
+         {Way{Strategy::mis, LightSampling::tree, 1024}, Way{Strategy::mis, LightSampling::power, 1024},
+          Way{Strategy::mis, LightSampling::uniform, 1024}, Way{Strategy::light, LightSampling::tree, 2048},
+          Way{Strategy::light, LightSampling::power, 2048}, Way{Strategy::bsdf, LightSampling::tree, 8192},
+          Way{Strategy::mis, LightSampling::tree, 1024}}) {
         Swarm swarm;
         swarm.description().integrator.strategy = way.strategy;
         swarm.description().integrator.light_sampling = way.choice;
@@ -208,7 +208,6 @@ TEST(MovingLights, StrategiesAndChoicesAgree) {
     }
 }
 
-// Both terms of MIS are shares of one integral: their sum is that of each alone.
 TEST(MovingLights, ReplaysHaveTheSameBits) {
     Swarm swarm;
     swarm.description().sampler.spp = 8;

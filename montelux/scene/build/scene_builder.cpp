@@ -84,7 +84,7 @@ Index SceneBuilder::add_moving_shape(Geometry geometry, const ShapeSettings& set
     const auto object = static_cast<Index>(scene_.objects.size());
     const std::string name = "\n" + std::to_string(object); // no name in a file
     objects_.declare(name, object, at, messages_);
-    scene_.objects.emplace_back();
+    scene_.objects.emplace_back().shines = true;
     const Index shape = add_shape_to(object, std::move(geometry), settings, "", at);
     add_instance(name, start, end, at);
     return shape;

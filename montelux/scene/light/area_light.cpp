@@ -322,7 +322,7 @@ void AreaLight::powers(const LightContext& context, std::span<double> parts) con
 
 std::optional<LightBounds> AreaLight::bounds(const LightContext& context, Index part) const {
     const Shape& s = context.scene.shapes[shape];
-    if (moves(context)) return moving_emitter_bounds(context, *this, part, false);
+    if (moves(context)) return moving_emitter_bounds(context, *this, part);
     LightBounds b = visit_geometry(
         context.scene, s,
         Overloaded{[&](const TriangleMesh& mesh) {

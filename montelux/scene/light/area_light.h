@@ -9,7 +9,7 @@ namespace montelux {
 // Radiance scale * spectrum, W/(m^2 sr nm), from the front (or both sides) of a shape; the front is where
 // SurfacePoint::ng points. The parts are the triangles or patches of a mesh. A shape with holes emits only from the
 // points that are present (Shape::alpha); one with alpha 0 everywhere emits fully and is invisible, as in
-// pbrt-v4. A shape in an object emits if the object has exactly one instance, with which it moves.
+// pbrt-v4. Shapes inside objects emit where ObjectDefinition::shines.
 struct AreaLight {
     static constexpr LightKind kind = LightKind::surface;
     static constexpr std::string_view name = "area light";

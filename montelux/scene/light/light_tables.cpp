@@ -114,7 +114,7 @@ void LightTables::find_emitters(const Scene& scene) {
     }
     for (Index object = 0; object < scene.objects.size(); ++object) {
         const Index only = instance_of_object[object];
-        if (only >= several) continue;
+        if (only >= several || !scene.objects[object].shines) continue;
         for (const Index shape : scene.objects[object].shapes) {
             emits_[shape] = 1;
             instance_of_shape[shape] = only;

@@ -39,7 +39,7 @@ struct LightTablesView {
     // Spectra of the texels of each map; empty for maps that are too large.
     std::span<const std::vector<RgbUnboundedSpectrum>> map_spectra;
     std::span<const Index> infinite_lights;
-    // Of each light of a shape in an object: the one instance of the object; no_index for others.
+    // Of each light of a shape in an object that shines: its one instance; no_index for others.
     std::span<const Index> instance_of_light;
     std::span<const char> emits; // one per shape: 0 or 1
     Bounds3 scene_bounds;
@@ -80,7 +80,8 @@ struct LightTablesView {
     // For lights that are whole spheres or discs without holes, in the space of the shape.
     const std::optional<WorldSphere>& sphere(Index light) const { return spheres[light]; }
     const std::optional<WorldDisk>& disk(Index light) const { return disks[light]; }
-    // Whether a shape with a light emits: it is directly in the world, or in an object with exactly one instance.
+    // Whether a shape with a light emits: it is directly in the world, or in an object that shines
+    // (ObjectDefinition::shines).
     bool may_emit(Index shape) const { return emits[shape] != 0; }
     Index instance(Index light) const { return instance_of_light[light]; }
 

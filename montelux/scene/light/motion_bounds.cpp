@@ -104,15 +104,16 @@ struct Sides {
     bool front = true, back = false;
 };
 
-Sides sides_of(const TriangleMesh& mesh, const Shape& shape, Index part) {
+Sides sides_of(const SceneView& scene, const Shape& shape, Index part) {
     const bool flip = shape.flip_normal;
-    if (mesh.normals.empty()) return {!flip, flip};
-    if (mesh.deforms()) return {true, true};
+    const TriangleMesh* mesh = mesh_of(scene, shape);
+    if (mesh == nullptr || mesh->normals.empty()) return {!flip, flip};
+    if (mesh->deforms()) return {true, true};
     // Vertex normals decide; where they disagree the side changes within the triangle.
-    const LightTriangle t = light_triangle(mesh, shape, part);
+    const LightTriangle t = light_triangle(*mesh, shape, part);
     int turned = 0;
     for (std::size_t k = 0; k < 3; ++k)
-        turned += turns_normal(mesh.normals[mesh.indices[3 * std::size_t{part} + k]], t.n);
+        turned += turns_normal(mesh->normals[mesh->indices[3 * std::size_t{part} + k]], t.n);
     return {flip ? turned > 0 : turned < 3, flip ? turned < 3 : turned > 0};
 }
 
@@ -127,34 +128,38 @@ void add_normals(const Pose& from, const Pose& to, std::vector<Cap>& normals) {
     }
 }
 
-// The poses of a part at the keys of its motion.
-std::vector<Pose> poses_of(const LightContext& context, const Shape& shape, Index part, bool whole_motion) {
-    const SceneView& scene = context.scene;
-    const auto at = [&](float time) {
-        return visit_geometry(scene, shape,
-                              Overloaded{[&](const TriangleMesh& mesh) { return pose_of(mesh, part, time); },
-                                         [&](const BilinearMesh& mesh) { return pose_of(mesh, part); },
-                                         [](const Quadric& quadric) { return pose_of(quadric); },
-                                         [](const Curves&) { return Pose(); }});
-    };
+// In the space of the shape.
+Pose own_pose(const SceneView& scene, const Shape& shape, Index part, float time) {
+    return visit_geometry(scene, shape,
+                          Overloaded{[&](const TriangleMesh& mesh) { return pose_of(mesh, part, time); },
+                                     [&](const BilinearMesh& mesh) { return pose_of(mesh, part); },
+                                     [](const Quadric& quadric) { return pose_of(quadric); },
+                                     [](const Curves&) { return Pose(); }});
+}
+
+// In the world at the context's time.
+Pose world_pose(const LightContext& context, const Shape& shape, Index part) {
+    const Pose pose = own_pose(context.scene, shape, part, context.time);
     const Index instance = context.tables().instance(context.light);
-    const auto place = [&](float time) {
-        return instance == no_index ? Transform()
-                                    : EmitterPlace({scene, context.light, time}, instance).world_from_shape();
-    };
-    if (!whole_motion) return {placed_pose(at(context.time), place(context.time))};
+    return instance == no_index ? pose
+                                : placed_pose(pose, EmitterPlace(context, instance).world_from_shape());
+}
+
+// In the world at the keys of the motion.
+std::vector<Pose> key_poses(const LightContext& context, const Shape& shape, Index part) {
+    const SceneView& scene = context.scene;
+    const auto world = [&](float time) { return world_pose({scene, context.light, time}, shape, part); };
     const TriangleMesh* mesh = mesh_of(scene, shape);
     const bool deforms = mesh != nullptr && mesh->deforms();
-    const bool travels = instance != no_index && scene.instances[instance].motion != no_index;
-    if (!travels) {
-        if (!deforms) return {placed_pose(at(0), place(0))};
-        return {placed_pose(at(0), place(0)), placed_pose(at(1), place(0))};
-    }
+    const Index instance = context.tables().instance(context.light);
+    if (instance == no_index || scene.instances[instance].motion == no_index)
+        return deforms ? std::vector{world(0), world(1)} : std::vector{world(0)};
+    const Pose own = own_pose(scene, shape, part, 0), own_end = own_pose(scene, shape, part, 1);
     std::vector<Pose> poses;
     for (const Matrix4& key : scene.motions[scene.instances[instance].motion].keys()) {
         const Transform t(key, Matrix4{}); // the inverse is not used
-        poses.push_back(placed_pose(at(0), t));
-        if (deforms) poses.push_back(placed_pose(at(1), t));
+        poses.push_back(placed_pose(own, t));
+        if (deforms) poses.push_back(placed_pose(own_end, t));
     }
     // Of a mesh that also deforms on its way the normals are of a higher degree.
     if (deforms)
@@ -162,8 +167,29 @@ std::vector<Pose> poses_of(const LightContext& context, const Shape& shape, Inde
     return poses;
 }
 
+LightBounds emitter_bounds(const LightContext& context, const AreaLight& light, Index part,
+                           std::span<const Pose> poses, std::span<const Cap> normals) {
+    LightBounds b;
+    for (const Pose& pose : poses)
+        for (const Vec3d p : std::span(pose.points).first(pose.point_count)) b.box.add(p);
+    set_cone(normals, b);
+    const Sides sides = sides_of(context.scene, context.scene.shapes[light.shape], part);
+    if (!sides.front) b.axis = -b.axis;
+    b.two_sided = light.two_sided || (sides.front && sides.back);
+    b.cos_theta_e = 0;
+    return b;
+}
+
+LightBounds bounds_over_motion(const LightContext& context, const AreaLight& light, Index part) {
+    const std::vector<Pose> poses = key_poses(context, context.scene.shapes[light.shape], part);
+    std::vector<Cap> normals;
+    for (std::size_t i = 0; i + 1 < poses.size(); ++i) add_normals(poses[i], poses[i + 1], normals);
+    if (poses.size() == 1) add_normals(poses[0], poses[0], normals);
+    return emitter_bounds(context, light, part, poses, normals);
+}
+
 template <MovableLight L>
-std::optional<LightBounds> moving_bounds(const LightContext& context, const L& light, Index part) {
+std::optional<LightBounds> bounds_over_motion(const LightContext& context, const L& light, Index part) {
     LightBounds all;
     std::vector<Cap> caps;
     for (const Matrix4& key : context.scene.motions[light.motion].keys()) {
@@ -183,35 +209,24 @@ std::optional<LightBounds> moving_bounds(const LightContext& context, const L& l
 
 } // namespace
 
-LightBounds moving_emitter_bounds(const LightContext& context, const AreaLight& light, Index part,
-                                  bool whole_motion) {
-    const Shape& shape = context.scene.shapes[light.shape];
-    const std::vector<Pose> poses = poses_of(context, shape, part, whole_motion);
-    LightBounds b;
-    std::vector<Cap> normals;
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-        for (const Vec3d p : std::span(poses[i].points).first(poses[i].point_count)) b.box.add(p);
-        add_normals(poses[i], poses[std::min(i + 1, poses.size() - 1)], normals);
-    }
-    set_cone(normals, b);
-    const TriangleMesh* mesh = mesh_of(context.scene, shape);
-    const Sides sides =
-        mesh != nullptr ? sides_of(*mesh, shape, part) : Sides{!shape.flip_normal, shape.flip_normal};
-    if (!sides.front) b.axis = -b.axis;
-    b.two_sided = light.two_sided || (sides.front && sides.back);
-    b.cos_theta_e = 0;
-    return b;
+LightBounds moving_emitter_bounds(const LightContext& context, const AreaLight& light, Index part) {
+    const Pose pose = world_pose(context, context.scene.shapes[light.shape], part);
+    std::array<Cap, 4> normals; // this is called in the sampling loop, which does not allocate
+    for (std::size_t i = 0; i < pose.edge_count; ++i)
+        normals[i].axis = cross(pose.edges[i][0], pose.edges[i][1]);
+    return emitter_bounds(context, light, part, std::span(&pose, 1),
+                          std::span(normals).first(pose.edge_count));
 }
 
 std::optional<LightBounds> motion_bounds(const LightContext& context, Index part) {
     return std::visit(Overloaded{[&](const AreaLight& light) -> std::optional<LightBounds> {
                                      if (!light.moves(context)) return light.bounds(context, part);
-                                     return moving_emitter_bounds(context, light, part, true);
+                                     return bounds_over_motion(context, light, part);
                                  },
                                  [&](const auto& light) -> std::optional<LightBounds> {
                                      if constexpr (MovableLight<std::decay_t<decltype(light)>>)
                                          if (light.motion != no_index)
-                                             return moving_bounds(context, light, part);
+                                             return bounds_over_motion(context, light, part);
                                      return light.bounds(context, part);
                                  }},
                       context.scene.lights[context.light]);

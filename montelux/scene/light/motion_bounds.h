@@ -9,8 +9,7 @@ namespace montelux {
 // keys are convex combinations of those that are bounded. Directions that fill a hemisphere or more count as all.
 std::optional<LightBounds> motion_bounds(const LightContext& context, Index part);
 
-// Of the light of a shape that moves (AreaLight::moves): over the whole motion, or at the context's time.
-LightBounds moving_emitter_bounds(const LightContext& context, const AreaLight& light, Index part,
-                                  bool whole_motion);
+// AreaLight::bounds of a shape that moves (AreaLight::moves): those at the context's time.
+LightBounds moving_emitter_bounds(const LightContext& context, const AreaLight& light, Index part);
 
 } // namespace montelux

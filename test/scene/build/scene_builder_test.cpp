@@ -103,13 +103,6 @@ TEST_F(SceneBuilding, GeometryIsChecked) {
               "line 7: vertex 2 lies at infinity in world space at the end");
     EXPECT_EQ(shape_error(deforming([&](TriangleMesh& m) { m.end_normals[0].x = std::nanf(""); })),
               "line 7: a vertex normal is not finite in world space at the end");
-    EXPECT_EQ(
-        error_of([&] {
-            const Emission emission{1.0f};
-            builder_.add_shape(deforming([](TriangleMesh&) {}), {.alpha = {1}, .emission = &emission},
-                               line(7));
-        }),
-        "line 7: a mesh that deforms does not emit light; give it no light, or no positions at the end");
     EXPECT_TRUE(scene_.lights.empty());
     EXPECT_EQ(shape_error(Sphere{.world_from_object = Transform::translate({1e39, 0, 0})}),
               "line 7: the shape reaches to infinity in world space");
