@@ -27,6 +27,8 @@ struct ObjectDefinition {
     std::string name{}; // may be empty
     // The object that these shapes belong to, which move in its space: each use of it has an instance of both.
     Index part_of = no_index;
+    // Its shapes emit light where it has exactly one instance: it was made for a shape that moves. Others are dark.
+    bool shines = false;
 };
 struct Instance {
     Index object = no_index;
@@ -43,7 +45,7 @@ struct Scene {
     std::vector<Index> world_shapes; // shapes directly in the world
     std::vector<ObjectDefinition> objects;
     std::vector<Instance> instances;
-    std::vector<Motion> motions; // of instances
+    std::vector<Motion> motions; // of instances and lights
 
     std::vector<Spectrum> spectra; // of materials, textures, lights, media; their order has no meaning
     std::vector<Material> materials;

@@ -29,6 +29,13 @@ void add_media(SceneHasher& hasher, const Scene& scene) {
             hasher.all(static_cast<std::uint64_t>(i), media);
 }
 
+// Shapes in objects that shine; nothing is hashed for a scene without them.
+void add_emitters(SceneHasher& hasher, const Scene& scene) {
+    for (const ObjectDefinition& object : scene.objects)
+        for (const Index shape : object.shapes)
+            if (object.shines && scene.shapes[shape].light != no_index) hasher.all(shape);
+}
+
 } // namespace
 
 ContentDigest SceneDigest::whole() const {
@@ -58,6 +65,7 @@ SceneDigest digest_of(const Scene& scene) {
     of_geometry.all(meshes, quadrics, shapes, world_shapes, objects, instances, motions);
     if (!curves.empty()) of_geometry.all(curves);
     if (!bilinear_meshes.empty()) of_geometry.all(bilinear_meshes);
+    add_emitters(of_geometry, scene);
     return {of_geometry.value(), of_materials.value(),
             digest_of_all(scene, float_textures, spectrum_textures, normal_maps, images),
             digest_of_all(scene, lights, environments, skies), digest_of_all(scene, camera)};

@@ -10,6 +10,7 @@
 #include "montelux/mc/math/vector_bytes.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/scene/light/light_sampling.h"
+#include "montelux/scene/light/motion_bounds.h"
 #include "montelux/scene/light/scene_disk.h"
 #include "montelux/scene/material/material_model.h"
 
@@ -70,7 +71,7 @@ LightSampler make_light_sampler(const SceneView& scene, LightSampling sampling) 
     if (sampling == LightSampling::tree && parts.size() >= fewest_parts_of_tree) {
         const auto bounds = [&](Index row) {
             const LightChoice at = parts.at(row);
-            return light_bounds({scene, at.light}, at.part);
+            return motion_bounds({scene, at.light}, at.part);
         };
         const double area = SceneDisk(scene.light_tables.scene_bounds).area();
         if (std::any_of(all.begin(), all.end(), [](double power) { return power > 0; }))

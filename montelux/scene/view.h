@@ -82,6 +82,11 @@ struct SceneView {
     bool is_interface(Index shape) const {
         return std::holds_alternative<InterfaceMaterial>(materials[shapes[shape].material]);
     }
+    // The light that a ray meets where it hits a surface, or no_index.
+    Index light_at(const Hit& hit) const {
+        const Index light = shapes[hit.shape].light;
+        return light != no_index && light_tables.instance_of_light[light] == hit.instance ? light : no_index;
+    }
     // A copy, for tables.
     Spectrum spectrum(SceneSpectrum s) const { return spectrum_of(s, spectra); }
     bool is_constant(SceneSpectrum s) const { return s.is_constant() || spectra[s.index].is_constant(); }

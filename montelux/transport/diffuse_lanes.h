@@ -115,8 +115,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
         }
         set_lane(w, i, state.ray.d);
         state.meet(hit);
-        const Index light = scene.shapes[hit.shape].light;
-        if (hit.instance == no_index && light != no_index)
+        if (const Index light = scene.light_at(hit); light != no_index)
             add_met_light(scene, state, light,
                           {.wi = state.ray.d,
                            .part = hit.primitive,
@@ -168,8 +167,8 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
             const LightChoice chosen = lights.sample(state.previous, u_light[k]);
             Vec2f at{u.x[i], u.y[i]};
             if (few) at.x = std::min(static_cast<float>(chosen.remapped), largest_below_one<float>);
-            const auto light =
-                sample_li({scene, chosen.light}, chosen.part, state.previous, at, state.lambda);
+            const auto light = sample_li({scene, chosen.light, state.ray.time}, chosen.part, state.previous,
+                                         at, state.lambda);
             if (!light || (!light->invisible && !samples_lights(settings_))) continue;
             lit.set(i, true);
             invisible.set(i, light->invisible);

@@ -21,14 +21,15 @@ struct ChosenLight {
 // for the point: one dimension less keeps point sets better stratified.
 template <RandomStream Stream>
 [[gnu::always_inline]] inline ChosenLight choose_light(const SceneView& scene, const ReferencePoint& here,
-                                                       const SampledWavelengths& lambda, Stream& stream) {
+                                                       float time, const SampledWavelengths& lambda,
+                                                       Stream& stream) {
     const LightSampler& lights = *scene.light_sampler;
     const bool few = lights.size() <= 64;
     Vec2f u = stream.next_2d();
     const LightChoice chosen = lights.sample(here, stream.refined(few ? u.x : stream.next_1d()));
     if (few) u.x = std::min(static_cast<float>(chosen.remapped), largest_below_one<float>);
     return {chosen.light, chosen.part, chosen.probability,
-            sample_li({scene, chosen.light}, chosen.part, here, u, lambda)};
+            sample_li({scene, chosen.light, time}, chosen.part, here, u, lambda)};
 }
 
 // A surface to be lit, seen from wo in the frame of its BSDF.

@@ -7,7 +7,7 @@ namespace montelux {
 
 void PathIntegrator::add_met_light(const SceneView& scene, PathState& state, Index light, const LightHit& hit,
                                    PathRecorder recorder) const {
-    const LightContext context{scene, light};
+    const LightContext context{scene, light, state.ray.time};
     const SampledSpectrum le = incident_radiance(context, state.previous, hit, state.lambda);
     if (is_black(le)) return;
     // Light sampling could have found it as well.

@@ -31,7 +31,7 @@ struct PathIntegrator::Vertex {
     void sample_light(const B& bsdf, std::optional<ShadowRay>& shadow) const {
         using Outcome = DirectLight::Outcome;
         if (scene.light_sampler->empty()) return;
-        const ChosenLight chosen = choose_light(scene, state.previous, state.lambda, stream);
+        const ChosenLight chosen = choose_light(scene, state.previous, state.ray.time, state.lambda, stream);
         const float choice = chosen.choice;
         const std::optional<LightSample>& light = chosen.sample;
         if (!light || (!light->invisible && !samples_lights(path.settings_))) {
@@ -120,9 +120,9 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     SurfacePoint s = surface_point(scene, state.ray, hit, textured || scene.frame_follows_tangents(material));
     if (recorder) recorder.hit_surface(state.ray, hit, s, state.throughput);
     state.meet(hit);
-    if (hit.instance == no_index && s.shape->light != no_index)
-        add_met_light(scene, state, s.shape->light,
-                      {.wi = w, .part = s.primitive, .p = s.p, .n = s.ng, .b = s.b}, recorder);
+    if (const Index light = scene.light_at(hit); light != no_index)
+        add_met_light(scene, state, light, {.wi = w, .part = s.primitive, .p = s.p, .n = s.ng, .b = s.b},
+                      recorder);
     state.alive = false; // until the path continues
     if (state.depth++ == settings_.max_depth) {
         if (recorder) recorder.ended(PathEnd::max_depth);

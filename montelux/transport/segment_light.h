@@ -22,6 +22,7 @@ struct SegmentLight {
     float length = 0;     // 0: the strategy is not used. May be infinite.
     float extinction = 0; // mean over the wavelengths
     float at = 0;         // distance of the path's scattering event
+    float time = 0;       // of the path
 
     // Lamps farther away are left to free flights: little of their light arrives, and it is spread evenly.
     static constexpr float most_depth = 4;
@@ -45,7 +46,7 @@ struct SegmentLight {
 
     // Empty for parts without a position, or too far.
     std::optional<Equiangular<float>> distances(const SceneView& scene, Index light, Index part) const {
-        const std::optional<LightBounds> bounds = light_bounds({scene, light}, part);
+        const std::optional<LightBounds> bounds = light_bounds({scene, light, time}, part);
         if (!bounds) return std::nullopt;
         const Vec3f to(bounds->box.center() - Vec3d(o));
         const float foot = dot(to, d), far = montelux::length(to);

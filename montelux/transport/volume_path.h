@@ -206,8 +206,8 @@ class VolumePath : private VolumePathLights<Stream> {
         SurfacePoint s =
             surface_point(scene_, state_.ray, hit, textured || scene_.frame_follows_tangents(material));
         if (recorder_) recorder_.hit_surface(state_.ray, hit, s, state_.carried());
-        if (hit.instance == no_index && s.shape->light != no_index)
-            add_met_light(s.shape->light, {.wi = w, .part = s.primitive, .p = s.p, .n = s.ng, .b = s.b});
+        if (const Index light = scene_.light_at(hit); light != no_index)
+            add_met_light(light, {.wi = w, .part = s.primitive, .p = s.p, .n = s.ng, .b = s.b});
         state_.distance += hit.t;
         if (interface) {
             leave(s, w);

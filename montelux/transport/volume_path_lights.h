@@ -25,7 +25,7 @@ class VolumePathLights {
 
     // A light that the state's ray hit.
     void add_met_light(Index light, const LightHit& hit) {
-        const LightContext context{scene_, light};
+        const LightContext context{scene_, light, state_.ray.time};
         const SampledSpectrum le = incident_radiance(context, state_.previous, hit, state_.lambda);
         if (is_black(le)) return;
         const bool shared = !state_.sees_lights;
@@ -61,6 +61,7 @@ class VolumePathLights {
             return {};
         const SampledSpectrum sigma_t = m.sigma_a + m.sigma_s;
         SegmentLight segment{ray.o, ray.d, ray.t_max, average(sigma_t)};
+        segment.time = state_.ray.time;
         const Vec2f u = stream_.next_2d(), of_light = stream_.next_2d();
         const LightChoice chosen = segment.choose(scene_, stream_.refined(u.x));
         const auto distances = segment.distances(scene_, chosen.light, chosen.part);
@@ -70,7 +71,7 @@ class VolumePathLights {
         if (!(choice > 0 && segment.at < ray.t_max)) return segment;
         const ReferencePoint here{ray.o + ray.d * segment.at};
         const std::optional<LightSample> light =
-            sample_li({scene_, chosen.light}, chosen.part, here, of_light, state_.lambda);
+            sample_li({scene_, chosen.light, segment.time}, chosen.part, here, of_light, state_.lambda);
         if (!light) return segment;
         const float phase =
             std::visit([&](const PhaseModel auto& f) { return f.pdf(-ray.d, light->wi); }, medium.phase);
@@ -127,7 +128,8 @@ class VolumePathLights {
                       const TextureContext* context = nullptr) {
         using Outcome = DirectLight::Outcome;
         if (scene_.light_sampler->empty()) return;
-        const ChosenLight chosen = choose_light(scene_, state_.previous, state_.lambda, stream_);
+        const ChosenLight chosen =
+            choose_light(scene_, state_.previous, state_.ray.time, state_.lambda, stream_);
         const std::optional<LightSample>& light = chosen.sample;
         DirectLight record{.light = chosen.light, .part = chosen.part, .choice = chosen.choice};
         const auto finish = [&](Outcome outcome) {

@@ -137,7 +137,7 @@ void bind_scene(nb::module_& m) {
             "Triangles: positions of shape (n, 3), triangles of shape (m, 3) indices into them; normals (n, "
             "3) and uvs (n, 2) are one per position. end_positions: of a mesh that deforms while the shutter "
             "is open, from positions (at time 0) on straight lines; end_normals with them, if normals are "
-            "given. Such a mesh has no light. transform: a matrix of shape (4, 4). light: an AreaLight or a "
+            "given. transform: a matrix of shape (4, 4). light: an AreaLight or a "
             "spectrum. Returns the Shape.")
         .def(
             "add_sphere",

@@ -47,6 +47,13 @@ Light plain_light(const SceneRef& scene, const nb::object& o) {
                        static_assert(sizeof(L) == 0, "say whether scene.lights takes this light from Python");
                    }},
         given->read());
+    std::visit(
+        [&](const auto& light) {
+            if constexpr (requires { light.motion; })
+                if (light.motion != no_index && given->scene() != scene)
+                    throw Error("lights", "a light that moves belongs to its scene file");
+        },
+        given->read());
     return value_for(scene, *given);
 }
 

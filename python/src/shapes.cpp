@@ -65,14 +65,7 @@ void set_light(const SceneRef& holder, Index shape, const nb::object& emission) 
 nb::object added(const SceneRef& holder, const char* call, Geometry geometry, bool flip_normal,
                  const nb::object& material, const nb::object& emission) {
     std::optional<AreaLight> light;
-    if (!emission.is_none()) {
-        try {
-            check_emitter(geometry);
-        } catch (const Error& e) {
-            throw Error(call, e.what());
-        }
-        light = area_light_of(holder, emission);
-    }
+    if (!emission.is_none()) light = area_light_of(holder, emission);
     ShapeSettings settings;
     settings.material = material_index(holder, material, "material of a shape");
     settings.flip_normal = flip_normal;

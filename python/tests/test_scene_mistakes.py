@@ -98,6 +98,7 @@ def test_textures_in_a_file_change_nothing(tmp_path):
         scene = load()
         assert unnamed_files() > before
         assert (scene.render(spp=4).mean == usual).all()
+        del scene
     for wrong in (-1, 1.5, "500M", True, 1 << 70):
         with pytest.raises(montelux.Error, match="texture_memory: .* was given; expected a number of bytes"):
             montelux.load(tmp_path / "scene.pbrt", texture_memory=wrong)
@@ -133,7 +134,6 @@ def test_messages_name_the_kind_of_files_that_are_not_scenes(tmp_path):
         ({"end_positions": np.empty((0, 3))}, "add_mesh, end_positions: expected one per position"),
         ({"end_positions": np.full((3, 3), np.nan)}, "add_mesh: vertex 0 lies at infinity in world space at the end"),
         ({"end_normals": [[0, 0, 1]] * 3}, "add_mesh: the mesh has normals at the end, but no positions"),
-        ({"end_positions": np.eye(3), "light": (1, 1, 1)}, "add_mesh: a mesh that deforms does not emit light"),
         ({"light": montelux.Spectrum(-1)}, "Shape.light: the light's spectrum has no positive luminance"),
     ],
 )

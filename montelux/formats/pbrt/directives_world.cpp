@@ -44,7 +44,7 @@ void Directives::texture(const std::string& name, std::string_view type, std::st
 void Directives::light_source(std::string name, std::vector<Parameter> parameters, Location at) {
     require_world("LightSource", at);
     Plugin plugin{std::move(name), with_defaults(std::move(parameters), PluginKind::light), at};
-    lights_.read(plugin, start_transform("a light", at), *state_.color_space);
+    lights_.read(plugin, state_.ctm->start, state_.ctm->end, *state_.color_space);
 }
 
 void Directives::area_light_source(std::string name, std::vector<Parameter> parameters, Location at) {
@@ -82,11 +82,7 @@ bool Directives::joins_open_curves(const Geometry& geometry, const ShapeSettings
 
 void Directives::shape(const std::string& name, std::vector<Parameter> parameters, Location at) {
     require_world("Shape", at);
-    bool moves = is_moving();
-    if (moves && state_.emission && !builder_.in_object()) {
-        start_transform("a shape that emits light", at);
-        moves = false;
-    }
+    const bool moves = is_moving();
     const Transform world_from_object = moves ? Transform() : state_.ctm->start;
     ParameterList list = with_defaults(std::move(parameters), PluginKind::shape);
     ParameterReader r(list, "shape " + in_quotes(name), at, diagnostics_);
@@ -95,7 +91,13 @@ void Directives::shape(const std::string& name, std::vector<Parameter> parameter
                    subdivision_, displacements_, state_.ctm->start);
 
     ShapeSettings settings;
-    settings.flip_normal = state_.reverse_orientation != world_from_object.swaps_handedness();
+    // A quadric that is mirrored emits from its other side. pbrt forgets this where a shape moves, but there its
+    // shapes that move do not emit.
+    const bool emits = state_.emission != nullptr && !builder_.in_object();
+    const bool mirrored = moves && emits && std::holds_alternative<Quadric>(geometry)
+                              ? state_.ctm->start.swaps_handedness()
+                              : world_from_object.swaps_handedness();
+    settings.flip_normal = state_.reverse_orientation != mirrored;
     settings.emission = state_.emission.get();
     settings.name = r.string("name", "");
     if (settings.name.empty() && name == "plymesh")

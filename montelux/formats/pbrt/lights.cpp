@@ -92,8 +92,11 @@ Emission LightReader::read_area(const Plugin& plugin, const RgbColorSpace& color
     return e;
 }
 
-void LightReader::read(const Plugin& plugin, const Transform& world_from_light,
+void LightReader::read(const Plugin& plugin, const Transform& at_start, const Transform& at_end,
                        const RgbColorSpace& color_space) {
+    bool moves = !(at_start == at_end);
+    // A light that moves is made in its own space.
+    const Transform world_from_light = moves ? Transform() : at_start;
     ParameterReader r(plugin.parameters, "light " + in_quotes(plugin.name), plugin.at, diagnostics_);
     std::variant<Light, SceneBuilder::SkyLights> light;
     if (plugin.name == "point") {
@@ -147,10 +150,22 @@ void LightReader::read(const Plugin& plugin, const Transform& world_from_light,
     r.finish();
     if (auto* sky = std::get_if<SceneBuilder::SkyLights>(&light)) {
         sky->group = group;
+        sky->world_from_light = at_start;
+        if (moves) sky->world_from_light_at_end = at_end;
         builder_.add_sky(*sky, plugin.at);
-    } else {
-        builder_.add_light(std::get<Light>(light), plugin.at, group);
+        return;
     }
+    Light& single = std::get<Light>(light);
+    if (auto* map = std::get_if<ImageInfiniteLight>(&single); map != nullptr && map->portal && moves) {
+        diagnostics_.warn_once("moving portal", plugin.at,
+                               "a map with a portal does not move: it stays where it is at the start");
+        map->world_from_light = at_start;
+        moves = false;
+    }
+    if (moves)
+        builder_.add_moving_light(single, at_start, at_end, plugin.at, group);
+    else
+        builder_.add_light(single, plugin.at, group);
 }
 
 // Corners are in world space, whatever the transformation that turns the map.

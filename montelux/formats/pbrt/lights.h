@@ -19,8 +19,9 @@ class LightReader {
     LightReader(SceneBuilder& builder, Files& files, SpectrumReader& spectra, Diagnostics& diagnostics)
         : builder_(builder), files_(files), spectra_(spectra), diagnostics_(diagnostics) {}
 
-    // Adds the light to the scene.
-    void read(const Plugin& plugin, const Transform& world_from_light, const RgbColorSpace& color_space);
+    // Adds the light to the scene; it moves where the transformations differ.
+    void read(const Plugin& plugin, const Transform& at_start, const Transform& at_end,
+              const RgbColorSpace& color_space);
     Emission read_area(const Plugin& plugin, const RgbColorSpace& color_space);
 
   private:

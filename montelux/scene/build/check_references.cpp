@@ -171,15 +171,13 @@ void check_light(const Scene& scene, const Light& light) {
                                    numbered("light", scene.lights.size()) + " (" + std::string(l.name) + ')');
             if constexpr (requires { l.spectrum; }) check("spectrum", l.spectrum);
             if constexpr (requires { l.shape; }) check.index("shape", "shape", l.shape, scene.shapes.size());
-            if constexpr (std::is_same_v<std::decay_t<decltype(l)>, AreaLight>)
-                if (const auto* mesh = std::get_if<MeshIndex>(&scene.shapes[l.shape].geometry);
-                    mesh != nullptr && mesh->index < scene.meshes.size())
-                    check_emitter(scene.meshes[mesh->index]);
             if constexpr (requires { l.environment; })
                 check.index("environment", "environment map", l.environment, scene.environments.size());
             if constexpr (requires { l.picture; })
                 if (l.picture != no_index)
                     check.index("picture", "picture", l.picture, scene.environments.size());
+            if constexpr (requires { l.motion; })
+                if (l.motion != no_index) check.index("motion", "motion", l.motion, scene.motions.size());
             if constexpr (requires { l.sky; }) check.index("sky", "sky", l.sky, scene.skies.size());
         },
         light);

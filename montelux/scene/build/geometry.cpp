@@ -125,15 +125,6 @@ void check_geometry(const Geometry& geometry) {
         throw Error("the shape reaches to infinity in world space");
 }
 
-void check_emitter(const TriangleMesh& mesh) {
-    if (mesh.deforms())
-        throw Error("a mesh that deforms does not emit light; give it no light, or no positions at the end");
-}
-
-void check_emitter(const Geometry& geometry) {
-    if (const auto* mesh = std::get_if<TriangleMesh>(&geometry)) check_emitter(*mesh);
-}
-
 float object_area(const Quadric& quadric) {
     struct Area {
         float operator()(const Sphere& s) const { return s.phi_max * s.radius * (s.z_max - s.z_min); }

@@ -22,10 +22,6 @@ void transform_mesh(BilinearMesh& mesh, const Transform& t, bool reverse_orienta
 // normals or texture coordinates not one per vertex, non-finite numbers, bounds beyond single precision.
 void check_geometry(const Geometry& geometry);
 
-// Throws Error for geometry that cannot be an area light: a mesh that deforms.
-void check_emitter(const TriangleMesh& mesh);
-void check_emitter(const Geometry& geometry);
-
 // The area in the space of the object, before its transformation.
 float object_area(const Quadric& quadric);
 

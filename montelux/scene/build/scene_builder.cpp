@@ -51,6 +51,16 @@ void trim_positions(std::vector<Point3f>& positions) {
     if (!positions.empty()) positions.reserve(positions.size() + 1);
 }
 
+// Whether the position of a light, if it has one, is finite.
+template <typename L>
+bool stays_in_floats(const L& light) {
+    if constexpr (requires { light.position(); })
+        return is_finite(light.position());
+    else if constexpr (requires { light.position; })
+        return is_finite(light.position);
+    return true;
+}
+
 constexpr std::string_view dark_in_objects = "area lights inside object definitions do not shine";
 
 // A use of an object needs memory for each of its moving parts, so a short file could ask for any amount: 4 GiB of keys
@@ -61,13 +71,13 @@ constexpr std::size_t keys_beside = 8; // what an instance and its motion need b
 } // namespace
 
 Index SceneBuilder::add_shape(Geometry geometry, const ShapeSettings& settings, SourceLocation at) {
-    check_shape(geometry, settings.emission != nullptr && !in_object(), at);
+    check_shape(geometry, at);
     return add_shape_to(open_object_, std::move(geometry), settings, in_object() ? dark_in_objects : "", at);
 }
 
 Index SceneBuilder::add_moving_shape(Geometry geometry, const ShapeSettings& settings, const Transform& start,
                                      const Transform& end, SourceLocation at) {
-    check_shape(geometry, false, at);
+    check_shape(geometry, at);
     if (in_object()) {
         const Index part = moving_part(start, end, at);
         return add_shape_to(part, std::move(geometry), settings, dark_in_objects, at);
@@ -77,17 +87,15 @@ Index SceneBuilder::add_moving_shape(Geometry geometry, const ShapeSettings& set
     const auto object = static_cast<Index>(scene_.objects.size());
     const std::string name = std::string(1, '\0') + std::to_string(object); // no name in a file
     objects_.declare(name, object, at, messages_);
-    scene_.objects.emplace_back();
-    const Index shape =
-        add_shape_to(object, std::move(geometry), settings, "shapes that move do not emit light", at);
+    scene_.objects.emplace_back().shines = true;
+    const Index shape = add_shape_to(object, std::move(geometry), settings, "", at);
     use_object(name, start, std::move(motion), at);
     return shape;
 }
 
-void SceneBuilder::check_shape(const Geometry& geometry, bool emits, SourceLocation at) const {
+void SceneBuilder::check_shape(const Geometry& geometry, SourceLocation at) const {
     try {
         check_geometry(geometry);
-        if (emits) check_emitter(geometry);
     } catch (const Error& e) {
         messages_.error(at, e.what());
     }
@@ -239,6 +247,27 @@ Index SceneBuilder::add_light(const Light& light, SourceLocation at, const std::
         scene_.light_groups.back() = group;
     }
     return static_cast<Index>(scene_.lights.size() - 1);
+}
+
+Index SceneBuilder::add_moving_light(const Light& light, const Transform& start, const Transform& end,
+                                     SourceLocation at, const std::string& group) {
+    const auto add = [&]<typename L>(L moving) {
+        if constexpr (MovableLight<L>) {
+            for (const Transform* t : {&start, &end})
+                if (!fits_float(*t) || !turns_in_floats(*t) || !stays_in_floats(moving.moved(*t)))
+                    messages_.error(
+                        at, "the light's transformation is beyond what single-precision numbers hold");
+            if constexpr (requires { moving.portal; })
+                if (moving.portal) messages_.error(at, "an environment map with a portal does not move");
+            if (start == end) return add_light(moving.moved(start), at, group);
+            moving.motion = static_cast<Index>(scene_.motions.size());
+            scene_.motions.push_back(motion(start, end, at));
+        } else if constexpr (std::is_same_v<L, AreaLight>) {
+            messages_.error(at, "the light of a shape moves with the shape");
+        }
+        return add_light(moving, at, group); // a uniform sky looks the same
+    };
+    return std::visit(add, light);
 }
 
 SceneSpectrum SceneBuilder::add_spectrum(const Spectrum& spectrum) {

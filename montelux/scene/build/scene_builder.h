@@ -42,7 +42,7 @@ class SceneBuilder {
     Index add_shape(Geometry geometry, const ShapeSettings& settings, SourceLocation at = {});
 
     // Adds a shape that moves: `geometry` is in its own space. In an open object the transformations lead into the
-    // object's space, which may move as well. It emits no light, with a warning.
+    // object's space, which may move as well, and it emits no light, with a warning.
     Index add_moving_shape(Geometry geometry, const ShapeSettings& settings, const Transform& start,
                            const Transform& end, SourceLocation at = {});
 
@@ -58,14 +58,19 @@ class SceneBuilder {
 
     // `group`: of lights that share a layer (light_groups.h); may be empty.
     Index add_light(const Light& light, SourceLocation at = {}, const std::string& group = {});
+    // A light that moves: `light` is in its own space (MovableLight). Errors: the light of a shape, which moves with the
+    // shape, and an environment map with a portal.
+    Index add_moving_light(const Light& light, const Transform& start, const Transform& end,
+                           SourceLocation at = {}, const std::string& group = {});
     // A clear sky and, if requested and above the horizon, its sun. Luminances are multiplied by `scale`; a
     // positive illuminance replaces that of both on the ground.
     struct SkyLights {
         SkySettings settings;
         bool sun = true;
         float scale = 1, illuminance = 0;
-        Transform world_from_light;
-        std::string group{}; // as of add_light
+        Transform world_from_light;                         // at the start
+        std::string group{};                                // as of add_light
+        std::optional<Transform> world_from_light_at_end{}; // of a sky that moves
     };
     void add_sky(const SkyLights& sky, SourceLocation at = {});
 
@@ -108,7 +113,7 @@ class SceneBuilder {
                        SourceLocation at);
     std::optional<AreaLight> area_light(Index shape, const ShapeSettings& settings, const Geometry& geometry,
                                         std::string_view dark, SourceLocation at);
-    void check_shape(const Geometry& geometry, bool emits, SourceLocation at) const;
+    void check_shape(const Geometry& geometry, SourceLocation at) const;
     Motion motion(const Transform& start, const Transform& end, SourceLocation at) const;
     // None for an instance that stands still.
     std::optional<Motion> motion_of_instance(const Transform& start, const Transform& end,

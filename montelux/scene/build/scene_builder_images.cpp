@@ -105,20 +105,26 @@ void SceneBuilder::add_sky(const SkyLights& sky, SourceLocation at) {
                                          return from_sky(lambda) + (sky.sun ? from_sun(lambda) : 0);
                                      })));
     }
+    const bool moves = sky.world_from_light_at_end.has_value();
+    const Transform place = moves ? Transform() : sky.world_from_light;
+    const auto add = [&](const Light& light) {
+        if (moves)
+            add_moving_light(light, sky.world_from_light, *sky.world_from_light_at_end, at, sky.group);
+        else
+            add_light(light, at, sky.group);
+    };
     if (sky.sun && model.sun_radiance().max_value() > 0)
-        add_light(SunLight{add_spectrum(Spectrum(model.sun_radiance())), scale,
-                           SunDisc::of_radius(normalize(sky.world_from_light.vector(model.sun_direction())),
-                                              sun_angular_radius),
-                           normalize(sky.world_from_light.normal(Vec3f(0, 0, 1)))},
-                  at, sky.group);
+        add(SunLight{add_spectrum(Spectrum(model.sun_radiance())), scale,
+                     SunDisc::of_radius(normalize(place.vector(model.sun_direction())), sun_angular_radius),
+                     normalize(place.normal(Vec3f(0, 0, 1)))});
     SkyLight light;
     light.sky = static_cast<Index>(scene_.skies.size());
     light.environment = static_cast<Index>(scene_.environments.size());
     light.scale = scale;
-    light.world_from_light = sky.world_from_light;
+    light.world_from_light = place;
     scene_.environments.push_back(sky_density_map(model, sky_density_rows));
     scene_.skies.push_back(model);
-    add_light(light, at, sky.group);
+    add(light);
 }
 
 } // namespace montelux

@@ -55,9 +55,10 @@ inline void hash_values(SceneHasher& h, const Shape& s) {
     h.all(geometry, material, light, alpha, flip_normal);
 }
 inline void hash_values(SceneHasher& h, const ObjectDefinition& o) {
-    const auto& [shapes, name, part_of] = o;
+    const auto& [shapes, name, part_of, shines] = o;
     static_cast<void>(name); // the mean does not depend on names
     static_cast<void>(part_of);
+    static_cast<void>(shines); // add_emitters
     h.all(shapes);
 }
 inline void hash_values(SceneHasher& h, const Instance& i) {

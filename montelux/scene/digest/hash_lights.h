@@ -13,16 +13,19 @@ inline void hash_values(SceneHasher& h, const AreaLight& l) {
     if (picture != no_index) h.all(picture);
 }
 inline void hash_values(SceneHasher& h, const PointLight& l) {
-    const auto& [spectrum, scale, position] = l;
+    const auto& [spectrum, scale, position, motion] = l;
     h.all(spectrum, scale, position);
+    if (motion != no_index) h.all(motion);
 }
 inline void hash_values(SceneHasher& h, const SpotLight& l) {
-    const auto& [spectrum, scale, position, axis, cos_falloff_start, cos_total_width] = l;
+    const auto& [spectrum, scale, position, axis, cos_falloff_start, cos_total_width, motion] = l;
     h.all(spectrum, scale, position, axis, cos_falloff_start, cos_total_width);
+    if (motion != no_index) h.all(motion);
 }
 inline void hash_values(SceneHasher& h, const DistantLight& l) {
-    const auto& [spectrum, scale, to_light] = l;
+    const auto& [spectrum, scale, to_light, motion] = l;
     h.all(spectrum, scale, to_light);
+    if (motion != no_index) h.all(motion);
 }
 inline void hash_values(SceneHasher& h, const Portal& p) { h.all(p.corners()); }
 inline void hash_values(SceneHasher& h, const UniformInfiniteLight& l) {
@@ -30,28 +33,33 @@ inline void hash_values(SceneHasher& h, const UniformInfiniteLight& l) {
     h.all(spectrum, scale, portal);
 }
 inline void hash_values(SceneHasher& h, const ImageInfiniteLight& l) {
-    const auto& [environment, layout, scale, world_from_light, portal] = l;
+    const auto& [environment, layout, scale, world_from_light, portal, motion] = l;
     h.all(environment, layout, scale, world_from_light, portal);
+    if (motion != no_index) h.all(motion);
 }
 inline void hash_values(SceneHasher& h, const SkyLight& l) {
-    const auto& [sky, environment, scale, world_from_light] = l;
+    const auto& [sky, environment, scale, world_from_light, motion] = l;
     h.all(sky, environment, scale, world_from_light);
+    if (motion != no_index) h.all(motion);
 }
 inline void hash_values(SceneHasher& h, const SunDisc& d) {
     const auto& [centre, versine] = d;
     h.all(centre, versine);
 }
 inline void hash_values(SceneHasher& h, const SunLight& l) {
-    const auto& [spectrum, scale, disc, up] = l;
+    const auto& [spectrum, scale, disc, up, motion] = l;
     h.all(spectrum, scale, disc, up);
+    if (motion != no_index) h.all(motion);
 }
 inline void hash_values(SceneHasher& h, const GoniometricLight& l) {
-    const auto& [spectrum, scale, environment, layout, world_from_map] = l;
+    const auto& [spectrum, scale, environment, layout, world_from_map, motion] = l;
     h.all(spectrum, scale, environment, layout, world_from_map);
+    if (motion != no_index) h.all(motion);
 }
 inline void hash_values(SceneHasher& h, const ProjectionLight& l) {
-    const auto& [environment, scale, fov, world_from_light] = l;
+    const auto& [environment, scale, fov, world_from_light, motion] = l;
     h.all(environment, scale, fov, world_from_light);
+    if (motion != no_index) h.all(motion);
 }
 // Its tables follow from its settings.
 inline void hash_values(SceneHasher& h, const SkyModel& sky) {

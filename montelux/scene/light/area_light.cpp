@@ -8,6 +8,7 @@
 #include "montelux/mc/math/overloaded.h"
 #include "montelux/mc/warp/hemisphere.h"
 #include "montelux/scene/light/emissive_shape.h"
+#include "montelux/scene/light/motion_bounds.h"
 #include "montelux/scene/light/shadow_ray.h"
 #include "montelux/scene/light/sphere_cone.h"
 #include "montelux/scene/light/visible_mean.h"
@@ -19,12 +20,32 @@ namespace {
 
 float sides(const AreaLight& light) { return light.two_sided ? 2.0f : 1.0f; }
 
+Ray ray_at(const LightContext& context, Point3f p, Vec3f w) { return {.o = p, .d = w, .time = context.time}; }
+
+// Of a triangle or a patch, in the world.
+float primitive_area(const AreaLight& light, const LightContext& context, Index part) {
+    const Index instance = context.tables().instance(context.light);
+    if (!light.moves(context)) return context.tables().area(context.light, part);
+    const Shape& shape = context.scene.shapes[light.shape];
+    const TriangleMesh* mesh = mesh_of(context.scene, shape);
+    if (mesh == nullptr) {
+        const EmitterPlace place(context, instance);
+        const auto at = [&](Vec3d p) { return place.world_from_shape().point(p); };
+        const auto [p00, p10, p01, p11] = bilinear_mesh_of(context.scene, shape)->patch(part);
+        return static_cast<float>(area_of({at(p00), at(p10), at(p01), at(p11)}));
+    }
+    const LightTriangle t = light_triangle(*mesh, shape, part, context.time);
+    if (instance == no_index || !(t.area > 0)) return t.area;
+    const EmitterPlace place(context, instance);
+    return t.area * place.area_scale(normalize(place.world_from_shape().normal(t.n)));
+}
+
 // Radiance over AreaLight::spectrum.
 float radiance_scale(const AreaLight& light, const LightContext& context, Index part) {
     if (!(light.primitive_flux > 0)) return light.scale;
     const Shape& shape = context.scene.shapes[light.shape];
     if (quadric_of(context.scene, shape) != nullptr) return light.scale;
-    const float area = context.tables().area(context.light, part);
+    const float area = primitive_area(light, context, part);
     return area > 0 ? light.scale * (light.primitive_flux / (sides(light) * area * pi_f)) : 0;
 }
 
@@ -34,7 +55,8 @@ SampledSpectrum color_at(const AreaLight& light, const LightContext& context, Po
     if (light.picture == no_index) return context.scene.sample(light.spectrum, lambda);
     hit.t = 0;
     hit.shape = light.shape;
-    const Point2f uv = surface_point(context.scene, {p, w}, hit, true).uv;
+    hit.instance = context.tables().instance(context.light);
+    const Point2f uv = surface_point(context.scene, ray_at(context, p, w), hit, true).uv;
     return context.tables().picture_radiance(light.picture, uv, lambda);
 }
 
@@ -79,8 +101,18 @@ std::optional<LightSample> sample_sphere(const AreaLight& light, const LightCont
     return s;
 }
 
-std::optional<SphereCone> cone_of(const LightContext& context, Point3f from) {
+// The light as a sphere in the world. `moved` holds it if the light moves.
+const std::optional<WorldSphere>& sphere_of(const AreaLight& light, const LightContext& context,
+                                            std::optional<WorldSphere>& moved) {
     const auto& sphere = context.tables().sphere(context.light);
+    const Index instance = context.tables().instance(context.light);
+    if (!sphere || instance == no_index) [[likely]]
+        return sphere;
+    const Quadric& quadric = *quadric_of(context.scene, context.scene.shapes[light.shape]);
+    moved = whole_sphere(placed(quadric, EmitterPlace(context, instance).world_from_shape()));
+    return moved;
+}
+std::optional<SphereCone> cone_of(const std::optional<WorldSphere>& sphere, Point3f from) {
     return sphere ? SphereCone::seen_from(from, *sphere) : std::nullopt;
 }
 
@@ -88,27 +120,43 @@ bool is_invisible(const LightContext& context, const Shape& shape) {
     return is_cut_out(shape) && constant_alpha(context.scene, shape).value_or(1) <= 0;
 }
 
-// Share of the light that leaves `point` along w, or arrives along it: holes do not emit. 1 for lights of
-// alpha 0.
-float share_there(const LightContext& context, const Shape& shape, const EmissivePoint& point, Vec3f w) {
+// Share of the light that leaves `point`, in the space of the shape, or arrives there: holes do not emit. 1 for
+// lights of alpha 0. The direction counts for nothing.
+float share_there(const LightContext& context, const Shape& shape, const EmissivePoint& point) {
     if (!is_cut_out(shape) || is_invisible(context, shape)) return 1;
-    return std::clamp(alpha_at(context.scene, {point.p, w}, point.hit), 0.0f, 1.0f);
+    return std::clamp(alpha_at(context.scene, ray_at(context, point.p, point.n), point.hit), 0.0f, 1.0f);
+}
+
+float world_density(const AreaLight& light, const LightContext& context, const LightHit& hit) {
+    const Index instance = context.tables().instance(context.light);
+    if (instance == no_index) [[likely]]
+        return area_density(context, light.shape, hit);
+    const EmitterPlace place(context, instance);
+    LightHit local = hit;
+    local.p = Vec3f(place.world_from_shape().inverse_point(Vec3d(hit.p)));
+    return area_density(context, light.shape, local) / place.area_scale(hit.n);
 }
 
 std::optional<LightSample> sample_surface(const AreaLight& light, const LightContext& context, Index part,
                                           const ReferencePoint& from, Vec2f u,
                                           const SampledWavelengths& lambda) {
     std::optional<LightSample> result;
-    const auto point = sample_area(context, light.shape, part, u);
+    auto point = sample_area(context, light.shape, part, u);
     if (!point) return result;
+    const Shape& shape = context.scene.shapes[light.shape];
+    const Index instance = context.tables().instance(context.light);
+    float share = 1;
+    if (instance != no_index) [[unlikely]] {
+        share = share_there(context, shape, *point);
+        EmitterPlace(context, instance).move(*point);
+    }
     const Vec3f d = point->p - from.p;
     const float d2 = length_squared(d);
     if (!(d2 > 0)) return result;
     const Vec3f wi = d / std::sqrt(d2);
     const float cosine = -dot(point->n, wi);
     if (!shines(light, cosine)) return result;
-    const Shape& shape = context.scene.shapes[light.shape];
-    const float share = share_there(context, shape, *point, wi);
+    if (instance == no_index) share = share_there(context, shape, *point);
     if (!(share > 0)) return result;
     LightSample& s = result.emplace();
     s.radiance = color_at(light, context, point->p, wi, point->hit, lambda) *
@@ -167,7 +215,7 @@ LightBounds quadric_bounds(const Quadric& quadric, bool flip_normal) {
 } // namespace
 
 Index AreaLight::part_count(const LightContext& context) const {
-    if (!context.tables().is_in_world(shape)) return 0;
+    if (!context.tables().may_emit(shape)) return 0;
     const Shape& s = context.scene.shapes[shape];
     return visit_geometry(
         context.scene, s,
@@ -176,19 +224,26 @@ Index AreaLight::part_count(const LightContext& context) const {
                    [](const Quadric&) { return Index{1}; }, [](const Curves&) { return Index{0}; }});
 }
 
+bool AreaLight::moves(const LightContext& context) const {
+    const TriangleMesh* mesh = mesh_of(context.scene, context.scene.shapes[shape]);
+    return context.tables().instance(context.light) != no_index || (mesh != nullptr && mesh->deforms());
+}
+
 std::optional<LightSample> AreaLight::sample_li(const LightContext& context, Index part,
                                                 const ReferencePoint& from, Vec2f u,
                                                 const SampledWavelengths& lambda) const {
     const Shape& s = context.scene.shapes[shape];
-    if (const auto cone = cone_of(context, from.p))
-        return sample_sphere(*this, context, *context.tables().sphere(context.light), *cone, s.flip_normal,
-                             from, u, lambda);
+    std::optional<WorldSphere> moved;
+    const auto& sphere = sphere_of(*this, context, moved);
+    if (const auto cone = cone_of(sphere, from.p))
+        return sample_sphere(*this, context, *sphere, *cone, s.flip_normal, from, u, lambda);
     return sample_surface(*this, context, part, from, u, lambda);
 }
 
 float AreaLight::pdf_li(const LightContext& context, const ReferencePoint& from, const LightHit& hit) const {
-    if (const auto cone = cone_of(context, from.p)) return cone->pdf();
-    const float density = area_density(context, shape, hit);
+    std::optional<WorldSphere> moved;
+    if (const auto cone = cone_of(sphere_of(*this, context, moved), from.p)) return cone->pdf();
+    const float density = world_density(*this, context, hit);
     Vec3f d = hit.p - from.p;
     float d2 = length_squared(d);
     float cosine = std::abs(dot(hit.n, d)) / std::sqrt(d2);
@@ -205,8 +260,12 @@ SampledSpectrum AreaLight::radiance(const LightContext& context, const Reference
 std::optional<EmissionSample> AreaLight::sample_le(const LightContext& context, Index part, Vec2f u_position,
                                                    Vec2f u_direction,
                                                    const SampledWavelengths& lambda) const {
-    const auto point = sample_area(context, shape, part, u_position);
+    auto point = sample_area(context, shape, part, u_position);
     if (!point) return std::nullopt;
+    const float share = share_there(context, context.scene.shapes[shape], *point);
+    if (!(share > 0)) return std::nullopt;
+    if (const Index instance = context.tables().instance(context.light); instance != no_index)
+        EmitterPlace(context, instance).move(*point);
     bool back = false;
     if (two_sided) {
         back = u_direction.x >= 0.5f;
@@ -216,8 +275,6 @@ std::optional<EmissionSample> AreaLight::sample_le(const LightContext& context, 
     if (!(local.z > 0)) return std::nullopt;
     const Normal3f n = back ? -point->n : point->n;
     const Vec3f w = normalize(Frame::from_normal(n).to_world(local));
-    const float share = share_there(context, context.scene.shapes[shape], *point, w);
-    if (!(share > 0)) return std::nullopt;
     EmissionSample s;
     s.radiance = color_at(*this, context, point->p, w, point->hit, lambda) *
                  (radiance_scale(*this, context, part) * share);
@@ -231,7 +288,7 @@ std::optional<EmissionSample> AreaLight::sample_le(const LightContext& context, 
 
 EmissionPdf AreaLight::pdf_le(const LightContext& context, const LightHit& hit, Vec3f w) const {
     const float cosine = dot(hit.n, w);
-    return {area_density(context, shape, hit),
+    return {world_density(*this, context, hit),
             cosine_hemisphere_pdf(two_sided ? std::abs(cosine) : cosine) / sides(*this)};
 }
 
@@ -246,17 +303,26 @@ void AreaLight::powers(const LightContext& context, std::span<double> parts) con
     };
     const auto of_primitives = [&] {
         for (Index part = 0; part < parts.size(); ++part)
-            parts[part] = power(double(context.tables().area(context.light, part)),
-                                radiance_scale(*this, context, part));
+            parts[part] =
+                power(double(primitive_area(*this, context, part)), radiance_scale(*this, context, part));
     };
     visit_geometry(context.scene, s,
-                   Overloaded{[&](const Quadric& quadric) { parts[0] = power(world_area(quadric), scale); },
+                   Overloaded{[&](const Quadric& quadric) {
+                                  const Index instance = context.tables().instance(context.light);
+                                  parts[0] = power(
+                                      instance == no_index
+                                          ? world_area(quadric)
+                                          : world_area(placed(
+                                                quadric, EmitterPlace(context, instance).world_from_shape())),
+                                      scale);
+                              },
                               [&](const TriangleMesh&) { of_primitives(); },
                               [&](const BilinearMesh&) { of_primitives(); }, [](const Curves&) {}});
 }
 
 std::optional<LightBounds> AreaLight::bounds(const LightContext& context, Index part) const {
     const Shape& s = context.scene.shapes[shape];
+    if (moves(context)) return moving_emitter_bounds(context, *this, part);
     LightBounds b = visit_geometry(
         context.scene, s,
         Overloaded{[&](const TriangleMesh& mesh) {

@@ -7,6 +7,10 @@
 
 namespace montelux {
 
+DistantLight DistantLight::moved(const Transform& world_from_own) const {
+    return {spectrum, scale, normalize(world_from_own.vector(to_light))};
+}
+
 Index DistantLight::part_count(const LightContext&) const { return 1; }
 
 std::optional<LightSample> DistantLight::sample_li(const LightContext& context, Index,

@@ -14,9 +14,12 @@ struct DistantLight {
     SceneSpectrum spectrum;
     float scale = 1;
     Vec3f to_light{0, 0, 1};
+    Index motion = no_index; // MovableLight
+
+    DistantLight moved(const Transform& world_from_own) const;
 
     MONTELUX_LIGHT_MODEL;
 };
-static_assert(LightModel<DistantLight>);
+static_assert(MovableLight<DistantLight>);
 
 } // namespace montelux

@@ -1,5 +1,7 @@
 #include "montelux/scene/light/emissive_shape.h"
 
+#include <cmath>
+
 #include "montelux/mc/math/overloaded.h"
 #include "montelux/mc/warp/disk.h"
 #include "montelux/mc/warp/triangle.h"
@@ -9,7 +11,7 @@ namespace montelux {
 namespace {
 
 std::optional<EmissivePoint> sample_triangle(const TriangleMesh& mesh, const LightTriangle& t, Index part,
-                                             Vec2f u) {
+                                             Vec2f u, float time = 0) {
     std::optional<EmissivePoint> point;
     if (!(t.area > 0)) return point;
     EmissivePoint& s = point.emplace();
@@ -20,7 +22,7 @@ std::optional<EmissivePoint> sample_triangle(const TriangleMesh& mesh, const Lig
     s.n = t.n;
     if (!mesh.normals.empty()) {
         const Index* v = &mesh.indices[3 * std::size_t{part}];
-        if (turns_normal(interpolated_normal(mesh, v, b.y, b.z), t.n)) s.n = -t.n;
+        if (turns_normal(interpolated_normal(mesh, v, b.y, b.z, time), t.n)) s.n = -t.n;
     }
     s.error = t.error;
     s.area_density = 1 / t.area;
@@ -67,11 +69,35 @@ std::optional<EmissivePoint> sample_quadric(const Quadric& quadric, bool flip_no
 
 } // namespace
 
+LightTriangle light_triangle(const TriangleMesh& mesh, const Shape& shape, std::size_t primitive,
+                             float time) {
+    const Index* v = &mesh.indices[3 * primitive];
+    const Point3f p1 = mesh.position(v[1], time), p2 = mesh.position(v[2], time);
+    LightTriangle t;
+    t.p0 = mesh.position(v[0], time);
+    t.e1 = p1 - t.p0;
+    t.e2 = p2 - t.p0;
+    const Vec3f c = cross(t.e1, t.e2);
+    const float len = length(c);
+    t.area = 0.5f * len;
+    if (!(len > 0)) return t;
+    t.n = shape.flip_normal ? -normalize(c) : normalize(c);
+    Vec3f reach = max(abs(t.p0), max(abs(p1), abs(p2)));
+    if (mesh.deforms()) // rounded in proportion to the ends
+        for (std::size_t k = 0; k < 3; ++k)
+            reach = max(reach, max(abs(mesh.positions[v[k]]), abs(mesh.end_positions[v[k]])));
+    t.error = coordinate_error(t.n, reach);
+    return t;
+}
+
 std::optional<EmissivePoint> sample_area(const LightContext& context, Index index, Index part, Vec2f u) {
     const Shape& shape = context.scene.shapes[index];
     auto s = visit_geometry(
         context.scene, shape,
         Overloaded{[&](const TriangleMesh& mesh) {
+                       if (context.tables().deforms(context.light)) [[unlikely]]
+                           return sample_triangle(mesh, light_triangle(mesh, shape, part, context.time), part,
+                                                  u, context.time);
                        return sample_triangle(mesh, context.tables().triangle(context.light, part), part, u);
                    },
                    [&](const Quadric& quadric) {
@@ -89,21 +115,57 @@ std::optional<EmissivePoint> sample_area(const LightContext& context, Index inde
 }
 
 float area_density(const LightContext& context, Index index, const LightHit& hit) {
-    return visit_geometry(context.scene, context.scene.shapes[index],
-                          Overloaded{[&](const TriangleMesh&) {
-                                         const float area = context.tables().area(context.light, hit.part);
-                                         return area > 0 ? 1 / area : 0;
-                                     },
-                                     [&](const Quadric& quadric) {
-                                         const auto& disk = context.tables().disk(context.light);
-                                         return disk ? 1 / disk->area
-                                                     : static_cast<float>(area_pdf(quadric, Vec3d(hit.p)));
-                                     },
-                                     [&](const BilinearMesh& mesh) {
-                                         return static_cast<float>(area_pdf(
-                                             mesh.patch(hit.part), double(hit.b.x), double(hit.b.y)));
-                                     },
-                                     [](const Curves&) { return 0.0f; }});
+    const Shape& shape = context.scene.shapes[index];
+    return visit_geometry(
+        context.scene, shape,
+        Overloaded{[&](const TriangleMesh& mesh) {
+                       const float area = context.tables().deforms(context.light)
+                                              ? light_triangle(mesh, shape, hit.part, context.time).area
+                                              : context.tables().area(context.light, hit.part);
+                       return area > 0 ? 1 / area : 0;
+                   },
+                   [&](const Quadric& quadric) {
+                       const auto& disk = context.tables().disk(context.light);
+                       return disk ? 1 / disk->area : static_cast<float>(area_pdf(quadric, Vec3d(hit.p)));
+                   },
+                   [&](const BilinearMesh& mesh) {
+                       return static_cast<float>(
+                           area_pdf(mesh.patch(hit.part), double(hit.b.x), double(hit.b.y)));
+                   },
+                   [](const Curves&) { return 0.0f; }});
+}
+
+EmitterPlace::EmitterPlace(const LightContext& context, Index index) {
+    const Instance& instance = context.scene.instances[index];
+    if (instance.motion == no_index) {
+        world_from_shape_ = instance.world_from_object;
+        return;
+    }
+    const Motion& motion = context.scene.motions[instance.motion];
+    world_from_shape_ = motion.at(context.time);
+    error_ = coordinate_error(static_cast<float>(motion.reach()));
+}
+
+void EmitterPlace::move(EmissivePoint& point) const {
+    point.p = world_from_shape_.point(point.p);
+    point.n = normalize(world_from_shape_.normal(point.n));
+    point.error = transformed_error(point.error, world_from_shape_, point.p) + error_;
+    point.area_density /= area_scale(point.n);
+}
+
+// The area changes by |det M| |M^-T n'| for the unit normal n' in the shape's space, which is M^T n over its length.
+float EmitterPlace::area_scale(Normal3f n) const {
+    const Matrix4& m = world_from_shape_.matrix();
+    Vec3d back;
+    for (std::size_t j = 0; j < 3; ++j)
+        back[static_cast<int>(j)] =
+            m.m[0][j] * double(n.x) + m.m[1][j] * double(n.y) + m.m[2][j] * double(n.z);
+    return static_cast<float>(std::abs(m.linear_determinant()) / length(back));
+}
+
+Quadric placed(Quadric quadric, const Transform& world_from_shape) {
+    std::visit([&](auto& q) { q.world_from_object = world_from_shape * q.world_from_object; }, quadric);
+    return quadric;
 }
 
 } // namespace montelux

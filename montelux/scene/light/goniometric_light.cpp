@@ -22,6 +22,13 @@ SampledSpectrum intensity(const LightContext& context, const GoniometricLight& l
 
 } // namespace
 
+GoniometricLight GoniometricLight::moved(const Transform& world_from_own) const {
+    GoniometricLight light = *this;
+    light.world_from_map = world_from_own * world_from_map;
+    light.motion = no_index;
+    return light;
+}
+
 Index GoniometricLight::part_count(const LightContext&) const { return 1; }
 
 std::optional<LightSample> GoniometricLight::sample_li(const LightContext& context, Index,

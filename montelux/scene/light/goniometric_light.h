@@ -19,11 +19,14 @@ struct GoniometricLight {
     Index environment = no_index; // into Scene::environments
     EnvironmentLayout layout = EnvironmentLayout::equal_area;
     Transform world_from_map;
+    Index motion = no_index; // MovableLight
 
     Point3f position() const { return world_from_map.point(Vec3f()); }
 
+    GoniometricLight moved(const Transform& world_from_own) const;
+
     MONTELUX_LIGHT_MODEL;
 };
-static_assert(LightModel<GoniometricLight>);
+static_assert(MovableLight<GoniometricLight>);
 
 } // namespace montelux

@@ -27,6 +27,13 @@ SampledSpectrum radiance_at(const LightContext& context, const ImageInfiniteLigh
 
 } // namespace
 
+ImageInfiniteLight ImageInfiniteLight::moved(const Transform& world_from_own) const {
+    ImageInfiniteLight light = *this;
+    light.world_from_light = world_from_own * world_from_light;
+    light.motion = no_index;
+    return light;
+}
+
 Index ImageInfiniteLight::part_count(const LightContext&) const { return 1; }
 
 std::optional<LightSample> ImageInfiniteLight::sample_li(const LightContext& context, Index,

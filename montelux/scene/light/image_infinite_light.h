@@ -19,9 +19,12 @@ struct ImageInfiniteLight {
     float scale = 1;
     Transform world_from_light;
     std::optional<Portal> portal{};
+    Index motion = no_index; // MovableLight; none with a portal
+
+    ImageInfiniteLight moved(const Transform& world_from_own) const;
 
     MONTELUX_LIGHT_MODEL;
 };
-static_assert(LightModel<ImageInfiniteLight>);
+static_assert(MovableLight<ImageInfiniteLight>);
 
 } // namespace montelux

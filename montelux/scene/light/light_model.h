@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "montelux/mc/math/transform.h"
 #include "montelux/scene/index.h"
 #include "montelux/scene/shape/bounds.h"
 #include "montelux/scene/shape/ray.h"
@@ -15,7 +16,7 @@
 
 namespace montelux {
 
-// Scene and index of a light (light_context.h).
+// Scene, index of a light and time (light_context.h).
 struct LightContext;
 
 // Where rays hit a light. An exhaustive list: it determines how a path treats a light.
@@ -81,7 +82,8 @@ struct LightBounds {
 };
 
 // A light consists of parts that are chosen individually: the primitives of an emissive mesh; other lights
-// have one. Functions take random numbers in [0, 1)^2, do not allocate, and do not throw, except `powers`.
+// have one. All is as it is at the context's time. Functions take random numbers in [0, 1)^2, do not allocate,
+// and do not throw, except `powers`.
 // Samples are large: where every return statement names the same variable, it is built in place.
 template <typename L>
 concept LightModel = requires(const L& light, const LightContext& context, Index part,
@@ -104,6 +106,15 @@ concept LightModel = requires(const L& light, const LightContext& context, Index
     { light.powers(context, powers) } -> std::same_as<void>;
     // Empty for lights without a position.
     { light.bounds(context, part) } -> std::same_as<std::optional<LightBounds>>;
+};
+
+// A light that may move: its fields are in its own space, which a motion places in the world (Scene::motions);
+// no_index: in the world, where it stands still. `moved` is the still light in the world when the motion has got
+// to that transformation. The light of a shape moves with the shape instead.
+template <typename L>
+concept MovableLight = LightModel<L> && requires(const L& light, const Transform& world_from_light) {
+    { light.motion } -> std::convertible_to<Index>;
+    { light.moved(world_from_light) } -> std::same_as<L>;
 };
 
 // Declares the functions of LightModel in the struct of a light.

@@ -17,7 +17,8 @@ std::optional<EmissionSample> sample_le(const LightContext& context, Index part,
                                         Vec2f u_direction, const SampledWavelengths& lambda);
 EmissionPdf pdf_le(const LightContext& context, const LightHit& hit, Vec3f w);
 
-// The quantities by which lights are chosen.
+// The quantities by which lights are chosen. Bounds are those at the context's time (motion_bounds.h: at any time),
+// powers are means over the motion.
 std::optional<LightBounds> light_bounds(const LightContext& context, Index part);
 Index part_count(const LightContext& context);
 void light_powers(const LightContext& context, std::span<double> parts);

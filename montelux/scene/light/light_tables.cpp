@@ -5,28 +5,12 @@
 #include "montelux/mc/math/overloaded.h"
 #include "montelux/mc/math/vector_bytes.h"
 #include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/scene/light/emissive_shape.h"
 #include "montelux/scene/shape/alpha.h"
-#include "montelux/scene/shape/surface_point.h"
 
 namespace montelux {
 
 namespace {
-
-LightTriangle light_triangle(const TriangleMesh& mesh, const Shape& shape, std::size_t primitive) {
-    const Index* v = &mesh.indices[3 * primitive];
-    const Point3f p1 = mesh.positions[v[1]], p2 = mesh.positions[v[2]];
-    LightTriangle t;
-    t.p0 = mesh.positions[v[0]];
-    t.e1 = p1 - t.p0;
-    t.e2 = p2 - t.p0;
-    const Vec3f c = cross(t.e1, t.e2);
-    const float len = length(c);
-    t.area = 0.5f * len;
-    if (!(len > 0)) return t;
-    t.n = shape.flip_normal ? -normalize(c) : normalize(c);
-    t.error = coordinate_error(t.n, max(abs(t.p0), max(abs(p1), abs(p2))));
-    return t;
-}
 
 // Above this size (64 MiB of spectra) texels are uplifted at each look-up.
 constexpr std::size_t max_precomputed_texels = std::size_t{1} << 22;
@@ -86,8 +70,9 @@ Bounds3 bounds_of(const Scene& scene) {
 LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings)
     : lookup_(settings.lookup), first_triangle_(scene.lights.size() + 1), spheres_(scene.lights.size()),
       disks_(scene.lights.size()), environment_of_light_(scene.lights.size(), no_index),
-      map_spectra_(scene.environments.size()), in_world_(scene.shapes.size()), bounds_(bounds_of(scene)) {
-    for (const Index shape : scene.world_shapes) in_world_[shape] = 1;
+      map_spectra_(scene.environments.size()), instance_of_light_(scene.lights.size(), no_index),
+      emits_(scene.shapes.size()), bounds_(bounds_of(scene)) {
+    find_emitters(scene);
     for (Index i = 0; i < scene.lights.size(); ++i) {
         first_patch_.push_back(patch_areas_.size());
         if (kind_of(scene.lights[i]) == LightKind::infinite) infinite_lights_.push_back(i);
@@ -119,13 +104,38 @@ LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings
     add_triangles(scene);
 }
 
+void LightTables::find_emitters(const Scene& scene) {
+    constexpr Index several = no_index - 1;
+    std::vector<Index> instance_of_object(scene.objects.size(), no_index),
+        instance_of_shape(scene.shapes.size(), no_index);
+    for (Index i = 0; i < scene.instances.size(); ++i) {
+        Index& only = instance_of_object[scene.instances[i].object];
+        only = only == no_index ? i : several;
+    }
+    for (Index object = 0; object < scene.objects.size(); ++object) {
+        const Index only = instance_of_object[object];
+        if (only >= several || !scene.objects[object].shines) continue;
+        for (const Index shape : scene.objects[object].shapes) {
+            emits_[shape] = 1;
+            instance_of_shape[shape] = only;
+        }
+    }
+    for (const Index shape : scene.world_shapes) {
+        emits_[shape] = 1;
+        instance_of_shape[shape] = no_index;
+    }
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        if (const auto* area = std::get_if<AreaLight>(&scene.lights[i]))
+            instance_of_light_[i] = instance_of_shape[area->shape];
+}
+
 void LightTables::add_shape(const Scene& scene, Index light, const AreaLight& area) {
     if (area.picture != no_index) add_spectra(scene, area.picture);
     const Shape& shape = scene.shapes[area.shape];
     visit_geometry(scene, shape,
                    Overloaded{[&](const TriangleMesh& mesh) {
                                   // The number of its triangles; add_triangles sums them up.
-                                  if (in_world_[area.shape] != 0)
+                                  if (emits_[area.shape] != 0 && !mesh.deforms())
                                       first_triangle_[light + 1] = mesh.triangle_count();
                               },
                               [&](const Quadric& quadric) {
@@ -135,8 +145,8 @@ void LightTables::add_shape(const Scene& scene, Index light, const AreaLight& ar
                                   disks_[light] = whole_disk(quadric);
                               },
                               [&](const BilinearMesh& mesh) {
-                                  for (std::size_t i = 0;
-                                       i < mesh.patch_count() && in_world_[area.shape] != 0; ++i)
+                                  for (std::size_t i = 0; i < mesh.patch_count() && emits_[area.shape] != 0;
+                                       ++i)
                                       patch_areas_.push_back(static_cast<float>(area_of(mesh.patch(i))));
                               },
                               [](const Curves&) {}});
@@ -185,7 +195,7 @@ void LightTables::add_environment(const Scene& scene, Index light, Index map, En
 std::size_t LightTables::bytes() const {
     std::size_t sum = vector_bytes(triangles_, first_triangle_, patch_areas_, first_patch_, spheres_, disks_,
                                    environments_, portals_, projections_, environment_of_light_, map_spectra_,
-                                   infinite_lights_, in_world_);
+                                   infinite_lights_, instance_of_light_, emits_);
     for (const EnvironmentSampler& e : environments_) sum += e.bytes();
     for (const PortalSampler& p : portals_) sum += p.bytes();
     for (const ProjectionTable& p : projections_) sum += p.bytes();
@@ -209,7 +219,8 @@ LightTablesView LightTables::view(const Scene& scene) const {
     view.environment_of_light = environment_of_light_;
     view.map_spectra = map_spectra_;
     view.infinite_lights = infinite_lights_;
-    view.in_world = in_world_;
+    view.instance_of_light = instance_of_light_;
+    view.emits = emits_;
     view.scene_bounds = bounds_;
     return view;
 }

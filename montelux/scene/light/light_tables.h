@@ -21,6 +21,7 @@ class LightTables {
     std::size_t bytes() const;
 
   private:
+    void find_emitters(const Scene& scene);
     void add_shape(const Scene& scene, Index light, const AreaLight& area);
     void add_triangles(const Scene& scene);
     void add_spectra(const Scene& scene, Index map);
@@ -44,7 +45,8 @@ class LightTables {
     std::map<std::pair<Index, EnvironmentLayout>, Index> known_environments_;
     std::vector<std::vector<RgbUnboundedSpectrum>> map_spectra_;
     std::vector<Index> infinite_lights_;
-    std::vector<char> in_world_;
+    std::vector<Index> instance_of_light_;
+    std::vector<char> emits_;
     Bounds3 bounds_;
 };
 

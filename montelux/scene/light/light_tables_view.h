@@ -13,7 +13,7 @@
 
 namespace montelux {
 
-// A triangle that emits, in world space.
+// A triangle that emits, in the space of its shape: the world, or that of its instance.
 struct LightTriangle {
     Point3f p0;
     Vec3f e1, e2;
@@ -24,7 +24,7 @@ struct LightTriangle {
 
 struct LightTablesView {
     EnvironmentLookup lookup{};
-    std::span<const LightTriangle> triangles;
+    std::span<const LightTriangle> triangles;    // none of meshes that deform
     std::span<const std::size_t> first_triangle; // of each light; at the end the total
     std::span<const float> patch_areas;          // of each light on bilinear patches, one after the other
     std::span<const std::size_t> first_patch;    // of each light; at the end the total
@@ -39,17 +39,21 @@ struct LightTablesView {
     // Spectra of the texels of each map; empty for maps that are too large.
     std::span<const std::vector<RgbUnboundedSpectrum>> map_spectra;
     std::span<const Index> infinite_lights;
-    std::span<const char> in_world; // one per shape: 0 or 1
+    // Of each light of a shape in an object that shines: its one instance; no_index for others.
+    std::span<const Index> instance_of_light;
+    std::span<const char> emits; // one per shape: 0 or 1
     Bounds3 scene_bounds;
 
     // The colour space of all environment maps.
     static const RgbColorSpace& map_color_space() { return RgbColorSpace::srgb(); }
     static RgbUnboundedSpectrum texel_spectrum(const Image& map, std::size_t texel);
-    // For a light on a mesh in the world.
+    // For a light on a mesh that emits.
     const LightTriangle& triangle(Index light, Index primitive) const {
         return triangles[first_triangle[light] + primitive];
     }
-    // Area of a triangle or a patch, for a light on such a mesh in the world.
+    // Whether the mesh of a light deforms, for a light on a mesh that emits.
+    bool deforms(Index light) const { return first_triangle[light] == first_triangle[light + 1]; }
+    // Area of a triangle or a patch in the space of its shape, for a light on such a mesh that emits.
     float area(Index light, Index primitive) const {
         const std::size_t patch = first_patch[light] + primitive;
         return patch < first_patch[light + 1] ? patch_areas[patch] : triangle(light, primitive).area;
@@ -73,11 +77,13 @@ struct LightTablesView {
     // For an infinite light with a map and a portal.
     const PortalSampler& portal(Index light) const { return portals[environment_of_light[light]]; }
     const ProjectionTable& projection(Index light) const { return projections[environment_of_light[light]]; }
-    // For lights that are whole spheres or discs without holes.
+    // For lights that are whole spheres or discs without holes, in the space of the shape.
     const std::optional<WorldSphere>& sphere(Index light) const { return spheres[light]; }
     const std::optional<WorldDisk>& disk(Index light) const { return disks[light]; }
-    // Whether a shape is directly in the world, where it may emit.
-    bool is_in_world(Index shape) const { return in_world[shape] != 0; }
+    // Whether a shape with a light emits: it is directly in the world, or in an object that shines
+    // (ObjectDefinition::shines).
+    bool may_emit(Index shape) const { return emits[shape] != 0; }
+    Index instance(Index light) const { return instance_of_light[light]; }
 
   private:
     // Without the white illuminant, at index y * width + x.

@@ -24,6 +24,10 @@ std::optional<LightSample> sample_position(Point3f position, SampledSpectrum int
     return result;
 }
 
+PointLight PointLight::moved(const Transform& world_from_own) const {
+    return {spectrum, scale, world_from_own.point(position)};
+}
+
 Index PointLight::part_count(const LightContext&) const { return 1; }
 
 std::optional<LightSample> PointLight::sample_li(const LightContext& context, Index,

@@ -14,10 +14,13 @@ struct PointLight {
     SceneSpectrum spectrum;
     float scale = 1;
     Point3f position;
+    Index motion = no_index; // MovableLight
+
+    PointLight moved(const Transform& world_from_own) const;
 
     MONTELUX_LIGHT_MODEL;
 };
-static_assert(LightModel<PointLight>);
+static_assert(MovableLight<PointLight>);
 
 // The sample of a point light with that intensity towards the reference. Empty at the light itself.
 std::optional<LightSample> sample_position(Point3f position, SampledSpectrum intensity,

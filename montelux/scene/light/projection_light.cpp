@@ -25,6 +25,13 @@ SampledSpectrum intensity(const LightContext& context, const ProjectionLight& li
 
 } // namespace
 
+ProjectionLight ProjectionLight::moved(const Transform& world_from_own) const {
+    ProjectionLight light = *this;
+    light.world_from_light = world_from_own * world_from_light;
+    light.motion = no_index;
+    return light;
+}
+
 Index ProjectionLight::part_count(const LightContext&) const { return 1; }
 
 std::optional<LightSample> ProjectionLight::sample_li(const LightContext& context, Index,

@@ -16,11 +16,14 @@ struct ProjectionLight {
     float scale = 1;
     float fov = 90; // degrees, of the shorter side
     Transform world_from_light;
+    Index motion = no_index; // MovableLight
 
     Point3f position() const { return world_from_light.point(Vec3f()); }
 
+    ProjectionLight moved(const Transform& world_from_own) const;
+
     MONTELUX_LIGHT_MODEL;
 };
-static_assert(LightModel<ProjectionLight>);
+static_assert(MovableLight<ProjectionLight>);
 
 } // namespace montelux

@@ -21,6 +21,13 @@ SampledSpectrum radiance_at(const LightContext& context, const SkyLight& light, 
 
 } // namespace
 
+SkyLight SkyLight::moved(const Transform& world_from_own) const {
+    SkyLight light = *this;
+    light.world_from_light = world_from_own * world_from_light;
+    light.motion = no_index;
+    return light;
+}
+
 Index SkyLight::part_count(const LightContext&) const { return 1; }
 
 std::optional<LightSample> SkyLight::sample_li(const LightContext& context, Index, const ReferencePoint& from,

@@ -15,9 +15,12 @@ struct SkyLight {
     Index environment = no_index; // into Scene::environments: its sky_density_map
     float scale = 1;
     Transform world_from_light; // +z is up there
+    Index motion = no_index;    // MovableLight
+
+    SkyLight moved(const Transform& world_from_own) const;
 
     MONTELUX_LIGHT_MODEL;
 };
-static_assert(LightModel<SkyLight>);
+static_assert(MovableLight<SkyLight>);
 
 } // namespace montelux

@@ -16,6 +16,14 @@ float SpotLight::falloff(Vec3f w) const {
     return t * t * (3 - 2 * t);
 }
 
+SpotLight SpotLight::moved(const Transform& world_from_own) const {
+    SpotLight light = *this;
+    light.position = world_from_own.point(position);
+    light.axis = normalize(world_from_own.vector(axis));
+    light.motion = no_index;
+    return light;
+}
+
 Index SpotLight::part_count(const LightContext&) const { return 1; }
 
 std::optional<LightSample> SpotLight::sample_li(const LightContext& context, Index,

@@ -17,12 +17,15 @@ struct SpotLight {
     Point3f position;
     Vec3f axis{0, 0, 1};
     float cos_falloff_start = 1, cos_total_width = 1;
+    Index motion = no_index; // MovableLight
 
     // Share of the intensity along the unit vector w.
     float falloff(Vec3f w) const;
 
+    SpotLight moved(const Transform& world_from_own) const;
+
     MONTELUX_LIGHT_MODEL;
 };
-static_assert(LightModel<SpotLight>);
+static_assert(MovableLight<SpotLight>);
 
 } // namespace montelux

@@ -10,6 +10,14 @@
 
 namespace montelux {
 
+SunLight SunLight::moved(const Transform& world_from_own) const {
+    SunLight light = *this;
+    light.disc.centre = normalize(world_from_own.vector(disc.centre));
+    light.up = normalize(world_from_own.normal(up));
+    light.motion = no_index;
+    return light;
+}
+
 Index SunLight::part_count(const LightContext&) const { return 1; }
 
 std::optional<LightSample> SunLight::sample_li(const LightContext& context, Index, const ReferencePoint& from,

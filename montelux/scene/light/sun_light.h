@@ -15,12 +15,15 @@ struct SunLight {
     SceneSpectrum spectrum;
     float scale = 1;
     SunDisc disc;
-    Vec3f up{0, 0, 1}; // the part of the disc on the other side is hidden
+    Vec3f up{0, 0, 1};       // the part of the disc on the other side is hidden
+    Index motion = no_index; // MovableLight
 
     bool hides(Vec3f wi) const { return dot(wi, up) < 0; }
 
+    SunLight moved(const Transform& world_from_own) const;
+
     MONTELUX_LIGHT_MODEL;
 };
-static_assert(LightModel<SunLight>);
+static_assert(MovableLight<SunLight>);
 
 } // namespace montelux

@@ -144,14 +144,14 @@ SurfacePoint curve_point(const Curves& curves, const Shape& shape, const Ray& ra
     return s;
 }
 
-void transform_by(const Transform& t, SurfacePoint& s, float scale) {
+void transform_by(const Transform& t, SurfacePoint& s) {
     s.p = t.point(s.p);
     s.ng = normalize(t.normal(s.ng));
     s.ns = normalize(t.normal(s.ns));
     s.dpdu = t.vector(s.dpdu);
     s.dpdv = t.vector(s.dpdv);
     s.vertex_tangent = t.vector(s.vertex_tangent);
-    s.error = s.error * scale + coordinate_error(largest_coordinate(s.p));
+    s.error = transformed_error(s.error, t, s.p);
 }
 
 // Largest stretch of a transform, bounded by the Frobenius norm.
@@ -182,6 +182,10 @@ Normal3f patch_normal(const BilinearMesh& mesh, const Shape& shape, std::size_t 
     return turns_normal(vertex_normal, ng) ? -ng : ng;
 }
 
+float transformed_error(float error, const Transform& t, Point3f p) {
+    return error * stretch(t) + coordinate_error(largest_coordinate(p));
+}
+
 float patch_error(const BilinearPatch& p, Normal3f n) {
     return coordinate_error(n, Vec3f(max(max(abs(p.p00), abs(p.p10)), max(abs(p.p01), abs(p.p11)))));
 }
@@ -206,7 +210,7 @@ SurfacePoint surface_point(const SceneView& scene, const Ray& ray, const Hit& hi
         const auto place = [&](const Transform& t) {
             s = point(
                 {Vec3f(t.inverse_point(Vec3d(ray.o))), Vec3f(t.inverse_vector(Vec3d(ray.d))), ray.t_max});
-            transform_by(t, s, stretch(t));
+            transform_by(t, s);
         };
         const Instance& instance = scene.instances[hit.instance];
         if (instance.motion == no_index) {

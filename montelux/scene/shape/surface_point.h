@@ -67,6 +67,9 @@ T coordinate_error(Vec3<T> n, Vec3<T> largest) {
     return coordinate_error(dot(abs(n), largest) + 0x1p-40f * max_component(largest));
 }
 
+// SurfacePoint::error of a point that the transformation has brought to `p`.
+float transformed_error(float error, const Transform& t, Point3f p);
+
 // A point of a triangle by the weights b1 and b2 of its second and third vertex. `flipped` as
 // Shape::flip_normal. `vertex_normal` is the interpolated one, or zero.
 template <Number T>

@@ -56,28 +56,100 @@ TEST(PbrtTransforms, WhatCannotMoveStaysWithAWarning) {
     const SceneDescription d = parse(R"(WorldBegin
 ActiveTransform EndTime Translate 1 0 0 ActiveTransform All
 LightSource "point"
-Texture "t" "float" "constant"
-ObjectBegin "o"
-Shape "sphere"
-ObjectEnd
-AttributeBegin
-AreaLightSource "diffuse"
-Shape "sphere"
-AttributeEnd
-Shape "sphere")",
+Texture "t" "float" "constant")",
                                      &warnings);
-    const char* expected[] = {
-        "scene:3:1: a light does not move: it stays where it is at the start",
-        "scene:4:1: a texture does not move: it stays where it is at the start",
-        "scene:10:1: a shape that emits light does not move: it stays where it is at the start",
+    EXPECT_EQ(warnings.messages().size(), 2u); // the texture is not used
+    EXPECT_EQ(warnings.messages().at(0),
+              "scene:4:1: a texture does not move: it stays where it is at the start");
+}
+
+// The transformations are those of the light at the start and the end, as of a still one.
+TEST(PbrtTransforms, LightsMove) {
+    Warnings warnings;
+    const SceneDescription d = parse(R"(TransformTimes 2 3 WorldBegin
+AttributeBegin
+  Translate 1 2 3
+  LightSource "point" "point3 from" [ 1 0 0 ] "string group" "lamps"
+AttributeEnd
+Translate 1 2 3
+ActiveTransform EndTime Rotate 90 0 0 1 ActiveTransform All
+LightSource "point" "point3 from" [ 1 0 0 ] "string group" "lamps"
+LightSource "spot" "point3 from" [ 1 0 0 ] "point3 to" [ 1 2 0 ]
+LightSource "distant" "point3 from" [ 3 0 0 ] "point3 to" [ 0 0 0 ]
+LightSource "infinite" "rgb L" [ 1 1 1 ])",
+                                     &warnings);
+    EXPECT_TRUE(warnings.messages().empty());
+    const Scene& s = d.scene;
+    ASSERT_EQ(s.lights.size(), 5u);
+    ASSERT_EQ(s.motions.size(), 3u);
+    EXPECT_EQ(std::get<PointLight>(s.lights[0]).motion, no_index);
+    expect_near(std::get<PointLight>(s.lights[0]).position, {2, 2, 3});
+    const auto at = [&]<typename L>(const L& light, float time) {
+        return light.moved(s.motions.at(light.motion).at(time));
     };
-    for (const char* text : expected)
-        EXPECT_TRUE(std::find(warnings.messages().begin(), warnings.messages().end(), text) !=
-                    warnings.messages().end())
-            << text;
-    EXPECT_EQ(warnings.messages().size(), 4u); // the texture is not used
-    EXPECT_EQ(d.scene.instances.size(), 1u);   // the last sphere
-    EXPECT_EQ(d.scene.world_shapes.size(), 1u);
+    const auto& point = std::get<PointLight>(s.lights[1]);
+    EXPECT_EQ(at(point, 0).scale, std::get<PointLight>(s.lights[0]).scale);
+    expect_near(at(point, 0).position, {2, 2, 3});
+    expect_near(at(point, 1).position, {1, 3, 3});
+    EXPECT_EQ(s.light_groups.at(1), "lamps");
+    const auto& spot = std::get<SpotLight>(s.lights[2]);
+    expect_near(at(spot, 0).axis, {0, 1, 0});
+    expect_near(at(spot, 1).axis, {-1, 0, 0});
+    expect_near(at(spot, 1).position, {1, 3, 3});
+    const auto& distant = std::get<DistantLight>(s.lights[3]);
+    expect_near(at(distant, 0).to_light, {1, 0, 0});
+    expect_near(at(distant, 1).to_light, {0, 1, 0});
+}
+
+// pbrt's "sky" of this renderer: both of its lights.
+TEST(PbrtTransforms, SkiesAndMapsTurn) {
+    Warnings warnings;
+    const SceneDescription d = parse(R"(WorldBegin
+Rotate 30 1 0 0
+ActiveTransform EndTime Rotate 40 0 1 0 ActiveTransform All
+LightSource "sky")",
+                                     &warnings);
+    EXPECT_TRUE(warnings.messages().empty());
+    const SceneDescription still = parse(R"(WorldBegin Rotate 30 1 0 0 Rotate 40 0 1 0 LightSource "sky")");
+    ASSERT_EQ(d.scene.lights.size(), 2u);
+    ASSERT_EQ(still.scene.lights.size(), 2u);
+    const auto& sun = std::get<SunLight>(d.scene.lights[0]);
+    const auto& sky = std::get<SkyLight>(d.scene.lights[1]);
+    const SunLight sun_then = sun.moved(d.scene.motions.at(sun.motion).at(1));
+    const SkyLight sky_then = sky.moved(d.scene.motions.at(sky.motion).at(1));
+    expect_near(sun_then.disc.centre, std::get<SunLight>(still.scene.lights[0]).disc.centre);
+    expect_near(sun_then.up, std::get<SunLight>(still.scene.lights[0]).up);
+    EXPECT_EQ(sun_then.scale, std::get<SunLight>(still.scene.lights[0]).scale);
+    for (const Vec3f v : {Vec3f(1, 0, 0), Vec3f(0, 1, 0)})
+        expect_near(sky_then.world_from_light.vector(v),
+                    std::get<SkyLight>(still.scene.lights[1]).world_from_light.vector(v));
+}
+
+TEST(PbrtTransforms, EmissiveShapesMove) {
+    Warnings warnings;
+    const SceneDescription d = parse(R"(WorldBegin
+Scale -1 1 1
+ActiveTransform EndTime Translate 1 0 0 ActiveTransform All
+AreaLightSource "diffuse"
+Shape "disk"
+ReverseOrientation
+Shape "trianglemesh" "point3 P" [ 0 0 0  1 0 0  0 1 0 ] "integer indices" [ 0 1 2 ]
+Shape "disk")",
+                                     &warnings);
+    EXPECT_TRUE(warnings.messages().empty());
+    const Scene& s = d.scene;
+    EXPECT_TRUE(s.world_shapes.empty());
+    ASSERT_EQ(s.instances.size(), 3u);
+    ASSERT_EQ(s.lights.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(s.shapes[i].light, i);
+        EXPECT_EQ(std::get<AreaLight>(s.lights[i]).shape, i);
+        EXPECT_NE(s.instances[i].motion, no_index);
+    }
+    // The sides are those of still shapes: a mirrored disk shines from its other side.
+    EXPECT_TRUE(s.shapes[0].flip_normal);
+    EXPECT_TRUE(s.shapes[1].flip_normal);
+    EXPECT_FALSE(s.shapes[2].flip_normal);
 }
 
 TEST(PbrtTransforms, ShapesInsideObjectsMove) {

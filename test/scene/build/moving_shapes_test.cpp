@@ -1,5 +1,6 @@
 // Shapes that move: their objects, parts of objects and instances, and the errors they give.
 #include "test/scene/build/located_error.h"
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <string>
@@ -131,17 +132,75 @@ TEST_F(MovingShapes, TheirDigestsKnowTheWay) {
     EXPECT_NE(digest_of(along_product), digest_of(direct));
 }
 
-TEST_F(MovingShapes, DoNotShine) {
+TEST_F(MovingShapes, ShineOutsideOfObjects) {
     const Emission emission{1.0f};
     const ShapeSettings shining{.material = 0, .alpha = {1}, .emission = &emission};
     builder_.add_moving_shape(Sphere{.world_from_object = {}}, shining, {}, to_right);
     builder_.begin_object("o");
     builder_.add_moving_shape(Sphere{.world_from_object = {}}, shining, {}, to_right);
     builder_.end_object();
-    EXPECT_TRUE(scene_.lights.empty());
+    builder_.finish();
+    ASSERT_EQ(scene_.lights.size(), 1u);
+    EXPECT_EQ(std::get<AreaLight>(scene_.lights[0]).shape, 0u);
+    EXPECT_EQ(scene_.shapes[0].light, 0u);
     EXPECT_EQ(warnings_,
-              (std::vector<std::string>{"a test: shapes that move do not emit light",
-                                        "a test: area lights inside object definitions do not shine"}));
+              (std::vector<std::string>{"a test: area lights inside object definitions do not shine"}));
+}
+
+TEST_F(MovingShapes, MovingLightsAreAddedInTheirOwnSpace) {
+    builder_.add_moving_light(PointLight{1.0f, 2, {0, 0, 1}}, to_right, quarter_turn, {}, "lamps");
+    ASSERT_EQ(scene_.motions.size(), 1u);
+    EXPECT_EQ(scene_.motions[0].start(), to_right);
+    EXPECT_EQ(scene_.motions[0].end(), quarter_turn);
+    const auto& point = std::get<PointLight>(scene_.lights.at(0));
+    EXPECT_EQ(point.motion, 0u);
+    EXPECT_EQ(point.position, (Point3f{0, 0, 1}));
+    EXPECT_EQ(scene_.light_groups.at(0), "lamps");
+    EXPECT_TRUE(moves(scene_));
+    // What looks the same has no motion.
+    builder_.add_moving_light(UniformInfiniteLight{1.0f, 2}, to_right, quarter_turn);
+    EXPECT_EQ(scene_.motions.size(), 1u);
+}
+
+// Equal ends make the scene of a still light.
+TEST_F(MovingShapes, LightsThatDoNotMoveAreStill) {
+    const Light lights[] = {PointLight{1.0f, 2, {1, 2, 3}},
+                            SpotLight{1.0f, 2, {1, 2, 3}, {1, 0, 0}, 0.9f, 0.8f},
+                            DistantLight{1.0f, 2, {0, 1, 0}}};
+    const Light there[] = {PointLight{1.0f, 2, {-2, 1, 3}},
+                           SpotLight{1.0f, 2, {-2, 1, 3}, {0, 1, 0}, 0.9f, 0.8f},
+                           DistantLight{1.0f, 2, {-1, 0, 0}}};
+    const Transform exact_turn =
+        *Transform::from_matrix({{{{0, -1, 0, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}});
+    Scene still;
+    SceneBuilder plain(still, messages_);
+    for (const Light& light : lights) builder_.add_moving_light(light, exact_turn, exact_turn);
+    for (const Light& light : there) plain.add_light(light);
+    EXPECT_FALSE(moves(scene_));
+    EXPECT_EQ(digest_of(scene_).lights, digest_of(still).lights);
+}
+
+TEST_F(MovingShapes, LightsThatCannotMoveAreRefused) {
+    const auto error = [&](const Light& light, const Transform& end) {
+        return located_error([&] { builder_.add_moving_light(light, {}, end); });
+    };
+    const Portal portal(std::array<Point3f, 4>{{{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}}});
+    scene_.environments.emplace_back(2, 2, std::vector<std::string>{"R", "G", "B"});
+    EXPECT_EQ(
+        error(ImageInfiniteLight{.environment = 0, .world_from_light = {}, .portal = portal}, quarter_turn),
+        "a test: an environment map with a portal does not move");
+    still();
+    EXPECT_EQ(error(AreaLight{1.0f, 1, false, 0}, quarter_turn),
+              "a test: the light of a shape moves with the shape");
+    const std::string beyond =
+        "a test: the light's transformation is beyond what single-precision numbers hold";
+    EXPECT_EQ(error(PointLight{1.0f, 1, {1, 0, 0}}, Transform::scale({1e39, 1, 1})), beyond);
+    EXPECT_EQ(error(PointLight{1.0f, 1, {1e30f, 0, 0}}, Transform::scale({1e10, 1, 1})), beyond);
+    EXPECT_EQ(error(SpotLight{1.0f, 1, {}, {0, 0, 1}, 0.9f, 0.8f}, Transform::scale({1e19, 1, 1})), beyond);
+    EXPECT_EQ(
+        error(PointLight{1.0f, 1, {}}, Transform::scale({-1, 1, 1})),
+        "a test: motion: one end is mirrored and the other is not; between them the object would be flat");
+    EXPECT_TRUE(scene_.lights.empty());
 }
 
 TEST_F(MovingShapes, ErrorsHaveAPlace) {
@@ -230,7 +289,7 @@ TEST_F(MovingShapes, OfManyMovingUsesAreLimited) {
     for (int i = 0; i < 1000; ++i) moving({}, Transform::translate({i + 1.0, 0, 0}));
     builder_.end_object();
     for (int i = 0; i < 320; ++i) builder_.add_instance("o", {}, Transform::rotate(180, {0, 0, 1}));
-    EXPECT_NE(error_of([&] { builder_.finish(); }).find("need more than 4 GiB"), std::string::npos);
+    EXPECT_NE(located_error([&] { builder_.finish(); }).find("need more than 4 GiB"), std::string::npos);
 }
 
 } // namespace

@@ -253,6 +253,9 @@ TEST(SceneReferences, LightsAreCheckedWhenAdded) {
               "test: light 1 (point light), spectrum: there is no spectrum 1; the scene has 1");
     EXPECT_EQ(error(with_spectrum<SunLight>(no_spectrum)),
               "test: light 1 (sun), spectrum: there is no spectrum 1; the scene has 1");
+    PointLight moving = with_spectrum<PointLight>(1.0f);
+    moving.motion = 2;
+    EXPECT_EQ(error(moving), "test: light 1 (point light), motion: there is no motion 2; the scene has 0");
     EXPECT_EQ(error(AreaLight{1, 1, false, 4}),
               "test: light 1 (area light), shape: there is no shape 4; the scene has 0");
     EXPECT_EQ(error(ImageInfiniteLight{.environment = 0, .world_from_light = {}}),

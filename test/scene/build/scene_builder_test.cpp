@@ -105,13 +105,6 @@ TEST_F(SceneBuilding, GeometryIsChecked) {
               "line 7: vertex 2 lies at infinity in world space at the end");
     EXPECT_EQ(shape_error(deforming([&](TriangleMesh& m) { m.end_normals[0].x = std::nanf(""); })),
               "line 7: a vertex normal is not finite in world space at the end");
-    EXPECT_EQ(
-        located_error([&] {
-            const Emission emission{1.0f};
-            builder_.add_shape(deforming([](TriangleMesh&) {}), {.alpha = {1}, .emission = &emission},
-                               line(7));
-        }),
-        "line 7: a mesh that deforms does not emit light; give it no light, or no positions at the end");
     EXPECT_TRUE(scene_.lights.empty());
     EXPECT_EQ(shape_error(Sphere{.world_from_object = Transform::translate({1e39, 0, 0})}),
               "line 7: the shape reaches to infinity in world space");
@@ -220,18 +213,6 @@ TEST_F(SceneBuilding, InstancesThatDeformToInfinityAreRefused) {
     mesh.end_positions = mesh.positions;
     mesh.end_positions[0].x = 3e38f;
     EXPECT_EQ(instance_error(mesh), "line 5: the instance reaches to infinity in world space");
-}
-
-// A light that is given to the shape later.
-TEST_F(SceneBuilding, LightsOfMeshesThatDeformAreRefused) {
-    TriangleMesh mesh = two_triangles();
-    mesh.end_positions = mesh.positions;
-    const Index shape = builder_.add_shape(mesh, {});
-    EXPECT_EQ(
-        located_error([&] {
-            builder_.add_light(AreaLight{1.0f, 1, false, shape}, line(3));
-        }),
-        "line 3: a mesh that deforms does not emit light; give it no light, or no positions at the end");
 }
 
 TEST_F(SceneBuilding, ShapesWithoutMaterialAreRefused) {
