@@ -8,8 +8,8 @@ namespace montelux {
 
 // By parts, so that messages can name the part that differs.
 struct SceneDigest {
-    ContentDigest
-        geometry; // meshes, quadrics, shapes, objects, instances; the motions of these and of lights
+    // Meshes, quadrics, shapes, objects, instances, and the motions of these and of lights.
+    ContentDigest geometry;
     // Their parameters; the assignment to shapes is part of the geometry. With media, and where they are.
     ContentDigest materials;
     ContentDigest textures; // with their images

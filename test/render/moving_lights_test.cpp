@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "montelux/render/sample_record.h"
+#include "montelux/scene/light/emissive_shape.h"
 
 namespace montelux::testing {
 namespace {
@@ -149,8 +150,7 @@ class Swarm {
         }
         const Transform t = start == end ? start : Motion(start, end).at(*time_);
         if (quadric) {
-            std::visit([&](auto& q) { q.world_from_object = t * q.world_from_object; },
-                       std::get<Quadric>(geometry));
+            geometry = placed(std::get<Quadric>(geometry), t);
         } else {
             auto& mesh = std::get<TriangleMesh>(geometry);
             for (Index v = 0; v < mesh.positions.size(); ++v) mesh.positions[v] = mesh.position(v, *time_);
