@@ -20,6 +20,7 @@ std::string_view hard_options_help() {
            "  --time S          wall time of a run, for methods that know a limit of it  [60]\n"
            "  --jobs N          processes at a time  [1]\n"
            "  --json FILE       every run\n"
+           "  --report A,B      runs nothing: prints the tables of files that --json wrote, taken together\n"
            "  --vegas-python P  Python interpreter that can import the package vegas\n"
            "  --quick           the test of continuous integration: auto and adaptive on a few seeds, exit\n"
            "                    code 1 where there are more silent failures than allowed\n"
@@ -71,7 +72,10 @@ HardOptions parse_hard_options(const std::vector<std::string_view>& arguments) {
             options.jobs = static_cast<int>(number(1, 1000));
         else if (option == "--json")
             options.json = value();
-        else if (option == "--vegas-python")
+        else if (option == "--report") {
+            options.report = comma_separated(value());
+            if (options.report.empty()) throw Error(option, "expected files that --json wrote");
+        } else if (option == "--vegas-python")
             options.vegas_python = value();
         else
             throw Error(option, "there is no such option; --help lists them");

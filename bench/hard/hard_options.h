@@ -17,6 +17,7 @@ struct HardOptions {
     std::uint64_t seeds = 40, first_seed = 0;
     int jobs = 1;
     std::string json;
+    std::vector<std::string> report; // files of earlier runs; empty: runs are made
     std::string vegas_python;
     bool quick = false, verbose = false, list = false, help = false;
 };

@@ -3,11 +3,9 @@
 #include "bench/integrate/markdown.h"
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numeric>
 #include <set>
 
-#include "montelux/mc/math/error.h"
 #include "montelux/mc/math/special.h"
 
 namespace montelux::bench {
@@ -69,7 +67,7 @@ std::string plain_name(const std::string& method) {
 
 void print_methods(std::ostream& out, const HardPlan& plan, const std::vector<HardRun>& runs) {
     std::vector<std::string> header = {
-        "method", "silent", "worst family", "there", "silent at the cap", "with warning", "no value"};
+        "method", "runs", "silent", "worst family", "there", "silent at the cap", "with warning", "no value"};
     for (const Goal& goal : plan.goals) header.push_back("honest at " + goal.name());
     MarkdownTable table(header);
     for (std::size_t m = 0; m < plan.methods.size(); ++m) {
@@ -84,6 +82,7 @@ void print_methods(std::ostream& out, const HardPlan& plan, const std::vector<Ha
             if (share > worst_share) worst_share = share, worst = f;
         }
         std::vector<std::string> row = {plain_name(plan.methods[m].name),
+                                        std::to_string(all.runs),
                                         counted_share(all.silent, all.runs),
                                         worst_share > 0 ? std::string(plan.families[worst]->name) : "-",
                                         percent(worst_share),
@@ -120,14 +119,14 @@ void print_families(std::ostream& out, const HardPlan& plan, const std::vector<H
         if (all[a].silent != all[b].silent) return all[a].silent_share() > all[b].silent_share();
         return here[a].honest_share() < here[b].honest_share();
     });
-    MarkdownTable table({"family", "silent", "silent at the cap", "with warning", "no value", "honest" + at,
-                         "median evaluations" + at});
+    MarkdownTable table({"family", "runs", "silent", "silent at the cap", "with warning", "no value",
+                         "honest" + at, "median evaluations" + at});
     for (std::size_t f : order) {
         if (all[f].runs == 0) continue;
-        table.add({std::string(plan.families[f]->name), counted_share(all[f].silent, all[f].runs),
-                   share_of(all[f].silent_at_cap, all[f].runs), share_of(all[f].warned, all[f].runs),
-                   share_of(all[f].failed, all[f].runs), percent(here[f].honest_share()),
-                   count_or_none(here[f].median_evaluations())});
+        table.add({std::string(plan.families[f]->name), std::to_string(all[f].runs),
+                   counted_share(all[f].silent, all[f].runs), share_of(all[f].silent_at_cap, all[f].runs),
+                   share_of(all[f].warned, all[f].runs), share_of(all[f].failed, all[f].runs),
+                   percent(here[f].honest_share()), count_or_none(here[f].median_evaluations())});
     }
     out << "\n## Families, " << plain_name(plan.methods[method].name) << "\n\n" << table;
 }
@@ -205,47 +204,6 @@ void print_silent_failures(std::ostream& out, const HardPlan& plan, const std::v
         if (!answer.reason.empty()) out << " (" << answer.reason << ")";
         out << "\n";
     }
-}
-
-namespace {
-
-std::string quoted(const std::string& text) {
-    std::string json = "\"";
-    for (char c : text) {
-        if (c == '"' || c == '\\') json += '\\';
-        json += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-    return json + "\"";
-}
-// JSON has no infinities.
-std::string number(double x) { return std::isfinite(x) ? formatted("%.17g", x) : "null"; }
-
-} // namespace
-
-void write_hard_json(const std::string& path, const HardPlan& plan, const std::vector<HardRun>& runs) {
-    std::ofstream out(path);
-    out << "{\"first_seed\": " << plan.first_seed << ", \"seeds\": " << plan.seeds << ", \"runs\": [\n";
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-        const HardRun& r = runs[i];
-        const Answer& answer = r.run.answer;
-        auto truth = [](bool b) { return b ? "true" : "false"; };
-        out << "{\"family\": " << quoted(std::string(plan.families[r.run.line]->name))
-            << ", \"method\": " << quoted(plan.methods[r.run.method].name) << ", \"seed\": " << r.run.seed
-            << ", \"target\": " << number(plan.goals[r.run.goal].relative_error)
-            << ", \"cap\": " << plan.goals[r.run.goal].evaluations << ", \"dimensions\": " << r.dimensions
-            << ", \"parameters\": " << quoted(r.parameters) << ", \"exact\": " << number(r.run.exact)
-            << ", \"accuracy\": " << number(r.accuracy) << ", \"value\": " << number(answer.value)
-            << ", \"error\": " << number(answer.error) << ", \"evaluations\": " << r.run.evaluations
-            << ", \"cpu_seconds\": " << number(r.run.cpu_seconds)
-            << ", \"converged\": " << truth(answer.converged) << ", \"warned\": " << truth(answer.warned)
-            << ", \"out_of_time\": " << truth(answer.out_of_time) << ", \"silent\": " << truth(r.silent())
-            << ", \"silent_at_cap\": " << truth(r.silent_at_cap()) << ", \"honest\": " << truth(r.honest())
-            << ", \"chosen\": " << quoted(answer.chosen) << ", \"reason\": " << quoted(answer.reason)
-            << ", \"warnings\": " << quoted(answer.warnings) << ", \"failure\": " << quoted(r.run.failure)
-            << (i + 1 < runs.size() ? "},\n" : "}\n");
-    }
-    out << "]}\n";
-    if (!out.flush()) throw Error(path, "cannot be written");
 }
 
 } // namespace montelux::bench

@@ -1,4 +1,4 @@
-// Report of the runs over the bank: silent failures, honest convergence, coverage; as Markdown and as JSON.
+// Report of the runs over the bank: silent failures, honest convergence, coverage; as Markdown.
 #pragma once
 
 #include "bench/hard/hard_runner.h"
@@ -39,7 +39,5 @@ HardCell hard_cell(const std::vector<HardRun>& runs, const Admits& admits) {
 void print_hard_report(std::ostream& out, const HardPlan& plan, const std::vector<HardRun>& runs);
 // Each silent failure in words.
 void print_silent_failures(std::ostream& out, const HardPlan& plan, const std::vector<HardRun>& runs);
-// Throws Error where the file cannot be written.
-void write_hard_json(const std::string& path, const HardPlan& plan, const std::vector<HardRun>& runs);
 
 } // namespace montelux::bench

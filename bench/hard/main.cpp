@@ -1,6 +1,7 @@
 // montelux_bench_hard: integrators on the bank of hard integrals, judged by the truth of their errors.
 #include "bench/hard/hard_options.h"
 #include "bench/hard/hard_report.h"
+#include "bench/hard/hard_runs_file.h"
 #include "bench/hard/quick.h"
 #include "bench/integrate/command_line.h"
 #include "bench/integrate/montelux_methods.h"
@@ -102,8 +103,20 @@ int judge(const HardPlan& plan, const std::vector<HardRun>& runs) {
     return code;
 }
 
+void report(const HardOptions& options, const HardPlan& plan, const std::vector<HardRun>& runs) {
+    print_hard_report(std::cout, plan, runs);
+    if (!options.json.empty()) write_hard_json(options.json, plan, runs);
+    if (!options.verbose) return;
+    std::cout << "\n## Silent failures\n\n";
+    print_silent_failures(std::cout, plan, runs);
+}
+
 int run(const HardOptions& options) {
     if (options.list) return list(options), 0;
+    if (!options.report.empty()) {
+        const HardRecord record = read_hard_json(options.report);
+        return report(options, record.plan, record.runs), 0;
+    }
     const HardPlan plan = plan_of(options);
     std::signal(SIGINT, interrupt);
     std::signal(SIGTERM, interrupt);
@@ -120,12 +133,7 @@ int run(const HardOptions& options) {
         },
         &interrupted);
     if (interrupted.requested()) std::cout << "Interrupted: what follows is of the runs made until then.\n\n";
-    print_hard_report(std::cout, plan, runs);
-    if (!options.json.empty()) write_hard_json(options.json, plan, runs);
-    if (options.verbose) {
-        std::cout << "\n## Silent failures\n\n";
-        print_silent_failures(std::cout, plan, runs);
-    }
+    report(options, plan, runs);
     if (!options.quick) return 0;
     std::cout << "\n";
     return judge(plan, runs);

@@ -1,8 +1,10 @@
 #include "bench/hard/hard_options.h"
 #include "bench/hard/hard_report.h"
 #include "bench/hard/hard_runner.h"
+#include "bench/hard/hard_runs_file.h"
 #include "bench/integrate/montelux_methods.h"
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -159,6 +161,70 @@ TEST(HardReport, CountsWhatTheRunsSay) {
     EXPECT_LT(vegas.find("spike"), vegas.find("genz"));
 }
 
+// The report of a file, or of several with different seeds, is that of the runs themselves.
+TEST(HardReport, OfFilesIsThatOfTheirRuns) {
+    HardPlan plan = small_plan();
+    plan.methods = {method("montelux-auto", {}), method("vegas+", {})};
+    plan.first_seed = 0;
+    plan.seeds = 2;
+    std::vector<std::vector<HardRun>> by_seed(2);
+    std::vector<HardRun> all;
+    for (std::uint64_t seed : {0, 1})
+        for (std::size_t f = 0; f < plan.families.size(); ++f)
+            for (std::size_t m : {0, 1})
+                for (std::size_t g = 0; g < plan.goals.size(); ++g) {
+                    HardRun run = run_of(m == 1 && f == 1 ? 2.5 : 2.0001, 0.001, seed == 0, g == 1);
+                    run.run.line = f;
+                    run.run.method = m;
+                    run.run.goal = g;
+                    run.run.seed = seed;
+                    run.run.evaluations = 1000 + 17 * f + 3 * g;
+                    run.run.answer.chosen = m == 0 ? "adaptive" : "";
+                    run.run.answer.reason = "a \"reason\"";
+                    run.accuracy = 1e-12;
+                    if (m == 1 && seed == 1) run.run.answer.error = std::numeric_limits<double>::infinity();
+                    by_seed[seed].push_back(run);
+                    all.push_back(run);
+                }
+    std::vector<std::string> paths;
+    for (std::size_t seed : {0, 1}) {
+        HardPlan part = plan;
+        part.first_seed = seed;
+        part.seeds = 1;
+        paths.push_back(testing::TempDir() + "hard_runs_" + std::to_string(seed) + ".json");
+        write_hard_json(paths.back(), part, by_seed[seed]);
+    }
+    const HardRecord record = read_hard_json(paths);
+    std::ostringstream expected, report, expected_silent, silent;
+    print_hard_report(expected, plan, all);
+    print_hard_report(report, record.plan, record.runs);
+    EXPECT_EQ(report.str(), expected.str());
+    print_silent_failures(expected_silent, plan, all);
+    print_silent_failures(silent, record.plan, record.runs);
+    EXPECT_EQ(silent.str(), expected_silent.str());
+    EXPECT_FALSE(silent.str().empty());
+
+    EXPECT_THROW(read_hard_json({paths[0], paths[0]}), Error); // each run twice
+    EXPECT_THROW(read_hard_json({paths[0] + ".none"}), Error);
+    HardPlan other = plan;
+    other.seconds = plan.seconds + 1;
+    write_hard_json(paths[1], other, by_seed[1]);
+    EXPECT_THROW(read_hard_json(paths), Error); // another limit of time
+    other = plan;
+    for (Goal& goal : other.goals) goal.evaluations *= 2;
+    write_hard_json(paths[1], other, by_seed[1]);
+    EXPECT_THROW(read_hard_json(paths), Error); // another limit of evaluations
+    HardRun no_error = by_seed[1][0];
+    no_error.run.answer.error = std::nan("");
+    write_hard_json(paths[1], plan, {no_error});
+    EXPECT_THROW(read_hard_json({paths[1]}), Error); // JSON says null, as for an infinite error
+    write_hard_json(paths[1], plan, {});
+    EXPECT_THROW(read_hard_json({paths[1]}), Error);
+    std::ofstream(paths[1]) << "{\"runs\": [{\"family\": 3}]}";
+    EXPECT_THROW(read_hard_json({paths[1]}), Error);
+    for (const std::string& path : paths) std::remove(path.c_str());
+}
+
 TEST(HardOptions, AreReadAndRefused) {
     const HardOptions options =
         parse_hard_options({"--families", "ring,spike", "--seeds", "3", "--jobs", "2"});
@@ -168,6 +234,9 @@ TEST(HardOptions, AreReadAndRefused) {
     EXPECT_EQ(options.targets.size(), 3u);
     EXPECT_EQ(parse_hard_options({"--quick"}).methods, (std::vector<std::string>{"auto", "adaptive"}));
     EXPECT_EQ(parse_hard_options({"--quick", "--seeds", "2"}).seeds, 2u);
+    EXPECT_EQ(parse_hard_options({"--report", "a.json,b.json"}).report,
+              (std::vector<std::string>{"a.json", "b.json"}));
+    EXPECT_THROW(parse_hard_options({"--report", ","}), Error);
     EXPECT_THROW(parse_hard_options({"--seeds"}), Error);
     EXPECT_THROW(parse_hard_options({"--targets", ""}), Error);
     EXPECT_THROW(parse_hard_options({"--target", "1"}), Error);
