@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "montelux/mc/integrate/adaptive/adaptive.h"
 #include "montelux/mc/integrate/auto.h"
 #include "montelux/mc/integrate/integrate.h"
 #include "montelux/mc/math/constants.h"
@@ -183,6 +184,26 @@ TEST(Auto, SmallBudgetsOfAGaussianInEightVariables) {
         }
         EXPECT_LT(std::sqrt(squares / 20), most) << evaluations << " evaluations";
     }
+}
+
+// Root mean squares of true relative errors of 40 integrands.
+double rms_of_few(Family family, const Method& method, std::uint64_t evaluations) {
+    double squares = 0;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        const BenchIntegrand f({family, 8}, seed);
+        const IntegrationResult r =
+            integrate(as_integrand(f), domain_of(f), method, {.evaluations = evaluations}, {.seed = seed});
+        EXPECT_LE(r.evaluations, evaluations);
+        squares += std::pow(r.value[0] / f.exact() - 1, 2);
+    }
+    return std::sqrt(squares / 40);
+}
+
+// Rules do badly on kinks: cubature is given up after its first region. With half of the evaluations for
+// training the density is fitted three times, not twice.
+TEST(Auto, SmallBudgetsOfKinksAndProductPeaks) {
+    EXPECT_LT(rms_of_few(Family::continuous, Auto{}, 5000), 0.004);
+    EXPECT_LT(rms_of_few(Family::product_peak, Adaptive{}, 10'000), 0.001);
 }
 
 // Cubature is not given up where what is left would not pay for a result of sampling.

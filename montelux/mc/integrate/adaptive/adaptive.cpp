@@ -25,10 +25,11 @@ constexpr std::uint64_t max_training_points = 65536; // of a round
 constexpr int max_rounds = 24;
 constexpr int max_retrainings = 4;
 constexpr double fixed_training_share = 0.1; // of a fixed number of evaluations,
-constexpr double least_training = 20000;     // or this many, if they are at most a third
-constexpr double disagreement = 2e-3;        // p-value of the training rounds below which there is a warning
-constexpr std::uint64_t enough_nonzero = 16; // non-zero points needed before training begins,
-constexpr std::uint64_t few_nonzero = 4;     // the same, where a quarter of all has been explored,
+constexpr double least_training = 20000; // or this many, if they are at most a third or, of a fixed number
+constexpr double enough_for_half = 4096; // above this, a half: three rounds fit far better than two
+constexpr double disagreement = 2e-3;    // p-value of the training rounds below which there is a warning
+constexpr std::uint64_t enough_nonzero = 16;        // non-zero points needed before training begins,
+constexpr std::uint64_t few_nonzero = 4;            // the same, where a quarter of all has been explored,
 constexpr std::uint64_t most_exploration = 1 << 20; // or evaluations without
 constexpr double peaky = 0.1; // effective share of exploring points below which peaks are searched for
 constexpr double narrow_peaks = 0.01;        // the same, where the search is thorough
@@ -230,7 +231,8 @@ class AdaptiveEstimator final : public Estimator {
         // A share of the allowed evaluations, larger if these are few; or of the expected cost of the target
         // with this density and the usual gain of Sobol' points.
         const double all = static_cast<double>(request.max_evaluations) + trained;
-        double allowed = std::max(fixed_training_share * all, std::min(all / 3, least_training));
+        const double most = !targeted(request) && all >= enough_for_half ? all / 2 : all / 3;
+        double allowed = std::max(fixed_training_share * all, std::min(most, least_training));
         if (request.relative_error > 0)
             allowed = std::min(allowed, settings_.training_share *
                                             std::pow(std::sqrt(variance) / request.relative_error, 1.4));
