@@ -1,17 +1,14 @@
 #include "montelux/image/resident_limit.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdint>
-#include <cstdlib>
-#include <fcntl.h>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <sys/mman.h>
 #include <system_error>
-#include <unistd.h>
 
 #include "montelux/mc/math/error.h"
 
@@ -26,53 +23,17 @@ constexpr double fastest_reading = 3e10;
 constexpr double forgetting = 0.98; // per look
 constexpr double shortest_wait = 0.001, longest_wait = 0.01, seconds_between_counts = 1;
 
-std::size_t page_size() {
-    static const auto size = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-    return size;
-}
-
-// Resident memory of the process that belongs to files, from /proc/self/statm; some hundred pages off. Includes
-// libraries.
-std::size_t file_bytes_of_process(int statm) {
-    std::array<char, 256> text{};
-    if (pread(statm, text.data(), text.size() - 1, 0) <= 0) return 0;
-    char* at = text.data();
-    std::strtoull(at, &at, 10); // all, and the resident memory
-    std::strtoull(at, &at, 10);
-    return static_cast<std::size_t>(std::strtoull(at, &at, 10)) * page_size();
-}
-
-// From /proc/self/pagemap, which has 8 bytes per page; the highest bit says that it is resident.
-std::size_t resident_of(int pagemap, std::uintptr_t address, std::size_t size) {
-    std::array<std::uint64_t, 4096> entries;
-    std::size_t page = address / page_size(), count = 0, left = (size + page_size() - 1) / page_size();
-    while (left > 0) {
-        const std::size_t n = std::min(left, entries.size());
-        const ssize_t read = pread(pagemap, entries.data(), n * 8, static_cast<off_t>(page * 8));
-        if (read <= 0) break;
-        const std::size_t got = static_cast<std::size_t>(read) / 8;
-        for (std::size_t i = 0; i < got; ++i) count += entries[i] >> 63;
-        page += n;
-        left -= n;
-    }
-    return count * page_size();
-}
-
 std::uintptr_t address_of(std::span<const std::byte> mapping) {
     return reinterpret_cast<std::uintptr_t>(mapping.data());
+}
+
+std::span<const std::byte> mapping_at(std::uintptr_t address, std::size_t size) {
+    return {reinterpret_cast<const std::byte*>(address), size}; // NOLINT(performance-no-int-to-ptr)
 }
 
 } // namespace
 
 ResidentLimit::ResidentLimit(std::size_t bytes) : limit_(bytes) {
-    statm_ = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
-    pagemap_ = ::open("/proc/self/pagemap", O_RDONLY | O_CLOEXEC);
-    const auto fail = [&](const std::string& why) {
-        ::close(statm_);
-        ::close(pagemap_);
-        throw Error("memory of textures", why);
-    };
-    if (statm_ < 0 || pagemap_ < 0) fail("a limit needs Linux with /proc; leave it out");
     // Signals go to the threads that expect them.
     sigset_t all, before;
     sigfillset(&all);
@@ -84,7 +45,8 @@ ResidentLimit::ResidentLimit(std::size_t bytes) : limit_(bytes) {
         error = e.code().message();
     }
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    if (!error.empty()) fail("the thread that keeps the limit cannot be started: " + error);
+    if (!error.empty())
+        throw Error("memory of textures", "the thread that keeps the limit cannot be started: " + error);
 }
 
 ResidentLimit::~ResidentLimit() {
@@ -94,8 +56,6 @@ ResidentLimit::~ResidentLimit() {
     }
     changed_.notify_all();
     thread_.join();
-    ::close(statm_);
-    ::close(pagemap_);
 }
 
 void ResidentLimit::add(std::span<const std::byte> mapping) {
@@ -116,7 +76,7 @@ std::size_t ResidentLimit::resident() const {
 
 std::size_t ResidentLimit::resident_locked() const {
     std::size_t sum = 0;
-    for (const auto& [address, size] : mappings_) sum += resident_of(pagemap_, address, size);
+    for (const auto& [address, size] : mappings_) sum += memory_.resident(mapping_at(address, size));
     return sum;
 }
 
@@ -135,7 +95,7 @@ std::size_t ResidentLimit::give_back(std::size_t bytes) {
         }
         hand_ = std::max(hand_, mapping->first);
         const std::size_t size = std::min(stretch, mapping->first + mapping->second - hand_);
-        if (const std::size_t resident = resident_of(pagemap_, hand_, size); resident > 0) {
+        if (const std::size_t resident = memory_.resident(mapping_at(hand_, size)); resident > 0) {
             madvise(reinterpret_cast<void*>(hand_), size, MADV_DONTNEED); // NOLINT(performance-no-int-to-ptr)
             given += resident;
         }
@@ -158,12 +118,13 @@ void ResidentLimit::watch() {
             wait = 0;
             continue;
         }
-        const std::size_t of_process = file_bytes_of_process(statm_);
-        double resident = static_cast<double>(of_process > others ? of_process - others : 0);
+        const std::optional<std::size_t> of_process = memory_.file_bytes();
+        double resident = of_process && *of_process > others ? static_cast<double>(*of_process - others) : 0;
         const auto now = Clock::now();
-        if (resident > limit / 2 && now - counted > std::chrono::duration<double>(seconds_between_counts)) {
+        if (!of_process ||
+            (resident > limit / 2 && now - counted > std::chrono::duration<double>(seconds_between_counts))) {
             const std::size_t exact = resident_locked();
-            others = of_process > exact ? of_process - exact : 0;
+            others = of_process && *of_process > exact ? *of_process - exact : 0;
             resident = static_cast<double>(exact);
             counted = now;
         } else {

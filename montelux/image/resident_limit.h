@@ -9,6 +9,8 @@
 #include <span>
 #include <thread>
 
+#include "montelux/image/process_memory.h"
+
 namespace montelux {
 
 // Mappings must be clean, read-only and shared: what is given back comes from the file again when it is next read,
@@ -38,8 +40,8 @@ class ResidentLimit {
     std::size_t give_back(std::size_t bytes);
 
     std::size_t limit_;
-    int statm_ = -1, pagemap_ = -1; // files of /proc/self
-    mutable std::mutex mutex_;      // of what follows
+    ProcessMemory memory_;
+    mutable std::mutex mutex_; // of what follows
     std::condition_variable changed_;
     bool stop_ = false;
     std::map<std::uintptr_t, std::size_t> mappings_; // their sizes by their addresses
