@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include "montelux/mc/math/error.h"
@@ -58,6 +59,13 @@ std::size_t ProcessMemory::resident(std::span<const std::byte> mapping) const {
     return count_resident_pages(reinterpret_cast<std::uintptr_t>(mapping.data()) / page_size(),
                                 (mapping.size() + page_size() - 1) / page_size(), read) *
            page_size();
+}
+
+std::size_t ProcessMemory::give_back(std::span<const std::byte> mapping) const {
+    const std::size_t before = resident(mapping);
+    if (before == 0) return 0;
+    if (::madvise(const_cast<std::byte*>(mapping.data()), mapping.size(), MADV_DONTNEED) == 0) return before;
+    return before - std::min(before, resident(mapping)); // all up to what is locked
 }
 
 } // namespace montelux

@@ -24,6 +24,9 @@ class ProcessMemory {
     std::optional<std::size_t> file_bytes() const;
     // Of the pages of a mapping, which begins with a page. Reads 8 bytes per page.
     std::size_t resident(std::span<const std::byte> mapping) const;
+    // Makes nothing of a mapping of a file resident until it is read again. Returns how many bytes were; the
+    // kernel keeps locked memory.
+    std::size_t give_back(std::span<const std::byte> mapping) const;
 
   private:
     int statm_ = -1, pagemap_ = -1;

@@ -7,7 +7,6 @@
 #include <iterator>
 #include <optional>
 #include <string>
-#include <sys/mman.h>
 #include <system_error>
 
 #include "montelux/mc/math/error.h"
@@ -95,10 +94,7 @@ std::size_t ResidentLimit::give_back(std::size_t bytes) {
         }
         hand_ = std::max(hand_, mapping->first);
         const std::size_t size = std::min(stretch, mapping->first + mapping->second - hand_);
-        if (const std::size_t resident = memory_.resident(mapping_at(hand_, size)); resident > 0) {
-            madvise(reinterpret_cast<void*>(hand_), size, MADV_DONTNEED); // NOLINT(performance-no-int-to-ptr)
-            given += resident;
-        }
+        given += memory_.give_back(mapping_at(hand_, size));
         hand_ += size;
     }
     return given;

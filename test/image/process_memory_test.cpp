@@ -1,4 +1,4 @@
-// What is resident: reads of /proc that come in parts or fail.
+// What is resident: reads of /proc that come in parts or fail, and memory that the kernel keeps.
 #include <algorithm>
 #include <cerrno>
 #include <cstddef>
@@ -55,7 +55,7 @@ TEST(ProcessMemory, PagesThatAreNotToldOfCountAsResident) {
     EXPECT_EQ(count_after(0), 1000u);
 }
 
-TEST(ProcessMemory, KnowsWhatIsResident) {
+TEST(ProcessMemory, KnowsWhatIsResidentAndWhatTheKernelKeeps) {
     const ProcessMemory memory;
     const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
     void* const at = ::mmap(nullptr, 4 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -65,6 +65,17 @@ TEST(ProcessMemory, KnowsWhatIsResident) {
     mapping[0] = mapping[page] = mapping[3 * page] = std::byte{1};
     EXPECT_EQ(memory.resident(mapping), 3 * page);
     EXPECT_EQ(memory.resident(mapping.subspan(page, 1)), page);
+    if (::mlock(mapping.data() + page, page) == 0) {
+        EXPECT_EQ(memory.give_back(mapping.subspan(page, page)), 0u);
+        EXPECT_EQ(memory.resident(mapping.subspan(page, page)), page);
+        EXPECT_EQ(memory.give_back(mapping), page); // the first
+        EXPECT_EQ(memory.resident(mapping), 2 * page);
+        mapping[0] = std::byte{1};
+        ::munlock(mapping.data() + page, page);
+    }
+    EXPECT_EQ(memory.give_back(mapping), 3 * page);
+    EXPECT_EQ(memory.resident(mapping), 0u);
+    EXPECT_EQ(memory.give_back(mapping), 0u);
     ::munmap(at, 4 * page);
     EXPECT_GT(memory.file_bytes().value_or(0), page);
 }
