@@ -1,6 +1,7 @@
 #include "montelux/image/resident_limit.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdint>
@@ -21,6 +22,13 @@ constexpr std::size_t stretch = std::size_t{1} << 20; // given back at once
 constexpr double fastest_reading = 3e10;
 constexpr double forgetting = 0.98; // per look
 constexpr double shortest_wait = 0.001, longest_wait = 0.01, seconds_between_counts = 1;
+constexpr double waiting_per_counting = 9; // where every look counts
+
+std::atomic<int> limits_of_process{0};
+
+double seconds_between(Clock::time_point a, Clock::time_point b) {
+    return std::chrono::duration<double>(b - a).count();
+}
 
 std::uintptr_t address_of(std::span<const std::byte> mapping) {
     return reinterpret_cast<std::uintptr_t>(mapping.data());
@@ -46,6 +54,7 @@ ResidentLimit::ResidentLimit(std::size_t bytes) : limit_(bytes) {
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
     if (!error.empty())
         throw Error("memory of textures", "the thread that keeps the limit cannot be started: " + error);
+    ++limits_of_process;
 }
 
 ResidentLimit::~ResidentLimit() {
@@ -55,6 +64,7 @@ ResidentLimit::~ResidentLimit() {
     }
     changed_.notify_all();
     thread_.join();
+    --limits_of_process;
 }
 
 void ResidentLimit::add(std::span<const std::byte> mapping) {
@@ -102,6 +112,8 @@ std::size_t ResidentLimit::give_back(std::size_t bytes) {
 
 void ResidentLimit::watch() {
     std::size_t others = 0; // libraries and other files
+    bool stale = true;      // `others`, because other limits give back pages of theirs
+    bool was_counted = false;
     Clock::time_point counted{}, last = Clock::now();
     double wait = 0, left = 0;     // of the last look: until this one, and what was resident after it
     double rate = 0, lateness = 0; // the largest of the last looks: bytes per second, and seconds
@@ -112,28 +124,39 @@ void ResidentLimit::watch() {
             changed_.wait(lock);
             last = Clock::now();
             wait = 0;
+            stale = true;
             continue;
         }
         const std::optional<std::size_t> of_process = memory_.file_bytes();
-        double resident = of_process && *of_process > others ? static_cast<double>(*of_process - others) : 0;
         const auto now = Clock::now();
-        if (!of_process ||
-            (resident > limit / 2 && now - counted > std::chrono::duration<double>(seconds_between_counts))) {
+        stale = stale || limits_of_process > 1;
+        const bool counts =
+            !of_process || (static_cast<double>(*of_process) > limit / 2 &&
+                            (stale || seconds_between(counted, now) > seconds_between_counts));
+        double resident = 0, least_wait = shortest_wait;
+        if (counts) {
             const std::size_t exact = resident_locked();
             others = of_process && *of_process > exact ? *of_process - exact : 0;
             resident = static_cast<double>(exact);
             counted = now;
-        } else {
-            const double seconds = std::chrono::duration<double>(now - last).count();
+            stale = limits_of_process > 1;
+            if (stale || !of_process) // counts at every look
+                least_wait = std::max(least_wait, waiting_per_counting * seconds_between(now, Clock::now()));
+        } else if (*of_process > others) {
+            resident = static_cast<double>(*of_process - others);
+        }
+        if (!counts || was_counted) { // both by the same measure
+            const double seconds = seconds_between(last, now);
             rate = std::max(forgetting * rate, (resident - left) / std::max(seconds, shortest_wait));
             lateness = std::max(forgetting * lateness, seconds - wait);
         }
+        was_counted = counts;
         // Room for what becomes resident until the next look.
-        const double high = limit - std::clamp(rate * (shortest_wait + lateness), limit / 8, limit * 3 / 4);
+        const double high = limit - std::clamp(rate * (least_wait + lateness), limit / 8, limit * 3 / 4);
         left = resident;
         if (resident > high)
             left -= static_cast<double>(give_back(static_cast<std::size_t>(resident - high + limit / 8)));
-        wait = std::clamp((high - left) / fastest_reading, shortest_wait, longest_wait);
+        wait = std::clamp((high - left) / fastest_reading, least_wait, std::max(least_wait, longest_wait));
         last = now;
         changed_.wait_for(lock, std::chrono::duration<double>(wait));
     }

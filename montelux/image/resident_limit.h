@@ -18,6 +18,13 @@ namespace montelux {
 // 10 ms, more often the closer it is to the limit. It gives back pages, in the order of their addresses, where more
 // than 7/8 of the limit is resident; at high rates of reading earlier, from 1/4 on, so that the limit is not reached
 // before the next look. Readers that are faster than that exceed the limit for some milliseconds.
+//
+// The order of addresses stands for the order of use, which the kernel does not tell: each page of all mappings is given
+// back once before any is given back again.
+//
+// Limits of the same process do not share what is resident: each one is kept for its own mappings alone. While there are
+// several, their threads count the pages of all mappings at each look (about 10 ns per page), and look no more often than that
+// takes a tenth of their time.
 class ResidentLimit {
   public:
     // Throws Error where the system does not tell what is resident, or starts no thread.

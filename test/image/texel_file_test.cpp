@@ -305,5 +305,70 @@ TEST(TexelFile, LittleIsResident) {
     EXPECT_LE(file->resident(), limit) << "at rest";
 }
 
+// One byte of each page.
+void read_pages(std::span<const std::byte> bytes) {
+    volatile std::byte sink{};
+    for (std::size_t i = 0; i < bytes.size(); i += 4096) sink = bytes[i];
+    static_cast<void>(sink);
+}
+
+// Both fit into their limits, but not one of them beside the other.
+TEST(TexelFile, FilesThatAreUsedInTurnsLeaveEachOtherAlone) {
+    const TemporaryFolder folder;
+    const std::size_t size = 40 * mib;
+    const std::shared_ptr<TexelFile> files[] = {TexelFile::create(64 * mib, folder.path()),
+                                                TexelFile::create(64 * mib, folder.path())};
+    const std::shared_ptr<TexelBlock> blocks[] = {filled_block(*files[0], size),
+                                                  filled_block(*files[1], size)};
+    for (const auto& block : blocks) {
+        block->give_back();
+        // At a low rate, at which nothing is given back early.
+        for (std::size_t i = 0; i < size; i += mib / 8) {
+            read_pages(block->bytes().subspan(i, mib / 8));
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    }
+    std::size_t least[] = {size, size};
+    for (int turn = 0; turn < 60; ++turn) {
+        read_pages(blocks[turn % 2]->bytes());
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        for (const std::size_t i : {0, 1}) least[i] = std::min(least[i], files[i]->resident());
+    }
+    // The kernel may need some.
+    EXPECT_GT(least[0], size * 3 / 4);
+    EXPECT_GT(least[1], size * 3 / 4);
+}
+
+// What the process has resident falls when another file goes, so that it says nothing about this one.
+TEST(TexelFile, TheLimitHoldsWhenOtherFilesGo) {
+    const TemporaryFolder folder;
+    const std::size_t limit = 64 * mib, size = 200 * mib;
+    auto other = TexelFile::create(512 * mib, folder.path());
+    auto of_other = filled_block(*other, size);
+    read_pages(of_other->bytes());
+    const auto file = TexelFile::create(limit, folder.path());
+    const auto block = filled_block(*file, size);
+    read_pages(block->bytes().first(40 * mib));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    of_other.reset();
+    other.reset();
+    read_pages(block->bytes());
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    EXPECT_LE(file->resident(), limit);
+    // Nor does it when maps of the program go.
+    const std::string path = folder.write("map", "");
+    std::filesystem::resize_file(path, size);
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    void* const map = ::mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, descriptor, 0);
+    ASSERT_NE(map, MAP_FAILED);
+    read_pages(block->bytes().first(40 * mib));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1300));
+    ::munmap(map, size);
+    ::close(descriptor);
+    read_pages(block->bytes());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    EXPECT_LE(file->resident(), limit);
+}
+
 } // namespace
 } // namespace montelux
