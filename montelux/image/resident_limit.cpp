@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <unistd.h>
 
 #include "montelux/mc/math/error.h"
 
@@ -40,14 +41,15 @@ std::span<const std::byte> mapping_at(std::uintptr_t address, std::size_t size) 
 
 } // namespace
 
-ResidentLimit::ResidentLimit(std::size_t bytes) : limit_(bytes) {
+ResidentLimit::ResidentLimit(std::size_t bytes)
+    : limit_(bytes), process_(::getpid()), shared_(std::make_unique<Shared>()) {
     // Signals go to the threads that expect them.
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
     std::string error;
     try {
-        thread_ = std::thread([this] { watch(); });
+        shared_->thread = std::thread([this] { watch(); });
     } catch (const std::system_error& e) {
         error = e.code().message();
     }
@@ -57,35 +59,45 @@ ResidentLimit::ResidentLimit(std::size_t bytes) : limit_(bytes) {
     ++limits_of_process;
 }
 
+bool ResidentLimit::is_forked() const { return ::getpid() != process_; }
+
 ResidentLimit::~ResidentLimit() {
-    {
-        const std::lock_guard lock(mutex_);
-        stop_ = true;
-    }
-    changed_.notify_all();
-    thread_.join();
     --limits_of_process;
+    if (is_forked()) {
+        // The thread may have held the mutex, and seems to wait for the condition for ever.
+        static_cast<void>(shared_.release());
+        return;
+    }
+    {
+        const std::lock_guard lock(shared_->mutex);
+        shared_->stop = true;
+    }
+    shared_->changed.notify_all();
+    shared_->thread.join();
 }
 
 void ResidentLimit::add(std::span<const std::byte> mapping) {
-    const std::lock_guard lock(mutex_);
-    mappings_.emplace(address_of(mapping), mapping.size());
-    if (mappings_.size() == 1) changed_.notify_all();
+    if (is_forked()) return;
+    const std::lock_guard lock(shared_->mutex);
+    shared_->mappings.emplace(address_of(mapping), mapping.size());
+    if (shared_->mappings.size() == 1) shared_->changed.notify_all();
 }
 
 void ResidentLimit::remove(std::span<const std::byte> mapping) {
-    const std::lock_guard lock(mutex_);
-    mappings_.erase(address_of(mapping));
+    if (is_forked()) return;
+    const std::lock_guard lock(shared_->mutex);
+    shared_->mappings.erase(address_of(mapping));
 }
 
 std::size_t ResidentLimit::resident() const {
-    const std::lock_guard lock(mutex_);
+    if (is_forked()) return 0;
+    const std::lock_guard lock(shared_->mutex);
     return resident_locked();
 }
 
 std::size_t ResidentLimit::resident_locked() const {
     std::size_t sum = 0;
-    for (const auto& [address, size] : mappings_) sum += memory_.resident(mapping_at(address, size));
+    for (const auto& [address, size] : shared_->mappings) sum += memory_.resident(mapping_at(address, size));
     return sum;
 }
 
@@ -93,19 +105,19 @@ std::size_t ResidentLimit::give_back(std::size_t bytes) {
     std::size_t given = 0;
     for (int ends = 0; given < bytes && ends < 2;) {
         // The mapping of the hand, or the next one.
-        auto mapping = mappings_.upper_bound(hand_);
-        if (mapping != mappings_.begin())
-            if (const auto before = std::prev(mapping); hand_ < before->first + before->second)
+        auto mapping = shared_->mappings.upper_bound(shared_->hand);
+        if (mapping != shared_->mappings.begin())
+            if (const auto before = std::prev(mapping); shared_->hand < before->first + before->second)
                 mapping = before;
-        if (mapping == mappings_.end()) {
-            hand_ = 0;
+        if (mapping == shared_->mappings.end()) {
+            shared_->hand = 0;
             ++ends;
             continue;
         }
-        hand_ = std::max(hand_, mapping->first);
-        const std::size_t size = std::min(stretch, mapping->first + mapping->second - hand_);
-        given += memory_.give_back(mapping_at(hand_, size));
-        hand_ += size;
+        shared_->hand = std::max(shared_->hand, mapping->first);
+        const std::size_t size = std::min(stretch, mapping->first + mapping->second - shared_->hand);
+        given += memory_.give_back(mapping_at(shared_->hand, size));
+        shared_->hand += size;
     }
     return given;
 }
@@ -118,10 +130,10 @@ void ResidentLimit::watch() {
     double wait = 0, left = 0;     // of the last look: until this one, and what was resident after it
     double rate = 0, lateness = 0; // the largest of the last looks: bytes per second, and seconds
     const auto limit = static_cast<double>(limit_);
-    std::unique_lock lock(mutex_);
-    while (!stop_) {
-        if (mappings_.empty()) {
-            changed_.wait(lock);
+    std::unique_lock lock(shared_->mutex);
+    while (!shared_->stop) {
+        if (shared_->mappings.empty()) {
+            shared_->changed.wait(lock);
             last = Clock::now();
             wait = 0;
             stale = true;
@@ -158,7 +170,7 @@ void ResidentLimit::watch() {
             left -= static_cast<double>(give_back(static_cast<std::size_t>(resident - high + limit / 8)));
         wait = std::clamp((high - left) / fastest_reading, least_wait, std::max(least_wait, longest_wait));
         last = now;
-        changed_.wait_for(lock, std::chrono::duration<double>(wait));
+        shared_->changed.wait_for(lock, std::chrono::duration<double>(wait));
     }
 }
 

@@ -370,5 +370,40 @@ TEST(TexelFile, TheLimitHoldsWhenOtherFilesGo) {
     EXPECT_LE(file->resident(), limit);
 }
 
+// Runs something in a process that is forked off, and returns what it returns; -1 if it takes more than 20 s or dies.
+template <typename F>
+int forked(const F& f) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::alarm(20);
+        ::_exit(f());
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+// The thread does not exist there, and may have been anywhere.
+TEST(TexelFile, ClosesInAForkedProcess) {
+    const TemporaryFolder folder;
+    auto file = TexelFile::create(16 * mib, folder.path());
+    auto idle = TexelFile::create(16 * mib, folder.path());
+    auto block = filled_block(*file, 64 * mib);
+    for (int i = 0; i < 20; ++i) {
+        read_pages(block->bytes());
+        ASSERT_EQ(forked([&] {
+                      static_cast<void>(file->resident());
+                      block.reset();
+                      file.reset();
+                      idle.reset();
+                      return 3;
+                  }),
+                  3)
+            << i;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_LE(file->resident(), 16 * mib); // the thread is still there
+}
+
 } // namespace
 } // namespace montelux
