@@ -12,6 +12,7 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <gtest/gtest.h>
 #include <pthread.h>
 #include <span>
@@ -403,6 +404,50 @@ TEST(TexelFile, ClosesInAForkedProcess) {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     EXPECT_LE(file->resident(), 16 * mib); // the thread is still there
+}
+
+std::string message_of(const std::function<void()>& f) {
+    try {
+        f();
+    } catch (const Error& e) {
+        return e.what();
+    }
+    return {};
+}
+
+// Both read the same file.
+TEST(TexelFile, ForkedProcessesKeepTheirTexels) {
+    const TemporaryFolder folder;
+    const auto file = TexelFile::create(16 * mib, folder.path());
+    const std::size_t size = mib;
+    const auto is_whole = [](const TexelBlock& block) {
+        std::size_t same = 0;
+        for (std::size_t i = 0; i < size; ++i) same += block.bytes()[i] == byte_at(i);
+        return same == size;
+    };
+    auto kept = filled_block(*file, size), dropped = filled_block(*file, size);
+    int pipe[2];
+    ASSERT_EQ(::pipe(pipe), 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::alarm(20);
+        kept.reset();
+        char byte = 0;
+        int result = ::read(pipe[0], &byte, 1) == 1 && is_whole(*dropped) ? 1 : 0;
+        const std::string expected = "only the process that made a file of texels can write to it";
+        result += contains(message_of([&] { file->allocate(size); }), expected) ? 2 : 0;
+        result += contains(message_of([&] { dropped->write(0, {}); }), expected) ? 4 : 0;
+        ::_exit(result);
+    }
+    dropped.reset();
+    EXPECT_EQ(::write(pipe[1], "", 1), 1);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ::close(pipe[0]);
+    ::close(pipe[1]);
+    EXPECT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 7);
+    EXPECT_TRUE(is_whole(*kept));
 }
 
 } // namespace
