@@ -288,6 +288,8 @@ void SceneBuilder::place_instance(const InstanceUse& use, Index object, const Tr
     Index moving = no_index;
     if (motion) {
         check(motion->end());
+        // Between two keys nothing is farther away. The inverse is not used.
+        for (const Matrix4& key : motion->keys()) check(Transform(key, Matrix4()));
         moving = static_cast<Index>(scene_.motions.size());
         scene_.motions.push_back(std::move(*motion));
     }

@@ -271,6 +271,25 @@ TEST_F(MovingShapes, ReachOnlyToWhereFloatsEnd) {
               "a test: the instance reaches to infinity in world space");
 }
 
+// Not far from the origin at the ends, but on the way: there a corner of the box turns to an axis.
+TEST_F(MovingShapes, ReachToInfinityOnTheirWay) {
+    const auto corner = [](float at) {
+        TriangleMesh mesh;
+        mesh.positions = {{at, at, 0}, {at, 0, 0}, {0, at, 0}};
+        mesh.indices = {0, 1, 2};
+        return mesh;
+    };
+    const auto turning = [&](float at) {
+        Scene scene;
+        scene.materials.resize(1);
+        SceneBuilder builder(scene, messages_);
+        builder.add_moving_shape(corner(at), {.material = 0, .alpha = {1}}, {}, quarter_turn);
+        return located_error([&] { builder.finish(); });
+    };
+    EXPECT_EQ(turning(2.3e38f), "");
+    EXPECT_EQ(turning(2.5e38f), "a test: the instance reaches to infinity in world space");
+}
+
 // Uses times parts: few lines of a file must not ask for all memory.
 TEST_F(MovingShapes, OfManyUsesAreLimited) {
     builder_.begin_object("o");
