@@ -246,6 +246,39 @@ TEST_F(MovingShapes, AndInstancesThatAreRefusedLeaveNothing) {
     EXPECT_TRUE(scene_.motions.empty());
 }
 
+// A light that refers to nothing is found late.
+TEST_F(MovingShapes, AndLightsThatAreRefusedLeaveNothing) {
+    const Emission lost{.spectrum = {}, .picture = 7};
+    const std::string no_picture =
+        "a test: light 0 (area light), picture: there is no picture 7; the scene has 0";
+    const ShapeSettings shining{.material = 0, .alpha = {1}, .emission = &lost, .name = "lamp"};
+    const Sphere sphere{.world_from_object = {}};
+    EXPECT_EQ(located_error([&] { builder_.add_shape(sphere, shining); }), no_picture);
+    EXPECT_EQ(located_error([&] { builder_.add_moving_shape(sphere, shining, {}, upwards); }), no_picture);
+    EXPECT_NE(located_error([&] {
+                  ImageInfiniteLight sky;
+                  sky.environment = 3;
+                  builder_.add_moving_light(sky, {}, quarter_turn);
+              }).find("there is no environment map 3"),
+              std::string::npos);
+    builder_.finish();
+    EXPECT_EQ(digest_of(scene_), [] {
+        Scene empty;
+        empty.materials.resize(1);
+        return digest_of(empty);
+    }());
+    EXPECT_TRUE(scene_.shapes.empty());
+    EXPECT_TRUE(scene_.world_shapes.empty());
+    EXPECT_TRUE(scene_.shape_names.empty());
+    EXPECT_TRUE(scene_.quadrics.empty());
+    EXPECT_TRUE(scene_.objects.empty());
+    EXPECT_TRUE(scene_.instances.empty());
+    EXPECT_TRUE(scene_.motions.empty());
+    // The next ones get its place.
+    EXPECT_EQ(builder_.add_shape(sphere, {.material = 0, .alpha = {1}}), 0u);
+    EXPECT_EQ(builder_.add_moving_shape(sphere, {.material = 0, .alpha = {1}}, {}, upwards), 1u);
+}
+
 // Strings in files may contain line breaks.
 TEST_F(MovingShapes, AreObjectsWithoutANameThatAFileCouldUse) {
     moving({}, upwards);
