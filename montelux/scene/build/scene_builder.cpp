@@ -271,6 +271,9 @@ Index SceneBuilder::add_moving_light(const Light& light, const Transform& start,
                 if (moving.portal) messages_.error(at, "an environment map with a portal does not move");
             if (start == end) return add_light(moving.moved(start), at, group);
             Motion path = motion(start, end, at);
+            for (const Matrix4& key : path.keys())
+                if (const std::optional<Transform> t = Transform::from_matrix(key))
+                    check(stays_in_floats(moving.moved(*t)));
             check_new_light(moving, 0, at);
             moving.motion = static_cast<Index>(scene_.motions.size());
             scene_.motions.push_back(std::move(path));

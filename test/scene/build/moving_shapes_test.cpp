@@ -197,6 +197,8 @@ TEST_F(MovingShapes, LightsThatCannotMoveAreRefused) {
     EXPECT_EQ(error(PointLight{1.0f, 1, {1, 0, 0}}, Transform::scale({1e39, 1, 1})), beyond);
     EXPECT_EQ(error(PointLight{1.0f, 1, {1e30f, 0, 0}}, Transform::scale({1e10, 1, 1})), beyond);
     EXPECT_EQ(error(SpotLight{1.0f, 1, {}, {0, 0, 1}, 0.9f, 0.8f}, Transform::scale({1e19, 1, 1})), beyond);
+    // On its way.
+    EXPECT_EQ(error(PointLight{1.0f, 1, {2.5e38f, 2.5e38f, 0}}, quarter_turn), beyond);
     EXPECT_EQ(
         error(PointLight{1.0f, 1, {}}, Transform::scale({-1, 1, 1})),
         "a test: motion: one end is mirrored and the other is not; between them the object would be flat");
