@@ -74,6 +74,12 @@ void set_light(const SceneRef& holder, Index shape, const nb::object& emission) 
 
 nb::object added(const SceneRef& holder, const char* call, Geometry geometry, bool flip_normal,
                  const nb::object& material, const nb::object& emission) {
+    // Before the material is added to the scene.
+    try {
+        check_geometry(geometry);
+    } catch (const Error& e) {
+        throw Error(call, e.what());
+    }
     std::optional<AreaLight> light;
     if (!emission.is_none()) light = area_light_of(holder, emission);
     ShapeSettings settings;
