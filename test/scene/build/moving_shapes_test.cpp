@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "montelux/scene/build/scene_builder.h"
+#include "montelux/scene/digest/hash_geometry.h"
 #include "montelux/scene/scene_digest.h"
 #include "montelux/scene/scene_names.h"
 
@@ -130,6 +131,21 @@ TEST_F(MovingShapes, TheirDigestsKnowTheWay) {
     along_product.motions.push_back(product);
     direct.motions.emplace_back(product.start(), product.end());
     EXPECT_NE(digest_of(along_product), digest_of(direct));
+}
+
+// How finely a path is followed is a part of the scene, even where it is not a product. Lines have no other keys than
+// their ends.
+TEST_F(MovingShapes, TheirDigestsKnowTheKeys) {
+    const auto hash = [](const auto&... values) {
+        SceneHasher hasher;
+        hasher.all(values...);
+        return hasher.value();
+    };
+    const Motion line({}, upwards), turn(Transform::scale({5, 1, 1}), quarter_turn);
+    EXPECT_EQ(hash(line), hash(line.start(), line.end()));
+    ASSERT_GT(turn.keys().size(), 2u);
+    EXPECT_EQ(hash(turn), hash(turn.start(), turn.end(), turn.keys()));
+    EXPECT_EQ(hash(turn), hash(Motion::product(Transform(), turn)));
 }
 
 TEST_F(MovingShapes, ShineOutsideOfObjects) {
