@@ -1,9 +1,7 @@
-// Images in a temporary file: nothing changes but where their samples are, and little of the file is resident.
+// Images in a temporary file: nothing changes but where their samples are.
+#include "test/image/texel_testing.h"
 #include "test/sanitized.h"
 #include "test/temporary_folder.h"
-#include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +10,6 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <gtest/gtest.h>
 #include <pthread.h>
 #include <span>
@@ -22,7 +19,6 @@
 #include <sys/stat.h>
 #include <sys/statfs.h>
 #include <sys/wait.h>
-#include <thread>
 #include <unistd.h>
 #include <vector>
 
@@ -37,7 +33,7 @@
 namespace montelux {
 namespace {
 
-constexpr std::size_t mib = std::size_t{1} << 20;
+using testing::byte_at, testing::filled_block, testing::mib;
 
 std::string refusal(std::size_t limit, const std::filesystem::path& folder) {
     try {
@@ -50,9 +46,6 @@ std::string refusal(std::size_t limit, const std::filesystem::path& folder) {
 bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
-
-// The byte at a place, different for neighbours and pages.
-std::byte byte_at(std::size_t i) { return static_cast<std::byte>(i * 7 + i / 4096 * 13); }
 
 // Of the unnamed file in the folder: bytes on the disk, and how many of its blocks are mapped.
 struct Usage {
@@ -82,17 +75,6 @@ bool punches_holes(const TemporaryFolder& folder) {
     ::close(file);
     std::filesystem::remove(folder / "holes");
     return can;
-}
-
-std::shared_ptr<TexelBlock> filled_block(TexelFile& file, std::size_t size) {
-    auto block = file.allocate(size);
-    std::vector<std::byte> part;
-    for (std::size_t i = 0; i < size; i += part.size()) {
-        part.resize(std::min<std::size_t>(100000, size - i));
-        for (std::size_t k = 0; k < part.size(); ++k) part[k] = byte_at(i + k);
-        block->write(i, part);
-    }
-    return block;
 }
 
 TEST(TexelFile, BlocksHoldWhatIsWritten) {
@@ -259,196 +241,6 @@ TEST(TexelFile, TakesImagesOutOfMemory) {
     EXPECT_LT(heap() + 15 * mib, before);
 }
 #endif
-
-// Two readers that make another 64 KiB resident every 20 us: ten times as often as the render of a large picture.
-TEST(TexelFile, LittleIsResident) {
-    if (under_sanitizers) GTEST_SKIP() << "the sanitizer's threads are too slow to keep the limit";
-    const TemporaryFolder folder;
-    const std::size_t limit = 128 * mib, size = 512 * mib;
-    const auto file = TexelFile::create(limit, folder.path());
-    std::this_thread::sleep_for(std::chrono::milliseconds(30)); // its thread sleeps until there is a block
-    std::vector<std::shared_ptr<TexelBlock>> blocks;
-    for (int i = 0; i < 4; ++i) blocks.push_back(filled_block(*file, size / 4));
-    std::atomic<std::size_t> wrong{0}, rounds{0};
-    std::atomic<bool> stop{false};
-    std::vector<std::thread> readers;
-    for (std::size_t t = 0; t < 2; ++t)
-        readers.emplace_back([&, t] {
-            while (!stop) {
-                for (std::size_t b = t; b < blocks.size() && !stop; b += 2) {
-                    const auto bytes = blocks[b]->bytes();
-                    for (std::size_t i = 0; i < bytes.size() && !stop; i += 65536 + t) {
-                        wrong += bytes[i] != byte_at(i);
-                        const auto begin = std::chrono::steady_clock::now();
-                        while (std::chrono::steady_clock::now() - begin < std::chrono::microseconds(20)) {
-                        }
-                    }
-                }
-                ++rounds;
-            }
-        });
-    std::vector<std::size_t> seen;
-    for (int i = 0; i < 200; ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        seen.push_back(file->resident() / mib);
-    }
-    stop = true;
-    for (std::thread& reader : readers) reader.join();
-    EXPECT_EQ(wrong, 0u);
-    EXPECT_GT(rounds, 4u) << "the readers were too slow to exceed the limit";
-    std::sort(seen.begin(), seen.end());
-    std::string quantiles;
-    for (const std::size_t i : {0, 50, 100, 150, 180, 199}) quantiles += std::to_string(seen[i]) + " ";
-    RecordProperty("residentMiB", quantiles);
-    // Single moments of a loaded machine may show more.
-    EXPECT_LE(seen[100], limit / mib) << "MiB, quantiles " << quantiles;
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    EXPECT_LE(file->resident(), limit) << "at rest";
-}
-
-// One byte of each page.
-void read_pages(std::span<const std::byte> bytes) {
-    volatile std::byte sink{};
-    for (std::size_t i = 0; i < bytes.size(); i += 4096) sink = bytes[i];
-    static_cast<void>(sink);
-}
-
-// Both fit into their limits, but not one of them beside the other.
-TEST(TexelFile, FilesThatAreUsedInTurnsLeaveEachOtherAlone) {
-    const TemporaryFolder folder;
-    const std::size_t size = 40 * mib;
-    const std::shared_ptr<TexelFile> files[] = {TexelFile::create(64 * mib, folder.path()),
-                                                TexelFile::create(64 * mib, folder.path())};
-    const std::shared_ptr<TexelBlock> blocks[] = {filled_block(*files[0], size),
-                                                  filled_block(*files[1], size)};
-    for (const auto& block : blocks) {
-        block->give_back();
-        // At a low rate, at which nothing is given back early.
-        for (std::size_t i = 0; i < size; i += mib / 8) {
-            read_pages(block->bytes().subspan(i, mib / 8));
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-    }
-    std::size_t least[] = {size, size};
-    for (int turn = 0; turn < 60; ++turn) {
-        read_pages(blocks[turn % 2]->bytes());
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        for (const std::size_t i : {0, 1}) least[i] = std::min(least[i], files[i]->resident());
-    }
-    // The kernel may need some.
-    EXPECT_GT(least[0], size * 3 / 4);
-    EXPECT_GT(least[1], size * 3 / 4);
-}
-
-// What the process has resident falls when another file goes, so that it says nothing about this one.
-TEST(TexelFile, TheLimitHoldsWhenOtherFilesGo) {
-    const TemporaryFolder folder;
-    const std::size_t limit = 64 * mib, size = 200 * mib;
-    auto other = TexelFile::create(512 * mib, folder.path());
-    auto of_other = filled_block(*other, size);
-    read_pages(of_other->bytes());
-    const auto file = TexelFile::create(limit, folder.path());
-    const auto block = filled_block(*file, size);
-    read_pages(block->bytes().first(40 * mib));
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    of_other.reset();
-    other.reset();
-    read_pages(block->bytes());
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    EXPECT_LE(file->resident(), limit);
-    // Nor does it when maps of the program go.
-    const std::string path = folder.write("map", "");
-    std::filesystem::resize_file(path, size);
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    void* const map = ::mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, descriptor, 0);
-    ASSERT_NE(map, MAP_FAILED);
-    read_pages(block->bytes().first(40 * mib));
-    std::this_thread::sleep_for(std::chrono::milliseconds(1300));
-    ::munmap(map, size);
-    ::close(descriptor);
-    read_pages(block->bytes());
-    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-    EXPECT_LE(file->resident(), limit);
-}
-
-// Runs something in a process that is forked off, and returns what it returns; -1 if it takes more than 20 s or dies.
-template <typename F>
-int forked(const F& f) {
-    const pid_t child = ::fork();
-    if (child == 0) {
-        ::alarm(20);
-        ::_exit(f());
-    }
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-// The thread does not exist there, and may have been anywhere.
-TEST(TexelFile, ClosesInAForkedProcess) {
-    const TemporaryFolder folder;
-    auto file = TexelFile::create(16 * mib, folder.path());
-    auto idle = TexelFile::create(16 * mib, folder.path());
-    auto block = filled_block(*file, 64 * mib);
-    for (int i = 0; i < 20; ++i) {
-        read_pages(block->bytes());
-        ASSERT_EQ(forked([&] {
-                      static_cast<void>(file->resident());
-                      block.reset();
-                      file.reset();
-                      idle.reset();
-                      return 3;
-                  }),
-                  3)
-            << i;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    EXPECT_LE(file->resident(), 16 * mib); // the thread is still there
-}
-
-std::string message_of(const std::function<void()>& f) {
-    try {
-        f();
-    } catch (const Error& e) {
-        return e.what();
-    }
-    return {};
-}
-
-// Both read the same file.
-TEST(TexelFile, ForkedProcessesKeepTheirTexels) {
-    const TemporaryFolder folder;
-    const auto file = TexelFile::create(16 * mib, folder.path());
-    const std::size_t size = mib;
-    const auto is_whole = [](const TexelBlock& block) {
-        std::size_t same = 0;
-        for (std::size_t i = 0; i < size; ++i) same += block.bytes()[i] == byte_at(i);
-        return same == size;
-    };
-    auto kept = filled_block(*file, size), dropped = filled_block(*file, size);
-    int pipe[2];
-    ASSERT_EQ(::pipe(pipe), 0);
-    const pid_t child = ::fork();
-    if (child == 0) {
-        ::alarm(20);
-        kept.reset();
-        char byte = 0;
-        int result = ::read(pipe[0], &byte, 1) == 1 && is_whole(*dropped) ? 1 : 0;
-        const std::string expected = "only the process that made a file of texels can write to it";
-        result += contains(message_of([&] { file->allocate(size); }), expected) ? 2 : 0;
-        result += contains(message_of([&] { dropped->write(0, {}); }), expected) ? 4 : 0;
-        ::_exit(result);
-    }
-    dropped.reset();
-    EXPECT_EQ(::write(pipe[1], "", 1), 1);
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    ::close(pipe[0]);
-    ::close(pipe[1]);
-    EXPECT_TRUE(WIFEXITED(status));
-    EXPECT_EQ(WEXITSTATUS(status), 7);
-    EXPECT_TRUE(is_whole(*kept));
-}
 
 } // namespace
 } // namespace montelux
