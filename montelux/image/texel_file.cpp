@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <pthread.h>
 #include <string>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -51,6 +52,14 @@ int open_unnamed(const std::filesystem::path& folder) {
     return made;
 }
 
+// Counts the forks of this process, before the two part.
+std::atomic<std::uint64_t> forks{0};
+
+void count_forks() {
+    static const int error = ::pthread_atfork([] { ++forks; }, nullptr, nullptr);
+    if (error != 0) throw Error(place, std::string("forks cannot be noticed: ") + std::strerror(error));
+}
+
 } // namespace
 
 std::filesystem::path TexelFile::default_folder() {
@@ -75,7 +84,8 @@ std::shared_ptr<TexelFile> TexelFile::create(std::size_t limit, const std::files
 }
 
 TexelFile::TexelFile(std::size_t limit, std::filesystem::path folder)
-    : folder_(std::move(folder)), limit_(limit) {
+    : folder_(std::move(folder)), process_(::getpid()), limit_(limit) {
+    count_forks();
     if (is_in_memory(folder_))
         throw Error(place, "the temporary folder '" + folder_.string() +
                                "' is itself in memory; set TMPDIR to a folder on a disk");
@@ -95,7 +105,15 @@ void TexelFile::fail(const char* what, std::size_t bytes, int error_number) cons
                            "; free space there, or set TMPDIR to another folder");
 }
 
+void TexelFile::require_own_process() const {
+    if (::getpid() != process_)
+        throw Error(place,
+                    "only the process that made a file of texels can write to it; load the scene in the "
+                    "forked process");
+}
+
 std::shared_ptr<TexelBlock> TexelFile::allocate(std::size_t bytes) {
+    require_own_process(); // both would use the same space
     if (bytes == 0) throw Error(place, "a block of no bytes was asked for");
     const std::uint64_t position = end_.fetch_add(rounded_up(bytes));
     // Space that is missing must be noticed now: a read of the map would end the program by a signal.
@@ -116,7 +134,7 @@ std::shared_ptr<TexelBlock> TexelFile::allocate(std::size_t bytes) {
 
 TexelBlock::TexelBlock(std::shared_ptr<TexelFile> file, std::uint64_t position,
                        std::span<const std::byte> mapping)
-    : file_(std::move(file)), position_(position), mapping_(mapping) {
+    : file_(std::move(file)), position_(position), forks_(forks), mapping_(mapping) {
     file_->bytes_ += mapping_.size();
     file_->limit_.add(mapping_);
 }
@@ -126,9 +144,11 @@ TexelBlock::~TexelBlock() {
     file_->bytes_ -= mapping_.size();
     ::munmap(const_cast<std::byte*>(mapping_.data()), mapping_.size());
 #if defined(FALLOC_FL_PUNCH_HOLE)
-    // Where the file system cannot do this, the space is free when the file is closed.
-    static_cast<void>(::fallocate(file_->descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
-                                  static_cast<off_t>(position_), static_cast<off_t>(mapping_.size())));
+    // Where the file system cannot do this, the space is free when the file is closed. So it is where another process
+    // may read the block.
+    if (forks_ == forks)
+        static_cast<void>(::fallocate(file_->descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
+                                      static_cast<off_t>(position_), static_cast<off_t>(mapping_.size())));
 #endif
 }
 
@@ -139,6 +159,7 @@ void TexelBlock::give_back() const {
 void TexelBlock::write(std::size_t offset, std::span<const std::byte> bytes) {
     if (offset > mapping_.size() || bytes.size() > mapping_.size() - offset)
         throw Error(place, "a write beyond the end of a block");
+    file_->require_own_process();
     std::uint64_t position = position_ + offset;
     for (auto rest = bytes; !rest.empty();) {
         const ssize_t n =

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <sys/types.h>
 
 #include "montelux/image/resident_limit.h"
 
@@ -15,7 +16,8 @@ namespace montelux {
 class TexelBlock;
 
 // The file has no name and disappears with its process. Pages that are not resident are read when a look-up needs
-// them: from the kernel's page cache, or from the disk.
+// them: from the kernel's page cache, or from the disk. A process that is forked off reads the blocks that there are, and
+// writes none.
 class TexelFile : public std::enable_shared_from_this<TexelFile> {
   public:
     static constexpr std::size_t least_limit = std::size_t{16} << 20;
@@ -43,9 +45,11 @@ class TexelFile : public std::enable_shared_from_this<TexelFile> {
     friend class TexelBlock;
     TexelFile(std::size_t limit, std::filesystem::path folder);
     [[noreturn]] void fail(const char* what, std::size_t bytes, int error_number) const;
+    void require_own_process() const;
 
     std::filesystem::path folder_;
     int descriptor_ = -1;
+    pid_t process_;
     std::atomic<std::uint64_t> end_{0};
     std::atomic<std::size_t> bytes_{0};
     ResidentLimit limit_;
@@ -73,6 +77,7 @@ class TexelBlock {
 
     std::shared_ptr<TexelFile> file_;
     std::uint64_t position_; // in the file
+    std::uint64_t forks_;    // of the process before the block was made
     std::span<const std::byte> mapping_;
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "montelux/mc/math/overloaded.h"
+#include "montelux/scene/build/check_references.h"
 #include "montelux/scene/build/scene_builder.h"
 
 namespace montelux::python {
@@ -53,17 +54,32 @@ void add_light(SceneDescription& d, Index shape, AreaLight light) {
     d.scene.shapes[shape].light = SceneBuilder(d.scene, messages).add_light(light);
 }
 
-// None removes the light; an AreaLight or a spectrum sets it.
+// None removes the light; an AreaLight or a spectrum sets it. One that is there is replaced in its place: other lights
+// keep theirs, and it keeps its group.
 void set_light(const SceneRef& holder, Index shape, const nb::object& emission) {
     std::optional<AreaLight> light;
     if (!emission.is_none()) light = area_light_of(holder, emission);
     SceneDescription& d = holder->edit();
-    if (const Index before = d.scene.shapes[shape].light; before != no_index) erase_light(d, before);
-    if (light) add_light(d, shape, *light);
+    const Index before = d.scene.shapes[shape].light;
+    if (light && before != no_index) {
+        light->shape = shape;
+        check_light(d.scene, *light);
+        d.scene.lights[before] = *light;
+    } else if (light) {
+        add_light(d, shape, *light);
+    } else if (before != no_index) {
+        erase_light(d, before);
+    }
 }
 
 nb::object added(const SceneRef& holder, const char* call, Geometry geometry, bool flip_normal,
                  const nb::object& material, const nb::object& emission) {
+    // Before the material is added to the scene.
+    try {
+        check_geometry(geometry);
+    } catch (const Error& e) {
+        throw Error(call, e.what());
+    }
     std::optional<AreaLight> light;
     if (!emission.is_none()) light = area_light_of(holder, emission);
     ShapeSettings settings;

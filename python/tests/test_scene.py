@@ -107,6 +107,23 @@ def test_area_lights_of_a_mesh_are_one(scene):
     assert len(scene.lights) == 2 and scene.lights[1].two_sided
 
 
+def test_the_light_of_a_shape_is_replaced_in_its_place(scene):
+    lamp = scene.lights.append(montelux.PointLight(spectrum=100, position=(0, -4, 1)))
+    before = scene.shapes[0].light
+    scene.shapes[0].light = (1, 0, 0)
+    assert scene.shapes[0].light == before == scene.lights[1]
+    assert lamp == scene.lights[2] and lamp.position == pytest.approx([0, -4, 1])
+    picture = scene.render(spp=4).mean
+    # One that is refused changes nothing.
+    for wrong in (montelux.Spectrum(-1), montelux.PointLight(), -1, "no spectrum"):
+        with pytest.raises(montelux.Error, match="Shape.light"):
+            scene.shapes[0].light = wrong
+        assert scene.shapes[0].light == before and len(scene.lights) == 3
+    assert np.array_equal(scene.render(spp=4).mean, picture)
+    scene.shapes[0].light = None
+    assert [type(light).__name__ for light in scene.lights] == ["UniformInfiniteLight", "PointLight"]
+
+
 def test_lights_can_be_taken_away_and_added(scene):
     del scene.lights[0]
     assert scene.shapes[0].light == scene.lights[0]

@@ -142,6 +142,6 @@ def test_meshes_that_make_no_sense_are_refused_whole(changes, sentence):
     mesh = {"positions": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]], "material": montelux.Diffuse()}
     with pytest.raises(montelux.Error, match=sentence):
         scene.add_mesh(**{**mesh, **changes})
-    assert len(scene.shapes) == 0 and len(scene.lights) == 0
+    assert len(scene.shapes) == 0 and len(scene.lights) == 0 and len(scene.materials) == 0
     scene.add_mesh(**mesh)
     assert len(scene.shapes) == 1

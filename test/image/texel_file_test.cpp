@@ -1,9 +1,7 @@
-// Images in a temporary file: nothing changes but where their samples are, and little of the file is resident.
+// Images in a temporary file: nothing changes but where their samples are.
+#include "test/image/texel_testing.h"
 #include "test/sanitized.h"
 #include "test/temporary_folder.h"
-#include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +19,6 @@
 #include <sys/stat.h>
 #include <sys/statfs.h>
 #include <sys/wait.h>
-#include <thread>
 #include <unistd.h>
 #include <vector>
 
@@ -36,7 +33,7 @@
 namespace montelux {
 namespace {
 
-constexpr std::size_t mib = std::size_t{1} << 20;
+using testing::byte_at, testing::filled_block, testing::mib;
 
 std::string refusal(std::size_t limit, const std::filesystem::path& folder) {
     try {
@@ -49,9 +46,6 @@ std::string refusal(std::size_t limit, const std::filesystem::path& folder) {
 bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
-
-// The byte at a place, different for neighbours and pages.
-std::byte byte_at(std::size_t i) { return static_cast<std::byte>(i * 7 + i / 4096 * 13); }
 
 // Of the unnamed file in the folder: bytes on the disk, and how many of its blocks are mapped.
 struct Usage {
@@ -81,17 +75,6 @@ bool punches_holes(const TemporaryFolder& folder) {
     ::close(file);
     std::filesystem::remove(folder / "holes");
     return can;
-}
-
-std::shared_ptr<TexelBlock> filled_block(TexelFile& file, std::size_t size) {
-    auto block = file.allocate(size);
-    std::vector<std::byte> part;
-    for (std::size_t i = 0; i < size; i += part.size()) {
-        part.resize(std::min<std::size_t>(100000, size - i));
-        for (std::size_t k = 0; k < part.size(); ++k) part[k] = byte_at(i + k);
-        block->write(i, part);
-    }
-    return block;
 }
 
 TEST(TexelFile, BlocksHoldWhatIsWritten) {
@@ -258,52 +241,6 @@ TEST(TexelFile, TakesImagesOutOfMemory) {
     EXPECT_LT(heap() + 15 * mib, before);
 }
 #endif
-
-// Two readers that make another 64 KiB resident every 20 us: ten times as often as the render of a large picture.
-TEST(TexelFile, LittleIsResident) {
-    if (under_sanitizers) GTEST_SKIP() << "the sanitizer's threads are too slow to keep the limit";
-    const TemporaryFolder folder;
-    const std::size_t limit = 128 * mib, size = 512 * mib;
-    const auto file = TexelFile::create(limit, folder.path());
-    std::this_thread::sleep_for(std::chrono::milliseconds(30)); // its thread sleeps until there is a block
-    std::vector<std::shared_ptr<TexelBlock>> blocks;
-    for (int i = 0; i < 4; ++i) blocks.push_back(filled_block(*file, size / 4));
-    std::atomic<std::size_t> wrong{0}, rounds{0};
-    std::atomic<bool> stop{false};
-    std::vector<std::thread> readers;
-    for (std::size_t t = 0; t < 2; ++t)
-        readers.emplace_back([&, t] {
-            while (!stop) {
-                for (std::size_t b = t; b < blocks.size() && !stop; b += 2) {
-                    const auto bytes = blocks[b]->bytes();
-                    for (std::size_t i = 0; i < bytes.size() && !stop; i += 65536 + t) {
-                        wrong += bytes[i] != byte_at(i);
-                        const auto begin = std::chrono::steady_clock::now();
-                        while (std::chrono::steady_clock::now() - begin < std::chrono::microseconds(20)) {
-                        }
-                    }
-                }
-                ++rounds;
-            }
-        });
-    std::vector<std::size_t> seen;
-    for (int i = 0; i < 200; ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        seen.push_back(file->resident() / mib);
-    }
-    stop = true;
-    for (std::thread& reader : readers) reader.join();
-    EXPECT_EQ(wrong, 0u);
-    EXPECT_GT(rounds, 4u) << "the readers were too slow to exceed the limit";
-    std::sort(seen.begin(), seen.end());
-    std::string quantiles;
-    for (const std::size_t i : {0, 50, 100, 150, 180, 199}) quantiles += std::to_string(seen[i]) + " ";
-    RecordProperty("residentMiB", quantiles);
-    // Single moments of a loaded machine may show more.
-    EXPECT_LE(seen[100], limit / mib) << "MiB, quantiles " << quantiles;
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    EXPECT_LE(file->resident(), limit) << "at rest";
-}
 
 } // namespace
 } // namespace montelux

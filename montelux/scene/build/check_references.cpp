@@ -164,13 +164,14 @@ class MixNesting {
 
 } // namespace
 
-void check_light(const Scene& scene, const Light& light) {
+void check_light(const Scene& scene, const Light& light, std::size_t new_shapes) {
     std::visit(
         [&](const auto& l) {
             const FieldCheck check(scene,
                                    numbered("light", scene.lights.size()) + " (" + std::string(l.name) + ')');
             if constexpr (requires { l.spectrum; }) check("spectrum", l.spectrum);
-            if constexpr (requires { l.shape; }) check.index("shape", "shape", l.shape, scene.shapes.size());
+            if constexpr (requires { l.shape; })
+                check.index("shape", "shape", l.shape, scene.shapes.size() + new_shapes);
             if constexpr (requires { l.environment; })
                 check.index("environment", "environment map", l.environment, scene.environments.size());
             if constexpr (requires { l.picture; })

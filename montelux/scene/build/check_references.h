@@ -1,14 +1,16 @@
 // Checks that the indices in lights, materials and textures are those of values of the scene.
 #pragma once
 
+#include <cstddef>
+
 #include "montelux/scene/scene.h"
 
 namespace montelux {
 
 // Each throws Error: "material 3 (Diffuse), reflectance: there is no spectrum texture 7; the scene has 2".
 
-// `light` is about to be added.
-void check_light(const Scene& scene, const Light& light);
+// `light` is about to be added, after `new_shapes` shapes.
+void check_light(const Scene& scene, const Light& light, std::size_t new_shapes = 0);
 void check_materials(const Scene& scene);
 // Their grids and spectra, and that shapes and the camera lie in media of the scene.
 void check_media(const Scene& scene);

@@ -72,28 +72,32 @@ constexpr std::size_t keys_beside = 8; // what an instance and its motion need b
 
 Index SceneBuilder::add_shape(Geometry geometry, const ShapeSettings& settings, SourceLocation at) {
     check_shape(geometry, at);
-    return add_shape_to(open_object_, std::move(geometry), settings, in_object() ? dark_in_objects : "", at);
+    const std::optional<AreaLight> light =
+        area_light(settings, geometry, in_object() ? dark_in_objects : "", at);
+    return add_shape_to(open_object_, std::move(geometry), settings, light, at);
 }
 
 Index SceneBuilder::add_moving_shape(Geometry geometry, const ShapeSettings& settings, const Transform& start,
                                      const Transform& end, SourceLocation at) {
     check_shape(geometry, at);
     if (in_object()) {
-        const Index part = moving_part(start, end, at);
-        return add_shape_to(part, std::move(geometry), settings, dark_in_objects, at);
+        const std::optional<AreaLight> none = area_light(settings, geometry, dark_in_objects, at);
+        return add_shape_to(moving_part(start, end, at), std::move(geometry), settings, none, at);
     }
     // An object of its own, with one instance.
     std::optional<Motion> motion = motion_of_instance(start, end, at);
+    const std::optional<AreaLight> light = area_light(settings, geometry, "", at);
     const auto object = static_cast<Index>(scene_.objects.size());
     const std::string name = std::string(1, '\0') + std::to_string(object); // no name in a file
     objects_.declare(name, object, at, messages_);
     scene_.objects.emplace_back().shines = true;
-    const Index shape = add_shape_to(object, std::move(geometry), settings, "", at);
+    const Index shape = add_shape_to(object, std::move(geometry), settings, light, at);
     use_object(name, start, std::move(motion), at);
     return shape;
 }
 
 void SceneBuilder::check_shape(const Geometry& geometry, SourceLocation at) const {
+    if (scene_.shapes.size() >= no_index) messages_.error(at, "more than 2^32 shapes");
     try {
         check_geometry(geometry);
     } catch (const Error& e) {
@@ -101,9 +105,27 @@ void SceneBuilder::check_shape(const Geometry& geometry, SourceLocation at) cons
     }
 }
 
+std::optional<AreaLight> SceneBuilder::area_light(const ShapeSettings& settings, const Geometry& geometry,
+                                                  std::string_view dark, SourceLocation at) {
+    if (settings.emission == nullptr) return std::nullopt;
+    if (!dark.empty()) {
+        messages_.warn_once(dark, at, dark);
+        return std::nullopt;
+    }
+    if (std::holds_alternative<Curves>(geometry)) {
+        messages_.warn_once("area light on curves", at, "curves do not emit light");
+        return std::nullopt;
+    }
+    const std::size_t count = primitive_count(geometry);
+    if (count == 0) return std::nullopt;
+    if (emissive_primitives_ + count >= no_index) messages_.error(at, "more than 2^32 emissive triangles");
+    const AreaLight light = settings.emission->light(static_cast<Index>(scene_.shapes.size()), geometry);
+    check_new_light(light, 1, at);
+    return light;
+}
+
 Index SceneBuilder::add_shape_to(Index object, Geometry geometry, const ShapeSettings& settings,
-                                 std::string_view dark, SourceLocation at) {
-    if (scene_.shapes.size() >= no_index) messages_.error(at, "more than 2^32 shapes");
+                                 const std::optional<AreaLight>& light, SourceLocation at) {
     const auto index = static_cast<Index>(scene_.shapes.size());
     Shape shape;
     shape.material = settings.material;
@@ -116,7 +138,7 @@ Index SceneBuilder::add_shape_to(Index object, Geometry geometry, const ShapeSet
         scene_.shape_names[index] = settings.name;
     }
     (object != no_index ? scene_.objects[object].shapes : scene_.world_shapes).push_back(index);
-    const std::optional<AreaLight> light = area_light(index, settings, geometry, dark, at);
+    if (light) emissive_primitives_ += primitive_count(geometry);
     scene_.shapes[index].geometry = std::visit(
         Overloaded{[&](TriangleMesh& mesh) -> ShapeGeometry {
                        trim_positions(mesh.positions);
@@ -144,25 +166,6 @@ Index SceneBuilder::add_shape_to(Index object, Geometry geometry, const ShapeSet
         geometry);
     if (light) scene_.shapes[index].light = add_light(*light, at, settings.emission->group);
     return index;
-}
-
-std::optional<AreaLight> SceneBuilder::area_light(Index shape, const ShapeSettings& settings,
-                                                  const Geometry& geometry, std::string_view dark,
-                                                  SourceLocation at) {
-    if (settings.emission == nullptr) return std::nullopt;
-    if (!dark.empty()) {
-        messages_.warn_once(dark, at, dark);
-        return std::nullopt;
-    }
-    if (std::holds_alternative<Curves>(geometry)) {
-        messages_.warn_once("area light on curves", at, "curves do not emit light");
-        return std::nullopt;
-    }
-    const std::size_t count = primitive_count(geometry);
-    if (count == 0) return std::nullopt;
-    emissive_primitives_ += count;
-    if (emissive_primitives_ >= no_index) messages_.error(at, "more than 2^32 emissive triangles");
-    return settings.emission->light(shape, geometry);
 }
 
 void SceneBuilder::begin_object(const std::string& name, SourceLocation at) {
@@ -234,13 +237,17 @@ void SceneBuilder::use_object(const std::string& object, const Transform& at_sta
     instances_.push_back({objects_.refer(object), at_start, moving, at});
 }
 
-Index SceneBuilder::add_light(const Light& light, SourceLocation at, const std::string& group) {
+void SceneBuilder::check_new_light(const Light& light, std::size_t new_shapes, SourceLocation at) const {
     if (scene_.lights.size() >= no_index) messages_.error(at, "more than 2^32 lights");
     try {
-        check_light(scene_, light);
+        check_light(scene_, light, new_shapes);
     } catch (const Error& e) {
         messages_.error(at, e.what());
     }
+}
+
+Index SceneBuilder::add_light(const Light& light, SourceLocation at, const std::string& group) {
+    check_new_light(light, 0, at);
     scene_.lights.push_back(light);
     if (!group.empty()) {
         scene_.light_groups.resize(scene_.lights.size());
@@ -253,15 +260,23 @@ Index SceneBuilder::add_moving_light(const Light& light, const Transform& start,
                                      SourceLocation at, const std::string& group) {
     const auto add = [&]<typename L>(L moving) {
         if constexpr (MovableLight<L>) {
-            for (const Transform* t : {&start, &end})
-                if (!fits_float(*t) || !turns_in_floats(*t) || !stays_in_floats(moving.moved(*t)))
+            const auto check = [&](bool fits) {
+                if (!fits)
                     messages_.error(
                         at, "the light's transformation is beyond what single-precision numbers hold");
+            };
+            for (const Transform* t : {&start, &end})
+                check(fits_float(*t) && turns_in_floats(*t) && stays_in_floats(moving.moved(*t)));
             if constexpr (requires { moving.portal; })
                 if (moving.portal) messages_.error(at, "an environment map with a portal does not move");
             if (start == end) return add_light(moving.moved(start), at, group);
+            Motion path = motion(start, end, at);
+            for (const Matrix4& key : path.keys())
+                if (const std::optional<Transform> t = Transform::from_matrix(key))
+                    check(stays_in_floats(moving.moved(*t)));
+            check_new_light(moving, 0, at);
             moving.motion = static_cast<Index>(scene_.motions.size());
-            scene_.motions.push_back(motion(start, end, at));
+            scene_.motions.push_back(std::move(path));
         } else if constexpr (std::is_same_v<L, AreaLight>) {
             messages_.error(at, "the light of a shape moves with the shape");
         }
@@ -288,6 +303,8 @@ void SceneBuilder::place_instance(const InstanceUse& use, Index object, const Tr
     Index moving = no_index;
     if (motion) {
         check(motion->end());
+        // Between two keys nothing is farther away. The inverse is not used.
+        for (const Matrix4& key : motion->keys()) check(Transform(key, Matrix4()));
         moving = static_cast<Index>(scene_.motions.size());
         scene_.motions.push_back(std::move(*motion));
     }

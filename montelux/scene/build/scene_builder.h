@@ -38,7 +38,8 @@ class SceneBuilder {
 
     Scene& scene() { return scene_; }
 
-    // Adds a shape to the world, or to the open object. Errors as in check_geometry.
+    // Adds a shape to the world, or to the open object. Errors as in check_geometry. What is refused, here and below,
+    // leaves nothing in the scene.
     Index add_shape(Geometry geometry, const ShapeSettings& settings, SourceLocation at = {});
 
     // Adds a shape that moves: `geometry` is in its own space. In an open object the transformations lead into the
@@ -108,12 +109,17 @@ class SceneBuilder {
         bool operator()(const MotionKey& a, const MotionKey& b) const;
     };
 
-    // `object`: into Scene::objects; no_index: to the world. `dark`: why the shape cannot emit light; empty if it can.
-    Index add_shape_to(Index object, Geometry geometry, const ShapeSettings& settings, std::string_view dark,
-                       SourceLocation at);
-    std::optional<AreaLight> area_light(Index shape, const ShapeSettings& settings, const Geometry& geometry,
-                                        std::string_view dark, SourceLocation at);
+    // Adds nothing to the scene.
     void check_shape(const Geometry& geometry, SourceLocation at) const;
+    // Of the next shape; none where it does not emit. `dark`: why it cannot emit light; empty if it can. Adds nothing to
+    // the scene.
+    std::optional<AreaLight> area_light(const ShapeSettings& settings, const Geometry& geometry,
+                                        std::string_view dark, SourceLocation at);
+    // `new_shapes`: how many are added with it.
+    void check_new_light(const Light& light, std::size_t new_shapes, SourceLocation at) const;
+    // After the checks. `object`: into Scene::objects; no_index: to the world.
+    Index add_shape_to(Index object, Geometry geometry, const ShapeSettings& settings,
+                       const std::optional<AreaLight>& light, SourceLocation at);
     Motion motion(const Transform& start, const Transform& end, SourceLocation at) const;
     // None for an instance that stands still.
     std::optional<Motion> motion_of_instance(const Transform& start, const Transform& end,

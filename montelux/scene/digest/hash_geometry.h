@@ -67,7 +67,8 @@ inline void hash_values(SceneHasher& h, const Instance& i) {
 }
 inline void hash_values(SceneHasher& h, const Motion& m) {
     h.all(m.start(), m.end());
-    if (m.is_product()) h.all(m.keys());
+    // Two keys are the ends. Others depend on how finely paths are followed.
+    if (m.is_product() || m.keys().size() > 2) h.all(m.keys());
 }
 
 } // namespace montelux

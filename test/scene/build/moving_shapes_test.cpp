@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "montelux/scene/build/scene_builder.h"
+#include "montelux/scene/digest/hash_geometry.h"
 #include "montelux/scene/scene_digest.h"
 #include "montelux/scene/scene_names.h"
 
@@ -132,6 +133,21 @@ TEST_F(MovingShapes, TheirDigestsKnowTheWay) {
     EXPECT_NE(digest_of(along_product), digest_of(direct));
 }
 
+// How finely a path is followed is a part of the scene, even where it is not a product. Lines have no other keys than
+// their ends.
+TEST_F(MovingShapes, TheirDigestsKnowTheKeys) {
+    const auto hash = [](const auto&... values) {
+        SceneHasher hasher;
+        hasher.all(values...);
+        return hasher.value();
+    };
+    const Motion line({}, upwards), turn(Transform::scale({5, 1, 1}), quarter_turn);
+    EXPECT_EQ(hash(line), hash(line.start(), line.end()));
+    ASSERT_GT(turn.keys().size(), 2u);
+    EXPECT_EQ(hash(turn), hash(turn.start(), turn.end(), turn.keys()));
+    EXPECT_EQ(hash(turn), hash(Motion::product(Transform(), turn)));
+}
+
 TEST_F(MovingShapes, ShineOutsideOfObjects) {
     const Emission emission{1.0f};
     const ShapeSettings shining{.material = 0, .alpha = {1}, .emission = &emission};
@@ -197,6 +213,8 @@ TEST_F(MovingShapes, LightsThatCannotMoveAreRefused) {
     EXPECT_EQ(error(PointLight{1.0f, 1, {1, 0, 0}}, Transform::scale({1e39, 1, 1})), beyond);
     EXPECT_EQ(error(PointLight{1.0f, 1, {1e30f, 0, 0}}, Transform::scale({1e10, 1, 1})), beyond);
     EXPECT_EQ(error(SpotLight{1.0f, 1, {}, {0, 0, 1}, 0.9f, 0.8f}, Transform::scale({1e19, 1, 1})), beyond);
+    // On its way.
+    EXPECT_EQ(error(PointLight{1.0f, 1, {2.5e38f, 2.5e38f, 0}}, quarter_turn), beyond);
     EXPECT_EQ(
         error(PointLight{1.0f, 1, {}}, Transform::scale({-1, 1, 1})),
         "a test: motion: one end is mirrored and the other is not; between them the object would be flat");
@@ -246,6 +264,39 @@ TEST_F(MovingShapes, AndInstancesThatAreRefusedLeaveNothing) {
     EXPECT_TRUE(scene_.motions.empty());
 }
 
+// A light that refers to nothing is found late.
+TEST_F(MovingShapes, AndLightsThatAreRefusedLeaveNothing) {
+    const Emission lost{.spectrum = {}, .picture = 7};
+    const std::string no_picture =
+        "a test: light 0 (area light), picture: there is no picture 7; the scene has 0";
+    const ShapeSettings shining{.material = 0, .alpha = {1}, .emission = &lost, .name = "lamp"};
+    const Sphere sphere{.world_from_object = {}};
+    EXPECT_EQ(located_error([&] { builder_.add_shape(sphere, shining); }), no_picture);
+    EXPECT_EQ(located_error([&] { builder_.add_moving_shape(sphere, shining, {}, upwards); }), no_picture);
+    EXPECT_NE(located_error([&] {
+                  ImageInfiniteLight sky;
+                  sky.environment = 3;
+                  builder_.add_moving_light(sky, {}, quarter_turn);
+              }).find("there is no environment map 3"),
+              std::string::npos);
+    builder_.finish();
+    EXPECT_EQ(digest_of(scene_), [] {
+        Scene empty;
+        empty.materials.resize(1);
+        return digest_of(empty);
+    }());
+    EXPECT_TRUE(scene_.shapes.empty());
+    EXPECT_TRUE(scene_.world_shapes.empty());
+    EXPECT_TRUE(scene_.shape_names.empty());
+    EXPECT_TRUE(scene_.quadrics.empty());
+    EXPECT_TRUE(scene_.objects.empty());
+    EXPECT_TRUE(scene_.instances.empty());
+    EXPECT_TRUE(scene_.motions.empty());
+    // The next ones get its place.
+    EXPECT_EQ(builder_.add_shape(sphere, {.material = 0, .alpha = {1}}), 0u);
+    EXPECT_EQ(builder_.add_moving_shape(sphere, {.material = 0, .alpha = {1}}, {}, upwards), 1u);
+}
+
 // Strings in files may contain line breaks.
 TEST_F(MovingShapes, AreObjectsWithoutANameThatAFileCouldUse) {
     moving({}, upwards);
@@ -269,6 +320,25 @@ TEST_F(MovingShapes, ReachOnlyToWhereFloatsEnd) {
     builder_.add_instance("o", Transform::scale({1e5, 1, 1}));
     EXPECT_EQ(located_error([&] { builder_.finish(); }),
               "a test: the instance reaches to infinity in world space");
+}
+
+// Not far from the origin at the ends, but on the way: there a corner of the box turns to an axis.
+TEST_F(MovingShapes, ReachToInfinityOnTheirWay) {
+    const auto corner = [](float at) {
+        TriangleMesh mesh;
+        mesh.positions = {{at, at, 0}, {at, 0, 0}, {0, at, 0}};
+        mesh.indices = {0, 1, 2};
+        return mesh;
+    };
+    const auto turning = [&](float at) {
+        Scene scene;
+        scene.materials.resize(1);
+        SceneBuilder builder(scene, messages_);
+        builder.add_moving_shape(corner(at), {.material = 0, .alpha = {1}}, {}, quarter_turn);
+        return located_error([&] { builder.finish(); });
+    };
+    EXPECT_EQ(turning(2.3e38f), "");
+    EXPECT_EQ(turning(2.5e38f), "a test: the instance reaches to infinity in world space");
 }
 
 // Uses times parts: few lines of a file must not ask for all memory.
