@@ -84,6 +84,25 @@ TEST(FilmLayers, AveragesFeaturesAndParts) {
     EXPECT_FLOAT_EQ(value(kept, "G"), 110 / 3.0f);
 }
 
+// That of single samples, also where replicates are means of several; and over the mean, as in pbrt.
+TEST(FilmLayers, VarianceIsThatOfSamples) {
+    Film film = film_of({Layer::variance, Layer::relative_variance});
+    Pixel& pixel = film.pixel(0, 0);
+    for (const float value : {1.0f, 3.0f, 8.0f, 4.0f, 2.0f, 6.0f}) { // replicates 2, 6, 4
+        FilmSample s;
+        s.radiance = {value, 0, 2 * value};
+        pixel.add_sample(s);
+        if (pixel.open_samples() == 2) pixel.end_replicate();
+    }
+    const Image image = film.develop();
+    const auto value = [&](const char* channel) { return image.value(0, 0, *image.find_channel(channel)); };
+    EXPECT_FLOAT_EQ(value("variance.R"), 8); // 4 of a replicate of two samples
+    EXPECT_FLOAT_EQ(value("relativeVariance.R"), 2);
+    EXPECT_FLOAT_EQ(value("variance.B"), 32);
+    EXPECT_FLOAT_EQ(value("relativeVariance.B"), 4);
+    EXPECT_EQ(value("relativeVariance.G"), 0);
+}
+
 // Coverage by id, the largest first; more ids than a pixel remembers lose the smallest coverages only.
 TEST(FilmLayers, MattesHoldTheLargestCoverages) {
     Film film = film_of({Layer::shape});

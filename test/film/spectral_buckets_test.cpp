@@ -92,5 +92,16 @@ TEST(SpectralBuckets, MomentsAreThoseOfTheReplicates) {
         Error);
 }
 
+TEST(SpectralBuckets, RowsAreCopiedWithTheirBuckets) {
+    const FilmSettings settings{
+        .width = 4, .height = 3, .crop = {1, 1, 4, 3}, .spectral = SpectralSettings{.buckets = 2}};
+    Film from(settings), to(settings);
+    for (std::size_t i = 0; i < from.buckets().size(); ++i)
+        from.buckets()[i].mean = static_cast<double>(i + 1);
+    to.copy_row(from, 2, 2, 2); // the last two of six pixels
+    for (std::size_t i = 0; i < 12; ++i)
+        EXPECT_EQ(to.buckets()[i].mean, i < 8 ? 0 : static_cast<double>(i + 1)) << i;
+}
+
 } // namespace
 } // namespace montelux

@@ -147,6 +147,17 @@ TEST(MeshDisplacement, SeamsAndCreasesStayClosed) {
     EXPECT_EQ(most, 1.25f);
 }
 
+// At a seam of a plane both sides move by the mean of what they would move.
+TEST(MeshDisplacement, SeamsMoveByTheMean) {
+    TriangleMesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    mesh.indices = {0, 1, 2, 3, 4, 5};
+    ASSERT_TRUE(refine_edges(mesh, Transform(), 10, 10));
+    displace_vertices(mesh, std::vector<float>{0.1f, 0.2f, 0.5f, 0.4f, 0.3f, 0.1f});
+    const float heights[] = {0.1f, 0.3f, 0.3f, 0.3f, 0.3f, 0.3f};
+    for (std::size_t v = 0; v < 6; ++v) EXPECT_FLOAT_EQ(mesh.positions[v].z, heights[v]) << v;
+}
+
 TEST(MeshDisplacement, NormalsKeepTheirSide) {
     for (const float sign : {1.0f, -1.0f}) {
         TriangleMesh mesh = unit_octahedron();
@@ -158,6 +169,28 @@ TEST(MeshDisplacement, NormalsKeepTheirSide) {
             EXPECT_GT(sign * dot(mesh.normals[v], mesh.positions[v]), 0);
         EXPECT_EQ(volume_of(mesh) > 4.0 / 3, sign > 0); // grows outwards, shrinks inwards
     }
+}
+
+// Heights are lengths, whatever the length of the normals that a file gives; every face counts the same in the new ones.
+TEST(MeshDisplacement, NormalsAreUnitAverages) {
+    TriangleMesh mesh = unit_octahedron();
+    for (Normal3f& n : mesh.normals) n = 3.0f * n;
+    ASSERT_TRUE(refine_edges(mesh, Transform(), 0.3f, 100000));
+    for (const Normal3f n : mesh.normals) EXPECT_NEAR(length(n), 1, 1e-6);
+    const TriangleMesh before = mesh;
+    displace_vertices(mesh, std::vector<float>(mesh.positions.size(), 0.1f));
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+        EXPECT_LT(length(mesh.positions[v] - (before.positions[v] + 0.1f * before.normals[v])), 1e-6f);
+
+    // Two faces at a right angle, one ten times as large.
+    TriangleMesh wedge;
+    wedge.positions = {{0, 0, 0}, {1, 0, 0}, {0.5f, 10, 0}, {0.5f, 0, -1}};
+    wedge.indices = {0, 1, 2, 1, 0, 3};
+    ASSERT_TRUE(refine_edges(wedge, Transform(), 100, 10));
+    const Vec3d expected = normalize(Vec3d{0, -1, 1});
+    for (const Index v : {0u, 1u}) EXPECT_LT(length(Vec3d(wedge.normals[v]) - expected), 1e-6);
+    displace_vertices(wedge, std::vector<float>(4));
+    for (const Index v : {0u, 1u}) EXPECT_LT(length(Vec3d(wedge.normals[v]) - expected), 1e-6);
 }
 
 TEST(MeshDisplacement, StopsAtTheLimit) {

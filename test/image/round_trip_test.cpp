@@ -70,7 +70,12 @@ TEST(ExrFile, RoundsChosenChannelsToHalfs) {
     for (int x = 0; x < 19; ++x)
         EXPECT_EQ(back.value(x, 7, r), half_to_float(float_to_half(image.value(x, 7, 0))));
     write_image(folder / "b.exr", image, {.exr_half = {"R", "G", "depth.Z"}});
-    EXPECT_EQ(read_image(folder / "b.exr").format(), PixelFormat::f16);
+    const Image all = read_image(folder / "b.exr");
+    EXPECT_EQ(all.format(), PixelFormat::f16);
+    for (const char* name : {"R", "G", "depth.Z"})
+        for (int x = 0; x < 19; ++x)
+            EXPECT_EQ(all.value(x, 7, *all.find_channel(name)),
+                      half_to_float(clamped_half(image.value(x, 7, *image.find_channel(name)))));
 }
 
 TEST(ExrFile, KeepsAttributes) {

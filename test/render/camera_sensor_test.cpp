@@ -40,5 +40,26 @@ TEST(CameraSensors, FilmValuesOfAUniformLight) {
     }
 }
 
+// The layer of albedo tells of surfaces, not of the camera.
+TEST(CameraSensors, LeaveTheAlbedoAsItIs) {
+    SceneBuilder b;
+    b.add_uniform_light(1);
+    b.add_mesh(square(Transform::scale({9, 9, 1})),
+               b.add(DiffuseMaterial{SpectrumParameter{
+                   add_spectrum(b.scene, RgbAlbedoSpectrum(RgbColorSpace::srgb(), {0.7f, 0.3f, 0.1f}))}}));
+    b.look({0, 0, 1}, {0, 0, 0}, 40);
+    const Film plain = render(b.description);
+    FilmSettings& film = b.description.film;
+    film.sensor = "canon_eos_5d";
+    film.white_balance = 4000;
+    film.iso = 400;
+    const Film other = render(b.description);
+    for (std::size_t i = 0; i < plain.pixels().size(); ++i) {
+        const Vec3f albedo = plain.pixels()[i].albedo();
+        EXPECT_EQ(albedo, other.pixels()[i].albedo());
+        EXPECT_GT(albedo.x, 2 * albedo.z);
+    }
+}
+
 } // namespace
 } // namespace montelux::testing

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <string>
 
+#include "montelux/mc/warp/disk.h"
 #include "montelux/render/sample_record.h"
+#include "montelux/scene/camera/camera.h"
 
 namespace montelux::testing {
 namespace {
@@ -54,6 +56,83 @@ TEST(Layers, CoordinatesMayBeThoseOfTheCamera) {
     const double k = n.y / n.z, t = -0.5 / 16, slope = k / 4 / std::pow(1 + k * t, 2);
     EXPECT_NEAR(value_of(image, 8, 8, "dzdy"), slope, 0.02 * std::abs(slope));
     EXPECT_NEAR(value_of(image, 8, 8, "dzdx"), 0, 1e-4);
+}
+
+// A camera that turns and moves: coordinates are those of its place at the time of each sample.
+TEST(Layers, CoordinatesOfTheCameraAreThoseOfTheSample) {
+    SceneBuilder b = square_below();
+    TriangleMesh floor = square(Transform::scale({9, 9, 1}));
+    floor.normals.assign(4, normalize(Normal3f{0.3f, 0.2f, 1}));
+    b.scene.meshes[0] = floor;
+    const Transform start = b.scene.camera.world_from_camera;
+    b.scene.camera.motion.emplace(start, Transform::translate({0.2, 0.1, 1}) * start *
+                                             Transform::rotate(50, {0.2, 0.1, 1}));
+    b.description.film.layers.set = {Layer::position, Layer::geometric_normal, Layer::normal};
+    b.description.sampler.spp = 1;
+    const Image world = render_state(b.description).film.develop();
+    b.description.film.layers.in_camera_space = true;
+    const Image seen = render_state(b.description).film.develop();
+    const Renderer renderer(b.description);
+    const Camera camera(b.scene.camera, 16, 16);
+    const auto triple = [](const Image& image, int x, int y, const std::string& layer) {
+        const auto part = [&](const char* letter) {
+            return static_cast<double>(value_of(image, x, y, (layer + letter).c_str()));
+        };
+        return Vec3d{part(".X"), part(".Y"), part(".Z")};
+    };
+    for (int x = 0; x < 16; ++x) {
+        const Transform from_world = camera.camera_from_world(renderer.replay(x, 5, 0).time);
+        const Vec3d p = from_world.point(triple(world, x, 5, "P"));
+        EXPECT_LT(length(triple(seen, x, 5, "P") - p), 1e-5);
+        EXPECT_LT(length(triple(world, x, 5, "Ng") - Vec3d{0, 0, 1}), 1e-6);
+        for (const char* layer : {"Ng", "N"}) {
+            const Vec3d n = from_world.vector(triple(world, x, 5, layer));
+            EXPECT_LT(length(triple(seen, x, 5, layer) - n), 2e-4) << layer; // turns are made of chords
+        }
+        EXPECT_GT(length(triple(world, x, 5, "N") - Vec3d{0, 0, 1}), 0.1);
+    }
+}
+
+// Of a plane z = d + a x + c y of camera space, seen along (s, t, 1) from the point (u, v, 0) of the lens focused at f:
+// s = (x - u) / f for the point x in focus. The camera turns and moves away while the shutter is open.
+TEST(Layers, DepthSlopesAreThoseOfTheSample) {
+    for (const float lens_radius : {0.0f, 0.4f}) {
+        SceneBuilder b = square_below();
+        // Turned about x and y; 40 wide.
+        const Transform turned = Transform::rotate(30, {1, 0, 0}) * Transform::rotate(20, {0, 1, 0});
+        b.scene.meshes[0] = square(turned * Transform::scale({20, 20, 1}));
+        auto& model = std::get<PerspectiveCamera>(b.scene.camera.model);
+        model.lens_radius = lens_radius;
+        model.focal_distance = 4;
+        const Transform start = b.scene.camera.world_from_camera;
+        b.scene.camera.motion.emplace(start, Transform::translate({0, 0, 2}) * start *
+                                                 Transform::rotate(10, {1, 0.5, 0}));
+        b.description.film.layers.set = {Layer::depth_slopes};
+        b.description.sampler.spp = 1;
+        const Image image = render_state(b.description).film.develop();
+        const Renderer renderer(b.description);
+        const Camera camera(b.scene.camera, 16, 16);
+        for (int x = 1; x < 16; x += 3)
+            for (int y = 1; y < 16; y += 3) {
+                const SampleRecord r = renderer.replay(x, y, 0);
+                const Transform from_world = camera.camera_from_world(r.time);
+                const Vec3d n = from_world.normal(turned.vector(Vec3d{0, 0, 1})),
+                            p = from_world.point(Vec3d{});
+                const double a = -n.x / n.z, c = -n.y / n.z, d = p.z - a * p.x - c * p.y;
+                EXPECT_GT(std::min(std::abs(a), std::abs(c)), 0.1);
+                const Vec2f on_lens = sample_uniform_disk_concentric(r.lens) * lens_radius;
+                const double u = double(on_lens.x), v = double(on_lens.y);
+                const auto depth = [&](double film_x, double film_y) {
+                    const double s = (film_x - 8) / 16 - u / 4, t = (8 - film_y) / 16 - v / 4;
+                    return (d + a * u + c * v) / (1 - a * s - c * t);
+                };
+                const double fx = double(r.film.x), fy = double(r.film.y);
+                const double dx = depth(fx + 0.5, fy) - depth(fx - 0.5, fy),
+                             dy = depth(fx, fy + 0.5) - depth(fx, fy - 0.5);
+                EXPECT_NEAR(value_of(image, x, y, "dzdx"), dx, 1e-3 * std::abs(dx)) << lens_radius;
+                EXPECT_NEAR(value_of(image, x, y, "dzdy"), dy, 1e-3 * std::abs(dy)) << lens_radius;
+            }
+    }
 }
 
 // A moving instance, at all times of its samples.

@@ -5,6 +5,8 @@
 
 #include "montelux/mc/math/error.h"
 #include "montelux/render/render_session.h"
+#include "montelux/render/sample_record.h"
+#include "montelux/spectrum/sensor.h"
 
 namespace montelux::testing {
 namespace {
@@ -54,6 +56,71 @@ TEST(SpectralFilm, MeansAreTheRadianceAndErrorsAreCalibrated) {
             EXPECT_LT(z2 / 64, sampler == SamplerKind::independent ? 2.2 : 4) << i;
         }
     }
+}
+
+// In uniform light: each sample has the wavelengths of its path's end and the factors that it has in RGB.
+struct SampleCounts {
+    int clamped = 0, negative = 0, terminated = 0;
+};
+SampleCounts expect_factors_of_colours(SceneBuilder& b, float radiance) {
+    b.add_uniform_light(radiance);
+    b.description.film.spectral = SpectralSettings{.lambda_min = 400, .lambda_max = 720, .buckets = 8};
+    b.description.sampler.spp = 16;
+    const Film film = render(b.description);
+    const Image image = film.develop();
+    const Renderer renderer(b.description);
+    const BucketLayout layout(*b.description.film.spectral);
+    const Spectrum white = white_spectrum();
+    const Sensor eye;
+    SampleCounts counts;
+    for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 8; ++x) {
+            std::vector<BucketMoments> expected(8);
+            for (std::uint32_t k = 0; k < 16; ++k) {
+                const SampleRecord r = renderer.replay(x, y, k);
+                const SampledSpectrum light = white.sample(r.lambda_end) * (white_scale() * radiance);
+                const Vec3f plain = eye.to_rgb(light, r.lambda_end);
+                const float factor = dot(r.rgb, plain) / length_squared(plain);
+                add_sample(expected, spectral_sample(layout, light, r.lambda_end, factor));
+                for (BucketMoments& m : expected) m.end_replicate(1, k + 1);
+                counts.clamped += r.clamp < 1;
+                counts.negative += r.filter.weight < 0;
+                counts.terminated += r.lambda_end.secondary_terminated();
+            }
+            for (int i = 0; i < 8; ++i) {
+                const BucketMoments& m = expected[static_cast<std::size_t>(i)];
+                const double error = m.standard_error(16);
+                const std::string layer = spectral_layer(layout.center(i));
+                EXPECT_NEAR(image.value(x, y, *image.find_channel(layer)), m.mean, 1e-4 * error + 1e-6);
+                EXPECT_NEAR(image.value(x, y, *image.find_channel("stderr." + layer)), error,
+                            1e-4 * error + 1e-6);
+            }
+        }
+    return counts;
+}
+
+TEST(SpectralFilm, BucketsHaveTheFactorsOfTheColours) {
+    SceneBuilder b;
+    b.scene.camera.model = RealisticCamera{
+        .surfaces = {{0.05f, 0.003f, 1.5f, 0.01f}, {-0.05f, 0.001f, 1, 0.01f}, {0, 0.05f, 0, 0.002f}},
+        .focus_distance = 2,
+        .film_diagonal = 0.02f};
+    b.description.film.filter = MitchellFilter{};
+    b.description.film.max_component_value = 1;
+    const SampleCounts counts = expect_factors_of_colours(b, 200);
+    EXPECT_GT(counts.clamped, 100);
+    EXPECT_GT(counts.negative, 50);
+}
+
+// Behind dispersive glass one wavelength of a path is left, and counts for four.
+TEST(SpectralFilm, DispersionLeavesOneWavelength) {
+    SceneBuilder b;
+    const Spectrum dispersive(PiecewiseLinear(std::vector<float>{360, 830}, std::vector<float>{1.6f, 1.4f}));
+    b.add_quadric(Sphere{}, b.add(DielectricMaterial{add_spectrum(b.scene, dispersive)}));
+    b.look({0, -4, 0}, {0, 0, 0}, 40);
+    const SampleCounts counts = expect_factors_of_colours(b, 1);
+    EXPECT_GT(counts.terminated, 100);
+    EXPECT_LT(counts.terminated, 900);
 }
 
 TEST(SpectralFilm, LeavesTheColoursAsTheyAre) {

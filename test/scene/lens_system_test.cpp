@@ -104,6 +104,39 @@ TEST(LensSystem, WeightsAreTheIrradianceOfTheExitPupil) {
     }
 }
 
+// With the stop in front of the lens the pupil of a film point lies beside the axis, towards the point; nothing changes
+// where both turn about the axis.
+TEST(LensSystem, WeightsDependOnTheDistanceFromTheAxisAlone) {
+    const LensSystem lens(RealisticCamera{
+        .surfaces = {{0, 0.02f, 0, 0.004f}, {0.05f, 0.003f, 1.5f, 0.01f}, {-0.05f, 0.05f, 1, 0.01f}},
+        .focus_distance = 2,
+        .film_diagonal = 0.02f});
+    struct Weight {
+        double mean = 0, error = 0;
+    };
+    const auto weight_at = [&](Point2f film) {
+        PhiloxStream random(7);
+        double sum = 0, squares = 0;
+        constexpr int n = 100000;
+        for (int i = 0; i < n; ++i) {
+            const auto s = lens.sample(film, random.next_2d());
+            const double w = s ? static_cast<double>(s->weight) : 0;
+            sum += w;
+            squares += w * w;
+        }
+        const double mean = sum / n;
+        return Weight{mean, std::sqrt((squares / n - mean * mean) / n)};
+    };
+    const Weight right = weight_at({0.008f, 0});
+    EXPECT_GT(right.mean, 20 * right.error);
+    for (const Point2f film :
+         {Point2f{0, 0.008f}, Point2f{0, -0.008f}, Point2f{-0.008f, 0}, Point2f{-0.0048f, 0.0064f}}) {
+        const Weight other = weight_at(film);
+        EXPECT_NEAR(other.mean, right.mean, 5 * std::hypot(other.error, right.error))
+            << film.x << ' ' << film.y;
+    }
+}
+
 // Backwards: a ray that left the lens, sent back along its path, arrives at the film point.
 TEST(LensSystem, LightGoesBothWays) {
     const LensSystem lens(singlet(0.005f, 1));
@@ -198,6 +231,19 @@ TEST(LensSystem, PicturesShapeTheStop) {
     camera.aperture = corner;
     double x = 0;
     EXPECT_NEAR(mean_weight(camera, x) / round, 49.0 / 64, 0.03);
+    // It is the upper left corner, for film points on all sides.
+    const LensSystem lens(camera);
+    PhiloxStream stream(8);
+    int passed = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const float angle = 2 * pi_f * stream.next_1d();
+        const auto s = lens.sample({0.003f * std::cos(angle), 0.003f * std::sin(angle)}, stream.next_2d());
+        if (!s) continue;
+        EXPECT_LT(s->ray.o.x, 0);
+        EXPECT_GT(s->ray.o.y, 0);
+        ++passed;
+    }
+    EXPECT_GT(passed, 20);
 }
 
 } // namespace

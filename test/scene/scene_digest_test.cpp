@@ -103,7 +103,25 @@ TEST(SceneDigest, TheCameraCounts) {
          [](Scene& s) { s.camera.shutter_open = 0.5f; }, [](Scene& s) { s.camera.shutter_close = 0.5f; },
          [](Scene& s) { s.camera.model = OrthographicCamera{}; },
          [](Scene& s) { s.camera.model = SphericalCamera{}; },
-         [](Scene& s) { s.camera.model = SphericalCamera{SphericalCamera::Mapping::equirectangular}; }});
+         [](Scene& s) { s.camera.model = SphericalCamera{SphericalCamera::Mapping::equirectangular}; },
+         [](Scene& s) { s.camera.model = RealisticCamera{}; },
+         [](Scene& s) {
+             s.camera.model = RealisticCamera{.surfaces = {{1, 2, 3, 4}}};
+         },
+         [](Scene& s) {
+             s.camera.model = RealisticCamera{.surfaces = {{1, 2, 3, 5}}};
+         },
+         [](Scene& s) { s.camera.model = RealisticCamera{.surfaces = {}, .focus_distance = 3}; },
+         [](Scene& s) { s.camera.model = RealisticCamera{.surfaces = {}, .film_diagonal = 3}; },
+         [](Scene& s) {
+             s.camera.model = RealisticCamera{.surfaces = {}, .aperture = AperturePicture{1, 2, {1, 2}}};
+         },
+         [](Scene& s) {
+             s.camera.model = RealisticCamera{.surfaces = {}, .aperture = AperturePicture{2, 1, {1, 2}}};
+         },
+         [](Scene& s) {
+             s.camera.model = RealisticCamera{.surfaces = {}, .aperture = AperturePicture{1, 2, {2, 1}}};
+         }});
 }
 
 TEST(SceneDigest, HeadersOfImagesDoNotCount) {

@@ -66,6 +66,20 @@ TEST(CameraSensors, MatrixOfALinearObserverIsItsInverse) {
         for (int j = 0; j < 3; ++j) EXPECT_NEAR(m.rows[i][j], inverse.rows[i][j], 1e-5);
 }
 
+// It depends on the colours of both, not on how strong they are.
+TEST(CameraSensors, MatrixDoesNotDependOnTheStrengthOfTheLight) {
+    const CameraSensor camera = *find_camera_sensor("canon_eos_5d");
+    const SpectrumTable light = daylight(5000), white = illuminant_d65();
+    const auto stronger = [](const SpectrumTable& t, float by) {
+        return SpectrumTable::from([&](float l) { return by * t(l); });
+    };
+    const Matrix3 m = xyz_from_camera(camera, light, white);
+    for (const Matrix3& other : {xyz_from_camera(camera, stronger(light, 3), white),
+                                 xyz_from_camera(camera, light, stronger(white, 3))})
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) EXPECT_NEAR(other.rows[i][j], m.rows[i][j], 1e-5);
+}
+
 // Neutral surfaces under the light for which the sensor is balanced are grey with the right luminance; all patches lie
 // within the error that three channels of real cameras leave.
 TEST(CameraSensors, PatchesUnderTheBalancedLight) {

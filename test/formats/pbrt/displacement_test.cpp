@@ -64,6 +64,21 @@ TEST_F(PbrtDisplacement, ReadsPicturesAndNestedTextures) {
                                "Texture \"h\" \"float\" \"mix\" \"texture tex1\" \"s\" \"texture tex2\" "
                                "\"p\" \"float amount\" 0.5\n";
     for (const Point3f p : mesh(nested + shape).positions) EXPECT_FLOAT_EQ(p.z, 0.375f);
+    // Of several pictures each texture reads its own; a picture that is transparent somewhere gives its alpha.
+    Image half(2, 2, {"Y"}, PixelFormat::f32, ColorEncoding::linear()),
+        clear(2, 2, {"R", "G", "B", "A"}, PixelFormat::f32, ColorEncoding::linear());
+    for (float& v : half.f32()) v = 0.5f;
+    for (float& v : clear.f32()) v = 1;
+    for (std::size_t i = 3; i < 16; i += 4) clear.f32()[i] = 0.75f;
+    write_image(folder_ / "half.pfm", half);
+    write_image(folder_ / "clear.exr", clear);
+    const std::string pictures = "Texture \"p\" \"float\" \"imagemap\" \"string filename\" \"half.pfm\"\n"
+                                 "Texture \"q\" \"float\" \"imagemap\" \"string filename\" \"quarter.pfm\"\n"
+                                 "Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"clear.exr\"\n"
+                                 "Texture \"h\" \"float\" \"mix\" \"texture tex1\" \"p\" \"texture tex2\" "
+                                 "\"a\" \"texture amount\" \"q\"\n";
+    for (const Point3f p : mesh(pictures + shape).positions)
+        EXPECT_FLOAT_EQ(p.z, 0.75f * 0.5f + 0.25f * 0.75f);
     // Spaces of textures are those of the world.
     const std::string planar = "Texture \"h\" \"float\" \"checkerboard\" \"integer dimension\" 3\n";
     for (const Point3f p : mesh(planar + "Translate 0 0 1\n" + shape).positions)

@@ -118,6 +118,19 @@ TEST(PbrtOptions, SensorsBucketsAndOcclusion) {
     EXPECT_EQ(d.film.spectral->lambda_min, 360);
     EXPECT_EQ(d.film.spectral->lambda_max, 830);
 
+    d = parse("Film \"rgb\" \"float iso\" 400 \"float whitebalance\" 5000 \"float exposuretime\" 0.25 "
+              "Camera \"perspective\" \"float shutteropen\" 0.5" +
+              end);
+    EXPECT_EQ(d.film.iso, 400);
+    EXPECT_EQ(d.film.white_balance, 5000);
+    EXPECT_EQ(d.film.exposure_time, 0.125f); // half as long by the shutter
+    EXPECT_EQ(test::error_of("Film \"rgb\" \"float whitebalance\" 1999" + end).substr(0, 48),
+              "scene:1:12: parameter 'whitebalance' is below 20");
+    EXPECT_EQ(test::error_of("Film \"rgb\" \"float exposuretime\" 0" + end),
+              "scene:1:12: parameter 'exposuretime' must be positive");
+    EXPECT_EQ(test::error_of("Film \"rgb\" \"float iso\" 0" + end),
+              "scene:1:12: parameter 'iso' must be positive");
+
     Warnings warnings;
     d = parse("Integrator \"ambientocclusion\" \"bool cossample\" false \"float maxdistance\" 3 WorldBegin",
               &warnings);

@@ -75,6 +75,16 @@ TEST_F(RealisticCameras, AperturesByNameAndByFile) {
     const AperturePicture& picture = *std::get<RealisticCamera>(d.scene.camera.model).aperture;
     EXPECT_FLOAT_EQ(picture.at(-0.5, 0.5), 3.1415927f);
     EXPECT_EQ(picture.at(0.5, -0.5), 0);
+    // Of colours their mean.
+    Image colored(2, 2, {"R", "G", "B"}, PixelFormat::f32, ColorEncoding::linear());
+    colored.f32()[0] = 6;
+    colored.f32()[11] = 2; // blue, at the lower right
+    write_image(folder_ / "colored.pfm", colored);
+    const SceneDescription of_colors =
+        load(singlet, "\"string lensfile\" \"lens.dat\" \"string aperture\" \"colored.pfm\"");
+    const AperturePicture& mean = *std::get<RealisticCamera>(of_colors.scene.camera.model).aperture;
+    EXPECT_FLOAT_EQ(mean.at(-0.5, 0.5), 3 * mean.at(0.5, -0.5));
+    EXPECT_GT(mean.at(0.5, -0.5), 0);
 }
 
 TEST_F(RealisticCameras, MistakesAreNamed) {
