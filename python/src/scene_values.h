@@ -1,6 +1,7 @@
 // Attributes of scenes: conversion of numbers, vectors, spectra and textures from and to Python.
 #pragma once
 
+#include "python/src/names.h"
 #include "python/src/numpy_bridge.h"
 #include "python/src/scene_slots.h"
 #include <array>
@@ -138,6 +139,23 @@ void flag(nb::class_<Ref<T>>& c, const char* name, bool T::*member, const char* 
     attribute<T>(
         c, name, "bool", [member](const T& t, const auto&) { return nb::bool_(t.*member); },
         [member](T& t, nb::handle v, auto&, const std::string& what) { t.*member = boolean_of(v, what); },
+        doc);
+}
+
+// A name of a table of Names.
+template <typename T, typename M, typename Table>
+void choice(nb::class_<Ref<T>>& c, const char* name, M T::*member, const Table& table, const char* doc) {
+    attribute<T>(
+        c, name, "str",
+        [member, &table](const T& t, const auto&) {
+            const std::string_view text = table.name(t.*member);
+            return nb::str(text.data(), text.size());
+        },
+        [member, &table](T& t, nb::handle v, auto&, const std::string& what) {
+            if (!nb::isinstance<nb::str>(v))
+                throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected a name");
+            t.*member = table.value(nb::cast<std::string>(v));
+        },
         doc);
 }
 

@@ -1,13 +1,9 @@
 #include "python/src/bindings.h"
 #include "python/src/names.h"
 #include "python/src/scene_values.h"
-#include <algorithm>
 #include <string>
 
-#include "montelux/image/image.h"
-#include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/setting_names.h"
-#include "montelux/spectrum/camera_sensors.h"
 
 namespace montelux::python {
 namespace {
@@ -26,22 +22,6 @@ constexpr Names<SphericalCamera::Mapping, 2> mappings{
     "mapping",
     {{{"equal_area", SphericalCamera::Mapping::equal_area},
       {"equirectangular", SphericalCamera::Mapping::equirectangular}}}};
-
-template <typename T, typename M, typename Table>
-void choice(nb::class_<Ref<T>>& c, const char* name, M T::*member, const Table& table, const char* doc) {
-    attribute<T>(
-        c, name, "str",
-        [member, &table](const T& t, const auto&) {
-            const std::string_view text = table.name(t.*member);
-            return nb::str(text.data(), text.size());
-        },
-        [member, &table](T& t, nb::handle v, auto&, const std::string& what) {
-            if (!nb::isinstance<nb::str>(v))
-                throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected a name");
-            t.*member = table.value(nb::cast<std::string>(v));
-        },
-        doc);
-}
 
 nb::object floats(std::initializer_list<float> values) {
     nb::list l;
@@ -116,128 +96,6 @@ void projective(nb::class_<Ref<T>>& c) {
         "x_min, x_max, y_min, y_max of the part of the plane z = 1 that the film covers; or None.");
 }
 
-void set_resolution(FilmSettings& f, std::int64_t w, std::int64_t h) {
-    // The crop keeps its place on the film.
-    auto scaled = [](int v, int from, std::int64_t to) {
-        return static_cast<int>(std::int64_t{v} * to / from);
-    };
-    PixelBounds b{scaled(f.crop.x0, f.width, w), scaled(f.crop.y0, f.height, h),
-                  scaled(f.crop.x1, f.width, w), scaled(f.crop.y1, f.height, h)};
-    b.x1 = std::max(b.x1, b.x0 + 1);
-    b.y1 = std::max(b.y1, b.y0 + 1);
-    f.crop = b;
-    f.width = static_cast<int>(w);
-    f.height = static_cast<int>(h);
-}
-
-void bind_film(nb::module_& m) {
-    auto c = value_class<FilmSettings>(m, "Film", "Resolution, crop, pixel filter and sensor.");
-    attribute<FilmSettings>(
-        c, "resolution", "tuple[int, int]",
-        [](const FilmSettings& f, const auto&) { return nb::make_tuple(f.width, f.height); },
-        [](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
-            const std::vector<double> r = numbers_of(v, 2, what);
-            for (const double n : r)
-                if (!(n >= 1 && n <= Image::max_dimension && n == std::floor(n)))
-                    throw Error(what, std::string(nb::repr(v).c_str()) +
-                                          " was given; expected two whole numbers from 1 to " +
-                                          std::to_string(Image::max_dimension));
-            set_resolution(f, static_cast<std::int64_t>(r[0]), static_cast<std::int64_t>(r[1]));
-        },
-        "Width and height in pixels; a crop keeps its place.");
-    auto side = [&](const char* name, int FilmSettings::*member, bool width, const char* doc) {
-        attribute<FilmSettings>(
-            c, name, "int", [member](const FilmSettings& f, const auto&) { return nb::int_(f.*member); },
-            [width](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
-                const std::int64_t n = whole_number_of(v, 1, Image::max_dimension, what);
-                set_resolution(f, width ? n : f.width, width ? f.height : n);
-            },
-            doc);
-    };
-    side("width", &FilmSettings::width, true, "Pixels of a row of the whole film.");
-    side("height", &FilmSettings::height, false, "Rows of the whole film.");
-    attribute<FilmSettings>(
-        c, "crop", "tuple[int, int, int, int]",
-        [](const FilmSettings& f, const auto&) {
-            return nb::make_tuple(f.crop.x0, f.crop.y0, f.crop.x1, f.crop.y1);
-        },
-        [](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
-            const std::vector<double> b = numbers_of(v, 4, what);
-            if (!(b[0] >= 0 && b[0] < b[2] && b[2] <= f.width && b[1] >= 0 && b[1] < b[3] &&
-                  b[3] <= f.height))
-                throw Error(what,
-                            "expected pixels x0, y0, x1, y1 with 0 <= x0 < x1 <= " + std::to_string(f.width) +
-                                " and 0 <= y0 < y1 <= " + std::to_string(f.height));
-            f.crop = {static_cast<int>(b[0]), static_cast<int>(b[1]), static_cast<int>(b[2]),
-                      static_cast<int>(b[3])};
-        },
-        "The pixels that are rendered: x0, y0, x1, y1 from the top left, the last two exclusive.");
-    number(c, "iso", &FilmSettings::iso, positive, "a number above zero",
-           "Sensitivity; 100 leaves values as they are.");
-    number(c, "exposure_time", &FilmSettings::exposure_time, positive, "a number above zero", "Seconds.");
-    number(c, "white_balance", &FilmSettings::white_balance, not_negative, "a number that is not negative",
-           "Kelvin of the light that is to look white; 0: none, or 6500 K for a camera's sensor.");
-    attribute<FilmSettings>(
-        c, "sensor", "str", [](const FilmSettings& f, const auto&) { return nb::str(f.sensor.c_str()); },
-        [](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
-            if (!nb::isinstance<nb::str>(v))
-                throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected a name");
-            const auto name = nb::cast<std::string>(v);
-            const std::vector<std::string_view>& names = sensor_names();
-            if (std::find(names.begin(), names.end(), name) == names.end())
-                throw Error(what, "unknown sensor '" + name + "'" + did_you_mean(name, names));
-            f.sensor = name;
-        },
-        "The sensor by its name in pbrt-v4, such as \"nikon_d850\"; \"cie1931\" is the standard observer.");
-    number(
-        c, "max_component_value", &FilmSettings::max_component_value, [](double x) { return x > 0; },
-        "a number above zero", "Largest RGB value of a sample; infinite: none.");
-    attribute<FilmSettings>(
-        c, "layers", "str",
-        [](const FilmSettings& f, const auto&) { return nb::cast(text_of(f.layers.set)); },
-        [](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
-            std::string list;
-            if (!nb::try_cast(v, list))
-                throw Error(what,
-                            std::string(nb::repr(v).c_str()) + " was given; expected names with commas");
-            try {
-                f.layers.set = parse_layers(list);
-            } catch (const Error& e) {
-                throw Error(what, e.what());
-            }
-        },
-        "Names of the layers of a picture with commas, as of `montelux render --layers`: "
-        "'default,position'.");
-    auto flag = [&](const char* name, bool LayerSettings::*member, const char* doc) {
-        attribute<FilmSettings>(
-            c, name, "bool",
-            [member](const FilmSettings& f, const auto&) { return nb::cast(f.layers.*member); },
-            [member](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
-                if (!nb::isinstance<nb::bool_>(v))
-                    throw Error(what,
-                                std::string(nb::repr(v).c_str()) + " was given; expected True or False");
-                f.layers.*member = nb::cast<bool>(v);
-            },
-            doc);
-    };
-    flag("layers_in_camera_space", &LayerSettings::in_camera_space,
-         "Positions and normals of the layers are those of the camera, not of the world.");
-    flag("half", &LayerSettings::half, "EXR files hold 16-bit floats where those suffice.");
-    c.def_prop_rw(
-        "filter",
-        [](const Ref<FilmSettings>& r) {
-            return r.scene() ? as_python(Slot<PixelFilter>(r.scene()))
-                             : as_python(Slot<PixelFilter>(r.read().filter));
-        },
-        [](Ref<FilmSettings>& r, const nb::object& o) {
-            const Slot<PixelFilter>* given = filter_slot(o);
-            if (!given) throw Error("Film.filter", "expected a pixel filter, such as GaussianFilter()");
-            const PixelFilter filter = given->read();
-            r.edit([&](FilmSettings& f) { f.filter = filter; });
-        },
-        "The pixel filter.");
-}
-
 } // namespace
 
 void bind_views(nb::module_& m) {
@@ -278,7 +136,6 @@ void bind_views(nb::module_& m) {
         "From the scene to the film: radius of curvature (0: a stop; positive if the centre is on the film's "
         "side), "
         "thickness, index of refraction behind it, radius of the edge.");
-    bind_film(m);
     auto sampler = value_class<SamplerSettings>(m, "Sampler", "Which points the samples are drawn from.");
     choice(sampler, "kind", &SamplerSettings::kind, sampler_kinds,
            "'independent', 'stratified', 'halton', 'hammersley', 'sobol' or 'sobol-blue-noise'.");
