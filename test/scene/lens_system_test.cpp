@@ -163,6 +163,15 @@ TEST(AperturePicture, ShapesAreDrawn) {
                 (std::exp(-0.25) - std::exp(-1.0)) / (1 - std::exp(-1.0)), 1e-3);
 }
 
+// Half of the code values of sRGB is a fifth of the light.
+TEST(AperturePicture, PicturesAreLinear) {
+    Image encoded(2, 1, {"Y"}, PixelFormat::u8, ColorEncoding::srgb());
+    encoded.u8()[0] = 128;
+    encoded.u8()[1] = 255;
+    const AperturePicture p = aperture_of(encoded);
+    EXPECT_NEAR(p.values[0] / p.values[1], 0.2158605, 1e-6);
+}
+
 // On the axis the mean weight, irradiance of a white scene, is that of the round stop for any picture, up to the cosines
 // across the pupil; rays that pass lie in the picture's shape at the stop, the last surface here.
 TEST(LensSystem, PicturesShapeTheStop) {

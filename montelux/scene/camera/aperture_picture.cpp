@@ -96,7 +96,7 @@ AperturePicture aperture_of(const Image& picture) {
     for (int y = 0; y < picture.height(); ++y)
         for (int x = 0; x < picture.width(); ++x) {
             float sum = 0;
-            for (const int c : channels) sum += picture.value(x, y, c);
+            for (const int c : channels) sum += picture.linear(x, y, c);
             result.values.push_back(sum / static_cast<float>(channels.size()));
         }
     return normalized(std::move(result));
