@@ -1,8 +1,15 @@
 #include "python/src/bindings.h"
+#include "python/src/images.h"
 #include "python/src/names.h"
 #include "python/src/scene_values.h"
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
 
+#include "montelux/scene/camera/aperture_picture.h"
 #include "montelux/scene/setting_names.h"
 
 namespace montelux::python {
@@ -96,6 +103,43 @@ void projective(nb::class_<Ref<T>>& c) {
         "x_min, x_max, y_min, y_max of the part of the plane z = 1 that the film covers; or None.");
 }
 
+// The name of a shape, a file, or an array.
+AperturePicture aperture_picture_of(nb::handle v, const std::string& what) {
+    if (nb::isinstance<nb::str>(v)) {
+        const auto name = nb::cast<std::string>(v);
+        if (std::optional<AperturePicture> known = find_aperture(name)) return *std::move(known);
+        std::error_code ignored;
+        if (!std::filesystem::exists(name, ignored))
+            throw Error(what, unknown_name(name, "shape or file", aperture_names()) + ", a file or an array");
+    }
+    const Image picture = picture_of(nb::borrow(v), what);
+    try {
+        return aperture_of(picture);
+    } catch (const Error& e) {
+        throw Error(what, e.what());
+    }
+}
+
+void bind_aperture(nb::class_<Ref<RealisticCamera>>& c) {
+    attribute<RealisticCamera>(
+        c, "aperture", "typing.Any",
+        [](const RealisticCamera& camera, const auto&) -> nb::object {
+            if (!camera.aperture) return nb::none();
+            const AperturePicture& a = *camera.aperture;
+            return new_array(std::vector<double>(a.values.begin(), a.values.end()),
+                             static_cast<std::size_t>(a.height), static_cast<std::size_t>(a.width));
+        },
+        [](RealisticCamera& camera, nb::handle v, auto&, const std::string& what) {
+            camera.aperture.reset();
+            if (!v.is_none()) camera.aperture = aperture_picture_of(v, what);
+        },
+        "What the stops let through: 'gaussian', 'square', 'pentagon', 'star', a picture file, or an array "
+        "of "
+        "shape (h, w) or (h, w, 3), over the square around the stop; None: they are round. Read, it is an "
+        "array "
+        "whose mean is that of the disc, pi / 4, so that the exposure stays.");
+}
+
 } // namespace
 
 void bind_views(nb::module_& m) {
@@ -136,6 +180,7 @@ void bind_views(nb::module_& m) {
         "From the scene to the film: radius of curvature (0: a stop; positive if the centre is on the film's "
         "side), "
         "thickness, index of refraction behind it, radius of the edge.");
+    bind_aperture(realistic);
     auto sampler = value_class<SamplerSettings>(m, "Sampler", "Which points the samples are drawn from.");
     choice(sampler, "kind", &SamplerSettings::kind, sampler_kinds,
            "'independent', 'stratified', 'halton', 'hammersley', 'sobol' or 'sobol-blue-noise'.");

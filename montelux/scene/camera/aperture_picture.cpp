@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
@@ -87,6 +86,11 @@ std::optional<AperturePicture> find_aperture(std::string_view name) {
         return std::nullopt;
     }
     return drawn([&](double x, double y) { return contains(polygon, x, y); });
+}
+
+std::span<const std::string_view> aperture_names() {
+    static constexpr std::string_view names[] = {"gaussian", "square", "pentagon", "star"};
+    return names;
 }
 
 AperturePicture aperture_of(const Image& picture) {

@@ -1,0 +1,62 @@
+"""Settings of scenes that a pbrt file has as well: a scene built or changed in Python renders to the same bits."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import montelux
+from small_scene import TEXT
+
+# A biconvex lens with a stop behind it; in millimetres as pbrt's lens files have it.
+LENS = "50 3 1.5 20\n-50 1 1 20\n0 50 0 8\n"
+SURFACES = [(0.05, 0.003, 1.5, 0.01), (-0.05, 0.001, 1, 0.01), (0, 0.05, 0, 0.004)]
+
+
+def lens_scene(folder, aperture=""):
+    (folder / "lens.dat").write_text(LENS)
+    camera = f'Camera "realistic" "string lensfile" "lens.dat" "float focusdistance" 1 "float aperturediameter" 8 {aperture}'
+    return montelux.parse(TEXT.replace('Camera "perspective" "float fov" 40', camera), folder=folder)
+
+
+def test_an_aperture_is_a_name_a_file_or_an_array(tmp_path):
+    scene, square = lens_scene(tmp_path), lens_scene(tmp_path, '"string aperture" "square"')
+    assert scene.camera.aperture is None
+    round_picture, square_picture = scene.render().mean, square.render().mean
+    assert not np.array_equal(round_picture, square_picture)
+    scene.camera.aperture = "square"
+    assert np.array_equal(scene.render().mean, square_picture)
+    stop = scene.camera.aperture
+    assert stop.shape == (256, 256) and stop.mean() == pytest.approx(np.pi / 4)
+    assert np.array_equal(stop, square.camera.aperture) and stop[128, 64] > 0 == stop[128, 63]
+    scene.camera.aperture = None
+    assert np.array_equal(scene.render().mean, round_picture)
+    # Row 0 is the top; the scale of an array has no effect, and uint8 is in sRGB, as in files.
+    code = np.array([[255, 128], [0, 0]], np.uint8)
+    linear = np.array([[1, 0.2158605], [0, 0]])
+    camera = montelux.RealisticCamera(surfaces=SURFACES, aperture=code)
+    assert camera.aperture == pytest.approx(linear * np.pi / linear.sum(), abs=1e-6)
+    camera.aperture = np.repeat(7 * linear[:, :, None], 3, axis=2)
+    assert camera.aperture == pytest.approx(linear * np.pi / linear.sum(), abs=1e-6)
+    scene.render(spp=1).save(tmp_path / "stop.exr")
+    camera.aperture = tmp_path / "stop.exr"
+    assert camera.aperture.shape == (24, 32)
+    camera.aperture = str(tmp_path / "stop.exr")
+    assert camera.aperture.shape == (24, 32)
+
+
+@pytest.mark.parametrize(
+    "value, sentence",
+    [
+        ("pentagn", r"'pentagn' \(did you mean 'pentagon'\?\); expected one of gaussian, .*, a file or an array"),
+        (3, r"RealisticCamera.aperture: expected a file, or an array of shape \(h, w, 3\) or \(h, w\)"),
+        (np.zeros((2, 2)), "RealisticCamera.aperture: .*the picture lets no light through"),
+        (-np.ones((2, 2)), "RealisticCamera.aperture: .*negative or not finite"),
+    ],
+)
+def test_apertures_that_make_no_sense(value, sentence):
+    camera = montelux.RealisticCamera(aperture="star")
+    before = camera.aperture
+    with pytest.raises(montelux.Error, match=sentence):
+        camera.aperture = value
+    assert np.array_equal(camera.aperture, before)
