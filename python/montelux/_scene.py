@@ -199,6 +199,7 @@ VALUES = (
     _core.SphericalCamera,
     _core.RealisticCamera,
     _core.Film,
+    _core.Spectral,
     _core.BoxFilter,
     _core.TriangleFilter,
     _core.GaussianFilter,

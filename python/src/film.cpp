@@ -2,7 +2,9 @@
 #include "python/src/scene_values.h"
 #include <algorithm>
 #include <string>
+#include <vector>
 
+#include "montelux/film/spectral_buckets.h"
 #include "montelux/image/image.h"
 #include "montelux/mc/math/nearest_name.h"
 #include "montelux/spectrum/camera_sensors.h"
@@ -24,9 +26,48 @@ void set_resolution(FilmSettings& f, std::int64_t w, std::int64_t h) {
     f.height = static_cast<int>(h);
 }
 
+void bind_spectral(nb::module_& m) {
+    auto c = value_class<SpectralSettings>(
+        m, "Spectral", "Radiance in equal buckets of wavelengths, beside the colours of a picture.");
+    attribute<SpectralSettings>(
+        c, "buckets", "int", [](const SpectralSettings& s, const auto&) { return nb::int_(s.buckets); },
+        [](SpectralSettings& s, nb::handle v, auto&, const std::string& what) {
+            s.buckets = static_cast<int>(whole_number_of(v, 1, SpectralSettings::most_buckets, what));
+        },
+        "How many.");
+    auto end = [&](const char* name, float SpectralSettings::*member, const char* expected, const char* doc) {
+        attribute<SpectralSettings>(
+            c, name, "float",
+            [member](const SpectralSettings& s, const auto&) {
+                return nb::float_(static_cast<double>(s.*member));
+            },
+            [member, expected](SpectralSettings& s, nb::handle v, auto&, const std::string& what) {
+                s.*member = static_cast<float>(number_of(v, what));
+                if (!(s.lambda_min >= lambda_min && s.lambda_min < s.lambda_max &&
+                      s.lambda_max <= lambda_max))
+                    throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected " + expected);
+            },
+            doc);
+    };
+    end("lambda_min", &SpectralSettings::lambda_min, "360 nm or more, and less than lambda_max",
+        "Where the first begins, in nm.");
+    end("lambda_max", &SpectralSettings::lambda_max, "830 nm or less, and more than lambda_min",
+        "Where the last ends, in nm.");
+    c.def_prop_ro(
+        "wavelengths",
+        [](const Ref<SpectralSettings>& r) {
+            const BucketLayout layout(r.value());
+            std::vector<double> centres;
+            for (int i = 0; i < layout.count(); ++i) centres.push_back(static_cast<double>(layout.center(i)));
+            return new_array(centres);
+        },
+        "The centres of the buckets in nm, shape (buckets,).");
+}
+
 } // namespace
 
 void bind_film(nb::module_& m) {
+    bind_spectral(m);
     auto c = value_class<FilmSettings>(m, "Film", "Resolution, crop, pixel filter and sensor.");
     attribute<FilmSettings>(
         c, "resolution", "tuple[int, int]",
@@ -85,6 +126,10 @@ void bind_film(nb::module_& m) {
             f.sensor = name;
         },
         "The sensor by its name in pbrt-v4, such as \"nikon_d850\"; \"cie1931\" is the standard observer.");
+    optional_part(
+        c, "spectral", &FilmSettings::spectral, "Spectral",
+        "Buckets of wavelengths: pictures have the layers 'spectral' and 'spectral_standard_error', of "
+        "shape (h, w, buckets); None: colours alone.");
     number(
         c, "max_component_value", &FilmSettings::max_component_value, [](double x) { return x > 0; },
         "a number above zero", "Largest RGB value of a sample; infinite: none.");

@@ -159,6 +159,33 @@ void choice(nb::class_<Ref<T>>& c, const char* name, M T::*member, const Table& 
         doc);
 }
 
+// An attribute with a part that may be absent: None, or a value of the class of T, which is called `type`.
+template <typename T, typename Part>
+void optional_part(nb::class_<Ref<T>>& c, const char* name, std::optional<Part> T::*member, const char* type,
+                   const char* doc) {
+    const std::string getter = "def " + std::string(name) + "(self, /) -> " + type + " | None";
+    const std::string setter = "def " + std::string(name) + "(self, value: " + type + " | None, /) -> None";
+    const std::string what = nb::cast<std::string>(c.attr("__name__")) + "." + name;
+    c.def_prop_rw(
+        name,
+        [member](const Ref<T>& r) -> nb::object {
+            const std::optional<Part>& part = r.value().*member;
+            if (!part) return nb::none();
+            return nb::cast(Ref<Part>(r.scene() ? Slot<Part>(r.scene()) : Slot<Part>(*part)));
+        },
+        [member, what, type = std::string(type)](Ref<T>& r, const nb::object& given) {
+            std::optional<Part> part;
+            if (nb::isinstance<Ref<Part>>(given))
+                part = nb::cast<const Ref<Part>&>(given).value();
+            else if (!given.is_none())
+                throw Error(what, std::string(nb::repr(given).c_str()) + " was given; expected None, or " +
+                                      type + "()");
+            r.change([&](T& value) { value.*member = part; });
+        },
+        nb::for_getter(nb::sig(getter.c_str())), nb::for_setter(nb::sig(setter.c_str())),
+        nb::for_setter(nb::arg("value").none()), doc);
+}
+
 // Common to all classes of values: a constructor and comparison of slots.
 template <typename T>
 nb::class_<Ref<T>> value_class(nb::handle m, const char* name, const char* doc) {

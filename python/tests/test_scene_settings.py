@@ -60,3 +60,48 @@ def test_apertures_that_make_no_sense(value, sentence):
     with pytest.raises(montelux.Error, match=sentence):
         camera.aperture = value
     assert np.array_equal(camera.aperture, before)
+
+
+def test_a_spectral_film_has_layers_of_wavelengths(scene, tmp_path):
+    assert scene.film.spectral is None and "spectral" not in scene.render(spp=1).layers
+    film = 'Film "spectral" "integer nbuckets" 5 "float lambdamin" 400 "float lambdamax" 700'
+    loaded = montelux.parse(TEXT.replace('Film "rgb"', film))
+    scene.film.spectral = montelux.Spectral(buckets=5, lambda_min=400, lambda_max=700)
+    there, here = loaded.render(), scene.render()
+    for layer in ("mean", "spectral", "spectral_standard_error"):
+        assert np.array_equal(there.layers[layer], here.layers[layer])
+    assert here.layers["spectral"].shape == here.layers["spectral_standard_error"].shape == (24, 32, 5)
+    assert scene.film.spectral.wavelengths == pytest.approx([430, 490, 550, 610, 670])
+    here.save(tmp_path / "picture.exr")
+    file = montelux.read_channels(tmp_path / "picture.exr")
+    assert np.array_equal(file["S0.550,000nm"], here.layers["spectral"][:, :, 2])
+    assert np.array_equal(file["stderr.S0.670,000nm"], here.layers["spectral_standard_error"][:, :, 4])
+    # Parts of a scene are places in it.
+    part = scene.film.spectral
+    part.buckets = 1
+    assert scene.film.spectral.buckets == 1 and scene.render(spp=1).layers["spectral"].shape == (24, 32, 1)
+    scene.film = montelux.Film(resolution=(8, 6), spectral=part)
+    assert scene.film.spectral.lambda_max == 700
+    scene.film.spectral = None
+    assert scene.film.spectral is None and "spectral" not in scene.render(spp=1).layers
+    with pytest.raises(montelux.Error, match="Film.spectral: it was set to None after"):
+        part.buckets = 3
+
+
+@pytest.mark.parametrize(
+    "change, sentence",
+    [
+        ("film.spectral.buckets = 0", "0 was given; expected a whole number from 1 to 512"),
+        ("film.spectral.lambda_min = 300", "300 was given; expected 360 nm or more, and less than lambda_max"),
+        ("film.spectral.lambda_max = 400", "400 was given; expected 830 nm or less, and more than lambda_min"),
+        ("film.spectral.lambda_max = 'red'", "'red' was given; expected a number"),
+        ("film.spectral.bucket = 3", r"did you mean 'buckets'\?"),
+        ("film.spectral = 16", r"Film.spectral: 16 was given; expected None, or Spectral\(\)"),
+        ("render(slice=(1, 2))", "a spectral film cannot be rendered in slices"),
+    ],
+)
+def test_spectral_films_that_make_no_sense(scene, change, sentence):
+    scene.film.spectral = montelux.Spectral(buckets=4, lambda_min=450)
+    with pytest.raises(montelux.Error, match=sentence):
+        exec(f"scene.{change}", {"scene": scene})
+    assert repr(scene.film.spectral) == "Spectral(buckets=4, lambda_min=450.0, lambda_max=830.0)"
