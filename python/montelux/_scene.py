@@ -207,6 +207,7 @@ VALUES = (
     _core.LanczosFilter,
     _core.Sampler,
     _core.Integrator,
+    _core.Occlusion,
 )
 for _kind in VALUES:
     _kind.__repr__ = _represent  # type: ignore[method-assign]

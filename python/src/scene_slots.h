@@ -67,6 +67,9 @@ T& present(std::optional<T>& part, const char* name) {
 inline SpectralSettings& element(SceneDescription& d, Index, std::type_identity<SpectralSettings>) {
     return present(d.film.spectral, "Film.spectral");
 }
+inline OcclusionSettings& element(SceneDescription& d, Index, std::type_identity<OcclusionSettings>) {
+    return present(d.integrator.occlusion, "Integrator.occlusion");
+}
 
 // A value in a scene, or a detached one, which has its own spectra.
 template <typename V>

@@ -140,6 +140,20 @@ void bind_aperture(nb::class_<Ref<RealisticCamera>>& c) {
         "whose mean is that of the disc, pi / 4, so that the exposure stays.");
 }
 
+void bind_occlusion(nb::module_& m) {
+    auto c = value_class<OcclusionSettings>(
+        m, "Occlusion",
+        "Ambient occlusion: the share of the hemisphere over the first surface that nothing hides; 1 is "
+        "white. "
+        "Lights, materials and media have no effect, and the background is black.");
+    flag(c, "cosine", &OcclusionSettings::cosine,
+         "Directions are sampled by their cosine; False: evenly, which changes the noise alone.");
+    number(
+        c, "max_distance", &OcclusionSettings::max_distance,
+        [](double x) { return static_cast<float>(x) > 0; }, "a number above zero",
+        "Shapes farther away hide nothing; infinite: all hide.");
+}
+
 } // namespace
 
 void bind_views(nb::module_& m) {
@@ -198,6 +212,7 @@ void bind_views(nb::module_& m) {
             s.spp = static_cast<std::uint32_t>(whole_number_of(v, 1, 1 << 30, what));
         },
         "Samples per pixel, unless render() is given a number.");
+    bind_occlusion(m);
     auto integrator = value_class<IntegratorSettings>(m, "Integrator", "How light is followed.");
     attribute<IntegratorSettings>(
         integrator, "max_depth", "int",
@@ -221,6 +236,9 @@ void bind_views(nb::module_& m) {
          "Where lights are sampled: in homogeneous media lamps are also looked for from points of the ray "
          "close to "
          "them.");
+    optional_part(
+        integrator, "occlusion", &IntegratorSettings::occlusion, "Occlusion",
+        "Ambient occlusion instead of light; the other attributes then have no effect. None: light.");
     flag(integrator, "environment_compensation", &IntegratorSettings::environment_compensation,
          "With the strategy mis and its terms, maps are not sampled where BSDFs find them as well.");
     choice(integrator, "environment_lookup", &IntegratorSettings::environment_lookup, environment_lookups,

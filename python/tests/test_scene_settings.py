@@ -105,3 +105,44 @@ def test_spectral_films_that_make_no_sense(scene, change, sentence):
     with pytest.raises(montelux.Error, match=sentence):
         exec(f"scene.{change}", {"scene": scene})
     assert repr(scene.film.spectral) == "Spectral(buckets=4, lambda_min=450.0, lambda_max=830.0)"
+
+
+def test_ambient_occlusion(scene):
+    assert scene.integrator.occlusion is None
+    light = scene.render().mean
+    for settings, parameters in (
+        ({}, ""),
+        ({"cosine": False}, '"bool cossample" false'),
+        ({"max_distance": 0.5}, '"float maxdistance" 0.5'),
+    ):
+        scene.integrator.occlusion = montelux.Occlusion(**settings)
+        loaded = montelux.parse(f'Integrator "ambientocclusion" {parameters}' + TEXT)
+        assert np.array_equal(scene.render().mean, loaded.render().mean)
+        assert repr(scene.integrator.occlusion) == repr(loaded.integrator.occlusion)
+    # Above the ball's top is a lamp at a distance of 2.
+    scene.camera.look_at((0, 0, 2.9), (0, 0, 0), (0, 1, 0))
+    assert scene.render().mean[8:16, 12:20].mean() == pytest.approx(1, abs=0.03)
+    scene.integrator.occlusion.max_distance = 3
+    assert scene.render().mean[8:16, 12:20].mean() < 0.9
+    scene.camera.look_at((0, -4, 0), (0, 0, 0))
+    scene.integrator.occlusion = None
+    assert np.array_equal(scene.render().mean, light)
+    assert montelux.Integrator(occlusion=montelux.Occlusion()).occlusion.max_distance == float("inf")
+
+
+@pytest.mark.parametrize(
+    "change, sentence",
+    [
+        ("integrator.occlusion = True", r"Integrator.occlusion: True was given; expected None, or Occlusion\(\)"),
+        ("integrator.occlusion.max_distance = 0", "0 was given; expected a number above zero"),
+        ("integrator.occlusion.max_distance = 1e-300", "1e-300 was given; expected a number above zero"),
+        ("integrator.occlusion.max_distance = None", "None was given; expected a number"),
+        ("integrator.occlusion.cosine = 1", "1 was given; expected True or False"),
+        ("integrator.occlusion.maxdistance = 1", r"did you mean 'max_distance'\?"),
+    ],
+)
+def test_ambient_occlusion_that_makes_no_sense(scene, change, sentence):
+    scene.integrator.occlusion = montelux.Occlusion(max_distance=2)
+    with pytest.raises(montelux.Error, match=sentence):
+        exec(f"scene.{change}", {"scene": scene})
+    assert repr(scene.integrator.occlusion) == "Occlusion(cosine=True, max_distance=2.0)"
