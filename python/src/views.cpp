@@ -232,6 +232,9 @@ void bind_views(nb::module_& m) {
     choice(
         integrator, "environment_sampling", &IntegratorSettings::environment_sampling, environment_samplings,
         "How directions to environment maps are sampled: 'auto', 'tabulated', 'median-cut' or 'structured'.");
+    flag(integrator, "regularize", &IntegratorSettings::regularize,
+         "Widens the reflections of surfaces that a path meets after an event that was not specular: fewer "
+         "fireflies, and a bias that standard errors do not contain.");
     flag(integrator, "equiangular", &IntegratorSettings::equiangular,
          "Where lights are sampled: in homogeneous media lamps are also looked for from points of the ray "
          "close to "

@@ -146,3 +146,19 @@ def test_ambient_occlusion_that_makes_no_sense(scene, change, sentence):
     with pytest.raises(montelux.Error, match=sentence):
         exec(f"scene.{change}", {"scene": scene})
     assert repr(scene.integrator.occlusion) == "Occlusion(cosine=True, max_distance=2.0)"
+
+
+def test_regularization():
+    text = TEXT.replace('Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]', 'Material "conductor" "float roughness" 0')
+    floor = 'Material "diffuse" Shape "disk" "float radius" 3 "float height" -1'
+    scene, loaded = montelux.parse(text + floor), None
+    assert scene.integrator.regularize is False
+    plain = scene.render().mean
+    scene.integrator.regularize = True
+    with pytest.warns(UserWarning, match="the picture is biased"):
+        loaded = montelux.parse('Integrator "path" "bool regularize" true' + text + floor)
+    assert loaded.integrator.regularize is True
+    wide = scene.render().mean
+    assert np.array_equal(wide, loaded.render().mean) and not np.array_equal(wide, plain)
+    with pytest.raises(montelux.Error, match="Integrator.regularize: 'yes' was given; expected True or False"):
+        scene.integrator.regularize = "yes"
