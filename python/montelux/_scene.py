@@ -21,7 +21,14 @@ class Scene(_core.SceneBase):
     `montelux.load` and `montelux.parse` make scenes of pbrt-v4 files. `Scene()` is empty; set `camera`, and add
     shapes and lights. Values that are read from a scene (`scene.materials[0]`, `scene.camera`) are places in
     it: setting their attributes changes the scene. Running renders do not change with it.
+
+    With `texture_memory`, the pictures that are added as textures are kept in a temporary file, of which about this
+    many bytes are in memory.
     """
+
+    @strict_arguments
+    def __init__(self, *, texture_memory: int | None = None) -> None:
+        super().__init__(texture_memory=_size(texture_memory, "montelux.Scene"))
 
     @strict_arguments
     def render(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import montelux
-from small_scene import TEXT
+from small_scene import TEXT, unnamed_files
 
 
 def test_a_scene_without_a_camera():
@@ -85,10 +85,6 @@ def test_textures_in_a_file_change_nothing(tmp_path):
     (tmp_path / "scene.pbrt").write_text(text)
     plain = montelux.load(tmp_path / "scene.pbrt")
     usual = plain.render(spp=4).mean
-
-    def unnamed_files():
-        with open("/proc/self/maps") as maps:
-            return sum("(deleted)" in line for line in maps)
 
     for load in (
         lambda: montelux.load(tmp_path / "scene.pbrt", texture_memory=16 << 20),

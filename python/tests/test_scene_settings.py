@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import montelux
-from small_scene import TEXT
+from small_scene import TEXT, unnamed_files
 
 # A biconvex lens with a stop behind it; in millimetres as pbrt's lens files have it.
 LENS = "50 3 1.5 20\n-50 1 1 20\n0 50 0 8\n"
@@ -162,3 +162,38 @@ def test_regularization():
     assert np.array_equal(wide, loaded.render().mean) and not np.array_equal(wide, plain)
     with pytest.raises(montelux.Error, match="Integrator.regularize: 'yes' was given; expected True or False"):
         scene.integrator.regularize = "yes"
+
+
+def test_textures_of_a_new_scene_in_a_file():
+    def ball(**settings):
+        scene = montelux.Scene(**settings)
+        scene.camera = montelux.PerspectiveCamera(fov=40, look_at=((0, -4, 0), (0, 0, 0)))
+        scene.film.resolution = 16, 12
+        scene.lights.append(montelux.UniformInfiniteLight(spectrum=(1, 1, 1)))
+        picture = np.random.default_rng(1).random((128, 128, 3))
+        material = montelux.Diffuse(reflectance=scene.image_texture(picture, filter="trilinear"))
+        material.normal_map = scene.normal_map(0.5 + picture / 2)
+        scene.add_sphere(1, material)
+        return scene
+
+    usual = ball()
+    assert usual.texture_memory is None
+    picture, before = usual.render(spp=4).mean, unnamed_files()
+    scene = ball(texture_memory=16 << 20)
+    assert scene.texture_memory == 16 << 20 and unnamed_files() >= before + 2
+    assert np.array_equal(scene.render(spp=4).mean, picture)
+    scene.film.resolution = 8, 6  # while the finished render may still share the scene
+    assert scene.texture_memory == 16 << 20
+    del scene
+    assert unnamed_files() == before
+    assert montelux.parse(TEXT, texture_memory=1 << 30).texture_memory == 1 << 30
+
+
+def test_texture_memory_that_makes_no_sense():
+    for wrong in (-1, 1.5, "500M", True, 1 << 70):
+        with pytest.raises(montelux.Error, match="montelux.Scene, texture_memory: .* expected a number of bytes"):
+            montelux.Scene(texture_memory=wrong)
+    with pytest.raises(montelux.Error, match="the limit must be at least 16777216 bytes, but is 1000"):
+        montelux.Scene(texture_memory=1000)
+    with pytest.raises(montelux.Error, match=r"Scene: there is no argument 'texturememory' \(did you mean 'texture_memory'"):
+        montelux.Scene(texturememory=1 << 30)
