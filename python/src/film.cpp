@@ -1,4 +1,5 @@
 #include "python/src/bindings.h"
+#include "python/src/names.h"
 #include "python/src/scene_values.h"
 #include <algorithm>
 #include <string>
@@ -11,6 +12,9 @@
 
 namespace montelux::python {
 namespace {
+
+constexpr Names<LightGrouping, 2> light_groupings{
+    "light_grouping", {{{"light", LightGrouping::light}, {"kind", LightGrouping::kind}}}};
 
 void set_resolution(FilmSettings& f, std::int64_t w, std::int64_t h) {
     // The crop keeps its place on the film.
@@ -149,6 +153,11 @@ void bind_film(nb::module_& m) {
         },
         "Names of the layers of a picture with commas, as of `montelux render --layers`: "
         "'default,position'.");
+    choice(
+        c, "light_grouping", [](auto& f) -> auto& { return f.layers.light_grouping; }, light_groupings,
+        "With the layer 'light-groups': lights that a scene file puts into no group form one each ('light'), "
+        "or one "
+        "of each kind ('kind').");
     auto flag = [&](const char* name, bool LayerSettings::*member, const char* doc) {
         attribute<FilmSettings>(
             c, name, "bool",

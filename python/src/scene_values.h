@@ -6,6 +6,7 @@
 #include "python/src/scene_slots.h"
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <nanobind/nanobind.h>
 #include <string>
@@ -142,19 +143,19 @@ void flag(nb::class_<Ref<T>>& c, const char* name, bool T::*member, const char* 
         doc);
 }
 
-// A name of a table of Names.
-template <typename T, typename M, typename Table>
-void choice(nb::class_<Ref<T>>& c, const char* name, M T::*member, const Table& table, const char* doc) {
+// A name of a table of Names; `member` is a pointer to a member, or a function that returns a reference to one.
+template <typename T, typename Member, typename Table>
+void choice(nb::class_<Ref<T>>& c, const char* name, Member member, const Table& table, const char* doc) {
     attribute<T>(
         c, name, "str",
         [member, &table](const T& t, const auto&) {
-            const std::string_view text = table.name(t.*member);
+            const std::string_view text = table.name(std::invoke(member, t));
             return nb::str(text.data(), text.size());
         },
         [member, &table](T& t, nb::handle v, auto&, const std::string& what) {
             if (!nb::isinstance<nb::str>(v))
                 throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected a name");
-            t.*member = table.value(nb::cast<std::string>(v));
+            std::invoke(member, t) = table.value(nb::cast<std::string>(v));
         },
         doc);
 }

@@ -197,3 +197,19 @@ def test_texture_memory_that_makes_no_sense():
         montelux.Scene(texture_memory=1000)
     with pytest.raises(montelux.Error, match=r"Scene: there is no argument 'texturememory' \(did you mean 'texture_memory'"):
         montelux.Scene(texturememory=1 << 30)
+
+
+def test_lights_are_grouped_by_light_or_by_kind(scene):
+    scene.lights.append(montelux.PointLight(position=(0, -4, 1)))
+    scene.lights.append(montelux.PointLight(position=(0, -4, 2)))
+    scene.film.layers = "default,light-groups"
+
+    def groups():
+        return sorted(name for name in scene.render(spp=1).layers if name.startswith("light."))
+
+    assert scene.film.light_grouping == "light" and len(groups()) == 4
+    scene.film.light_grouping = "kind"
+    assert scene.film.light_grouping == "kind"
+    assert groups() == ["light.area-light", "light.point-light", "light.uniform-sky"]
+    with pytest.raises(montelux.Error, match=r"'kinds' \(did you mean 'kind'\?\); expected one of light, kind"):
+        scene.film.light_grouping = "kinds"
