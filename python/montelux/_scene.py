@@ -176,8 +176,8 @@ def assign(value: Any, attributes: dict[str, Any]) -> None:
     for name in attributes:
         if name not in names and not (name == "look_at" and hasattr(kind, name)):
             raise Error(f"{kind.__name__}: " + unknown("attribute", name, names))
-    # Those that set others at once (spectrum, roughness, resolution) come before these.
-    late = ("scale", "crop")
+    # Those that set others at once (spectrum, roughness, resolution, look_at) come before these.
+    late = ("scale", "crop", "end_world_from_camera")
     for name in sorted(attributes, key=lambda n: (n in late, n.endswith(("_u", "_v")))):
         if name == "look_at":
             given = attributes[name]

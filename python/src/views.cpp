@@ -2,6 +2,8 @@
 #include "python/src/images.h"
 #include "python/src/names.h"
 #include "python/src/scene_values.h"
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -9,8 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "montelux/scene/build/float_range.h"
 #include "montelux/scene/camera/aperture_picture.h"
 #include "montelux/scene/setting_names.h"
+#include "montelux/scene/shape/motion.h"
 
 namespace montelux::python {
 namespace {
@@ -36,6 +40,28 @@ nb::object floats(std::initializer_list<float> values) {
     return nb::tuple(l);
 }
 
+// A camera that stands still.
+void place(CameraSettings& s, const Transform& world_from_camera) {
+    s.world_from_camera = world_from_camera;
+    s.motion.reset();
+}
+
+// From where the camera is to the matrix `end`, which may be None.
+std::optional<Motion> motion_to(const nb::object& end, const Transform& start) {
+    if (end.is_none()) return std::nullopt;
+    const std::string what = "camera.end_world_from_camera";
+    const Transform t = transform_of(end, what);
+    for (const Transform& of : {start, t})
+        if (of.matrix().m[3] != std::array<double, 4>{0, 0, 0, 1} || !fits_float(of))
+            throw Error(what, "a moving camera needs rotations, scales and translations; the last row of its "
+                              "matrices is 0 0 0 1");
+    try {
+        return Motion(start, t);
+    } catch (const Error& e) {
+        throw Error(what, e.what());
+    }
+}
+
 // Common to all cameras.
 template <typename T>
 void placed(nb::class_<Ref<T>>& c) {
@@ -43,9 +69,11 @@ void placed(nb::class_<Ref<T>>& c) {
          "world_from_camera", [](const Ref<T>& r) { return matrix_array(r.read().world_from_camera); },
          [](Ref<T>& r, const nb::object& m) {
              const Transform t = transform_of(m, "camera.world_from_camera");
-             r.edit([&](CameraSettings& s) { s.world_from_camera = t; });
+             r.edit([&](CameraSettings& s) { place(s, t); });
          },
-         "Where the camera is, shape (4, 4): camera space has x to the right, y up and z forward.")
+         "Where the camera is, shape (4, 4): camera space has x to the right, y up and z forward. Setting it "
+         "makes "
+         "a moving camera stand still.")
         .def(
             "look_at",
             [](Ref<T>& r, const nb::object& eye, const nb::object& target, const nb::object& up) {
@@ -59,10 +87,45 @@ void placed(nb::class_<Ref<T>>& c) {
                 if (!t)
                     throw Error("look_at",
                                 "eye, target and up span no frame: the target is the eye, or lies along up");
-                r.edit([&](CameraSettings& s) { s.world_from_camera = t->inverse(); });
+                r.edit([&](CameraSettings& s) { place(s, t->inverse()); });
             },
             "eye"_a, "target"_a, "up"_a = nb::make_tuple(0, 0, 1),
-            "Stands at eye, looks at target, up is near up.");
+            "Stands at eye, looks at target, up is near up.")
+        .def_prop_rw(
+            "end_world_from_camera",
+            [](const Ref<T>& r) -> nb::object {
+                const std::optional<Motion>& motion = r.read().motion;
+                return motion ? nb::object(matrix_array(motion->end())) : nb::none();
+            },
+            [](Ref<T>& r, const nb::object& m) {
+                const std::optional<Motion> motion = motion_to(m, r.read().world_from_camera);
+                r.edit([&](CameraSettings& s) { s.motion = motion; });
+            },
+            nb::for_setter(nb::arg("value").none()),
+            "Of a camera that moves, where it is at time 1; world_from_camera is at time 0. None: it stands "
+            "still.")
+        .def_prop_rw(
+            "shutter",
+            [](const Ref<T>& r) {
+                return floats({r.read().shutter_open, r.read().shutter_close});
+            },
+            [](Ref<T>& r, const nb::object& times) {
+                const std::vector<double> t = numbers_of(times, 2, "camera.shutter");
+                const auto open = static_cast<float>(t[0]), close = static_cast<float>(t[1]);
+                if (!(open <= close && std::isfinite(open) && std::isfinite(close)))
+                    throw Error("camera.shutter",
+                                std::string(nb::repr(times).c_str()) +
+                                    " was given; expected (open, close) with open <= close");
+                r.edit([&](CameraSettings& s) {
+                    s.shutter_open = open;
+                    s.shutter_close = close;
+                });
+            },
+            nb::for_getter(nb::sig("def shutter(self, /) -> tuple[float, float]")),
+            nb::for_setter(nb::sig("def shutter(self, value: tuple[float, float], /) -> None")),
+            "When it opens and closes, in the time of motions: all begin at 0 and end at 1. The exposure "
+            "does not "
+            "change; that is film.exposure_time.");
 }
 template <typename T>
 void projective(nb::class_<Ref<T>>& c) {

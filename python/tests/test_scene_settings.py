@@ -15,7 +15,8 @@ SURFACES = [(0.05, 0.003, 1.5, 0.01), (-0.05, 0.001, 1, 0.01), (0, 0.05, 0, 0.00
 
 def lens_scene(folder, aperture=""):
     (folder / "lens.dat").write_text(LENS)
-    camera = f'Camera "realistic" "string lensfile" "lens.dat" "float focusdistance" 1 "float aperturediameter" 8 {aperture}'
+    numbers = '"float focusdistance" 1 "float aperturediameter" 8'
+    camera = f'Camera "realistic" "string lensfile" "lens.dat" {numbers} {aperture}'
     return montelux.parse(TEXT.replace('Camera "perspective" "float fov" 40', camera), folder=folder)
 
 
@@ -149,7 +150,8 @@ def test_ambient_occlusion_that_makes_no_sense(scene, change, sentence):
 
 
 def test_regularization():
-    text = TEXT.replace('Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]', 'Material "conductor" "float roughness" 0')
+    mirror = 'Material "conductor" "float roughness" 0'
+    text = TEXT.replace('Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]', mirror)
     floor = 'Material "diffuse" Shape "disk" "float radius" 3 "float height" -1'
     scene, loaded = montelux.parse(text + floor), None
     assert scene.integrator.regularize is False
@@ -195,7 +197,7 @@ def test_texture_memory_that_makes_no_sense():
             montelux.Scene(texture_memory=wrong)
     with pytest.raises(montelux.Error, match="the limit must be at least 16777216 bytes, but is 1000"):
         montelux.Scene(texture_memory=1000)
-    with pytest.raises(montelux.Error, match=r"Scene: there is no argument 'texturememory' \(did you mean 'texture_memory'"):
+    with pytest.raises(montelux.Error, match=r"Scene: there is no argument 'texturememory' \(did you mean"):
         montelux.Scene(texturememory=1 << 30)
 
 
@@ -213,3 +215,69 @@ def test_lights_are_grouped_by_light_or_by_kind(scene):
     assert groups() == ["light.area-light", "light.point-light", "light.uniform-sky"]
     with pytest.raises(montelux.Error, match=r"'kinds' \(did you mean 'kind'\?\); expected one of light, kind"):
         scene.film.light_grouping = "kinds"
+
+
+def moving_scene(shutter=""):
+    """The camera moves one unit to the right."""
+    start, end = ("LookAt {0} -4 0  {0} 0 0  0 0 1".format(x) for x in (0, 1))
+    moving = f"ActiveTransform StartTime {start} ActiveTransform EndTime {end} ActiveTransform All"
+    camera = f'Camera "perspective" "float fov" 40 {shutter}'
+    text = TEXT.replace("LookAt 0 -4 0  0 0 0  0 0 1", moving)
+    return montelux.parse(text.replace('Camera "perspective" "float fov" 40', camera))
+
+
+def test_cameras_move_while_the_shutter_is_open(scene):
+    start, still = scene.camera.world_from_camera, scene.render().mean
+    assert scene.camera.end_world_from_camera is None and scene.camera.shutter == (0, 1)
+    end = start + np.outer([1, 0, 0, 0], [0, 0, 0, 1])
+    for loaded in (moving_scene(), moving_scene('"float shutteropen" 0.25 "float shutterclose" 0.75')):
+        scene.camera.end_world_from_camera, scene.camera.shutter = end, loaded.camera.shutter
+        scene.film.exposure_time = loaded.film.exposure_time
+        assert np.array_equal(scene.camera.end_world_from_camera, loaded.camera.end_world_from_camera)
+        picture = scene.render().mean
+        assert np.array_equal(picture, loaded.render().mean) and not np.array_equal(picture, still)
+    assert scene.camera.shutter == (0.25, 0.75)
+    there = (0, -4, 0), (0, 0, 0)
+    made = montelux.PerspectiveCamera(fov=40, end_world_from_camera=end, look_at=there, shutter=(0, 0))
+    assert made.end_world_from_camera == pytest.approx(end)
+    scene.camera = made  # open for an instant only
+    scene.film.exposure_time = 1
+    moving = moving_scene().render().mean
+    assert 5 * np.abs(scene.render().mean - still).mean() < np.abs(moving - still).mean()
+    scene.camera.end_world_from_camera = None
+    assert scene.camera.end_world_from_camera is None
+    scene.camera.world_from_camera = start
+    assert np.array_equal(scene.render().mean, still)
+
+
+def test_a_moving_camera_that_is_placed_stands_still(scene):
+    """It was placed in vain: its motion went on."""
+    still = scene.render().mean
+    for place in (
+        lambda camera: camera.look_at((0, -4, 0), (0, 0, 0)),
+        lambda camera: setattr(camera, "world_from_camera", scene.camera.world_from_camera),
+    ):
+        moving = moving_scene()
+        place(moving.camera)
+        assert np.array_equal(moving.render().mean, still)
+        assert moving.camera.end_world_from_camera is None
+
+
+@pytest.mark.parametrize(
+    "change, sentence",
+    [
+        ("shutter = (1, 0)", r"camera.shutter: \(1, 0\) was given; expected \(open, close\) with open <= close"),
+        ("shutter = 1", "camera.shutter: 1 was given; expected 2 numbers"),
+        ("shutter = (0, float('inf'))", "camera.shutter: a number that is not finite"),
+        ("end_world_from_camera = np.eye(3)", r"end_world_from_camera: expected a matrix of shape \(4, 4\)"),
+        ("end_world_from_camera = np.zeros((4, 4))", "end_world_from_camera: the matrix has no inverse"),
+        ("end_world_from_camera = np.diag([-1, 1, 1, 1])", "_camera: .*one end is mirrored and the other is not"),
+        ("end_world_from_camera = np.eye(4)[::-1]", "the last row of its matrices is 0 0 0 1"),
+    ],
+)
+def test_motions_that_make_no_sense(change, sentence):
+    scene = moving_scene()
+    shutter, end = scene.camera.shutter, scene.camera.end_world_from_camera
+    with pytest.raises(montelux.Error, match=sentence):
+        exec(f"scene.camera.{change}", {"scene": scene, "np": np})
+    assert scene.camera.shutter == shutter and np.array_equal(scene.camera.end_world_from_camera, end)
