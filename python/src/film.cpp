@@ -116,8 +116,12 @@ void bind_film(nb::module_& m) {
     number(c, "iso", &FilmSettings::iso, positive, "a number above zero",
            "Sensitivity; 100 leaves values as they are.");
     number(c, "exposure_time", &FilmSettings::exposure_time, positive, "a number above zero", "Seconds.");
-    number(c, "white_balance", &FilmSettings::white_balance, not_negative, "a number that is not negative",
-           "Kelvin of the light that is to look white; 0: none, or 6500 K for a camera's sensor.");
+    // The bound of scene files: daylight is not defined far below it.
+    number(
+        c, "white_balance", &FilmSettings::white_balance,
+        [](double x) { return x == 0 || (x >= 2000 && std::isfinite(static_cast<float>(x))); },
+        "0 (none) or a temperature of 2000 K or more",
+        "Kelvin of the light that is to look white; 0: none, or 6500 K for a camera's sensor.");
     attribute<FilmSettings>(
         c, "sensor", "str", [](const FilmSettings& f, const auto&) { return nb::str(f.sensor.c_str()); },
         [](FilmSettings& f, nb::handle v, auto&, const std::string& what) {

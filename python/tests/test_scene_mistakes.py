@@ -34,6 +34,7 @@ def test_a_scene_without_a_camera():
         ("sampler.seed", -1, "expected a whole number"),
         ("film.resolution", (0, 1), "expected two whole numbers"),
         ("film.crop", (0, 0, 999, 1), "expected pixels"),
+        ("film.white_balance", 65, "65 was given; expected 0 \\(none\\) or a temperature of 2000 K or more"),
         ("film.filter", 1, "expected a pixel filter"),
         ("shapes[0].material", 1, "expected a material"),
         ("lights[0]", "lamp", "expected a light"),
