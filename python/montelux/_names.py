@@ -98,12 +98,13 @@ def strict_arguments(function: _Function) -> _Function:
     """A function that answers an argument that it does not have with the nearest name."""
     parameters = signature(function).parameters.values()
     known = [p.name for p in parameters if p.kind is Parameter.KEYWORD_ONLY]
+    called = function.__qualname__.removesuffix(".__init__").split(".")[-1]
 
     @wraps(function)
     def checked(*values: Any, **named: Any) -> Any:
         for name in named:
             if name not in known:
-                raise Error(f"{function.__name__}: " + unknown("argument", name, known))
+                raise Error(f"{called}: " + unknown("argument", name, known))
         return function(*values, **named)
 
     return checked  # type: ignore[return-value]

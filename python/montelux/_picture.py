@@ -66,7 +66,8 @@ class Picture:
         first surface, of shape (h, w, 3); 'samples', 'replicates' (independent parts that the error is made of),
         'outlier', 'warning' (0 where the error can be relied on; docs/images.md) and 'depth', of shape (h, w). Where it
         was asked for also 'denoised', which `standard_error` does not hold for. `scene.film.layers` chooses others:
-        'position', 'uv', 'direct', 'light.NAME' ...; 'shape' and 'material' have six pairs of id and coverage."""
+        'position', 'uv', 'direct', 'light.NAME' ...; 'shape' and 'material' have six pairs of id and coverage. With
+        `scene.film.spectral`, 'spectral' and 'spectral_standard_error' have shape (h, w, buckets)."""
         if self._made is None:
             self._made = MappingProxyType(self._snapshot().layers)
         return self._made

@@ -21,7 +21,14 @@ class Scene(_core.SceneBase):
     `montelux.load` and `montelux.parse` make scenes of pbrt-v4 files. `Scene()` is empty; set `camera`, and add
     shapes and lights. Values that are read from a scene (`scene.materials[0]`, `scene.camera`) are places in
     it: setting their attributes changes the scene. Running renders do not change with it.
+
+    With `texture_memory`, the pictures that are added as textures are kept in a temporary file, of which about this
+    many bytes are in memory.
     """
+
+    @strict_arguments
+    def __init__(self, *, texture_memory: int | None = None) -> None:
+        super().__init__(texture_memory=_size(texture_memory, "montelux.Scene"))
 
     @strict_arguments
     def render(
@@ -169,8 +176,8 @@ def assign(value: Any, attributes: dict[str, Any]) -> None:
     for name in attributes:
         if name not in names and not (name == "look_at" and hasattr(kind, name)):
             raise Error(f"{kind.__name__}: " + unknown("attribute", name, names))
-    # Those that set others at once (spectrum, roughness, resolution) come before these.
-    late = ("scale", "crop")
+    # Those that set others at once (spectrum, roughness, resolution, look_at) come before these.
+    late = ("scale", "crop", "end_world_from_camera")
     for name in sorted(attributes, key=lambda n: (n in late, n.endswith(("_u", "_v")))):
         if name == "look_at":
             given = attributes[name]
@@ -199,6 +206,7 @@ VALUES = (
     _core.SphericalCamera,
     _core.RealisticCamera,
     _core.Film,
+    _core.Spectral,
     _core.BoxFilter,
     _core.TriangleFilter,
     _core.GaussianFilter,
@@ -206,6 +214,7 @@ VALUES = (
     _core.LanczosFilter,
     _core.Sampler,
     _core.Integrator,
+    _core.Occlusion,
 )
 for _kind in VALUES:
     _kind.__repr__ = _represent  # type: ignore[method-assign]

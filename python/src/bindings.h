@@ -38,7 +38,8 @@ void bind_materials(nb::module_& m);
 void bind_lights(nb::module_& m);
 void bind_shapes(nb::module_& m);
 void bind_filters(nb::module_& m);
-void bind_views(nb::module_& m); // camera, film, sampler, integrator
+void bind_film(nb::module_& m);
+void bind_views(nb::module_& m); // camera, sampler, integrator
 void bind_textures(nb::module_& m);
 void bind_scene_lists(nb::module_& m);
 void bind_scene(nb::module_& m);

@@ -51,6 +51,7 @@ NB_MODULE(_core, m) {
     bind_lights(m);
     bind_shapes(m);
     bind_filters(m);
+    bind_film(m);
     bind_views(m);
     bind_textures(m);
     bind_scene_lists(m);

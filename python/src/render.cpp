@@ -66,6 +66,24 @@ std::vector<std::string> warnings_of(const RenderJob& job) {
     return texts;
 }
 
+// Of a spectral film, shape (h, w, buckets). The channels of its means are consecutive, then come their errors
+// (append_spectral_layers).
+void add_spectral_layers(nb::dict& layers, const RenderSnapshot& snapshot) {
+    const std::vector<std::string>& channels = snapshot.image->channel_names();
+    for (const auto& [name, prefix] :
+         {std::pair{"spectral", "S0."}, {"spectral_standard_error", "stderr.S0."}}) {
+        const auto of_layer = [prefix = prefix](const std::string& channel) {
+            return channel.starts_with(prefix);
+        };
+        const auto first = std::ranges::find_if(channels, of_layer);
+        const auto count = static_cast<int>(std::ranges::count_if(channels, of_layer));
+        if (count == 0) continue;
+        const nb::object array =
+            channels_of(snapshot.image, static_cast<int>(first - channels.begin()), count);
+        layers[name] = array.attr("reshape")(snapshot.image->height(), snapshot.image->width(), count);
+    }
+}
+
 // Layers by their names in Python, as arrays on the picture's own memory.
 nb::dict layers_of(const RenderSnapshot& snapshot) {
     static constexpr std::pair<const char*, const char*> colors[] = {
@@ -106,6 +124,7 @@ nb::dict layers_of(const RenderSnapshot& snapshot) {
         if (channels[c].starts_with("light.") && channels[c].ends_with(".R"))
             d[channels[c].substr(0, channels[c].size() - 2).c_str()] =
                 channels_of(snapshot.image, static_cast<int>(c), 3);
+    add_spectral_layers(d, snapshot);
     return d;
 }
 

@@ -51,7 +51,14 @@ nb::object add_environment(const SceneObject& s, const nb::object& image, double
 
 void bind_scene(nb::module_& m) {
     nb::class_<SceneObject> c(m, "SceneBase", "What montelux.Scene is made of.");
-    c.def(nb::init<>())
+    c.def(
+         "__init__",
+         [](SceneObject* s, std::optional<std::size_t> texture_memory) {
+             std::shared_ptr<TexelFile> file = texel_file(texture_memory);
+             new (s) SceneObject;
+             s->holder->edit().scene.texel_file = std::move(file);
+         },
+         nb::kw_only(), "texture_memory"_a.none() = nb::none())
         .def(
             "_load",
             [](SceneObject& s, const std::filesystem::path& path, std::optional<std::size_t> texture_memory) {
@@ -81,6 +88,15 @@ void bind_scene(nb::module_& m) {
             "name", [](const SceneObject& s) { return s.holder->name; },
             [](SceneObject& s, const std::string& name) { s.holder->name = name; },
             "Its name, in files and messages.")
+        .def_prop_ro(
+            "texture_memory",
+            [](const SceneObject& s) {
+                const std::shared_ptr<TexelFile>& file = s.holder->read().scene.texel_file;
+                return file ? std::optional(file->limit()) : std::nullopt;
+            },
+            "About this many bytes of the image textures are in memory, the others in a temporary file; "
+            "None: "
+            "all are in memory. An argument of Scene, montelux.load and montelux.parse.")
         .def_prop_ro(
             "warnings", [](const SceneObject& s) { return s.holder->warnings; },
             "Warnings about ignored features of the file, as sentences.")

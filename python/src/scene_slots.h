@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nanobind/nanobind.h>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -55,6 +56,19 @@ inline SamplerSettings& element(SceneDescription& d, Index, std::type_identity<S
 }
 inline IntegratorSettings& element(SceneDescription& d, Index, std::type_identity<IntegratorSettings>) {
     return d.integrator;
+}
+
+// Parts that a scene may lack. Python's references to one end when it is taken away.
+template <typename T>
+T& present(std::optional<T>& part, const char* name) {
+    if (!part) throw Error(name, "it was set to None after this reference to it was read");
+    return *part;
+}
+inline SpectralSettings& element(SceneDescription& d, Index, std::type_identity<SpectralSettings>) {
+    return present(d.film.spectral, "Film.spectral");
+}
+inline OcclusionSettings& element(SceneDescription& d, Index, std::type_identity<OcclusionSettings>) {
+    return present(d.integrator.occlusion, "Integrator.occlusion");
 }
 
 // A value in a scene, or a detached one, which has its own spectra.

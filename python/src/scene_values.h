@@ -1,10 +1,12 @@
 // Attributes of scenes: conversion of numbers, vectors, spectra and textures from and to Python.
 #pragma once
 
+#include "python/src/names.h"
 #include "python/src/numpy_bridge.h"
 #include "python/src/scene_slots.h"
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <nanobind/nanobind.h>
 #include <string>
@@ -139,6 +141,50 @@ void flag(nb::class_<Ref<T>>& c, const char* name, bool T::*member, const char* 
         c, name, "bool", [member](const T& t, const auto&) { return nb::bool_(t.*member); },
         [member](T& t, nb::handle v, auto&, const std::string& what) { t.*member = boolean_of(v, what); },
         doc);
+}
+
+// A name of a table of Names; `member` is a pointer to a member, or a function that returns a reference to one.
+template <typename T, typename Member, typename Table>
+void choice(nb::class_<Ref<T>>& c, const char* name, Member member, const Table& table, const char* doc) {
+    attribute<T>(
+        c, name, "str",
+        [member, &table](const T& t, const auto&) {
+            const std::string_view text = table.name(std::invoke(member, t));
+            return nb::str(text.data(), text.size());
+        },
+        [member, &table](T& t, nb::handle v, auto&, const std::string& what) {
+            if (!nb::isinstance<nb::str>(v))
+                throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected a name");
+            std::invoke(member, t) = table.value(nb::cast<std::string>(v));
+        },
+        doc);
+}
+
+// An attribute with a part that may be absent: None, or a value of the class of T, which is called `type`.
+template <typename T, typename Part>
+void optional_part(nb::class_<Ref<T>>& c, const char* name, std::optional<Part> T::*member, const char* type,
+                   const char* doc) {
+    const std::string getter = "def " + std::string(name) + "(self, /) -> " + type + " | None";
+    const std::string setter = "def " + std::string(name) + "(self, value: " + type + " | None, /) -> None";
+    const std::string what = nb::cast<std::string>(c.attr("__name__")) + "." + name;
+    c.def_prop_rw(
+        name,
+        [member](const Ref<T>& r) -> nb::object {
+            const std::optional<Part>& part = r.value().*member;
+            if (!part) return nb::none();
+            return nb::cast(Ref<Part>(r.scene() ? Slot<Part>(r.scene()) : Slot<Part>(*part)));
+        },
+        [member, what, type = std::string(type)](Ref<T>& r, const nb::object& given) {
+            std::optional<Part> part;
+            if (nb::isinstance<Ref<Part>>(given))
+                part = nb::cast<const Ref<Part>&>(given).value();
+            else if (!given.is_none())
+                throw Error(what, std::string(nb::repr(given).c_str()) + " was given; expected None, or " +
+                                      type + "()");
+            r.change([&](T& value) { value.*member = part; });
+        },
+        nb::for_getter(nb::sig(getter.c_str())), nb::for_setter(nb::sig(setter.c_str())),
+        nb::for_setter(nb::arg("value").none()), doc);
 }
 
 // Common to all classes of values: a constructor and comparison of slots.

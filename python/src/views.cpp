@@ -1,13 +1,20 @@
 #include "python/src/bindings.h"
+#include "python/src/images.h"
 #include "python/src/names.h"
 #include "python/src/scene_values.h"
-#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
 
-#include "montelux/image/image.h"
-#include "montelux/mc/math/nearest_name.h"
+#include "montelux/scene/build/float_range.h"
+#include "montelux/scene/camera/aperture_picture.h"
 #include "montelux/scene/setting_names.h"
-#include "montelux/spectrum/camera_sensors.h"
+#include "montelux/scene/shape/motion.h"
 
 namespace montelux::python {
 namespace {
@@ -27,26 +34,32 @@ constexpr Names<SphericalCamera::Mapping, 2> mappings{
     {{{"equal_area", SphericalCamera::Mapping::equal_area},
       {"equirectangular", SphericalCamera::Mapping::equirectangular}}}};
 
-template <typename T, typename M, typename Table>
-void choice(nb::class_<Ref<T>>& c, const char* name, M T::*member, const Table& table, const char* doc) {
-    attribute<T>(
-        c, name, "str",
-        [member, &table](const T& t, const auto&) {
-            const std::string_view text = table.name(t.*member);
-            return nb::str(text.data(), text.size());
-        },
-        [member, &table](T& t, nb::handle v, auto&, const std::string& what) {
-            if (!nb::isinstance<nb::str>(v))
-                throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected a name");
-            t.*member = table.value(nb::cast<std::string>(v));
-        },
-        doc);
-}
-
 nb::object floats(std::initializer_list<float> values) {
     nb::list l;
     for (const float v : values) l.append(static_cast<double>(v));
     return nb::tuple(l);
+}
+
+// A camera that stands still.
+void place(CameraSettings& s, const Transform& world_from_camera) {
+    s.world_from_camera = world_from_camera;
+    s.motion.reset();
+}
+
+// From where the camera is to the matrix `end`, which may be None.
+std::optional<Motion> motion_to(const nb::object& end, const Transform& start) {
+    if (end.is_none()) return std::nullopt;
+    const std::string what = "camera.end_world_from_camera";
+    const Transform t = transform_of(end, what);
+    for (const Transform& of : {start, t})
+        if (of.matrix().m[3] != std::array<double, 4>{0, 0, 0, 1} || !fits_float(of))
+            throw Error(what, "a moving camera needs rotations, scales and translations; the last row of its "
+                              "matrices is 0 0 0 1");
+    try {
+        return Motion(start, t);
+    } catch (const Error& e) {
+        throw Error(what, e.what());
+    }
 }
 
 // Common to all cameras.
@@ -56,9 +69,11 @@ void placed(nb::class_<Ref<T>>& c) {
          "world_from_camera", [](const Ref<T>& r) { return matrix_array(r.read().world_from_camera); },
          [](Ref<T>& r, const nb::object& m) {
              const Transform t = transform_of(m, "camera.world_from_camera");
-             r.edit([&](CameraSettings& s) { s.world_from_camera = t; });
+             r.edit([&](CameraSettings& s) { place(s, t); });
          },
-         "Where the camera is, shape (4, 4): camera space has x to the right, y up and z forward.")
+         "Where the camera is, shape (4, 4): camera space has x to the right, y up and z forward. Setting it "
+         "makes "
+         "a moving camera stand still.")
         .def(
             "look_at",
             [](Ref<T>& r, const nb::object& eye, const nb::object& target, const nb::object& up) {
@@ -72,10 +87,45 @@ void placed(nb::class_<Ref<T>>& c) {
                 if (!t)
                     throw Error("look_at",
                                 "eye, target and up span no frame: the target is the eye, or lies along up");
-                r.edit([&](CameraSettings& s) { s.world_from_camera = t->inverse(); });
+                r.edit([&](CameraSettings& s) { place(s, t->inverse()); });
             },
             "eye"_a, "target"_a, "up"_a = nb::make_tuple(0, 0, 1),
-            "Stands at eye, looks at target, up is near up.");
+            "Stands at eye, looks at target, up is near up.")
+        .def_prop_rw(
+            "end_world_from_camera",
+            [](const Ref<T>& r) -> nb::object {
+                const std::optional<Motion>& motion = r.read().motion;
+                return motion ? nb::object(matrix_array(motion->end())) : nb::none();
+            },
+            [](Ref<T>& r, const nb::object& m) {
+                const std::optional<Motion> motion = motion_to(m, r.read().world_from_camera);
+                r.edit([&](CameraSettings& s) { s.motion = motion; });
+            },
+            nb::for_setter(nb::arg("value").none()),
+            "Of a camera that moves, where it is at time 1; world_from_camera is at time 0. None: it stands "
+            "still.")
+        .def_prop_rw(
+            "shutter",
+            [](const Ref<T>& r) {
+                return floats({r.read().shutter_open, r.read().shutter_close});
+            },
+            [](Ref<T>& r, const nb::object& times) {
+                const std::vector<double> t = numbers_of(times, 2, "camera.shutter");
+                const auto open = static_cast<float>(t[0]), close = static_cast<float>(t[1]);
+                if (!(open <= close && std::isfinite(open) && std::isfinite(close)))
+                    throw Error("camera.shutter",
+                                std::string(nb::repr(times).c_str()) +
+                                    " was given; expected (open, close) with open <= close");
+                r.edit([&](CameraSettings& s) {
+                    s.shutter_open = open;
+                    s.shutter_close = close;
+                });
+            },
+            nb::for_getter(nb::sig("def shutter(self, /) -> tuple[float, float]")),
+            nb::for_setter(nb::sig("def shutter(self, value: tuple[float, float], /) -> None")),
+            "When it opens and closes, in the time of motions: all begin at 0 and end at 1. The exposure "
+            "does not "
+            "change; that is film.exposure_time.");
 }
 template <typename T>
 void projective(nb::class_<Ref<T>>& c) {
@@ -116,126 +166,55 @@ void projective(nb::class_<Ref<T>>& c) {
         "x_min, x_max, y_min, y_max of the part of the plane z = 1 that the film covers; or None.");
 }
 
-void set_resolution(FilmSettings& f, std::int64_t w, std::int64_t h) {
-    // The crop keeps its place on the film.
-    auto scaled = [](int v, int from, std::int64_t to) {
-        return static_cast<int>(std::int64_t{v} * to / from);
-    };
-    PixelBounds b{scaled(f.crop.x0, f.width, w), scaled(f.crop.y0, f.height, h),
-                  scaled(f.crop.x1, f.width, w), scaled(f.crop.y1, f.height, h)};
-    b.x1 = std::max(b.x1, b.x0 + 1);
-    b.y1 = std::max(b.y1, b.y0 + 1);
-    f.crop = b;
-    f.width = static_cast<int>(w);
-    f.height = static_cast<int>(h);
+// The name of a shape, a file, or an array.
+AperturePicture aperture_picture_of(nb::handle v, const std::string& what) {
+    if (nb::isinstance<nb::str>(v)) {
+        const auto name = nb::cast<std::string>(v);
+        if (std::optional<AperturePicture> known = find_aperture(name)) return *std::move(known);
+        std::error_code ignored;
+        if (!std::filesystem::exists(name, ignored))
+            throw Error(what, unknown_name(name, "shape or file", aperture_names()) + ", a file or an array");
+    }
+    const Image picture = picture_of(nb::borrow(v), what);
+    try {
+        return aperture_of(picture);
+    } catch (const Error& e) {
+        throw Error(what, e.what());
+    }
 }
 
-void bind_film(nb::module_& m) {
-    auto c = value_class<FilmSettings>(m, "Film", "Resolution, crop, pixel filter and sensor.");
-    attribute<FilmSettings>(
-        c, "resolution", "tuple[int, int]",
-        [](const FilmSettings& f, const auto&) { return nb::make_tuple(f.width, f.height); },
-        [](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
-            const std::vector<double> r = numbers_of(v, 2, what);
-            for (const double n : r)
-                if (!(n >= 1 && n <= Image::max_dimension && n == std::floor(n)))
-                    throw Error(what, std::string(nb::repr(v).c_str()) +
-                                          " was given; expected two whole numbers from 1 to " +
-                                          std::to_string(Image::max_dimension));
-            set_resolution(f, static_cast<std::int64_t>(r[0]), static_cast<std::int64_t>(r[1]));
+void bind_aperture(nb::class_<Ref<RealisticCamera>>& c) {
+    attribute<RealisticCamera>(
+        c, "aperture", "typing.Any",
+        [](const RealisticCamera& camera, const auto&) -> nb::object {
+            if (!camera.aperture) return nb::none();
+            const AperturePicture& a = *camera.aperture;
+            return new_array(std::vector<double>(a.values.begin(), a.values.end()),
+                             static_cast<std::size_t>(a.height), static_cast<std::size_t>(a.width));
         },
-        "Width and height in pixels; a crop keeps its place.");
-    auto side = [&](const char* name, int FilmSettings::*member, bool width, const char* doc) {
-        attribute<FilmSettings>(
-            c, name, "int", [member](const FilmSettings& f, const auto&) { return nb::int_(f.*member); },
-            [width](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
-                const std::int64_t n = whole_number_of(v, 1, Image::max_dimension, what);
-                set_resolution(f, width ? n : f.width, width ? f.height : n);
-            },
-            doc);
-    };
-    side("width", &FilmSettings::width, true, "Pixels of a row of the whole film.");
-    side("height", &FilmSettings::height, false, "Rows of the whole film.");
-    attribute<FilmSettings>(
-        c, "crop", "tuple[int, int, int, int]",
-        [](const FilmSettings& f, const auto&) {
-            return nb::make_tuple(f.crop.x0, f.crop.y0, f.crop.x1, f.crop.y1);
+        [](RealisticCamera& camera, nb::handle v, auto&, const std::string& what) {
+            camera.aperture.reset();
+            if (!v.is_none()) camera.aperture = aperture_picture_of(v, what);
         },
-        [](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
-            const std::vector<double> b = numbers_of(v, 4, what);
-            if (!(b[0] >= 0 && b[0] < b[2] && b[2] <= f.width && b[1] >= 0 && b[1] < b[3] &&
-                  b[3] <= f.height))
-                throw Error(what,
-                            "expected pixels x0, y0, x1, y1 with 0 <= x0 < x1 <= " + std::to_string(f.width) +
-                                " and 0 <= y0 < y1 <= " + std::to_string(f.height));
-            f.crop = {static_cast<int>(b[0]), static_cast<int>(b[1]), static_cast<int>(b[2]),
-                      static_cast<int>(b[3])};
-        },
-        "The pixels that are rendered: x0, y0, x1, y1 from the top left, the last two exclusive.");
-    number(c, "iso", &FilmSettings::iso, positive, "a number above zero",
-           "Sensitivity; 100 leaves values as they are.");
-    number(c, "exposure_time", &FilmSettings::exposure_time, positive, "a number above zero", "Seconds.");
-    number(c, "white_balance", &FilmSettings::white_balance, not_negative, "a number that is not negative",
-           "Kelvin of the light that is to look white; 0: none, or 6500 K for a camera's sensor.");
-    attribute<FilmSettings>(
-        c, "sensor", "str", [](const FilmSettings& f, const auto&) { return nb::str(f.sensor.c_str()); },
-        [](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
-            if (!nb::isinstance<nb::str>(v))
-                throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected a name");
-            const auto name = nb::cast<std::string>(v);
-            const std::vector<std::string_view>& names = sensor_names();
-            if (std::find(names.begin(), names.end(), name) == names.end())
-                throw Error(what, "unknown sensor '" + name + "'" + did_you_mean(name, names));
-            f.sensor = name;
-        },
-        "The sensor by its name in pbrt-v4, such as \"nikon_d850\"; \"cie1931\" is the standard observer.");
+        "What the stops let through: 'gaussian', 'square', 'pentagon', 'star', a picture file, or an array "
+        "of "
+        "shape (h, w) or (h, w, 3), over the square around the stop; None: they are round. Read, it is an "
+        "array "
+        "whose mean is that of the disc, pi / 4, so that the exposure stays.");
+}
+
+void bind_occlusion(nb::module_& m) {
+    auto c = value_class<OcclusionSettings>(
+        m, "Occlusion",
+        "Ambient occlusion: the share of the hemisphere over the first surface that nothing hides; 1 is "
+        "white. "
+        "Lights, materials and media have no effect, and the background is black.");
+    flag(c, "cosine", &OcclusionSettings::cosine,
+         "Directions are sampled by their cosine; False: evenly, which changes the noise alone.");
     number(
-        c, "max_component_value", &FilmSettings::max_component_value, [](double x) { return x > 0; },
-        "a number above zero", "Largest RGB value of a sample; infinite: none.");
-    attribute<FilmSettings>(
-        c, "layers", "str",
-        [](const FilmSettings& f, const auto&) { return nb::cast(text_of(f.layers.set)); },
-        [](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
-            std::string list;
-            if (!nb::try_cast(v, list))
-                throw Error(what,
-                            std::string(nb::repr(v).c_str()) + " was given; expected names with commas");
-            try {
-                f.layers.set = parse_layers(list);
-            } catch (const Error& e) {
-                throw Error(what, e.what());
-            }
-        },
-        "Names of the layers of a picture with commas, as of `montelux render --layers`: "
-        "'default,position'.");
-    auto flag = [&](const char* name, bool LayerSettings::*member, const char* doc) {
-        attribute<FilmSettings>(
-            c, name, "bool",
-            [member](const FilmSettings& f, const auto&) { return nb::cast(f.layers.*member); },
-            [member](FilmSettings& f, nb::handle v, auto&, const std::string& what) {
-                if (!nb::isinstance<nb::bool_>(v))
-                    throw Error(what,
-                                std::string(nb::repr(v).c_str()) + " was given; expected True or False");
-                f.layers.*member = nb::cast<bool>(v);
-            },
-            doc);
-    };
-    flag("layers_in_camera_space", &LayerSettings::in_camera_space,
-         "Positions and normals of the layers are those of the camera, not of the world.");
-    flag("half", &LayerSettings::half, "EXR files hold 16-bit floats where those suffice.");
-    c.def_prop_rw(
-        "filter",
-        [](const Ref<FilmSettings>& r) {
-            return r.scene() ? as_python(Slot<PixelFilter>(r.scene()))
-                             : as_python(Slot<PixelFilter>(r.read().filter));
-        },
-        [](Ref<FilmSettings>& r, const nb::object& o) {
-            const Slot<PixelFilter>* given = filter_slot(o);
-            if (!given) throw Error("Film.filter", "expected a pixel filter, such as GaussianFilter()");
-            const PixelFilter filter = given->read();
-            r.edit([&](FilmSettings& f) { f.filter = filter; });
-        },
-        "The pixel filter.");
+        c, "max_distance", &OcclusionSettings::max_distance,
+        [](double x) { return static_cast<float>(x) > 0; }, "a number above zero",
+        "Shapes farther away hide nothing; infinite: all hide.");
 }
 
 } // namespace
@@ -278,7 +257,7 @@ void bind_views(nb::module_& m) {
         "From the scene to the film: radius of curvature (0: a stop; positive if the centre is on the film's "
         "side), "
         "thickness, index of refraction behind it, radius of the edge.");
-    bind_film(m);
+    bind_aperture(realistic);
     auto sampler = value_class<SamplerSettings>(m, "Sampler", "Which points the samples are drawn from.");
     choice(sampler, "kind", &SamplerSettings::kind, sampler_kinds,
            "'independent', 'stratified', 'halton', 'hammersley', 'sobol' or 'sobol-blue-noise'.");
@@ -296,6 +275,7 @@ void bind_views(nb::module_& m) {
             s.spp = static_cast<std::uint32_t>(whole_number_of(v, 1, 1 << 30, what));
         },
         "Samples per pixel, unless render() is given a number.");
+    bind_occlusion(m);
     auto integrator = value_class<IntegratorSettings>(m, "Integrator", "How light is followed.");
     attribute<IntegratorSettings>(
         integrator, "max_depth", "int",
@@ -315,10 +295,16 @@ void bind_views(nb::module_& m) {
     choice(
         integrator, "environment_sampling", &IntegratorSettings::environment_sampling, environment_samplings,
         "How directions to environment maps are sampled: 'auto', 'tabulated', 'median-cut' or 'structured'.");
+    flag(integrator, "regularize", &IntegratorSettings::regularize,
+         "Widens the reflections of surfaces that a path meets after an event that was not specular: fewer "
+         "fireflies, and a bias that standard errors do not contain.");
     flag(integrator, "equiangular", &IntegratorSettings::equiangular,
          "Where lights are sampled: in homogeneous media lamps are also looked for from points of the ray "
          "close to "
          "them.");
+    optional_part(
+        integrator, "occlusion", &IntegratorSettings::occlusion, "Occlusion",
+        "Ambient occlusion instead of light; the other attributes then have no effect. None: light.");
     flag(integrator, "environment_compensation", &IntegratorSettings::environment_compensation,
          "With the strategy mis and its terms, maps are not sampled where BSDFs find them as well.");
     choice(integrator, "environment_lookup", &IntegratorSettings::environment_lookup, environment_lookups,

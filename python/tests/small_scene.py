@@ -1,4 +1,4 @@
-"""A scene of a ball, a lamp and a sky, for tests."""
+"""A scene of a ball, a lamp and a sky, for tests; and the temporary files of textures."""
 
 TEXT = """
 Film "rgb" "integer xresolution" 32 "integer yresolution" 24
@@ -15,3 +15,9 @@ AttributeBegin
 AttributeEnd
 Shape "sphere"
 """
+
+
+def unnamed_files():
+    """How many parts of files without a name this process has mapped."""
+    with open("/proc/self/maps") as maps:
+        return sum("(deleted)" in line for line in maps)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import montelux
-from small_scene import TEXT
+from small_scene import TEXT, unnamed_files
 
 
 def test_a_scene_without_a_camera():
@@ -34,6 +34,7 @@ def test_a_scene_without_a_camera():
         ("sampler.seed", -1, "expected a whole number"),
         ("film.resolution", (0, 1), "expected two whole numbers"),
         ("film.crop", (0, 0, 999, 1), "expected pixels"),
+        ("film.white_balance", 65, "65 was given; expected 0 \\(none\\) or a temperature of 2000 K or more"),
         ("film.filter", 1, "expected a pixel filter"),
         ("shapes[0].material", 1, "expected a material"),
         ("lights[0]", "lamp", "expected a light"),
@@ -85,10 +86,6 @@ def test_textures_in_a_file_change_nothing(tmp_path):
     (tmp_path / "scene.pbrt").write_text(text)
     plain = montelux.load(tmp_path / "scene.pbrt")
     usual = plain.render(spp=4).mean
-
-    def unnamed_files():
-        with open("/proc/self/maps") as maps:
-            return sum("(deleted)" in line for line in maps)
 
     for load in (
         lambda: montelux.load(tmp_path / "scene.pbrt", texture_memory=16 << 20),

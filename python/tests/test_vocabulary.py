@@ -50,7 +50,8 @@ def test_options_of_render_have_the_names_of_python():
     known, ours = options("render"), arguments(montelux.Scene.render)
     assert ours - known == {"progress", "every"}
     of_the_program = {"output", "rank_timeout", "debug_sample", "stats", "memory", "quiet"}
-    of_the_program |= {"texture_memory"} & arguments(montelux.load) & arguments(montelux.parse)
+    loading = (montelux.Scene, montelux.load, montelux.parse)
+    of_the_program |= {"texture_memory"}.intersection(*map(arguments, loading))
     # sampler.kind, film.max_component_value, film.layers_in_camera_space, film.half, the groups of the lights
     others = {"sampler", "clamp", "layer_space", "no_half", "light_groups"}
     assert known - ours - of_scene - of_the_program == others

@@ -172,7 +172,7 @@ TEST(LensSystem, RefusesWhatIsNoLens) {
 // Each built-in picture has the mean of the disc, and its shape: by its second moments and the symmetry of its edge.
 TEST(AperturePicture, ShapesAreDrawn) {
     EXPECT_FALSE(find_aperture("hexagon"));
-    for (const char* name : {"gaussian", "square", "pentagon", "star"}) {
+    for (const std::string_view name : aperture_names()) {
         const AperturePicture p = *find_aperture(name);
         double sum = 0;
         for (const float v : p.values) sum += static_cast<double>(v);
@@ -194,6 +194,15 @@ TEST(AperturePicture, ShapesAreDrawn) {
     EXPECT_GT(star.at(0.36, 0), 0);
     EXPECT_NEAR(gaussian.at(0.5, 0) / gaussian.at(0, 0),
                 (std::exp(-0.25) - std::exp(-1.0)) / (1 - std::exp(-1.0)), 1e-3);
+}
+
+// Half of the code values of sRGB is a fifth of the light.
+TEST(AperturePicture, PicturesAreLinear) {
+    Image encoded(2, 1, {"Y"}, PixelFormat::u8, ColorEncoding::srgb());
+    encoded.u8()[0] = 128;
+    encoded.u8()[1] = 255;
+    const AperturePicture p = aperture_of(encoded);
+    EXPECT_NEAR(p.values[0] / p.values[1], 0.2158605, 1e-6);
 }
 
 // On the axis the mean weight, irradiance of a white scene, is that of the round stop for any picture, up to the cosines

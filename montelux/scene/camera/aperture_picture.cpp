@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
@@ -89,6 +88,11 @@ std::optional<AperturePicture> find_aperture(std::string_view name) {
     return drawn([&](double x, double y) { return contains(polygon, x, y); });
 }
 
+std::span<const std::string_view> aperture_names() {
+    static constexpr std::string_view names[] = {"gaussian", "square", "pentagon", "star"};
+    return names;
+}
+
 AperturePicture aperture_of(const Image& picture) {
     const std::vector<int> channels = picture.color_channels();
     if (channels.empty()) throw Error("aperture", "the picture has neither colours nor grey");
@@ -96,7 +100,7 @@ AperturePicture aperture_of(const Image& picture) {
     for (int y = 0; y < picture.height(); ++y)
         for (int x = 0; x < picture.width(); ++x) {
             float sum = 0;
-            for (const int c : channels) sum += picture.value(x, y, c);
+            for (const int c : channels) sum += picture.linear(x, y, c);
             result.values.push_back(sum / static_cast<float>(channels.size()));
         }
     return normalized(std::move(result));

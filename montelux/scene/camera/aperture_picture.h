@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct AperturePicture {
 
 // Those of pbrt-v4: gaussian (blurred edge), square (half as wide as the stop), pentagon, star. Empty for other names.
 std::optional<AperturePicture> find_aperture(std::string_view name);
+std::span<const std::string_view> aperture_names();
 // The mean of the linear colours. Throws Error where the picture is black or has negative or non-finite values.
 AperturePicture aperture_of(const Image& picture);
 
