@@ -210,7 +210,7 @@ def boltzmann(x):
     return np.stack([np.exp(-energy), np.exp(-1.1 * energy)], axis=-1)
 
 
-r = montelux.integrate(boltzmann, [(-3, 3), (-9, 9)], "vegas", evaluations=200_000, seed=4)
+r = montelux.integrate(boltzmann, [(-3, 3), (-9, 9)], "stratified", evaluations=200_000, seed=4)
 a, b = r.value
 gradient = np.array([-b / a**2, 1 / a])  # of b / a
 with_covariance = math.sqrt(gradient @ r.covariance @ gradient)
