@@ -74,7 +74,7 @@ TEST(SharedRender, AnyNumberOfRanksGivesTheSameBits) {
         for (const RenderTarget& target :
              {RenderTarget{}, RenderTarget{.adaptive = true}, RenderTarget{.error = 0.2, .adaptive = true},
               RenderTarget{.error = 0.25}, RenderTarget{.slice = {1, 3}}}) {
-            const SceneBuilder b = scene(kind, under_sanitizers ? 24 : 72);
+            const SceneBuilder b = scene(kind, under_sanitizers ? 12 : 72);
             RenderState whole(b.description.film);
             Renderer(b.description, target).render(whole);
             // Every number of ranks with every sampler, in turns to save time.
@@ -177,7 +177,7 @@ TEST(SharedRender, GivesSnapshots) {
 
 // A rank without tiles gets those of another, in the middle of a round.
 TEST(SharedRender, TilesMoveToWhomHasNone) {
-    const SceneBuilder b = scene(SamplerKind::independent, 1500);
+    const SceneBuilder b = scene(SamplerKind::independent, under_sanitizers ? 400 : 1500);
     RenderState whole(b.description.film), state(b.description.film);
     Renderer(b.description).render(whole);
     EXPECT_GT(render_on(3, b.description, {}, state), 0u);

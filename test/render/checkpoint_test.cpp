@@ -31,7 +31,7 @@ TEST_F(Checkpoint, InterruptedRendersEndWithTheSameBits) {
         for (bool adaptive : {false, true}) {
             SceneBuilder b = mixed_scene(1, 16, 12);
             b.description.sampler.kind = kind;
-            b.description.sampler.spp = under_sanitizers ? 48 : 100;
+            b.description.sampler.spp = under_sanitizers ? 24 : 100;
             const RenderTarget target{.adaptive = adaptive};
             RenderState whole(b.description.film);
             Renderer(b.description, target).render(whole);

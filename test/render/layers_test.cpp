@@ -1,5 +1,6 @@
 // Layers that are switched on change no bit of the mean, and are those of single paths; checkpoints know them.
 #include "test/render/layer_testing.h"
+#include "test/sanitized.h"
 #include "test/temporary_folder.h"
 #include <algorithm>
 #include <bit>
@@ -39,7 +40,8 @@ TEST(Layers, AreThoseOfSinglePathsBitForBit) {
     for (const SceneBuilder& scene : {layered_scene(), foggy_scene()})
         for (const Strategy strategy : {Strategy::mis, Strategy::bsdf, Strategy::light}) {
             SceneBuilder b = scene;
-            b.description.sampler = {.kind = SamplerKind::independent, .spp = 8};
+            constexpr std::uint32_t spp = under_sanitizers ? 2 : 8;
+            b.description.sampler = {.kind = SamplerKind::independent, .spp = spp};
             b.description.integrator.strategy = strategy;
             b.description.film.filter = MitchellFilter{};
             b.description.film.max_component_value = 2;
@@ -54,7 +56,7 @@ TEST(Layers, AreThoseOfSinglePathsBitForBit) {
             for (int y = bounds.y0; y < bounds.y1; ++y)
                 for (int x = bounds.x0; x < bounds.x1; ++x, ++i) {
                     std::vector<double> sums(layers.sums());
-                    for (std::uint32_t k = 0; k < 8; ++k) {
+                    for (std::uint32_t k = 0; k < spp; ++k) {
                         const SampleRecord record = renderer.replay(x, y, k);
                         if (!record.bad) layers.add(sums.data(), record.layer_values.data());
                         layers.end_replicate(sums.data(), 1);

@@ -1,5 +1,6 @@
 // Shapes that emit and move: at any time they are the still one that stands there, hits and samples have one density,
 // and the bounds of light trees hold at all times.
+#include "test/sanitized.h"
 #include "test/scene/moving_emitter_testing.h"
 #include <cmath>
 #include <gtest/gtest.h>
@@ -85,7 +86,7 @@ TEST(MovingEmitters, StayWithinTheirBounds) {
         const World world(e.moving());
         const SceneView& view = world.tables.view();
         Draws draws(7);
-        for (int i = 0; i < 4000; ++i) {
+        for (int i = 0; i < (under_sanitizers ? 500 : 4000); ++i) {
             const Index part = static_cast<Index>(i) % part_count({view, 0});
             const LightContext context{view, 0, draws.uniform()};
             const auto s = sample_le(context, part, draws.uniform_2d(), draws.uniform_2d(), lambda);
