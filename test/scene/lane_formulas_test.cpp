@@ -56,7 +56,7 @@ TEST(LaneFormulas, PointsOfTriangles) {
             flipped.set(i, c.flipped);
         }
         const TrianglePoint<T> found = triangle_point(p0, p1, p2, b1, b2, flipped, normal);
-        const Vec3<T> origin = offset_origin(found.p, found.ng, found.error, p0);
+        const Vec3<T> start = offset_origin(found.p, found.ng, found.error, p0);
         for (int i = 1; i < W; ++i) {
             const Corner& c = corners[static_cast<std::size_t>(i)];
             const auto expected = triangle_point(c.p0, c.p1, c.p2, c.b1, c.b2, c.flipped, c.normal);
@@ -65,7 +65,7 @@ TEST(LaneFormulas, PointsOfTriangles) {
             ASSERT_TRUE(same_bits(lane_of(found.ns, i), expected.ns));
             ASSERT_EQ(found.error[i], expected.error);
             ASSERT_TRUE(
-                same_bits(lane_of(origin, i), offset_origin(expected.p, expected.ng, expected.error, c.p0)));
+                same_bits(lane_of(start, i), offset_origin(expected.p, expected.ng, expected.error, c.p0)));
         }
         // Without area there is no normal, in any number type.
         ASSERT_TRUE(std::isnan(found.ng.x[0]));

@@ -12,7 +12,7 @@
 namespace montelux {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double inf = std::numeric_limits<double>::infinity();
 
 // Samples against the pdf; quantiles against cdf in both tails. `absolute`: the error of P where ends cut
 // through the bulk of a law.
@@ -41,7 +41,7 @@ TEST(Truncated, RestrictsAndRenormalises) {
     EXPECT_EQ(d.quantile(0), 0);
     EXPECT_EQ(d.quantile(1), 4);
     // The ends of the support win over wider ones.
-    Truncated waiting(ExponentialDistribution(5), -infinity, 0.5);
+    Truncated waiting(ExponentialDistribution(5), -inf, 0.5);
     expect_consistent(waiting, 0, 0.5, 1e-15);
     EXPECT_EQ(waiting.lower(), 0);
     // p = 2v on [0, 4), restricted to [2, 4), is the linear law there.
@@ -52,7 +52,7 @@ TEST(Truncated, RestrictsAndRenormalises) {
 // Beyond 30 deviations 1 - cdf is 5e-198; the law of the excess is known from the asymptotic series, and the
 // median here from 50 digits.
 TEST(Truncated, FarTailsKeepTheirDigits) {
-    Truncated right(NormalDistribution(), 30, infinity), left(NormalDistribution(), -infinity, -30);
+    Truncated right(NormalDistribution(), 30, inf), left(NormalDistribution(), -inf, -30);
     EXPECT_NEAR(right.mass() / 4.906713927148187e-198, 1, 1e-12);
     EXPECT_NEAR(right.quantile(0.5), 30.02307046782731, 1e-13);
     EXPECT_NEAR(left.quantile(0.5), -30.02307046782731, 1e-13);
@@ -79,7 +79,7 @@ TEST(Affine, ShiftsScalesAndReflects) {
     Affine d(ExponentialDistribution(2), -3, 1);
     expect_consistent(d, -10, 1);
     EXPECT_EQ(d.upper(), 1);
-    EXPECT_EQ(d.lower(), -infinity);
+    EXPECT_EQ(d.lower(), -inf);
     EXPECT_NEAR(d.pdf(-2), ExponentialDistribution(2).pdf(1) / 3, 1e-15);
     EXPECT_NEAR(d.quantile(1e-30), 1 - 3 * ExponentialDistribution(2).quantile_complement(1e-30), 1e-12);
     for (double x : {-2.0, 0.3, 5.0}) {
@@ -91,7 +91,7 @@ TEST(Affine, ShiftsScalesAndReflects) {
         EXPECT_DOUBLE_EQ(reflected(exact).cdf(x), NormalDistribution(-1, 2).cdf(x));
     }
     EXPECT_THROW(scaled(NormalDistribution(), 0), Error);
-    EXPECT_THROW(shifted(NormalDistribution(), infinity), Error);
+    EXPECT_THROW(shifted(NormalDistribution(), inf), Error);
 }
 
 TEST(Mixture, OfOneFamilyAndOfMany) {

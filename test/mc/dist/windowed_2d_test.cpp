@@ -11,34 +11,35 @@
 namespace montelux {
 namespace {
 
-constexpr std::uint32_t columns = 9, rows = 7;
+constexpr std::uint32_t table_columns = 9, table_rows = 7;
 const Window2D domain{{-1, 2}, {3.5, 5.5}}; // cells of side 1/2
 
 std::vector<double> table_values() {
-    std::vector<double> values(columns * rows);
+    std::vector<double> values(table_columns * table_rows);
     TestUniforms uniforms(4);
     for (double& v : values) v = uniforms.next() < 0.3 ? 0 : std::pow(uniforms.next(), 4);
-    for (std::uint32_t i = 0; i < columns; ++i) values[2 * columns + i] = 0; // an empty row
-    for (std::uint32_t j = 0; j < rows; ++j) values[j * columns + 3] = 0;    // an empty column
+    for (std::uint32_t i = 0; i < table_columns; ++i) values[2 * table_columns + i] = 0; // an empty row
+    for (std::uint32_t j = 0; j < table_rows; ++j) values[j * table_columns + 3] = 0;    // an empty column
     return values;
 }
 
 // Of the pieces into which lines 1/4 apart cut the domain: what the window has of each times its value.
 std::vector<double> pieces_of(const std::vector<double>& values, const Window2D& w) {
     std::vector<double> pieces;
-    for (std::uint32_t j = 0; j < 2 * rows; ++j)
-        for (std::uint32_t i = 0; i < 2 * columns; ++i) {
+    for (std::uint32_t j = 0; j < 2 * table_rows; ++j)
+        for (std::uint32_t i = 0; i < 2 * table_columns; ++i) {
             const double x = domain.lower.x + 0.25 * i, y = domain.lower.y + 0.25 * j;
             const double width = std::min(x + 0.25, w.upper.x) - std::max(x, w.lower.x);
             const double height = std::min(y + 0.25, w.upper.y) - std::max(y, w.lower.y);
-            pieces.push_back(std::max(0.0, width) * std::max(0.0, height) * values[j / 2 * columns + i / 2]);
+            pieces.push_back(std::max(0.0, width) * std::max(0.0, height) *
+                             values[j / 2 * table_columns + i / 2]);
         }
     return pieces;
 }
 
 TEST(WindowedPiecewise2D, SamplesFollowTheTableWithinTheWindow) {
     const std::vector<double> values = table_values();
-    const WindowedPiecewise2D d(values, columns, rows, domain);
+    const WindowedPiecewise2D d(values, table_columns, table_rows, domain);
     const Window2D windows[] = {
         domain,
         {{-0.3, 2.2}, {2.9, 5.3}},  // ends within cells
@@ -61,8 +62,8 @@ TEST(WindowedPiecewise2D, SamplesFollowTheTableWithinTheWindow) {
             ASSERT_TRUE(s);
             const auto x = static_cast<std::size_t>((s->p.x - domain.lower.x) / 0.25),
                        y = static_cast<std::size_t>((s->p.y - domain.lower.y) / 0.25);
-            counts.at(y * 2 * columns + x) += 1;
-            ASSERT_NEAR(s->pdf * sum, values[y / 2 * columns + x / 2], 1e-12);
+            counts.at(y * 2 * table_columns + x) += 1;
+            ASSERT_NEAR(s->pdf * sum, values[y / 2 * table_columns + x / 2], 1e-12);
             ASSERT_NEAR(d.pdf(s->p, w), s->pdf, 1e-12 * s->pdf);
             ASSERT_TRUE(w.contains(s->p));
         }
@@ -75,7 +76,7 @@ TEST(WindowedPiecewise2D, SamplesFollowTheTableWithinTheWindow) {
 }
 
 TEST(WindowedPiecewise2D, NothingInTheWindowGivesNoSample) {
-    const WindowedPiecewise2D d(table_values(), columns, rows, domain);
+    const WindowedPiecewise2D d(table_values(), table_columns, table_rows, domain);
     const Window2D empty[] = {
         {{-1, 3}, {3.5, 3.5}}, // the empty row
         {{0.6, 2}, {0.9, 5}},  // within the empty column

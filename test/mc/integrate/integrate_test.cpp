@@ -115,8 +115,8 @@ TEST(IntegrateExceptions, PassThroughFromAnyThread) {
             try {
                 integrate(f, Domain::interval(0, 1), basic, {}, {.threads = threads});
                 ADD_FAILURE() << "nothing was thrown";
-            } catch (const Oops& e) {
-                EXPECT_STREQ(e.what(), "from the integrand");
+            } catch (const Oops& oops) {
+                EXPECT_STREQ(oops.what(), "from the integrand");
             }
         }
     EXPECT_THROW(integrate(

@@ -11,7 +11,7 @@ namespace montelux {
 namespace {
 
 // Open at both ends, so that no coordinate is mapped to infinity.
-constexpr double smallest = 0x1p-53, largest = 1 - 0x1p-53;
+constexpr double smallest_u = 0x1p-53, largest_u = 1 - 0x1p-53;
 constexpr double least_position = 1e-290;
 constexpr double jump_ratio = 5; // between bins, of the slopes: above it the slope is not joined
 constexpr double end_ratio = 4;  // slopes are extrapolated to the ends within this factor
@@ -85,7 +85,7 @@ double MonotoneMap::quantile(double u, double& density) const {
     const double x = b.x0 + b.dx * t * (slope * t + b.slope0 * s) / denominator;
     density = denominator * denominator /
               (slope * slope * (b.slope1 * t * t + 2 * slope * t * s + b.slope0 * s * s));
-    return std::clamp(x, smallest, largest);
+    return std::clamp(x, smallest_u, largest_u);
 }
 
 double MonotoneMap::quantile(double u) const {

@@ -140,8 +140,8 @@ class QuasiEstimator final : public Estimator {
   private:
     bool extensible() const { return kind_ != PointSetKind::hammersley; }
     std::uint64_t most_points() const {
-        const bool fast = kind_ == PointSetKind::sobol && randomisation_ == Randomisation::scramble;
-        return fast ? ScrambledSobol::max_points : ScrambledSobol::max_points - 1;
+        const bool full_length = kind_ == PointSetKind::sobol && randomisation_ == Randomisation::scramble;
+        return full_length ? ScrambledSobol::max_points : ScrambledSobol::max_points - 1;
     }
 
     int choose_replicates(std::uint64_t evaluations) const {

@@ -72,10 +72,9 @@ TEST(Metropolis, VectorsHaveValuesOfEachComponentAndCovariances) {
 }
 
 TEST(Metropolis, InfiniteRangesAreWalkedThroughTheirMap) {
-    const double infinity = std::numeric_limits<double>::infinity();
+    const double inf = std::numeric_limits<double>::infinity();
     const Integrand f = [](Point x) { return std::exp(-0.5 * ((x[0] - 3) * (x[0] - 3) + x[1] * x[1])); };
-    const auto r = integrate(f, Domain({{-infinity, infinity}, {-infinity, infinity}}), Metropolis{},
-                             {.evaluations = 200000});
+    const auto r = integrate(f, Domain({{-inf, inf}, {-inf, inf}}), Metropolis{}, {.evaluations = 200000});
     EXPECT_NEAR(r.value[0], 2 * pi, 5 * r.standard_error[0]);
     EXPECT_LT(r.standard_error[0], 0.05);
 }
