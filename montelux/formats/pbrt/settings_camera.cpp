@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -83,6 +84,13 @@ std::optional<AperturePicture> read_aperture(ParameterReader& r, Files& files) {
     const std::string name = r.string("aperture", "");
     if (name.empty()) return std::nullopt;
     if (std::optional<AperturePicture> known = find_aperture(name)) return known;
+    // A name without a dot or a slash is more likely a misspelt name than a file.
+    if (name.find_first_of("./\\") == std::string::npos) {
+        std::string expected;
+        for (const std::string_view known : aperture_names()) expected += std::string(known) + ", ";
+        r.error("aperture", "parameter 'aperture' is " + in_quotes(name) + "; expected one of " + expected +
+                                "or the file of a picture" + did_you_mean(name, aperture_names()));
+    }
     const Location at = r.at("aperture");
     const std::filesystem::path path = files.find(name, at);
     const std::vector<std::uint8_t> bytes = files.read(path, at);

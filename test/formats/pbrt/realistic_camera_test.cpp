@@ -98,9 +98,15 @@ TEST_F(RealisticCameras, MistakesAreNamed) {
     EXPECT_NE(error(singlet, "\"string lensfile\" \"lens.dat\" \"float focusdistance\" 0.1")
                   .find("cannot focus at"),
               std::string::npos);
-    EXPECT_NE(
-        error(singlet, "\"string lensfile\" \"lens.dat\" \"string aperture\" \"hexagon\"").find("hexagon"),
-        std::string::npos);
+    const auto aperture_error = [&](const std::string& name) {
+        return error(singlet, "\"string lensfile\" \"lens.dat\" \"string aperture\" \"" + name + "\"");
+    };
+    EXPECT_NE(aperture_error("pentagn").find(
+                  "parameter 'aperture' is 'pentagn'; expected one of gaussian, square, pentagon, star, or "
+                  "the file of a picture (did you mean 'pentagon'?)"),
+              std::string::npos)
+        << aperture_error("pentagn");
+    EXPECT_NE(aperture_error("hexagon.png").find("hexagon.png"), std::string::npos);
     Image black(2, 2, {"Y"}, PixelFormat::u8, ColorEncoding::srgb());
     write_image(folder_ / "black.png", black);
     EXPECT_NE(error(singlet, "\"string lensfile\" \"lens.dat\" \"string aperture\" \"black.png\"")
