@@ -1,9 +1,11 @@
 // 'displacement' of plymesh: textures, units, and what is refused.
 #include "test/formats/pbrt/parse.h"
 #include "test/temporary_folder.h"
+#include <cmath>
 #include <fstream>
 #include <gtest/gtest.h>
 
+#include "montelux/formats/mesh_displacement.h"
 #include "montelux/image/image_write.h"
 
 namespace montelux {
@@ -44,6 +46,20 @@ class PbrtDisplacement : public ::testing::Test {
                 "\"float v11\" 0.5\n",
         shape = "Shape \"plymesh\" \"string filename\" \"square.ply\" \"texture displacement\" \"h\" ";
 };
+
+// Triangles with edges of at most l have at most the area sqrt(3) / 4 l^2; the second shape alone is below the limit.
+TEST_F(PbrtDisplacement, TheLimitIsOneOfAllShapesTogether) {
+    const auto of_at_least = [&](double triangles) {
+        const double longest = std::sqrt(4 / std::sqrt(3.0) / triangles); // on a square of area 1
+        return shape + "\"float edgelength\" " + std::to_string(1e3 * longest) + "\n";
+    };
+    const double most = max_displaced_triangles, few = 1 << 16;
+    const std::string options = "Option \"float displacementedgescale\" 1e-3";
+    EXPECT_GE(mesh(slope + of_at_least(2 * few), options).triangle_count(), 2 * few);
+    EXPECT_NE(error(slope + of_at_least(2 * few) + of_at_least(most - few), options)
+                  .find("would take the triangles of all displaced shapes together beyond 33554432"),
+              std::string::npos);
+}
 
 TEST_F(PbrtDisplacement, HeightsAreInObjectSpaceAndEdgesInTheWorld) {
     const TriangleMesh plain = mesh(slope + shape);
