@@ -2,6 +2,7 @@
 
 #include "python/src/bindings.h"
 #include "python/src/scene_values.h"
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -54,11 +55,22 @@ void add_light(SceneDescription& d, Index shape, AreaLight light) {
     d.scene.shapes[shape].light = SceneBuilder(d.scene, messages).add_light(light);
 }
 
+void check_can_shine(const Scene& scene, Index shape) {
+    if (std::holds_alternative<CurvesIndex>(scene.shapes[shape].geometry))
+        throw Error("Shape.light", "curves do not emit light");
+    for (const ObjectDefinition& o : scene.objects)
+        if (!o.shines && std::ranges::find(o.shapes, shape) != o.shapes.end())
+            throw Error("Shape.light", "shapes inside object definitions do not shine");
+}
+
 // None removes the light; an AreaLight or a spectrum sets it. One that is there is replaced in its place: other lights
 // keep theirs, and it keeps its group.
 void set_light(const SceneRef& holder, Index shape, const nb::object& emission) {
     std::optional<AreaLight> light;
-    if (!emission.is_none()) light = area_light_of(holder, emission);
+    if (!emission.is_none()) {
+        check_can_shine(holder->read().scene, shape);
+        light = area_light_of(holder, emission);
+    }
     SceneDescription& d = holder->edit();
     const Index before = d.scene.shapes[shape].light;
     if (light && before != no_index) {
