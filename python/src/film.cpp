@@ -180,8 +180,8 @@ void bind_film(nb::module_& m) {
     c.def_prop_rw(
         "filter",
         [](const Ref<FilmSettings>& r) {
-            return r.scene() ? as_python(Slot<PixelFilter>(r.scene()))
-                             : as_python(Slot<PixelFilter>(r.read().filter));
+            return as_python(
+                Slot<PixelFilter>(r, std::function<PixelFilter&(FilmSettings&)>(&FilmSettings::filter)));
         },
         [](Ref<FilmSettings>& r, const nb::object& o) {
             const Slot<PixelFilter>* given = filter_slot(o);

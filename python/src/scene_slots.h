@@ -1,6 +1,7 @@
 // Slot: a value of a scene as Python refers to it, inside a scene or detached.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <nanobind/nanobind.h>
 #include <optional>
@@ -60,7 +61,7 @@ inline IntegratorSettings& element(SceneDescription& d, Index, std::type_identit
 
 // Parts that a scene may lack. Python's references to one end when it is taken away.
 template <typename T>
-T& present(std::optional<T>& part, const char* name) {
+T& present(std::optional<T>& part, const std::string& name) {
     if (!part) throw Error(name, "it was set to None after this reference to it was read");
     return *part;
 }
@@ -71,7 +72,7 @@ inline OcclusionSettings& element(SceneDescription& d, Index, std::type_identity
     return present(d.integrator.occlusion, "Integrator.occlusion");
 }
 
-// A value in a scene, or a detached one, which has its own spectra.
+// A value in a scene, a detached one, which has its own spectra, or a part of a detached one.
 template <typename V>
 class Slot {
   public:
@@ -79,12 +80,25 @@ class Slot {
         : own_(std::make_shared<Own>(std::move(own), std::move(spectra))) {}
     explicit Slot(std::shared_ptr<SceneHolder> scene, Index first = 0)
         : scene_(std::move(scene)), first_(first) {}
+    // A part without spectra. In scenes `element` finds it; it is read and changed where it is.
+    template <typename Whole>
+    Slot(const Slot<Whole>& whole, std::function<V&(Whole&)> part) : scene_(whole.scene()) {
+        if (scene_) return;
+        detached_whole_ = whole.identity();
+        part_ = [whole = Slot<Whole>(whole), part = std::move(part)]() mutable -> V& {
+            V* found = nullptr;
+            whole.edit([&](Whole& w) { found = &part(w); });
+            return *found;
+        };
+    }
 
     const V& read() const {
+        if (part_) return part_();
         return own_ ? own_->value : element(*scene_->description, first_, std::type_identity<V>());
     }
     template <typename Change>
     void edit(const Change& change) {
+        if (part_) return change(part_());
         if (own_) return change(own_->value);
         change(element(scene_->edit(), first_, std::type_identity<V>()));
     }
@@ -98,8 +112,10 @@ class Slot {
     const std::shared_ptr<SceneHolder>& scene() const { return scene_; }
     Index first() const { return first_; }
     bool same_place(const Slot& other) const {
-        return scene_ ? scene_ == other.scene_ && first_ == other.first_ : own_ == other.own_;
+        return scene_ == other.scene_ && first_ == other.first_ && identity() == other.identity();
     }
+    // Of a detached value, or that of which this is a part; null in a scene.
+    std::shared_ptr<const void> identity() const { return part_ ? detached_whole_ : own_; }
     // The scene whose textures a detached value refers to.
     std::shared_ptr<SceneHolder> textures_of;
 
@@ -112,6 +128,8 @@ class Slot {
     std::shared_ptr<SceneHolder> scene_;
     Index first_ = 0;
     std::shared_ptr<Own> own_;
+    std::function<V&()> part_;
+    std::shared_ptr<const void> detached_whole_;
 };
 
 // visit(spectrum) for each SceneSpectrum of a material or light.

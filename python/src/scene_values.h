@@ -169,10 +169,11 @@ void optional_part(nb::class_<Ref<T>>& c, const char* name, std::optional<Part> 
     const std::string what = nb::cast<std::string>(c.attr("__name__")) + "." + name;
     c.def_prop_rw(
         name,
-        [member](const Ref<T>& r) -> nb::object {
-            const std::optional<Part>& part = r.value().*member;
-            if (!part) return nb::none();
-            return nb::cast(Ref<Part>(r.scene() ? Slot<Part>(r.scene()) : Slot<Part>(*part)));
+        [member, what](const Ref<T>& r) -> nb::object {
+            if (!(r.value().*member)) return nb::none();
+            const auto part = [member, what](T& value) -> Part& { return present(value.*member, what); };
+            return nb::cast(
+                Ref<Part>(Slot<Part>(static_cast<const Slot<Kind<T>>&>(r), std::function<Part&(T&)>(part))));
         },
         [member, what, type = std::string(type)](Ref<T>& r, const nb::object& given) {
             std::optional<Part> part;

@@ -124,6 +124,48 @@ def test_the_light_of_a_shape_is_replaced_in_its_place(scene):
     assert [type(light).__name__ for light in scene.lights] == ["UniformInfiniteLight", "PointLight"]
 
 
+def test_parts_of_values_outside_a_scene_are_changed_where_they_are():
+    film = montelux.Film(filter=montelux.GaussianFilter(), spectral=montelux.Spectral(buckets=4))
+    part, spectral = film.filter, film.spectral
+    part.sigma, spectral.buckets = 0.25, 7
+    assert film.filter.sigma == 0.25 and film.spectral.buckets == 7
+    assert film.filter == part and film.spectral == spectral
+    assert montelux.Film(filter=montelux.GaussianFilter()).filter != part
+    other = montelux.Film(filter=part)
+    other.filter.sigma = 1
+    assert film.filter.sigma == 0.25
+    film.spectral, film.filter = None, montelux.BoxFilter()
+    with pytest.raises(montelux.Error, match="Film.spectral: it was set to None after"):
+        spectral.buckets = 3
+    with pytest.raises(montelux.Error, match="replaced by one of another kind"):
+        part.sigma = 0.5
+    integrator = montelux.Integrator(occlusion=montelux.Occlusion())
+    integrator.occlusion.max_distance = 2
+    assert integrator.occlusion.max_distance == 2
+
+
+def test_shapes_that_cannot_shine_take_no_light():
+    scene = montelux.parse(
+        """WorldBegin
+        Shape "curve" "point3 P" [0 0 0 0 1 0 0 2 0 0 3 0]
+        ObjectBegin "ball" Shape "sphere" ObjectEnd
+        ObjectInstance "ball"
+        ActiveTransform EndTime Translate 1 0 0 ActiveTransform All
+        AreaLightSource "diffuse" "rgb L" [1 1 1]
+        Shape "sphere"
+        """
+    )
+    curve, in_object, moving = scene.shapes
+    assert [s.kind for s in scene.shapes] == ["curves", "sphere", "sphere"]
+    for shape, sentence in (curve, "curves do not emit light"), (in_object, "inside object definitions do not shine"):
+        with pytest.raises(montelux.Error, match=f"Shape.light: .*{sentence}"):
+            shape.light = (1, 1, 1)
+        shape.light = None
+        assert shape.light is None and len(scene.lights) == 1
+    moving.light = (2, 2, 2)
+    assert len(scene.lights) == 1
+
+
 def test_lights_can_be_taken_away_and_added(scene):
     del scene.lights[0]
     assert scene.shapes[0].light == scene.lights[0]
