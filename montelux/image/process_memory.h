@@ -20,7 +20,7 @@ class ProcessMemory {
     ProcessMemory(const ProcessMemory&) = delete;
     ProcessMemory& operator=(const ProcessMemory&) = delete;
 
-    // Resident memory that belongs to files, libraries included; some hundred pages off. None where that is not told.
+    // Resident bytes of mapped files and libraries, within a few hundred pages; empty if the kernel does not say.
     std::optional<std::size_t> file_bytes() const;
     // Of the pages of a mapping, which begins with a page. Reads 8 bytes per page.
     std::size_t resident(std::span<const std::byte> mapping) const;
