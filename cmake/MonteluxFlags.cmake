@@ -16,9 +16,6 @@ target_compile_options(montelux_flags INTERFACE ${MONTELUX_PROCESSOR_FLAGS})
 if(MONTELUX_SANITIZE)
     target_compile_options(montelux_flags INTERFACE
         -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
-    # Null pointers and objects that are too small are seen by the address sanitizer, and classes with virtual
-    # functions are few: these checks take a third of the compiler's time.
-    target_compile_options(montelux_flags INTERFACE -fno-sanitize=null,vptr,object-size)
     # Outside of the integrals, tests take longer to compile than to run.
     target_compile_options(montelux_flags INTERFACE
         "$<$<NOT:$<OR:$<CONFIG:Debug>,$<BOOL:$<FILTER:$<TARGET_PROPERTY:NAME>,INCLUDE,^mc_(integrate|random)|_room_mc_>>>>:-Og>")
