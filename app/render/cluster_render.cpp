@@ -54,7 +54,8 @@ struct Prepared {
             BundledFiles files(FileBundle::from_bytes(in.get_bytes()));
             bytes = {};
             Warnings ignored;
-            description = load_scene(options.scene, ignored, nullptr, &files, texel_file_of(options));
+            description =
+                load_scene(options.scene, ignored, {.source = &files, .texel_file = texel_file_of(options)});
         }
         if (digest_of(description.scene) != opening.scene)
             throw Error("the scene", "this rank has read another one than rank 0");

@@ -219,8 +219,9 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     auto load_begin = Clock::now();
     Warnings warnings;
     std::vector<std::filesystem::path> files_read;
-    SceneDescription description =
-        load_scene(options.scene, warnings, &files_read, shared.files(), texel_file_of(options));
+    SceneDescription description = load_scene(
+        options.scene, warnings,
+        {.files_read = &files_read, .source = shared.files(), .texel_file = texel_file_of(options)});
     double load_seconds = seconds_since(load_begin);
     if (!options.quiet) print_warnings(warnings);
     apply(options, description);

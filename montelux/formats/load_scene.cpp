@@ -10,10 +10,9 @@
 namespace montelux {
 
 SceneDescription load_scene(const std::filesystem::path& path, Warnings& warnings,
-                            std::vector<std::filesystem::path>* files_read, FileSource* source,
-                            std::shared_ptr<TexelFile> texel_file) {
+                            const LoadOptions& options) {
     DiskFiles disk;
-    FileSource& files = source != nullptr ? *source : disk;
+    FileSource& files = options.source != nullptr ? *options.source : disk;
     std::vector<std::uint8_t> bytes = read_unpacked(files, path);
     const FileKind kind = file_kind(bytes);
     if (!kind.name.empty())
@@ -21,7 +20,7 @@ SceneDescription load_scene(const std::filesystem::path& path, Warnings& warning
                                        "; expected a scene of pbrt-v4 (.pbrt or .pbrt.gz)" +
                                        (kind.hint.empty() ? "" : ": " + kind.hint));
     // All other text goes to the pbrt reader, which reports what it does not understand.
-    return load_pbrt(std::move(bytes), path, warnings, files_read, files, std::move(texel_file));
+    return load_pbrt(std::move(bytes), path, warnings, options.files_read, files, options.texel_file);
 }
 
 } // namespace montelux

@@ -66,7 +66,7 @@ void bind_scene(nb::module_& m) {
                 SceneDescription d;
                 {
                     nb::gil_scoped_release unlocked;
-                    d = load_scene(path, warnings, nullptr, nullptr, texel_file(texture_memory));
+                    d = load_scene(path, warnings, {.texel_file = texel_file(texture_memory)});
                 }
                 take(s, std::move(d), warnings, path.filename().string());
             },

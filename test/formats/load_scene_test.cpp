@@ -45,7 +45,7 @@ TEST_F(LoadScene, ReadsPbrtWhateverItsName) {
         EXPECT_EQ(digest_of(load_scene(folder_.write(name, text), warnings_).scene), expected) << name;
     const auto zipped = folder_.write("scene.pbrt.gz", {packed.begin(), packed.end()});
     std::vector<std::filesystem::path> files_read;
-    EXPECT_EQ(digest_of(load_scene(zipped, warnings_, &files_read).scene), expected);
+    EXPECT_EQ(digest_of(load_scene(zipped, warnings_, {.files_read = &files_read}).scene), expected);
     EXPECT_EQ(files_read, std::vector{zipped});
 }
 

@@ -42,6 +42,6 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     TwoFiles files({data, nul}, {nul == end ? end : nul + 1, end});
     return montelux::read_or_refuse([&] {
         montelux::Warnings warnings;
-        montelux::load_scene("scene.pbrt", warnings, nullptr, &files);
+        montelux::load_scene("scene.pbrt", warnings, {.source = &files});
     });
 }
