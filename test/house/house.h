@@ -44,6 +44,9 @@ std::vector<std::string> circular_rooms(const RoomTable& rooms);
 std::vector<std::string> circular_headers(const std::vector<SourceFile>& files);
 std::vector<std::string> fenced_libraries(const std::vector<SourceFile>& files);
 std::vector<std::string> headers_without_purpose(const std::vector<SourceFile>& files);
+// Names of types and functions that a file below `folder` uses without including, directly or by way of other headers,
+// any header there that declares them. Builds that compile several files as one do not notice.
+std::vector<std::string> missing_includes(const std::vector<SourceFile>& files, std::string_view folder);
 // Headers at the top of a folder that only files of one of its subfolders include: they belong there.
 std::vector<std::string> misplaced_headers(const std::vector<SourceFile>& files, const std::string& folder);
 // Files of more than `limit` lines, except tables of measured data (*_data.*, *_table_data.*).

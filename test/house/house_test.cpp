@@ -45,6 +45,9 @@ TEST(House, NoCircles) {
 }
 TEST(House, LibrariesStayBehindTheirFences) { EXPECT_EQ(joined(fenced_libraries(real_sources())), ""); }
 TEST(House, EachHeaderSaysItsPurposeFirst) { EXPECT_EQ(joined(headers_without_purpose(real_sources())), ""); }
+TEST(House, EachFileIncludesWhatItNames) {
+    EXPECT_EQ(joined(missing_includes(real_sources(), "montelux/")), "");
+}
 TEST(House, WhatOneMethodUsesLiesInItsFolder) {
     EXPECT_EQ(joined(misplaced_headers(real_sources(), "montelux/mc/integrate/")), "");
 }
@@ -129,6 +132,23 @@ TEST(HouseRules, HeaderWithoutPurposeIsFound) {
     EXPECT_TRUE(headers_without_purpose({math}).empty());
     EXPECT_EQ(headers_without_purpose({{"montelux/mc/math/x.h", {"#pragma once"}}}).size(), 1u);
     EXPECT_EQ(headers_without_purpose({{"montelux/mc/math/x.h", {}}}).size(), 1u);
+}
+TEST(HouseRules, NamesWithoutTheirHeaderAreFound) {
+    const SourceFile names{"montelux/a/x.h",
+                           {"// Bytes.", "std::size_t vector_bytes(int n);", "struct Tree {};"}};
+    const SourceFile between{"montelux/a/y.h", {"#include \"montelux/a/x.h\""}};
+    const auto offences = [&](std::vector<std::string> lines) {
+        return joined(
+            missing_includes({names, between, {"montelux/a/z.cpp", std::move(lines)}}, "montelux/"));
+    };
+    EXPECT_EQ(offences({"", "int n = vector_bytes(1);"}),
+              "montelux/a/z.cpp:2: vector_bytes needs #include \"montelux/a/x.h\"\n");
+    EXPECT_EQ(offences({"void grow(const Tree&);"}),
+              "montelux/a/z.cpp:1: Tree needs #include \"montelux/a/x.h\"\n");
+    EXPECT_EQ(offences({"#include \"montelux/a/y.h\"", "int n = vector_bytes(1); Tree t;"}), "");
+    EXPECT_EQ(offences({"struct Tree;", "void grow(const Tree&);"}), "");
+    EXPECT_EQ(offences({"// vector_bytes(1)", "f(\"Tree\"); x.vector_bytes(1); other::vector_bytes(1);"}),
+              "");
 }
 TEST(HouseRules, HeaderOfOneSubfolderIsFound) {
     const SourceFile header{"montelux/a/x.h", {}}, own{"montelux/a/x.cpp", {"#include \"montelux/a/x.h\""}};
