@@ -97,7 +97,8 @@ void DisplacementReader::displace(ParameterReader& r, TriangleMesh& mesh,
     const std::size_t most = max_displaced_triangles - triangles_;
     if (!refine_edges(mesh, world_from_object, longest, most))
         r.error("edgelength", "edges below " + std::to_string(longest) +
-                                  " would take the triangles of all displaced shapes together beyond " +
+                                  " would give more triangles than the " + std::to_string(most) +
+                                  " that the displaced shapes before leave of " +
                                   std::to_string(max_displaced_triangles));
     triangles_ += mesh.triangle_count();
     const std::vector<float> moves = heights(mesh, *height, world_from_object);
