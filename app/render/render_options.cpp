@@ -224,7 +224,7 @@ void declare(CLI::App& c, RenderOptions& o) {
         "proportion to its power; or all alike: ");
     add_parsed(
         c, "--equiangular", "on|off", o.equiangular, parse_on_off,
-        "In homogeneous media lamps are also looked for from points of the ray close to them: on, off. "
+        "In media lamps are also looked for from points of the ray close to them: on, off. "
         "Default: on");
     add_choice(c, "--environment-sampling", o.environment_sampling, environment_sampling_names,
                "How directions to environment maps are sampled; auto, the default, is tabulated: ");

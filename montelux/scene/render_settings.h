@@ -54,7 +54,7 @@ struct IntegratorSettings {
     Strategy strategy = Strategy::mis;
     Heuristic heuristic = Heuristic::power;
     LightSampling light_sampling = LightSampling::tree;
-    // Lamps are looked for along rays through homogeneous media, too (transport/segment_light.h). Effective where
+    // Lamps are looked for along rays through media, too (transport/segment_light.h). Effective where
     // lights are sampled.
     bool equiangular = true;
     // Widens the microfacet lobes of surfaces that the path meets after an event that was not specular (Ggx::widened):

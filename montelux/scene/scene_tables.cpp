@@ -80,13 +80,13 @@ LightSampler make_light_sampler(const SceneView& scene, LightSampling sampling) 
     return LightSampler(PowerLightSampler(std::move(parts), all));
 }
 
-// Of lights with a position, if a homogeneous medium scatters light on its way from them.
+// Of lights with a position, if a medium scatters light on its way from them.
 std::optional<PowerLightSampler> make_segment_lights(const SceneView& scene) {
-    const bool homogeneous = std::ranges::any_of(scene.media, [](const Medium& medium) {
+    const bool scatters = std::ranges::any_of(scene.media, [](const Medium& medium) {
         const auto* m = std::get_if<HomogeneousMedium>(&medium);
-        return m != nullptr && !m->is_body;
+        return m == nullptr || !m->is_body;
     });
-    if (!homogeneous) return std::nullopt;
+    if (!scatters) return std::nullopt;
     const std::vector<Index> counts = part_counts(scene);
     LightParts parts(counts);
     // Maps at infinity take long to sum up, and are not wanted.

@@ -8,20 +8,51 @@
 
 #include "montelux/mc/warp/equiangular.h"
 #include "montelux/scene/light/light_sampling.h"
+#include "montelux/scene/medium/medium_model.h"
 #include "montelux/scene/shape/ray.h"
 #include "montelux/scene/view.h"
 
 namespace montelux {
 
-// A ray through a homogeneous medium. The strategy chooses a part of a light, and a distance by the equiangular density
+// The part of a ray on which there is a medium, and the mean of its majorant there, over the wavelengths too.
+struct MediumExtent {
+    float t0 = 0, t1 = 0;
+    float extinction = 0;
+
+    bool empty() const { return !(t0 < t1 && extinction > 0); }
+};
+
+// Of a ray with a direction of unit length; bounded unless the medium is homogeneous.
+template <MediumModel M, SampledMedium S>
+MediumExtent medium_extent(const S& sampled, const Ray& ray) {
+    if constexpr (M::homogeneous) {
+        return {0, ray.t_max, average(sampled.point.sigma_a + sampled.point.sigma_s)};
+    } else {
+        MediumExtent extent;
+        float depth = 0;
+        MajorantWalk walk = sampled.majorants(ray);
+        for (MajorantSegment piece; walk.next(piece);) {
+            const float majorant = average(piece.majorant);
+            if (!(majorant > 0)) continue;
+            if (!(depth > 0)) extent.t0 = piece.t0;
+            extent.t1 = piece.t1;
+            depth += majorant * (piece.t1 - piece.t0);
+        }
+        if (extent.t0 < extent.t1) extent.extinction = depth / (extent.t1 - extent.t0);
+        return extent;
+    }
+}
+
+// A ray through a medium, from where that begins. The strategy chooses a part of a light, and a distance by the equiangular density
 // about the centre of that part; light is then sampled on the part from there. Half of the choices are made for a
 // point of the ray, the others by power alone: a beam may cross the ray elsewhere.
 struct SegmentLight {
     Point3f o{};
     Vec3f d{};            // unit
     float length = 0;     // 0: the strategy is not used. May be infinite.
-    float extinction = 0; // mean over the wavelengths
-    float at = 0;         // distance of the path's scattering event
+    float extinction = 0; // MediumExtent::extinction
+    float start = 0;      // distance of o from the origin of the path's ray
+    float at = 0;         // distance of the path's scattering event from o
     float time = 0;       // of the path
 
     // Lamps farther away are left to free flights: little of their light arrives, and it is spread evenly.

@@ -67,15 +67,16 @@ class VolumePath : private VolumePathLights<Stream> {
         if constexpr (M::homogeneous)
             if (medium.surface.is_given()) local.point = state_.body;
         const Ray ray{state_.ray.o, state_.ray.d, distance};
-        SegmentLight segment;
-        if constexpr (M::homogeneous) {
+        if constexpr (M::homogeneous)
             if (is_black(local.point.sigma_s)) return absorbs(local.point, distance);
-            segment = sample_segment(medium, local.point, ray);
-        }
-        const SampledSpectrum before = state_.r_u;
+        SegmentLight segment = sample_segment(medium, local, ray);
+        // Density of SegmentLight reaching a point of the ray, as r_u is that of the path: by ratio tracking in grids, 1
+        // in homogeneous media.
+        SampledSpectrum of_segment = state_.r_u;
         CollisionNumbers numbers(stream_);
         const auto collision = [&](float t, SampledSpectrum relative, SampledSpectrum majorant) {
             state_.take(relative);
+            if constexpr (!M::homogeneous) of_segment *= relative;
             const Point3f p = ray.o + ray.d * t;
             const MediumPoint m = local.coefficients(p);
             const float hero = majorant[0];
@@ -91,12 +92,9 @@ class VolumePath : private VolumePathLights<Stream> {
             if (M::homogeneous || u < absorbed + scattered) {
                 if (!(scattered > 0)) return end(PathEnd::absorbed); // by rounding
                 state_.take(m.sigma_s / scattered);
-                if constexpr (M::homogeneous) {
-                    segment.at = t;
-                    state_.scatter(segment, before, scattered * std::exp(-hero * t));
-                } else {
-                    state_.scatter();
-                }
+                segment.at = t - segment.start;
+                state_.scatter(segment, of_segment,
+                               M::homogeneous ? scattered * std::exp(-hero * t) : scattered);
                 state_.distance += t;
                 scatter(p, medium.phase, m);
                 return false;
@@ -107,19 +105,20 @@ class VolumePath : private VolumePathLights<Stream> {
             state_.r_u *= null / null[0];
             state_.r_l *= majorant / null[0];
             state_.r_s *= majorant / null[0];
-            state_.rescale();
+            of_segment *= majorant / null[0];
+            of_segment *= state_.rescale();
             return true;
         };
         const std::optional<SampledSpectrum> relative = track(local, ray, numbers, collision);
         if (!relative) return false;
         if constexpr (M::homogeneous) {
             // Light sampling computes this transmittance, so that its density is 1 at all wavelengths.
-            const SampledSpectrum of_light = state_.r_l, of_segment = state_.r_s;
+            const SampledSpectrum of_light = state_.r_l, of_last_segment = state_.r_s;
             state_.take(*relative);
             const float hero = local.point.sigma_a[0] + local.point.sigma_s[0];
             const float inverse = hero > 0 ? std::exp(hero * distance) : 1.0f;
             state_.r_l = of_light * inverse;
-            state_.r_s = of_segment * inverse;
+            state_.r_s = of_last_segment * inverse;
         } else {
             state_.take(*relative);
         }

@@ -54,13 +54,18 @@ class VolumePathLights {
 
     // Next-event estimation from a point of the ray that is chosen for a lamp (SegmentLight). Returns what its
     // density at other points follows from.
-    SegmentLight sample_segment(const HomogeneousMedium& medium, const MediumPoint& m, const Ray& ray) {
+    template <MediumModel M, SampledMedium S>
+    SegmentLight sample_segment(const M& medium, const S& sampled, const Ray& ray) {
         using Outcome = DirectLight::Outcome;
         if (scene_.segment_lights == nullptr || !settings_.equiangular || !samples_lights(settings_) ||
-            medium.is_body || state_.depth >= settings_.max_depth)
+            state_.depth >= settings_.max_depth)
             return {};
-        const SampledSpectrum sigma_t = m.sigma_a + m.sigma_s;
-        SegmentLight segment{ray.o, ray.d, ray.t_max, average(sigma_t)};
+        if constexpr (M::homogeneous)
+            if (medium.is_body) return {};
+        const MediumExtent extent = medium_extent<M>(sampled, ray);
+        if (extent.empty()) return {};
+        SegmentLight segment{ray.o + ray.d * extent.t0, ray.d, extent.t1 - extent.t0, extent.extinction,
+                             extent.t0};
         segment.time = state_.ray.time;
         const Vec2f u = stream_.next_2d(), of_light = stream_.next_2d();
         const LightChoice chosen = segment.choose(scene_, stream_.refined(u.x));
@@ -68,14 +73,15 @@ class VolumePathLights {
         if (!distances) return segment;
         segment.at = distances->sample(u.y);
         const float choice = chosen.probability * distances->pdf(segment.at);
-        if (!(choice > 0 && segment.at < ray.t_max)) return segment;
-        const ReferencePoint here{ray.o + ray.d * segment.at};
+        if (!(choice > 0 && segment.at < segment.length)) return segment;
+        const float distance = segment.start + segment.at;
+        const ReferencePoint here{ray.o + ray.d * distance};
         const std::optional<LightSample> light =
             sample_li({scene_, chosen.light, segment.time}, chosen.part, here, of_light, state_.lambda);
         if (!light) return segment;
         const float phase =
             std::visit([&](const PhaseModel auto& f) { return f.pdf(-ray.d, light->wi); }, medium.phase);
-        const SampledSpectrum passed = exp(sigma_t * -segment.at), scattered = m.sigma_s * passed;
+        const MediumPoint m = sampled.coefficients(here.p);
         DirectLight record{.outcome = Outcome::no_transport,
                            .light = chosen.light,
                            .part = chosen.part,
@@ -84,24 +90,29 @@ class VolumePathLights {
                            .wi = light->wi,
                            .shadow = light->shadow,
                            .radiance = light->radiance,
-                           .f = scattered * phase};
+                           .f = m.sigma_s * phase};
         const auto finish = [&](Outcome outcome) {
             record.outcome = outcome;
-            if (recorder_) recorder_.sampled_light_on_ray(segment.at, record, state_.carried());
+            if (recorder_) recorder_.sampled_light_on_ray(distance, record, state_.carried());
             return segment;
         };
         if (is_black(record.f) || is_black(light->radiance)) return finish(Outcome::no_transport);
+        ShadowTransmittance to_here; // nothing is in the way
+        if (!shadow_detail::pass(medium, scene_, state_.medium, state_.lambda, Ray{ray.o, ray.d, distance},
+                                 {}, stream_, to_here))
+            return finish(Outcome::occluded);
         Ray shadow = light->shadow;
         shadow.time = state_.ray.time;
         const std::optional<ShadowTransmittance> through =
             shadow_transmittance(scene_, tracer_, shadow, state_.medium, state_.lambda, stream_);
         if (!through) return finish(Outcome::occluded);
         const float before = average(state_.r_u);
+        record.f *= to_here.t;
         record.radiance *= through->t;
-        record.light_pdf = choice * light->pdf * average(state_.r_u * through->r_l) / before;
+        record.light_pdf = choice * light->pdf * average(state_.r_u * to_here.r_l * through->r_l) / before;
         // The free flight that ends here, with light sampling or scattering.
         const bool alone = light->invisible || settings_.strategy == Strategy::light;
-        const SampledSpectrum flight = state_.r_u * scattered;
+        const SampledSpectrum flight = state_.r_u * m.sigma_s * to_here.r_u;
         record.other_pdf = scene_.light_sampler->probability(here, chosen.light, chosen.part) * light->pdf *
                            average(flight * through->r_l) / before;
         record.bsdf_pdf = alone ? 0 : phase * average(flight * through->r_u) / before;

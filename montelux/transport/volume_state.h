@@ -43,21 +43,22 @@ struct VolumeState : PathState {
         segment = {};
     }
     // A scattering event that the strategy of `found` could have found, whose density at the first wavelength
-    // was `hero`; r_u was `before`.
-    void scatter(const SegmentLight& found, SampledSpectrum before, float hero) {
+    // is `hero`; `reached`: r_s without it.
+    void scatter(const SegmentLight& found, SampledSpectrum reached, float hero) {
         r_l = r_u;
         segment = found;
-        r_s = before / hero;
+        r_s = reached / hero;
     }
-    // Only ratios count: the range of floats must last for many steps.
-    void rescale() {
+    // Only ratios count: the range of floats must last for many steps. Returns the factor.
+    float rescale() {
         const float largest = max_value(r_u);
-        if (!(largest > 0x1p40f) && !(max_value(r_l) > 0x1p60f)) return;
+        if (!(largest > 0x1p40f) && !(max_value(r_l) > 0x1p60f)) return 1;
         const float scale = 1 / largest;
         throughput *= scale;
         r_u *= scale;
         r_l *= scale;
         r_s *= scale;
+        return scale;
     }
     // Leaves the first wavelength alone, which then stands for all four. What the other ones have found stays.
     // All four become the first, so that their densities remain equal.

@@ -299,7 +299,7 @@ void bind_views(nb::module_& m) {
          "Widens the reflections of surfaces that a path meets after an event that was not specular: fewer "
          "fireflies, and a bias that standard errors do not contain.");
     flag(integrator, "equiangular", &IntegratorSettings::equiangular,
-         "Where lights are sampled: in homogeneous media lamps are also looked for from points of the ray "
+         "Where lights are sampled: in media lamps are also looked for from points of the ray "
          "close to "
          "them.");
     optional_part(

@@ -1,4 +1,4 @@
-// Lamps in homogeneous fog: light that is looked for along rays.
+// Lamps in fog: light that is looked for along rays.
 #include "test/transport/volume_testing.h"
 
 #include "montelux/mc/math/quadrature.h"
@@ -8,13 +8,34 @@ namespace {
 
 constexpr float lamp_z = 2.5f, lamp_beside = 0.3f;
 
+// Densities of a grid between 0 and 1, so that null collisions are frequent.
+const std::vector<float> uneven{0.9f, 0.1f, 0.4f, 1, 0.05f, 0.7f, 0, 0.6f};
+
+// Chromatic fog in a box around the ray. Densities fall to 0 at the faces; they are constant between the outermost
+// samples, up to z = 60 and beyond, if all samples are alike.
+GridMedium grid_fog(VolumeScene& b, std::vector<float> densities, float density) {
+    GridMedium fog = b.grid_medium(b.add_grid(2, 2, 2, std::move(densities)));
+    fog.box.p0 = {-200, -200, -120};
+    fog.box.p1 = {200, 200, 240};
+    fog.sigma_a = b.spectrum(0.02f, 0.1f);
+    fog.sigma_s = b.spectrum(0.05f, 0.4f);
+    fog.scale = density;
+    fog.phase = HenyeyGreenstein{0.4f};
+    return fog;
+}
+
+enum class Fog { homogeneous, grid };
+
 // Chromatic fog everywhere, with a lamp beside the ray. `wall`: a black one behind the lamp, at z = 4.
-VolumeScene lamp_in_fog(bool wall, float density = 1) {
+VolumeScene lamp_in_fog(bool wall, float density = 1, Fog fog = Fog::homogeneous) {
     VolumeScene b;
-    b.scene.camera.medium = b.add_medium(HomogeneousMedium{.sigma_a = b.spectrum(0.02f, 0.1f),
-                                                           .sigma_s = b.spectrum(0.05f, 0.4f),
-                                                           .scale = density,
-                                                           .phase = HenyeyGreenstein{0.4f}});
+    if (fog == Fog::grid)
+        b.scene.camera.medium = b.add_medium(grid_fog(b, std::vector<float>(8, 1.0f), density));
+    else
+        b.scene.camera.medium = b.add_medium(HomogeneousMedium{.sigma_a = b.spectrum(0.02f, 0.1f),
+                                                               .sigma_s = b.spectrum(0.05f, 0.4f),
+                                                               .scale = density,
+                                                               .phase = HenyeyGreenstein{0.4f}});
     if (wall)
         b.add_mesh(square(Transform::translate({0, 0, 4}) * Transform::scale({1e3, 1e3, 1})),
                    b.add(DiffuseMaterial{gray(0)}));
@@ -47,11 +68,12 @@ double single_scattering(double sigma_a, double sigma_s, double length, const In
 }
 
 TEST(Equiangular, SingleScatteringOfAPointLight) {
-    for (const bool wall : {false, true})
+    for (const auto& [fog, wall] :
+         {std::pair{Fog::homogeneous, false}, {Fog::homogeneous, true}, {Fog::grid, true}})
         for (const bool equiangular : {false, true})
             for (const Strategy strategy : {Strategy::light, Strategy::mis})
                 for (const Heuristic heuristic : {Heuristic::power, Heuristic::balance}) {
-                    VolumeScene b = lamp_in_fog(wall);
+                    VolumeScene b = lamp_in_fog(wall, 1, fog);
                     b.scene.lights.push_back(PointLight{SceneSpectrum(3.0f), 1, {lamp_beside, 0, lamp_z}});
                     b.description.integrator.strategy = strategy;
                     b.description.integrator.heuristic = heuristic;
@@ -64,7 +86,7 @@ TEST(Equiangular, SingleScatteringOfAPointLight) {
                                                      [](Vec3f) { return 3.0; });
                         },
                         std::string("point light") + (wall ? ", wall" : "") +
-                            (equiangular ? ", equiangular" : ""),
+                            (fog == Fog::grid ? ", grid" : "") + (equiangular ? ", equiangular" : ""),
                         2e-4);
                 }
 }
@@ -86,14 +108,20 @@ TEST(Equiangular, SingleScatteringOfABeam) {
 }
 
 // Scattering hits these lamps, too: three strategies share the light, by similar parts since the lamps are large.
-enum class Lamp { sphere, mesh, in_other_fog, in_grid };
-constexpr Lamp lamps[] = {Lamp::sphere, Lamp::mesh, Lamp::in_other_fog, Lamp::in_grid};
+enum class Lamp { sphere, mesh, in_other_fog, in_grid, in_uneven_fog };
+constexpr Lamp lamps[] = {Lamp::sphere, Lamp::mesh, Lamp::in_other_fog, Lamp::in_grid, Lamp::in_uneven_fog};
 
 std::string name_of(Lamp lamp) { return "lamp " + std::to_string(static_cast<int>(lamp)); }
 
 VolumeScene large_lamp_in_fog(Lamp lamp) {
     VolumeScene b = lamp_in_fog(true, 3);
-    std::get<HomogeneousMedium>(b.scene.media[0]).phase = HenyeyGreenstein{0.6f};
+    if (lamp == Lamp::in_uneven_fog) {
+        GridMedium fog = grid_fog(b, uneven, 6);
+        fog.box.p0 = {-3, -2, 1.5f}; // the ray begins before it
+        fog.box.p1 = {3, 2, 4};
+        b.scene.media[0] = fog;
+    }
+    std::visit([](auto& m) { m.phase = HenyeyGreenstein{0.6f}; }, b.scene.media[0]);
     const Transform place = Transform::translate({1.15, 0, 2.3});
     const Index black = b.add(DiffuseMaterial{gray(0)});
     // The ray passes these by.
@@ -118,7 +146,7 @@ VolumeScene large_lamp_in_fog(Lamp lamp) {
         b.add_quadric(Sphere{.world_from_object = place * size}, black, 8);
     return b;
 }
-const Ray beside_large_lamp{{0, 0, 1.2f}, {0, 0, 1}};
+Ray ray_beside(Lamp lamp) { return {{0, 0, lamp == Lamp::in_uneven_fog ? -1.5f : 1.2f}, {0, 0, 1}}; }
 
 TEST(Equiangular, SingleScatteringOfLampsThatRaysHit) {
     for (const Lamp lamp : lamps) {
@@ -127,7 +155,7 @@ TEST(Equiangular, SingleScatteringOfLampsThatRaysHit) {
             b.description.integrator.strategy = strategy;
             b.description.integrator.heuristic = heuristic;
             b.description.integrator.equiangular = equiangular;
-            return volume_radiance(b.description, beside_large_lamp, 100000).total;
+            return volume_radiance(b.description, ray_beside(lamp), 100000).total;
         };
         const RunningMoments without = mean(Strategy::mis, Heuristic::balance, false);
         for (const auto& [strategy, heuristic] : {std::pair{Strategy::bsdf, Heuristic::power},
@@ -141,24 +169,32 @@ TEST(Equiangular, SingleScatteringOfLampsThatRaysHit) {
 
 // Thin fog: a free flight rarely ends near the lamp.
 TEST(Equiangular, ThinFogHasLessNoise) {
-    VolumeScene b = lamp_in_fog(true, 0.01f);
-    b.scene.lights.push_back(PointLight{SceneSpectrum(3.0f), 1, {lamp_beside, 0, lamp_z}});
-    const RunningMoments with = volume_radiance(b.description, through_fog, 20000).total;
-    b.description.integrator.equiangular = false;
-    const RunningMoments without = volume_radiance(b.description, through_fog, 20000).total;
-    EXPECT_NEAR(with.mean(), without.mean(), 5 * std::sqrt(without.variance_of_mean()));
-    EXPECT_LT(with.variance(), without.variance() / 100);
+    for (const Fog fog : {Fog::homogeneous, Fog::grid}) {
+        VolumeScene b = lamp_in_fog(true, 0.01f, fog);
+        b.scene.lights.push_back(PointLight{SceneSpectrum(3.0f), 1, {lamp_beside, 0, lamp_z}});
+        const RunningMoments with = volume_radiance(b.description, through_fog, 20000).total;
+        b.description.integrator.equiangular = false;
+        const RunningMoments without = volume_radiance(b.description, through_fog, 20000).total;
+        EXPECT_NEAR(with.mean(), without.mean(), 5 * std::sqrt(without.variance_of_mean()));
+        EXPECT_LT(with.variance(), without.variance() / 100);
+    }
 }
 
 // Lamps that rays hit, of triangles and as a sphere, seen through an interface between two fogs and by a diffuse wall;
-// a sky and a lamp too far away to be looked for along rays; several scattering events.
-VolumeScene hall_of_lamps() {
+// a sky and a lamp too far away to be looked for along rays; several scattering events. `fog`: the inner one.
+VolumeScene hall_of_lamps(Fog fog = Fog::homogeneous) {
     VolumeScene b;
     const Index outer = b.add_medium(HomogeneousMedium{.sigma_a = b.spectrum(0.02f, 0.1f),
                                                        .sigma_s = b.spectrum(0.05f, 0.3f),
                                                        .phase = HenyeyGreenstein{0.5f}});
     const Index inner = b.add_medium(
         HomogeneousMedium{.sigma_a = b.spectrum(0.2f, 0.02f), .sigma_s = b.spectrum(1.2f, 0.3f)});
+    if (fog == Fog::grid) {
+        GridMedium grid = b.grid_medium(b.add_grid(2, 2, 2, uneven));
+        grid.sigma_a = b.spectrum(0.4f, 0.04f);
+        grid.sigma_s = b.spectrum(2.4f, 0.6f);
+        b.scene.media[inner] = grid;
+    }
     b.scene.camera.medium = outer;
     const Index black = b.add(DiffuseMaterial{gray(0)});
     const auto lamp = [&](Index shape, Index medium) { b.bound(shape, medium, medium); };
@@ -202,6 +238,9 @@ TEST(Equiangular, StrategiesAgree) {
     EXPECT_NEAR(hall_mean(b, Strategy::mis_bsdf, Heuristic::power, true, 1).mean() +
                     hall_mean(b, Strategy::mis_light, Heuristic::power, true, 1).mean(),
                 mis.mean(), 1e-3 * mis.mean());
+    VolumeScene grid = hall_of_lamps(Fog::grid);
+    expect_same_mean(hall_mean(grid, Strategy::mis, Heuristic::power, true, 1),
+                     hall_mean(grid, Strategy::mis, Heuristic::power, false, 2), "grid, without");
 }
 
 // What the densities of the strategies say about one another: with the balance heuristic a sample of strategy S
@@ -262,13 +301,16 @@ void expect_shares(VolumeScene& b, int samples, const std::string& what, const C
 TEST(Equiangular, DensitiesOfTheStrategiesAgree) {
     for (const Lamp lamp : lamps) {
         VolumeScene b = large_lamp_in_fog(lamp);
-        expect_shares(b, lamp == Lamp::in_grid ? 400000 : 100000, name_of(lamp),
-                      [](const VolumeWorld&, SampleStream&) { return beside_large_lamp; });
+        expect_shares(b, lamp == Lamp::in_grid || lamp == Lamp::in_uneven_fog ? 400000 : 100000,
+                      name_of(lamp), [&](const VolumeWorld&, SampleStream&) { return ray_beside(lamp); });
     }
-    VolumeScene hall = hall_of_lamps();
-    expect_shares(hall, 60000, "hall", [](const VolumeWorld& world, SampleStream& stream) {
-        return world.camera.generate_ray(stream.next_2d() * 16, {});
-    });
+    for (const Fog fog : {Fog::homogeneous, Fog::grid}) {
+        VolumeScene hall = hall_of_lamps(fog);
+        expect_shares(hall, 60000, fog == Fog::grid ? "hall, grid" : "hall",
+                      [](const VolumeWorld& world, SampleStream& stream) {
+                          return world.camera.generate_ray(stream.next_2d() * 16, {});
+                      });
+    }
 }
 
 TEST(Equiangular, RecordsSumToTheRadiance) {
