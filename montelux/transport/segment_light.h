@@ -43,9 +43,9 @@ MediumExtent medium_extent(const S& sampled, const Ray& ray) {
     }
 }
 
-// A ray through a medium, from where that begins. The strategy chooses a part of a light, and a distance by the equiangular density
-// about the centre of that part; light is then sampled on the part from there. Half of the choices are made for a
-// point of the ray, the others by power alone: a beam may cross the ray elsewhere.
+// A ray through a medium, from where that begins. The strategy chooses a part of a light, and a distance by the
+// equiangular density about the centre of that part; light is then sampled on the part from there. Half of the choices
+// are made for a point of the ray, the others by power alone: a beam may cross the ray elsewhere.
 struct SegmentLight {
     Point3f o{};
     Vec3f d{};            // unit
