@@ -44,8 +44,10 @@ std::vector<int> require_color_channels(const std::string& name, const Image& im
 
 Image coded_picture(const std::string& name, const Image& image, const ToneCurve& tone, int bits) {
     const std::vector<int> colors = require_color_channels(name, image);
-    const bool is_ready = image.format() == PixelFormat::u8 && bits == 8 && tone.exposure == 0 &&
-                          tone.kind == ToneKind::srgb && image.encoding() == ColorEncoding::srgb();
+    const bool holds_codes = (image.format() == PixelFormat::u8 && bits == 8) ||
+                             (image.format() == PixelFormat::u16 && bits == 16);
+    const bool is_ready = holds_codes && tone.exposure == 0 && tone.kind == ToneKind::srgb &&
+                          image.encoding() == ColorEncoding::srgb();
     if (!is_ready) return apply_tone_curve(image, tone, bits);
     std::vector<std::string> names;
     names.reserve(colors.size() + 1);

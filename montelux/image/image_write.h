@@ -29,8 +29,8 @@ struct WriteOptions {
 // The format is that of the extension: .exr, .png, .jpg (.jpeg), .hdr or .pfm.
 // EXR: all channels and attributes; 16-bit float images as such, all others as 32-bit linear float, but for
 // WriteOptions::exr_half.
-// PNG, JPEG, HDR, PFM: the colour channels R, G, B (or Y; R, G, B and A for PNG) and nothing else. An 8-bit sRGB
-// image goes into an 8-bit PNG or a JPEG uncurved when the exposure is 0 and the tone curve sRGB. HDR clamps negative values and NaN to 0 and
+// PNG, JPEG, HDR, PFM: the colour channels R, G, B (or Y; R, G, B and A for PNG) and nothing else. An 8-bit or 16-bit
+// sRGB image goes into a PNG of as many bits, or a JPEG, uncurved when the exposure is 0 and the tone curve sRGB. HDR clamps negative values and NaN to 0 and
 // has 8-bit mantissas; PFM keeps every bit. Throws Error when the file cannot be written; then nothing is
 // left behind and an older file is untouched.
 void write_image(const std::filesystem::path& path, const Image& image, const WriteOptions& options = {});
