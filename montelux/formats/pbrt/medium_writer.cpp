@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -58,6 +60,63 @@ void SceneWriter::emission(DirectiveText& d, SceneSpectrum le, float scale, cons
     const float unit = s.max_value() > 0 ? photometric_scale(s) : 0;
     if (unit != scale)
         warn(what, "its emission is written times " + digits_of(unit / scale) + ", as pbrt scales it");
+}
+
+// Of all voxels from one below the lowest to one above the highest that is not 0: there, between the centres of its
+// samples, a uniform grid interpolates as the sparse one does.
+void SceneWriter::sparse_grid(DirectiveText& d, std::string& transform, const SparseGridMedium& m,
+                              const std::string& what) {
+    constexpr double most_voxels = 1 << 24; // 200 MB of text
+    const SparseGrid& density = scene_.sparse_grids[m.density];
+    SparseGrid::VoxelRange range = density.non_zero();
+    if (range.empty()) range.upper = range.lower;
+    std::array<int, 3> n{};
+    Point3f lower, upper;
+    double count = 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+        n[a] = range.upper[a] - range.lower[a] + 3;
+        lower[static_cast<int>(a)] = static_cast<float>(range.lower[a]) - 1.5f;
+        upper[static_cast<int>(a)] = static_cast<float>(range.upper[a]) + 1.5f;
+        count *= n[a];
+    }
+    if (count > most_voxels)
+        throw Error(
+            what,
+            "it is a sparse grid of " + digits_of(count) +
+                " voxels, which pbrt reads from NanoVDB files; these are not written, and 'uniformgrid' "
+                "only up to " +
+                digits_of(most_voxels) + " voxels");
+    warn(
+        what,
+        "it is a sparse grid; NanoVDB files are not written, so it becomes a 'uniformgrid', which differs by "
+        "rounding");
+    size(d, n);
+    d.vector("point3", "p0", lower);
+    d.vector("point3", "p1", upper);
+    transform = transform_text(m.box.world_from_medium);
+    const auto grid = [&](const char* name, const auto& value) {
+        std::vector<float> values;
+        values.reserve(static_cast<std::size_t>(count));
+        for (int z = 0; z < n[2]; ++z)
+            for (int y = 0; y < n[1]; ++y)
+                for (int x = 0; x < n[0]; ++x)
+                    values.push_back(
+                        value(range.lower[0] - 1 + x, range.lower[1] - 1 + y, range.lower[2] - 1 + z));
+        d.numbers("float", name, values);
+    };
+    grid("density", [&](int x, int y, int z) { return density.value(x, y, z); });
+    if (m.temperature == no_index) return;
+    const SparseGrid& temperature = scene_.sparse_grids[m.temperature];
+    // Values below 0 do not glow, and pbrt has none.
+    grid("temperature", [&](int x, int y, int z) {
+        const Vec3d voxel(x, y, z);
+        return std::max(temperature(Vec3f(m.temperature_space_from_density.point(voxel))), 0.0f);
+    });
+    if (!(m.temperature_space_from_density == Transform()))
+        warn(what, "its temperatures are resampled at the voxels of its density");
+    if (m.le_scale != 1) grid("Lescale", [&](int, int, int) { return m.le_scale; });
+    d.number("temperatureoffset", m.temperature_offset);
+    d.number("temperaturescale", m.temperature_scale);
 }
 
 void SceneWriter::medium(Index i) {
@@ -144,9 +203,12 @@ void SceneWriter::medium(Index i) {
                 d.number("frequency", m.frequency);
                 phase(d, m.phase);
             },
-            [&](const SparseGridMedium&) {
-                throw Error(
-                    what, "it is a sparse grid, which pbrt reads from NanoVDB files; these are not written");
+            [&](const SparseGridMedium& m) {
+                d.string("type", "uniformgrid");
+                sparse_grid(d, transform, m, what);
+                coefficients(m);
+                d.number("scale", m.scale);
+                phase(d, m.phase);
             }},
         scene_.media[i]);
     put_block(transform + d.text());

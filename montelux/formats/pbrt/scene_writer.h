@@ -85,6 +85,8 @@ class SceneWriter {
     // medium_writer.cpp
     void media();
     void medium(Index i);
+    void sparse_grid(DirectiveText& d, std::string& transform, const SparseGridMedium& m,
+                     const std::string& what);
     void emission(DirectiveText& d, SceneSpectrum le, float scale, const std::string& what);
     std::string interface_text(const MediumInterface& media) const;
 

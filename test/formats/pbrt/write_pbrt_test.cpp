@@ -228,6 +228,40 @@ TEST_F(WritePbrt, Media) {
               Texts());
 }
 
+TEST_F(WritePbrt, SparseGridsBecomeUniformOnes) {
+    SceneDescription d = parse("WorldBegin LightSource \"point\" Shape \"sphere\"");
+    SparseGrid grid{.node_count = {1, 1, 1},
+                    .nodes = {0},
+                    .blocks = std::vector<std::uint32_t>(SparseGrid::node_size, SparseGrid::constant_entry),
+                    .values = std::vector<float>(SparseGrid::block_size)};
+    grid.blocks[0] = 0;
+    for (int i = 0; i < 3; ++i)
+        grid.values[static_cast<std::size_t>(64 * (2 + i) + 8 * 3 + 1)] = 0.1f + static_cast<float>(i);
+    ASSERT_TRUE(grid.is_consistent());
+    d.scene.sparse_grids = {grid};
+    d.scene.media.push_back(SparseGridMedium{.box = {{1, 2, 0}, {5, 4, 2}, Transform::translate({1, 2, 3})},
+                                             .density = 0,
+                                             .scale = 3,
+                                             .temperature_space_from_density = {}});
+    Warnings warnings;
+    write_pbrt(d, folder_ / "a.pbrt", warnings);
+    ASSERT_EQ(warnings.messages().size(), 1u);
+    EXPECT_NE(warnings.messages()[0].find("'uniformgrid'"), std::string::npos);
+    Warnings ignored;
+    const SceneDescription again = load_scene(folder_ / "a.pbrt", ignored);
+    const auto& medium = std::get<GridMedium>(again.scene.media.at(0));
+    EXPECT_EQ(medium.scale, 3);
+    const ScalarGrid& uniform = again.scene.scalar_grids.at(medium.density);
+    for (int i = 0; i < 500; ++i) {
+        const auto random = [i](int k) {
+            return static_cast<float>(noise(static_cast<std::uint64_t>(3 * i + k)));
+        };
+        const Point3f p(6 * random(0), 5 * random(1), 3 * random(2)); // in the space of the grid
+        const Vec3f extent = medium.box.p1 - medium.box.p0, from = p - medium.box.p0;
+        EXPECT_NEAR(uniform({from.x / extent.x, from.y / extent.y, from.z / extent.z}), grid(p), 1e-5f);
+    }
+}
+
 TEST_F(WritePbrt, Settings) {
     const char* settings[] = {
         R"(LookAt 1 2 3 0.3 0.2 0.1 0 1 0.1 Camera "perspective" "float fov" 33.3 "float lensradius" 0.1
@@ -297,7 +331,13 @@ TEST_F(WritePbrt, NothingIsLeftOfAFailure) {
                                "[0 0 0 1 0 0 0 1 0 0 0 1] \"integer indices\" [0 2 1 0 1 3 1 2 3 0 3 2]");
     Warnings warnings;
     expect_error([&] { write_pbrt(d, folder_ / "a.txt", warnings); }, {"a.txt", ".pbrt"});
-    d.scene.media.push_back(SparseGridMedium{});
+    d.scene.sparse_grids.push_back(
+        SparseGrid{.node_count = {100, 100, 100},
+                   .nodes = std::vector<std::uint32_t>(1000000, SparseGrid::constant_entry | 1u),
+                   .blocks = {},
+                   .values = {},
+                   .constants = {0, 1}});
+    d.scene.media.push_back(SparseGridMedium{.box = {}, .density = 0, .temperature_space_from_density = {}});
     expect_error([&] { write_pbrt(d, folder_ / "a.pbrt", warnings); }, {"medium 0", "NanoVDB"});
     d.scene.media.clear();
     d.scene.materials.push_back(DiffuseMaterial{{.value = 0.0f / 0.0f}});
@@ -324,6 +364,7 @@ void expect_all_round_trip(const std::filesystem::path& folder) {
             continue; // a part of a scene
         }
         ++whole;
+        if (!loaded->scene.sparse_grids.empty()) continue; // SparseGridsBecomeUniformOnes
         try {
             EXPECT_EQ(expect_round_trip(*loaded).messages(), Texts());
         } catch (const Error& e) {
