@@ -87,8 +87,8 @@ std::string_view setting_name(const Table& table, Value value) {
     return "?";
 }
 
-Json describe(const std::string& file, const SceneDescription& d, const Warnings& warnings,
-              const std::vector<std::filesystem::path>& files) {
+Json describe_scene(const std::string& file, const SceneDescription& d, const Warnings& warnings,
+                    const std::vector<std::filesystem::path>& files) {
     const Scene& s = d.scene;
     Json out;
     out["file"] = file;
@@ -207,7 +207,7 @@ void print_scene_info(const std::string& file, bool json) {
     Warnings warnings;
     std::vector<std::filesystem::path> files;
     const SceneDescription description = load_scene(file, warnings, {.files_read = &files});
-    const Json out = describe(file, description, warnings, files);
+    const Json out = describe_scene(file, description, warnings, files);
     if (json)
         std::printf("%s\n", out.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
     else

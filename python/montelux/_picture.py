@@ -8,7 +8,7 @@ import struct
 import zlib
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,7 @@ from . import _core
 from ._names import UnknownAttribute, unknown
 
 Pixels = npt.NDArray[np.float32]
+Tone = Literal["linear", "srgb", "aces", "agx", "filmic"]
 
 
 def png_bytes(pixels: npt.NDArray[np.uint8]) -> bytes:

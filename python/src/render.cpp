@@ -11,6 +11,7 @@
 #include "montelux/image/exposure.h"
 #include "montelux/image/image_write.h"
 #include "montelux/mc/io/generation_file.h"
+#include "montelux/mc/math/nearest_name.h"
 #include "montelux/render/render_warnings.h"
 #include "montelux/scene/build/check_references.h"
 
