@@ -18,6 +18,7 @@ void add_merge(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
 void add_denoise(CLI::App& app, int& exit_code);
 void add_bake(CLI::App& app, int& exit_code);
+void add_convert(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 void add_formats(CLI::App& app, int& exit_code);
 

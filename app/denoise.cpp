@@ -4,6 +4,7 @@
 #include "app/interrupt.h"
 #include "app/output_files.h"
 #include "app/progress_line.h"
+#include "app/tone_options.h"
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -21,6 +22,7 @@ namespace {
 struct DenoiseSettings {
     std::string input;
     std::vector<std::string> outputs;
+    ToneOptions tone{};
     int threads = 0;
     bool quiet = false;
 };
@@ -28,6 +30,7 @@ struct DenoiseSettings {
 int run(const DenoiseSettings& settings) {
     end_on_signals();
     for (const std::string& output : settings.outputs) check_writable(output);
+    check(settings.tone, settings.outputs);
     const Denoiser denoiser = Denoiser::load(settings.threads);
     Image image = read_image(settings.input);
     auto begin = std::chrono::steady_clock::now();
@@ -37,7 +40,11 @@ int run(const DenoiseSettings& settings) {
     finish_on_signals();
     OutputFiles files;
     for (const std::string& output : settings.outputs)
-        files.write(output, [&] { write_picture(output, image); });
+        files.write(output, [&] {
+            write_picture(output, image,
+                          tone_of(settings.tone, output, denoised_picture(image), DefaultExposure::suitable,
+                                  settings.quiet));
+        });
     if (!settings.quiet)
         for (const std::string& output : files.written())
             std::printf("%s: %d x %d pixels, %s, %s\n", output.c_str(), image.width(), image.height(),
@@ -60,10 +67,11 @@ void add_denoise(CLI::App& app, int& exit_code) {
         ->add_option(
             "-o,--output", settings->outputs,
             "Picture to write; may be given several times. .exr keeps every layer and gets the layers "
-            "denoised.R, G, B; .png, .hdr and .pfm show them")
+            "denoised.R, G, B; .png, .jpg, .hdr and .pfm show them")
         ->type_name("FILE")
         ->allow_extra_args(false)
         ->required();
+    declare(*command, settings->tone);
     command->add_option("--threads", settings->threads, "Threads at most; 0: one per processor")
         ->type_name("N")
         ->check(CLI::Range(0, most_threads));

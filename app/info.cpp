@@ -1,9 +1,13 @@
-// montelux info: what is in a picture file.
+// montelux info: what is in a picture, a texture or a scene.
 #include "app/commands.h"
 #include "app/json_number.h"
+#include "app/scene_info.h"
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,6 +15,8 @@
 
 #include "montelux/image/image_read.h"
 #include "montelux/image/metrics.h"
+#include "montelux/image/texture_header.h"
+#include "montelux/mc/io/file.h"
 
 namespace montelux::app {
 
@@ -116,22 +122,75 @@ void print_text(const InfoSettings& settings, const Image& image) {
         std::printf("  %s = %s\n", dump(name, -1).c_str(), dump(json_of(value), -1).c_str());
 }
 
+void print_texture(const InfoSettings& settings, const TextureHeader& h) {
+    if (!settings.json) {
+        std::printf("%s: %s, %u x %u texels, %u level%s, %u layer%s, %u face%s, %s%s%s\n",
+                    settings.file.c_str(), h.container.c_str(), h.width, h.height, h.levels,
+                    h.levels == 1 ? "" : "s", h.layers, h.layers == 1 ? "" : "s", h.faces,
+                    h.faces == 1 ? "" : "s", h.format.c_str(), h.supercompression.empty() ? "" : ", ",
+                    h.supercompression.c_str());
+        for (std::size_t level = 0; level < h.level_bytes.size(); ++level)
+            std::printf("  level %zu: %llu bytes\n", level,
+                        static_cast<unsigned long long>(h.level_bytes[level]));
+        for (const auto& [key, text] : h.notes)
+            std::printf("  %s = %s\n", dump(key, -1).c_str(), dump(text, -1).c_str());
+        return;
+    }
+    Json out;
+    out["file"] = settings.file;
+    out["container"] = h.container;
+    out["format"] = h.format;
+    out["supercompression"] = h.supercompression.empty() ? Json(nullptr) : Json(h.supercompression);
+    out["width"] = h.width;
+    out["height"] = h.height;
+    out["depth"] = h.depth;
+    out["levels"] = h.levels;
+    out["layers"] = h.layers;
+    out["faces"] = h.faces;
+    out["level_bytes"] = h.level_bytes;
+    out["notes"] = h.notes;
+    std::printf("%s\n", dump(out, 2).c_str());
+}
+
+bool has_extension(const std::string& file, std::span<const std::string_view> extensions) {
+    std::string extension = std::filesystem::path(file).extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return std::ranges::find(extensions, extension) != extensions.end();
+}
+
+// A file that is none of a picture's by its name or its content is taken for a scene.
+void print_info(const InfoSettings& settings) {
+    constexpr std::array<std::string_view, 15> pictures = {".exr", ".png", ".jpg", ".jpeg", ".hdr",
+                                                           ".pic", ".pfm", ".pbm", ".pgm",  ".ppm",
+                                                           ".pnm", ".tga", ".bmp", ".rgbe", ".tif"};
+    constexpr std::size_t most_bytes = std::size_t{1} << 30; // as of pictures
+    if (has_extension(settings.file, std::array<std::string_view, 2>{".pbrt", ".gz"}))
+        return print_scene_info(settings.file, settings.json);
+    const std::vector<std::uint8_t> bytes = read_file_bytes(settings.file, most_bytes);
+    if (const auto header = texture_header(bytes, settings.file)) return print_texture(settings, *header);
+    if (!has_extension(settings.file, pictures) && !bytes.empty() && !is_picture(bytes))
+        return print_scene_info(settings.file, settings.json);
+    const Image image = read_image(bytes, settings.file);
+    if (settings.json)
+        print_json(settings, image);
+    else
+        print_text(settings, image);
+}
+
 } // namespace
 
 void add_info(CLI::App& app, int& exit_code) {
     auto settings = std::make_shared<InfoSettings>();
-    CLI::App* command =
-        app.add_subcommand("info", "Print what a picture contains: size, channels, header, values");
-    command->add_option("FILE", settings->file, "The picture (EXR, PNG, JPEG, HDR, PFM, PNM, TGA, BMP)")
+    CLI::App* command = app.add_subcommand("info", "Print what a picture, a texture or a scene contains");
+    command
+        ->add_option(
+            "FILE", settings->file,
+            "A picture (EXR, PNG, JPEG, HDR, PFM, PNM, TGA, BMP), a texture (KTX 2, KTX 1, DDS) or a scene")
         ->required();
     command->add_flag("--json", settings->json, "Print JSON");
-    command->footer("Example:\n  montelux info out.exr --json");
+    command->footer("Examples:\n  montelux info out.exr --json\n  montelux info scene.pbrt");
     command->callback([settings, &exit_code] {
-        Image image = read_image(settings->file);
-        if (settings->json)
-            print_json(*settings, image);
-        else
-            print_text(*settings, image);
+        print_info(*settings);
         exit_code = exit_done;
     });
 }

@@ -129,6 +129,7 @@ int run(int argc, char** argv) {
                    "  montelux render scene.pbrt --spp 64 -o out.exr\n"
                    "  montelux denoise out.exr -o out.png\n"
                    "  montelux bake environment sky.hdr -o sky.ktx2\n"
+                   "  montelux convert out.exr out.png --tone agx\n"
                    "  montelux info out.exr\n"
                    "  montelux compare out.exr reference.exr\n"
                    "\n"
@@ -143,6 +144,7 @@ int run(int argc, char** argv) {
         add_compare(app, exit_code);
         add_denoise(app, exit_code);
         add_bake(app, exit_code);
+        add_convert(app, exit_code);
         add_info(app, exit_code);
         add_formats(app, exit_code);
 #endif

@@ -3,6 +3,7 @@
 #include "app/interrupt.h"
 #include "app/picture_notices.h"
 #include "app/progress_line.h"
+#include "app/tone_options.h"
 #include "app/usage_error.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -22,6 +23,7 @@ namespace {
 
 struct MergeSettings {
     std::vector<std::string> inputs, outputs;
+    ToneOptions tone{};
     bool quiet = false;
 };
 
@@ -34,11 +36,14 @@ void run(const MergeSettings& settings) {
             if (std::filesystem::equivalent(input, output, ignored))
                 throw UsageError(output, "it is one of the slices; the joined picture needs another name");
     }
+    check(settings.tone, settings.outputs);
     SliceMerger merger;
     for (const std::string& input : settings.inputs) merger.add(read_image(input), input);
     const MergedSlices merged = merger.finish();
     finish_on_signals();
-    for (const std::string& output : settings.outputs) write_image(output, merged.image);
+    for (const std::string& output : settings.outputs)
+        write_image(output, merged.image,
+                    tone_of(settings.tone, output, merged.image, DefaultExposure::suitable, settings.quiet));
     if (settings.quiet) return;
     if (!merged.missing.empty()) {
         std::string list;
@@ -70,6 +75,7 @@ void add_merge(CLI::App& app, int& exit_code) {
         ->type_name("FILE")
         ->required()
         ->allow_extra_args(false);
+    declare(*command, s->tone);
     command->add_flag("--quiet", s->quiet, "Print only errors");
     command->footer(
         "Example:\n"

@@ -141,7 +141,10 @@ void write_text(const std::string& path, const std::string& text) {
 void check_files(const EnvironmentOptions& o, std::size_t levels) {
     if (o.outputs.empty() && o.irradiance.empty() && o.harmonics.empty() && o.preview.empty())
         throw UsageError("nothing to bake: give --output, --irradiance, --harmonics or --preview");
-    check(o.files);
+    std::vector<std::string> files = o.outputs;
+    files.insert(files.end(), o.irradiance.begin(), o.irradiance.end());
+    if (!o.preview.empty()) files.push_back(o.preview);
+    check(o.files, files);
     std::vector<std::string> names = o.harmonics;
     names.push_back(o.preview);
     auto add = [&](const std::string& path, std::size_t count) {
@@ -227,10 +230,10 @@ int run(const EnvironmentOptions& o) {
     for (const std::string& path : o.outputs) {
         std::map<std::string, std::string> notes{{"montelux.roughness", list}};
         if (std::filesystem::path(path).extension() == ".ktx") notes["sh"] = harmonics_note(harmonics);
-        files.write(path, [&] { write_cube_file(path, o.files, chain, notes); });
+        files.write(path, [&] { write_cube_file(path, o.files, chain, notes, o.run.quiet); });
     }
     for (const std::string& path : o.irradiance)
-        files.write(path, [&] { write_cube_file(path, o.files, irradiance, {}); });
+        files.write(path, [&] { write_cube_file(path, o.files, irradiance, {}, o.run.quiet); });
     for (const std::string& path : o.harmonics)
         files.write(path, [&] {
             write_text(path, std::filesystem::path(path).extension() == ".json"
@@ -240,9 +243,10 @@ int run(const EnvironmentOptions& o) {
     if (!o.preview.empty())
         files.write(o.preview, [&] {
             const ContactSheet sheet = contact_sheet(chain.value);
-            WriteOptions writing;
-            writing.exposure = sheet.exposure;
-            write_image(o.preview, sheet.picture, writing);
+            ToneOptions tone = o.files.tone;
+            if (!tone.exposure) tone.exposure = sheet.exposure;
+            write_image(o.preview, sheet.picture,
+                        tone_of(tone, o.preview, sheet.picture, DefaultExposure::zero, o.run.quiet));
         });
     if (o.run.json) {
         Json out;
@@ -284,7 +288,7 @@ void add_bake_environment(CLI::App& bake, int& exit_code) {
         ->add_option(
             "-o,--output", o->outputs,
             "Chain of cube maps; may be given several times. .ktx2, .ktx and .dds hold all levels; .exr "
-            "(with standard errors), .hdr, .pfm and .png are a picture per level, named _m0, _m1, ...")
+            "(with standard errors), .hdr, .pfm, .png and .jpg are a picture per level, named _m0, _m1, ...")
         ->type_name("FILE")
         ->allow_extra_args(false);
     command->add_option("--size", o->size, "Texels along an edge of level 0")

@@ -91,12 +91,11 @@ void declare(CLI::App& command, BakeFileOptions& options) {
         ->check(CLI::Range(1, 2))
         ->type_name("POWER")
         ->each(given);
-    command.add_option("--exposure", options.exposure, "Of .png pictures, in stops")
-        ->check(number_within(-100.0, 100.0))
-        ->type_name("STOPS");
+    declare(command, options.tone);
 }
 
-void check(const BakeFileOptions& options) {
+void check(const BakeFileOptions& options, const std::vector<std::string>& outputs) {
+    check(options.tone, outputs);
     if (options.rgbm_given && options.format != "rgbm8")
         throw UsageError("--rgbm-range and --rgbm-power",
                          "they are of --format rgbm8; the format is " + options.format);
@@ -113,7 +112,7 @@ std::vector<std::string> cube_file_names(const std::string& path, const BakeFile
 void check_cube_file(const std::string& path, const BakeFileOptions& options, std::size_t levels) {
     const Kind kind = kind_of(path);
     if (kind == Kind::picture) {
-        check_extension(path, {".ktx2", ".ktx", ".dds", ".exr", ".hdr", ".pfm", ".png"});
+        check_extension(path, {".ktx2", ".ktx", ".dds", ".exr", ".hdr", ".pfm", ".png", ".jpg", ".jpeg"});
         for (const Picture& picture : pictures_of(path, options, levels)) check_writable(picture.path);
         return;
     }
@@ -126,7 +125,7 @@ void check_cube_file(const std::string& path, const BakeFileOptions& options, st
 }
 
 void write_cube_file(const std::string& path, const BakeFileOptions& options, const BakedCubes& baked,
-                     const std::map<std::string, std::string>& notes) {
+                     const std::map<std::string, std::string>& notes, bool quiet) {
     TextureOptions texture;
     texture.format = format_of(options);
     texture.rgbm = options.rgbm;
@@ -136,20 +135,19 @@ void write_cube_file(const std::string& path, const BakeFileOptions& options, co
     if (kind == Kind::ktx2) return warn_of(path, write_ktx2(path, baked.value, texture), texture.format);
     if (kind == Kind::ktx1) return warn_of(path, write_ktx1(path, baked.value, texture), texture.format);
 
-    WriteOptions writing;
-    writing.exposure = options.exposure;
-    TexelLosses losses;
     const std::string extension = std::filesystem::path(path).extension().string();
+    const bool as_rgbm = extension == ".png" && texture.format == TexelFormat::rgbm8;
+    // The corners of a cross are black, those of a strip are not there.
+    const WriteOptions writing =
+        as_rgbm ? WriteOptions{}
+                : tone_of(options.tone, path, lay_out(baked.value.levels[0], CubeLayout::horizontal_strip),
+                          DefaultExposure::suitable, quiet);
+    TexelLosses losses;
     for (const Picture& picture : pictures_of(path, options, baked.value.levels.size())) {
         Image image = flat(baked.value.levels[picture.level], options, picture.face);
         if (extension == ".exr")
             image.append(flat(baked.standard_error.levels[picture.level], options, picture.face), "stderr.");
-        if (extension == ".png" && texture.format == TexelFormat::rgbm8) {
-            image = rgbm_picture(image, options.rgbm, losses);
-            WriteOptions as_it_is;
-            write_image(picture.path, image, as_it_is);
-            continue;
-        }
+        if (as_rgbm) image = rgbm_picture(image, options.rgbm, losses);
         write_image(picture.path, image, writing);
     }
     warn_of(path, losses, texture.format);

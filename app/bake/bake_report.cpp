@@ -22,7 +22,7 @@ struct ReportOptions {
     BakeMapOptions map;
     std::vector<std::string> outputs;
     SplitSumSettings settings;
-    float exposure = 0;
+    ToneOptions tone{};
     BakeRunOptions run;
 };
 
@@ -59,11 +59,12 @@ int run(const ReportOptions& o) {
     settings.cancel = bake.cancel();
     const SplitSumReport report = split_sum_report(map, settings);
     if (bake.interrupted(report.cancelled)) return exit_interrupted;
-    WriteOptions writing;
-    writing.exposure = o.exposure;
     OutputFiles files;
     for (const std::string& path : o.outputs)
-        files.write(path, [&] { write_image(path, report.spheres, writing); });
+        files.write(path, [&] {
+            write_image(path, report.spheres,
+                        tone_of(o.tone, path, report.spheres, DefaultExposure::suitable, o.run.quiet));
+        });
     if (o.run.json)
         print_json(o, report);
     else if (!o.run.quiet)
@@ -110,9 +111,7 @@ void add_bake_report(CLI::App& bake, int& exit_code) {
         ->type_name("F0");
     add_parsed(*command, "--target-error", "ERROR", s.target_error, parse_share,
                "Standard error of either side at one place: 0.01 (taken without the option) or 1%");
-    command->add_option("--exposure", o->exposure, "Of a .png picture, in stops")
-        ->check(number_within(-100.0, 100.0))
-        ->type_name("STOPS");
+    declare(*command, o->tone);
     add_whole_number(*command, "--seed", s.seed, 0, UINT64_MAX, "Seed of the noise");
     declare(*command, o->run);
     command->footer(

@@ -27,7 +27,7 @@ struct SkyOptions {
     SkySettings settings;
     double albedo = 0.2, scale = 1;
     int size = 1024;
-    float exposure = 0;
+    ToneOptions tone{};
     bool no_sun = false;
     BakeRunOptions run;
 };
@@ -56,6 +56,7 @@ int run(const SkyOptions& o) {
         throw UsageError("--size", "an even number is expected: the map is twice as wide as high");
     check_output_names(o.outputs, {});
     for (const std::string& path : o.outputs) check_writable(path);
+    check(o.tone, o.outputs);
     BakeRun bake(o.run.quiet, "the sky");
     SkySettings settings = o.settings;
     settings.ground_albedo = Spectrum(static_cast<float>(o.albedo));
@@ -65,10 +66,12 @@ int run(const SkyOptions& o) {
     if (bake.interrupted(bake.cancel()->requested())) return exit_interrupted;
     const double time = bake.seconds();
 
-    WriteOptions writing;
-    writing.exposure = o.exposure;
     OutputFiles files;
-    for (const std::string& path : o.outputs) files.write(path, [&] { write_image(path, picture, writing); });
+    for (const std::string& path : o.outputs)
+        files.write(path, [&] {
+            write_image(path, picture,
+                        tone_of(o.tone, path, picture, DefaultExposure::suitable, o.run.quiet));
+        });
     const double from_sky = photometric(sky.sky_irradiance()), from_sun = photometric(sky.sun_irradiance());
     const double zenith = luminous_efficacy * sky.tristimulus({0, 0, 1}).y;
     if (o.run.json) {
@@ -102,7 +105,7 @@ void add_bake_sky(CLI::App& bake, int& exit_code) {
     command
         ->add_option(
             "-o,--output", o->outputs,
-            "Map to write, latitude-longitude, twice as wide as high; .exr, .hdr, .pfm or .png; may be "
+            "Map to write, latitude-longitude, twice as wide as high; .exr, .hdr, .pfm, .png or .jpg; may be "
             "given several times")
         ->type_name("FILE")
         ->allow_extra_args(false)
@@ -130,9 +133,7 @@ void add_bake_sky(CLI::App& bake, int& exit_code) {
     command->add_flag("--no-sun", o->no_sun, "Leave out the sun's disc");
     add_parsed(*command, "--scale", "S", o->scale, parse_positive,
                "Multiplies the map, whose luminance is in cd/m^2 without the option");
-    command->add_option("--exposure", o->exposure, "Of a .png picture, in stops")
-        ->check(number_within(-100.0, 100.0))
-        ->type_name("STOPS");
+    declare(*command, o->tone);
     declare(*command, o->run);
     command->footer(
         "The top row is the zenith; below the horizon is the ground in the light of sky and sun.\n\n"

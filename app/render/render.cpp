@@ -106,23 +106,31 @@ void check_memory(const FilmSettings& film, const FilmLayers& layers, bool with_
     throw Error("film", text);
 }
 
+// A film whose sensor is set chooses the exposure of its pictures.
+DefaultExposure default_exposure(const FilmSettings& film) {
+    const FilmSettings unset;
+    const bool is_set = film.iso != unset.iso || film.exposure_time != unset.exposure_time;
+    return is_set ? DefaultExposure::zero : DefaultExposure::suitable;
+}
+
 // Layers that only EXR keeps do not change what other formats show.
-void write_output(const std::string& output, const RenderSnapshot& result, bool quiet) {
+void write_output(const std::string& output, const RenderSnapshot& result, const RenderOptions& options,
+                  DefaultExposure by_default) {
     const Image& image = *result.image;
-    WriteOptions writing;
     if (is_exr(output)) {
+        WriteOptions writing;
         if (result.half) writing.exr_half = half_channels_of(image.channel_names());
         const std::uint64_t beyond = half_overflows(image, writing.exr_half);
-        if (beyond > 0 && !quiet)
+        if (beyond > 0 && !options.quiet)
             std::fprintf(stderr,
                          "montelux: warning: %s: %llu values beyond the range of 16-bit floats became %g\n",
                          output.c_str(), static_cast<unsigned long long>(beyond), double(largest_half));
-    } else if (image.find_channel("A")) {
-        const bool denoised = image.find_channel("denoised.R").has_value();
-        return write_image(output, denoised ? denoised_picture(image)
-                                            : image.select(std::vector<std::string>{"R", "G", "B"}));
+        return write_picture(output, image, writing);
     }
-    write_picture(output, image, writing);
+    const bool denoised = image.find_channel("denoised.R").has_value();
+    const Image shown =
+        denoised ? denoised_picture(image) : image.select(std::vector<std::string>{"R", "G", "B"});
+    write_image(output, shown, tone_of(options.tone, output, shown, by_default, options.quiet));
 }
 
 void print_warnings(const Warnings& warnings) {
@@ -215,6 +223,7 @@ void print_resume_notices(const RenderSession& session, bool quiet) {
 int load_and_render(const RenderOptions& options, SharedRender& shared) {
     using Clock = std::chrono::steady_clock;
     for (const std::string& output : options.outputs) check_writable(output);
+    check(options.tone, options.outputs);
 
     auto load_begin = Clock::now();
     Warnings warnings;
@@ -268,9 +277,10 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
         };
     const RenderSnapshot result = session.finish(denoise);
     const RenderReport& report = result.report;
+    const DefaultExposure by_default = default_exposure(session.description().film);
     OutputFiles files;
     for (const std::string& output : outputs)
-        files.write(output, [&] { write_output(output, result, options.quiet); });
+        files.write(output, [&] { write_output(output, result, options, by_default); });
     if (!options.quiet) {
         print_bad_samples(report.bad, sampler.seed);
         print_clamped(static_cast<double>(report.clamped_samples), result.clamped_luminance,

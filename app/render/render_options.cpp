@@ -150,10 +150,10 @@ PixelBounds crop_of(const std::array<double, 4>& c, int width, int height) {
 
 void declare(CLI::App& c, RenderOptions& o) {
     c.add_option("SCENE", o.scene, "Scene file of pbrt-v4; .gz is unpacked")->required();
-    c.add_option(
-         "-o,--output", o.outputs,
-         "Picture to write: .exr, .png, .hdr or .pfm; may be given several times. Default: the name that "
-         "the scene asks for, in this folder, as .exr")
+    c.add_option("-o,--output", o.outputs,
+                 "Picture to write: .exr, .png, .jpg, .hdr or .pfm; may be given several times. Default: the "
+                 "name that "
+                 "the scene asks for, in this folder, as .exr")
         ->type_name("FILE")
         ->allow_extra_args(false); // the scene may follow it
     add_whole_number(c, "--spp", o.spp, 1, 1u << 30, "Samples per pixel, in place of the scene's");
@@ -214,6 +214,7 @@ void declare(CLI::App& c, RenderOptions& o) {
         "--half", [&o] { o.half = true; }, "EXR files hold 16-bit floats where those suffice");
     c.add_flag_callback(
         "--no-half", [&o] { o.half = false; }, "They hold 32-bit floats, whatever the scene's savefp16 says");
+    declare(c, o.tone);
     add_choice(c, "--sampler", o.sampler, sampler_names, "Where samples are taken: ");
     add_choice(c, "--strategy", o.strategy, strategy_names, "How light is found: ");
     add_choice(c, "--heuristic", o.heuristic, heuristic_names,

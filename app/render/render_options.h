@@ -1,6 +1,7 @@
 // RenderOptions: the options of the render command, and how they override a scene file.
 #pragma once
 
+#include "app/tone_options.h"
 #include "app/usage_error.h"
 #include <array>
 #include <cstddef>
@@ -52,6 +53,7 @@ struct RenderOptions {
     std::optional<LayerSet> layers;
     std::optional<LightGrouping> light_grouping;
     std::optional<bool> layers_in_camera_space, half;
+    ToneOptions tone{};
     std::optional<SampleAddress> debug_sample; // traced alone, instead of a render
     std::optional<std::size_t> texture_memory; // bytes
     int threads = 0;

@@ -124,4 +124,49 @@ MeasuredBrdf read_measured_brdf(std::span<const std::uint8_t> bytes, const std::
     }
 }
 
+void write_measured_brdf(AtomicFile& file, const MeasuredBrdf& brdf) {
+    const MeasuredBrdfData& d = brdf.data();
+    struct Field {
+        std::string_view name;
+        std::vector<std::uint64_t> shape;
+        std::span<const float> values;
+        bool is_flag = false;
+    };
+    const std::uint64_t thetas = d.theta.size(), phis = d.phi.size(), lambdas = d.wavelengths.size();
+    const auto tables = [](std::string_view name, std::vector<std::uint64_t> counts, const BrdfTables& t) {
+        counts.push_back(t.rows);
+        counts.push_back(t.columns);
+        return Field{name, std::move(counts), t.values};
+    };
+    const std::array<Field, 9> fields = {Field{"theta_i", {thetas}, d.theta},
+                                         Field{"phi_i", {phis}, d.phi},
+                                         Field{"wavelengths", {lambdas}, d.wavelengths},
+                                         tables("ndf", {}, d.ndf),
+                                         tables("sigma", {}, d.sigma),
+                                         tables("vndf", {phis, thetas}, d.visible_normals),
+                                         tables("luminance", {phis, thetas}, d.luminance),
+                                         tables("spectra", {phis, thetas, lambdas}, d.spectra),
+                                         Field{"jacobian", {1}, {}, true}};
+    std::uint64_t offset = tensor_file_magic.size() + 2 + sizeof(std::uint32_t);
+    for (const Field& f : fields) offset += 2 + f.name.size() + 2 + 1 + 8 + 8 * f.shape.size();
+    const auto put = [&](const auto& value) { file.write(&value, sizeof value); };
+    file.write(tensor_file_magic.data(), tensor_file_magic.size());
+    put(std::array<std::uint8_t, 2>{1, 0});
+    put(static_cast<std::uint32_t>(fields.size()));
+    for (const Field& f : fields) {
+        put(static_cast<std::uint16_t>(f.name.size()));
+        file.write(f.name.data(), f.name.size());
+        put(static_cast<std::uint16_t>(f.shape.size()));
+        put(static_cast<std::uint8_t>(f.is_flag ? tensor_of_uint8 : tensor_of_float32));
+        put(offset);
+        for (const std::uint64_t n : f.shape) put(n);
+        offset += f.is_flag ? 1 : f.values.size_bytes();
+    }
+    for (const Field& f : fields)
+        if (f.is_flag)
+            put(std::uint8_t{1});
+        else
+            file.write(f.values.data(), f.values.size_bytes());
+}
+
 } // namespace montelux

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "montelux/mc/io/file.h"
 #include "montelux/scene/shape/shape.h"
 
 namespace montelux {
@@ -28,5 +29,9 @@ PlyMesh parse_ply(std::span<const std::uint8_t> bytes, std::string_view name);
 
 // The same for a file, which may be gzipped (".gz").
 PlyMesh read_ply(const std::filesystem::path& path);
+
+// A binary file (little endian, floats) of triangles; `normals` and `uvs` are empty or one per vertex.
+void write_ply(AtomicFile& file, std::span<const Point3f> positions, std::span<const Normal3f> normals,
+               std::span<const Point2f> uvs, std::span<const Index> indices);
 
 } // namespace montelux

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "montelux/image/tone_curve.h"
+#include "montelux/image/exposure.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {

@@ -44,21 +44,29 @@ std::string lower_extension(const std::string& name) {
     return extension;
 }
 
-Image decode(const EncodedImage& file) {
-    std::string_view head(reinterpret_cast<const char*>(file.bytes.data()),
-                          std::min<std::size_t>(file.bytes.size(), 16));
+using Decoder = Image (*)(const EncodedImage&);
+
+// By the first bytes; null for TGA, which has no mark, and for what is no picture.
+Decoder decoder_of(std::span<const std::uint8_t> bytes) {
+    std::string_view head(reinterpret_cast<const char*>(bytes.data()),
+                          std::min<std::size_t>(bytes.size(), 16));
     auto second = [&](std::string_view set) {
         return head.size() > 2 && set.find(head[1]) != std::string_view::npos &&
                (std::isspace(static_cast<unsigned char>(head[2])) || head[2] == '#');
     };
-    if (head.empty()) throw Error(file.name, "is empty");
-    if (head.starts_with("\x76\x2f\x31\x01")) return decode_exr(file);
-    if (head.starts_with("\x89PNG\r\n\x1a\n")) return decode_png(file);
-    if (head.starts_with("\xff\xd8\xff")) return decode_jpeg(file);
-    if (head.starts_with("#?")) return decode_hdr(file);
-    if (head[0] == 'P' && second("Ff")) return decode_pfm(file);
-    if (head[0] == 'P' && second("123456")) return decode_pnm(file);
-    if (head.starts_with("BM")) return decode_stb(file);
+    if (head.starts_with("\x76\x2f\x31\x01")) return decode_exr;
+    if (head.starts_with("\x89PNG\r\n\x1a\n")) return decode_png;
+    if (head.starts_with("\xff\xd8\xff")) return decode_jpeg;
+    if (head.starts_with("#?")) return decode_hdr;
+    if (head.starts_with('P') && second("Ff")) return decode_pfm;
+    if (head.starts_with('P') && second("123456")) return decode_pnm;
+    if (head.starts_with("BM")) return decode_stb;
+    return nullptr;
+}
+
+Image decode(const EncodedImage& file) {
+    if (file.bytes.empty()) throw Error(file.name, "is empty");
+    if (const Decoder decoder = decoder_of(file.bytes)) return decoder(file);
     if (lower_extension(file.name) == ".tga") return decode_stb(file);
     throw Error(file.name, "is not a picture of a known format (EXR, PNG, JPEG, Radiance HDR, PFM, PNM, BMP; "
                            "TGA with the extension .tga)");
@@ -85,5 +93,7 @@ Image read_image(const std::filesystem::path& path, const ReadOptions& options) 
     }
     return read_image(bytes, path.string(), options);
 }
+
+bool is_picture(std::span<const std::uint8_t> bytes) { return decoder_of(bytes) != nullptr; }
 
 } // namespace montelux

@@ -28,4 +28,7 @@ Image read_image(const std::filesystem::path& path, const ReadOptions& options =
 Image read_image(std::span<const std::uint8_t> bytes, const std::string& name,
                  const ReadOptions& options = {});
 
+// Whether a file begins as those of a format that read_image knows by its content (all but TGA).
+bool is_picture(std::span<const std::uint8_t> bytes);
+
 } // namespace montelux

@@ -12,7 +12,7 @@ namespace montelux {
 
 namespace {
 
-enum class FileFormat { exr, png, hdr, pfm };
+enum class FileFormat { exr, png, jpeg, hdr, pfm };
 
 FileFormat format_of(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
@@ -20,13 +20,15 @@ FileFormat format_of(const std::filesystem::path& path) {
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".exr") return FileFormat::exr;
     if (extension == ".png") return FileFormat::png;
+    if (extension == ".jpg" || extension == ".jpeg") return FileFormat::jpeg;
     if (extension == ".hdr") return FileFormat::hdr;
     if (extension == ".pfm") return FileFormat::pfm;
     std::string name = path.empty() ? "''" : path.string();
     if (extension.empty())
-        throw Error(name, "cannot be written: the name has no extension; expected .exr, .png, .hdr or .pfm");
-    throw Error(name,
-                "cannot be written: the extension '" + extension + "' is not one of .exr, .png, .hdr, .pfm");
+        throw Error(name,
+                    "cannot be written: the name has no extension; expected .exr, .png, .jpg, .hdr or .pfm");
+    throw Error(name, "cannot be written: the extension '" + extension +
+                          "' is not one of .exr, .png, .jpg, .hdr, .pfm");
 }
 
 } // namespace
@@ -40,6 +42,20 @@ std::vector<int> require_color_channels(const std::string& name, const Image& im
                 "cannot be written: this format needs the channels R, G, B or Y, but there are " + known);
 }
 
+Image coded_picture(const std::string& name, const Image& image, const ToneCurve& tone, int bits) {
+    const std::vector<int> colors = require_color_channels(name, image);
+    const bool holds_codes = (image.format() == PixelFormat::u8 && bits == 8) ||
+                             (image.format() == PixelFormat::u16 && bits == 16);
+    const bool is_ready = holds_codes && tone.exposure == 0 && tone.kind == ToneKind::srgb &&
+                          image.encoding() == ColorEncoding::srgb();
+    if (!is_ready) return apply_tone_curve(image, tone, bits);
+    std::vector<std::string> names;
+    names.reserve(colors.size() + 1);
+    for (int c : colors) names.push_back(image.channel_names()[c]);
+    if (image.find_channel("A")) names.emplace_back("A");
+    return image.select(names);
+}
+
 void write_image(const std::filesystem::path& path, const Image& image, const WriteOptions& options) {
     FileFormat format = format_of(path);
     if (image.empty()) throw Error(path.string(), "cannot be written: the image has no pixels");
@@ -50,6 +66,9 @@ void write_image(const std::filesystem::path& path, const Image& image, const Wr
         break;
     case FileFormat::png:
         encode_png(file, path.string(), image, options);
+        break;
+    case FileFormat::jpeg:
+        encode_jpeg(file, path.string(), image, options);
         break;
     case FileFormat::hdr:
         encode_hdr(file, path.string(), image);
@@ -71,6 +90,11 @@ std::uint64_t half_overflows(const Image& image, const std::vector<std::string>&
                     count += std::isfinite(v) && std::abs(v) > largest_half;
                 }
     return count;
+}
+
+bool takes_tone_curve(const std::filesystem::path& path) {
+    const FileFormat format = format_of(path);
+    return format == FileFormat::png || format == FileFormat::jpeg;
 }
 
 void check_writable(const std::filesystem::path& path) {

@@ -4,7 +4,6 @@
 #include <png.h>
 
 #include "montelux/image/encoders.h"
-#include "montelux/image/tone_curve.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
@@ -51,13 +50,16 @@ void on_write(png_structp png, png_bytep data, std::size_t size) {
 
 void on_flush(png_structp) {}
 
-bool write_all(PngWriter& w, png_uint_32 width, png_uint_32 height, int depth, int color_type,
+bool write_all(PngWriter& w, png_uint_32 width, png_uint_32 height, int depth, int color_type, bool linear,
                png_bytepp rows) {
     if (setjmp(png_jmpbuf(w.png))) return false;
     png_set_write_fn(w.png, &w, on_write, on_flush);
     png_set_IHDR(w.png, w.info, width, height, depth, color_type, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
-    png_set_sRGB(w.png, w.info, PNG_sRGB_INTENT_RELATIVE);
+    if (linear)
+        png_set_gAMA(w.png, w.info, 1.0);
+    else
+        png_set_sRGB(w.png, w.info, PNG_sRGB_INTENT_RELATIVE);
     png_write_info(w.png, w.info);
     if (depth == 16) png_set_swap(w.png);
     png_write_image(w.png, rows);
@@ -65,25 +67,10 @@ bool write_all(PngWriter& w, png_uint_32 width, png_uint_32 height, int depth, i
     return true;
 }
 
-bool is_ready(const Image& image, const WriteOptions& options) {
-    return image.format() == PixelFormat::u8 && options.png_bits == 8 && options.exposure == 0 &&
-           image.encoding() == ColorEncoding::srgb();
-}
-
 } // namespace
 
 void encode_png(AtomicFile& file, const std::string& name, const Image& image, const WriteOptions& options) {
-    auto colors = require_color_channels(name, image);
-    Image picture;
-    if (is_ready(image, options)) {
-        std::vector<std::string> names;
-        names.reserve(colors.size() + 1);
-        for (int c : colors) names.push_back(image.channel_names()[c]);
-        if (image.find_channel("A")) names.push_back("A");
-        picture = image.select(names);
-    } else {
-        picture = apply_tone_curve(image, ToneCurve{options.exposure}, options.png_bits);
-    }
+    Image picture = coded_picture(name, image, options.tone, options.png_bits);
     bool wide = picture.format() == PixelFormat::u16;
     png_bytep first = wide ? reinterpret_cast<png_bytep>(picture.u16().data()) : picture.u8().data();
     std::size_t row_bytes = picture.byte_count() / static_cast<std::size_t>(picture.height());
@@ -98,7 +85,8 @@ void encode_png(AtomicFile& file, const std::string& name, const Image& image, c
     if (!writer.info) throw std::bad_alloc();
     if (!write_all(writer, static_cast<png_uint_32>(picture.width()),
                    static_cast<png_uint_32>(picture.height()), wide ? 16 : 8,
-                   color_types[picture.channels() - 1], rows.data())) {
+                   color_types[picture.channels() - 1], picture.encoding() == ColorEncoding::linear(),
+                   rows.data())) {
         if (writer.exception) std::rethrow_exception(writer.exception);
         throw Error(name, std::string("cannot be written: ") + writer.message);
     }

@@ -76,7 +76,8 @@ std::vector<MemoryUse> memory_use(const Scene& s) {
     add("media",
         vector_bytes(s.media) +
             sum(s.scalar_grids, [](const ScalarGrid& g) { return vector_bytes(g.values); }) +
-            sum(s.color_grids, [](const ColorGrid& g) { return vector_bytes(g.values); }) +
+            sum(s.color_grids,
+                [](const ColorGrid& g) { return vector_bytes(g.values) + vector_bytes(g.colors); }) +
             sum(s.sparse_grids, [](const SparseGrid& g) { return g.bytes(); }),
         s.media.size(), "media");
     return table;

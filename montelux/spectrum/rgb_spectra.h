@@ -5,30 +5,37 @@
 
 namespace montelux {
 
+// What a spectrum was made from; no space: not from a colour.
+struct RgbColor {
+    const RgbColorSpace* space = nullptr;
+    Vec3f rgb{};
+};
+
 // A reflectance: values in [0, 1]. Colours are clamped to [0, 1].
 class RgbAlbedoSpectrum {
   public:
     RgbAlbedoSpectrum() : RgbAlbedoSpectrum(SigmoidPolynomial::constant(0)) {}
     explicit RgbAlbedoSpectrum(SigmoidPolynomial polynomial) : polynomial_(polynomial) {}
-    RgbAlbedoSpectrum(const RgbColorSpace& space, Vec3f rgb) : polynomial_(rgb_uplift_table(space)(rgb)) {}
+    RgbAlbedoSpectrum(const RgbColorSpace& space, Vec3f rgb)
+        : polynomial_(rgb_uplift_table(space)(rgb)), color_{&space, rgb} {}
 
     SampledSpectrum sample(const SampledWavelengths& w) const { return polynomial_.sample(w); }
     float operator()(float lambda) const { return polynomial_(lambda); }
     float max_value() const { return polynomial_.max_value(); }
     const SigmoidPolynomial& polynomial() const { return polynomial_; }
+    const RgbColor& color() const { return color_; }
 
   private:
     SigmoidPolynomial polynomial_;
+    RgbColor color_{};
 };
 
-// Any non-negative colour: a reflectance of largest component 1/2, scaled by twice the largest component.
-class RgbUnboundedSpectrum {
+// A reflectance times a factor.
+class ScaledPolynomial {
   public:
-    RgbUnboundedSpectrum() = default;
-    // Negative components count as 0.
-    RgbUnboundedSpectrum(const RgbColorSpace& space, Vec3f rgb)
-        : scale_(2 * std::max(max_component(rgb), 0.0f)),
-          polynomial_(rgb_uplift_table(space)(scale_ > 0 ? rgb / scale_ : Vec3f())) {}
+    ScaledPolynomial() = default;
+    ScaledPolynomial(float scale, const SigmoidPolynomial& polynomial)
+        : scale_(scale), polynomial_(polynomial) {}
 
     SampledSpectrum sample(const SampledWavelengths& w) const { return scale_ * polynomial_.sample(w); }
     float operator()(float lambda) const { return scale_ * polynomial_(lambda); }
@@ -39,6 +46,24 @@ class RgbUnboundedSpectrum {
   private:
     float scale_ = 0;
     SigmoidPolynomial polynomial_;
+};
+
+// Any non-negative colour: a reflectance of largest component 1/2, scaled by twice the largest component.
+class RgbUnboundedSpectrum : public ScaledPolynomial {
+  public:
+    RgbUnboundedSpectrum() = default;
+    // Negative components count as 0.
+    RgbUnboundedSpectrum(const RgbColorSpace& space, Vec3f rgb)
+        : RgbUnboundedSpectrum(space, rgb, 2 * std::max(max_component(rgb), 0.0f)) {}
+
+    const RgbColor& color() const { return color_; }
+
+  private:
+    RgbUnboundedSpectrum(const RgbColorSpace& space, Vec3f rgb, float scale)
+        : ScaledPolynomial(scale, rgb_uplift_table(space)(scale > 0 ? rgb / scale : Vec3f())), color_{&space,
+                                                                                                      rgb} {}
+
+    RgbColor color_{};
 };
 
 // A light of this colour: an unbounded spectrum times the colour space's illuminant.

@@ -8,7 +8,7 @@ import struct
 import zlib
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,7 @@ from . import _core
 from ._names import UnknownAttribute, unknown
 
 Pixels = npt.NDArray[np.float32]
+Tone = Literal["linear", "srgb", "aces", "agx", "filmic"]
 
 
 def png_bytes(pixels: npt.NDArray[np.uint8]) -> bytes:
@@ -92,18 +93,28 @@ class Picture:
         """Samples that were NaN, infinite or negative: left out as zeros."""
         return self._snapshot().bad_samples
 
-    def to_srgb(self, exposure: float | None = None) -> npt.NDArray[np.uint8]:
-        """8-bit sRGB for a screen, shape (height, width, 3): light times 2**exposure, and 1 is white; of the
-        denoised picture, where there is one.
-        None: the exposure that suits the picture."""
+    def to_srgb(self, exposure: float | Literal["auto"] | None = None, tone: Tone = "srgb") -> npt.NDArray[np.uint8]:
+        """8-bit codes for a screen, shape (height, width, 3): light times 2**exposure through a tone curve
+        (docs/images.md); of the denoised picture, where there is one.
+        "auto" or None: the exposure that suits the picture."""
         snapshot = self._snapshot()
-        data, height, width, channels = snapshot.screen(snapshot.automatic_exposure() if exposure is None else exposure)
+        stops = snapshot.automatic_exposure() if exposure is None or exposure == "auto" else exposure
+        data, height, width, channels = snapshot.screen(stops, tone)
         return np.frombuffer(data, np.uint8).reshape(height, width, channels)
 
-    def save(self, path: str | os.PathLike[str], exposure: float = 0.0) -> None:
-        """Writes .exr (all layers), .png, .hdr or .pfm (the denoised picture, where there is one), whole or not at
-        all; exposure (stops) is for .png. Header entries of .exr are those that `montelux render` writes."""
-        self._snapshot().save(os.fspath(path), exposure)
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        exposure: float | Literal["auto"] = 0.0,
+        tone: Tone = "srgb",
+        quality: int = 95,
+    ) -> None:
+        """Writes .exr (all layers), .png, .jpg, .hdr or .pfm (the denoised picture, where there is one), whole or not
+        at all; exposure (stops, or "auto"), the tone curve (docs/images.md) and the quality (1 to 100, .jpg) are for
+        .png and .jpg. Header entries of .exr are those that `montelux render` writes."""
+        snapshot = self._snapshot()
+        stops = snapshot.automatic_exposure() if exposure == "auto" else exposure
+        snapshot.save(os.fspath(path), stops, tone, quality)
 
     def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
         return np.array(self.mean, dtype=dtype)

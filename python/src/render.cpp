@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "montelux/image/cryptomatte.h"
+#include "montelux/image/exposure.h"
 #include "montelux/image/image_write.h"
-#include "montelux/image/tone_curve.h"
 #include "montelux/mc/io/generation_file.h"
+#include "montelux/mc/math/nearest_name.h"
 #include "montelux/render/render_warnings.h"
 #include "montelux/scene/build/check_references.h"
 
@@ -134,9 +135,21 @@ Image shown(const RenderSnapshot& snapshot) {
     return snapshot.image->select(std::vector<std::string>{"R", "G", "B"});
 }
 
-nb::tuple screen(const RenderSnapshot& snapshot, double exposure) {
-    auto tones = std::make_shared<Image>(
-        apply_tone_curve(shown(snapshot), {.exposure = static_cast<float>(exposure)}, 8));
+// Throws Error for a curve that is not known.
+ToneCurve curve_of(double exposure, const std::string& tone) {
+    const std::optional<ToneKind> kind = tone_named(tone);
+    if (!kind) {
+        std::string known;
+        for (const std::string_view name : tone_names())
+            known += (known.empty() ? "'" : ", '") + std::string(name) + "'";
+        throw Error("tone", "there is no tone curve '" + tone + "'" + did_you_mean(tone, tone_names()) +
+                                "; expected one of " + known);
+    }
+    return {static_cast<float>(exposure), *kind};
+}
+
+nb::tuple screen(const RenderSnapshot& snapshot, double exposure, const std::string& tone) {
+    auto tones = std::make_shared<Image>(apply_tone_curve(shown(snapshot), curve_of(exposure, tone), 8));
     nb::object bytes = nb::bytes(reinterpret_cast<const char*>(tones->u8().data()), tones->u8().size());
     return nb::make_tuple(bytes, tones->height(), tones->width(), tones->channels());
 }
@@ -154,13 +167,14 @@ void bind_render(nb::module_& m) {
         .def_prop_ro("bad_samples", [](const RenderSnapshot& l) { return l.report.bad.count(); })
         .def_prop_ro("clamped_samples", [](const RenderSnapshot& l) { return l.report.clamped_samples; })
         .def_prop_ro("stop", [](const RenderSnapshot& l) { return std::string(to_string(l.report.stop)); })
-        .def("screen", &screen, "exposure"_a, "8-bit sRGB: (bytes, height, width, channels).")
-        .def("automatic_exposure", [](const RenderSnapshot& l) { return automatic_exposure(*l.image); })
+        .def("screen", &screen, "exposure"_a, "tone"_a, "8-bit sRGB: (bytes, height, width, channels).")
+        .def("automatic_exposure", [](const RenderSnapshot& l) { return automatic_exposure(shown(l)); })
         .def(
             "save",
-            [](const RenderSnapshot& l, const std::filesystem::path& path, double exposure) {
+            [](const RenderSnapshot& l, const std::filesystem::path& path, double exposure,
+               const std::string& tone, int quality) {
                 nb::gil_scoped_release unlocked;
-                WriteOptions writing{.exposure = static_cast<float>(exposure)};
+                WriteOptions writing{.jpeg_quality = quality, .tone = curve_of(exposure, tone)};
                 if (l.half) writing.exr_half = half_channels_of(l.image->channel_names());
                 const std::string extension = path.extension().string();
                 if (extension == ".exr" || extension == ".EXR")
@@ -168,7 +182,7 @@ void bind_render(nb::module_& m) {
                 else
                     write_image(path, shown(l), writing);
             },
-            "path"_a, "exposure"_a);
+            "path"_a, "exposure"_a, "tone"_a, "quality"_a);
     nb::class_<RenderJob>(m, "RenderJob", "A render in the background.")
         .def("cancel", &RenderJob::cancel)
         .def("wait", &RenderJob::wait, "seconds"_a, nb::call_guard<nb::gil_scoped_release>())

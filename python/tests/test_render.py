@@ -226,6 +226,16 @@ def test_pictures_show_and_save(scene, tmp_path):
     assert np.array_equal(layers["stderr.G"], render.standard_error[:, :, 1])
     with pytest.raises(montelux.Error, match="extension|format|xyz"):
         render.save(tmp_path / "render.xyz")
+    render.save(tmp_path / "plain.png")
+    assert not np.array_equal(render.to_srgb(0.0), render.to_srgb(0.0, tone="agx"))
+    for name, settings in {"up": {"exposure": 2.0}, "auto": {"exposure": "auto"}, "aces": {"tone": "aces"}}.items():
+        render.save(tmp_path / f"{name}.png", **settings)
+        assert (tmp_path / f"{name}.png").read_bytes() != (tmp_path / "plain.png").read_bytes()
+    render.save(tmp_path / "low.jpg", quality=5)
+    render.save(tmp_path / "high.jpg")
+    assert (tmp_path / "low.jpg").stat().st_size < (tmp_path / "high.jpg").stat().st_size
+    with pytest.raises(montelux.Error, match="did you mean 'agx'"):
+        render.save(tmp_path / "x.png", tone="agxx")
     assert zlib.crc32(png) != 0
 
 

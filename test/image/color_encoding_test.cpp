@@ -3,7 +3,6 @@
 
 #include "montelux/image/color_encoding.h"
 #include "montelux/image/half.h"
-#include "montelux/image/tone_curve.h"
 
 namespace montelux {
 namespace {
@@ -62,33 +61,6 @@ TEST(Half, AllValuesComeBack) {
     EXPECT_EQ(float_to_half(65520), 0x7c00);
     EXPECT_EQ(float_to_half(1 + 0x1p-11f), 0x3c00); // a tie goes to the even one
     EXPECT_EQ(float_to_half(1 + 0x3p-11f), 0x3c02);
-}
-
-TEST(ToneCurve, ExposesThenEncodes) {
-    EXPECT_EQ(ToneCurve{0}(1), 1);
-    EXPECT_EQ(ToneCurve{0}(7), 1);
-    EXPECT_EQ(ToneCurve{0}(-1), 0);
-    EXPECT_EQ(ToneCurve{0}(std::numeric_limits<float>::quiet_NaN()), 0);
-    EXPECT_FLOAT_EQ(ToneCurve{2}(0.05f), linear_to_srgb(0.2f));
-    Image image(2, 1, {"R", "G", "B", "A", "other"});
-    for (int c = 0; c < 3; ++c) image.set(0, 0, c, 0.25f);
-    image.set(0, 0, 3, 0.5f);
-    Image out = apply_tone_curve(image, {1});
-    EXPECT_EQ(out.channel_names(), (std::vector<std::string>{"R", "G", "B", "A"}));
-    EXPECT_EQ(out.u8()[0], 188); // 255 * srgb(0.5) = 187.5
-    EXPECT_EQ(out.u8()[3], 128); // alpha is neither exposed nor curved
-    EXPECT_EQ(out.u8()[4], 0);
-    EXPECT_EQ(apply_tone_curve(image, {1}, 16).u16()[0], std::lround(65535 * linear_to_srgb(0.5)));
-    expect_error([&] { apply_tone_curve(image, {}, 10); }, {"8 or 16"});
-}
-
-TEST(ToneCurve, AutomaticExposureBringsTheLogAverageToTheKey) {
-    Image image(2, 2, {"R", "G", "B"});
-    const float light[] = {0.01f, 1, 100, 0}; // log-average of the lit ones: 1
-    for (int i = 0; i < 4; ++i)
-        for (int c = 0; c < 3; ++c) image.set(i % 2, i / 2, c, light[i]);
-    EXPECT_NEAR(automatic_exposure(image), std::log2(0.18), 1e-5);
-    EXPECT_EQ(automatic_exposure(Image(1, 1, {"Y"})), 0);
 }
 
 } // namespace

@@ -211,21 +211,70 @@ TEST(PngFile, KeepsEightAndSixteenBitCodes) {
     Image wide = read_image(folder / "c.png");
     ASSERT_EQ(wide.format(), PixelFormat::u16);
     for (int x = 0; x < 256; ++x) EXPECT_NEAR(wide.linear(x, 0, 1), light.value(x, 0, 1), 2e-5);
-    write_image(folder / "d.png", light, {.exposure = -1});
+    write_image(folder / "d.png", light, {.tone = {.exposure = -1}});
     Image dark = read_image(folder / "d.png");
     for (int x = 0; x < 256; ++x) EXPECT_NEAR(dark.linear(x, 0, 1), light.value(x, 0, 1) / 2, 0.005);
+}
+
+TEST(JpegFile, ComesBackWithinItsQuality) {
+    TemporaryFolder folder;
+    Image image(70, 40, {"R", "G", "B", "A"}, PixelFormat::u8, ColorEncoding::srgb());
+    for (int y = 0; y < 40; ++y)
+        for (int x = 0; x < 70; ++x) {
+            const int codes[] = {3 * x, 6 * y, x < 35 ? 40 : 220, 128};
+            for (int c = 0; c < 4; ++c)
+                image.u8()[image.index(x, y, c)] = static_cast<std::uint8_t>(codes[c]);
+        }
+    const auto largest_difference = [&](const char* name, int quality) {
+        write_image(folder / name, image, {.jpeg_quality = quality});
+        const Image back = read_image(folder / name);
+        EXPECT_EQ(back.channel_names(), (std::vector<std::string>{"R", "G", "B"})); // without alpha
+        int most = 0;
+        for (int y = 0; y < 40; ++y)
+            for (int x = 0; x < 70; ++x)
+                for (int c = 0; c < 3; ++c)
+                    most = std::max(
+                        most, std::abs(back.u8()[back.index(x, y, c)] - image.u8()[image.index(x, y, c)]));
+        return most;
+    };
+    EXPECT_LE(largest_difference("a.jpg", 100), 4);
+    EXPECT_LE(largest_difference("b.JPEG", 95), 12);
+    EXPECT_GT(largest_difference("c.jpg", 5), 12);
+    EXPECT_LT(std::filesystem::file_size(folder / "c.jpg"), std::filesystem::file_size(folder / "a.jpg"));
+
+    Image grey(9, 5, {"Y"});
+    for (int x = 0; x < 9; ++x) grey.set(x, 0, 0, 0.25f);
+    write_image(folder / "grey.jpg", grey, {.tone = {.exposure = 1}});
+    const Image back = read_image(folder / "grey.jpg");
+    EXPECT_EQ(back.channel_names(), std::vector<std::string>{"Y"});
+    EXPECT_NEAR(back.u8()[4], 188, 2); // 255 * srgb(0.5)
+}
+
+TEST(PngFile, LinearCodesSaySo) {
+    TemporaryFolder folder;
+    Image image(1, 1, {"Y"});
+    image.set(0, 0, 0, 0.5f);
+    write_image(folder / "a.png", image, {.tone = {.kind = ToneKind::linear}});
+    const Image back = read_image(folder / "a.png");
+    EXPECT_EQ(back.u8()[0], 128);
+    ASSERT_TRUE(back.attributes().contains("png.gamma"));
+    EXPECT_EQ(std::get<float>(back.attributes().at("png.gamma")), 1);
 }
 
 TEST(ImageWrite, RefusesWhatItCannotWrite) {
     TemporaryFolder folder;
     Image image = make_picture(4, 4, {"depth"});
-    expect_error([&] { write_image(folder / "a.jpg", image); },
-                 {"a.jpg", "'.jpg'", ".exr, .png, .hdr, .pfm"});
+    expect_error([&] { write_image(folder / "a.gif", image); },
+                 {"a.gif", "'.gif'", ".exr, .png, .jpg, .hdr, .pfm"});
+    expect_error([&] { write_image(folder / "a.jpg", image); }, {"a.jpg", "R, G, B", "depth"});
     expect_error([&] { write_image(folder / "a.png", image); }, {"a.png", "R, G, B", "depth"});
     expect_error([&] { write_image(folder / "none/a.exr", image); }, {"none/a.exr", "No such file"});
     expect_error([&] { write_image(folder / "a.png", Image(), {}); }, {"no pixels"});
     Image rgb = make_picture(4, 4, {"R", "G", "B"});
     expect_error([&] { write_image(folder / "a.png", rgb, {.png_bits = 12}); }, {"8 or 16"});
+    expect_error([&] { write_image(folder / "a.jpg", rgb, {.jpeg_quality = 0}); }, {"1 to 100, not 0"});
+    expect_error([&] { write_image(folder / "a.jpg", Image(65530, 1, {"Y"}, PixelFormat::u8)); },
+                 {"a.jpg", "65500"});
     image.attributes()["compression"] = std::string("wrong type for this name");
     expect_error([&] { write_image(folder / "a.exr", image); }, {"a.exr"});
     EXPECT_EQ(folder.file_count(), 0);

@@ -249,7 +249,8 @@ TEST(VolumeClosedForms, FurnaceOfEveryMedium) {
                 ColorGrid& colors = b.scene.color_grids.emplace_back();
                 colors.size = {5, 4, 3};
                 for (const float v : wild)
-                    colors.values.emplace_back(RgbColorSpace::srgb(), Vec3f(0.1f * v, 0.4f, 1 - 0.08f * v));
+                    colors.values.push_back(
+                        RgbUnboundedSpectrum(RgbColorSpace::srgb(), Vec3f(0.1f * v, 0.4f, 1 - 0.08f * v)));
                 ColorGrid& none = b.scene.color_grids.emplace_back();
                 none.size = {1, 1, 1};
                 none.values.emplace_back();

@@ -38,8 +38,8 @@ Point3f place(ParameterReader& r, const Transform& world_from_light, Vec3f from)
     return Vec3f(p);
 }
 
-// pbrt's illuminance of a map on an upward-facing (+z) patch: the mean over the sphere of luminance times
-// positive cosine, times 2 pi. This is half the true illuminance; kept because scenes are made with pbrt.
+} // namespace
+
 double upper_illuminance(const Image& map, EnvironmentLayout layout) {
     Vec3d weights = RgbColorSpace::srgb().luminance_weights();
     const EnvironmentGrid grid(layout, map.width(), map.height());
@@ -53,8 +53,6 @@ double upper_illuminance(const Image& map, EnvironmentLayout layout) {
         }
     return sum / 2;
 }
-
-} // namespace
 
 LightReader::Source LightReader::source(ParameterReader& r, std::string_view name,
                                         const RgbColorSpace& color_space) {

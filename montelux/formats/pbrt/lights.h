@@ -12,6 +12,10 @@
 
 namespace montelux::pbrt {
 
+// pbrt's illuminance of a map on an upward-facing (+z) patch: the mean over the sphere of luminance times
+// positive cosine, times 2 pi. This is half the true illuminance; kept because scenes are made with pbrt.
+double upper_illuminance(const Image& map, EnvironmentLayout layout);
+
 // Lights are scaled so that an RGB colour of (1, 1, 1), or any other spectrum, has a luminance, illuminance
 // or intensity of 1 in photometric units (the film integrates against the CIE's Y).
 class LightReader {

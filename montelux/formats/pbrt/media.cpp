@@ -184,12 +184,15 @@ Index MediumReader::color_grid(ParameterReader& r, std::string_view name, std::a
     const RgbColorSpace& space = p->color_space != nullptr ? *p->color_space : RgbColorSpace::srgb();
     ColorGrid grid;
     grid.size = size;
+    grid.space = &space;
     grid.values.reserve(p->numbers.size() / 3);
+    grid.colors.reserve(p->numbers.size() / 3);
     for (std::size_t i = 0; i < p->numbers.size(); i += 3) {
         const Vec3f rgb(p->numbers[i], p->numbers[i + 1], p->numbers[i + 2]);
         if (!(rgb.x >= 0 && rgb.y >= 0 && rgb.z >= 0))
             r.error(name, "parameter " + in_quotes(name) + " has a negative component");
-        grid.values.emplace_back(space, rgb);
+        grid.values.push_back(RgbUnboundedSpectrum(space, rgb));
+        grid.colors.push_back(rgb);
     }
     std::vector<ColorGrid>& grids = builder_.scene().color_grids;
     grids.push_back(std::move(grid));

@@ -31,7 +31,7 @@ void hash_values(SceneHasher& h, const Grid3<T>& g) {
 }
 inline void hash_values(SceneHasher& h, const ScalarGrid& g) { h.all(static_cast<const Grid3<float>&>(g)); }
 inline void hash_values(SceneHasher& h, const ColorGrid& g) {
-    h.all(static_cast<const Grid3<RgbUnboundedSpectrum>&>(g));
+    h.all(static_cast<const Grid3<ScaledPolynomial>&>(g));
 }
 inline void hash_values(SceneHasher& h, const HomogeneousMedium& m) {
     const auto& [sigma_a, sigma_s, scale, le, le_scale, phase, is_body, surface] = m;

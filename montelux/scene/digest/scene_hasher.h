@@ -115,7 +115,8 @@ class SceneHasher {
         all(a, b, c);
     }
     void add(const RgbAlbedoSpectrum& s) { add(s.polynomial()); }
-    void add(const RgbUnboundedSpectrum& s) { all(s.scale(), s.polynomial()); }
+    void add(const ScaledPolynomial& s) { all(s.scale(), s.polynomial()); }
+    void add(const RgbUnboundedSpectrum& s) { add(static_cast<const ScaledPolynomial&>(s)); }
     void add(const RgbIlluminantSpectrum& s) { all(s.filter(), s.illuminant()); }
     void add(const RgbColorSpace* space) {
         all(space->red(), space->green(), space->blue(), space->illuminant());

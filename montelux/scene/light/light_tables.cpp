@@ -15,9 +15,9 @@ namespace {
 // Above this size (64 MiB of spectra) texels are uplifted at each look-up.
 constexpr std::size_t max_precomputed_texels = std::size_t{1} << 22;
 
-std::vector<RgbUnboundedSpectrum> map_spectra(const Image& map) {
+std::vector<ScaledPolynomial> map_spectra(const Image& map) {
     if (map.pixel_count() > max_precomputed_texels) return {};
-    std::vector<RgbUnboundedSpectrum> spectra(map.pixel_count());
+    std::vector<ScaledPolynomial> spectra(map.pixel_count());
     parallel_for(map.height(), [&](std::int64_t y) {
         for (std::size_t x = 0, i = static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width());
              x < static_cast<std::size_t>(map.width()); ++x, ++i)

@@ -43,7 +43,7 @@ class LightTables {
     std::vector<ProjectionTable> projections_;
     std::vector<Index> environment_of_light_;
     std::map<std::pair<Index, EnvironmentLayout>, Index> known_environments_;
-    std::vector<std::vector<RgbUnboundedSpectrum>> map_spectra_;
+    std::vector<std::vector<ScaledPolynomial>> map_spectra_;
     std::vector<Index> infinite_lights_;
     std::vector<Index> instance_of_light_;
     std::vector<char> emits_;

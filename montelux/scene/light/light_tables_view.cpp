@@ -5,10 +5,10 @@
 
 namespace montelux {
 
-RgbUnboundedSpectrum LightTablesView::texel_spectrum(const Image& map, std::size_t texel) {
+ScaledPolynomial LightTablesView::texel_spectrum(const Image& map, std::size_t texel) {
     const std::size_t i = texel * static_cast<std::size_t>(map.channels());
     Vec3f rgb{map.value_at(i), map.value_at(i + 1), map.value_at(i + 2)};
-    return {map_color_space(), max(rgb, Vec3f{0, 0, 0})};
+    return RgbUnboundedSpectrum(map_color_space(), max(rgb, Vec3f{0, 0, 0}));
 }
 
 SampledSpectrum LightTablesView::texel_factor(Index map, std::size_t texel,

@@ -37,7 +37,7 @@ struct LightTablesView {
     std::span<const ProjectionTable> projections;
     std::span<const Index> environment_of_light; // into `environments`, `portals` or `projections`
     // Spectra of the texels of each map; empty for maps that are too large.
-    std::span<const std::vector<RgbUnboundedSpectrum>> map_spectra;
+    std::span<const std::vector<ScaledPolynomial>> map_spectra;
     std::span<const Index> infinite_lights;
     // Of each light of a shape in an object that shines: its one instance; no_index for others.
     std::span<const Index> instance_of_light;
@@ -46,7 +46,7 @@ struct LightTablesView {
 
     // The colour space of all environment maps.
     static const RgbColorSpace& map_color_space() { return RgbColorSpace::srgb(); }
-    static RgbUnboundedSpectrum texel_spectrum(const Image& map, std::size_t texel);
+    static ScaledPolynomial texel_spectrum(const Image& map, std::size_t texel);
     // For a light on a mesh that emits.
     const LightTriangle& triangle(Index light, Index primitive) const {
         return triangles[first_triangle[light] + primitive];

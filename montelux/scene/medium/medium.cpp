@@ -92,7 +92,7 @@ MediumTable RgbGridMedium::table(const Scene& scene) const {
     const auto largest = [&](Index index, Point3f lower, Point3f upper) {
         if (index == no_index) return 1.0f;
         return scene.color_grids[index].largest(lower, upper,
-                                                [](const RgbUnboundedSpectrum& s) { return s.max_value(); });
+                                                [](const ScaledPolynomial& s) { return s.max_value(); });
     };
     return {box.unit_from_world(), box.medium_from_world(), majorant_grid([&](Point3f lower, Point3f upper) {
                 return scale * (largest(sigma_a, lower, upper) + largest(sigma_s, lower, upper));

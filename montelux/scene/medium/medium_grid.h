@@ -87,10 +87,13 @@ struct ScalarGrid : Grid3<float> {
     }
 };
 // Coefficients and, times an illuminant, emission.
-struct ColorGrid : Grid3<RgbUnboundedSpectrum> {
+struct ColorGrid : Grid3<ScaledPolynomial> {
+    // What the samples were made from, for files that are written; without effect on pictures.
+    std::vector<Vec3f> colors{};
+    const RgbColorSpace* space = nullptr;
+
     SampledSpectrum operator()(Point3f p, const SampledWavelengths& lambda) const {
-        return interpolate<SampledSpectrum>(p,
-                                            [&](const RgbUnboundedSpectrum& s) { return s.sample(lambda); });
+        return interpolate<SampledSpectrum>(p, [&](const ScaledPolynomial& s) { return s.sample(lambda); });
     }
 };
 
