@@ -80,6 +80,7 @@ class SampleContext {
     const SpectrumTable& white_;
     std::optional<BucketLayout> buckets_; // of a spectral film
     float white_scale_;
+    std::optional<Vec3f> background_; // IntegratorSettings::background
 };
 
 struct SampleContext::Batch {
