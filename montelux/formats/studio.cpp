@@ -113,13 +113,13 @@ Image studio_light() {
         return Softbox{towards(camera.azimuth + azimuth, elevation), std::cos(radians(angle)),
                        std::cos(radians(angle + 6)), radiance};
     };
-    const Softbox boxes[] = {softbox(-62, 46, 15, 17), softbox(140, 32, 9, 14)};
+    const Softbox boxes[] = {softbox(-62, 46, 13, 32), softbox(140, 32, 9, 18)};
     Image map(2 * height, height, {"R", "G", "B"});
     double irradiance = 0;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < 2 * height; ++x) {
             const Vec3d w(grid.direction(Vec2f{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}));
-            double radiance = 0.32 + 0.25 * std::max(w.z, 0.0);
+            double radiance = 0.3 + 0.25 * std::max(w.z, 0.0);
             for (const Softbox& box : boxes)
                 radiance += box.radiance * soft_disc(dot(w, box.axis), box.inner, box.outer);
             irradiance += radiance * std::max(w.z, 0.0) * grid.solid_angle(y);

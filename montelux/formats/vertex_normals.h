@@ -9,8 +9,8 @@
 
 namespace montelux {
 
-// Edges between triangles whose normals differ by more stay sharp: about that of the edges of a dodecagon's prism.
-inline constexpr double crease_degrees = 40;
+// Edges between triangles whose normals differ by more stay sharp.
+inline constexpr double crease_degrees = 30;
 
 // For each position the first one that is equal to it, so that triangles that share an edge share its indices.
 std::vector<Index> welded(std::span<const Point3f> positions);

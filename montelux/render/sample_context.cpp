@@ -42,7 +42,9 @@ SampleContext::SampleContext(const SceneDescription& description, const SamplerS
                                       description.film.white_balance, description.film.sensor}),
       white_(RgbColorSpace::srgb().illuminant()),
       white_scale_(static_cast<float>(1 / integrate_luminance(white_))),
-      background_(description.integrator.background) {
+      background_(description.integrator.background),
+      signed_filter_(std::holds_alternative<MitchellFilter>(description.film.filter) ||
+                     std::holds_alternative<LanczosFilter>(description.film.filter)) {
     if (description.film.spectral) buckets_.emplace(*description.film.spectral);
 }
 
@@ -69,13 +71,13 @@ SampleContext::Result SampleContext::finish(const FilmContribution& path, const 
     const Vec3f sensor_rgb = sensor_.to_rgb(path.radiance * point.weight, path.lambda);
     const float largest = max_component(sensor_rgb);
     const float clamp = largest > max_component_value_ ? max_component_value_ / largest : 1;
-    Vec3f rgb = sensor_rgb * clamp;
+    Vec3f rgb = sensor_rgb * clamp * filter.weight;
     Vec3f background;
     if (background_) [[unlikely]] {
-        background = *background_ * path.transparency;
+        // Weights differ from 1 by the filter's table: a constant need not get its noise.
+        background = *background_ * (path.transparency * (signed_filter_ ? filter.weight : 1.0f));
         rgb += background;
     }
-    rgb = rgb * filter.weight;
     result.clamp = clamp;
     result.bad = badness(rgb, path.radiance);
     if (record != nullptr) [[unlikely]] {

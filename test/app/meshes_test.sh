@@ -80,7 +80,7 @@ expect 1 "model.usda: this is a USD scene (text); pbrt-v4, OBJ, PLY and STL are 
 
 # Materials and what is missing of them.
 mkdir models
-printf 'newmtl red\nKd 1 0 0\nmap_Kd C:\\\\textures\\\\brick.png\nnewmtl lamp\nKe 5 5 5\n' >models/m.mtl
+printf '%s\n' 'newmtl red' 'Kd 1 0 0' 'map_Kd C:\textures\brick.png' 'newmtl lamp' 'Ke 5 5 5' >models/m.mtl
 (printf 'mtllib m.mtl\nmtllib other.mtl\n' && sed 's/^f 1 2 3 4/usemtl red\n&/; s/^f 2 5 3/usemtl lost\n&/' tent.obj) >models/red.obj
 expect 0 "models/red.obj:2: there is no file 'other.mtl' in the folder of the OBJ file" render models/red.obj $small -o red.exr
 expect 0 "models/m.mtl:3: there is no picture 'C:\\textures\\brick.png' in the folder" render models/red.obj $small -o red.exr

@@ -56,8 +56,10 @@ SceneDescription load_obj(const std::vector<std::uint8_t>& bytes, const std::fil
         }
         if (options.files_read != nullptr) options.files_read->push_back(*found);
         const std::uint32_t file = messages.add_file(found->string());
-        for (MtlMaterial& m : parse_mtl(read_unpacked(files, *found), found->string(), warnings))
-            library.insert_or_assign(m.name, LibraryMaterial{std::move(m), file});
+        for (MtlMaterial& m : parse_mtl(read_unpacked(files, *found), found->string(), warnings)) {
+            LibraryMaterial& known = library[m.name];
+            known = {std::move(m), file};
+        }
     }
 
     const double size = size_of(model);
