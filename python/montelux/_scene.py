@@ -160,9 +160,9 @@ def load(
         os.fspath(path),
         _size(texture_memory, "montelux.load"),
         None if environment is None else os.fspath(environment),
-        _comma_list(orbit),
+        _comma_list(orbit, "orbit"),
         ground,
-        _comma_list(background),
+        _comma_list(background, "background"),
     )
     _tell(scene)
     return scene
@@ -178,11 +178,14 @@ def parse(
     return scene
 
 
-def _comma_list(value: str | Sequence[float] | None) -> str | None:
+def _comma_list(value: str | Sequence[float] | None, name: str) -> str | None:
     """As an option of the program."""
     if value is None or isinstance(value, str):
         return value
-    return ",".join(repr(float(x)) for x in value)
+    try:
+        return ",".join(repr(float(x)) for x in value)
+    except (TypeError, ValueError):
+        raise Error(f"montelux.load, {name}: {value!r} was given; expected numbers") from None
 
 
 def _size(value: int | None, function: str) -> int | None:
