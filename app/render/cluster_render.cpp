@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "montelux/cluster/tile_worker.h"
-#include "montelux/formats/load_scene.h"
 #include "montelux/mc/io/byte_stream.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/render/renderer.h"
@@ -54,12 +53,10 @@ struct Prepared {
             BundledFiles files(FileBundle::from_bytes(in.get_bytes()));
             bytes = {};
             Warnings ignored;
-            description =
-                load_scene(options.scene, ignored, {.source = &files, .texel_file = texel_file_of(options)});
+            description = load_requested(options, ignored, &files).description;
         }
         if (digest_of(description.scene) != opening.scene)
             throw Error("the scene", "this rank has read another one than rank 0");
-        apply(options, description);
         description.sampler = opening.sampler;
         renderer.emplace(description, target);
     }

@@ -20,9 +20,10 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
+#include <string_view>
 #include <unistd.h>
 
-#include "montelux/formats/load_scene.h"
 #include "montelux/image/image_write.h"
 #include "montelux/mc/io/file.h"
 #include "montelux/mc/io/generation_file.h"
@@ -78,10 +79,25 @@ void check_checkpoint(const RenderOptions& options, const std::vector<std::strin
         throw UsageError(checkpoint, "the file exists; add --resume to resume from it, or remove it");
 }
 
-bool is_exr(const std::filesystem::path& path) {
+bool has_extension(const std::filesystem::path& path, std::string_view wanted) {
     std::string extension = path.extension().string();
     for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension == ".exr";
+    return extension == wanted;
+}
+
+// PNG files hold colours that are not yet multiplied by alpha, as EXR's are.
+Image with_straight_alpha(const Image& colors, const Image& layers) {
+    Image picture(colors.width(), colors.height(), {"R", "G", "B", "A"});
+    const int alpha = *layers.find_channel("A");
+    std::span<float> out = picture.f32();
+    std::size_t i = 0;
+    for (int y = 0; y < colors.height(); ++y)
+        for (int x = 0; x < colors.width(); ++x) {
+            const float a = std::clamp(layers.value(x, y, alpha), 0.0f, 1.0f);
+            for (int c = 0; c < 3; ++c) out[i++] = a > 0 ? colors.value(x, y, c) / a : 0.0f;
+            out[i++] = a;
+        }
+    return picture;
 }
 
 // Without this check the kernel would kill a process for memory, seconds or hours later.
@@ -114,10 +130,11 @@ DefaultExposure default_exposure(const FilmSettings& film) {
 }
 
 // Layers that only EXR keeps do not change what other formats show.
+// Alpha goes into PNG files where the background is transparent.
 void write_output(const std::string& output, const RenderSnapshot& result, const RenderOptions& options,
                   DefaultExposure by_default) {
     const Image& image = *result.image;
-    if (is_exr(output)) {
+    if (has_extension(output, ".exr")) {
         WriteOptions writing;
         if (result.half) writing.exr_half = half_channels_of(image.channel_names());
         const std::uint64_t beyond = half_overflows(image, writing.exr_half);
@@ -128,8 +145,11 @@ void write_output(const std::string& output, const RenderSnapshot& result, const
         return write_picture(output, image, writing);
     }
     const bool denoised = image.find_channel("denoised.R").has_value();
-    const Image shown =
+    Image shown =
         denoised ? denoised_picture(image) : image.select(std::vector<std::string>{"R", "G", "B"});
+    const bool transparent = options.studio.background && options.studio.background->transparent;
+    if (transparent && has_extension(output, ".png") && image.find_channel("A"))
+        shown = with_straight_alpha(shown, image);
     write_image(output, shown, tone_of(options.tone, output, shown, by_default, options.quiet));
 }
 
@@ -138,6 +158,17 @@ void print_warnings(const Warnings& warnings) {
         std::fprintf(stderr, "montelux: warning: %s\n", w.c_str());
     if (warnings.left_out() > 0)
         std::fprintf(stderr, "montelux: warning: %zu more warnings were left out\n", warnings.left_out());
+}
+
+void print_studio(const std::string& scene, const StudioParts& added) {
+    if (!added.camera && !added.lights) return;
+    std::fprintf(stderr,
+                 "montelux: %s has no %s: a studio was added (--environment, --orbit, --ground, --background "
+                 "change it)\n",
+                 std::filesystem::path(scene).filename().c_str(),
+                 added.camera && added.lights ? "camera and no lights"
+                 : added.camera               ? "camera"
+                                              : "lights");
 }
 
 void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed) {
@@ -228,12 +259,12 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     auto load_begin = Clock::now();
     Warnings warnings;
     std::vector<std::filesystem::path> files_read;
-    SceneDescription description = load_scene(
-        options.scene, warnings,
-        {.files_read = &files_read, .source = shared.files(), .texel_file = texel_file_of(options)});
+    auto [description, added] = load_requested(options, warnings, shared.files(), &files_read);
     double load_seconds = seconds_since(load_begin);
-    if (!options.quiet) print_warnings(warnings);
-    apply(options, description);
+    if (!options.quiet) {
+        print_warnings(warnings);
+        print_studio(options.scene, added);
+    }
     const RenderTarget target = target_of(options);
     if (options.debug_sample) return replay(options, description, target);
     const std::vector<std::string> outputs = outputs_of(options, description);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "montelux/formats/load_scene.h"
 #include "montelux/image/texel_file.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/scene/setting_names.h"
@@ -137,6 +138,16 @@ SampleAddress parse_sample(const std::string& option, const std::string& s) {
         "on, for example 320,240,7");
 }
 
+Orbit read_orbit(const std::string& option, const std::string& s) {
+    if (const std::optional<Orbit> orbit = parse_orbit(s)) return *orbit;
+    refuse(option, s, "expected " + std::string(orbit_syntax));
+}
+
+StudioSettings::Background read_background(const std::string& option, const std::string& s) {
+    if (const std::optional<StudioSettings::Background> background = parse_background(s)) return *background;
+    refuse(option, s, "expected " + std::string(background_syntax));
+}
+
 PixelBounds crop_of(const std::array<double, 4>& c, int width, int height) {
     auto pixel = [](double v, int n) { return static_cast<int>(std::ceil(v * n - 1e-9)); };
     PixelBounds b{pixel(c[0], width), pixel(c[2], height), pixel(c[1], width), pixel(c[3], height)};
@@ -149,11 +160,10 @@ PixelBounds crop_of(const std::array<double, 4>& c, int width, int height) {
 } // namespace
 
 void declare(CLI::App& c, RenderOptions& o) {
-    c.add_option("SCENE", o.scene, "Scene file of pbrt-v4; .gz is unpacked")->required();
+    c.add_option("SCENE", o.scene, "Scene (pbrt-v4) or model (OBJ, PLY, STL); .gz is unpacked")->required();
     c.add_option("-o,--output", o.outputs,
                  "Picture to write: .exr, .png, .jpg, .hdr or .pfm; may be given several times. Default: the "
-                 "name that "
-                 "the scene asks for, in this folder, as .exr")
+                 "name that the scene asks for, in this folder, as .exr")
         ->type_name("FILE")
         ->allow_extra_args(false); // the scene may follow it
     add_whole_number(c, "--spp", o.spp, 1, 1u << 30, "Samples per pixel, in place of the scene's");
@@ -199,6 +209,27 @@ void declare(CLI::App& c, RenderOptions& o) {
                "Size of the film in pixels; the scene's crop keeps its place");
     add_parsed(c, "--crop", "x0,x1,y0,y1", o.crop, parse_crop,
                "Render a part of the film alone, as fractions from the top left");
+    add_parsed(
+        c, "--environment", "FILE", o.studio.environment,
+        [](const std::string& option, const std::string& s) {
+            if (s.empty()) refuse(option, s, "the file of an environment map, or none, is expected");
+            return s;
+        },
+        "Environment map that lights the scene, in place of its infinite lights: latitude-longitude or "
+        "square "
+        "equal-area; none: no such light");
+    add_parsed(c, "--orbit", "AZ,EL[,DIST]", o.studio.orbit, read_orbit,
+               "A camera that frames the scene, in place of its own, from this azimuth and elevation "
+               "(degrees) and, in "
+               "multiples of the distance that fills the picture, DIST. Default for models: 35,18,1");
+    add_parsed(
+        c, "--ground", "on|off", o.studio.ground, parse_on_off,
+        "A large light grey disc below the scene, which catches its shadow: on, off. Default: on for models "
+        "without lights");
+    add_parsed(c, "--background", "COLOUR", o.studio.background, read_background,
+               "What the camera sees where it meets nothing, whatever lights the scene: transparent (PNG and "
+               "EXR get "
+               "alpha), black, grey, white, #rrggbb, or linear r,g,b");
     add_parsed(c, "--layers", "LIST", o.layers, parse_layer_list,
                "Layers of the EXR file, in place of the scene's, for example default,position,uv: " +
                    layer_list());
@@ -258,6 +289,7 @@ void declare(CLI::App& c, RenderOptions& o) {
         "  montelux render scene.pbrt --spp 64 -o out.exr -o out.png\n"
         "  montelux render scene.pbrt --resolution 320x240 --crop 0.5,1,0,0.5 -o corner.exr\n"
         "  montelux render scene.pbrt --spp 64 --debug-sample 320,240,7\n"
+        "  montelux render model.obj --orbit 60,20 -o model.png\n"
         "\n"
         "'mpirun -n 8 montelux render ...' shares the render among machines; the picture is the same.\n"
         "An EXR file holds every layer: mean, standard error, samples, albedo, normal, depth and those of "
@@ -265,6 +297,8 @@ void declare(CLI::App& c, RenderOptions& o) {
         "SIGINT (Ctrl-C) or SIGTERM ends the render early and saves the picture; another one, a "
         "second later or more, ends it at once: the picture is not saved.");
 }
+
+namespace {
 
 void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.resolution) {
@@ -310,6 +344,19 @@ void apply(const RenderOptions& o, SceneDescription& d) {
 
 std::shared_ptr<TexelFile> texel_file_of(const RenderOptions& o) {
     return o.texture_memory ? TexelFile::create(*o.texture_memory) : nullptr;
+}
+
+} // namespace
+
+RequestedScene load_requested(const RenderOptions& o, Warnings& warnings, FileSource* source,
+                              std::vector<std::filesystem::path>* files_read) {
+    RequestedScene r;
+    r.description = load_scene(o.scene, warnings,
+                               {.files_read = files_read, .source = source, .texel_file = texel_file_of(o)});
+    apply(o, r.description);
+    DiskFiles disk;
+    r.added = add_studio(r.description, o.studio, source != nullptr ? *source : disk, warnings, files_read);
+    return r;
 }
 
 RenderTarget target_of(const RenderOptions& o) {

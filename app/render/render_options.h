@@ -6,12 +6,16 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "montelux/formats/file_source.h"
+#include "montelux/formats/studio.h"
+#include "montelux/formats/warnings.h"
 #include "montelux/render/render_target.h"
 #include "montelux/scene/render_settings.h"
 
@@ -54,6 +58,7 @@ struct RenderOptions {
     std::optional<LightGrouping> light_grouping;
     std::optional<bool> layers_in_camera_space, half;
     ToneOptions tone{};
+    StudioSettings studio;
     std::optional<SampleAddress> debug_sample; // traced alone, instead of a render
     std::optional<std::size_t> texture_memory; // bytes
     int threads = 0;
@@ -64,10 +69,15 @@ struct RenderOptions {
 // An invalid value ends the parse with a CLI::ValidationError.
 void declare(CLI::App& command, RenderOptions& options);
 
-// Throws UsageError if a crop contains no pixel of the film.
-void apply(const RenderOptions& options, SceneDescription& description);
-// Where the scene's images are kept; null: in memory.
-std::shared_ptr<TexelFile> texel_file_of(const RenderOptions& options);
+// The scene to be rendered: what the file contains, with the options that override it, and with a studio (add_studio).
+struct RequestedScene {
+    SceneDescription description;
+    StudioParts added;
+};
+// `source`: of all files; null: the disk. `files_read` receives their names. Throws the errors of load_scene and
+// add_studio, and UsageError if a crop contains no pixel of the film.
+RequestedScene load_requested(const RenderOptions& options, Warnings& warnings, FileSource* source,
+                              std::vector<std::filesystem::path>* files_read = nullptr);
 // Throws UsageError for incompatible options.
 RenderTarget target_of(const RenderOptions& options);
 

@@ -307,6 +307,7 @@ void add_result(Text& t, const SampleRecord& r) {
     t.rgb(1, "sensor", r.sensor_rgb);
     if (r.clamp != 1) t.label(1, "times clamp").number(r.clamp, 15).end();
     t.label(1, "times filter").number(r.filter.weight, 15).end();
+    if (r.background != Vec3f{}) t.rgb(1, "plus background", r.background);
     if (!r.bad) {
         t.rgb(1, "the pixel gets", r.contribution.radiance);
     } else {

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <string_view>
 
+#include "montelux/formats/stl.h"
+
 namespace montelux {
 namespace {
 
@@ -14,8 +16,6 @@ struct Beginning {
     std::string_view text, name, hint = {};
     std::size_t offset = 0;
 };
-
-constexpr auto mesh_hint = "a scene file of pbrt-v4 refers to it by Shape \"plymesh\""sv;
 constexpr auto checkpoint_hint = "give the scene itself, with --checkpoint FILE --resume"sv;
 
 constexpr auto beginnings = std::to_array<Beginning>({
@@ -31,13 +31,7 @@ constexpr auto beginnings = std::to_array<Beginning>({
     {"##RenderMan RIB", "a RenderMan scene"},
     {"#VRML", "a VRML scene"},
     // Meshes and volumes.
-    {"ply\n", "a PLY mesh", mesh_hint},
-    {"ply\r", "a PLY mesh", mesh_hint},
-    {"solid ", "an STL mesh"},
     {"OFF\n", "an OFF mesh"},
-    {"mtllib ", "an OBJ mesh"},
-    {"v ", "an OBJ mesh"},
-    {"o ", "an OBJ mesh"},
     {"NanoVDB", "a NanoVDB volume"},
     {" BDV", "an OpenVDB volume"},
     // Pictures.
@@ -101,24 +95,40 @@ std::string_view first_word_on(std::string_view text) {
     }
 }
 
+// OBJ files have no mark: their first word is one of their statements, which are in small letters as no directive of
+// pbrt is.
+bool begins_obj(std::string_view text) {
+    const std::string_view word = text.substr(0, text.find_first_of(" \t\r\n"));
+    constexpr std::array statements{"v"sv, "vt"sv, "vn"sv, "vp"sv, "f"sv,      "o"sv,      "g"sv,
+                                    "s"sv, "l"sv,  "p"sv,  "mg"sv, "mtllib"sv, "usemtl"sv, "cstype"sv};
+    return std::ranges::find(statements, word) != statements.end();
+}
+bool begins_text_stl(std::string_view text) {
+    return text.starts_with("solid") && contains(text.substr(0, 4096), "facet");
+}
+
 } // namespace
 
 FileKind file_kind(std::span<const std::uint8_t> bytes) {
+    if (is_binary_stl(bytes)) return {SceneFormat::stl};
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     auto find = [](std::string_view at) -> const Beginning* {
         for (const Beginning& b : beginnings)
             if (at.size() > b.offset && at.substr(b.offset).starts_with(b.text)) return &b;
         return nullptr;
     };
+    if (text.starts_with("ply\n") || text.starts_with("ply\r")) return {SceneFormat::ply};
     const Beginning* found = find(text);
     const std::string_view word = first_word_on(text);
-    // OBJ files often begin with comments.
-    if (found == nullptr) found = find(word);
-    if (found != nullptr) return {std::string(found->name), std::string(found->hint)};
-    if (word.starts_with('<')) return {std::string(kind_of_xml(word)), {}};
-    if (word.starts_with('{')) return {std::string(kind_of_json(word)), {}};
-    if (contains(text.substr(0, 1024), "\0"sv)) return {"a binary file of no kind that is known", {}};
-    return {};
+    if (found == nullptr) found = find(word); // text that begins with a comment
+    if (found != nullptr) return {SceneFormat::none, std::string(found->name), std::string(found->hint)};
+    if (begins_text_stl(text)) return {SceneFormat::stl};
+    if (begins_obj(word)) return {SceneFormat::obj};
+    if (word.starts_with('<')) return {SceneFormat::none, std::string(kind_of_xml(word))};
+    if (word.starts_with('{')) return {SceneFormat::none, std::string(kind_of_json(word))};
+    if (contains(text.substr(0, 1024), "\0"sv))
+        return {SceneFormat::none, "a binary file of an unknown kind"};
+    return {SceneFormat::pbrt};
 }
 
 } // namespace montelux

@@ -1,4 +1,4 @@
-// FileKind: what a file is, by its content; for messages about files of the wrong kind.
+// FileKind: what a file is, by its content: the format of a scene, or a name for messages about files of other kinds.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,16 @@
 
 namespace montelux {
 
+// Scenes that can be read. Text of an unknown kind counts as pbrt's, whose reader says what it does not understand.
+enum class SceneFormat : std::uint8_t { none, pbrt, obj, ply, stl };
+
 struct FileKind {
-    std::string name; // "a PNG picture"; empty for text of an unknown kind
-    std::string hint; // what to do with such a file; often empty
+    SceneFormat format = SceneFormat::none;
+    std::string name{}; // "a PNG picture"; of format none
+    std::string hint{}; // what to do with such a file; often empty
 };
 
-// Recognised by the first bytes; JSON files by all of them.
+// Recognised by the first bytes; JSON files by all of them, binary STL files by their size.
 FileKind file_kind(std::span<const std::uint8_t> bytes);
 
 } // namespace montelux

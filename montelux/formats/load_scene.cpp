@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "montelux/formats/file_kind.h"
+#include "montelux/formats/mesh_scene.h"
+#include "montelux/formats/obj/load_obj.h"
 #include "montelux/formats/pbrt/load_pbrt.h"
 #include "montelux/mc/math/error.h"
 
@@ -15,12 +17,23 @@ SceneDescription load_scene(const std::filesystem::path& path, Warnings& warning
     FileSource& files = options.source != nullptr ? *options.source : disk;
     std::vector<std::uint8_t> bytes = read_unpacked(files, path);
     const FileKind kind = file_kind(bytes);
-    if (!kind.name.empty())
-        throw Error(path.string(), "looks like " + kind.name +
-                                       "; expected a scene of pbrt-v4 (.pbrt or .pbrt.gz)" +
-                                       (kind.hint.empty() ? "" : ": " + kind.hint));
-    // All other text goes to the pbrt reader, which reports what it does not understand.
-    return load_pbrt(std::move(bytes), path, warnings, options.files_read, files, options.texel_file);
+    switch (kind.format) {
+    case SceneFormat::pbrt:
+        return load_pbrt(std::move(bytes), path, warnings, options.files_read, files, options.texel_file);
+    case SceneFormat::obj:
+        return load_obj(bytes, path, warnings, options);
+    case SceneFormat::ply:
+        return load_ply(bytes, path, warnings, options);
+    case SceneFormat::stl:
+        return load_stl(bytes, path, warnings, options);
+    case SceneFormat::none:
+        break;
+    }
+    // A binary STL file is known by its size alone: one that was cut short is told by its name.
+    if (path.extension() == ".stl" || path.extension() == ".STL")
+        return load_stl(bytes, path, warnings, options);
+    throw Error(path.string(), "this is " + kind.name + "; pbrt-v4, OBJ, PLY and STL are read" +
+                                   (kind.hint.empty() ? "" : ": " + kind.hint));
 }
 
 } // namespace montelux

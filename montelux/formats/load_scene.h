@@ -1,4 +1,4 @@
-// load_scene: scene files of any supported format; at present pbrt-v4.
+// load_scene: scene files of any supported format: pbrt-v4, and meshes by themselves (OBJ, PLY, STL).
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 namespace montelux {
 
 // The format is recognised by the file's content, not by its name; only compressed files need the suffix
-// ".gz". Throws Error for files of other kinds, with their kind, and for the errors of the reader.
+// ".gz". What models lack is left to add_studio (studio.h). Throws Error for files of other kinds, with their kind, and for the errors of the reader.
 SceneDescription load_scene(const std::filesystem::path& path, Warnings& warnings,
                             const LoadOptions& options = {});
 

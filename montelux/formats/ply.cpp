@@ -169,8 +169,8 @@ class BodyParser {
             if (e.name == "vertex") {
                 parse_vertices(e);
                 vertices = true;
-            } else if (e.name == "face") {
-                parse_faces(e);
+            } else if (e.name == "face" || e.name == "tristrips") {
+                parse_faces(e, e.name == "tristrips");
                 faces = true;
             } else if (!e.properties.empty()) {
                 for (std::uint64_t i = 0; i < e.count; ++i)
@@ -178,7 +178,9 @@ class BodyParser {
             }
         }
         if (!vertices) throw Error(name_, "the file has no element 'vertex'");
-        if (!faces) throw Error(name_, "the file has no element 'face'");
+        if (!faces)
+            throw Error(name_,
+                        "the file has no element 'face': it is a cloud of points, which has no surface");
         check_indices();
         return std::move(result_);
     }
@@ -206,6 +208,7 @@ class BodyParser {
             int s = p.is_list ? -1 : slot_of(p.name);
             slot.push_back(s);
             if (s >= 0) have[static_cast<std::size_t>(s)] = true;
+            if (p.name == "red" || p.name == "diffuse_red") result_.has_colors = true;
         }
         if (!(have[0] && have[1] && have[2]))
             throw Error(std::string(name_) + ":" + std::to_string(e.line),
@@ -239,13 +242,13 @@ class BodyParser {
                             "vertex " + std::to_string(i) + " has a value that is not finite");
     }
 
-    void parse_faces(const Element& e) {
+    void parse_faces(const Element& e, bool strips) {
         const Property* list = nullptr;
         for (const Property& p : e.properties)
             if (p.is_list && (p.name == "vertex_indices" || p.name == "vertex_index")) list = &p;
         if (!list)
             throw Error(std::string(name_) + ":" + std::to_string(e.line),
-                        "element 'face' needs a list 'vertex_indices'");
+                        "element '" + e.name + "' needs a list 'vertex_indices'");
         if (!ply::is_integer(list->type))
             throw Error(std::string(name_) + ":" + std::to_string(e.line),
                         "list 'vertex_indices' must be of an integer type");
@@ -253,7 +256,7 @@ class BodyParser {
         for (std::uint64_t i = 0; i < e.count; ++i)
             for (const Property& p : e.properties) {
                 if (&p == list)
-                    parse_corners(p);
+                    strips ? parse_strips(p) : parse_corners(p);
                 else
                     skip(p);
             }
@@ -274,8 +277,31 @@ class BodyParser {
             last = c;
         }
     }
-    Index corner(Type type) {
-        double v = cursor_.number(type);
+    void parse_strips(const Property& p) {
+        std::vector<Index>& indices = result_.mesh.indices;
+        std::size_t length = 0; // corners of the open strip so far
+        Index a = 0, b = 0;     // the last two
+        for (std::uint64_t count = list_count(p); count > 0; --count) {
+            const double v = cursor_.number(p.type);
+            if (v == -1) {
+                length = 0;
+                continue;
+            }
+            const Index c = corner(v);
+            // Every other triangle is reversed. Strips turn by repeated corners, whose triangles have no area.
+            if (length >= 2 && a != b && b != c && a != c) {
+                if (length % 2 == 0)
+                    indices.insert(indices.end(), {a, b, c});
+                else
+                    indices.insert(indices.end(), {b, a, c});
+            }
+            a = b;
+            b = c;
+            ++length;
+        }
+    }
+    Index corner(Type type) { return corner(cursor_.number(type)); }
+    Index corner(double v) const {
         if (!(v >= 0 && v < static_cast<double>(no_index)))
             throw Error(cursor_.where(), "a face has a negative vertex index or one beyond 2^32");
         return static_cast<Index>(v);

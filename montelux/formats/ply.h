@@ -18,11 +18,13 @@ struct PlyMesh {
     std::size_t quads = 0;      // faces of four corners, split into two triangles along corners 0 and 2
     std::size_t polygons = 0;   // faces of more corners, split into a fan around corner 0
     std::size_t degenerate = 0; // faces of fewer than three corners, left out
+    bool has_colors = false;    // of vertices; they are not read
 };
 
 // ASCII and binary, little and big endian, properties of any type in any order. Vertices: x, y, z; optional
 // nx, ny, nz; optional u, v (also s, t; texture_u, texture_v; texture_s, texture_t). Faces: a list
-// vertex_indices or vertex_index. Other elements and properties are skipped.
+// vertex_indices or vertex_index. Triangle strips: an element tristrips with such a list, in which -1 begins a new strip.
+// Other elements and properties are skipped.
 // Allocates no more than the file's size justifies. Throws Error, prefixed with `name`, for a wrong header,
 // data that ends early, numbers that cannot be read or are not finite, and vertex indices out of range.
 PlyMesh parse_ply(std::span<const std::uint8_t> bytes, std::string_view name);

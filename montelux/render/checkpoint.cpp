@@ -66,12 +66,16 @@ std::uint64_t hash_of_film(const FilmSettings& f) {
                    f.spectral.has_value(), spectral.lambda_min, spectral.lambda_max, spectral.buckets);
 }
 std::uint64_t hash_of_integrator(const IntegratorSettings& s) {
-    if (s.occlusion) return hash_of(s.occlusion->cosine, s.occlusion->max_distance);
-    return hash_of(s.max_depth, static_cast<int>(s.strategy), static_cast<int>(s.heuristic),
-                   static_cast<int>(s.light_sampling), s.equiangular, s.regularize,
-                   static_cast<int>(s.environment_sampling), s.environment_compensation,
-                   static_cast<int>(s.environment_lookup), static_cast<int>(s.microfacet_scattering),
-                   static_cast<int>(s.shading_terminator));
+    const auto with_background = [&](std::uint64_t h) {
+        return s.background ? hash_of(h, s.background->x, s.background->y, s.background->z) : h;
+    };
+    if (s.occlusion) return with_background(hash_of(s.occlusion->cosine, s.occlusion->max_distance));
+    return with_background(hash_of(s.max_depth, static_cast<int>(s.strategy), static_cast<int>(s.heuristic),
+                                   static_cast<int>(s.light_sampling), s.equiangular, s.regularize,
+                                   static_cast<int>(s.environment_sampling), s.environment_compensation,
+                                   static_cast<int>(s.environment_lookup),
+                                   static_cast<int>(s.microfacet_scattering),
+                                   static_cast<int>(s.shading_terminator)));
 }
 // Another version of the program may take different samples.
 std::uint64_t version() { return hash_of(layout_version, hash_of_text(MONTELUX_VERSION)); }

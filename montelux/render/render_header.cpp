@@ -64,6 +64,8 @@ void add_render_header(Image& image, const std::string& scene_name, const Render
     a["environmentLookup"] = std::string(name_of(description.integrator.environment_lookup));
     if (description.integrator.regularize) a["regularize"] = 1; // a bias that no standard error contains
     if (description.integrator.occlusion) a["ambientOcclusion"] = 1;
+    if (const std::optional<Vec3f>& color = description.integrator.background)
+        a["background"] = std::vector<float>{color->x, color->y, color->z};
     a["microfacetScattering"] = std::string(name_of(description.integrator.microfacet_scattering));
     a["shadingTerminator"] = std::string(name_of(description.integrator.shading_terminator));
     a["maxDepth"] = description.integrator.max_depth;

@@ -41,7 +41,10 @@ SampleContext::SampleContext(const SceneDescription& description, const SamplerS
       sensor_(RgbColorSpace::srgb(), {description.film.exposure_time, description.film.iso,
                                       description.film.white_balance, description.film.sensor}),
       white_(RgbColorSpace::srgb().illuminant()),
-      white_scale_(static_cast<float>(1 / integrate_luminance(white_))) {
+      white_scale_(static_cast<float>(1 / integrate_luminance(white_))),
+      background_(description.integrator.background),
+      signed_filter_(std::holds_alternative<MitchellFilter>(description.film.filter) ||
+                     std::holds_alternative<LanczosFilter>(description.film.filter)) {
     if (description.film.spectral) buckets_.emplace(*description.film.spectral);
 }
 
@@ -68,7 +71,13 @@ SampleContext::Result SampleContext::finish(const FilmContribution& path, const 
     const Vec3f sensor_rgb = sensor_.to_rgb(path.radiance * point.weight, path.lambda);
     const float largest = max_component(sensor_rgb);
     const float clamp = largest > max_component_value_ ? max_component_value_ / largest : 1;
-    const Vec3f rgb = sensor_rgb * clamp * filter.weight;
+    Vec3f rgb = sensor_rgb * clamp * filter.weight;
+    Vec3f background;
+    if (background_) [[unlikely]] {
+        // Weights differ from 1 by the filter's table: a constant need not get its noise.
+        background = *background_ * (path.transparency * (signed_filter_ ? filter.weight : 1.0f));
+        rgb += background;
+    }
     result.clamp = clamp;
     result.bad = badness(rgb, path.radiance);
     if (record != nullptr) [[unlikely]] {
@@ -77,6 +86,7 @@ SampleContext::Result SampleContext::finish(const FilmContribution& path, const 
         record->lambda_end = path.lambda;
         record->sensor_rgb = sensor_rgb;
         record->clamp = clamp;
+        record->background = background;
         record->rgb = rgb;
         record->bad = result.bad;
     }

@@ -80,6 +80,8 @@ class SampleContext {
     const SpectrumTable& white_;
     std::optional<BucketLayout> buckets_; // of a spectral film
     float white_scale_;
+    std::optional<Vec3f> background_; // IntegratorSettings::background
+    bool signed_filter_;              // the pixel filter has negative lobes
 };
 
 struct SampleContext::Batch {

@@ -27,7 +27,9 @@ struct SampleRecord {
     PathRecord path;
     Vec3f sensor_rgb; // of the path's radiance, linear sRGB
     float clamp = 1;  // factor that limits the largest component to the film's limit
-    Vec3f rgb;        // sensor_rgb times clamp times filter weight
+    Vec3f
+        background; // the share of IntegratorSettings::background, filter weight applied where it may be negative
+    Vec3f rgb;      // sensor_rgb times clamp times filter weight, plus the background
 
     // The contribution to the pixel, or why the sample is left out.
     FilmSample contribution;

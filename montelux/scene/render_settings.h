@@ -67,6 +67,9 @@ struct IntegratorSettings {
     EnvironmentLookup environment_lookup = EnvironmentLookup::nearest;
     MicrofacetScattering microfacet_scattering = MicrofacetScattering::single;
     ShadingTerminator shading_terminator = ShadingTerminator::hard;
+    // Linear sRGB of the picture where camera rays leave the scene unscattered, in place of the infinite lights there;
+    // neither exposed nor clamped as light is. Empty: the lights are seen.
+    std::optional<Vec3f> background{};
 
     EnvironmentSettings environments() const {
         return {environment_sampling, environment_compensation && strategy >= Strategy::mis,
@@ -81,6 +84,10 @@ struct SceneDescription {
     SamplerSettings sampler;
     IntegratorSettings integrator;
     std::string output_file; // the file's own name; may be empty
+    bool has_camera = true;  // false: the file has none
+    // Of models rather than scenes: what the file lacks is added by a studio (formats/studio.h).
+    bool wants_studio = false;
+    Vec3f up{0, 1, 0}; // of a scene without a camera; a unit vector along an axis
 };
 
 } // namespace montelux

@@ -42,6 +42,7 @@ struct FilmContribution {
     SampledSpectrum radiance;
     SampledWavelengths lambda; // of the camera sample, possibly without the secondary ones
     FirstHit first;
+    float transparency = 0; // share of the light behind the scene that the path lets through unscattered
 };
 
 // Stateless between samples: `estimate` is a function of the scene, the camera sample and the numbers of the

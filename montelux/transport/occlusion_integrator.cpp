@@ -52,7 +52,7 @@ FilmContribution OcclusionIntegrator::estimate(const SceneView& scene, RayTracer
                                                const CameraSample& camera, Stream& stream,
                                                PathRecord* record) const {
     const PathRecorder recorder(record);
-    FilmContribution result{SampledSpectrum(), camera.lambda, {}};
+    FilmContribution result{SampledSpectrum(), camera.lambda, {}, 0};
     const auto finish = [&](PathEnd end) {
         if (recorder) {
             recorder.ended(end);
@@ -63,6 +63,7 @@ FilmContribution OcclusionIntegrator::estimate(const SceneView& scene, RayTracer
     const SampledSpectrum white = white_->sample(camera.lambda) * white_scale_;
     const std::optional<MetSurface> met = first_surface(scene, tracer, camera.ray);
     if (!met) {
+        result.transparency = 1;
         if (camera.extras != nullptr) camera.extras->transparency = 1;
         if (recorder) recorder.left_scene(camera.ray, white);
         return finish(PathEnd::left_scene);

@@ -32,8 +32,9 @@ void PathIntegrator::add_met_light(const SceneView& scene, PathState& state, Ind
 void PathIntegrator::escape(const SceneView& scene, PathState& state, PathRecorder recorder) const {
     if (recorder) recorder.left_scene(state.ray, state.throughput);
     state.leave(state.throughput);
-    for (Index light : scene.light_tables.infinite_lights)
-        add_met_light(scene, state, light, {.wi = state.ray.d}, recorder);
+    if (!settings_.background || state.depth > 0)
+        for (Index light : scene.light_tables.infinite_lights)
+            add_met_light(scene, state, light, {.wi = state.ray.d}, recorder);
     if (recorder) recorder.ended(PathEnd::left_scene);
     state.alive = false;
 }

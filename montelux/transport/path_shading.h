@@ -192,7 +192,7 @@ FilmContribution PathIntegrator::estimate(const SceneView& scene, RayTracer& tra
             recorder.occluded();
     }
     if (recorder) recorder.traced(state.radiance);
-    return {state.radiance, state.lambda, state.first};
+    return {state.radiance, state.lambda, state.first, state.transparency};
 }
 
 template <RandomStream Stream>
@@ -253,7 +253,7 @@ void PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer, std::sp
     }
     for (std::size_t i = 0; i < starts.size(); ++i) {
         const PathState& state = batch.states[i];
-        results[i] = {state.radiance, state.lambda, state.first};
+        results[i] = {state.radiance, state.lambda, state.first, state.transparency};
     }
 }
 

@@ -19,6 +19,7 @@ struct PathState {
     bool scattered_roughly = false; // some event so far was not specular
     bool alive = true;              // false: the path has ended; do not trace the ray
     FirstHit first;
+    float transparency = 0;         // as in FilmContribution
     SampleExtras* extras = nullptr; // null: not wanted
 
     PathState(const CameraSample& camera) : ray(camera.ray), lambda(camera.lambda), extras(camera.extras) {
@@ -36,8 +37,10 @@ struct PathState {
             extras->meet(ray, hit);
     }
     void leave(SampledSpectrum carried) {
-        if (extras != nullptr && depth == 0) [[unlikely]]
-            extras->transparency = average(carried);
+        if (depth > 0) return;
+        transparency = average(carried);
+        if (extras != nullptr) [[unlikely]]
+            extras->transparency = transparency;
     }
 };
 static_assert(std::is_trivially_copyable_v<PathState>);

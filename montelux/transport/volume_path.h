@@ -40,7 +40,7 @@ class VolumePath : private VolumePathLights<Stream> {
                 escape();
         }
         if (recorder_) recorder_.traced(state_.radiance);
-        return {state_.radiance, lambda, state_.first};
+        return {state_.radiance, lambda, state_.first, state_.transparency};
     }
 
   private:
@@ -288,7 +288,9 @@ class VolumePath : private VolumePathLights<Stream> {
     void escape() {
         if (recorder_) recorder_.left_scene(state_.ray, state_.carried());
         state_.leave(state_.carried());
-        for (Index light : scene_.light_tables.infinite_lights) add_met_light(light, {.wi = state_.ray.d});
+        if (!integrator_.settings_.background || state_.depth > 0)
+            for (Index light : scene_.light_tables.infinite_lights)
+                add_met_light(light, {.wi = state_.ray.d});
         end(PathEnd::left_scene);
     }
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from . import _core
@@ -137,12 +137,33 @@ class Scene(_core.SceneBase):
         )
 
 
-def load(path: str | os.PathLike[str], *, texture_memory: int | None = None) -> Scene:
-    """Reads a pbrt-v4 scene file and all files that it refers to. What it ignores is reported by
-    warnings, and in `scene.warnings`. With `texture_memory`, image textures are kept in a temporary file, of which
-    about this many bytes are in memory."""
+def load(
+    path: str | os.PathLike[str],
+    *,
+    texture_memory: int | None = None,
+    environment: str | os.PathLike[str] | None = None,
+    orbit: Sequence[float] | None = None,
+    ground: bool | None = None,
+    background: str | Sequence[float] | None = None,
+) -> Scene:
+    """Reads a scene (pbrt-v4) or a model (OBJ, PLY, STL) and all files that it refers to. What it ignores is reported
+    by warnings, and in `scene.warnings`. With `texture_memory`, image textures are kept in a temporary file, of which
+    about this many bytes are in memory.
+
+    A model without camera and lights gets those of a studio. `environment` is a map that lights any scene in place of
+    its infinite lights ("none": no such light); `orbit` a camera that frames it, (azimuth, elevation) in degrees or
+    (azimuth, elevation, distance) with the distance in multiples of the framing one; `ground` a disc below it that
+    catches its shadow; `background` what the camera sees where it meets nothing: "transparent" (layer "alpha"),
+    "black", "grey", "white", "#rrggbb", or linear (r, g, b)."""
     scene = Scene()
-    scene._load(os.fspath(path), _size(texture_memory, "montelux.load"))
+    scene._load(
+        os.fspath(path),
+        _size(texture_memory, "montelux.load"),
+        None if environment is None else os.fspath(environment),
+        _comma_list(orbit, "orbit"),
+        ground,
+        _comma_list(background, "background"),
+    )
     _tell(scene)
     return scene
 
@@ -155,6 +176,16 @@ def parse(
     scene._parse(text, name, os.fspath(folder), _size(texture_memory, "montelux.parse"))
     _tell(scene)
     return scene
+
+
+def _comma_list(value: str | Sequence[float] | None, name: str) -> str | None:
+    """As an option of the program."""
+    if value is None or isinstance(value, str):
+        return value
+    try:
+        return ",".join(repr(float(x)) for x in value)
+    except (TypeError, ValueError):
+        raise Error(f"montelux.load, {name}: {value!r} was given; expected numbers") from None
 
 
 def _size(value: int | None, function: str) -> int | None:

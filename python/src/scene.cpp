@@ -14,6 +14,7 @@
 
 #include "montelux/formats/load_scene.h"
 #include "montelux/formats/pbrt/load_pbrt.h"
+#include "montelux/formats/studio.h"
 #include "montelux/image/texel_file.h"
 #include "montelux/scene/build/scene_builder.h"
 
@@ -47,6 +48,23 @@ nb::object add_environment(const SceneObject& s, const nb::object& image, double
     return as_python(Slot<Light>(s.holder, builder.add_light(light)));
 }
 
+// Texts as of the program's options.
+StudioSettings studio_settings(std::optional<std::string> environment,
+                               const std::optional<std::string>& orbit, std::optional<bool> ground,
+                               const std::optional<std::string>& background) {
+    StudioSettings settings;
+    settings.environment = std::move(environment);
+    settings.ground = ground;
+    const auto refuse = [](const char* name, const std::string& given, std::string_view syntax) {
+        throw Error(std::string("montelux.load, ") + name,
+                    "'" + given + "' was given; expected " + std::string(syntax));
+    };
+    if (orbit && !(settings.orbit = parse_orbit(*orbit))) refuse("orbit", *orbit, orbit_syntax);
+    if (background && !(settings.background = parse_background(*background)))
+        refuse("background", *background, background_syntax);
+    return settings;
+}
+
 } // namespace
 
 void bind_scene(nb::module_& m) {
@@ -61,16 +79,23 @@ void bind_scene(nb::module_& m) {
          nb::kw_only(), "texture_memory"_a.none() = nb::none())
         .def(
             "_load",
-            [](SceneObject& s, const std::filesystem::path& path, std::optional<std::size_t> texture_memory) {
+            [](SceneObject& s, const std::filesystem::path& path, std::optional<std::size_t> texture_memory,
+               std::optional<std::string> environment, const std::optional<std::string>& orbit,
+               std::optional<bool> ground, const std::optional<std::string>& background) {
                 Warnings warnings;
                 SceneDescription d;
                 {
                     nb::gil_scoped_release unlocked;
+                    const StudioSettings studio =
+                        studio_settings(std::move(environment), orbit, ground, background);
                     d = load_scene(path, warnings, {.texel_file = texel_file(texture_memory)});
+                    DiskFiles files;
+                    add_studio(d, studio, files, warnings);
                 }
                 take(s, std::move(d), warnings, path.filename().string());
             },
-            "path"_a, "texture_memory"_a.none())
+            "path"_a, "texture_memory"_a.none(), "environment"_a.none(), "orbit"_a.none(), "ground"_a.none(),
+            "background"_a.none())
         .def(
             "_parse",
             [](SceneObject& s, const std::string& text, const std::string& name,

@@ -112,10 +112,10 @@ def test_indices_beyond_the_end(scene):
 def test_messages_name_the_kind_of_files_that_are_not_scenes(tmp_path):
     for name, content, kind in [
         ("model.gltf", '{"asset": {"version": "2.0"}, "scenes": []}', r"a glTF scene \(JSON\)"),
-        ("bunny.pbrt", "ply\nformat ascii 1.0\n", "a PLY mesh"),
+        ("bunny.pbrt", "OFF\n3 1 0\n", "an OFF mesh"),
     ]:
         (tmp_path / name).write_text(content)
-        with pytest.raises(montelux.Error, match=f"{name}: looks like {kind}; expected a scene of pbrt-v4"):
+        with pytest.raises(montelux.Error, match=f"{name}: this is {kind}; pbrt-v4, OBJ, PLY and STL are read"):
             montelux.load(tmp_path / name)
 
 

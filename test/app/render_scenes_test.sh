@@ -60,7 +60,7 @@ broken "the gzip data ends early" 'Shape "plymesh" "string filename" "bad.ply.gz
 expect 1 "empty.pbrt:1:1: the file ends before WorldBegin" render empty.pbrt
 expect 1 "missing.pbrt: cannot be opened" render missing.pbrt
 expect 1 "it is a folder" render .
-expect 1 "looks like a program; expected a scene of pbrt-v4" render "$montelux"
+expect 1 "this is a program; pbrt-v4, OBJ, PLY and STL are read" render "$montelux"
 expect 1 "cannot be opened" render ''
 
 # Unusual, but valid.

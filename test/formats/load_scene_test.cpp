@@ -28,8 +28,7 @@ class LoadScene : public ::testing::Test {
         return {};
     }
     std::string refused(const std::string& name, const std::string& kind) {
-        return (folder_ / name).string() + ": looks like " + kind +
-               "; expected a scene of pbrt-v4 (.pbrt or .pbrt.gz)";
+        return (folder_ / name).string() + ": this is " + kind + "; pbrt-v4, OBJ, PLY and STL are read";
     }
 
     TemporaryFolder folder_;
@@ -65,25 +64,61 @@ TEST_F(LoadScene, OtherKindsAreNamed) {
         {"a.dae", "<?xml?><COLLADA>", "a COLLADA scene"},
         {"a.svg", "<svg xmlns=''>", "an SVG picture"},
         {"a.usda", "#usda 1.0\n", "a USD scene (text)"},
-        {"a.obj", "# made by hand\n\nmtllib a.mtl\nv 0 0 0\n", "an OBJ mesh"},
-        {"b.obj", "v 0 0 0\n", "an OBJ mesh"},
-        {"a.stl", "solid ball\n", "an STL mesh"},
+        {"a.off", "OFF\n8 6 0\n", "an OFF mesh"},
         {"a.tif", "II*\0\10\0\0\0"s, "a TIFF picture"},
         {"a.webp", "RIFF\1\2\3\4WEBPVP8 "s, "a WebP picture"},
         {"a.jpg", "\xff\xd8\xff\xe0", "a JPEG picture"},
         {"a.zip", "PK\3\4", "a ZIP archive"},
-        {"a.bin", "WorldBegin\0Shape"s, "a binary file of no kind that is known"},
+        {"a.bin", "WorldBegin\0Shape"s, "a binary file of an unknown kind"},
     };
     for (const Case& c : cases)
         EXPECT_EQ(error_of(folder_.write(c.name, c.content)), refused(c.name, c.kind));
-    EXPECT_EQ(error_of(folder_.write("a.ply", "ply\nformat ascii 1.0\n")),
-              refused("a.ply", "a PLY mesh") + ": a scene file of pbrt-v4 refers to it by Shape \"plymesh\"");
     const std::vector<std::uint8_t> packed = gzip("WorldBegin");
     EXPECT_EQ(error_of(folder_.write("packed.pbrt", {packed.begin(), packed.end()})),
               refused("packed.pbrt", "a gzip file") + ": the name of a compressed scene ends in .gz");
     const std::vector<std::uint8_t> packed_xml = gzip("<scene version='3.0.0'>");
     EXPECT_EQ(error_of(folder_.write("a.xml.gz", {packed_xml.begin(), packed_xml.end()})),
               refused("a.xml.gz", "a Mitsuba scene (XML)"));
+}
+
+TEST_F(LoadScene, MeshesAreModels) {
+    const std::string stl =
+        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+        "endloop\nendfacet\nendsolid\n";
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    std::string binary(80, ' ');
+    binary += std::string("\1\0\0\0", 4) + std::string(12, '\0');
+    for (const float x : {0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f})
+        binary.append(reinterpret_cast<const char*>(&x), 4);
+    binary += std::string(2, '\0');
+    const std::pair<const char*, std::string> files[] = {
+        {"a.obj", obj},         {"b", "# made by hand\n\n\ng all\n" + obj},
+        {"c", "s off\n" + obj}, {"d", "vt 0 0\n" + obj},
+        {"a.ply", ply},         {"a.stl", stl},
+        {"b.stl", binary},      {"f", binary}};
+    for (const auto& [name, content] : files) {
+        const SceneDescription d = load_scene(folder_.write(name, content), warnings_);
+        ASSERT_EQ(d.scene.meshes.size(), 1u) << name;
+        EXPECT_EQ(d.scene.meshes[0].indices, (std::vector<Index>{0, 1, 2})) << name;
+        EXPECT_EQ(d.scene.meshes[0].normals[0], (Normal3f{0, 0, 1})) << name;
+        EXPECT_TRUE(d.wants_studio && !d.has_camera) << name;
+    }
+    EXPECT_TRUE(warnings_.messages().empty());
+    const std::vector<std::uint8_t> packed = gzip(obj);
+    const auto zipped = folder_.write("a.obj.gz", {packed.begin(), packed.end()});
+    std::vector<std::filesystem::path> files_read;
+    EXPECT_EQ(load_scene(zipped, warnings_, {.files_read = &files_read}).scene.meshes.size(), 1u);
+    EXPECT_EQ(files_read, std::vector{zipped});
+    // What is not a mesh after all.
+    EXPECT_EQ(error_of(folder_.write("e.obj", "v 0 0 0\n")),
+              (folder_ / "e.obj").string() + ": the file has no faces");
+    EXPECT_EQ(error_of(folder_.write("cut.stl", binary.substr(0, 100))),
+              (folder_ / "cut.stl").string() +
+                  ": an STL file of 1 triangles has 134 bytes; this one ends after 100");
 }
 
 // What Montelux itself writes.
@@ -119,15 +154,15 @@ TEST_F(LoadScene, ScenesOfOtherFormatsAreNamed) {
     int gltf = 0, mitsuba = 0, pbrt = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(scenes)) {
         const std::string ending = entry.path().extension().string();
-        auto kind = [&] { return file_kind(DiskFiles().read(entry.path(), std::size_t{1} << 30)).name; };
+        auto kind = [&] { return file_kind(DiskFiles().read(entry.path(), std::size_t{1} << 30)); };
         if (ending == ".gltf" || ending == ".glb") {
-            EXPECT_TRUE(kind().starts_with("a glTF scene")) << entry.path();
+            EXPECT_TRUE(kind().name.starts_with("a glTF scene")) << entry.path();
             ++gltf;
         } else if (ending == ".pbrt") {
-            EXPECT_EQ(kind(), "") << entry.path();
+            EXPECT_EQ(kind().format, SceneFormat::pbrt) << entry.path();
             ++pbrt;
         } else if (ending == ".xml" && entry.path().stem() == "cbox") {
-            EXPECT_EQ(kind(), "a Mitsuba scene (XML)") << entry.path();
+            EXPECT_EQ(kind().name, "a Mitsuba scene (XML)") << entry.path();
             ++mitsuba;
         }
     }

@@ -147,6 +147,24 @@ TEST(Ply, SentencesOfErrors) {
               "mesh.ply: the file has no element 'vertex'");
 }
 
+TEST(Ply, TriangleStrips) {
+    const std::string strips = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+                               "property float z\nproperty uchar red\nelement tristrips 1\n"
+                               "property list int int vertex_indices\nend_header\n"
+                               "0 0 0 9\n1 0 0 9\n0 1 0 9\n1 1 0 9\n0 2 0 9\n11 0 1 2 3 -1 2 3 3 4 -1 1\n";
+    // Every other triangle of a strip is reversed; a repeated corner turns it.
+    const PlyMesh mesh = parse(strips);
+    EXPECT_EQ(mesh.mesh.indices, (std::vector<Index>{0, 1, 2, 2, 1, 3}));
+    EXPECT_TRUE(mesh.has_colors);
+    EXPECT_FALSE(parse(ascii).has_colors);
+    EXPECT_EQ(ply_error(replaced(strips, "-1 2", "-2 2")),
+              "mesh.ply:16: a face has a negative vertex index or one beyond 2^32");
+    EXPECT_EQ(ply_error(replaced(strips, "0 1 2 3", "0 1 2 7")),
+              "mesh.ply: triangle 1 refers to vertex 7; the file has 5 vertices");
+    EXPECT_EQ(ply_error(replaced(ascii, "element face 2", "element edge 2")),
+              "mesh.ply: the file has no element 'face': it is a cloud of points, which has no surface");
+}
+
 TEST(Ply, NotFiniteInBinary) {
     std::string s =
         "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"

@@ -1,0 +1,47 @@
+// Materials from MTL files (Wavefront, "Material Library File (.mtl)"), with the statements for physically based ones
+// that Clara.io proposed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "montelux/formats/warnings.h"
+#include "montelux/mc/math/vec.h"
+
+namespace montelux {
+
+// A picture with its options; empty `file`: none.
+struct MtlMap {
+    std::string file;
+    std::size_t line = 1;
+    Vec2f scale{1, 1}, offset; // -s, -o: texture coordinates are scaled, then moved
+    bool clamp = false;        // -clamp on
+    float bumps = 1;           // -bm
+};
+
+// Statements that are missing leave their defaults.
+struct MtlMaterial {
+    std::string name;
+    std::size_t line = 1;
+    std::optional<Vec3f> diffuse, specular, emission; // Kd, Ks, Ke; linear sRGB
+    std::optional<float> exponent;                    // Ns, of Phong's lobe
+    std::optional<float> ior;                         // Ni
+    float opacity = 1;                                // d, or 1 - Tr
+    std::optional<int> illumination;                  // illum
+    std::optional<float> roughness, metallic;         // Pr, Pm
+    float coat = 0, coat_roughness = 0;               // Pc, Pcr
+    float anisotropy = 0;                             // aniso
+    MtlMap diffuse_map, opacity_map, bump_map, normal_map;
+};
+
+// Ka, Tf, sharpness, anisor and maps of other statements have no effect. Warns once of each statement that is not
+// read. Throws Error "name:line: sentence" for numbers that cannot be read or are out of range.
+std::vector<MtlMaterial> parse_mtl(std::span<const std::uint8_t> bytes, std::string_view name,
+                                   Warnings& warnings);
+
+} // namespace montelux
