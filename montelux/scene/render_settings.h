@@ -80,6 +80,7 @@ struct SceneDescription {
     FilmSettings film;
     SamplerSettings sampler;
     IntegratorSettings integrator;
+    bool has_camera = true;  // false: the file has none
     std::string output_file; // the file's own name; may be empty
 };
 
