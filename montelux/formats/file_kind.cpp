@@ -18,10 +18,12 @@ struct Beginning {
 constexpr auto mesh_hint = "a scene file of pbrt-v4 refers to it by Shape \"plymesh\""sv;
 constexpr auto checkpoint_hint = "give the scene itself, with --checkpoint FILE --resume"sv;
 
+constexpr auto binary_gltf = "a glTF scene (binary)"sv, gltf_text = "a glTF scene (JSON)"sv;
+
 constexpr auto beginnings = std::to_array<Beginning>({
     {"mtlxgen\n", "a checkpoint of Montelux", checkpoint_hint},
     // Scenes.
-    {"glTF", "a glTF scene (binary)"},
+    {"glTF", binary_gltf},
     {"#usda", "a USD scene (text)"},
     {"PXR-USDC", "a USD scene (binary)"},
     {"Kaydara FBX Binary", "an FBX scene"},
@@ -84,7 +86,7 @@ std::string_view kind_of_json(std::string_view text) {
     const bool is_gltf =
         contains(text, "\"asset\"") && (contains(text, "\"scenes\"") || contains(text, "\"nodes\"") ||
                                         contains(text, "\"meshes\"") || contains(text, "\"version\""));
-    return is_gltf ? "a glTF scene (JSON)" : "a JSON file";
+    return is_gltf ? gltf_text : "a JSON file"sv;
 }
 
 // Behind white space, a byte order mark, and lines that begin with '#'.
@@ -114,9 +116,13 @@ FileKind file_kind(std::span<const std::uint8_t> bytes) {
     const std::string_view word = first_word_on(text);
     // OBJ files often begin with comments.
     if (found == nullptr) found = find(word);
-    if (found != nullptr) return {std::string(found->name), std::string(found->hint)};
+    if (found != nullptr)
+        return {std::string(found->name), std::string(found->hint), found->name == binary_gltf};
     if (word.starts_with('<')) return {std::string(kind_of_xml(word)), {}};
-    if (word.starts_with('{')) return {std::string(kind_of_json(word)), {}};
+    if (word.starts_with('{')) {
+        const std::string_view kind = kind_of_json(word);
+        return {std::string(kind), {}, kind == gltf_text};
+    }
     if (contains(text.substr(0, 1024), "\0"sv)) return {"a binary file of no kind that is known", {}};
     return {};
 }

@@ -1,4 +1,4 @@
-// load_scene: scene files of any supported format; at present pbrt-v4.
+// load_scene: scene files of any supported format: pbrt-v4, glTF 2.0.
 #pragma once
 
 #include <filesystem>
