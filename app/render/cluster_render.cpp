@@ -54,8 +54,9 @@ struct Prepared {
             BundledFiles files(FileBundle::from_bytes(in.get_bytes()));
             bytes = {};
             Warnings ignored;
-            description =
-                load_scene(options.scene, ignored, {.source = &files, .texel_file = texel_file_of(options)});
+            LoadOptions load_options = load_options_of(options);
+            load_options.source = &files;
+            description = load_scene(options.scene, ignored, load_options);
         }
         if (digest_of(description.scene) != opening.scene)
             throw Error("the scene", "this rank has read another one than rank 0");

@@ -219,9 +219,10 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     auto load_begin = Clock::now();
     Warnings warnings;
     std::vector<std::filesystem::path> files_read;
-    SceneDescription description = load_scene(
-        options.scene, warnings,
-        {.files_read = &files_read, .source = shared.files(), .texel_file = texel_file_of(options)});
+    LoadOptions load_options = load_options_of(options);
+    load_options.files_read = &files_read;
+    load_options.source = shared.files();
+    SceneDescription description = load_scene(options.scene, warnings, load_options);
     double load_seconds = seconds_since(load_begin);
     if (!options.quiet) print_warnings(warnings);
     apply(options, description);

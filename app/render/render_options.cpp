@@ -149,7 +149,7 @@ PixelBounds crop_of(const std::array<double, 4>& c, int width, int height) {
 } // namespace
 
 void declare(CLI::App& c, RenderOptions& o) {
-    c.add_option("SCENE", o.scene, "Scene file of pbrt-v4; .gz is unpacked")->required();
+    c.add_option("SCENE", o.scene, "Scene file of pbrt-v4 or glTF 2.0; .gz is unpacked")->required();
     c.add_option(
          "-o,--output", o.outputs,
          "Picture to write: .exr, .png, .hdr or .pfm; may be given several times. Default: the name that "
@@ -195,6 +195,16 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_parsed(c, "--rank-timeout", "TIME", o.rank_timeout, parse_rank_timeout,
                "Under mpirun: a rank that is silent for this long is given up, and the render ends with what "
                "the others did. Default: 60s");
+    c.add_option("--camera", o.camera,
+                 "Of a glTF scene: the camera, by its name or its number from 0. Default: the first")
+        ->type_name("NAME")
+        ->take_last();
+    c.add_option("--variant", o.variant, "Of a glTF scene: the variant of its materials, by its name")
+        ->type_name("NAME")
+        ->take_last();
+    add_parsed(c, "--time-of-scene", "TIME", o.scene_time, parse_duration,
+               "Of a glTF scene: the time at which its animations are shown, for example 1.5s. Default: all "
+               "at rest");
     add_parsed(c, "--resolution", "WxH", o.resolution, parse_resolution,
                "Size of the film in pixels; the scene's crop keeps its place");
     add_parsed(c, "--crop", "x0,x1,y0,y1", o.crop, parse_crop,
@@ -307,8 +317,11 @@ void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.clamp) d.film.max_component_value = static_cast<float>(*o.clamp);
 }
 
-std::shared_ptr<TexelFile> texel_file_of(const RenderOptions& o) {
-    return o.texture_memory ? TexelFile::create(*o.texture_memory) : nullptr;
+LoadOptions load_options_of(const RenderOptions& o) {
+    return {.texel_file = o.texture_memory ? TexelFile::create(*o.texture_memory) : nullptr,
+            .camera = o.camera,
+            .variant = o.variant,
+            .time = o.scene_time};
 }
 
 RenderTarget target_of(const RenderOptions& o) {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "montelux/formats/load_options.h"
 #include "montelux/render/render_target.h"
 #include "montelux/scene/render_settings.h"
 
@@ -54,6 +55,9 @@ struct RenderOptions {
     std::optional<bool> layers_in_camera_space, half;
     std::optional<SampleAddress> debug_sample; // traced alone, instead of a render
     std::optional<std::size_t> texture_memory; // bytes
+    // Of glTF scenes: LoadOptions.
+    std::optional<std::string> camera, variant;
+    std::optional<double> scene_time; // seconds
     int threads = 0;
     double rank_timeout = 60; // seconds
     bool denoise = false, stats = false, memory = false, quiet = false;
@@ -64,8 +68,8 @@ void declare(CLI::App& command, RenderOptions& options);
 
 // Throws UsageError if a crop contains no pixel of the film.
 void apply(const RenderOptions& options, SceneDescription& description);
-// Where the scene's images are kept; null: in memory.
-std::shared_ptr<TexelFile> texel_file_of(const RenderOptions& options);
+// How the scene file is read.
+LoadOptions load_options_of(const RenderOptions& options);
 // Throws UsageError for incompatible options.
 RenderTarget target_of(const RenderOptions& options);
 
