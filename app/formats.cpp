@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "montelux/formats/gltf/coverage.h"
 #include "montelux/formats/pbrt/coverage.h"
 
 namespace montelux::app {
@@ -34,6 +35,26 @@ void print_pbrt_coverage_json() {
     std::printf("%s\n", all.dump(2).c_str());
 }
 
+void print_gltf_coverage() {
+    std::string_view area;
+    for (const gltf::FeatureCoverage& f : gltf::feature_coverage()) {
+        const std::string_view shown = f.area == area ? std::string_view() : f.area;
+        area = f.area;
+        std::printf("%-10s %-36s %.*s", std::string(shown).c_str(), std::string(f.feature).c_str(),
+                    static_cast<int>(name_of(f.support).size()), name_of(f.support).data());
+        if (!f.note.empty()) std::printf(": %s", std::string(f.note).c_str());
+        std::printf("\n");
+    }
+}
+
+void print_gltf_coverage_json() {
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const gltf::FeatureCoverage& f : gltf::feature_coverage())
+        all.push_back(
+            {{"area", f.area}, {"feature", f.feature}, {"support", name_of(f.support)}, {"note", f.note}});
+    std::printf("%s\n", all.dump(2).c_str());
+}
+
 } // namespace
 
 void add_formats(CLI::App& app, int& exit_code) {
@@ -46,6 +67,13 @@ void add_formats(CLI::App& app, int& exit_code) {
     pbrt->footer("Example:\n  montelux formats pbrt --json");
     pbrt->callback([json, &exit_code] {
         *json ? print_pbrt_coverage_json() : print_pbrt_coverage();
+        exit_code = exit_done;
+    });
+    CLI::App* gltf = command->add_subcommand("gltf", "The features and extensions of glTF 2.0");
+    gltf->add_flag("--json", *json, "Print JSON");
+    gltf->footer("Example:\n  montelux formats gltf --json");
+    gltf->callback([json, &exit_code] {
+        *json ? print_gltf_coverage_json() : print_gltf_coverage();
         exit_code = exit_done;
     });
 }

@@ -145,8 +145,7 @@ void write_output(const std::string& output, const RenderSnapshot& result, const
         return write_picture(output, image, writing);
     }
     const bool denoised = image.find_channel("denoised.R").has_value();
-    Image shown =
-        denoised ? denoised_picture(image) : image.select(std::vector<std::string>{"R", "G", "B"});
+    Image shown = denoised ? denoised_picture(image) : image.select(std::vector<std::string>{"R", "G", "B"});
     const bool transparent = options.studio.background && options.studio.background->transparent;
     if (transparent && has_extension(output, ".png") && image.find_channel("A"))
         shown = with_straight_alpha(shown, image);

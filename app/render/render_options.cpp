@@ -160,7 +160,8 @@ PixelBounds crop_of(const std::array<double, 4>& c, int width, int height) {
 } // namespace
 
 void declare(CLI::App& c, RenderOptions& o) {
-    c.add_option("SCENE", o.scene, "Scene (pbrt-v4) or model (OBJ, PLY, STL); .gz is unpacked")->required();
+    c.add_option("SCENE", o.scene, "Scene (pbrt-v4, glTF 2.0) or model (OBJ, PLY, STL); .gz is unpacked")
+        ->required();
     c.add_option("-o,--output", o.outputs,
                  "Picture to write: .exr, .png, .jpg, .hdr or .pfm; may be given several times. Default: the "
                  "name that the scene asks for, in this folder, as .exr")
@@ -205,6 +206,16 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_parsed(c, "--rank-timeout", "TIME", o.rank_timeout, parse_rank_timeout,
                "Under mpirun: a rank that is silent for this long is given up, and the render ends with what "
                "the others did. Default: 60s");
+    c.add_option("--camera", o.camera,
+                 "Of a glTF scene: the camera, by its name or its number from 0. Default: the first")
+        ->type_name("NAME")
+        ->take_last();
+    c.add_option("--variant", o.variant, "Of a glTF scene: the variant of its materials, by its name")
+        ->type_name("NAME")
+        ->take_last();
+    add_parsed(c, "--time-of-scene", "TIME", o.scene_time, parse_duration,
+               "Of a glTF scene: the time at which its animations are shown, for example 1.5s. Default: all "
+               "at rest");
     add_parsed(c, "--resolution", "WxH", o.resolution, parse_resolution,
                "Size of the film in pixels; the scene's crop keeps its place");
     add_parsed(c, "--crop", "x0,x1,y0,y1", o.crop, parse_crop,
@@ -254,10 +265,9 @@ void declare(CLI::App& c, RenderOptions& o) {
         c, "--light-sampling", o.light_sampling, light_sampling_names,
         "How one light is chosen among many: by its importance for the point that is lit, the default; in "
         "proportion to its power; or all alike: ");
-    add_parsed(
-        c, "--equiangular", "on|off", o.equiangular, parse_on_off,
-        "In media lamps are also looked for from points of the ray close to them: on, off. "
-        "Default: on");
+    add_parsed(c, "--equiangular", "on|off", o.equiangular, parse_on_off,
+               "In media lamps are also looked for from points of the ray close to them: on, off. "
+               "Default: on");
     add_choice(c, "--environment-sampling", o.environment_sampling, environment_sampling_names,
                "How directions to environment maps are sampled; auto, the default, is tabulated: ");
     add_parsed(
@@ -342,17 +352,19 @@ void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.clamp) d.film.max_component_value = static_cast<float>(*o.clamp);
 }
 
-std::shared_ptr<TexelFile> texel_file_of(const RenderOptions& o) {
-    return o.texture_memory ? TexelFile::create(*o.texture_memory) : nullptr;
-}
-
 } // namespace
 
 RequestedScene load_requested(const RenderOptions& o, Warnings& warnings, FileSource* source,
                               std::vector<std::filesystem::path>* files_read) {
     RequestedScene r;
-    r.description = load_scene(o.scene, warnings,
-                               {.files_read = files_read, .source = source, .texel_file = texel_file_of(o)});
+    r.description =
+        load_scene(o.scene, warnings,
+                   {.files_read = files_read,
+                    .source = source,
+                    .texel_file = o.texture_memory ? TexelFile::create(*o.texture_memory) : nullptr,
+                    .camera = o.camera,
+                    .variant = o.variant,
+                    .time = o.scene_time});
     apply(o, r.description);
     DiskFiles disk;
     r.added = add_studio(r.description, o.studio, source != nullptr ? *source : disk, warnings, files_read);

@@ -61,6 +61,9 @@ struct RenderOptions {
     StudioSettings studio;
     std::optional<SampleAddress> debug_sample; // traced alone, instead of a render
     std::optional<std::size_t> texture_memory; // bytes
+    // Of glTF scenes: LoadOptions.
+    std::optional<std::string> camera, variant;
+    std::optional<double> scene_time; // seconds
     int threads = 0;
     double rank_timeout = 60; // seconds
     bool denoise = false, stats = false, memory = false, quiet = false;

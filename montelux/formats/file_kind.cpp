@@ -21,7 +21,6 @@ constexpr auto checkpoint_hint = "give the scene itself, with --checkpoint FILE 
 constexpr auto beginnings = std::to_array<Beginning>({
     {"mtlxgen\n", "a checkpoint of Montelux", checkpoint_hint},
     // Scenes.
-    {"glTF", "a glTF scene (binary)"},
     {"#usda", "a USD scene (text)"},
     {"PXR-USDC", "a USD scene (binary)"},
     {"Kaydara FBX Binary", "an FBX scene"},
@@ -74,11 +73,9 @@ std::string_view kind_of_xml(std::string_view text) {
     return "an XML file";
 }
 
-std::string_view kind_of_json(std::string_view text) {
-    const bool is_gltf =
-        contains(text, "\"asset\"") && (contains(text, "\"scenes\"") || contains(text, "\"nodes\"") ||
-                                        contains(text, "\"meshes\"") || contains(text, "\"version\""));
-    return is_gltf ? "a glTF scene (JSON)" : "a JSON file";
+bool is_gltf(std::string_view json) {
+    return contains(json, "\"asset\"") && (contains(json, "\"scenes\"") || contains(json, "\"nodes\"") ||
+                                           contains(json, "\"meshes\"") || contains(json, "\"version\""));
 }
 
 // Behind white space, a byte order mark, and lines that begin with '#'.
@@ -117,6 +114,7 @@ FileKind file_kind(std::span<const std::uint8_t> bytes) {
             if (at.size() > b.offset && at.substr(b.offset).starts_with(b.text)) return &b;
         return nullptr;
     };
+    if (text.starts_with("glTF")) return {SceneFormat::gltf};
     if (text.starts_with("ply\n") || text.starts_with("ply\r")) return {SceneFormat::ply};
     const Beginning* found = find(text);
     const std::string_view word = first_word_on(text);
@@ -125,7 +123,10 @@ FileKind file_kind(std::span<const std::uint8_t> bytes) {
     if (begins_text_stl(text)) return {SceneFormat::stl};
     if (begins_obj(word)) return {SceneFormat::obj};
     if (word.starts_with('<')) return {SceneFormat::none, std::string(kind_of_xml(word))};
-    if (word.starts_with('{')) return {SceneFormat::none, std::string(kind_of_json(word))};
+    if (word.starts_with('{')) {
+        if (is_gltf(word)) return {SceneFormat::gltf};
+        return {SceneFormat::none, "a JSON file"};
+    }
     if (contains(text.substr(0, 1024), "\0"sv))
         return {SceneFormat::none, "a binary file of an unknown kind"};
     return {SceneFormat::pbrt};

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "montelux/formats/file_source.h"
@@ -15,6 +17,10 @@ struct LoadOptions {
     std::vector<std::filesystem::path>* files_read = nullptr;
     FileSource* source = nullptr;            // null: the disk
     std::shared_ptr<TexelFile> texel_file{}; // becomes Scene::texel_file
+    // Of formats whose files hold several; an Error in others and for names that the file does not have.
+    std::optional<std::string> camera{};  // by its name, or its number from 0; empty: the first one
+    std::optional<std::string> variant{}; // of the materials; empty: the default ones
+    std::optional<double> time{};         // of animations, seconds; empty: everything at rest
 };
 
 } // namespace montelux

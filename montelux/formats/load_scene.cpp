@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "montelux/formats/file_kind.h"
+#include "montelux/formats/gltf/load_gltf.h"
 #include "montelux/formats/mesh_scene.h"
 #include "montelux/formats/obj/load_obj.h"
 #include "montelux/formats/pbrt/load_pbrt.h"
@@ -11,15 +12,31 @@
 
 namespace montelux {
 
+namespace {
+
+// Cameras by name, variants and time are asked of glTF scenes only.
+void check_options(const std::filesystem::path& path, const FileKind& kind, const LoadOptions& options) {
+    if (kind.format == SceneFormat::gltf || kind.format == SceneFormat::none) return;
+    for (const auto& [is_given, what] : {std::pair(options.camera.has_value(), "choice of cameras"),
+                                         std::pair(options.variant.has_value(), "variants of materials"),
+                                         std::pair(options.time.has_value(), "time of animations")})
+        if (is_given) throw Error(path.string(), std::string("only glTF scenes have a ") + what);
+}
+
+} // namespace
+
 SceneDescription load_scene(const std::filesystem::path& path, Warnings& warnings,
                             const LoadOptions& options) {
     DiskFiles disk;
     FileSource& files = options.source != nullptr ? *options.source : disk;
     std::vector<std::uint8_t> bytes = read_unpacked(files, path);
     const FileKind kind = file_kind(bytes);
+    check_options(path, kind, options);
     switch (kind.format) {
     case SceneFormat::pbrt:
         return load_pbrt(std::move(bytes), path, warnings, options.files_read, files, options.texel_file);
+    case SceneFormat::gltf:
+        return load_gltf(std::move(bytes), path, warnings, files, options);
     case SceneFormat::obj:
         return load_obj(bytes, path, warnings, options);
     case SceneFormat::ply:
@@ -32,7 +49,7 @@ SceneDescription load_scene(const std::filesystem::path& path, Warnings& warning
     // A binary STL file is known by its size alone: one that was cut short is told by its name.
     if (path.extension() == ".stl" || path.extension() == ".STL")
         return load_stl(bytes, path, warnings, options);
-    throw Error(path.string(), "this is " + kind.name + "; pbrt-v4, OBJ, PLY and STL are read" +
+    throw Error(path.string(), "this is " + kind.name + "; pbrt-v4, glTF 2.0, OBJ, PLY and STL are read" +
                                    (kind.hint.empty() ? "" : ": " + kind.hint));
 }
 

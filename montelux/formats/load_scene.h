@@ -1,4 +1,4 @@
-// load_scene: scene files of any supported format: pbrt-v4, and meshes by themselves (OBJ, PLY, STL).
+// load_scene: scene files of any supported format: pbrt-v4, glTF 2.0, and meshes by themselves (OBJ, PLY, STL).
 #pragma once
 
 #include <filesystem>

@@ -38,7 +38,7 @@ SceneDescription model_description() {
     // Few triangles with smooth normals stand for smooth surfaces.
     d.integrator.shading_terminator = ShadingTerminator::soft;
     d.integrator.environment_lookup = EnvironmentLookup::bilinear; // the studio's light has no edges
-    d.has_camera = false;
+    d.has_camera = d.has_lights = false;
     d.wants_studio = true;
     return d;
 }

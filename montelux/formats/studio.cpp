@@ -222,7 +222,7 @@ StudioParts add_studio(SceneDescription& d, const StudioSettings& settings, File
     std::vector<std::string> told;
     CallMessages messages("studio", &told);
     SceneBuilder builder(d.scene, messages);
-    const bool unlit = d.wants_studio && d.scene.lights.empty();
+    const bool unlit = d.wants_studio && !d.has_lights;
     added.camera = d.wants_studio && !d.has_camera;
     added.lights = unlit && !settings.environment;
     const OrbitFrame frame =
@@ -230,7 +230,7 @@ StudioParts add_studio(SceneDescription& d, const StudioSettings& settings, File
             ? OrbitFrame::of(up_axis_of(d.scene.camera), !d.scene.camera.world_from_camera.swaps_handedness())
             : OrbitFrame::of(Vec3d(d.up));
     const Bounds3 bounds = bounds_of(d.scene);
-    const bool ground = settings.ground.value_or(unlit);
+    const bool ground = settings.ground.value_or(unlit && added.camera);
     if (bounds.empty() && (ground || added.camera || settings.orbit))
         throw Error("studio", "the scene has no shape to put the camera or the ground at");
 

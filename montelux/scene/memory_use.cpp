@@ -36,7 +36,8 @@ std::vector<MemoryUse> memory_use(const Scene& s) {
         vector_bytes(s.meshes) + sum(s.meshes,
                                      [](const TriangleMesh& m) {
                                          return vector_bytes(m.positions, m.normals, m.uvs, m.indices,
-                                                             m.tangents, m.end_positions, m.end_normals);
+                                                             m.tangents, m.end_positions, m.end_normals,
+                                                             m.colors, m.opacities);
                                      }),
         sum(s.meshes, [](const TriangleMesh& m) { return m.triangle_count(); }), "triangles");
     add("bilinear meshes",

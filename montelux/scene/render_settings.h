@@ -85,6 +85,7 @@ struct SceneDescription {
     IntegratorSettings integrator;
     std::string output_file; // the file's own name; may be empty
     bool has_camera = true;  // false: the file has none
+    bool has_lights = true;  // false: the file has none, or only surfaces that glow without being meant as lamps
     // Of models rather than scenes: what the file lacks is added by a studio (formats/studio.h).
     bool wants_studio = false;
     Vec3f up{0, 1, 0}; // of a scene without a camera; a unit vector along an axis

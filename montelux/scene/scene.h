@@ -51,7 +51,7 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<FloatTexture> float_textures;
     std::vector<SpectrumTexture> spectrum_textures;
-    std::vector<ImageTexture> normal_maps; // R, G, B = (n + 1) / 2, without scale or invert
+    std::vector<ImageTexture> normal_maps; // R, G, B = (n / factor + 1) / 2, without scale or invert
     std::vector<Image> images;             // of image textures and normal maps
     std::vector<Image> environments;       // maps and pictures of lights, R, G, B linear
     std::vector<SkyModel> skies;

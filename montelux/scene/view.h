@@ -101,8 +101,8 @@ struct SceneView {
         return table == no_index ? nullptr : &coating_tables[table];
     }
     const MipMap& mipmap(Index image, ImageChannels channels) const {
-        return channels == ImageChannels::color ? mipmaps[image]
-                                                : alpha_mipmaps[alpha_mipmap_of_image[image]];
+        return channels == ImageChannels::alpha ? alpha_mipmaps[alpha_mipmap_of_image[image]]
+                                                : mipmaps[image];
     }
 };
 static_assert(std::is_trivially_copyable_v<SceneView>);

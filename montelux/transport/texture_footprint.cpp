@@ -37,7 +37,9 @@ TextureContext texture_context(const Camera& camera, float scale, const SurfaceP
             .dpdx = footprint.dpdx,
             .dpdy = footprint.dpdy,
             .duvdx = in_tangents(footprint.dpdx),
-            .duvdy = in_tangents(footprint.dpdy)};
+            .duvdy = in_tangents(footprint.dpdy),
+            .vertex_color = s.vertex_color,
+            .vertex_opacity = s.vertex_opacity};
 }
 
 } // namespace montelux

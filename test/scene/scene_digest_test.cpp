@@ -27,6 +27,12 @@ TEST(SceneDigest, GeometryCounts) {
                     [](Scene& s) {
                         s.meshes[0].tangents = {{1, 0, 0}, {1, 0, 0}, {1, 0, 0}};
                     },
+                    [](Scene& s) {
+                        s.meshes[0].colors = {{1, 0, 0}, {1, 0, 0}, {1, 0, 0}};
+                    },
+                    [](Scene& s) {
+                        s.meshes[0].opacities = {1, 0, 1};
+                    },
                     [](Scene& s) { s.meshes[0].end_positions = s.meshes[0].positions; },
                     [](Scene& s) {
                         s.meshes[0].end_positions = s.meshes[0].positions;

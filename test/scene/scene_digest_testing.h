@@ -42,14 +42,15 @@ inline Scene scene_of_all_kinds() {
                    InterfaceMaterial{}};
     s.normal_maps = {ImageTexture{.image = 0, .mapping = {}}};
     s.float_textures = {ConstantTexture<FloatParameter>{{1}}, ScaleTexture<FloatParameter>{{1}, {2}},
-                        NoiseTexture{}};
+                        NoiseTexture{}, VertexColorTexture{}, StepTexture{{1}, 0.5f}};
     s.spectrum_textures = {ImageTexture{.image = 0, .mapping = {}},
                            MixTexture<SpectrumParameter>{gray, gray, {0.5f}},
                            CheckerboardTexture<SpectrumParameter>{2, {}, {gray, gray}},
                            BilerpTexture<SpectrumParameter>{{}, {gray, gray, gray, gray}},
                            DotsTexture<SpectrumParameter>{{}, gray, gray},
                            DirectionMixTexture<SpectrumParameter>{gray, gray},
-                           MarbleTexture{}};
+                           MarbleTexture{},
+                           VertexColorTexture{}};
     s.images.emplace_back(2, 2, std::vector<std::string>{"R", "G", "B"}, PixelFormat::u8,
                           ColorEncoding::srgb());
     s.environments.emplace_back(8, 8, std::vector<std::string>{"R", "G", "B"});

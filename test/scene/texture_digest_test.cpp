@@ -22,6 +22,13 @@ TEST(SceneDigest, TexturesCount) {
                     },
                     [=](Scene& s) { image(s).filter = TextureFilter::ewa; },
                     [=](Scene& s) { image(s).wrap = TextureWrap::clamp; },
+                    [=](Scene& s) {
+                        image(s).wrap = {TextureWrap::repeat, TextureWrap::mirror};
+                    },
+                    [=](Scene& s) {
+                        image(s).factor = {1, 0.5f, 1};
+                    },
+                    [=](Scene& s) { image(s).vertex_colors = true; },
                     [=](Scene& s) { image(s).channels = ImageChannels::alpha; },
                     [=](Scene& s) { image(s).max_anisotropy = 2; },
                     [=](Scene& s) { image(s).scale = 2; },
@@ -61,8 +68,13 @@ TEST(SceneDigest, TexturesCount) {
                     [=](Scene& s) { noise(s).texture_from_world = moved; },
                     [=](Scene& s) { marble(s).octaves.octaves = 3; },
                     [=](Scene& s) { marble(s).octaves.roughness = 0.3f; },
-                    [=](Scene& s) { marble(s).scale = 3; }, [=](Scene& s) { marble(s).variation = 3; },
-                    [=](Scene& s) { marble(s).texture_from_world = moved; }});
+                    [=](Scene& s) { marble(s).scale = 3; },
+                    [=](Scene& s) { marble(s).variation = 3; },
+                    [=](Scene& s) { marble(s).texture_from_world = moved; },
+                    [](Scene& s) { std::get<9>(s.float_textures[3]).factor.x = 0.5f; },
+                    [](Scene& s) { std::get<9>(s.spectrum_textures[7]).factor.z = 0.5f; },
+                    [](Scene& s) { std::get<10>(s.float_textures[4]).edge = 0.25f; },
+                    [](Scene& s) { std::get<10>(s.float_textures[4]).input.value = 0; }});
 }
 
 } // namespace

@@ -89,6 +89,7 @@ SceneDescription load_obj(const std::vector<std::uint8_t>& bytes, const std::fil
         builder.add_shape(std::move(part.mesh), settings, at_line(part.line));
     }
     builder.finish(at_line(0), false);
+    d.has_lights = !d.scene.lights.empty();
     return d;
 }
 

@@ -48,6 +48,15 @@ void check_mesh(const Mesh& mesh, std::size_t corners, const std::string& primit
         for (const Vec3f& t : mesh.tangents)
             if (!is_finite(t)) throw Error("a vertex tangent is not finite in world space");
     }
+    if constexpr (requires { mesh.colors; }) {
+        check_one_a_vertex(mesh.colors.size(), vertices, "colours");
+        check_one_a_vertex(mesh.opacities.size(), vertices, "opacities");
+        for (const Vec3f& c : mesh.colors)
+            if (!is_finite(c) || !(c.x >= 0 && c.y >= 0 && c.z >= 0))
+                throw Error("the colour of a vertex is negative or not finite");
+        for (const float o : mesh.opacities)
+            if (!(o >= 0 && o <= 1)) throw Error("the opacity of a vertex is not between 0 and 1");
+    }
     for (std::size_t i = 0; i < mesh.indices.size(); ++i)
         if (mesh.indices[i] >= vertices)
             throw Error(primitive + " " + std::to_string(i / corners) + " refers to vertex " +

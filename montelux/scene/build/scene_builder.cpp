@@ -148,6 +148,8 @@ Index SceneBuilder::add_shape_to(Index object, Geometry geometry, const ShapeSet
                        trim(mesh.uvs);
                        trim(mesh.indices);
                        trim(mesh.tangents);
+                       trim(mesh.colors);
+                       trim(mesh.opacities);
                        scene_.meshes.push_back(std::move(mesh));
                        return MeshIndex{static_cast<Index>(scene_.meshes.size() - 1)};
                    },

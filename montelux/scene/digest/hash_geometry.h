@@ -8,10 +8,13 @@
 namespace montelux {
 
 inline void hash_values(SceneHasher& h, const TriangleMesh& m) {
-    const auto& [positions, normals, uvs, indices, tangents, end_positions, end_normals] = m;
+    const auto& [positions, normals, uvs, indices, tangents, end_positions, end_normals, colors, opacities] =
+        m;
     h.all(positions, normals, uvs, indices);
     if (!tangents.empty()) h.all(tangents);
     if (m.deforms()) h.all(end_positions, end_normals);
+    if (!colors.empty()) h.all(std::uint8_t{1}, colors); // told apart from what may stand in their place
+    if (!opacities.empty()) h.all(std::uint8_t{2}, opacities);
 }
 inline void hash_values(SceneHasher& h, const Sphere& s) {
     const auto& [radius, z_min, z_max, phi_max, world_from_object] = s;

@@ -25,8 +25,20 @@ inline void hash_values(SceneHasher& h, const TextureMapping& m) {
     h.all(kind, su, sv, du, dv, vs, vt, texture_from_world);
 }
 inline void hash_values(SceneHasher& h, const ImageTexture& t) {
-    const auto& [image, channels, mapping, filter, wrap, anisotropy, scale, invert, meaning, space] = t;
-    h.all(image, channels, mapping, filter, wrap, anisotropy, scale, invert, meaning, space);
+    const auto& [image, channels, mapping, filter, wrap, anisotropy, scale, invert, meaning, space, factor,
+                 vertex_colors] = t;
+    h.all(image, channels, mapping, filter, wrap.s, anisotropy, scale, invert, meaning, space);
+    // As far as they are not what they were before there were others.
+    if (wrap.t != wrap.s) h.all(wrap.t);
+    if (!(factor == Vec3f{1, 1, 1}) || vertex_colors) h.all(factor, vertex_colors);
+}
+inline void hash_values(SceneHasher& h, const VertexColorTexture& t) {
+    const auto& [factor] = t;
+    h.all(factor);
+}
+inline void hash_values(SceneHasher& h, const StepTexture& t) {
+    const auto& [input, edge] = t;
+    h.all(input, edge);
 }
 template <typename Parameter>
 void hash_values(SceneHasher& h, const ConstantTexture<Parameter>& t) {

@@ -63,7 +63,7 @@ bool add_map(const SceneView& scene, const NormalMapParameter& map, const Textur
     const Vec3f rgb =
         scene.mipmap(texture.image, texture.channels)
             .lookup(c.st, c.dstdx, c.dstdy, texture.filter, texture.wrap, texture.max_anisotropy);
-    const Vec3f m = 2 * rgb - Vec3f{1, 1, 1};
+    const Vec3f m = multiply(2 * rgb - Vec3f{1, 1, 1}, texture.factor);
     if (std::abs(m.x) < lookup_rounding && std::abs(m.y) < lookup_rounding) return false;
     const Frame frame = Frame::from_normal_and_tangent(t.n, t.u);
     const float side = dot(frame.t, t.v) < 0 ? -1.0f : 1.0f;

@@ -19,8 +19,15 @@ std::optional<float> constant_alpha(const SceneView& scene, const Shape& shape) 
 
 float alpha_at(const SceneView& scene, const Ray& ray, const Hit& hit) {
     const SurfacePoint s = surface_point(scene, ray, hit, true);
-    const TextureContext context{
-        .p = s.p, .n = s.ns, .uv = s.uv, .dpdx = {}, .dpdy = {}, .duvdx = {}, .duvdy = {}};
+    const TextureContext context{.p = s.p,
+                                 .n = s.ns,
+                                 .uv = s.uv,
+                                 .dpdx = {},
+                                 .dpdy = {},
+                                 .duvdx = {},
+                                 .duvdy = {},
+                                 .vertex_color = s.vertex_color,
+                                 .vertex_opacity = s.vertex_opacity};
     return evaluate(scene, scene.shapes[hit.shape].alpha, context);
 }
 

@@ -12,8 +12,8 @@
 
 namespace montelux {
 
-// Positions are in world space, or in the space of the mesh's object definition. `normals`, `uvs` and
-// `tangents` are empty or one per vertex. The builder checks the indices.
+// Positions are in world space, or in the space of the mesh's object definition. `normals`, `uvs`, `tangents`,
+// `colors` and `opacities` are empty or one per vertex. The builder checks the indices.
 struct TriangleMesh {
     std::vector<Point3f> positions;
     std::vector<Normal3f> normals;
@@ -25,6 +25,10 @@ struct TriangleMesh {
     // Else empty.
     std::vector<Point3f> end_positions{};
     std::vector<Normal3f> end_normals{};
+    // Of vertices, linear sRGB, for textures that read them; empty: white.
+    std::vector<Vec3f> colors{};
+    // Of vertices, in [0, 1], for textures of numbers that read them; empty: 1.
+    std::vector<float> opacities{};
 
     std::size_t triangle_count() const { return indices.size() / 3; }
     bool deforms() const { return !end_positions.empty(); }

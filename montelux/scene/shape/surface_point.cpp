@@ -57,6 +57,11 @@ SurfacePoint mesh_point(const TriangleMesh& mesh, const Shape& shape, const Hit&
     if (!mesh.tangents.empty())
         s.vertex_tangent = (1 - hit.b1 - hit.b2) * mesh.tangents[v[0]] + hit.b1 * mesh.tangents[v[1]] +
                            hit.b2 * mesh.tangents[v[2]];
+    const auto interpolated = [&](const auto& values) {
+        return (1 - hit.b1 - hit.b2) * values[v[0]] + hit.b1 * values[v[1]] + hit.b2 * values[v[2]];
+    };
+    if (!mesh.colors.empty()) s.vertex_color = interpolated(mesh.colors);
+    if (!mesh.opacities.empty()) s.vertex_opacity = interpolated(mesh.opacities);
     return s;
 }
 

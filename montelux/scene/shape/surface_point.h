@@ -9,12 +9,14 @@ namespace montelux {
 
 struct SurfacePoint {
     Point3f p;
-    Normal3f ng;            // geometric normal, unit, on the side of ns
-    Normal3f ns;            // shading normal, unit
-    float error = 0;        // bound of the distance between p and the true surface along ng
-    Point2f uv;             // this and the tangents are computed by surface_point only on request
-    Vec3f dpdu, dpdv;       // with respect to uv
-    Vec3f vertex_tangent{}; // interpolated; zero where the mesh has none
+    Normal3f ng;                 // geometric normal, unit, on the side of ns
+    Normal3f ns;                 // shading normal, unit
+    float error = 0;             // bound of the distance between p and the true surface along ng
+    Point2f uv;                  // this and the tangents are computed by surface_point only on request
+    Vec3f dpdu, dpdv;            // with respect to uv
+    Vec3f vertex_tangent{};      // interpolated; zero where the mesh has none
+    Vec3f vertex_color{1, 1, 1}; // interpolated, as the two above; white where the mesh has none
+    float vertex_opacity = 1;
     const Shape* shape = nullptr;
     Index primitive = 0;
     Vec2f b{}; // Hit::b1 and b2

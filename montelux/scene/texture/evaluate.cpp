@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "montelux/mc/math/overloaded.h"
 #include "montelux/scene/texture/procedural.h"
 
 namespace montelux {
@@ -56,13 +57,34 @@ auto mixed_values(const Texture& t) {
         return std::array{t.first, t.second};
 }
 
-Vec3f image_lookup(const SceneView& scene, const ImageTexture& t, const TextureContext& context) {
+// `vertex`: what ImageTexture::vertex_colors multiplies by.
+Vec3f image_lookup(const SceneView& scene, const ImageTexture& t, const TextureContext& context,
+                   Vec3f vertex) {
     TextureCoordinates c = t.mapping(context);
     Vec3f rgb =
         t.scale *
         scene.mipmap(t.image, t.channels).lookup(c.st, c.dstdx, c.dstdy, t.filter, t.wrap, t.max_anisotropy);
+    rgb = multiply(rgb, t.factor);
+    if (t.vertex_colors) rgb = multiply(rgb, vertex);
     if (t.invert) rgb = Vec3f{1, 1, 1} - rgb;
     return max(rgb, Vec3f{0, 0, 0});
+}
+
+float as_number(Vec3f rgb, ImageChannels channels) {
+    switch (channels) {
+    case ImageChannels::red:
+        return rgb.x;
+    case ImageChannels::green:
+        return rgb.y;
+    case ImageChannels::blue:
+        return rgb.z;
+    case ImageChannels::angle:
+        return std::atan2(2 * rgb.y - 1, 2 * rgb.x - 1);
+    case ImageChannels::color:
+    case ImageChannels::alpha:
+        break;
+    }
+    return (rgb.x + rgb.y + rgb.z) / 3;
 }
 
 SampledSpectrum as_spectrum(Vec3f rgb, const ImageTexture& t, const SampledWavelengths& lambda) {
@@ -90,6 +112,8 @@ Value evaluate_node(const Texture& texture, const TextureContext& context, const
                 return value_of(t.value);
             } else if constexpr (std::is_same_v<T, ImageTexture>) {
                 return from_image(t);
+            } else if constexpr (requires { t.edge; }) {
+                return amount(t.input) >= t.edge ? Value(1) : Value(0);
             } else if constexpr (requires { procedural(t); }) {
                 return procedural(t);
             } else if constexpr (requires { t.corners; }) {
@@ -119,10 +143,12 @@ Value evaluate_node(const Texture& texture, const TextureContext& context, const
 float evaluate_texture(const SceneView& scene, const FloatTexture& texture, const TextureContext& context) {
     auto value_of = [&](const FloatParameter& p) { return evaluate(scene, p, context); };
     auto from_image = [&](const ImageTexture& t) {
-        Vec3f rgb = image_lookup(scene, t, context);
-        return (rgb.x + rgb.y + rgb.z) / 3;
+        return as_number(image_lookup(scene, t, context, Vec3f{1, 1, 1} * context.vertex_opacity),
+                         t.channels);
     };
-    auto procedural = [&](const NoiseTexture& t) { return noise_value(t, context); };
+    auto procedural =
+        Overloaded{[&](const NoiseTexture& t) { return noise_value(t, context); },
+                   [&](const VertexColorTexture& t) { return t.factor.x * context.vertex_opacity; }};
     return evaluate_node<float>(texture, context, value_of, from_image, procedural, value_of);
 }
 
@@ -130,11 +156,17 @@ SampledSpectrum evaluate_texture(const SceneView& scene, const SpectrumTexture& 
                                  const TextureContext& context, const SampledWavelengths& lambda) {
     auto value_of = [&](const SpectrumParameter& p) { return evaluate(scene, p, context, lambda); };
     auto from_image = [&](const ImageTexture& t) {
-        return as_spectrum(image_lookup(scene, t, context), t, lambda);
+        return as_spectrum(image_lookup(scene, t, context, context.vertex_color), t, lambda);
     };
-    auto procedural = [&](const MarbleTexture& t) {
-        return RgbAlbedoSpectrum(RgbColorSpace::srgb(), marble_color(t, context)).sample(lambda);
-    };
+    auto procedural = Overloaded{
+        [&](const MarbleTexture& t) {
+            return RgbAlbedoSpectrum(RgbColorSpace::srgb(), marble_color(t, context)).sample(lambda);
+        },
+        [&](const VertexColorTexture& t) {
+            return RgbAlbedoSpectrum(RgbColorSpace::srgb(),
+                                     max(multiply(t.factor, context.vertex_color), Vec3f{0, 0, 0}))
+                .sample(lambda);
+        }};
     auto amount = [&](const FloatParameter& p) { return evaluate(scene, p, context); };
     return evaluate_node<SampledSpectrum>(texture, context, value_of, from_image, procedural, amount);
 }

@@ -29,6 +29,10 @@ TextureCoordinates TextureMapping::operator()(const TextureContext& c) const {
         return {{su * c.uv.x + du, sv * c.uv.y + dv},
                 {su * c.duvdx.x, sv * c.duvdx.y},
                 {su * c.duvdy.x, sv * c.duvdy.y}};
+    if (kind == Kind::affine) {
+        const auto linear = [&](Vec2f v) { return Vec2f{vs.x * v.x + vs.y * v.y, vt.x * v.x + vt.y * v.y}; };
+        return {linear(c.uv) + Vec2f{du, dv}, linear(c.duvdx), linear(c.duvdy)};
+    }
     Vec3f p = texture_from_world.point(c.p);
     Vec3f px = texture_from_world.vector(c.dpdx), py = texture_from_world.vector(c.dpdy);
     switch (kind) {

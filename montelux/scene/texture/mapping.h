@@ -17,6 +17,8 @@ struct TextureContext {
     Point2f uv;
     Vec3f dpdx, dpdy;
     Vec2f duvdx, duvdy;
+    Vec3f vertex_color{1, 1, 1}; // SurfacePoint::vertex_color
+    float vertex_opacity = 1;
 };
 
 struct TextureCoordinates {
@@ -24,11 +26,11 @@ struct TextureCoordinates {
     Vec2f dstdx, dstdy;
 };
 
-// uv: (s, t) = (su u + du, sv v + dv). The others start from the point in texture space:
+// uv: (s, t) = (su u + du, sv v + dv). affine: (s, t) = (vs.x u + vs.y v + du, vt.x u + vt.y v + dv). The others start from the point in texture space:
 // spherical (theta/pi, phi/2pi), cylindrical (phi/2pi, z), planar (ds + p.vs, dt + p.vt), where du and dv
 // are the offsets of the planar map.
 struct TextureMapping {
-    enum class Kind : std::uint8_t { uv, spherical, cylindrical, planar };
+    enum class Kind : std::uint8_t { uv, spherical, cylindrical, planar, affine };
     Kind kind = Kind::uv;
     float su = 1, sv = 1, du = 0, dv = 0;
     Vec3f vs{1, 0, 0}, vt{0, 1, 0};

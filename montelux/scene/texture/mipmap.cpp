@@ -16,6 +16,10 @@ int wrapped(int i, int n, TextureWrap wrap) {
         int r = i % n;
         return r < 0 ? r + n : r;
     }
+    if (wrap == TextureWrap::mirror) {
+        const int r = ((i % (2 * n)) + 2 * n) % (2 * n);
+        return r < n ? r : 2 * n - 1 - r;
+    }
     return -1;
 }
 
@@ -42,13 +46,13 @@ void wrap_octahedral(int& x, int& y, int width, int height) {
 } // namespace
 
 template <typename Layout>
-Vec3f MipMap::texel(int l, int x, int y, TextureWrap wrap) const {
+Vec3f MipMap::texel(int l, int x, int y, TextureWraps wrap) const {
     const TexelLevel& t = level(l);
-    if (wrap == TextureWrap::octahedral_sphere) {
+    if (wrap.s == TextureWrap::octahedral_sphere) {
         wrap_octahedral(x, y, t.width, t.height);
     } else {
-        x = wrapped(x, t.width, wrap);
-        y = wrapped(y, t.height, wrap);
+        x = wrapped(x, t.width, wrap.s);
+        y = wrapped(y, t.height, wrap.t);
         if (x < 0 || y < 0) return {0, 0, 0};
     }
     const std::size_t i = Layout::index(t, x, y);
@@ -72,7 +76,7 @@ Vec3f MipMap::texel(int l, int x, int y, TextureWrap wrap) const {
 }
 
 template <typename Layout>
-Vec3f MipMap::bilinear(int l, Point2f st, TextureWrap wrap) const {
+Vec3f MipMap::bilinear(int l, Point2f st, TextureWraps wrap) const {
     const TexelLevel& t = level(l);
     float x = st.x * static_cast<float>(t.width) - 0.5f;
     float y = st.y * static_cast<float>(t.height) - 0.5f;
@@ -106,7 +110,7 @@ float MipMap::level_of(float width) const {
 }
 
 template <typename Layout>
-Vec3f MipMap::trilinear(Point2f st, float width, TextureWrap wrap) const {
+Vec3f MipMap::trilinear(Point2f st, float width, TextureWraps wrap) const {
     float l = level_of(width);
     if (l <= 0) return bilinear<Layout>(0, st, wrap);
     if (l >= static_cast<float>(level_count() - 1)) return texel<Layout>(level_count() - 1, 0, 0, wrap);
@@ -117,7 +121,7 @@ Vec3f MipMap::trilinear(Point2f st, float width, TextureWrap wrap) const {
 
 // Heckbert 1989, "Fundamentals of Texture Mapping and Image Warping": an ellipse with Gaussian weights.
 template <typename Layout>
-Vec3f MipMap::ewa(Point2f st, Vec2f dst0, Vec2f dst1, TextureWrap wrap, float max_anisotropy) const {
+Vec3f MipMap::ewa(Point2f st, Vec2f dst0, Vec2f dst1, TextureWraps wrap, float max_anisotropy) const {
     if (length_squared(dst0) < length_squared(dst1)) std::swap(dst0, dst1);
     float major = length(dst0), minor = length(dst1);
     if (minor * max_anisotropy < major && minor > 0) {
@@ -134,7 +138,7 @@ Vec3f MipMap::ewa(Point2f st, Vec2f dst0, Vec2f dst1, TextureWrap wrap, float ma
 }
 
 template <typename Layout>
-Vec3f MipMap::ewa_level(int l, Point2f st, Vec2f dst0, Vec2f dst1, TextureWrap wrap) const {
+Vec3f MipMap::ewa_level(int l, Point2f st, Vec2f dst0, Vec2f dst1, TextureWraps wrap) const {
     if (l >= level_count()) return texel<Layout>(level_count() - 1, 0, 0, wrap);
     auto w = static_cast<float>(level(l).width), h = static_cast<float>(level(l).height);
     float x = st.x * w - 0.5f, y = st.y * h - 0.5f;
@@ -167,7 +171,7 @@ Vec3f MipMap::ewa_level(int l, Point2f st, Vec2f dst0, Vec2f dst1, TextureWrap w
 }
 
 template <typename Layout>
-Vec3f MipMap::filtered(Point2f st, Vec2f dst0, Vec2f dst1, TextureFilter filter, TextureWrap wrap,
+Vec3f MipMap::filtered(Point2f st, Vec2f dst0, Vec2f dst1, TextureFilter filter, TextureWraps wrap,
                        float max_anisotropy) const {
     if (!std::isfinite(st.x) || !std::isfinite(st.y) || std::abs(st.x) > 1e6f || std::abs(st.y) > 1e6f)
         return texel<Layout>(level_count() - 1, 0, 0, TextureWrap::clamp);
@@ -184,7 +188,7 @@ Vec3f MipMap::filtered(Point2f st, Vec2f dst0, Vec2f dst1, TextureFilter filter,
                          static_cast<int>(std::floor(st.y * static_cast<float>(level(l).height))), wrap);
 }
 
-Vec3f MipMap::lookup(Point2f st, Vec2f dst0, Vec2f dst1, TextureFilter filter, TextureWrap wrap,
+Vec3f MipMap::lookup(Point2f st, Vec2f dst0, Vec2f dst1, TextureFilter filter, TextureWraps wrap,
                      float max_anisotropy) const {
     return block_ ? filtered<TileLayout>(st, dst0, dst1, filter, wrap, max_anisotropy)
                   : filtered<RowLayout>(st, dst0, dst1, filter, wrap, max_anisotropy);

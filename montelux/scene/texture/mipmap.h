@@ -33,7 +33,7 @@ class MipMap {
         return sum;
     }
     // dst0, dst1: the sides of a pixel in texture coordinates; the filter point ignores them.
-    Vec3f lookup(Point2f st, Vec2f dst0, Vec2f dst1, TextureFilter filter, TextureWrap wrap,
+    Vec3f lookup(Point2f st, Vec2f dst0, Vec2f dst1, TextureFilter filter, TextureWraps wrap,
                  float max_anisotropy) const;
 
   private:
@@ -42,17 +42,17 @@ class MipMap {
     int level_count() const { return static_cast<int>(levels_.size()); }
     const TexelLevel& level(int i) const { return levels_[static_cast<std::size_t>(i)]; }
     template <typename Layout>
-    Vec3f texel(int level, int x, int y, TextureWrap wrap) const;
+    Vec3f texel(int level, int x, int y, TextureWraps wrap) const;
     template <typename Layout>
-    Vec3f bilinear(int level, Point2f st, TextureWrap wrap) const;
+    Vec3f bilinear(int level, Point2f st, TextureWraps wrap) const;
     template <typename Layout>
-    Vec3f trilinear(Point2f st, float width, TextureWrap wrap) const;
+    Vec3f trilinear(Point2f st, float width, TextureWraps wrap) const;
     template <typename Layout>
-    Vec3f ewa(Point2f st, Vec2f dst0, Vec2f dst1, TextureWrap wrap, float max_anisotropy) const;
+    Vec3f ewa(Point2f st, Vec2f dst0, Vec2f dst1, TextureWraps wrap, float max_anisotropy) const;
     template <typename Layout>
-    Vec3f ewa_level(int level, Point2f st, Vec2f dst0, Vec2f dst1, TextureWrap wrap) const;
+    Vec3f ewa_level(int level, Point2f st, Vec2f dst0, Vec2f dst1, TextureWraps wrap) const;
     template <typename Layout>
-    Vec3f filtered(Point2f st, Vec2f dst0, Vec2f dst1, TextureFilter filter, TextureWrap wrap,
+    Vec3f filtered(Point2f st, Vec2f dst0, Vec2f dst1, TextureFilter filter, TextureWraps wrap,
                    float max_anisotropy) const;
     // log2 of the footprint in texels of the finest level; negative when magnified.
     float level_of(float width) const;

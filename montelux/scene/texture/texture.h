@@ -30,24 +30,45 @@ struct SpectrumParameter {
 enum class RgbMeaning : std::uint8_t { albedo, unbounded, illuminant };
 
 enum class TextureFilter : std::uint8_t { point, bilinear, trilinear, ewa };
-enum class TextureWrap : std::uint8_t { repeat, black, clamp, octahedral_sphere };
+enum class TextureWrap : std::uint8_t { repeat, black, clamp, octahedral_sphere, mirror };
+// Along s and t. An octahedral sphere is one along both.
+struct TextureWraps {
+    TextureWrap s = TextureWrap::repeat, t = TextureWrap::repeat;
 
-// The channels of an image that a texture reads: its colours, or its channel A.
-enum class ImageChannels : std::uint8_t { color, alpha };
+    TextureWraps(TextureWrap both) : s(both), t(both) {}
+    TextureWraps(TextureWrap along_s, TextureWrap along_t) : s(along_s), t(along_t) {}
+    bool operator==(const TextureWraps&) const = default;
+};
+
+// The channels of an image that a texture reads: its colours, its channel A, or one of its colours. As a number only: the
+// angle from the first axis of the vector (2 R - 1, 2 G - 1), radians.
+enum class ImageChannels : std::uint8_t { color, alpha, red, green, blue, angle };
 
 // Texels are filtered first, then scaled (and 1 - x taken when `invert`), then read as a spectrum;
-// a float texture uses the mean of the colour channels, or the alpha.
+// a float texture uses the mean of the colour channels, or the one channel. `factor` and the colours of vertices are
+// applied as the scale is, channel by channel, before the conversion to a spectrum.
 struct ImageTexture {
     Index image = no_index; // into Scene::images
     ImageChannels channels = ImageChannels::color;
     TextureMapping mapping;
     TextureFilter filter = TextureFilter::bilinear;
-    TextureWrap wrap = TextureWrap::repeat;
+    TextureWraps wrap = TextureWrap::repeat;
     float max_anisotropy = 8;
     float scale = 1;
     bool invert = false;
     RgbMeaning meaning = RgbMeaning::albedo; // for spectrum textures
     const RgbColorSpace* color_space = &RgbColorSpace::srgb();
+    Vec3f factor{1, 1, 1};
+    bool vertex_colors = false; // times those of the mesh; as a number, times the opacities
+};
+// The colours of a mesh's vertices times a factor, an albedo; as a number, the opacities of its vertices times factor.x.
+struct VertexColorTexture {
+    Vec3f factor{1, 1, 1};
+};
+// 1 where `input` is at least `edge`, else 0.
+struct StepTexture {
+    FloatParameter input{};
+    float edge = 0.5f;
 };
 
 template <typename Parameter>
@@ -112,18 +133,25 @@ template <typename Parameter>
 using ProceduralTexture =
     std::conditional_t<std::is_same_v<Parameter, FloatParameter>, NoiseTexture, MarbleTexture>;
 
-template <typename Parameter>
-using TextureNode =
+template <typename Parameter, typename... Others>
+using TextureVariant =
     std::variant<ConstantTexture<Parameter>, ImageTexture, ScaleTexture<Parameter>, MixTexture<Parameter>,
                  CheckerboardTexture<Parameter>, BilerpTexture<Parameter>, DotsTexture<Parameter>,
-                 DirectionMixTexture<Parameter>, ProceduralTexture<Parameter>>;
+                 DirectionMixTexture<Parameter>, ProceduralTexture<Parameter>, VertexColorTexture, Others...>;
+// A step is a texture of numbers only.
+template <typename Parameter>
+using TextureNode =
+    std::conditional_t<std::is_same_v<Parameter, FloatParameter>, TextureVariant<FloatParameter, StepTexture>,
+                       TextureVariant<SpectrumParameter>>;
 using FloatTexture = TextureNode<FloatParameter>;
 using SpectrumTexture = TextureNode<SpectrumParameter>;
 static_assert(std::is_trivially_copyable_v<FloatTexture> && std::is_trivially_copyable_v<SpectrumTexture>);
 
 // visit(name, input) for everything that a texture refers to: parameters, or itself if it reads an image.
-template <typename Parameter, typename Visit>
-void visit_inputs(const TextureNode<Parameter>& texture, Visit&& visit) {
+template <typename Texture, typename Visit>
+void visit_inputs(const Texture& texture, Visit&& visit) {
+    using Parameter =
+        std::conditional_t<std::is_same_v<Texture, FloatTexture>, FloatParameter, SpectrumParameter>;
     std::visit(Overloaded{[&](const ConstantTexture<Parameter>& t) { visit("value", t.value); },
                           [&](const ImageTexture& t) { visit("image", t); },
                           [&](const ScaleTexture<Parameter>& t) {
@@ -150,7 +178,8 @@ void visit_inputs(const TextureNode<Parameter>& texture, Visit&& visit) {
                               visit("first", t.first);
                               visit("second", t.second);
                           },
-                          [](const ProceduralTexture<Parameter>&) {}},
+                          [](const ProceduralTexture<Parameter>&) {}, [](const VertexColorTexture&) {},
+                          [&](const StepTexture& t) { visit("input", t.input); }},
                texture);
 }
 

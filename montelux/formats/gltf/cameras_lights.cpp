@@ -1,0 +1,144 @@
+#include "montelux/formats/gltf/cameras_lights.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "montelux/mc/math/constants.h"
+#include "montelux/mc/math/nearest_name.h"
+#include "montelux/scene/build/float_range.h"
+
+namespace montelux::gltf {
+namespace {
+
+// The longer side of a film whose shape the camera gives.
+constexpr int longer_side = 1280;
+
+Vec3d column(const Matrix4& m, std::size_t i) { return {m.m[0][i], m.m[1][i], m.m[2][i]}; }
+
+// Without the scale of the node, as the specification asks for: x right, y up, z forward. The file's cameras look along
+// -z.
+Transform place_of(const Matrix4& world_from_node, const Value& node) {
+    const Vec3d x = column(world_from_node, 0), y = column(world_from_node, 1),
+                z = column(world_from_node, 2), p = column(world_from_node, 3);
+    const auto matrix = [&] {
+        Matrix4 m;
+        const Vec3d back = normalize(z), right = normalize(cross(y, back)), up = cross(back, right);
+        const Vec3d side = dot(right, x) < 0 ? -right : right; // a mirrored node shows a mirrored picture
+        for (std::size_t row = 0; row < 3; ++row) {
+            const int i = static_cast<int>(row);
+            m.m[row] = {side[i], up[i], -back[i], p[i]};
+        }
+        return m;
+    }();
+    const std::optional<Transform> placed = Transform::from_matrix(matrix);
+    if (!placed || !fits_float(*placed)) node.error("its transformation gives the camera no direction");
+    return *placed;
+}
+
+void set_shape(double aspect, const Value& at, FilmSettings& film) {
+    constexpr double most = 1000;
+    if (!(aspect >= 1 / most && aspect <= most))
+        at.error("a picture " + shown_number(aspect) + " times as wide as high; expected 0.001 to 1000");
+    const auto shorter = [](double ratio) {
+        return std::max(1, static_cast<int>(std::lround(longer_side * ratio)));
+    };
+    film.width = aspect >= 1 ? longer_side : shorter(aspect);
+    film.height = aspect >= 1 ? shorter(1 / aspect) : longer_side;
+    film.crop = {0, 0, film.width, film.height};
+}
+
+CameraModel perspective(const Value& source, FilmSettings& film) {
+    const Value p = source.required("perspective"), yfov = p.required("yfov");
+    double fov = yfov.number(0);
+    if (!(fov > 0 && fov < pi)) yfov.error(shown_number(fov) + " is not between 0 and pi");
+    if (const std::optional<Value> aspect = p.find("aspectRatio")) {
+        set_shape(aspect->number(), *aspect, film);
+        // Of the shorter side.
+        if (film.width < film.height) fov = 2 * std::atan(std::tan(fov / 2) * film.width / film.height);
+    }
+    return PerspectiveCamera{.fov = static_cast<float>(fov * 180 / pi)};
+}
+
+CameraModel orthographic(const Value& source, FilmSettings& film) {
+    const Value o = source.required("orthographic"), xmag = o.required("xmag"), ymag = o.required("ymag");
+    const double x = std::abs(xmag.number()), y = std::abs(ymag.number());
+    if (!(x > 0)) xmag.error("0 is no width");
+    if (!(y > 0)) ymag.error("0 is no height");
+    set_shape(x / y, o, film);
+    const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
+    return OrthographicCamera{.screen_window = ScreenWindow{-fx, fx, -fy, fy}};
+}
+
+const PlacedCamera& find_camera(const std::vector<PlacedCamera>& cameras, const std::string& asked,
+                                const Value& root) {
+    for (const PlacedCamera& c : cameras)
+        if (c.name == asked) return c;
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(asked.data(), asked.data() + asked.size(), number);
+    if (error == std::errc() && end == asked.data() + asked.size() && number < cameras.size())
+        return cameras[number];
+    std::vector<std::string_view> names;
+    std::string list;
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+        names.emplace_back(cameras[i].name);
+        list += (i == 0 ? "" : ", ") + std::to_string(i) +
+                (cameras[i].name.empty() ? "" : " " + in_quotes(cameras[i].name));
+    }
+    root.error("there is no camera " + in_quotes(asked) + did_you_mean(asked, names) +
+               (cameras.empty() ? "; the scene has none" : "; expected " + list));
+}
+
+} // namespace
+
+void choose_camera(const std::vector<PlacedCamera>& cameras, const std::optional<std::string>& asked,
+                   const Value& root, SceneDescription& description) {
+    description.has_camera = !cameras.empty();
+    if (!asked && cameras.empty()) return;
+    const PlacedCamera& chosen = asked ? find_camera(cameras, *asked, root) : cameras.front();
+    const Value type = chosen.camera.required("type");
+    if (type.text() == "perspective")
+        description.scene.camera.model = perspective(chosen.camera, description.film);
+    else if (type.text() == "orthographic")
+        description.scene.camera.model = orthographic(chosen.camera, description.film);
+    else
+        type.error("unknown camera " + in_quotes(type.text()) + "; expected 'perspective' or 'orthographic'");
+    description.scene.camera.world_from_camera = place_of(chosen.world_from_node, chosen.node);
+}
+
+// Candela and lux are Montelux' own units: a light of RGB 1 and intensity 1 has 1 cd, and gives film RGB 1 as 1 cd/m^2.
+void add_light(const Value& light, const Matrix4& world_from_node, const Value& node, SceneBuilder& builder) {
+    const Vec3f color = light.color("color", {1, 1, 1});
+    const auto intensity = static_cast<float>(light.number("intensity", 1, 0));
+    const Spectrum spectrum(RgbIlluminantSpectrum(RgbColorSpace::srgb(), color));
+    const SceneSpectrum emitted = builder.add_spectrum(spectrum);
+    const float scale = intensity * photometric_scale(spectrum);
+    const Vec3d origin = column(world_from_node, 3), z = column(world_from_node, 2);
+    const auto axis = [&] {
+        const Vec3d d = normalize(-z);
+        if (!is_finite(d)) node.error("its transformation gives the light no direction");
+        return Vec3f(d);
+    };
+    if (!fits_float(origin)) node.error("the light lies at infinity in world space");
+    const Value type = light.required("type");
+    if (light.find("range"))
+        light.diagnostics().warn_once("range", light.pointer(),
+                                      "'range' is ignored: light reaches everywhere");
+    if (type.text() == "directional") {
+        builder.add_light(DistantLight{emitted, scale, -axis()}, node.place());
+    } else if (type.text() == "point") {
+        builder.add_light(PointLight{emitted, scale, Vec3f(origin)}, node.place());
+    } else if (type.text() == "spot") {
+        const std::optional<Value> spot = light.find("spot");
+        const double inner = spot ? spot->number("innerConeAngle", 0, 0) : 0,
+                     outer = spot ? spot->number("outerConeAngle", pi / 4, 0, pi / 2 * (1 + 1e-6)) : pi / 4;
+        if (!(inner < outer)) spot->error("its inner cone is not narrower than its outer one");
+        builder.add_light(SpotLight{emitted, scale, Vec3f(origin), axis(),
+                                    static_cast<float>(std::cos(inner)), static_cast<float>(std::cos(outer))},
+                          node.place());
+    } else {
+        type.error("unknown light " + in_quotes(type.text()) + "; expected 'directional', 'point' or 'spot'");
+    }
+}
+
+} // namespace montelux::gltf

@@ -1,0 +1,71 @@
+#include "montelux/formats/gltf/coverage.h"
+
+#include <algorithm>
+#include <array>
+
+namespace montelux::gltf {
+namespace {
+
+using enum Support;
+
+constexpr auto table = std::to_array<FeatureCoverage>({
+    {"file", ".gltf", full, "data URIs, and files in its folder and below"},
+    {"file", ".glb"},
+    {"file", "EXT_meshopt_compression", none},
+    {"file", "KHR_draco_mesh_compression", none},
+    {"accessor", "all types", full, "normalised, sparse, with strides"},
+    {"accessor", "KHR_mesh_quantization"},
+    {"mesh", "triangles, strips, fans"},
+    {"mesh", "points, lines", none},
+    {"mesh", "NORMAL", full, "flat without it"},
+    {"mesh", "TANGENT", full, "along u without it"},
+    {"mesh", "TEXCOORD_n", in_part, "one set for all textures of a material"},
+    {"mesh", "COLOR_0"},
+    {"mesh", "morph targets", full, "of positions, normals and tangents, at one time"},
+    {"mesh", "skins", full, "at one time"},
+    {"node", "matrix, translation, rotation, scale"},
+    {"node", "EXT_mesh_gpu_instancing"},
+    {"node", "scenes", full, "the default one, or the first one"},
+    {"node", "animations", full, "at one time: --time-of-scene; without motion blur"},
+    {"camera", "perspective", full, "without znear and zfar"},
+    {"camera", "orthographic", full, "without znear and zfar"},
+    {"light", "KHR_lights_punctual", in_part, "'range' is ignored; cones fall off by a smoothstep"},
+    {"texture", "PNG, JPEG"},
+    {"texture", "samplers", in_part, "magFilter alone decides; minified textures are always filtered"},
+    {"texture", "KHR_texture_transform", full, "not of emissive pictures"},
+    {"texture", "EXT_texture_webp", none, "the fallback picture is used if there is one"},
+    {"texture", "KHR_texture_basisu", none, "the fallback picture is used if there is one"},
+    {"material", "pbrMetallicRoughness", in_part, "the base colour, diffuse"},
+    {"material", "normalTexture"},
+    {"material", "occlusionTexture", none, "light transport computes it"},
+    {"material", "emissiveTexture", full, "lights its surroundings; by texture coordinates in [0, 1]"},
+    {"material", "alphaMode"},
+    {"material", "doubleSided", in_part, "decides which sides emit; every surface is seen from both"},
+    {"material", "KHR_materials_emissive_strength"},
+    {"material", "KHR_materials_unlit", in_part, "an emitter, which lights its surroundings"},
+    {"material", "KHR_materials_variants", full, "--variant"},
+    {"material", "KHR_materials_volume", in_part, "absorption; the shape itself is the thickness"},
+});
+
+} // namespace
+
+std::span<const FeatureCoverage> feature_coverage() { return table; }
+
+bool is_supported_extension(std::string_view name) {
+    return std::ranges::any_of(
+        table, [&](const FeatureCoverage& f) { return f.feature == name && f.support != Support::none; });
+}
+
+std::string_view name_of(Support s) {
+    switch (s) {
+    case Support::full:
+        return "yes";
+    case Support::in_part:
+        return "in part";
+    case Support::none:
+        return "no";
+    }
+    return {};
+}
+
+} // namespace montelux::gltf

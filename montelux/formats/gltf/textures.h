@@ -1,0 +1,51 @@
+// TextureLibrary: the textures of a glTF file as parameters of materials: factors times pictures.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "montelux/formats/gltf/document.h"
+#include "montelux/scene/build/scene_builder.h"
+#include "montelux/scene/material/parameter.h"
+
+namespace montelux::gltf {
+
+// A textureInfo object is `info`; without one the value is the factor alone. `vertices`: times the colours of vertices.
+class TextureLibrary {
+  public:
+    // Both must outlive it.
+    TextureLibrary(Document& document, SceneBuilder& builder) : document_(document), builder_(builder) {}
+
+    // A linear factor times an sRGB picture.
+    SpectrumParameter color(const std::optional<Value>& info, Vec3f factor, RgbMeaning meaning,
+                            bool vertices = false);
+    // A factor times a channel of a linear picture.
+    FloatParameter number(const std::optional<Value>& info, float factor, ImageChannels channel,
+                          bool vertices = false);
+    // rgb = (n / scale + 1) / 2, a linear picture.
+    NormalMapParameter normal_map(const Value& info);
+    // The picture of an emissive surface, times a factor; into Scene::environments.
+    Index emission(const Value& info, Vec3f factor);
+
+    // n of TEXCOORD_n.
+    static std::uint64_t uv_set(const Value& info);
+
+  private:
+    // What is taken of a file's picture.
+    enum class Use { color, linear, alpha };
+
+    ImageTexture texture(const Value& info, Use use);
+    Index image(const Value& source, Use use);
+    Image read_picture(const Value& source);
+    // The image that a texture shows. Errors: only one in a format that is not read.
+    Value source_of(const Value& texture);
+    void read_sampler(const Value& texture, ImageTexture& to);
+
+    Document& document_;
+    SceneBuilder& builder_;
+    std::map<std::pair<std::uint64_t, Use>, Index> images_;
+};
+
+} // namespace montelux::gltf
