@@ -3,9 +3,18 @@
 #include <type_traits>
 
 #include "montelux/formats/pbrt/scene_writer.h"
+#include "montelux/mc/math/error.h"
 #include "montelux/mc/math/overloaded.h"
 
 namespace montelux::pbrt {
+namespace {
+
+// Of what scenes of other formats have.
+[[noreturn]] void refuse(const std::string& what) {
+    throw Error("pbrt", what + " cannot be written: pbrt-v4 has nothing like it");
+}
+
+} // namespace
 
 void SceneWriter::parameter(DirectiveText& d, std::string_view name, const FloatParameter& p, float otherwise,
                             RgbMeaning) {
@@ -25,6 +34,7 @@ void SceneWriter::parameter(DirectiveText& d, std::string_view name, const Spect
 
 void SceneWriter::mapping(DirectiveText& d, std::string& transform, const TextureMapping& m) {
     using Kind = TextureMapping::Kind;
+    if (m.kind == Kind::affine) refuse("a mapping of texture coordinates that turns or shears them");
     if (m.kind != Kind::uv) transform = transform_text(m.texture_from_world.inverse());
     if (m.kind == Kind::uv) {
         if (m.su != 1) d.number("uscale", m.su);
@@ -45,11 +55,16 @@ void SceneWriter::image_texture(DirectiveText& d, std::string& transform, const 
                                 bool is_float) {
     constexpr std::array filters = {"point", "bilinear", "trilinear", "ewa"};
     constexpr std::array wraps = {"repeat", "black", "clamp", "octahedralsphere"};
+    if (t.wrap.s != t.wrap.t || t.wrap.s == TextureWrap::mirror)
+        refuse("an image that wraps differently along its axes, or by mirroring");
+    if (t.channels != ImageChannels::color && t.channels != ImageChannels::alpha)
+        refuse("a texture of one colour channel");
+    if (t.vertex_colors || t.factor != Vec3f{1, 1, 1}) refuse("an image times a colour");
     d.string("filename", image_file(t.image));
     if (const auto encoding = encoding_of(t.image)) d.string("encoding", *encoding);
     mapping(d, transform, t.mapping);
     if (t.filter != TextureFilter::bilinear) d.string("filter", filters[static_cast<std::size_t>(t.filter)]);
-    if (t.wrap != TextureWrap::repeat) d.string("wrap", wraps[static_cast<std::size_t>(t.wrap)]);
+    if (t.wrap != TextureWrap::repeat) d.string("wrap", wraps[static_cast<std::size_t>(t.wrap.s)]);
     if (t.max_anisotropy != 8) d.number("maxanisotropy", t.max_anisotropy);
     if (t.scale != 1) d.number("scale", t.scale);
     if (t.invert) d.boolean("invert", true);
@@ -149,7 +164,9 @@ void SceneWriter::texture(const TextureNode<Parameter>& node, const std::string&
                               d.number("scale", t.scale);
                               d.number("variation", t.variation);
                               transform = transform_text(t.texture_from_world.inverse());
-                          }},
+                          },
+                          [&](const VertexColorTexture&) { refuse("colours of vertices"); },
+                          [&](const StepTexture&) { refuse("a threshold of a texture"); }},
                node);
     put_block(transform + d.text());
 }
