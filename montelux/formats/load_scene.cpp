@@ -16,6 +16,7 @@ SceneDescription load_scene(const std::filesystem::path& path, Warnings& warning
     DiskFiles disk;
     FileSource& files = options.source != nullptr ? *options.source : disk;
     std::vector<std::uint8_t> bytes = read_unpacked(files, path);
+    if (bytes.empty()) throw Error(path.string(), "the file is empty");
     const FileKind kind = file_kind(bytes);
     switch (kind.format) {
     case SceneFormat::pbrt:
