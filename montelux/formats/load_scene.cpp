@@ -30,6 +30,7 @@ SceneDescription load_scene(const std::filesystem::path& path, Warnings& warning
     DiskFiles disk;
     FileSource& files = options.source != nullptr ? *options.source : disk;
     std::vector<std::uint8_t> bytes = read_unpacked(files, path);
+    if (bytes.empty()) throw Error(path.string(), "the file is empty");
     const FileKind kind = file_kind(bytes);
     check_options(path, kind, options);
     switch (kind.format) {

@@ -57,7 +57,7 @@ gzip -c good.ply | head -c 60 >bad.ply.gz
 broken "the gzip data ends early" 'Shape "plymesh" "string filename" "bad.ply.gz"'
 
 : >empty.pbrt
-expect 1 "empty.pbrt:1:1: the file ends before WorldBegin" render empty.pbrt
+expect 1 "empty.pbrt: the file is empty" render empty.pbrt
 expect 1 "missing.pbrt: cannot be opened" render missing.pbrt
 expect 1 "it is a folder" render .
 expect 1 "this is a program; pbrt-v4, OBJ, PLY and STL are read" render "$montelux"

@@ -152,7 +152,7 @@ TEST_F(LoadScene, TextIsLeftToTheReader) {
     const auto recipe = folder_.write("recipe.txt", "Boil two eggs.\n");
     EXPECT_EQ(error_of(recipe), recipe.string() + ":1:1: unknown directive 'Boil'");
     const auto empty = folder_.write("empty.pbrt", "");
-    EXPECT_EQ(error_of(empty), empty.string() + ":1:1: the file ends before WorldBegin");
+    EXPECT_EQ(error_of(empty), empty.string() + ": the file is empty");
     EXPECT_NE(error_of(folder_ / "missing.pbrt"), "");
     EXPECT_NE(error_of(folder_.path()), "");
 }
