@@ -82,8 +82,8 @@ TEST(ToneCurve, RisesFromBlackAndKeepsGreysGrey) {
             const Vec3f code = curve(Vec3f{light, light, light});
             const float v = curve(light);
             EXPECT_GE(v, before - 1e-6f) << light;
-            EXPECT_NEAR(code.x, code.y, 2e-4) << light;
-            EXPECT_NEAR(code.z, code.y, 2e-4) << light;
+            EXPECT_NEAR(code.x, code.y, 3e-4) << light;
+            EXPECT_NEAR(code.z, code.y, 3e-4) << light;
             for (int i = 0; i < 3; ++i) EXPECT_TRUE(code[i] >= 0 && code[i] <= 1) << light;
             before = v;
         }
