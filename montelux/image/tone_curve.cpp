@@ -68,7 +68,8 @@ Vec3f agx(Vec3f light) {
 Vec3f filmic(Vec3f light) {
     constexpr float a = 0.15f, b = 0.50f, c = 0.10f, d = 0.20f, e = 0.02f, f = 0.30f, white = 11.2f, bias = 2;
     constexpr auto curve = [](float x) {
-        return (x * (a * x + c * b) + d * e) / (x * (a * x + b) + d * f) - e / f;
+        // At x = 0 the quotient rounds to d e / (d f), not to e / f.
+        return (x * (a * x + c * b) + d * e) / (x * (a * x + b) + d * f) - d * e / (d * f);
     };
     return encoded(each(light, [&](float v) { return curve(bias * v) / curve(white); }));
 }

@@ -29,7 +29,7 @@ struct ToneCurve {
     ToneKind kind = ToneKind::srgb;
 
     // Linear sRGB light to code values in [0, 1]; NaN and negative components count as 0. Black is 0, and grey stays
-    // grey to 2e-4.
+    // grey to 3e-4, a tenth of an 8-bit code.
     Vec3f operator()(Vec3f rgb) const;
     // Of grey light.
     float operator()(float light) const;

@@ -9,7 +9,7 @@ expect 1 "nowhere/x.exr: cannot be written" render long.pbrt -o nowhere/x.exr
 expect 1 "cannot be written" render long.pbrt -o long.pbrt/x.exr
 mkdir folder.exr
 expect 1 "it is a folder" render long.pbrt -o folder.exr
-expect 1 "the extension '.gif' is not one of .exr, .png, .hdr, .pfm" render long.pbrt -o x.gif
+expect 1 "the extension '.gif' is not one of .exr, .png, .jpg, .hdr, .pfm" render long.pbrt -o x.gif
 expect 1 "the extension '.pbrt'" render long.pbrt -o long.pbrt
 expect 1 "the name has no extension" render long.pbrt -o x
 expect 1 "the name has no extension" render long.pbrt -o ''

@@ -163,8 +163,8 @@ TEST(CheckWritable, ReportsBeforehandWhatWouldFailLater) {
     check_writable(folder / "new.PNG");
     EXPECT_EQ(read_bytes(folder / "there.exr"), "old");
     EXPECT_EQ(folder.file_count(), 1);
-    expect_error([&] { check_writable(folder / "a.tiff"); }, {"'.tiff'", ".exr, .png, .hdr, .pfm"});
-    expect_error([&] { check_writable(folder / "a"); }, {"no extension", ".exr, .png, .hdr or .pfm"});
+    expect_error([&] { check_writable(folder / "a.tiff"); }, {"'.tiff'", ".exr, .png, .jpg, .hdr, .pfm"});
+    expect_error([&] { check_writable(folder / "a"); }, {"no extension", ".exr, .png, .jpg, .hdr or .pfm"});
     expect_error([&] { check_writable(folder / "none/a.exr"); }, {"none"});
     expect_error([&] { check_writable(folder / "there.exr/a.exr"); }, {"there.exr", "Not a directory"});
     if (::geteuid() != 0) { // the superuser may write anywhere
