@@ -51,6 +51,8 @@ std::uint64_t uv_set_of(const Value& source) {
 
 Material make_surface_material(const Value& source, const Value& base, TextureLibrary& textures,
                                SceneBuilder&, bool vertices) {
+    source.diagnostics().warn_once("diffuse", source.pointer(),
+                                   "materials are diffuse: their metal and roughness are not read yet");
     DiffuseMaterial m;
     m.reflectance =
         textures.color(base.find("baseColorTexture"), base_color_factor(base), RgbMeaning::albedo, vertices);
