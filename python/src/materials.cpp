@@ -81,6 +81,13 @@ struct Attributes {
             info.doc);
     }
 
+    void add(const ParameterInfo& info, ParameterAt<bool> at) const {
+        attribute<M>(
+            c, info.python_name().c_str(), "bool", [at](const M& m, const auto&) { return nb::bool_(at(m)); },
+            [at](M& m, nb::handle v, auto&, const std::string& what) { at(m) = boolean_of(v, what); },
+            info.doc);
+    }
+
     // `roughness` sets both directions at once.
     void add(const ParameterInfo& info, ParameterAt<RoughnessParameter> at) const {
         const std::string name = info.python_name();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "test/scene/measured_brdf_testing.h"
+#include "test/scene/principled_testing.h"
 #include <cmath>
 #include <functional>
 #include <map>
@@ -225,6 +226,89 @@ inline std::vector<BsdfCase> bsdf_cases() {
          [=] { return multiscatter_layers<MultiscatterConductorBsdf>(layered_conductor(0, 0.5f)); }, false},
         {"hair_glossy", [=] { return HairBsdf::make(0, 1.55f, 0.1f * eta, 0.15f, 0.2f, 0); }, true, false},
     };
+}
+
+// Each lobe of the principled BSDF alone, and mixtures.
+inline std::vector<BsdfCase> principled_cases() {
+    using M = PrincipledMaterial;
+    const auto made = [](const char* name, const M& m) {
+        return BsdfCase{std::string("principled_") + name, [=] { return principled(m); }};
+    };
+    return {
+        made("diffuse", M{.base_color = {red_paint}, .specular = {0}}),
+        made("plastic", M{.base_color = {red_paint}, .roughness = {0.4f}}),
+        made("smooth_plastic", M{.base_color = {red_paint}, .roughness = {0}}),
+        made("coloured_highlight",
+             M{.base_color = {red_paint}, .ior = {2}, .specular = {0.7f}, .specular_color = {blue_paint}}),
+        made("metal", M{.base_color = {red_paint}, .metallic = {1}, .roughness = {0.5f}}),
+        made("brushed_metal", M{.base_color = {red_paint},
+                                .metallic = {1},
+                                .roughness = {0.4f},
+                                .anisotropy = {0.7f},
+                                .anisotropy_rotation = {0.6f}}),
+        made("lacquer", M{.base_color = {blue_paint},
+                          .metallic = {0.5f},
+                          .roughness = {0.7f},
+                          .clearcoat = {1},
+                          .clearcoat_roughness = {0.4f}}),
+        made("smooth_lacquer", M{.base_color = {red_paint}, .clearcoat = {0.7f}, .clearcoat_roughness = {0}}),
+        made("narrow_fibres", M{.base_color = {0.3f}, .sheen_color = {1}, .sheen_roughness = {0.15f}}),
+        made("glass", M{.base_color = {blue_paint}, .roughness = {0.5f}, .transmission = {1}}),
+        made("smooth_glass", M{.base_color = {blue_paint}, .roughness = {0}, .transmission = {1}}),
+        made("milky_glass", M{.base_color = {blue_paint}, .roughness = {0.5f}, .transmission = {0.6f}}),
+        made("brushed_glass",
+             M{.roughness = {0.5f}, .anisotropy = {0.6f}, .ior = {1.8f}, .transmission = {1}}),
+        made("bubble", M{.roughness = {0.5f}, .ior = {0.7f}, .transmission = {1}}),
+        made("index_1",
+             M{.base_color = {red_paint}, .roughness = {0.6f}, .ior = {1}, .transmission = {0.7f}}),
+        made("pane",
+             M{.base_color = {blue_paint}, .roughness = {0.5f}, .transmission = {0.8f}, .thin_walled = true}),
+        made("smooth_pane",
+             M{.base_color = {blue_paint}, .roughness = {0}, .transmission = {1}, .thin_walled = true}),
+        made("leaf", M{.base_color = {blue_paint},
+                       .diffuse_transmission = {0.6f},
+                       .diffuse_transmission_color = {red_paint},
+                       .thin_walled = true}),
+        made("wax", M{.base_color = {red_paint},
+                      .diffuse_transmission = {0.7f},
+                      .diffuse_transmission_color = {red_paint}}),
+        made("oiled_plastic",
+             M{.base_color = {blue_paint}, .iridescence = {0.8f}, .iridescence_ior = {1.7f}}),
+        made("soap", M{.roughness = {0.4f},
+                       .transmission = {1},
+                       .iridescence = {1},
+                       .iridescence_thickness = {700},
+                       .thin_walled = true}),
+        made("all", M{.base_color = {red_paint},
+                      .metallic = {0.3f},
+                      .roughness = {0.6f},
+                      .anisotropy = {0.5f},
+                      .anisotropy_rotation = {-1},
+                      .ior = {1.4f},
+                      .specular = {0.8f},
+                      .specular_color = {blue_paint},
+                      .transmission = {0.5f},
+                      .diffuse_transmission = {0.4f},
+                      .diffuse_transmission_color = {blue_paint},
+                      .clearcoat = {0.7f},
+                      .clearcoat_roughness = {0.5f},
+                      .sheen_color = {blue_paint},
+                      .sheen_roughness = {0.4f},
+                      .iridescence = {0.5f}}),
+        {"principled_tilted",
+         [] {
+             const Bsdf base =
+                 principled(M{.base_color = {red_paint}, .roughness = {0.6f}, .transmission = {0.5f}});
+             return TiltedBsdf{std::get<PrincipledBsdf<true>>(base), direction(25, 200)};
+         }},
+    };
+}
+
+// The cases of bsdf_test.cpp.
+inline std::vector<BsdfCase> all_bsdf_cases() {
+    std::vector<BsdfCase> cases = bsdf_cases();
+    for (BsdfCase& c : principled_cases()) cases.push_back(std::move(c));
+    return cases;
 }
 
 inline std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3f wo, auto& stream,

@@ -61,6 +61,8 @@ class MaterialMaker {
         check_range(info, parameter, n);
     }
 
+    void read(const ParameterInfo& info, bool& b) { b = r_.boolean(name(info.pbrt_name()), b); }
+
     // An index of refraction: a number or a spectrum.
     void read(const ParameterInfo& info, SceneSpectrum& eta) {
         const std::string_view parameter = name(info.pbrt_name());

@@ -6,6 +6,7 @@
 #include "montelux/scene/bsdf/bsdf_types.h"
 #include "montelux/scene/bsdf/fresnel.h"
 #include "montelux/scene/bsdf/ggx.h"
+#include "montelux/scene/bsdf/microfacet_pair.h"
 
 namespace montelux {
 
@@ -47,31 +48,14 @@ struct DielectricBsdf {
         bool reflects = same_hemisphere(wo, wi);
         if (lobes != Lobes::both && reflects != (lobes == Lobes::reflection)) return {};
         float eta_p = reflects ? 1 : (wo.z > 0 ? eta : 1 / eta);
-        Vec3f m = wi * eta_p + wo;
-        float len2 = length_squared(m);
-        if (!(len2 > 0)) return {};
-        m = m / std::sqrt(len2);
-        if (m.z < 0) m = -m;
-        float o_m = dot(wo, m), i_m = dot(wi, m);
-        // Microfacets seen from behind.
-        if (i_m * wi.z < 0 || o_m * wo.z < 0) return {};
-        float r = fresnel_dielectric(o_m, eta);
-        float lambda_o = ggx.lambda(wo);
-        float d = ggx.d(m);
-        float g_over_g1 = (1 + lambda_o) / (1 + lambda_o + ggx.lambda(wi));
-        float visible = d * std::abs(o_m) / ((1 + lambda_o) * std::abs(wo.z));
-        if (reflects) {
-            float density = visible / (4 * std::abs(o_m));
-            float chosen = lobes == Lobes::both ? r : 1;
-            return {SampledSpectrum(density * r * g_over_g1), density * chosen};
-        }
-        float denominator = i_m + o_m / eta_p;
-        float density = visible * std::abs(i_m) / (denominator * denominator);
-        float t = 1 - r;
-        float chosen = lobes == Lobes::both ? t : 1;
-        float f = density * t * g_over_g1;
-        if (mode == TransportMode::radiance) f /= eta_p * eta_p;
-        return {SampledSpectrum(f), density * chosen};
+        const auto facet = MicrofacetPair::find(ggx, wo, wi, reflects, eta_p);
+        if (!facet) return {};
+        const float r = fresnel_dielectric(facet->o_m, eta);
+        const float fresnel = reflects ? r : 1 - r;
+        const float chosen = lobes == Lobes::both ? fresnel : 1;
+        float f = facet->density * fresnel * facet->shadowing;
+        if (!reflects && mode == TransportMode::radiance) f /= eta_p * eta_p;
+        return {SampledSpectrum(f), facet->density * chosen};
     }
 
     // uc chooses between reflection and refraction, u the microfacet.

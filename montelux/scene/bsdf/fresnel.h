@@ -44,6 +44,14 @@ inline SampledSpectrum fresnel_conductor(float cos_theta_i, SampledSpectrum eta,
     return 0.5f * (parallel + perpendicular);
 }
 
+// Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering": f0 at normal incidence, f90 at
+// grazing incidence.
+inline SampledSpectrum fresnel_schlick(float cos_theta_i, SampledSpectrum f0, float f90) {
+    const float d = 1 - std::clamp(cos_theta_i, 0.0f, 1.0f);
+    const float d5 = (d * d) * (d * d) * d;
+    return (1 - d5) * f0 + d5 * f90;
+}
+
 struct Refraction {
     Vec3f wt;
     float eta; // index on the side of wt over that on the side of wi

@@ -13,6 +13,7 @@
 #include "montelux/scene/bsdf/measured_brdf.h"
 #include "montelux/scene/bsdf/multiscatter_conductor.h"
 #include "montelux/scene/bsdf/multiscatter_dielectric.h"
+#include "montelux/scene/bsdf/principled.h"
 #include "montelux/scene/bsdf/subsurface_boundary.h"
 #include "montelux/scene/bsdf/thin_dielectric.h"
 
@@ -23,6 +24,7 @@ using UntiltedBsdf =
                  CoatedDiffuseBsdf, LayeredBsdf<DiffuseBsdf>, LayeredBsdf<ConductorBsdf>, HairBsdf,
                  MeasuredBsdf, SubsurfaceBsdf, MultiscatterConductorBsdf, MultiscatterDielectricBsdf,
                  LayeredBsdf<DiffuseBsdf, MultiscatterDielectricBsdf>,
-                 LayeredBsdf<MultiscatterConductorBsdf, MultiscatterDielectricBsdf>>;
+                 LayeredBsdf<MultiscatterConductorBsdf, MultiscatterDielectricBsdf>, PrincipledBsdf<false>,
+                 PrincipledBsdf<true>>;
 
 } // namespace montelux

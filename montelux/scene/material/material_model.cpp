@@ -72,6 +72,7 @@ bool uses_coordinates(const Material& material) {
 bool is_anisotropic(const Material& material) {
     return std::visit(
         []<typename M>(const M& m) {
+            if constexpr (requires { m.is_anisotropic(); }) return m.is_anisotropic();
             using Made = decltype(m.bsdf(std::declval<const ParameterEvaluator&>()));
             if (!uses_tangents(std::type_identity<Made>{})) return false;
             // Lobes without roughness depend on the tangents for other reasons.

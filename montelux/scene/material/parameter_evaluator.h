@@ -22,15 +22,21 @@ class ParameterEvaluator {
     }
     SampledSpectrum reflectance(const SpectrumParameter& p) const { return clamp((*this)(p), 0, 1); }
 
+    // Between 0 and 1.
+    float share(const FloatParameter& p) const { return std::clamp((*this)(p), 0.0f, 1.0f); }
+
     Ggx roughness(const RoughnessParameter& r) const {
         float u = (*this)(r.u), v = (*this)(r.v);
         if (r.remap) {
             u = Ggx::alpha_from_roughness(u);
             v = Ggx::alpha_from_roughness(v);
         }
+        return microfacets(u, v);
+    }
+    Ggx microfacets(float alpha_u, float alpha_v) const {
         // A lobe narrower than this along one axis would overflow floats.
-        Ggx ggx{u, v};
-        if (!ggx.is_smooth()) ggx = {std::max(u, 1e-4f), std::max(v, 1e-4f)};
+        Ggx ggx{alpha_u, alpha_v};
+        if (!ggx.is_smooth()) ggx = {std::max(alpha_u, 1e-4f), std::max(alpha_v, 1e-4f)};
         return widen_ ? ggx.widened() : ggx;
     }
 
@@ -84,6 +90,14 @@ class ParameterEvaluator {
         const float e = std::max((*this)(c.eumelanin), 0.0f), p = std::max((*this)(c.pheomelanin), 0.0f);
         const Vec3f rgb = e * Vec3f{0.419f, 0.697f, 1.37f} + p * Vec3f{0.187f, 0.4f, 1.05f};
         return RgbUnboundedSpectrum(RgbColorSpace::srgb(), rgb).sample(lambda_);
+    }
+
+    // nm
+    Float4 wavelengths() const { return lambda_.lambda; }
+    // For directions that depend on the wavelength: only the hero is left.
+    float hero_wavelength() const {
+        lambda_.terminate_secondary();
+        return lambda_.lambda[0];
     }
 
     MeasuredBsdf measured(MeasuredBrdfIndex b) const {

@@ -121,6 +121,59 @@ TEST(PbrtMaterials, NamedOnesMayFollowAndUnusedOnesAreRead) {
               "scene:2:17: parameter 'beta_m' is above 1");
 }
 
+TEST(PbrtMaterials, Principled) {
+    auto m = material<PrincipledMaterial>("Material \"principled\"");
+    EXPECT_EQ(m.of(m.base_color.value)(500), 1);
+    EXPECT_EQ(m.metallic.value, 0);
+    EXPECT_EQ(m.roughness.value, 0.5f);
+    EXPECT_EQ(m.ior.value, 1.5f);
+    EXPECT_EQ(m.specular.value, 1);
+    EXPECT_EQ(m.of(m.specular_color.value)(500), 1);
+    EXPECT_EQ(m.of(m.sheen_color.value)(500), 0);
+    EXPECT_EQ(m.iridescence_ior.value, 1.3f);
+    EXPECT_EQ(m.iridescence_thickness.value, 400);
+    EXPECT_FALSE(m.thin_walled);
+    for (const FloatParameter& p :
+         {m.anisotropy, m.anisotropy_rotation, m.transmission, m.dispersion, m.diffuse_transmission,
+          m.clearcoat, m.clearcoat_roughness, m.sheen_roughness, m.iridescence})
+        EXPECT_EQ(p.value, 0);
+
+    m = material<PrincipledMaterial>(
+        "Material \"principled\" \"rgb basecolor\" [ 0.1 0.2 0.3 ] \"float metallic\" 0.1 \"float "
+        "roughness\" 0.2 "
+        "\"float anisotropy\" 0.3 \"float anisotropyrotation\" -1 \"float ior\" 1.7 \"float specular\" 0.4 "
+        "\"rgb specularcolor\" [ 2 1 1 ] \"float transmission\" 0.5 \"float dispersion\" 0.6 "
+        "\"float diffusetransmission\" 0.7 \"rgb diffusetransmissioncolor\" [ 0.3 0.2 0.1 ] \"float "
+        "clearcoat\" 0.8 "
+        "\"float clearcoatroughness\" 0.9 \"rgb sheencolor\" [ 0.1 0.3 0.2 ] \"float sheenroughness\" 0.15 "
+        "\"float iridescence\" 0.25 \"float iridescenceior\" 1.35 \"float iridescencethickness\" 450 "
+        "\"bool thinwalled\" true");
+    const RgbColorSpace& srgb = RgbColorSpace::srgb();
+    expect_same_values(m.of(m.base_color.value), Spectrum(RgbAlbedoSpectrum(srgb, {0.1f, 0.2f, 0.3f})));
+    expect_same_values(m.of(m.specular_color.value), Spectrum(RgbUnboundedSpectrum(srgb, {2, 1, 1})));
+    expect_same_values(m.of(m.diffuse_transmission_color.value),
+                       Spectrum(RgbAlbedoSpectrum(srgb, {0.3f, 0.2f, 0.1f})));
+    expect_same_values(m.of(m.sheen_color.value), Spectrum(RgbAlbedoSpectrum(srgb, {0.1f, 0.3f, 0.2f})));
+    EXPECT_EQ(m.metallic.value, 0.1f);
+    EXPECT_EQ(m.roughness.value, 0.2f);
+    EXPECT_EQ(m.anisotropy.value, 0.3f);
+    EXPECT_EQ(m.anisotropy_rotation.value, -1);
+    EXPECT_EQ(m.ior.value, 1.7f);
+    EXPECT_EQ(m.specular.value, 0.4f);
+    EXPECT_EQ(m.transmission.value, 0.5f);
+    EXPECT_EQ(m.dispersion.value, 0.6f);
+    EXPECT_EQ(m.diffuse_transmission.value, 0.7f);
+    EXPECT_EQ(m.clearcoat.value, 0.8f);
+    EXPECT_EQ(m.clearcoat_roughness.value, 0.9f);
+    EXPECT_EQ(m.sheen_roughness.value, 0.15f);
+    EXPECT_EQ(m.iridescence.value, 0.25f);
+    EXPECT_EQ(m.iridescence_ior.value, 1.35f);
+    EXPECT_EQ(m.iridescence_thickness.value, 450);
+    EXPECT_TRUE(m.thin_walled);
+    EXPECT_EQ(test::world_error("Material \"principled\" \"float metallic\" 2"),
+              "scene:2:23: parameter 'metallic' is above 1");
+}
+
 TEST(PbrtMaterials, Measured) {
     TemporaryFolder folder;
     const std::vector<std::uint8_t> bytes =

@@ -11,9 +11,8 @@ namespace montelux {
 namespace {
 
 const char* const all_materials[] = {
-    "diffuse",       "conductor",       "dielectric",          "thindielectric",
-    "coateddiffuse", "coatedconductor", "diffusetransmission", "interface",
-    "hair"};
+    "diffuse",         "conductor",           "dielectric", "thindielectric", "coateddiffuse",
+    "coatedconductor", "diffusetransmission", "interface",  "hair",           "principled"};
 
 TEST(PbrtMaterials, EachHasNormalMapAndBumps) {
     TemporaryFolder folder;

@@ -15,7 +15,7 @@ namespace montelux {
 namespace {
 
 // Importances stay within the range of a float even where intensities do not.
-constexpr double least_share = 1e-20;
+constexpr double least_intensity_share = 1e-20;
 // Spheres grow by more than the rounding of positions in units of the tree.
 constexpr float rounding = 0x1p-21f;
 
@@ -136,11 +136,12 @@ LightTree::LightTree(std::span<const TreeLight> lights) : places_(lights.size())
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const LightBounds& b = lights[i].bounds;
         const auto in_units = [&](Vec3d p) { return Vec3f((p - Vec3d(origin_)) * (1 / unit)); };
-        split.push_back({.lower = in_units(b.box.lower),
-                         .upper = in_units(b.box.upper),
-                         .cone = LightCone(b),
-                         .intensity = static_cast<float>(std::max(intensities[i] / sum, least_share)),
-                         .light = static_cast<Index>(i)});
+        split.push_back(
+            {.lower = in_units(b.box.lower),
+             .upper = in_units(b.box.upper),
+             .cone = LightCone(b),
+             .intensity = static_cast<float>(std::max(intensities[i] / sum, least_intensity_share)),
+             .light = static_cast<Index>(i)});
     }
     nodes_.reserve(lights.size() / 3 + 1);
     Builder(split, nodes_, places_).build(0, static_cast<Index>(split.size()), no_index, 0);

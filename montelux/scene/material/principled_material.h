@@ -1,0 +1,161 @@
+// PrincipledMaterial: the layered material of glTF 2.0 and its extensions.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "montelux/scene/bsdf/bsdf.h"
+#include "montelux/scene/material/surface_detail.h"
+
+namespace montelux {
+
+// Parameters after the glTF 2.0 specification, appendix B, and the Khronos extensions KHR_materials_*.
+struct PrincipledMaterial {
+    static constexpr const char* name = "Principled";
+    static constexpr const char* doc =
+        "Metals, plastics, glass, cloth and lacquer by one list of parameters, as in glTF 2.0.";
+
+    SpectrumParameter base_color{1};
+    FloatParameter metallic{};
+    FloatParameter roughness{0.5f};
+    FloatParameter anisotropy{};
+    FloatParameter anisotropy_rotation{};
+    FloatParameter ior{1.5f};
+    FloatParameter specular{1};
+    SpectrumParameter specular_color{1};
+    FloatParameter transmission{};
+    FloatParameter dispersion{};
+    FloatParameter diffuse_transmission{};
+    SpectrumParameter diffuse_transmission_color{1};
+    FloatParameter clearcoat{};
+    FloatParameter clearcoat_roughness{};
+    SpectrumParameter sheen_color{};
+    FloatParameter sheen_roughness{};
+    FloatParameter iridescence{};
+    FloatParameter iridescence_ior{1.3f};
+    FloatParameter iridescence_thickness{400};
+    bool thin_walled = false;
+    SurfaceDetail detail{};
+
+    template <typename Self, typename Visit>
+    static void visit_parameters(Self& m, Visit&& visit) {
+        visit({.name = "base_color", .doc = "Reflectance of the diffuse base or the metal; colour of glass."},
+              m.base_color);
+        visit({.name = "metallic", .doc = "Share of metal, 0 to 1.", .most = 1}, m.metallic);
+        visit({.name = "roughness", .doc = "Square root of GGX's alpha, 0 to 1.", .most = 1}, m.roughness);
+        visit({.name = "anisotropy", .doc = "Elongation of highlights, 0 to 1.", .most = 1}, m.anisotropy);
+        visit({.name = "anisotropy_rotation",
+               .doc = "Angle from the tangent to the rougher direction, radians.",
+               .least = -1e6},
+              m.anisotropy_rotation);
+        visit({.name = "ior", .doc = "Index of refraction of the dielectric; 0: infinite."}, m.ior);
+        visit({.name = "specular", .doc = "Weight of the dielectric's reflection, 0 to 1.", .most = 1},
+              m.specular);
+        visit({.name = "specular_color",
+               .doc = "Factor of the dielectric's reflectance at normal incidence.",
+               .meaning = RgbMeaning::unbounded},
+              m.specular_color);
+        visit({.name = "transmission", .doc = "Share of the diffuse base that is clear, 0 to 1.", .most = 1},
+              m.transmission);
+        visit({.name = "dispersion", .doc = "20 divided by the Abbe number; 0: none."}, m.dispersion);
+        visit({.name = "diffuse_transmission",
+               .doc = "Share of the diffuse base that transmits diffusely, 0 to 1.",
+               .most = 1},
+              m.diffuse_transmission);
+        visit({.name = "diffuse_transmission_color", .doc = "Colour of the diffusely transmitted light."},
+              m.diffuse_transmission_color);
+        visit({.name = "clearcoat", .doc = "Weight of the clear coat, 0 to 1.", .most = 1}, m.clearcoat);
+        visit({.name = "clearcoat_roughness", .doc = "Square root of the coat's alpha, 0 to 1.", .most = 1},
+              m.clearcoat_roughness);
+        visit({.name = "sheen_color", .doc = "Reflectance of fibres on the surface; 0: none."},
+              m.sheen_color);
+        visit({.name = "sheen_roughness", .doc = "Roughness of the sheen, 0 to 1.", .most = 1},
+              m.sheen_roughness);
+        visit({.name = "iridescence", .doc = "Weight of the thin film, 0 to 1.", .most = 1}, m.iridescence);
+        visit({.name = "iridescence_ior", .doc = "Index of refraction of the film.", .least = 1},
+              m.iridescence_ior);
+        visit({.name = "iridescence_thickness", .doc = "Thickness of the film in nm; 0: none."},
+              m.iridescence_thickness);
+        visit({.name = "thin_walled", .doc = "A sheet: neither refraction nor a medium behind it."},
+              m.thin_walled);
+    }
+
+    // The lobes are turned or elongated along the tangents.
+    bool is_anisotropic() const { return !anisotropy.is_constant() || anisotropy.value != 0; }
+
+    template <typename Evaluator>
+    Bsdf bsdf(const Evaluator& at) const {
+        const PrincipledLayers layers = evaluated(at);
+        if (layers.interface.is_clear() || !is_black(layers.transmitting))
+            return PrincipledBsdf<true>{layers};
+        return PrincipledBsdf<false>{layers};
+    }
+
+  private:
+    template <typename Evaluator>
+    PrincipledLayers evaluated(const Evaluator& at) const {
+        const SampledSpectrum color = at.reflectance(base_color);
+        const float metal = at.share(metallic), clear = at.share(transmission);
+        const float sheet = at.share(diffuse_transmission);
+        const float opaque = (1 - metal) * (1 - clear);
+
+        PrincipledLayers l;
+        l.interface = evaluated_interface(at, color, metal, clear);
+        l.diffuse = (opaque * (1 - sheet)) * color;
+        l.transmitting = SampledSpectrum(0);
+        if (opaque * sheet > 0)
+            l.transmitting = (opaque * sheet) * at.reflectance(diffuse_transmission_color);
+        l.sheen_color = at.reflectance(sheen_color);
+        l.sheen = Sheen::from_roughness(at.share(sheen_roughness));
+        l.coat = at.share(clearcoat);
+        const float r = at.share(clearcoat_roughness);
+        l.coat_ggx = at.microfacets(r * r, r * r);
+        return l;
+    }
+
+    template <typename Evaluator>
+    PrincipledInterface evaluated_interface(const Evaluator& at, SampledSpectrum color, float metal,
+                                            float clear) const {
+        PrincipledInterface i;
+        // KHR_materials_anisotropy: the roughness grows along x only.
+        const float r = at.share(roughness), alpha = r * r, stretch = at.share(anisotropy);
+        i.ggx = at.microfacets(alpha + (1 - alpha) * stretch * stretch, alpha);
+        if (const float angle = at(anisotropy_rotation); angle != 0) {
+            i.turn_cos = std::cos(angle);
+            i.turn_sin = std::sin(angle);
+        }
+
+        i.dielectric = 1 - metal;
+        i.metal = metal;
+        i.clear = clear;
+        i.thin = thin_walled;
+        i.tint = color;
+        float n = at(ior);
+        if (i.is_clear() && !thin_walled) n = dispersed(at, n);
+        // Almost equal indices would need the difference of almost equal vectors.
+        i.eta = n > 0 && std::abs(n - 1) > 1e-3f ? n : 1;
+
+        const float f0 = n > 0 ? (n - 1) / (n + 1) : 1;
+        i.specular = at.share(specular);
+        i.dielectric_f0 = min(f0 * f0 * clamp_zero(at(specular_color)), SampledSpectrum(1));
+        i.metal_f0 = color;
+        if (const float thickness = at(iridescence_thickness); thickness > 0) {
+            i.film_share = at.share(iridescence);
+            i.film = ThinFilm::make(std::max(at(iridescence_ior), 1.0f), thickness, at.wavelengths());
+        }
+        i.set_bounds();
+        return i;
+    }
+
+    // KHR_materials_dispersion: Cauchy's equation through the index at 587.6 nm, with the Abbe number
+    // 20 / dispersion.
+    template <typename Evaluator>
+    float dispersed(const Evaluator& at, float n) const {
+        const float strength = at(dispersion);
+        if (!(strength > 0) || !(n > 1)) return n;
+        const float lambda = at.hero_wavelength();
+        return std::max(1.0f, n + (n - 1) * strength / 20 * (523655 / (lambda * lambda) - 1.5168f));
+    }
+};
+
+} // namespace montelux
