@@ -45,7 +45,7 @@ expect 0 "gbuffer              yes: as 'rgb', with its layers" formats pbrt
 expect 0 '"plugin": "bilinearmesh"' formats pbrt --json
 expect 2 "a formats command is expected: pbrt, gltf" formats
 expect 0 "light      KHR_lights_punctual                  in part: " formats gltf
-expect 0 '"feature": "KHR_materials_unlit"' formats gltf --json
+expect 0 '"feature": "KHR_materials_sheen"' formats gltf --json
 expect 2 "there is no formats command 'pbr' (did you mean 'pbrt'?); expected one of pbrt, gltf" formats pbr
 
 expect 0 "RMSE 0.353553" compare a.pfm b.pfm
