@@ -70,7 +70,8 @@ std::vector<float> output_of(Document& document, const Channel& channel) {
 std::vector<Channel> channels_of(const Document& document) {
     std::vector<Channel> channels;
     std::set<std::pair<std::size_t, std::string_view>> targets;
-    for (const Value& animation : document.all("animations"))
+    for (const Value& animation : document.all("animations")) {
+        const std::vector<Value> samplers = animation.elements("samplers");
         for (const Value& source : animation.elements("channels")) {
             const Value target = source.required("target");
             const std::optional<Value> node = target.find("node");
@@ -84,7 +85,6 @@ std::vector<Channel> channels_of(const Document& document) {
             }
             document.refer(*node, "nodes", "node");
             const Value number = source.required("sampler");
-            const std::vector<Value> samplers = animation.elements("samplers");
             if (number.whole() >= samplers.size())
                 number.error("sampler " + std::to_string(number.whole()) + " does not exist (there are " +
                              std::to_string(samplers.size()) + ")");
@@ -95,6 +95,7 @@ std::vector<Channel> channels_of(const Document& document) {
             }
             channels.push_back({source, samplers[number.whole()], node->whole(), *known});
         }
+    }
     return channels;
 }
 

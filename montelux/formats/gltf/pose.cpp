@@ -42,8 +42,10 @@ LocalPlace local_place(const Value& node) {
 std::size_t target_count(const Document& document, const Value& node) {
     const std::optional<Value> mesh = node.find("mesh");
     if (!mesh) return 0;
-    const std::vector<Value> primitives = document.refer(*mesh, "meshes", "mesh").elements("primitives");
-    return primitives.empty() ? 0 : primitives.front().elements("targets").size();
+    const std::optional<Value> primitives = document.refer(*mesh, "meshes", "mesh").find("primitives");
+    if (!primitives || primitives->size() == 0) return 0;
+    const std::optional<Value> targets = (*primitives)[0].find("targets");
+    return targets ? targets->size() : 0;
 }
 
 // Of the node, or else of its mesh, or else all 0.

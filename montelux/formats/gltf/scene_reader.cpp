@@ -19,7 +19,10 @@ constexpr double instance_bytes = 400;
 SceneReader::SceneReader(Document& document, SceneDescription& description, const LoadOptions& options)
     : document_(document), description_(description), options_(options),
       builder_(description.scene, document.diagnostics()), materials_(document, builder_, options.variant),
-      pose_(document, options.time) {}
+      pose_(document, options.time) {
+    if (const std::optional<Value> all = document.root().extension("KHR_lights_punctual"))
+        lights_ = all->elements("lights");
+}
 
 void SceneReader::read() {
     for (const std::size_t node : nodes_shown()) visit(node);
@@ -70,12 +73,10 @@ void SceneReader::visit(std::size_t i) {
     }
     if (const std::optional<Value> extension = node.extension("KHR_lights_punctual")) {
         const Value index = extension->required("light");
-        const std::optional<Value> all = document_.root().extension("KHR_lights_punctual");
-        const std::vector<Value> lights = all ? all->elements("lights") : std::vector<Value>();
-        if (index.whole() >= lights.size())
+        if (index.whole() >= lights_.size())
             index.error("light " + std::to_string(index.whole()) + " does not exist (there are " +
-                        std::to_string(lights.size()) + ")");
-        add_light(lights[index.whole()], pose_.world(i), node, builder_);
+                        std::to_string(lights_.size()) + ")");
+        add_light(lights_[index.whole()], pose_.world(i), node, builder_);
         description_.has_lights = true;
     }
     const std::optional<Value> mesh = node.find("mesh");
@@ -106,6 +107,7 @@ void SceneReader::add_gpu_instances(const Value& instancing, std::size_t node, s
     read("TRANSLATION", "VEC3", translations);
     read("ROTATION", "VEC4", rotations);
     read("SCALE", "VEC3", scales);
+    document_.charge(static_cast<double>(count) * instance_bytes, instancing);
     const auto doubles = []<std::size_t N>(const std::array<float, N>& from) {
         std::array<double, N> to{};
         for (std::size_t k = 0; k < N; ++k) to[k] = double(from[k]);
@@ -222,7 +224,6 @@ void SceneReader::place_object(const Value& mesh, const std::string& name, const
     if (is_open) builder_.end_object();
     for (const MeshUse& use : uses) {
         if (is_open) {
-            document_.charge(instance_bytes, document_.all("nodes")[use.node]);
             if (const std::optional<Transform> t = invertible(use))
                 builder_.add_instance(name, *t, document_.all("nodes")[use.node].place());
         }

@@ -53,6 +53,7 @@ class SceneReader {
     SceneBuilder builder_;
     MaterialLibrary materials_;
     Pose pose_;
+    std::vector<Value> lights_; // of KHR_lights_punctual
     std::vector<PlacedCamera> cameras_;
     std::map<std::uint64_t, std::vector<MeshUse>> uses_; // of meshes
 };

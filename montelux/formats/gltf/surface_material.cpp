@@ -49,14 +49,127 @@ std::uint64_t uv_set_of(const Value& source) {
     return set;
 }
 
+namespace {
+
+// The parameters of one material; a factor in [0, 1] times a channel of a texture, by their keys.
+class SurfaceReader {
+  public:
+    SurfaceReader(const Value& source, const Value& base, TextureLibrary& textures, SceneBuilder& builder)
+        : source_(source), base_(base), textures_(textures), builder_(builder) {}
+
+    PrincipledMaterial read(bool vertices) {
+        m_.base_color = textures_.color(base_.find("baseColorTexture"), base_color_factor(base_),
+                                        RgbMeaning::albedo, vertices);
+        const std::optional<Value> map = base_.find("metallicRoughnessTexture");
+        m_.metallic = textures_.number(map, unit(base_, "metallicFactor", 1), ImageChannels::blue);
+        m_.roughness = textures_.number(map, unit(base_, "roughnessFactor", 1), ImageChannels::green);
+        if (const std::optional<Value> normals = source_.find("normalTexture"))
+            m_.detail.normal_map = textures_.normal_map(*normals);
+        with("KHR_materials_ior", [&](const Value& e) {
+            m_.ior = {static_cast<float>(e.number("ior", 1.5, 0))};
+            if (m_.ior.value > 0 && m_.ior.value < 1)
+                e.required("ior").error("an index of refraction below 1");
+        });
+        with("KHR_materials_specular", [&](const Value& e) {
+            m_.specular = number(e, "specular", 1, ImageChannels::alpha);
+            m_.specular_color = color(e, "specularColor", {1, 1, 1}, RgbMeaning::unbounded);
+        });
+        with("KHR_materials_clearcoat", [&](const Value& e) {
+            m_.clearcoat = number(e, "clearcoat", 0, ImageChannels::red);
+            m_.clearcoat_roughness = number(e, "clearcoatRoughness", 0, ImageChannels::green);
+            if (e.find("clearcoatNormalTexture"))
+                e.warn("clearcoatNormalTexture is ignored: the coat has the normals of the base");
+        });
+        with("KHR_materials_sheen", [&](const Value& e) {
+            m_.sheen_color = color(e, "sheenColor", {0, 0, 0}, RgbMeaning::albedo);
+            m_.sheen_roughness = number(e, "sheenRoughness", 0, ImageChannels::alpha);
+        });
+        with("KHR_materials_anisotropy", [&](const Value& e) { read_anisotropy(e); });
+        with("KHR_materials_iridescence", [&](const Value& e) { read_iridescence(e); });
+        read_transmission();
+        return m_;
+    }
+
+  private:
+    template <typename Read>
+    void with(std::string_view extension, const Read& read) {
+        if (const std::optional<Value> found = source_.extension(extension)) read(*found);
+    }
+    static float unit(const Value& at, const std::string& key, double otherwise) {
+        return static_cast<float>(at.number(key, otherwise, 0, 1));
+    }
+    // `name`Factor and `name`Texture.
+    FloatParameter number(const Value& at, const std::string& name, double otherwise, ImageChannels channel) {
+        return textures_.number(at.find(name + "Texture"), unit(at, name + "Factor", otherwise), channel);
+    }
+    // The same of a colour, of any size.
+    SpectrumParameter color(const Value& at, const std::string& name, Vec3f otherwise, RgbMeaning meaning) {
+        return textures_.color(at.find(name + "Texture"), at.color(name + "Factor", otherwise), meaning);
+    }
+    FloatParameter add(const FloatTexture& node) {
+        std::vector<FloatTexture>& all = builder_.scene().float_textures;
+        all.push_back(node);
+        return {0, static_cast<Index>(all.size() - 1)};
+    }
+
+    // R and G of the texture are the direction, B the strength.
+    void read_anisotropy(const Value& e) {
+        const std::optional<Value> map = e.find("anisotropyTexture");
+        m_.anisotropy = textures_.number(map, unit(e, "anisotropyStrength", 0), ImageChannels::blue);
+        const auto rotation = static_cast<float>(e.number("anisotropyRotation", 0));
+        m_.anisotropy_rotation = {rotation};
+        if (!map) return;
+        const FloatParameter angle = textures_.number(map, 1, ImageChannels::angle);
+        // Their sum, as twice their mean.
+        m_.anisotropy_rotation = rotation == 0
+                                     ? angle
+                                     : add(ScaleTexture<FloatParameter>{
+                                           add(MixTexture<FloatParameter>{{rotation}, angle, {0.5f}}), {2}});
+    }
+
+    void read_iridescence(const Value& e) {
+        m_.iridescence = number(e, "iridescence", 0, ImageChannels::red);
+        m_.iridescence_ior = {static_cast<float>(e.number("iridescenceIor", 1.3, 1))};
+        const auto thinnest = static_cast<float>(e.number("iridescenceThicknessMinimum", 100, 0)),
+                   thickest = static_cast<float>(e.number("iridescenceThicknessMaximum", 400, 0));
+        m_.iridescence_thickness = {thickest};
+        if (const std::optional<Value> map = e.find("iridescenceThicknessTexture"))
+            m_.iridescence_thickness = add(MixTexture<FloatParameter>{
+                {thinnest}, {thickest}, textures_.number(map, 1, ImageChannels::green)});
+    }
+
+    // Without a thickness the surface is a sheet.
+    void read_transmission() {
+        bool transmits = false;
+        with("KHR_materials_transmission", [&](const Value& e) {
+            transmits = true;
+            m_.transmission = number(e, "transmission", 0, ImageChannels::red);
+        });
+        with("KHR_materials_diffuse_transmission", [&](const Value& e) {
+            transmits = true;
+            m_.diffuse_transmission = number(e, "diffuseTransmission", 0, ImageChannels::alpha);
+            m_.diffuse_transmission_color =
+                color(e, "diffuseTransmissionColor", {1, 1, 1}, RgbMeaning::albedo);
+        });
+        with("KHR_materials_dispersion",
+             [&](const Value& e) { m_.dispersion = {static_cast<float>(e.number("dispersion", 0, 0))}; });
+        const std::optional<Value> volume = source_.extension("KHR_materials_volume");
+        const bool thick = volume && volume->number("thicknessFactor", 0, 0) > 0;
+        m_.thin_walled = transmits && !thick;
+    }
+
+    const Value& source_;
+    const Value& base_;
+    TextureLibrary& textures_;
+    SceneBuilder& builder_;
+    PrincipledMaterial m_;
+};
+
+} // namespace
+
 Material make_surface_material(const Value& source, const Value& base, TextureLibrary& textures,
-                               SceneBuilder&, bool vertices) {
-    DiffuseMaterial m;
-    m.reflectance =
-        textures.color(base.find("baseColorTexture"), base_color_factor(base), RgbMeaning::albedo, vertices);
-    if (const std::optional<Value> map = source.find("normalTexture"))
-        m.detail.normal_map = textures.normal_map(*map);
-    return m;
+                               SceneBuilder& builder, bool vertices) {
+    return SurfaceReader(source, base, textures, builder).read(vertices);
 }
 
 } // namespace montelux::gltf
