@@ -145,8 +145,11 @@ def load(
     orbit: Sequence[float] | None = None,
     ground: bool | None = None,
     background: str | Sequence[float] | None = None,
+    camera: str | int | None = None,
+    variant: str | None = None,
+    time: float | None = None,
 ) -> Scene:
-    """Reads a scene (pbrt-v4) or a model (OBJ, PLY, STL) and all files that it refers to. What it ignores is reported
+    """Reads a scene (pbrt-v4, glTF 2.0) or a model (OBJ, PLY, STL) and all files that it refers to. What it ignores is reported
     by warnings, and in `scene.warnings`. With `texture_memory`, image textures are kept in a temporary file, of which
     about this many bytes are in memory.
 
@@ -154,7 +157,10 @@ def load(
     its infinite lights ("none": no such light); `orbit` a camera that frames it, (azimuth, elevation) in degrees or
     (azimuth, elevation, distance) with the distance in multiples of the framing one; `ground` a disc below it that
     catches its shadow; `background` what the camera sees where it meets nothing: "transparent" (layer "alpha"),
-    "black", "grey", "white", "#rrggbb", or linear (r, g, b)."""
+    "black", "grey", "white", "#rrggbb", or linear (r, g, b).
+
+    Of glTF scenes: `camera` chooses one by name or number, `variant` one of the file's variants of materials, `time`
+    the moment of its animations, in seconds."""
     scene = Scene()
     scene._load(
         os.fspath(path),
@@ -163,6 +169,9 @@ def load(
         _comma_list(orbit, "orbit"),
         ground,
         _comma_list(background, "background"),
+        None if camera is None else str(camera),
+        variant,
+        time,
     )
     _tell(scene)
     return scene

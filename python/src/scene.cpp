@@ -81,21 +81,27 @@ void bind_scene(nb::module_& m) {
             "_load",
             [](SceneObject& s, const std::filesystem::path& path, std::optional<std::size_t> texture_memory,
                std::optional<std::string> environment, const std::optional<std::string>& orbit,
-               std::optional<bool> ground, const std::optional<std::string>& background) {
+               std::optional<bool> ground, const std::optional<std::string>& background,
+               const std::optional<std::string>& camera, const std::optional<std::string>& variant,
+               std::optional<double> time) {
                 Warnings warnings;
                 SceneDescription d;
                 {
                     nb::gil_scoped_release unlocked;
                     const StudioSettings studio =
                         studio_settings(std::move(environment), orbit, ground, background);
-                    d = load_scene(path, warnings, {.texel_file = texel_file(texture_memory)});
+                    d = load_scene(path, warnings,
+                                   {.texel_file = texel_file(texture_memory),
+                                    .camera = camera,
+                                    .variant = variant,
+                                    .time = time});
                     DiskFiles files;
                     add_studio(d, studio, files, warnings);
                 }
                 take(s, std::move(d), warnings, path.filename().string());
             },
             "path"_a, "texture_memory"_a.none(), "environment"_a.none(), "orbit"_a.none(), "ground"_a.none(),
-            "background"_a.none())
+            "background"_a.none(), "camera"_a.none(), "variant"_a.none(), "time"_a.none())
         .def(
             "_parse",
             [](SceneObject& s, const std::string& text, const std::string& name,

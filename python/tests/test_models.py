@@ -1,4 +1,8 @@
-"""Models by themselves, and the studio."""
+"""Models by themselves, glTF scenes, and the studio."""
+
+import base64
+import json
+import struct
 
 import montelux
 import pytest
@@ -39,3 +43,60 @@ def test_mistakes_are_sentences(tent, tmp_path):
     ]:
         with pytest.raises(montelux.Error, match=sentence):
             montelux.load(tent, **{name: value})
+
+
+@pytest.fixture
+def gltf(tmp_path):
+    """A triangle that moves by 1 along x within a second, and two cameras."""
+    triangle = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
+    motion = struct.pack("<2f", 0, 1) + struct.pack("<6f", 0, 0, 0, 1, 0, 0)
+    uri = "data:application/octet-stream;base64," + base64.b64encode(triangle + motion).decode()
+    perspective = {"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}
+    scene = {
+        "asset": {"version": "2.0"},
+        "buffers": [{"byteLength": 68, "uri": uri}],
+        "bufferViews": [
+            {"buffer": 0, "byteLength": 36},
+            {"buffer": 0, "byteOffset": 36, "byteLength": 8},
+            {"buffer": 0, "byteOffset": 44, "byteLength": 24},
+        ],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
+            {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
+            {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"},
+        ],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "cameras": [perspective, perspective],
+        "nodes": [
+            {"mesh": 0},
+            {"camera": 0, "translation": [0, 0, 5], "name": "near"},
+            {"camera": 1, "translation": [0, 0, 9], "name": "far"},
+        ],
+        "scenes": [{"nodes": [0, 1, 2]}],
+        "scene": 0,
+        "animations": [
+            {
+                "samplers": [{"input": 1, "output": 2}],
+                "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+            }
+        ],
+    }
+    path = tmp_path / "scene.gltf"
+    path.write_text(json.dumps(scene))
+    return path
+
+
+def test_gltf_scenes_have_cameras_and_a_time(gltf):
+    assert montelux.load(gltf).camera.world_from_camera[:3, 3] == pytest.approx([0, 0, 5])
+    assert montelux.load(gltf, camera="far").camera.world_from_camera[:3, 3] == pytest.approx([0, 0, 9])
+    assert montelux.load(gltf, camera=1).camera.world_from_camera[:3, 3] == pytest.approx([0, 0, 9])
+    rest, later = montelux.load(gltf), montelux.load(gltf, time=1)
+    depth = []
+    for scene in rest, later:
+        scene.film.resolution = 16, 12
+        depth.append(scene.render(spp=4).layers["depth"])
+    assert (depth[0] != depth[1]).any()
+    with pytest.raises(montelux.Error, match="there is no camera 'fra'"):
+        montelux.load(gltf, camera="fra")
+    with pytest.raises(montelux.Error, match="variant"):
+        montelux.load(gltf, variant="red")
