@@ -52,9 +52,11 @@ def test_options_of_render_have_the_names_of_python():
     of_the_program = {"output", "rank_timeout", "debug_sample", "stats", "memory", "quiet"}
     loading = (montelux.Scene, montelux.load, montelux.parse)
     of_the_program |= {"texture_memory"}.intersection(*map(arguments, loading))
-    # sampler.kind, film.max_component_value, film.layers_in_camera_space, film.half, the groups of the lights
-    others = {"sampler", "clamp", "layer_space", "no_half", "light_groups"}
-    assert known - ours - of_scene - of_the_program == others
+    of_files = arguments(montelux.load) | set(inspect.signature(montelux.Picture.save).parameters)
+    # sampler.kind, film.max_component_value, film.layers_in_camera_space, film.half, the groups of the lights, `time` of
+    # montelux.load
+    others = {"sampler", "clamp", "layer_space", "no_half", "light_groups", "time_of_scene"}
+    assert known - ours - of_scene - of_the_program - of_files == others | {"bits"}  # 16 bits: of the program alone
     assert {"spp", "max_spp", "time"} <= known & ours and "spp" in settings_of(montelux.Sampler)
 
 
@@ -141,7 +143,7 @@ def test_python_answers_old_names_elsewhere(scene):
 @needs_program
 def test_texts_promise_no_option_that_does_not_exist():
     """Options in messages are those of some command."""
-    commands = ["render", "integrate", "sample", "merge", "compare", "denoise", "info"]
+    commands = ["render", "integrate", "sample", "merge", "compare", "denoise", "convert", "info"]
     commands += ["bake brdf", "bake environment", "bake report", "bake sky"]
     known = {"help", "version", "mpi"}.union(*(options(*command.split()) for command in commands))  # srun has --mpi
     found = set()

@@ -87,7 +87,7 @@ expect 2 "is read from" convert full.pbrt full.pbrt
 expect 2 "is read from" convert other/again.pbrt other/again.pbrt
 expect 2 "--layer: it is for pictures" convert full.pbrt x.pbrt --layer mean
 expect 2 "--tone: it is for .png and .jpg" convert full.pbrt x.pbrt --tone aces
-expect 1 "looks like" convert ok.png x.pbrt
+expect 1 "this is a PNG picture" convert ok.png x.pbrt
 expect 1 "none/x.pbrt" convert full.pbrt none/x.pbrt
 [ -e x.pbrt ] && fail "a failure left a scene"
 [ "$(find . -name '.montelux*' | wc -l)" -eq 0 ] || fail "temporary files are left"
