@@ -17,10 +17,10 @@ namespace {
 // Cameras by name, variants and time are asked of glTF scenes only.
 void check_options(const std::filesystem::path& path, const FileKind& kind, const LoadOptions& options) {
     if (kind.format == SceneFormat::gltf || kind.format == SceneFormat::none) return;
-    for (const auto& [is_given, what] : {std::pair(options.camera.has_value(), "choice of cameras"),
+    for (const auto& [is_given, what] : {std::pair(options.camera.has_value(), "a choice of cameras"),
                                          std::pair(options.variant.has_value(), "variants of materials"),
-                                         std::pair(options.time.has_value(), "time of animations")})
-        if (is_given) throw Error(path.string(), std::string("only glTF scenes have a ") + what);
+                                         std::pair(options.time.has_value(), "a time of animations")})
+        if (is_given) throw Error(path.string(), std::string("only glTF scenes have ") + what);
 }
 
 } // namespace

@@ -38,7 +38,7 @@ cmp -s front.pfm green.pfm && fail "--variant has no effect"
 shot later.pfm --resolution 32x16 --time-of-scene 1s
 cmp -s front.pfm later.pfm && fail "--time-of-scene has no effect"
 shot film.exr --camera front
-expect 0 "1280 x 640" info film.exr
+expect 0 "800 x 400" info film.exr
 
 expect 1 "scene.gltf: there is no camera 'plam' (did you mean 'plan'?); expected 0 'front', 1 'plan'" render scene.gltf --camera plam
 expect 1 "scene.gltf: there is no variant 'gren' (did you mean 'green'?); expected 'green'" render scene.gltf --variant gren

@@ -12,7 +12,7 @@ namespace montelux::gltf {
 namespace {
 
 // The longer side of a film whose shape the camera gives.
-constexpr int longer_side = 1280;
+constexpr int longer_side = 800;
 
 Vec3d column(const Matrix4& m, std::size_t i) { return {m.m[0][i], m.m[1][i], m.m[2][i]}; }
 

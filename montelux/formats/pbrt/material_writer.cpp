@@ -45,6 +45,9 @@ class MaterialParameters {
     void write(const ParameterInfo& info, float x, float standard) {
         if (x != standard) d_.number(info.pbrt_name(), x);
     }
+    void write(const ParameterInfo& info, bool b, bool standard) {
+        if (b != standard) d_.boolean(info.pbrt_name(), b);
+    }
     void write(const ParameterInfo& info, int n, int standard) {
         if (n != standard) d_.integer(info.pbrt_name(), n);
     }
@@ -76,7 +79,13 @@ class MaterialParameters {
     }
     void write(const ParameterInfo& info, const NormalMapParameter& p, const NormalMapParameter&) {
         if (!p.is_given()) return;
-        const Index image = w_.scene_.normal_maps[p.map].image;
+        const ImageTexture& map = w_.scene_.normal_maps[p.map];
+        const Index image = map.image;
+        const TextureMapping& m = map.mapping;
+        if (m.kind != TextureMapping::Kind::uv || m.su != 1 || m.sv != 1 || m.du != 0 || m.dv != 0 ||
+            map.wrap != TextureWrap::repeat || map.factor != Vec3f{1, 1, 1})
+            w_.warn(what_, "its normal map is written without its mapping, wrapping and strength, which pbrt "
+                           "does not have");
         if (w_.encoding_of(image).value_or("linear") != "linear")
             w_.warn(what_, "its normal map has an encoding; pbrt reads it as linear");
         d_.string(info.pbrt_name(), w_.image_file(image));

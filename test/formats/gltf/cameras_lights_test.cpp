@@ -24,8 +24,8 @@ TEST(GltfCameras, Perspective) {
     EXPECT_TRUE(d.has_camera);
     const auto& camera = std::get<PerspectiveCamera>(d.scene.camera.model);
     EXPECT_NEAR(camera.fov, 180 / pi, 1e-4);
-    EXPECT_EQ(d.film.width, 1280);
-    EXPECT_EQ(d.film.height, 720);
+    EXPECT_EQ(d.film.width, 800);
+    EXPECT_EQ(d.film.height, 600);
     // Looks along -z, with x to the right.
     const Transform& t = d.scene.camera.world_from_camera;
     EXPECT_EQ(t.point(Point3f(0, 0, 0)), Point3f(0, 0, 5));
@@ -41,11 +41,11 @@ TEST(GltfCameras, TheFilmFollowsTheAspectRatio) {
                                 R"(}}], "nodes": [{"camera": 0, "scale": [2, 2, 2]}])"));
     };
     const SceneDescription wide = film("2"), high = film("0.5");
-    EXPECT_EQ(wide.film.width, 1280);
-    EXPECT_EQ(wide.film.height, 640);
-    EXPECT_EQ(high.film.width, 640);
-    EXPECT_EQ(high.film.height, 1280);
-    EXPECT_EQ(high.film.crop.x1, 640);
+    EXPECT_EQ(wide.film.width, 800);
+    EXPECT_EQ(wide.film.height, 400);
+    EXPECT_EQ(high.film.width, 400);
+    EXPECT_EQ(high.film.height, 800);
+    EXPECT_EQ(high.film.crop.x1, 400);
     // The angle is that of the shorter side, and the node's scale has no effect.
     EXPECT_NEAR(std::get<PerspectiveCamera>(high.scene.camera.model).fov,
                 2 * std::atan(std::tan(0.5) / 2) * 180 / pi, 1e-4);
@@ -58,8 +58,8 @@ TEST(GltfCameras, AreChosenByNameOrNumber) {
         const auto& camera = std::get<OrthographicCamera>(d.scene.camera.model);
         EXPECT_EQ(camera.screen_window->x_max, 3);
         EXPECT_EQ(camera.screen_window->y_min, -2);
-        EXPECT_EQ(d.film.width, 1280);
-        EXPECT_EQ(d.film.height, 853);
+        EXPECT_EQ(d.film.width, 800);
+        EXPECT_EQ(d.film.height, 533);
     }
     EXPECT_EQ(model_error(scene(two_cameras), {.camera = "plam"}),
               "there is no camera 'plam' (did you mean 'plan'?); expected 0 'front', 1 'plan'");

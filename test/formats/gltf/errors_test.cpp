@@ -300,8 +300,8 @@ TEST(GltfErrors, ChoicesOfGltfAreRefusedByPbrt) {
         return {};
     };
     EXPECT_EQ(error({.camera = "a"}), "a.pbrt: only glTF scenes have a choice of cameras");
-    EXPECT_EQ(error({.variant = "a"}), "a.pbrt: a scene of pbrt-v4 has no variants of materials");
-    EXPECT_EQ(error({.time = 1}), "a.pbrt: a scene of pbrt-v4 has no time of animations");
+    EXPECT_EQ(error({.variant = "a"}), "a.pbrt: only glTF scenes have variants of materials");
+    EXPECT_EQ(error({.time = 1}), "a.pbrt: only glTF scenes have a time of animations");
 }
 
 } // namespace
