@@ -6,6 +6,7 @@
 #include "app/option_values.h"
 #include "app/output_files.h"
 #include "app/progress_line.h"
+#include "app/tone_options.h"
 #include "app/usage_error.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -87,14 +87,16 @@ bool is_name(const Word& word) {
     return type || function;
 }
 
-// The names that a header declares at the beginning of a line: types, forward declarations too, and functions.
-std::set<std::string> declared_in(const SourceFile& header, const std::vector<Word>& words) {
+// The names that a header declares at the beginning of a line: types and functions; `forward`: types that it leaves to
+// others to define, too.
+std::set<std::string> declared_in(const SourceFile& header, const std::vector<Word>& words, bool forward) {
     std::set<std::string> names;
     for (const Word& word : words) {
         const std::string& line = header.lines[word.line - 1];
         if (line.starts_with(' ') || line.starts_with('}') || word.first) continue;
         const bool function = word.next == '(' && !word.before.empty() && !is_keyword(word.before);
-        if (is_name(word) && (declares_a_type(word.before) || function)) names.insert(word.text);
+        const bool type = declares_a_type(word.before) && (forward || word.next != ';');
+        if (is_name(word) && (type || function)) names.insert(word.text);
     }
     return names;
 }
@@ -104,14 +106,16 @@ std::set<std::string> declared_in(const SourceFile& header, const std::vector<Wo
 std::vector<std::string> missing_includes(const std::vector<SourceFile>& files, std::string_view folder) {
     std::map<std::string, const SourceFile*> by_path;
     std::map<std::string, std::set<std::string>> declared; // headers that declare a name
+    std::set<std::string> defined;                         // in one of them
     std::map<std::string, std::vector<Word>> words;
     for (const SourceFile& file : files) {
         if (!file.path.starts_with(folder)) continue;
         by_path[file.path] = &file;
         words[file.path] = words_of(file);
-        if (file.path.ends_with(".h"))
-            for (const std::string& name : declared_in(file, words[file.path]))
-                declared[name].insert(file.path);
+        if (!file.path.ends_with(".h")) continue;
+        for (const std::string& name : declared_in(file, words[file.path], true))
+            declared[name].insert(file.path);
+        defined.merge(declared_in(file, words[file.path], false));
     }
     // Names that a file declares anywhere, its members and variables too: what a type or "auto" stands before.
     std::map<std::string, std::set<std::string>> own;
@@ -132,7 +136,8 @@ std::vector<std::string> missing_includes(const std::vector<SourceFile>& files, 
         }
         for (const Word& word : words[path]) {
             const auto headers = declared.find(word.text);
-            if (headers == declared.end() || !is_name(word) || known.contains(word.text)) continue;
+            if (headers == declared.end() || !defined.contains(word.text)) continue;
+            if (!is_name(word) || known.contains(word.text)) continue;
             if (word.previous == '.' || word.previous == ':' || word.previous == '>') continue; // a member
             found.push_back(path + ":" + std::to_string(word.line) + ": " + word.text + " needs #include \"" +
                             *headers->second.begin() + "\"");
