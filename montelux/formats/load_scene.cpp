@@ -47,7 +47,7 @@ SceneDescription load_scene(const std::filesystem::path& path, Warnings& warning
     case SceneFormat::none:
         break;
     }
-    // A binary STL file is known by its size alone: one that was cut short is told by its name.
+    // A binary STL file is recognised by its size; one that was cut short, by its name.
     if (path.extension() == ".stl" || path.extension() == ".STL")
         return load_stl(bytes, path, warnings, options);
     throw Error(path.string(), "this is " + kind.name + "; pbrt-v4, glTF 2.0, OBJ, PLY and STL are read" +

@@ -219,8 +219,8 @@ StudioParts add_studio(SceneDescription& d, const StudioSettings& settings, File
                        Warnings& warnings, std::vector<std::filesystem::path>* files_read) {
     StudioParts added;
     if (settings.empty() && !d.wants_studio) return added;
-    std::vector<std::string> told;
-    CallMessages messages("studio", &told);
+    std::vector<std::string> sentences;
+    CallMessages messages("studio", &sentences);
     SceneBuilder builder(d.scene, messages);
     const bool unlit = d.wants_studio && !d.has_lights;
     added.camera = d.wants_studio && !d.has_camera;
@@ -263,7 +263,7 @@ StudioParts add_studio(SceneDescription& d, const StudioSettings& settings, File
         const auto shade = static_cast<float>(ground_radiance);
         d.integrator.background = Vec3f{shade, shade, shade};
     }
-    for (const std::string& message : told) warnings.add("", message);
+    for (const std::string& sentence : sentences) warnings.add("", sentence);
     return added;
 }
 

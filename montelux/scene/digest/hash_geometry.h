@@ -13,7 +13,9 @@ inline void hash_values(SceneHasher& h, const TriangleMesh& m) {
     h.all(positions, normals, uvs, indices);
     if (!tangents.empty()) h.all(tangents);
     if (m.deforms()) h.all(end_positions, end_normals);
-    if (!colors.empty()) h.all(std::uint8_t{1}, colors); // told apart from what may stand in their place
+    if (!colors.empty())
+        h.all(std::uint8_t{1},
+              colors); // the first number keeps them distinct from other values in this place
     if (!opacities.empty()) h.all(std::uint8_t{2}, opacities);
 }
 inline void hash_values(SceneHasher& h, const Sphere& s) {
