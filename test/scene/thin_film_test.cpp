@@ -65,7 +65,7 @@ TEST(ThinFilm, IsNeverAboveItsBounds) {
                 const SampledSpectrum greatest = film.greatest_reflectance(cos1, base);
                 EXPECT_LE(max_value(film.reflectance(cos1, base) - greatest), 1e-5f);
                 const SampledSpectrum bound = fresnel_schlick(cos1, film.schlick_bound(base), 1);
-                EXPECT_LE(max_value(greatest - bound), 5e-3f) << n2 << ' ' << n3 << ' ' << cos1;
+                EXPECT_LE(max_value(greatest - bound), 1e-5f) << n2 << ' ' << n3 << ' ' << cos1;
             }
 }
 
