@@ -38,10 +38,10 @@ struct ThinFilm {
         });
     }
 
-    // A number f0 for each wavelength so that Schlick's reflectance from f0 to 1 is at no angle more than
-    // 0.005 below greatest_reflectance.
+    // A number f0 for each wavelength so that Schlick's reflectance from f0 to 1 is nowhere below
+    // greatest_reflectance.
     SampledSpectrum schlick_bound(SampledSpectrum base_ior) const {
-        // Between the nodes the number is nowhere more than `margin` above those of its neighbours.
+        // For what lies between the angles below.
         constexpr float margin = 0.004f;
         SampledSpectrum f0;
         for (float cos_theta : {0.001f, 0.003f, 0.01f, 0.02f, 0.05f, 0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f,
