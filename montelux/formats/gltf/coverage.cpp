@@ -65,16 +65,4 @@ bool is_supported_extension(std::string_view name) {
         table, [&](const FeatureCoverage& f) { return f.feature == name && f.support != Support::none; });
 }
 
-std::string_view name_of(Support s) {
-    switch (s) {
-    case Support::full:
-        return "yes";
-    case Support::in_part:
-        return "in part";
-    case Support::none:
-        return "no";
-    }
-    return {};
-}
-
 } // namespace montelux::gltf

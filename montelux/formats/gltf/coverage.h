@@ -1,17 +1,12 @@
 // What is read of glTF 2.0: the table behind `montelux formats gltf`, and which required extensions are refused.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string_view>
 
-namespace montelux::gltf {
+#include "montelux/formats/support.h"
 
-enum class Support : std::uint8_t {
-    full,
-    in_part, // the rest is ignored, with a warning where it is a loss
-    none,    // ignored with a warning where it is optional, else an error
-};
+namespace montelux::gltf {
 
 struct FeatureCoverage {
     std::string_view area;    // "mesh"
@@ -24,8 +19,5 @@ struct FeatureCoverage {
 std::span<const FeatureCoverage> feature_coverage();
 // Whether a scene that requires the extension can be shown.
 bool is_supported_extension(std::string_view name);
-
-// "yes", "in part", "no"
-std::string_view name_of(Support s);
 
 } // namespace montelux::gltf

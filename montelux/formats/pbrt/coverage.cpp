@@ -90,18 +90,4 @@ bool is_plugin(std::string_view directive, std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-std::string_view name_of(Support s) {
-    switch (s) {
-    case Support::full:
-        return "yes";
-    case Support::in_part:
-        return "in part";
-    case Support::otherwise:
-        return "otherwise";
-    case Support::none:
-        return "no";
-    }
-    return {};
-}
-
 } // namespace montelux::pbrt

@@ -1,20 +1,14 @@
 // Which plugins of pbrt-v4 are read, directive by directive: the table behind `montelux formats pbrt`.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace montelux::pbrt {
+#include "montelux/formats/support.h"
 
-enum class Support : std::uint8_t {
-    full,
-    in_part,   // a parameter is refused, or ignored with a warning
-    otherwise, // read without effect, or as another plugin, with a warning
-    none,      // an error
-};
+namespace montelux::pbrt {
 
 struct PluginCoverage {
     std::string_view directive; // of the scene file
@@ -31,8 +25,5 @@ bool is_plugin(std::string_view directive, std::string_view name);
 
 // "coateddiffuse" for the material CoatedDiffuse.
 std::string material_type(std::string_view name);
-
-// "yes", "in part", "otherwise", "no"
-std::string_view name_of(Support s);
 
 } // namespace montelux::pbrt

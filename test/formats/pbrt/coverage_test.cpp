@@ -14,7 +14,6 @@ namespace montelux {
 namespace {
 
 using pbrt::PluginCoverage;
-using pbrt::Support;
 
 // A scene of a plugin with what it cannot do without.
 std::string scene_with(const PluginCoverage& p) {
