@@ -221,9 +221,13 @@ TEST(Principled, WhiteFurnaceWithAllLobes) {
 TEST(PrincipledSlowTest, WhiteFurnaceWithAllLobes) {
     for_all_lobes([](const Principled& m, unsigned lobes, float roughness) {
         const Bsdf bsdf = principled(m);
-        for (double theta : {0.0, 40.0, 60.0, 75.0, 85.0, 89.0, 100.0, 130.0, 170.0})
-            EXPECT_LT(furnace(bsdf, direction(theta, 35), 8000), 1.003)
-                << lobes << ' ' << roughness << ' ' << theta;
+        for (double theta : {0.0, 40.0, 60.0, 75.0, 85.0, 89.0, 100.0, 130.0, 170.0}) {
+            const Vec3f wo = direction(theta, 35);
+            double albedo = furnace(bsdf, wo, 8000);
+            // At grazing angles on rough surfaces so few points are up to 0.012 off.
+            if (!(albedo < 1.003)) albedo = furnace(bsdf, wo, 1 << 20);
+            EXPECT_LT(albedo, 1.003) << lobes << ' ' << roughness << ' ' << theta;
+        }
     });
 }
 
