@@ -65,12 +65,24 @@ bool contains(std::string_view text, std::string_view part) {
 
 std::string_view kind_of_xml(std::string_view text) {
     const std::string_view start = text.substr(0, 4096);
-    if (contains(start, "<scene")) return "a Mitsuba scene (XML)";
     if (contains(start, "<COLLADA")) return "a COLLADA scene";
     if (contains(start, "<X3D")) return "an X3D scene";
     if (contains(start, "<html") || contains(start, "<!DOCTYPE html")) return "a web page";
     if (contains(start, "<svg")) return "an SVG picture";
     return "an XML file";
+}
+
+// The outermost element is <scene>, behind declarations and comments.
+bool is_mitsuba(std::string_view xml) {
+    while (xml.starts_with("<?") || xml.starts_with("<!")) {
+        const std::string_view end = xml.starts_with("<?") ? "?>" : xml.starts_with("<!--") ? "-->" : ">";
+        const std::size_t found = xml.find(end);
+        if (found == std::string_view::npos) return false;
+        xml.remove_prefix(found + end.size());
+        xml.remove_prefix(std::min(xml.find_first_not_of(" \t\r\n"), xml.size()));
+    }
+    return xml.starts_with("<scene") && xml.size() > 6 &&
+           " \t\r\n/>"sv.find(xml[6]) != std::string_view::npos;
 }
 
 bool is_gltf(std::string_view json) {
@@ -122,6 +134,7 @@ FileKind file_kind(std::span<const std::uint8_t> bytes) {
     if (found != nullptr) return {SceneFormat::none, std::string(found->name), std::string(found->hint)};
     if (begins_text_stl(text)) return {SceneFormat::stl};
     if (begins_obj(word)) return {SceneFormat::obj};
+    if (is_mitsuba(word)) return {SceneFormat::mitsuba};
     if (word.starts_with('<')) return {SceneFormat::none, std::string(kind_of_xml(word))};
     if (word.starts_with('{')) {
         if (is_gltf(word)) return {SceneFormat::gltf};

@@ -8,7 +8,7 @@
 namespace montelux {
 
 // Scenes that can be read. Text of an unknown kind counts as pbrt's, whose reader says what it does not understand.
-enum class SceneFormat : std::uint8_t { none, pbrt, gltf, obj, ply, stl };
+enum class SceneFormat : std::uint8_t { none, pbrt, gltf, mitsuba, obj, ply, stl };
 
 struct FileKind {
     SceneFormat format = SceneFormat::none;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,6 +22,8 @@ struct LoadOptions {
     std::optional<std::string> camera{};  // by its name, or its number from 0; empty: the first one
     std::optional<std::string> variant{}; // of the materials; empty: the default ones
     std::optional<double> time{};         // of animations, seconds; empty: everything at rest
+    // Values of the parameters `$name` of Mitsuba's XML, before those of its <default>; an Error in other formats.
+    std::map<std::string, std::string> definitions{};
 };
 
 } // namespace montelux

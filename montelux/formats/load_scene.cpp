@@ -6,6 +6,7 @@
 #include "montelux/formats/file_kind.h"
 #include "montelux/formats/gltf/load_gltf.h"
 #include "montelux/formats/mesh_scene.h"
+#include "montelux/formats/mitsuba/load_mitsuba.h"
 #include "montelux/formats/obj/load_obj.h"
 #include "montelux/formats/pbrt/load_pbrt.h"
 #include "montelux/mc/math/error.h"
@@ -14,9 +15,12 @@ namespace montelux {
 
 namespace {
 
-// Cameras by name, variants and time are asked of glTF scenes only.
+// Cameras by name, variants and time are asked of glTF scenes only, definitions of Mitsuba's.
 void check_options(const std::filesystem::path& path, const FileKind& kind, const LoadOptions& options) {
-    if (kind.format == SceneFormat::gltf || kind.format == SceneFormat::none) return;
+    if (kind.format == SceneFormat::none) return;
+    if (kind.format != SceneFormat::mitsuba && !options.definitions.empty())
+        throw Error(path.string(), "only Mitsuba scenes have parameters that can be defined");
+    if (kind.format == SceneFormat::gltf) return;
     for (const auto& [is_given, what] : {std::pair(options.camera.has_value(), "a choice of cameras"),
                                          std::pair(options.variant.has_value(), "variants of materials"),
                                          std::pair(options.time.has_value(), "a time of animations")})
@@ -38,6 +42,8 @@ SceneDescription load_scene(const std::filesystem::path& path, Warnings& warning
         return load_pbrt(std::move(bytes), path, warnings, options.files_read, files, options.texel_file);
     case SceneFormat::gltf:
         return load_gltf(std::move(bytes), path, warnings, files, options);
+    case SceneFormat::mitsuba:
+        return load_mitsuba(bytes, path, warnings, files, options);
     case SceneFormat::obj:
         return load_obj(bytes, path, warnings, options);
     case SceneFormat::ply:
@@ -50,7 +56,8 @@ SceneDescription load_scene(const std::filesystem::path& path, Warnings& warning
     // A binary STL file is recognised by its size; one that was cut short, by its name.
     if (path.extension() == ".stl" || path.extension() == ".STL")
         return load_stl(bytes, path, warnings, options);
-    throw Error(path.string(), "this is " + kind.name + "; pbrt-v4, glTF 2.0, OBJ, PLY and STL are read" +
+    throw Error(path.string(), "this is " + kind.name +
+                                   "; pbrt-v4, glTF 2.0, Mitsuba 3, OBJ, PLY and STL are read" +
                                    (kind.hint.empty() ? "" : ": " + kind.hint));
 }
 

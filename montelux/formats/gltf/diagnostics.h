@@ -40,7 +40,6 @@ class Diagnostics final : public BuildMessages {
     std::unordered_set<std::string> told_;
 };
 
-// Not `quoted`: for a std::string, that finds the one of the standard library.
-inline std::string in_quotes(std::string_view text) { return quoted(text); }
+using montelux::in_quotes;
 
 } // namespace montelux::gltf

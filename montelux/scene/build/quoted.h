@@ -11,5 +11,7 @@ std::string shown(std::string_view text);
 
 // "'text'"
 inline std::string quoted(std::string_view text) { return "'" + shown(text) + "'"; }
+// The same: for a std::string, `quoted` would find the one of the standard library.
+inline std::string in_quotes(std::string_view text) { return quoted(text); }
 
 } // namespace montelux
