@@ -96,6 +96,17 @@ TEST(NormalMap, IsInTheFrameOfTheTangents) {
     expect_near(cross(b.frame.s, b.frame.t), n);
 }
 
+TEST(NormalMap, RightHandedOneDoesNotFollowTheSecondCoordinate) {
+    const Vec3f n = normalize(Vec3f{0.3f, -0.2f, 0.9f});
+    for (const bool right_handed : {false, true}) {
+        Sheet sheet;
+        for (Point2f& uv : sheet.scene.meshes[0].uvs) uv.y = 1 - uv.y;
+        sheet.add_map(n);
+        sheet.scene.normal_maps[0].right_handed = right_handed;
+        expect_near(sheet.shade().frame.n, right_handed ? n : Vec3f{n.x, -n.y, n.z});
+    }
+}
+
 TEST(NormalMap, FlatOneLeavesTheFrame) {
     Sheet sheet, plain;
     sheet.add_map({0, 0, 1});

@@ -86,6 +86,8 @@ class MaterialParameters {
             map.wrap != TextureWrap::repeat || map.factor != Vec3f{1, 1, 1})
             w_.warn(what_, "its normal map is written without its mapping, wrapping and strength, which pbrt "
                            "does not have");
+        if (map.right_handed)
+            w_.warn(what_, "its normal map is written as one whose second axis points to the side of dp/dv");
         if (w_.encoding_of(image).value_or("linear") != "linear")
             w_.warn(what_, "its normal map has an encoding; pbrt reads it as linear");
         d_.string(info.pbrt_name(), w_.image_file(image));

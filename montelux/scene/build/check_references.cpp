@@ -220,7 +220,13 @@ void check_media(const Scene& scene) {
         std::visit(
             [&](const auto& m) {
                 const FieldCheck check(scene, numbered("medium", i) + " (" + m.name + ')');
-                if constexpr (std::is_same_v<decltype(m.sigma_a), SceneSpectrum>) {
+                if constexpr (requires { m.albedo; }) {
+                    for (const MediumField& field : {m.extinction, m.albedo}) {
+                        check("value", field.value);
+                        check_grid(check, "scalars", field.scalars, scene.scalar_grids, "scalar grid");
+                        check_grid(check, "colors", field.colors, scene.color_grids, "color grid");
+                    }
+                } else if constexpr (std::is_same_v<decltype(m.sigma_a), SceneSpectrum>) {
                     check("sigma_a", m.sigma_a);
                     check("sigma_s", m.sigma_s);
                 } else {
