@@ -1,5 +1,6 @@
 // montelux convert: pictures from one format to another, scenes to pbrt-v4.
 #include "app/commands.h"
+#include "app/definitions.h"
 #include "app/joined.h"
 #include "app/option_values.h"
 #include "app/output_files.h"
@@ -24,6 +25,7 @@ namespace {
 
 struct ConvertSettings {
     std::string input, output, layer;
+    std::map<std::string, std::string> definitions{};
     ToneOptions tone{};
     bool half = false, quiet = false;
 };
@@ -76,7 +78,8 @@ void convert_scene(const ConvertSettings& s) {
     check(s.tone, {s.output});
     Warnings warnings;
     std::vector<std::filesystem::path> read;
-    const SceneDescription description = load_scene(s.input, warnings, {.files_read = &read});
+    const SceneDescription description =
+        load_scene(s.input, warnings, {.files_read = &read, .definitions = s.definitions});
     const std::filesystem::path output = s.output;
     const std::filesystem::path folder = output.parent_path() / (output.stem().string() + "-files");
     std::error_code ignored;
@@ -117,6 +120,7 @@ void add_convert(CLI::App& app, int& exit_code) {
             "channels such as light.key; of normals .png and .jpg show (n + 1) / 2")
         ->type_name("NAME")
         ->check(file_name());
+    declare_definitions(*command, s->definitions);
     declare(*command, s->tone);
     command->add_flag("--half", s->half, ".exr: 16-bit floats where those suffice");
     command->add_flag("--quiet", s->quiet, "Print only errors");

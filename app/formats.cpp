@@ -1,57 +1,84 @@
 // montelux formats: what is read of a scene format.
 #include "app/commands.h"
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "montelux/formats/gltf/coverage.h"
+#include "montelux/formats/mitsuba/coverage.h"
 #include "montelux/formats/pbrt/coverage.h"
 
 namespace montelux::app {
 
 namespace {
 
-void print_pbrt_coverage() {
-    std::string_view directive;
-    for (const pbrt::PluginCoverage& p : pbrt::plugin_coverage()) {
-        const std::string_view shown = p.directive == directive ? std::string_view() : p.directive;
-        directive = p.directive;
-        std::printf("%-16s %-20s %.*s", std::string(shown).c_str(), p.plugin.c_str(),
-                    static_cast<int>(name_of(p.support).size()), name_of(p.support).data());
-        if (!p.note.empty()) std::printf(": %s", std::string(p.note).c_str());
-        std::printf("\n");
-    }
-}
+// A line of a table: an area of the format, a feature of it, how much of that is read.
+struct Line {
+    std::string area, feature;
+    Support support = Support::full;
+    std::string note;
+};
 
-void print_pbrt_coverage_json() {
-    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+std::vector<Line> pbrt_lines() {
+    std::vector<Line> lines;
     for (const pbrt::PluginCoverage& p : pbrt::plugin_coverage())
-        all.push_back({{"directive", p.directive},
-                       {"plugin", p.plugin},
-                       {"support", name_of(p.support)},
-                       {"note", p.note}});
-    std::printf("%s\n", all.dump(2).c_str());
+        lines.push_back({std::string(p.directive), p.plugin, p.support, std::string(p.note)});
+    return lines;
+}
+std::vector<Line> gltf_lines() {
+    std::vector<Line> lines;
+    for (const gltf::FeatureCoverage& f : gltf::feature_coverage())
+        lines.push_back({std::string(f.area), std::string(f.feature), f.support, std::string(f.note)});
+    return lines;
+}
+std::vector<Line> mitsuba_lines() {
+    std::vector<Line> lines;
+    for (const mitsuba::PluginCoverage& p : mitsuba::plugin_coverage())
+        lines.push_back({std::string(p.kind), std::string(p.plugin), p.support, std::string(p.note)});
+    return lines;
 }
 
-void print_gltf_coverage() {
-    std::string_view area;
-    for (const gltf::FeatureCoverage& f : gltf::feature_coverage()) {
-        const std::string_view shown = f.area == area ? std::string_view() : f.area;
-        area = f.area;
-        std::printf("%-10s %-36s %.*s", std::string(shown).c_str(), std::string(f.feature).c_str(),
-                    static_cast<int>(name_of(f.support).size()), name_of(f.support).data());
-        if (!f.note.empty()) std::printf(": %s", std::string(f.note).c_str());
+struct Table {
+    const char *name, *help, *area, *feature; // the latter two: keys of the JSON
+    std::vector<Line> (*lines)();
+};
+constexpr Table tables[] = {
+    {"pbrt", "The plugins of pbrt-v4's scene files, directive by directive", "directive", "plugin",
+     pbrt_lines},
+    {"gltf", "The features and extensions of glTF 2.0", "area", "feature", gltf_lines},
+    {"mitsuba", "The plugins of Mitsuba 3, kind by kind", "kind", "plugin", mitsuba_lines},
+};
+
+void print(const std::vector<Line>& lines) {
+    std::size_t area_width = 0, feature_width = 0;
+    for (const Line& line : lines) {
+        area_width = std::max(area_width, line.area.size());
+        feature_width = std::max(feature_width, line.feature.size());
+    }
+    std::string area;
+    for (const Line& line : lines) {
+        const std::string_view support = name_of(line.support);
+        std::printf("%-*s %-*s %.*s", static_cast<int>(area_width),
+                    line.area == area ? "" : line.area.c_str(), static_cast<int>(feature_width),
+                    line.feature.c_str(), static_cast<int>(support.size()), support.data());
+        area = line.area;
+        if (!line.note.empty()) std::printf(": %s", line.note.c_str());
         std::printf("\n");
     }
 }
 
-void print_gltf_coverage_json() {
+void print_json(const Table& table) {
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
-    for (const gltf::FeatureCoverage& f : gltf::feature_coverage())
-        all.push_back(
-            {{"area", f.area}, {"feature", f.feature}, {"support", name_of(f.support)}, {"note", f.note}});
+    for (const Line& line : table.lines())
+        all.push_back({{table.area, line.area},
+                       {table.feature, line.feature},
+                       {"support", name_of(line.support)},
+                       {"note", line.note}});
     std::printf("%s\n", all.dump(2).c_str());
 }
 
@@ -61,21 +88,15 @@ void add_formats(CLI::App& app, int& exit_code) {
     CLI::App* command = app.add_subcommand("formats", "Print what is read of a scene format");
     command->require_subcommand(1);
     auto json = std::make_shared<bool>(false);
-    CLI::App* pbrt =
-        command->add_subcommand("pbrt", "The plugins of pbrt-v4's scene files, directive by directive");
-    pbrt->add_flag("--json", *json, "Print JSON");
-    pbrt->footer("Example:\n  montelux formats pbrt --json");
-    pbrt->callback([json, &exit_code] {
-        *json ? print_pbrt_coverage_json() : print_pbrt_coverage();
-        exit_code = exit_done;
-    });
-    CLI::App* gltf = command->add_subcommand("gltf", "The features and extensions of glTF 2.0");
-    gltf->add_flag("--json", *json, "Print JSON");
-    gltf->footer("Example:\n  montelux formats gltf --json");
-    gltf->callback([json, &exit_code] {
-        *json ? print_gltf_coverage_json() : print_gltf_coverage();
-        exit_code = exit_done;
-    });
+    for (const Table& table : tables) {
+        CLI::App* format = command->add_subcommand(table.name, table.help);
+        format->add_flag("--json", *json, "Print JSON");
+        format->footer(std::string("Example:\n  montelux formats ") + table.name + " --json");
+        format->callback([json, &table, &exit_code] {
+            *json ? print_json(table) : print(table.lines());
+            exit_code = exit_done;
+        });
+    }
 }
 
 } // namespace montelux::app

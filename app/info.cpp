@@ -1,5 +1,6 @@
 // montelux info: what is in a picture, a texture or a scene.
 #include "app/commands.h"
+#include "app/definitions.h"
 #include "app/json_number.h"
 #include "app/scene_info.h"
 #include <CLI/CLI.hpp>
@@ -26,6 +27,7 @@ using Json = nlohmann::ordered_json;
 
 struct InfoSettings {
     std::string file;
+    std::map<std::string, std::string> definitions;
     bool json = false;
 };
 
@@ -165,11 +167,11 @@ void print_info(const InfoSettings& settings) {
                                                            ".pnm", ".tga", ".bmp", ".rgbe", ".tif"};
     constexpr std::size_t most_bytes = std::size_t{1} << 30; // as of pictures
     if (has_extension(settings.file, std::array<std::string_view, 2>{".pbrt", ".gz"}))
-        return print_scene_info(settings.file, settings.json);
+        return print_scene_info(settings.file, settings.definitions, settings.json);
     const std::vector<std::uint8_t> bytes = read_file_bytes(settings.file, most_bytes);
     if (const auto header = texture_header(bytes, settings.file)) return print_texture(settings, *header);
     if (!has_extension(settings.file, pictures) && !bytes.empty() && !is_picture(bytes))
-        return print_scene_info(settings.file, settings.json);
+        return print_scene_info(settings.file, settings.definitions, settings.json);
     const Image image = read_image(bytes, settings.file);
     if (settings.json)
         print_json(settings, image);
@@ -187,6 +189,7 @@ void add_info(CLI::App& app, int& exit_code) {
             "FILE", settings->file,
             "A picture (EXR, PNG, JPEG, HDR, PFM, PNM, TGA, BMP), a texture (KTX 2, KTX 1, DDS) or a scene")
         ->required();
+    declare_definitions(*command, settings->definitions);
     command->add_flag("--json", settings->json, "Print JSON");
     command->footer("Examples:\n  montelux info out.exr --json\n  montelux info scene.pbrt");
     command->callback([settings, &exit_code] {

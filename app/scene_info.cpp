@@ -203,10 +203,12 @@ void print_text(const Json& j) {
 
 } // namespace
 
-void print_scene_info(const std::string& file, bool json) {
+void print_scene_info(const std::string& file, const std::map<std::string, std::string>& definitions,
+                      bool json) {
     Warnings warnings;
     std::vector<std::filesystem::path> files;
-    const SceneDescription description = load_scene(file, warnings, {.files_read = &files});
+    const SceneDescription description =
+        load_scene(file, warnings, {.files_read = &files, .definitions = definitions});
     const Json out = describe_scene(file, description, warnings, files);
     if (json)
         std::printf("%s\n", out.dump(2, ' ', false, Json::error_handler_t::replace).c_str());

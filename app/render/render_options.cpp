@@ -1,5 +1,6 @@
 #include "app/render/render_options.h"
 
+#include "app/definitions.h"
 #include "app/option_values.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -216,6 +217,7 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_parsed(c, "--time-of-scene", "TIME", o.scene_time, parse_duration,
                "Of a glTF scene: the time at which its animations are shown, for example 1.5s. Default: all "
                "at rest");
+    declare_definitions(c, o.definitions);
     add_parsed(c, "--resolution", "WxH", o.resolution, parse_resolution,
                "Size of the film in pixels; the scene's crop keeps its place");
     add_parsed(c, "--crop", "x0,x1,y0,y1", o.crop, parse_crop,
@@ -364,7 +366,8 @@ RequestedScene load_requested(const RenderOptions& o, Warnings& warnings, FileSo
                     .texel_file = o.texture_memory ? TexelFile::create(*o.texture_memory) : nullptr,
                     .camera = o.camera,
                     .variant = o.variant,
-                    .time = o.scene_time});
+                    .time = o.scene_time,
+                    .definitions = o.definitions});
     apply(o, r.description);
     DiskFiles disk;
     r.added = add_studio(r.description, o.studio, source != nullptr ? *source : disk, warnings, files_read);

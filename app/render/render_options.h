@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -63,7 +64,8 @@ struct RenderOptions {
     std::optional<std::size_t> texture_memory; // bytes
     // Of glTF scenes: LoadOptions.
     std::optional<std::string> camera, variant;
-    std::optional<double> scene_time; // seconds
+    std::optional<double> scene_time;               // seconds
+    std::map<std::string, std::string> definitions; // of Mitsuba scenes: LoadOptions
     int threads = 0;
     double rank_timeout = 60; // seconds
     bool denoise = false, stats = false, memory = false, quiet = false;

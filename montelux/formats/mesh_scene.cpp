@@ -12,6 +12,7 @@
 namespace montelux {
 namespace {
 
+// The colours of the vertices, if the mesh has any, on the model_material.
 SceneDescription scene_of_mesh(TriangleMesh mesh, const std::filesystem::path& path, Warnings& warnings,
                                const LoadOptions& options) {
     if (mesh.indices.empty()) throw Error(path.string(), "the file has no triangles");
@@ -20,7 +21,12 @@ SceneDescription scene_of_mesh(TriangleMesh mesh, const std::filesystem::path& p
     constexpr SourceLocation whole_file{0, 0, 0};
     FileMessages messages(path.string(), warnings);
     SceneBuilder builder(d.scene, messages);
-    d.scene.materials.emplace_back(model_material());
+    DiffuseMaterial material = model_material();
+    if (!mesh.colors.empty()) {
+        d.scene.spectrum_textures.emplace_back(VertexColorTexture{});
+        material.reflectance = {{}, 0};
+    }
+    d.scene.materials.emplace_back(material);
     builder.add_shape(std::move(mesh), {.material = 0, .name = path.stem().string()}, whole_file);
     builder.finish(whole_file, false);
     return d;
@@ -45,11 +51,10 @@ SceneDescription model_description() {
 
 SceneDescription load_ply(const std::vector<std::uint8_t>& bytes, const std::filesystem::path& path,
                           Warnings& warnings, const LoadOptions& options) {
-    PlyMesh ply = parse_ply(bytes, path.string());
+    PlyMesh ply = parse_ply(bytes, path.string(), true);
     if (ply.degenerate > 0)
         warnings.add(path.string(),
                      std::to_string(ply.degenerate) + " faces of fewer than 3 corners are left out");
-    if (ply.has_colors) warnings.add(path.string(), "colours of vertices are ignored");
     if (ply.mesh.normals.empty()) add_normals(ply.mesh);
     return scene_of_mesh(std::move(ply.mesh), path, warnings, options);
 }

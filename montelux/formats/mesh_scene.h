@@ -19,7 +19,7 @@ SceneDescription model_description();
 // Of meshes whose files name no material: light grey clay.
 inline DiffuseMaterial model_material() { return {.reflectance = {0.5f}}; }
 
-// Files with the content `bytes`. A mesh without normals gets those of corner_normals. STL files have their z axis up,
+// Files with the content `bytes`. Vertices of PLY files may have colours. A mesh without normals gets those of corner_normals. STL files have their z axis up,
 // as printers and CAD programs have it; PLY files the y axis. Throw Error for the errors of parse_ply and parse_stl, and
 // for files without triangles.
 SceneDescription load_ply(const std::vector<std::uint8_t>& bytes, const std::filesystem::path& path,

@@ -1,5 +1,6 @@
 #include "montelux/formats/ply.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include "montelux/formats/gunzip.h"
 #include "montelux/formats/number.h"
 #include "montelux/formats/ply_header.h"
+#include "montelux/image/color_encoding.h"
 #include "montelux/mc/io/file.h"
 #include "montelux/mc/math/error.h"
 
@@ -126,14 +128,14 @@ class AsciiCursor {
     std::string_view name_;
 };
 
-// Where a vertex's properties go: position, normal, texture coordinates.
-constexpr int slots = 8;
+// Where a vertex's properties go: position, normal, texture coordinates, colour, opacity.
+constexpr int slots = 12, first_color = 8, opacity = 11;
 int slot_of(std::string_view property) {
     struct Name {
         std::string_view name;
         int slot;
     };
-    constexpr std::array<Name, 14> names = {{{"x", 0},
+    constexpr std::array<Name, 21> names = {{{"x", 0},
                                              {"y", 1},
                                              {"z", 2},
                                              {"nx", 3},
@@ -146,17 +148,32 @@ int slot_of(std::string_view property) {
                                              {"texture_u", 6},
                                              {"texture_v", 7},
                                              {"texture_s", 6},
-                                             {"texture_t", 7}}};
+                                             {"texture_t", 7},
+                                             {"red", 8},
+                                             {"green", 9},
+                                             {"blue", 10},
+                                             {"diffuse_red", 8},
+                                             {"diffuse_green", 9},
+                                             {"diffuse_blue", 10},
+                                             {"alpha", 11}}};
     for (const Name& n : names)
         if (n.name == property) return n.slot;
     return -1;
 }
 
+// A colour or an opacity, linear.
+float shade(double value, Type type, bool is_color) {
+    if (!ply::is_integer(type)) return static_cast<float>(value);
+    const double largest = std::pow(2.0, 8.0 * static_cast<double>(ply::size_of(type))) - 1;
+    const float share = static_cast<float>(std::clamp(value / largest, 0.0, 1.0));
+    return is_color ? srgb_to_linear(share) : share;
+}
+
 template <typename Cursor>
 class BodyParser {
   public:
-    BodyParser(Cursor cursor, const Header& header, std::string_view name)
-        : cursor_(cursor), header_(header), name_(name) {}
+    BodyParser(Cursor cursor, const Header& header, std::string_view name, bool colors)
+        : cursor_(cursor), header_(header), name_(name), colors_(colors) {}
 
     PlyMesh parse() {
         bool vertices = false, faces = false;
@@ -206,9 +223,10 @@ class BodyParser {
         std::array<bool, slots> have{};
         for (const Property& p : e.properties) {
             int s = p.is_list ? -1 : slot_of(p.name);
+            if (s == first_color) result_.has_colors = true;
+            if (s >= first_color && !colors_) s = -1;
             slot.push_back(s);
             if (s >= 0) have[static_cast<std::size_t>(s)] = true;
-            if (p.name == "red" || p.name == "diffuse_red") result_.has_colors = true;
         }
         if (!(have[0] && have[1] && have[2]))
             throw Error(std::string(name_) + ":" + std::to_string(e.line),
@@ -219,19 +237,27 @@ class BodyParser {
         mesh.positions.resize(e.count);
         if (normals) mesh.normals.resize(e.count);
         if (uvs) mesh.uvs.resize(e.count);
+        const bool colors = have[8] && have[9] && have[10];
+        if (colors) mesh.colors.resize(e.count);
+        if (have[opacity]) mesh.opacities.resize(e.count);
         std::array<float, slots> v{};
         for (std::size_t i = 0; i < e.count; ++i) {
             for (std::size_t k = 0; k < slot.size(); ++k) {
-                if (slot[k] >= 0)
-                    v[static_cast<std::size_t>(slot[k])] =
-                        static_cast<float>(cursor_.number(e.properties[k].type));
-                else
+                const Type type = e.properties[k].type;
+                if (slot[k] < 0)
                     skip(e.properties[k]);
+                else if (slot[k] < first_color)
+                    v[static_cast<std::size_t>(slot[k])] = static_cast<float>(cursor_.number(type));
+                else
+                    v[static_cast<std::size_t>(slot[k])] =
+                        shade(cursor_.number(type), type, slot[k] != opacity);
             }
             mesh.positions[i] = {v[0], v[1], v[2]};
             if (normals) mesh.normals[i] = {v[3], v[4], v[5]};
             if (uvs) mesh.uvs[i] = {v[6], v[7]};
-            float sum = v[0] + v[1] + v[2] + v[3] + v[4] + v[5] + v[6] + v[7];
+            if (colors) mesh.colors[i] = {v[8], v[9], v[10]};
+            if (have[opacity]) mesh.opacities[i] = v[opacity];
+            float sum = v[0] + v[1] + v[2] + v[3] + v[4] + v[5] + v[6] + v[7] + v[8] + v[9] + v[10] + v[11];
             if (!std::isfinite(sum)) check_vertex(i, v);
         }
     }
@@ -318,16 +344,17 @@ class BodyParser {
     Cursor cursor_;
     const Header& header_;
     std::string_view name_;
+    bool colors_;
     PlyMesh result_;
 };
 
 } // namespace
 
-PlyMesh parse_ply(std::span<const std::uint8_t> bytes, std::string_view name) {
+PlyMesh parse_ply(std::span<const std::uint8_t> bytes, std::string_view name, bool colors) {
     Header header = ply::parse_header(bytes, name);
     if (header.format == Format::ascii)
-        return BodyParser(AsciiCursor(bytes, header, name), header, name).parse();
-    return BodyParser(BinaryCursor(bytes, header, name), header, name).parse();
+        return BodyParser(AsciiCursor(bytes, header, name), header, name, colors).parse();
+    return BodyParser(BinaryCursor(bytes, header, name), header, name, colors).parse();
 }
 
 PlyMesh read_ply(const std::filesystem::path& path) {

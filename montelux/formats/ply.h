@@ -18,22 +18,25 @@ struct PlyMesh {
     std::size_t quads = 0;      // faces of four corners, split into two triangles along corners 0 and 2
     std::size_t polygons = 0;   // faces of more corners, split into a fan around corner 0
     std::size_t degenerate = 0; // faces of fewer than three corners, left out
-    bool has_colors = false;    // of vertices; they are not read
+    bool has_colors = false;    // of vertices
 };
 
 // ASCII and binary, little and big endian, properties of any type in any order. Vertices: x, y, z; optional
-// nx, ny, nz; optional u, v (also s, t; texture_u, texture_v; texture_s, texture_t). Faces: a list
+// nx, ny, nz; optional u, v (also s, t; texture_u, texture_v; texture_s, texture_t); with `colors` also red, green, blue
+// (also diffuse_red ...), which are sRGB where they are integers and linear where they are floats, and alpha. Faces: a list
 // vertex_indices or vertex_index. Triangle strips: an element tristrips with such a list, in which -1 begins a new strip.
 // Other elements and properties are skipped.
 // Allocates no more than the file's size justifies. Throws Error, prefixed with `name`, for a wrong header,
 // data that ends early, numbers that cannot be read or are not finite, and vertex indices out of range.
-PlyMesh parse_ply(std::span<const std::uint8_t> bytes, std::string_view name);
+PlyMesh parse_ply(std::span<const std::uint8_t> bytes, std::string_view name, bool colors = false);
 
 // The same for a file, which may be gzipped (".gz").
 PlyMesh read_ply(const std::filesystem::path& path);
 
-// A binary file (little endian, floats) of triangles; `normals` and `uvs` are empty or one per vertex.
+// A binary file (little endian, floats) of triangles; `normals`, `uvs`, `colors` and `opacities` are empty or one per
+// vertex.
 void write_ply(AtomicFile& file, std::span<const Point3f> positions, std::span<const Normal3f> normals,
-               std::span<const Point2f> uvs, std::span<const Index> indices);
+               std::span<const Point2f> uvs, std::span<const Index> indices,
+               std::span<const Vec3f> colors = {}, std::span<const float> opacities = {});
 
 } // namespace montelux

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from . import _core
@@ -148,8 +148,9 @@ def load(
     camera: str | int | None = None,
     variant: str | None = None,
     time: float | None = None,
+    definitions: Mapping[str, object] | None = None,
 ) -> Scene:
-    """Reads a scene (pbrt-v4, glTF 2.0) or a model (OBJ, PLY, STL) and all files that it refers to. What it ignores is reported
+    """Reads a scene (pbrt-v4, glTF 2.0, Mitsuba 3) or a model (OBJ, PLY, STL) and all files that it refers to. What it ignores is reported
     by warnings, and in `scene.warnings`. With `texture_memory`, image textures are kept in a temporary file, of which
     about this many bytes are in memory.
 
@@ -160,7 +161,8 @@ def load(
     "black", "grey", "white", "#rrggbb", or linear (r, g, b).
 
     Of glTF scenes: `camera` chooses one by name or number, `variant` one of the file's variants of materials, `time`
-    the moment of its animations, in seconds."""
+    the moment of its animations, in seconds. Of Mitsuba scenes: `definitions` are values of its parameters, {"spp": 32}
+    for $spp."""
     scene = Scene()
     scene._load(
         os.fspath(path),
@@ -172,9 +174,15 @@ def load(
         None if camera is None else str(camera),
         variant,
         time,
+        {name: _parameter_text(value) for name, value in (definitions or {}).items()},
     )
     _tell(scene)
     return scene
+
+
+def _parameter_text(value: object) -> str:
+    """As Mitsuba's XML has it: true, not True."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def parse(

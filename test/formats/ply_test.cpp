@@ -147,6 +147,34 @@ TEST(Ply, SentencesOfErrors) {
               "mesh.ply: the file has no element 'vertex'");
 }
 
+// Integers are sRGB, floats linear; opacities are linear. They are read where they are asked for.
+TEST(Ply, ColorsOfVertices) {
+    const auto text = [](const char* type, const char* colors) {
+        return std::string("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                           "property float z\n") +
+               "property " + type + " red\nproperty " + type + " green\nproperty " + type +
+               " blue\nproperty " + type +
+               " alpha\nelement face 1\nproperty list uchar int vertex_indices\n" + "end_header\n0 0 0 " +
+               colors + "\n1 0 0 " + colors + "\n0 1 0 " + colors + "\n3 0 1 2\n";
+    };
+    const auto read = [](const std::string& ply) {
+        return parse_ply({reinterpret_cast<const std::uint8_t*>(ply.data()), ply.size()}, "mesh.ply", true)
+            .mesh;
+    };
+    const TriangleMesh bytes = read(text("uchar", "255 128 0 51")),
+                       floats = read(text("float", "1 0.5 0 0.2"));
+    ASSERT_EQ(bytes.colors.size(), 3u);
+    EXPECT_EQ(bytes.colors[2].x, 1);
+    EXPECT_NEAR(bytes.colors[2].y, 0.2158605f, 1e-6f); // ((128 / 255 + 0.055) / 1.055)^2.4
+    EXPECT_EQ(bytes.colors[2].z, 0);
+    ASSERT_EQ(floats.colors.size(), 3u);
+    EXPECT_EQ(floats.colors[1], (Vec3f{1, 0.5f, 0}));
+    EXPECT_EQ(bytes.opacities, std::vector(3, 0.2f));
+    EXPECT_EQ(floats.opacities, std::vector(3, 0.2f));
+    EXPECT_TRUE(parse(text("uchar", "1 2 3 4")).mesh.colors.empty());
+    EXPECT_TRUE(parse(text("uchar", "1 2 3 4")).mesh.opacities.empty());
+}
+
 TEST(Ply, TriangleStrips) {
     const std::string strips = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
                                "property float z\nproperty uchar red\nelement tristrips 1\n"

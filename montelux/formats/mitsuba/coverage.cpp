@@ -12,7 +12,7 @@ constexpr std::string_view polarized = "the polarization of light is not rendere
 constexpr std::string_view by_path = "rendered with the integrator 'path'";
 constexpr std::string_view own_sampler = "the sampler of --sampler takes its place";
 
-constexpr auto table = std::to_array<PluginCoverage>({
+constexpr auto all_plugins = std::to_array<PluginCoverage>({
     {"shape", "obj"},
     {"shape", "ply"},
     {"shape", "serialized"},
@@ -116,19 +116,19 @@ constexpr auto table = std::to_array<PluginCoverage>({
 
 } // namespace
 
-std::span<const PluginCoverage> plugin_coverage() { return table; }
+std::span<const PluginCoverage> plugin_coverage() { return all_plugins; }
 
 std::vector<std::string_view> plugin_names(std::string_view kind) {
     std::vector<std::string_view> names;
-    for (const PluginCoverage& p : table)
+    for (const PluginCoverage& p : all_plugins)
         if (p.kind == kind) names.push_back(p.plugin);
     return names;
 }
 
 const PluginCoverage* find_plugin(std::string_view kind, std::string_view plugin) {
     const auto found = std::ranges::find_if(
-        table, [&](const PluginCoverage& p) { return p.kind == kind && p.plugin == plugin; });
-    return found == table.end() ? nullptr : &*found;
+        all_plugins, [&](const PluginCoverage& p) { return p.kind == kind && p.plugin == plugin; });
+    return found == all_plugins.end() ? nullptr : &*found;
 }
 
 } // namespace montelux::mitsuba

@@ -193,9 +193,12 @@ void GraphReader::begin(File& file, std::string_view element_name, std::vector<A
     } else if (is_one_of(element, transformations)) {
         here.error("<" + element + "> stands in a <transform>");
     } else {
-        std::vector<std::string_view> known(object_elements.begin(), object_elements.end());
-        known.insert(known.end(), value_elements.begin(), value_elements.end());
-        known.insert(known.end(), other_elements.begin(), other_elements.end());
+        std::vector<std::string_view> known;
+        for (const std::span<const std::string_view> names :
+             {std::span<const std::string_view>(object_elements),
+              std::span<const std::string_view>(value_elements),
+              std::span<const std::string_view>(other_elements)})
+            for (const std::string_view name : names) known.push_back(name);
         here.error("<" + shown(element_name) + "> is no element of Mitsuba 3" + did_you_mean(element, known));
     }
     file.levels.push_back(std::move(level));
@@ -307,9 +310,9 @@ SpectrumValue GraphReader::spectrum_in_file(const std::string& name, const Place
     const std::vector<std::uint8_t> bytes = graph_.files.read(path, here.at());
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     SpectrumValue spectrum;
-    const PiecewiseLinear table = parse_spd(text, path.string());
+    const PiecewiseLinear lines = parse_spd(text, path.string());
     // Without the knots at both ends that the file does not have.
-    for (const PiecewiseLinear::Knot& knot : table.knots().subspan(1, table.knots().size() - 3)) {
+    for (const PiecewiseLinear::Knot& knot : lines.knots().subspan(1, lines.knots().size() - 3)) {
         spectrum.wavelengths.push_back(static_cast<double>(knot.lambda));
         spectrum.values.push_back(static_cast<double>(knot.value));
     }

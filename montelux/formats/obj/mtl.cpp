@@ -62,24 +62,34 @@ class MtlParser {
             m.coat = within(keyword, words, 0, 1);
         else if (keyword == "Pcr")
             m.coat_roughness = within(keyword, words, 0, 1);
+        else if (keyword == "Ps")
+            m.sheen = within(keyword, words, 0, 1);
         else if (keyword == "aniso")
             m.anisotropy = within(keyword, words, -1, 1);
+        else if (keyword == "anisor")
+            m.anisotropy_turns = within(keyword, words, -1, 1);
         else if (keyword == "map_Kd")
             m.diffuse_map = map(words);
         else if (keyword == "map_d")
             m.opacity_map = map(words);
         else if (keyword == "map_bump" || keyword == "map_Bump" || keyword == "bump")
             m.bump_map = map(words);
+        else if (keyword == "map_Pr")
+            m.roughness_map = map(words);
+        else if (keyword == "map_Pm")
+            m.metallic_map = map(words);
+        else if (keyword == "map_Ps")
+            m.sheen_map = map(words);
         else if (keyword == "norm" || keyword == "map_norm")
             m.normal_map = map(words);
-        else if (keyword != "Ka" && keyword != "Tf" && keyword != "sharpness" && keyword != "anisor")
+        else if (keyword != "Ka" && keyword != "Tf" && keyword != "sharpness")
             warn_of(keyword);
     }
 
     void warn_of(std::string_view keyword) {
         if (told_.size() >= Warnings::max_messages || !told_.insert(std::string(keyword)).second) return;
         const bool known = keyword.starts_with("map_") || keyword == "disp" || keyword == "decal" ||
-                           keyword == "refl" || keyword == "Ps" || keyword == "Pt";
+                           keyword == "refl" || keyword == "Pt";
         warnings_.add(statements_.words().where(),
                       quoted(keyword) + (known ? " is ignored" : " is unknown and ignored"));
     }

@@ -33,13 +33,20 @@ struct MtlMaterial {
     std::optional<float> ior;                         // Ni
     float opacity = 1;                                // d, or 1 - Tr
     std::optional<int> illumination;                  // illum
-    std::optional<float> roughness, metallic;         // Pr, Pm
+    std::optional<float> roughness, metallic, sheen;  // Pr, Pm, Ps
     float coat = 0, coat_roughness = 0;               // Pc, Pcr
-    float anisotropy = 0;                             // aniso
+    float anisotropy = 0, anisotropy_turns = 0;       // aniso, anisor
     MtlMap diffuse_map, opacity_map, bump_map, normal_map;
+    MtlMap roughness_map, metallic_map, sheen_map; // map_Pr, map_Pm, map_Ps
+
+    // Whether any of the statements for physically based materials is there.
+    bool is_physically_based() const {
+        return roughness || metallic || sheen || coat > 0 || anisotropy != 0 || !roughness_map.file.empty() ||
+               !metallic_map.file.empty() || !sheen_map.file.empty();
+    }
 };
 
-// Ka, Tf, sharpness, anisor and maps of other statements have no effect. Warns once of each statement that is not
+// Ka, Tf, sharpness and maps of other statements have no effect. Warns once of each statement that is not
 // read. Throws Error "name:line: sentence" for numbers that cannot be read or are out of range.
 std::vector<MtlMaterial> parse_mtl(std::span<const std::uint8_t> bytes, std::string_view name,
                                    Warnings& warnings);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "montelux/image/image_read.h"
+#include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/scene/build/quoted.h"
 #include "montelux/spectrum/rgb_colorspace.h"
@@ -22,28 +23,13 @@ bool is_transmitting(const MtlMaterial& m) {
     return refracts && (m.opacity < 1 || is_black(m.diffuse.value_or(Vec3f{1, 1, 1})));
 }
 
-// The GGX alpha of the base.
-float alpha_of(const MtlMaterial& m) {
-    if (m.roughness) return *m.roughness * *m.roughness;
-    return std::sqrt(2 / (m.exponent.value_or(0) + 2));
-}
+float alpha_of(const MtlMaterial& m) { return std::sqrt(2 / (m.exponent.value_or(0) + 2)); }
 bool has_gloss(const MtlMaterial& m) {
-    if (m.coat > 0) return true;
-    if (m.roughness) return *m.roughness < 1;
     return m.illumination.value_or(2) > 1 && !is_black(m.specular) &&
            m.exponent.value_or(0) >= least_gloss_exponent;
 }
 
-RoughnessParameter roughness(float alpha, float anisotropy = 0) {
-    // Burley 2012, "Physically Based Shading at Disney".
-    const float aspect = std::sqrt(1 - 0.9f * std::abs(anisotropy));
-    RoughnessParameter r;
-    r.u = {std::min(alpha / aspect, 1.0f)};
-    r.v = {alpha * aspect};
-    if (anisotropy < 0) std::swap(r.u, r.v);
-    r.remap = false;
-    return r;
-}
+RoughnessParameter roughness(float alpha) { return {.u = {alpha}, .v = {alpha}, .remap = false}; }
 
 } // namespace
 
@@ -131,6 +117,35 @@ FloatParameter MtlMaterials::alpha(const MtlMaterial& m, std::uint32_t file) {
     return p;
 }
 
+FloatParameter MtlMaterials::number(const MtlMap& map, float otherwise, std::uint32_t file) {
+    const std::optional<Index> picture = map.file.empty() ? std::nullopt : image(map, false, file);
+    if (!picture) return {otherwise};
+    builder_.scene().float_textures.emplace_back(texture(map, *picture));
+    return {0, static_cast<Index>(builder_.scene().float_textures.size() - 1)};
+}
+
+// A picture takes the place of its number. Without Pr the roughness is that of Ns.
+PrincipledMaterial MtlMaterials::principled(const MtlMaterial& m, float ior, std::uint32_t file) {
+    PrincipledMaterial p;
+    p.base_color = diffuse_color(m, file);
+    p.roughness = number(m.roughness_map, m.roughness.value_or(std::sqrt(alpha_of(m))), file);
+    p.metallic = number(m.metallic_map, m.metallic.value_or(0), file);
+    p.ior = {ior};
+    p.clearcoat = {m.coat};
+    p.clearcoat_roughness = {m.coat_roughness};
+    // Negative: elongated across the tangent.
+    p.anisotropy = {std::abs(m.anisotropy)};
+    p.anisotropy_rotation = {m.anisotropy_turns * 2 * pi_f + (m.anisotropy < 0 ? pi_f / 2 : 0)};
+    if (const float sheen = m.sheen.value_or(0); sheen > 0) p.sheen_color = color({sheen, sheen, sheen});
+    if (!m.sheen_map.file.empty())
+        if (const std::optional<Index> picture = image(m.sheen_map, false, file)) {
+            builder_.scene().spectrum_textures.emplace_back(texture(m.sheen_map, *picture));
+            p.sheen_color = {{}, static_cast<Index>(builder_.scene().spectrum_textures.size() - 1)};
+        }
+    p.sheen_roughness = {0.3f}; // the format has none; that of the Disney model's sheen looks like it
+    return p;
+}
+
 // Exporters write normal maps as map_bump, too: those have colours.
 SurfaceDetail MtlMaterials::detail(const MtlMaterial& m, std::uint32_t file, double size) {
     SurfaceDetail detail;
@@ -171,18 +186,20 @@ MtlSurface MtlMaterials::add(const MtlMaterial& m, std::uint32_t file, double si
     if (is_transmitting(m)) {
         const float alpha = m.roughness ? *m.roughness * *m.roughness : 0;
         material = DielectricMaterial{.eta = ior, .roughness = roughness(alpha), .detail = detail};
-    } else if (m.metallic.value_or(0) >= 0.5f || is_mirror) {
+    } else if (m.is_physically_based()) {
+        PrincipledMaterial p = principled(m, ior, file);
+        p.detail = detail;
+        material = p;
+    } else if (is_mirror) {
         ConductorMaterial metal{.detail = detail};
         metal.metal.from_reflectance = true;
-        metal.metal.reflectance = is_mirror ? color(*m.specular) : diffuse_color(m, file);
-        const float alpha = m.roughness || m.exponent ? alpha_of(m) : 0.0f;
-        metal.roughness = roughness(alpha, m.anisotropy);
+        metal.metal.reflectance = color(*m.specular);
+        metal.roughness = roughness(m.exponent ? alpha_of(m) : 0.0f);
         material = metal;
     } else if (has_gloss(m)) {
         CoatedDiffuseMaterial coated{.reflectance = diffuse_color(m, file), .detail = detail};
         coated.coating.eta = ior;
-        coated.coating.roughness = m.coat > 0 ? roughness(m.coat_roughness * m.coat_roughness)
-                                              : roughness(alpha_of(m), m.anisotropy);
+        coated.coating.roughness = roughness(alpha_of(m));
         material = coated;
     } else {
         material = DiffuseMaterial{.reflectance = diffuse_color(m, file), .detail = detail};

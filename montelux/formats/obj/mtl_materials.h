@@ -11,6 +11,7 @@
 #include "montelux/formats/file_source.h"
 #include "montelux/formats/obj/mtl.h"
 #include "montelux/scene/build/scene_builder.h"
+#include "montelux/scene/material/principled_material.h"
 
 namespace montelux {
 
@@ -21,10 +22,11 @@ struct MtlSurface {
     std::optional<Emission> emission{};
 };
 
-// Models of Phong's time are mapped by what they meant to show:
-//   metallic (Pm from 0.5 on), or a mirror (black Kd, Ks, illum 3 or 5): Conductor;
-//   glass (illum 4, 6, 7 or 9 with d < 1, or with black Kd): Dielectric;
-//   gloss (Pc; Pr below 1; or Ks with Ns from 5 on, unless illum is 0 or 1): CoatedDiffuse;
+// Physically based materials (Pr, Pm, Pc, Ps, aniso and their maps) are Principled ones. Models of Phong's time are
+// mapped by what they meant to show:
+//   glass (illum 4, 6, 7 or 9 with d < 1, or with black Kd; physically based or not): Dielectric;
+//   a mirror (black Kd, Ks, illum 3 or 5): Conductor;
+//   gloss (Ks with Ns from 5 on, unless illum is 0 or 1): CoatedDiffuse;
 //   all others: Diffuse.
 // The GGX roughness alpha is Pr^2, or sqrt(2 / (Ns + 2)) (Walter et al. 2007, "Microfacet Models for Refraction through
 // Rough Surfaces", for equal lobes).
@@ -49,6 +51,9 @@ class MtlMaterials {
     SpectrumParameter color(Vec3f rgb);
     SpectrumParameter diffuse_color(const MtlMaterial& m, std::uint32_t file);
     FloatParameter alpha(const MtlMaterial& m, std::uint32_t file);
+    // A picture alone, or the number.
+    FloatParameter number(const MtlMap& map, float otherwise, std::uint32_t file);
+    PrincipledMaterial principled(const MtlMaterial& m, float ior, std::uint32_t file);
     SurfaceDetail detail(const MtlMaterial& m, std::uint32_t file, double size);
 
     std::filesystem::path folder_;

@@ -23,6 +23,7 @@ std::vector<PluginCoverage> make_coverage() {
         return PluginCoverage{{}, std::string(name), support, note};
     };
     constexpr std::string_view by_path = "rendered with the integrator 'path'";
+    constexpr std::string_view own = "Montelux's own";
     constexpr std::string_view own_tracer = "the ray tracer builds its own hierarchy";
 
     add("Film",
@@ -50,10 +51,10 @@ std::vector<PluginCoverage> make_coverage() {
     add("Texture",
         {plugin("constant"), plugin("imagemap"), plugin("scale"), plugin("mix"), plugin("directionmix"),
          plugin("checkerboard"), plugin("bilerp"), plugin("dots"), plugin("fbm"), plugin("marble"),
-         plugin("windy"), plugin("wrinkled"), plugin("ptex", none)});
-    add("LightSource",
-        {plugin("point"), plugin("spot"), plugin("distant"), plugin("infinite"), plugin("goniometric"),
-         plugin("projection"), plugin("sky", Support::full, "Montelux's own")});
+         plugin("windy"), plugin("wrinkled"), plugin("vertexcolor", Support::full, own),
+         plugin("step", Support::full, own), plugin("ptex", none)});
+    add("LightSource", {plugin("point"), plugin("spot"), plugin("distant"), plugin("infinite"),
+                        plugin("goniometric"), plugin("projection"), plugin("sky", Support::full, own)});
     add("AreaLightSource", {plugin("diffuse")});
     add("MakeNamedMedium",
         {plugin("homogeneous"), plugin("uniformgrid"), plugin("rgbgrid"), plugin("cloud"),

@@ -79,18 +79,10 @@ class MaterialParameters {
     }
     void write(const ParameterInfo& info, const NormalMapParameter& p, const NormalMapParameter&) {
         if (!p.is_given()) return;
-        const ImageTexture& map = w_.scene_.normal_maps[p.map];
-        const Index image = map.image;
-        const TextureMapping& m = map.mapping;
-        if (m.kind != TextureMapping::Kind::uv || m.su != 1 || m.sv != 1 || m.du != 0 || m.dv != 0 ||
-            map.wrap != TextureWrap::repeat || map.factor != Vec3f{1, 1, 1})
-            w_.warn(what_, "its normal map is written without its mapping, wrapping and strength, which pbrt "
-                           "does not have");
-        if (map.right_handed)
-            w_.warn(what_, "its normal map is written as one whose second axis points to the side of dp/dv");
-        if (w_.encoding_of(image).value_or("linear") != "linear")
-            w_.warn(what_, "its normal map has an encoding; pbrt reads it as linear");
-        d_.string(info.pbrt_name(), w_.image_file(image));
+        if (w_.is_plain_normal_map(p.map))
+            d_.string(info.pbrt_name(), w_.image_file(w_.scene_.normal_maps[p.map].image));
+        else
+            d_.texture(info.pbrt_name(), w_.normal_map_texture(p.map));
     }
     void write(const ParameterInfo& info, const MeasuredBrdfIndex& b, const MeasuredBrdfIndex&) {
         d_.string(info.pbrt_name(), w_.measured_file(b.index));

@@ -109,8 +109,10 @@ class MaterialMaker {
 
     void read(const ParameterInfo& info, NormalMapParameter& p) {
         const std::string_view parameter = name(info.pbrt_name());
-        if (std::optional<std::string> file = r_.string(parameter))
-            p.map = textures_.normal_map(*file, r_.at(parameter));
+        const Parameter* map = r_.any(parameter, {ParameterType::string, ParameterType::texture});
+        if (map == nullptr) return;
+        p.map = map->type == ParameterType::texture ? textures_.normal_map(*map)
+                                                    : textures_.normal_map(*r_.string(parameter), map->at);
     }
 
     void read(const ParameterInfo& info, MeasuredBrdfIndex& b) {

@@ -25,6 +25,13 @@ void read_values(ParameterReader& r, Mesh& mesh) {
         mesh.tangents = r.triples("S", ParameterType::vector3);
         drop_unless_one_a_vertex(mesh.tangents, "S");
     }
+    if constexpr (requires { mesh.colors; }) {
+        mesh.colors = r.triples("colors", ParameterType::rgb);
+        drop_unless_one_a_vertex(mesh.colors, "colors");
+        const std::span<const float> opacities = r.numbers("opacities", ParameterType::floating);
+        mesh.opacities.assign(opacities.begin(), opacities.end());
+        drop_unless_one_a_vertex(mesh.opacities, "opacities");
+    }
 }
 
 } // namespace

@@ -125,10 +125,11 @@ constexpr std::string_view medium_parameters[] = {"Le",
                                                   "wispiness"};
 
 constexpr std::string_view texture_parameters[] = {
-    "amount",  "dimension",     "dir",       "encoding", "filename",  "filter", "inside", "invert",
-    "mapping", "maxanisotropy", "octaves",   "outside",  "roughness", "scale",  "tex",    "tex1",
-    "tex2",    "udelta",        "uscale",    "v00",      "v01",       "v1",     "v10",    "v11",
-    "v2",      "value",         "variation", "vdelta",   "vscale",    "wrap"};
+    "amount",    "channel", "dimension",    "dir",     "edge",          "encoding", "factor",  "filename",
+    "filter",    "inside",  "invert",       "mapping", "maxanisotropy", "octaves",  "outside", "righthanded",
+    "roughness", "scale",   "swrap",        "tex",     "tex1",          "tex2",     "twrap",   "udelta",
+    "uscale",    "v00",     "v01",          "v1",      "v10",           "v11",      "v2",      "value",
+    "variation", "vdelta",  "vertexcolors", "vscale",  "wrap"};
 
 } // namespace
 

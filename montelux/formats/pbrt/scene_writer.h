@@ -66,6 +66,9 @@ class SceneWriter {
     // texture_writer.cpp: names of textures; each is written at the first call.
     std::string float_texture(Index i);
     std::string spectrum_texture(Index i, RgbMeaning meaning);
+    // Of Scene::normal_maps: whether pbrt-v4 says the same with the picture alone.
+    bool is_plain_normal_map(Index i) const;
+    std::string normal_map_texture(Index i);
     template <typename Parameter>
     void texture(const TextureNode<Parameter>& node, const std::string& name, RgbMeaning meaning);
     void mapping(DirectiveText& d, std::string& transform, const TextureMapping& m);
@@ -120,7 +123,7 @@ class SceneWriter {
     AtomicFile& out_;
 
     std::map<Index, std::string> image_files_, environment_files_, measured_files_;
-    std::set<Index> float_textures_, spectrum_textures_; // written
+    std::set<Index> float_textures_, spectrum_textures_, normal_maps_; // written
     std::vector<std::string> material_names_;
     std::size_t lights_ = 0, instances_ = 0; // written
     std::vector<std::string> object_names_;

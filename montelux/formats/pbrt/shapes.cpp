@@ -81,7 +81,7 @@ TriangleMesh read_ply_mesh(ParameterReader& r, Files& files, DisplacementReader&
     std::vector<std::uint8_t> bytes = files.read(path, at);
     PlyMesh ply;
     try {
-        ply = parse_ply(bytes, path.string());
+        ply = parse_ply(bytes, path.string(), r.boolean("vertexcolors", false));
     } catch (const Error& e) {
         r.error("filename", e.what());
     }

@@ -7,15 +7,6 @@
 #include "montelux/mc/math/overloaded.h"
 
 namespace montelux::pbrt {
-namespace {
-
-// Of what scenes of other formats have.
-[[noreturn]] void refuse(const std::string& what) {
-    throw Error("pbrt", what + " cannot be written: pbrt-v4 has nothing like it");
-}
-
-} // namespace
-
 void SceneWriter::parameter(DirectiveText& d, std::string_view name, const FloatParameter& p, float otherwise,
                             RgbMeaning) {
     if (!p.is_constant())
@@ -34,13 +25,13 @@ void SceneWriter::parameter(DirectiveText& d, std::string_view name, const Spect
 
 void SceneWriter::mapping(DirectiveText& d, std::string& transform, const TextureMapping& m) {
     using Kind = TextureMapping::Kind;
-    if (m.kind == Kind::affine) refuse("a mapping of texture coordinates that turns or shears them");
-    if (m.kind != Kind::uv) transform = transform_text(m.texture_from_world.inverse());
+    if (m.kind != Kind::uv && m.kind != Kind::affine)
+        transform = transform_text(m.texture_from_world.inverse());
     if (m.kind == Kind::uv) {
         if (m.su != 1) d.number("uscale", m.su);
         if (m.sv != 1) d.number("vscale", m.sv);
-    } else if (m.kind == Kind::planar) {
-        d.string("mapping", "planar");
+    } else if (m.kind == Kind::planar || m.kind == Kind::affine) {
+        d.string("mapping", m.kind == Kind::planar ? "planar" : "affine");
         d.vector("vector3", "v1", m.vs);
         d.vector("vector3", "v2", m.vt);
     } else {
@@ -54,20 +45,24 @@ void SceneWriter::mapping(DirectiveText& d, std::string& transform, const Textur
 void SceneWriter::image_texture(DirectiveText& d, std::string& transform, const ImageTexture& t,
                                 bool is_float) {
     constexpr std::array filters = {"point", "bilinear", "trilinear", "ewa"};
-    constexpr std::array wraps = {"repeat", "black", "clamp", "octahedralsphere"};
-    if (t.wrap.s != t.wrap.t || t.wrap.s == TextureWrap::mirror)
-        refuse("an image that wraps differently along its axes, or by mirroring");
-    if (t.channels != ImageChannels::color && t.channels != ImageChannels::alpha)
-        refuse("a texture of one colour channel");
-    if (t.vertex_colors || t.factor != Vec3f{1, 1, 1}) refuse("an image times a colour");
+    constexpr std::array wraps = {"repeat", "black", "clamp", "octahedralsphere", "mirror"};
+    constexpr std::array channels = {"color", "alpha", "red", "green", "blue", "angle"};
     d.string("filename", image_file(t.image));
     if (const auto encoding = encoding_of(t.image)) d.string("encoding", *encoding);
     mapping(d, transform, t.mapping);
     if (t.filter != TextureFilter::bilinear) d.string("filter", filters[static_cast<std::size_t>(t.filter)]);
-    if (t.wrap != TextureWrap::repeat) d.string("wrap", wraps[static_cast<std::size_t>(t.wrap.s)]);
+    if (t.wrap.s != t.wrap.t) {
+        d.string("swrap", wraps[static_cast<std::size_t>(t.wrap.s)]);
+        d.string("twrap", wraps[static_cast<std::size_t>(t.wrap.t)]);
+    } else if (t.wrap != TextureWrap::repeat) {
+        d.string("wrap", wraps[static_cast<std::size_t>(t.wrap.s)]);
+    }
     if (t.max_anisotropy != 8) d.number("maxanisotropy", t.max_anisotropy);
     if (t.scale != 1) d.number("scale", t.scale);
     if (t.invert) d.boolean("invert", true);
+    if (t.factor != Vec3f{1, 1, 1}) d.vector("rgb", "factor", t.factor);
+    if (t.vertex_colors) d.boolean("vertexcolors", true);
+    if (t.right_handed) d.boolean("righthanded", true);
     if (t.color_space != &RgbColorSpace::srgb())
         warn("image " + std::to_string(t.image),
              "its colours are read as sRGB; pbrt takes the space from the file");
@@ -80,10 +75,8 @@ void SceneWriter::image_texture(DirectiveText& d, std::string& transform, const 
         for (int y = 0; y < picture.height() && !transparent; ++y)
             for (int x = 0; x < picture.width() && !transparent; ++x)
                 transparent = picture.value(x, y, *alpha) != 1;
-    if (transparent != (t.channels == ImageChannels::alpha))
-        warn("image " + std::to_string(t.image),
-             transparent ? "a float texture of it is read from its alpha; expected its colours"
-                         : "a float texture of it is read from its colours; expected its alpha, which is 1");
+    if (t.channels != (transparent ? ImageChannels::alpha : ImageChannels::color))
+        d.string("channel", channels[static_cast<std::size_t>(t.channels)]);
 }
 
 template <typename Parameter>
@@ -165,8 +158,15 @@ void SceneWriter::texture(const TextureNode<Parameter>& node, const std::string&
                               d.number("variation", t.variation);
                               transform = transform_text(t.texture_from_world.inverse());
                           },
-                          [&](const VertexColorTexture&) { refuse("colours of vertices"); },
-                          [&](const StepTexture&) { refuse("a threshold of a texture"); }},
+                          [&](const VertexColorTexture& t) {
+                              d = directive("vertexcolor");
+                              if (t.factor != Vec3f{1, 1, 1}) d.vector("rgb", "factor", t.factor);
+                          },
+                          [&](const StepTexture& t) {
+                              d = directive("step");
+                              parameter(d, "tex", t.input, 1);
+                              if (t.edge != 0.5f) d.number("edge", t.edge);
+                          }},
                node);
     put_block(transform + d.text());
 }
@@ -175,6 +175,22 @@ std::string SceneWriter::float_texture(Index i) {
     const std::string name = "float-" + std::to_string(i);
     if (float_textures_.insert(i).second)
         texture<FloatParameter>(scene_.float_textures[i], name, RgbMeaning::albedo);
+    return name;
+}
+
+bool SceneWriter::is_plain_normal_map(Index i) const {
+    const ImageTexture& t = scene_.normal_maps[i];
+    const TextureMapping& m = t.mapping;
+    const ImageTexture plain;
+    return m.kind == TextureMapping::Kind::uv && m.su == 1 && m.sv == 1 && m.du == 0 && m.dv == 0 &&
+           t.wrap == plain.wrap && t.filter == plain.filter && t.max_anisotropy == plain.max_anisotropy &&
+           t.factor == plain.factor && !t.right_handed && encoding_of(t.image).value_or("linear") == "linear";
+}
+
+std::string SceneWriter::normal_map_texture(Index i) {
+    const std::string name = "normals-" + std::to_string(i);
+    if (normal_maps_.insert(i).second)
+        texture<SpectrumParameter>(scene_.normal_maps[i], name, RgbMeaning::unbounded);
     return name;
 }
 

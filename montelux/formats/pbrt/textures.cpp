@@ -63,6 +63,35 @@ NoiseOctaves noise_octaves(ParameterReader& r) {
     return n;
 }
 
+// Empty without the parameter.
+std::optional<Vec3f> color_factor(ParameterReader& r) {
+    const std::vector<Vec3f> factor = r.triples("factor", ParameterType::rgb);
+    if (factor.size() > 1)
+        r.error("factor", "parameter 'factor' has " + std::to_string(factor.size()) + " colours; expected 1");
+    return factor.empty() ? std::nullopt : std::optional(factor[0]);
+}
+
+TextureWrap wrap_named(std::string_view name) {
+    return name == "repeat"   ? TextureWrap::repeat
+           : name == "black"  ? TextureWrap::black
+           : name == "clamp"  ? TextureWrap::clamp
+           : name == "mirror" ? TextureWrap::mirror
+                              : TextureWrap::octahedral_sphere;
+}
+
+// Of images: the channels that are read; empty where the picture decides, as in pbrt-v4.
+std::optional<ImageChannels> channels_asked(ParameterReader& r) {
+    const std::string_view name =
+        r.choice("channel", {"default", "color", "alpha", "red", "green", "blue", "angle"}, "default");
+    if (name == "color") return ImageChannels::color;
+    if (name == "alpha") return ImageChannels::alpha;
+    if (name == "red") return ImageChannels::red;
+    if (name == "green") return ImageChannels::green;
+    if (name == "blue") return ImageChannels::blue;
+    if (name == "angle") return ImageChannels::angle;
+    return std::nullopt;
+}
+
 // "fbm", "wrinkled", "windy" or "marble", whose type fits that of the texture.
 template <typename Texture>
 Texture procedural_texture(ParameterReader& r, const TextureDeclaration& d) {
@@ -99,8 +128,8 @@ void TextureLibrary::declare(std::string_view type, const std::string& name, Tex
     if (!is_plugin("Texture", declaration.plugin))
         diagnostics_.error(declaration.at, "unknown texture " + in_quotes(declaration.plugin) +
                                                did_you_mean(declaration.plugin, plugin_names("Texture")));
-    const bool only_float =
-        declaration.plugin == "fbm" || declaration.plugin == "windy" || declaration.plugin == "wrinkled";
+    const bool only_float = declaration.plugin == "fbm" || declaration.plugin == "windy" ||
+                            declaration.plugin == "wrinkled" || declaration.plugin == "step";
     if (only_float || declaration.plugin == "marble")
         if (const std::string_view only = only_float ? "float" : "spectrum"; type != only)
             diagnostics_.error(declaration.at, "texture " + in_quotes(declaration.plugin) + " has type " +
@@ -200,9 +229,14 @@ TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meanin
         node = ConstantTexture<Parameter>{input<Parameter>(r, "value", meaning, 1)};
     } else if (d.plugin == "imagemap") {
         ImageTexture t = image_texture(r, d, meaning);
-        if (std::is_same_v<Parameter, FloatParameter> && has_transparency(builder_.scene().images[t.image]))
-            t.channels = ImageChannels::alpha;
+        if constexpr (std::is_same_v<Parameter, FloatParameter>) {
+            const bool transparent = has_transparency(builder_.scene().images[t.image]);
+            t.channels =
+                channels_asked(r).value_or(transparent ? ImageChannels::alpha : ImageChannels::color);
+        }
         node = std::move(t);
+    } else if (d.plugin == "vertexcolor") {
+        node = VertexColorTexture{color_factor(r).value_or(Vec3f(1, 1, 1))};
     } else if (d.plugin == "scale") {
         Parameter texture = input<Parameter>(r, "tex", meaning, 1);
         node = ScaleTexture<Parameter>{std::move(texture), float_or(r, "scale", 1)};
@@ -224,6 +258,9 @@ TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meanin
         Parameter first = input<Parameter>(r, "tex1", meaning, 0);
         Parameter second = input<Parameter>(r, "tex2", meaning, 1);
         node = DirectionMixTexture<Parameter>{first, second, mix_direction(r, d)};
+    } else if (d.plugin == "step") {
+        if constexpr (std::is_same_v<Parameter, FloatParameter>)
+            node = StepTexture{float_or(r, "tex", 1), r.number("edge", 0.5f)};
     } else if (d.plugin != "checkerboard") {
         node = procedural_texture<ProceduralTexture<Parameter>>(r, d);
     } else {
@@ -253,13 +290,13 @@ TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meanin
 
 TextureMapping TextureLibrary::mapping(ParameterReader& r, const TextureDeclaration& d) {
     TextureMapping m;
-    std::string_view kind = r.choice("mapping", {"uv", "spherical", "cylindrical", "planar"}, "uv");
-    if (kind != "uv") m.texture_from_world = texture_space(r, d);
+    std::string_view kind = r.choice("mapping", {"uv", "spherical", "cylindrical", "planar", "affine"}, "uv");
+    if (kind != "uv" && kind != "affine") m.texture_from_world = texture_space(r, d);
     if (kind == "uv") {
         m.su = r.number("uscale", 1);
         m.sv = r.number("vscale", 1);
-    } else if (kind == "planar") {
-        m.kind = TextureMapping::Kind::planar;
+    } else if (kind == "planar" || kind == "affine") {
+        m.kind = kind == "planar" ? TextureMapping::Kind::planar : TextureMapping::Kind::affine;
         m.vs = r.vector3("v1").value_or(Vec3f(1, 0, 0));
         m.vt = r.vector3("v2").value_or(Vec3f(0, 1, 0));
     } else {
@@ -282,15 +319,19 @@ ImageTexture TextureLibrary::image_texture(ParameterReader& r, const TextureDecl
                : filter == "point"     ? TextureFilter::point
                : filter == "trilinear" ? TextureFilter::trilinear
                                        : TextureFilter::ewa;
-    std::string_view wrap = r.choice("wrap", {"repeat", "black", "clamp", "octahedralsphere"}, "repeat");
-    t.wrap = wrap == "repeat"  ? TextureWrap::repeat
-             : wrap == "black" ? TextureWrap::black
-             : wrap == "clamp" ? TextureWrap::clamp
-                               : TextureWrap::octahedral_sphere;
+    const std::string_view wrap =
+        r.choice("wrap", {"repeat", "black", "clamp", "octahedralsphere", "mirror"}, "repeat");
+    t.wrap = wrap_named(wrap);
+    if (wrap != "octahedralsphere")
+        t.wrap = {wrap_named(r.choice("swrap", {"repeat", "black", "clamp", "mirror"}, wrap)),
+                  wrap_named(r.choice("twrap", {"repeat", "black", "clamp", "mirror"}, wrap))};
     t.max_anisotropy = r.number("maxanisotropy", 8);
     if (!(t.max_anisotropy >= 1)) r.error("maxanisotropy", "parameter 'maxanisotropy' is below 1");
     t.scale = r.number("scale", 1);
     t.invert = r.boolean("invert", false);
+    t.factor = color_factor(r).value_or(t.factor);
+    t.vertex_colors = r.boolean("vertexcolors", false);
+    t.right_handed = r.boolean("righthanded", false);
     std::optional<std::string> file = r.string("filename");
     if (!file) r.error("texture 'imagemap' needs a parameter 'filename'");
     t.image = image(*file, r.string("encoding"), r.at("filename"));
@@ -332,10 +373,27 @@ Index TextureLibrary::normal_map(const std::string& file, Location at) {
     return known->second;
 }
 
+Index TextureLibrary::normal_map(const Parameter& texture) {
+    Entry& entry = look_up(texture, spectrum_, float_, "spectrum");
+    if (entry.normal_map != no_index) return entry.normal_map;
+    if (entry.declaration.plugin != "imagemap")
+        diagnostics_.error(texture.at, "a map of normals is a texture of the kind 'imagemap'");
+    const auto node = make_node<SpectrumParameter>(entry, RgbMeaning::unbounded);
+    std::vector<ImageTexture>& all = builder_.scene().normal_maps;
+    all.push_back(std::get<ImageTexture>(node));
+    const Image& picture = builder_.scene().images[all.back().image];
+    if (picture.color_channels().size() != 3)
+        diagnostics_.error(texture.at, "the picture of normals has no channels R, G and B");
+    if (all.back().scale != 1 || all.back().invert || all.back().vertex_colors)
+        diagnostics_.error(texture.at, "a map of normals has no scale, no inversion and no vertex colours");
+    return entry.normal_map = static_cast<Index>(all.size() - 1);
+}
+
 void TextureLibrary::warn_of_unused() {
     for (const Table* table : {&float_, &spectrum_})
         for (const auto& [name, entry] : *table)
-            if (std::all_of(entry.nodes.begin(), entry.nodes.end(), [](Index i) { return i == no_index; }))
+            if (entry.normal_map == no_index &&
+                std::all_of(entry.nodes.begin(), entry.nodes.end(), [](Index i) { return i == no_index; }))
                 diagnostics_.warn(entry.declaration.at,
                                   "texture " + in_quotes(name) + " is not used and was not read");
 }

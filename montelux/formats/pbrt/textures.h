@@ -46,6 +46,8 @@ class TextureLibrary {
 
     // Adds a picture of normals, (n + 1) / 2, to Scene::normal_maps; filtered as in pbrt-v4.
     Index normal_map(const std::string& file, Location at);
+    // The same of a spectrum texture 'imagemap', with its mapping, filter and wrapping; its factor is the map's strength.
+    Index normal_map(const Parameter& texture);
 
     void warn_of_unused();
 
@@ -54,6 +56,7 @@ class TextureLibrary {
         TextureDeclaration declaration;
         std::size_t order = 0;
         std::array<Index, 3> nodes{no_index, no_index, no_index}; // float textures use only the first
+        Index normal_map = no_index;
         std::size_t evaluations = 0; // textures evaluated per look-up, this one included
     };
     using Table = std::map<std::string, Entry, std::less<>>;

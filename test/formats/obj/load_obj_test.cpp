@@ -6,6 +6,7 @@
 
 #include "montelux/formats/load_scene.h"
 #include "montelux/image/image_write.h"
+#include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
@@ -43,26 +44,46 @@ TEST_F(ObjScene, MaterialsAreWhatTheyMeant) {
         0.25f);
     material_of_kind<DiffuseMaterial>("Kd 1 0 0\nKs 1 1 1\nNs 96\nillum 1\n");
     material_of_kind<DiffuseMaterial>("Kd 1 0 0\nKs 1 1 1\nNs 1\n");
-    material_of_kind<DiffuseMaterial>("Pr 1\n");
     const auto gloss = material_of_kind<CoatedDiffuseMaterial>("Kd 1 0 0\nKs 0.5 0.5 0.5\nNs 198\nNi 1.4\n");
     EXPECT_FLOAT_EQ(gloss.coating.roughness.u.value, 0.1f); // sqrt(2 / 200)
     EXPECT_FALSE(gloss.coating.roughness.remap);
     EXPECT_EQ(gloss.coating.eta.constant, 1.4f);
-    EXPECT_FLOAT_EQ(material_of_kind<CoatedDiffuseMaterial>("Pr 0.5\nNi 1\n").coating.roughness.v.value,
-                    0.25f);
-    EXPECT_EQ(material_of_kind<CoatedDiffuseMaterial>("Pr 0.5\nNi 1\n").coating.eta.constant, 1.5f);
-    EXPECT_FLOAT_EQ(
-        material_of_kind<CoatedDiffuseMaterial>("Pr 0.5\nPc 1\nPcr 0.2\n").coating.roughness.u.value, 0.04f);
-    const auto metal = material_of_kind<ConductorMaterial>("Kd 0.5 0.5 0.5\nPm 1\nPr 0.5\naniso 0.5\n");
-    EXPECT_TRUE(metal.metal.from_reflectance);
-    EXPECT_EQ(metal.metal.reflectance.value.constant, 0.5f);
-    EXPECT_GT(metal.roughness.u.value, metal.roughness.v.value);
-    EXPECT_FLOAT_EQ(metal.roughness.u.value * metal.roughness.v.value, 0.25f * 0.25f);
+    EXPECT_EQ(material_of_kind<CoatedDiffuseMaterial>("Ks 1 1 1\nNs 9\nNi 1\n").coating.eta.constant, 1.5f);
     EXPECT_EQ(material_of_kind<ConductorMaterial>("Kd 0 0 0\nKs 0.75 0.75 0.75\nillum 3\n").roughness.u.value,
               0);
     EXPECT_EQ(material_of_kind<DielectricMaterial>("Kd 1 1 1\nd 0.1\nillum 4\nNi 1.33\n").eta.constant,
               1.33f);
     material_of_kind<DielectricMaterial>("Kd 0 0 0\nillum 7\n");
+    EXPECT_TRUE(warnings_.messages().empty());
+}
+
+TEST_F(ObjScene, PhysicallyBasedMaterials) {
+    picture("rough.png", {"Y"});
+    picture("cloth.png", {"R", "G", "B"});
+    const auto metal = material_of_kind<PrincipledMaterial>(
+        "Kd 0.5 0.5 0.5\nPm 1\nPr 0.25\naniso -0.5\nanisor 0.5\nNi 1.4\n");
+    EXPECT_EQ(metal.base_color.value.constant, 0.5f);
+    EXPECT_EQ(metal.metallic.value, 1);
+    EXPECT_EQ(metal.roughness.value, 0.25f);
+    EXPECT_EQ(metal.anisotropy.value, 0.5f);
+    EXPECT_FLOAT_EQ(metal.anisotropy_rotation.value, 1.5f * pi_f);
+    EXPECT_EQ(metal.ior.value, 1.4f);
+    const auto coated = material_of_kind<PrincipledMaterial>("Pc 0.5\nPcr 0.25\nNs 198\n");
+    EXPECT_EQ(coated.clearcoat.value, 0.5f);
+    EXPECT_EQ(coated.clearcoat_roughness.value, 0.25f);
+    EXPECT_FLOAT_EQ(coated.roughness.value, std::sqrt(0.1f)); // of Ns
+    EXPECT_EQ(material_of_kind<PrincipledMaterial>("Ps 0.5\n").sheen_color.value.constant, 0.5f);
+    const SceneDescription d =
+        load("newmtl a\nPr 0.5\nmap_Pr -s 2 2 rough.png\nmap_Pm rough.png\nmap_Ps cloth.png\n");
+    const auto& m = std::get<PrincipledMaterial>(d.scene.materials.at(0));
+    const auto& roughness = std::get<ImageTexture>(d.scene.float_textures.at(m.roughness.texture));
+    EXPECT_EQ(roughness.mapping.su, 2);
+    EXPECT_EQ(roughness.scale, 1);
+    EXPECT_EQ(d.scene.images[roughness.image].encoding(), ColorEncoding::linear());
+    EXPECT_EQ(std::get<ImageTexture>(d.scene.float_textures.at(m.metallic.texture)).image, roughness.image);
+    const auto& sheen = std::get<ImageTexture>(d.scene.spectrum_textures.at(m.sheen_color.texture));
+    EXPECT_EQ(d.scene.images[sheen.image].encoding(), ColorEncoding::srgb());
+    material_of_kind<DielectricMaterial>("Kd 0 0 0\nillum 7\nPr 0.5\n"); // glass
     EXPECT_TRUE(warnings_.messages().empty());
 }
 

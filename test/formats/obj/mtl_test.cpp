@@ -30,7 +30,7 @@ TEST_F(MtlFile, StatementsAreRead) {
     const std::vector<MtlMaterial> all =
         parse("# exported\nnewmtl dark oak\nKa 1 1 1\nKd 0.1 0.2 0.3\nKs 0.5\nKe 1 2 3\nNs 96\nNi 1.45\nd "
               "0.5\nillum 2\n"
-              "Pr 0.25\nPm 1\nPc 0.5\nPcr 0.1\naniso 0.2\nnewmtl second\nTr 0.25\n");
+              "Pr 0.25\nPm 1\nPc 0.5\nPcr 0.1\naniso 0.2\nanisor 0.25\nPs 0.75\nnewmtl second\nTr 0.25\n");
     ASSERT_EQ(all.size(), 2u);
     const MtlMaterial& m = all[0];
     EXPECT_EQ(m.name, "dark oak");
@@ -47,6 +47,8 @@ TEST_F(MtlFile, StatementsAreRead) {
     EXPECT_EQ(m.coat, 0.5f);
     EXPECT_EQ(m.coat_roughness, 0.1f);
     EXPECT_EQ(m.anisotropy, 0.2f);
+    EXPECT_EQ(m.anisotropy_turns, 0.25f);
+    EXPECT_EQ(*m.sheen, 0.75f);
     EXPECT_EQ(all[1].opacity, 0.75f);
     EXPECT_FALSE(all[1].diffuse);
     EXPECT_TRUE(warnings_.messages().empty());

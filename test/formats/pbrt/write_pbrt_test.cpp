@@ -176,6 +176,41 @@ TEST_F(WritePbrt, Textures) {
               Texts());
 }
 
+// What scenes of other formats have, in parameters that pbrt-v4 does not know.
+TEST_F(WritePbrt, OwnTextures) {
+    make_pictures();
+    EXPECT_EQ(world_round_trip(R"(
+        Texture "a" "float" "imagemap" "string filename" "rgba.png" "string channel" "green" "string wrap" "mirror"
+        Texture "b" "float" "imagemap" "string filename" "rgba.png" "string channel" "color" "bool vertexcolors" true
+        Texture "c" "spectrum" "imagemap" "string filename" "rgba.png" "rgb factor" [0.5 0.25 1]
+            "string swrap" "clamp" "string twrap" "mirror" "bool vertexcolors" true
+            "string mapping" "affine" "vector3 v1" [0.5 0.1 0] "vector3 v2" [-0.1 2 0] "float udelta" 0.3
+        Texture "d" "spectrum" "vertexcolor" "rgb factor" [0.2 0.3 0.4]
+        Texture "e" "float" "step" "texture tex" "a" "float edge" 0.25
+        Texture "n" "spectrum" "imagemap" "string filename" "map.exr" "rgb factor" [0.5 0.5 1] "float uscale" 2
+            "bool righthanded" true
+        Material "diffuse" "texture reflectance" "c" "texture normalmap" "n" Shape "sphere" "texture alpha" "e"
+        Material "diffuse" "texture reflectance" "d" "string normalmap" "map.exr"
+        Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0] "rgb colors" [1 0 0 0 1 0 0 0.5 1]
+            "float opacities" [1 0.5 0.25]
+        Material "conductor" "texture roughness" "b" "texture normalmap" "n" Shape "sphere")"),
+              Texts());
+}
+
+// A large mesh with colours of vertices.
+TEST_F(WritePbrt, ColoredMeshesBecomeFiles) {
+    SceneDescription d = parse("WorldBegin LightSource \"point\" Texture \"c\" \"spectrum\" \"vertexcolor\" "
+                               "Material \"diffuse\" \"texture reflectance\" \"c\" Shape \"loopsubdiv\" "
+                               "\"integer levels\" 4 \"point3 P\" [0 0 0 1 0 0 0 1 0 0 0 1] "
+                               "\"integer indices\" [0 2 1 0 1 3 1 2 3 0 3 2]");
+    TriangleMesh& mesh = d.scene.meshes.at(0);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        mesh.colors.push_back({0.25f, 0.5f, static_cast<float>(i)});
+        mesh.opacities.push_back(0.125f * static_cast<float>(i % 8));
+    }
+    EXPECT_EQ(test::expect_round_trip(d).messages(), Texts());
+}
+
 TEST_F(WritePbrt, Lights) {
     make_pictures();
     const std::string lights = R"(
