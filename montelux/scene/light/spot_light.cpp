@@ -1,5 +1,8 @@
 #include "montelux/scene/light/spot_light.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "montelux/mc/math/frame.h"
 #include "montelux/mc/warp/cone.h"
 #include "montelux/scene/light/light_context.h"
@@ -12,6 +15,10 @@ float SpotLight::falloff(Vec3f w) const {
     float c = dot(w, axis);
     if (c >= cos_falloff_start) return 1;
     if (c <= cos_total_width) return 0;
+    if (profile == SpotFalloff::linear) {
+        const float end = std::acos(cos_total_width), start = std::acos(cos_falloff_start);
+        return std::clamp((end - std::acos(c)) / (end - start), 0.0f, 1.0f);
+    }
     float t = (c - cos_total_width) / (cos_falloff_start - cos_total_width);
     return t * t * (3 - 2 * t);
 }
@@ -63,9 +70,14 @@ EmissionPdf SpotLight::pdf_le(const LightContext&, const LightHit&, Vec3f w) con
 
 void SpotLight::powers(const LightContext& context, std::span<double> parts) const {
     const double flux = double(scale) * visible_mean(context.scene.spectrum(spectrum));
-    parts[0] =
-        2 * pi * flux *
-        ((1 - double(cos_falloff_start)) + 0.5 * (double(cos_falloff_start) - double(cos_total_width)));
+    // The integral of the falloff over the cosine.
+    double share =
+        (1 - double(cos_falloff_start)) + 0.5 * (double(cos_falloff_start) - double(cos_total_width));
+    if (profile == SpotFalloff::linear && cos_falloff_start > cos_total_width) {
+        const double end = std::acos(double(cos_total_width)), start = std::acos(double(cos_falloff_start));
+        share = 1 - (std::sin(end) - std::sin(start)) / (end - start);
+    }
+    parts[0] = 2 * pi * flux * share;
 }
 
 std::optional<LightBounds> SpotLight::bounds(const LightContext&, Index) const {
