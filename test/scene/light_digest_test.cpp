@@ -33,6 +33,7 @@ TEST(SceneDigest, LightsCount) {
          [](Scene& s) { std::get<AreaLight>(s.lights[0]).picture = 0; },
          [](Scene& s) { std::get<PointLight>(s.lights[1]).position.x = 1; },
          [](Scene& s) { std::get<SpotLight>(s.lights[2]).cos_total_width = 0.5f; },
+         [](Scene& s) { std::get<SpotLight>(s.lights[2]).picture = 0; },
          [](Scene& s) { std::get<SpotLight>(s.lights[2]).profile = SpotFalloff::linear; },
          [](Scene& s) {
              std::get<DistantLight>(s.lights[3]).to_light = {1, 0, 0};

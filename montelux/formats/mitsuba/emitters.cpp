@@ -136,7 +136,6 @@ void LightReader::add_point(Plugin& emitter) {
 }
 
 void LightReader::add_spot(Plugin& emitter) {
-    if (emitter.has("texture")) emitter.error("a spot light with a texture is not supported");
     const Transform to_world = turn(emitter);
     const double end = emitter.number("cutoff_angle", 20, 0, 180);
     const double start = emitter.number("beam_width", 0.75 * end, 0, 180);
@@ -147,6 +146,17 @@ void LightReader::add_spot(Plugin& emitter) {
     light.cos_falloff_start = static_cast<float>(std::cos(start * pi / 180));
     light.cos_total_width = static_cast<float>(std::cos(end * pi / 180));
     light.profile = SpotFalloff::linear;
+    if (const std::optional<Plugin> texture = picture(emitter, "texture")) {
+        if (!(end < 90)) emitter.error("the picture of a spot light needs a 'cutoff_angle' below 90 degrees");
+        // The square around the cone.
+        const auto size = static_cast<float>(1 / std::tan(end * pi / 180));
+        light.picture_x = size * Vec3f(direction(emitter, to_world.vector(Vec3d(1, 0, 0))));
+        light.picture_y = size * Vec3f(direction(emitter, to_world.vector(Vec3d(0, 1, 0))));
+        light.picture =
+            builder_.add_light_picture(picture_of_texture(*texture), texture->describe(), texture->at());
+    } else if (emitter.has("texture")) {
+        emitter.error("'texture' of a spot light is no picture; expected a 'bitmap'");
+    }
     builder_.add_light(light, emitter.at());
 }
 

@@ -177,6 +177,7 @@ void SceneWriter::light(std::size_t i) {
                 if (!delta) warn(what, "the angles of its cone are kept to seven digits");
                 if (l.profile != SpotFalloff::smooth)
                     warn(what, "its falloff, linear in the angle, becomes pbrt's smooth one");
+                if (l.picture != no_index) warn(what, "its picture is left out");
                 d.number("coneangle",
                          total.value_or(static_cast<float>(std::acos(double{l.cos_total_width}) * 180 / pi)));
                 d.number("conedeltaangle",

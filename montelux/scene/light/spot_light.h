@@ -27,9 +27,17 @@ struct SpotLight {
     float cos_falloff_start = 1, cos_total_width = 1;
     Index motion = no_index; // MovableLight
     SpotFalloff profile = SpotFalloff::smooth;
+    // If given, into Scene::environments: the intensity is multiplied by the colours of this picture, as reflectances
+    // (bilinear). Its column and row along w, as shares of its width and height, are
+    // 1/2 + (dot(w, picture_x), dot(w, picture_y)) / (2 dot(w, axis)).
+    Index picture = no_index;
+    Vec3f picture_x{}, picture_y{};
 
     // Share of the intensity along the unit vector w.
     float falloff(Vec3f w) const;
+
+    // Intensity along the unit vector w.
+    SampledSpectrum intensity(const LightContext& context, Vec3f w, const SampledWavelengths& lambda) const;
 
     SpotLight moved(const Transform& world_from_own) const;
 

@@ -9,6 +9,8 @@
 #include "montelux/mc/math/constants.h"
 #include "montelux/scene/build/emission.h"
 #include "montelux/scene/light/environment/environment_grid.h"
+#include "montelux/scene/light/light_context.h"
+#include "montelux/scene/scene_tables.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
 namespace montelux {
@@ -102,6 +104,29 @@ TEST(MitsubaEmitters, Spot) {
     EXPECT_NE(scene_text_error(emitter("spot", R"(<float name="beam_width" value="30"/>)")).find("wider"),
               std::string::npos);
     EXPECT_NE(scene_text_error(emitter("spot", R"(<texture type="checkerboard" name="texture"/>)")), "");
+}
+
+// The picture fills the square around the cone: columns along x, rows along y.
+TEST(MitsubaEmitters, SpotWithAPicture) {
+    const WholeScene s = load_scene_text(
+        emitter("spot", R"(<float name="cutoff_angle" value="45"/><float name="beam_width" value="45"/>
+            <texture type="bitmap" name="texture"><string name="filename" value="p.pfm"/></texture>)"),
+        picture(2, {0.1f, 0.2f, 0.3f, 0.4f}));
+    const auto& spot = light<SpotLight>(s);
+    const SceneTables tables(s.scene());
+    const SceneView view = tables.view();
+    const SampledWavelengths lambda = SampledWavelengths::sample_visible(0.4f);
+    const SampledSpectrum plain = view.sample(spot.spectrum, lambda) * spot.scale;
+    const auto share = [&](float x, float y) {
+        return spot.intensity({view, 0}, normalize(Vec3f(x, y, 1)), lambda)[0] / plain[0];
+    };
+    // At the centres of the texels, and between them.
+    EXPECT_NEAR(share(-0.5f, -0.5f), 0.1f, 1e-4f);
+    EXPECT_NEAR(share(0.5f, -0.5f), 0.2f, 1e-4f);
+    EXPECT_NEAR(share(-0.5f, 0.5f), 0.3f, 1e-4f);
+    EXPECT_NEAR(share(0.5f, 0.5f), 0.4f, 1e-4f);
+    EXPECT_NEAR(share(0, -0.5f), 0.15f, 1e-4f);
+    EXPECT_EQ(share(0.8f, 0.8f), 0); // beyond the cone
 }
 
 TEST(MitsubaEmitters, Directional) {
