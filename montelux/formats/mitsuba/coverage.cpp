@@ -60,7 +60,7 @@ constexpr auto table = std::to_array<PluginCoverage>({
     {"emitter", "constant"},
     {"emitter", "envmap"},
     {"emitter", "spot"},
-    {"emitter", "projector", in_part, "colours and pictures, without interpolation"},
+    {"emitter", "projector", in_part, "colours and pictures"},
     {"emitter", "directional"},
     {"emitter", "directionalarea", none, "paths from the camera cannot meet its light"},
     {"emitter", "sunsky", otherwise, "our own model of the sky"},

@@ -15,13 +15,18 @@ const ProjectionTable& table_of(const LightContext& context) {
     return context.tables().projection(context.light);
 }
 
-// By the colour of the nearest texel. `w`: in the light's space, of any length.
+// `w`: in the light's space, of any length.
 SampledSpectrum intensity(const LightContext& context, const ProjectionLight& light, Vec2f texels, Vec3f w,
                           const SampledWavelengths& lambda) {
-    const auto x = static_cast<std::size_t>(texels.x), y = static_cast<std::size_t>(texels.y);
     const auto width = static_cast<std::size_t>(table_of(context).screen().width());
-    const float white = intensity_of_white(light.profile, normalize(w).z);
-    return context.tables().texel_radiance(light.environment, y * width + x, lambda) * (light.scale * white);
+    if (light.profile == ProjectionProfile::irradiance) {
+        const auto height = static_cast<float>(table_of(context).screen().height());
+        const Point2f uv{texels.x / static_cast<float>(width), 1 - texels.y / height};
+        return context.tables().picture_radiance(light.environment, uv, lambda) *
+               (light.scale * intensity_of_white(light.profile, normalize(w).z));
+    }
+    const auto x = static_cast<std::size_t>(texels.x), y = static_cast<std::size_t>(texels.y);
+    return context.tables().texel_radiance(light.environment, y * width + x, lambda) * light.scale;
 }
 
 } // namespace

@@ -29,6 +29,21 @@ double weighted(const Image& picture, std::size_t texel, Vec3d weights) {
     return sum;
 }
 
+// Of each texel and its neighbours.
+Image blurred(const Image& picture) {
+    Image result(picture.width(), picture.height(), {"R", "G", "B"});
+    for (int y = 0; y < picture.height(); ++y)
+        for (int x = 0; x < picture.width(); ++x)
+            for (int c = 0; c < 3; ++c) {
+                float sum = 0;
+                for (int k = 0; k < 9; ++k)
+                    sum += picture.value(std::clamp(x + k % 3 - 1, 0, picture.width() - 1),
+                                         std::clamp(y + k / 3 - 1, 0, picture.height() - 1), c);
+                result.set(x, y, c, sum / 9);
+            }
+    return result;
+}
+
 std::vector<double> texel_flux(const Image& picture, const ProjectionScreen& screen,
                                ProjectionProfile profile, Vec3d weights) {
     std::vector<double> flux(picture.pixel_count());
@@ -62,7 +77,9 @@ Vec3f ProjectionScreen::direction(Vec2f texels) const {
 
 ProjectionTable::ProjectionTable(const Image& picture, float fov, ProjectionProfile profile)
     : screen_(picture.width(), picture.height(), fov),
-      density_(std::span<const double>(texel_flux(picture, screen_, profile, Vec3d(1, 1, 1) / 3)),
+      density_(std::span<const double>(
+                   texel_flux(profile == ProjectionProfile::irradiance ? blurred(picture) : picture, screen_,
+                              profile, Vec3d(1, 1, 1) / 3)),
                static_cast<std::uint32_t>(picture.width()), static_cast<std::uint32_t>(picture.height()),
                {0, 0}, {static_cast<double>(picture.width()), static_cast<double>(picture.height())}) {}
 

@@ -12,8 +12,10 @@ namespace montelux {
 
 // What is even about the light of a white picture.
 enum class ProjectionProfile : std::uint8_t {
-    intensity, // the same in all directions, as in pbrt-v4
-    irradiance, // the same all over a plane across the axis: the intensity is divided by the cubed cosine to the axis
+    intensity, // the same in all directions, as in pbrt-v4; the colour is that of the nearest texel
+    // The same all over a plane across the axis, as in Mitsuba 3: the intensity is divided by the cubed cosine to the
+    // axis. Colours are bilinear.
+    irradiance,
 };
 
 // The picture fills a rectangle of the plane z = 1 around the z axis; `fov` is the angle of its shorter side,
@@ -42,7 +44,8 @@ constexpr float intensity_of_white(ProjectionProfile profile, float z) {
     return profile == ProjectionProfile::irradiance ? 1 / (z * z * z) : 1;
 }
 
-// Samples texels in proportion to the mean of their colours times their solid angle and intensity_of_white.
+// Samples texels in proportion to the mean of their colours times their solid angle and intensity_of_white; where colours
+// are bilinear, of the texels around, too.
 class ProjectionTable {
   public:
     struct Sample {
