@@ -13,9 +13,11 @@
 #include "montelux/scene/bsdf/measured_brdf.h"
 #include "montelux/scene/bsdf/multiscatter_conductor.h"
 #include "montelux/scene/bsdf/multiscatter_dielectric.h"
+#include "montelux/scene/bsdf/plastic.h"
 #include "montelux/scene/bsdf/principled.h"
 #include "montelux/scene/bsdf/subsurface_boundary.h"
 #include "montelux/scene/bsdf/thin_dielectric.h"
+#include "montelux/scene/bsdf/tinted.h"
 
 namespace montelux {
 
@@ -25,6 +27,7 @@ using UntiltedBsdf =
                  MeasuredBsdf, SubsurfaceBsdf, MultiscatterConductorBsdf, MultiscatterDielectricBsdf,
                  LayeredBsdf<DiffuseBsdf, MultiscatterDielectricBsdf>,
                  LayeredBsdf<MultiscatterConductorBsdf, MultiscatterDielectricBsdf>, PrincipledBsdf<false>,
-                 PrincipledBsdf<true>>;
+                 PrincipledBsdf<true>, TintedConductorBsdf, TintedDielectricBsdf, TintedThinDielectricBsdf,
+                 PlasticBsdf>;
 
 } // namespace montelux

@@ -14,7 +14,9 @@
 #include "montelux/scene/material/interface_material.h"
 #include "montelux/scene/material/measured_material.h"
 #include "montelux/scene/material/mix_material.h"
+#include "montelux/scene/material/plastic_material.h"
 #include "montelux/scene/material/principled_material.h"
+#include "montelux/scene/material/sided_material.h"
 #include "montelux/scene/material/subsurface_material.h"
 #include "montelux/scene/material/thin_dielectric_material.h"
 
@@ -23,7 +25,7 @@ namespace montelux {
 using Material = std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, ThinDielectricMaterial,
                               CoatedDiffuseMaterial, CoatedConductorMaterial, DiffuseTransmissionMaterial,
                               InterfaceMaterial, MixMaterial, HairMaterial, MeasuredMaterial,
-                              SubsurfaceMaterial, PrincipledMaterial>;
+                              SubsurfaceMaterial, PrincipledMaterial, PlasticMaterial, SidedMaterial>;
 static_assert(std::is_trivially_copyable_v<Material>);
 
 } // namespace montelux

@@ -60,7 +60,7 @@ class ParameterEvaluator {
         }
         b.eta /= outside;
         b.k /= outside;
-        b.ggx = roughness(r);
+        b.normals = roughness(r);
         return b;
     }
 
@@ -104,6 +104,8 @@ class ParameterEvaluator {
         return {&scene_.measured_brdfs[b.index], lambda_.lambda};
     }
 
+    // Of a PlasticMaterial.
+    const PlasticTable& plastic_table() const { return scene_.plastic(material_); }
     // Null where the closed form of CoatingTable does not hold for the material.
     const CoatingTable* coating_table() const { return widen_ ? nullptr : scene_.coating(material_); }
 

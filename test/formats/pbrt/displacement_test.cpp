@@ -109,7 +109,8 @@ TEST_F(PbrtDisplacement, ReadsPicturesAndNestedTextures) {
 
 TEST_F(PbrtDisplacement, MistakesAreNamed) {
     EXPECT_NE(error(slope + shape + "\"float edgelength\" 0").find("must be positive"), std::string::npos);
-    EXPECT_NE(error(slope + shape + "\"float edgelength\" 1e-6").find("leave of 33554432"), std::string::npos);
+    EXPECT_NE(error(slope + shape + "\"float edgelength\" 1e-6").find("leave of 33554432"),
+              std::string::npos);
     EXPECT_NE(error(shape).find("no float texture 'h'"), std::string::npos);
     EXPECT_NE(
         error(slope + "Shape \"plymesh\" \"string filename\" \"bare.ply\" \"texture displacement\" \"h\"")

@@ -12,7 +12,8 @@ namespace {
 
 const char* const all_materials[] = {
     "diffuse",         "conductor",           "dielectric", "thindielectric", "coateddiffuse",
-    "coatedconductor", "diffusetransmission", "interface",  "hair",           "principled"};
+    "coatedconductor", "diffusetransmission", "interface",  "hair",           "principled",
+    "plastic"};
 
 TEST(PbrtMaterials, EachHasNormalMapAndBumps) {
     TemporaryFolder folder;
@@ -58,7 +59,7 @@ TEST(PbrtMaterials, NormalMapsThatAreNoneSayWhere) {
 }
 
 TEST(PbrtMaterials, WhatHasNoSurfaceHasNoBumps) {
-    for (const std::string type : {"interface", "mix"}) {
+    for (const std::string type : {"interface", "mix", "sided"}) {
         Warnings warnings;
         test::parse(R"(WorldBegin
 Texture "t" "float" "fbm"
