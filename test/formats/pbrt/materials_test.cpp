@@ -246,6 +246,18 @@ TEST(PbrtMaterials, Sided) {
         "scene:2:18:");
 }
 
+// Parts of parts are visited once each: a long chain takes no time.
+TEST(PbrtMaterials, InteriorsOfNestedMaterials) {
+    std::string chain = "MakeNamedMaterial \"m0\" \"string type\" \"subsurface\"\n";
+    for (int i = 1; i < 60; ++i) {
+        const std::string part = "\"m" + std::to_string(i - 1) + "\"";
+        chain += "MakeNamedMaterial \"m" + std::to_string(i) +
+                 "\" \"string type\" \"sided\" \"string front\" " + part + " \"string back\" " + part + "\n";
+    }
+    const SceneDescription d = parse_world(chain + "NamedMaterial \"m59\" Shape \"sphere\"");
+    EXPECT_EQ(d.scene.shapes.at(0).media.inside, 0u);
+}
+
 TEST(PbrtMaterials, Measured) {
     TemporaryFolder folder;
     const std::vector<std::uint8_t> bytes =
