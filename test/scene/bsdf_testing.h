@@ -74,6 +74,37 @@ inline PlasticBsdf plastic(float alpha, NormalDistribution distribution, Sampled
     return {&table, {{alpha, alpha}, distribution}, table.base_albedo(rho, nonlinear), SampledSpectrum(1)};
 }
 
+// With all lobes; the share `clear` of the dielectric refracts.
+inline DisneySolid disney_solid(float clear) {
+    constexpr float metallic = 0.3f;
+    const SampledSpectrum color(0.3f, 0.4f, 0.5f, 0.6f);
+    DisneySolid l;
+    l.base = {((1 - metallic) * (1 - clear)) * color, SampledSpectrum(0.2f), 0.6f, 0.5f};
+    l.normals = {{0.5f, 0.3f}, NormalDistribution::ggx_separable};
+    l.metallic = metallic;
+    l.transmitting = (1 - metallic) * clear;
+    l.tinted = 0.4f;
+    l.color = color;
+    l.tinted_f0 = 0.04f * color;
+    l.coat = 0.8f;
+    l.coat_alpha = 0.1f;
+    return l;
+}
+
+inline DisneySheet disney_sheet() {
+    const SampledSpectrum color(0.3f, 0.4f, 0.5f, 0.6f);
+    DisneySheet l;
+    l.base = {0.3f * color, SampledSpectrum(0.2f), 0.6f, 0.5f};
+    l.reflecting = {{0.5f, 0.3f}, NormalDistribution::ggx_separable};
+    l.crossing = {{0.3f, 0.2f}, NormalDistribution::ggx_separable};
+    l.clear = 0.4f;
+    l.tinted = 0.4f;
+    l.color = color;
+    l.tinted_f0 = 0.04f * color;
+    l.transmitting = 0.3f * color;
+    return l;
+}
+
 inline LayeredBsdf<DiffuseBsdf> layered_diffuse(float alpha, float rho) {
     LayeredBsdf<DiffuseBsdf> b;
     b.coat = {1.5f, {alpha, alpha}};
@@ -289,6 +320,9 @@ inline std::vector<BsdfCase> bsdf_cases() {
         {"plastic_separable",
          [=] { return plastic(0.3f, NormalDistribution::ggx_separable, SampledSpectrum(1)); }},
         {"plastic_dark", [=] { return plastic(0.2f, NormalDistribution::ggx, SampledSpectrum(0.1f)); }},
+        {"disney", [=] { return DisneyOpaqueBsdf{disney_solid(0)}; }, true, true, true},
+        {"disney_glass", [=] { return DisneySolidBsdf{disney_solid(0.7f)}; }},
+        {"disney_sheet", [=] { return DisneySheetBsdf{disney_sheet()}; }, true, false},
         {"hair_glossy", [=] { return HairBsdf::make(0, 1.55f, 0.1f * eta, 0.15f, 0.2f, 0); }, true, false},
     };
 }

@@ -47,6 +47,41 @@ TEST(MitsubaValues, RoughDielectric) {
     expect_values(made(m), {0.00964873f, 0.251959f, 0.00991726f, 0.0607287f, 0.627625f, 6.36796f}, "GGX");
 }
 
+TEST(MitsubaValues, Principled) {
+    expect_values(made(DisneyMaterial{.base_color = {0.36f}}), {0.0743977f, 0.36436f, 0.116933f, 0, 0, 0},
+                  "default");
+    const DisneyMaterial lacquer{.base_color = {0.36f},
+                                 .metallic = {0.3f},
+                                 .roughness = {0.4f},
+                                 .anisotropic = {0.6f},
+                                 .eta = 2 / (1 - std::sqrt(0.08f * 0.7f)) - 1, // specular 0.7
+                                 .sheen = {0.5f},
+                                 .clearcoat = {0.8f},
+                                 .clearcoat_gloss = {0.3f}};
+    expect_values(made(lacquer), {0.0529857f, 0.35432f, 0.0940701f, 0, 0, 0}, "lacquer");
+    const DisneyMaterial glass{.base_color = {0.36f},
+                               .metallic = {0.2f},
+                               .eta = 1.4f,
+                               .flatness = {0.7f},
+                               .specular_transmission = {0.6f}};
+    expect_values(made(glass), {0.0377407f, 0.410094f, 0.0487602f, 0.0137041f, 0.358114f, 2.235f}, "glass");
+    // Grey has no tint.
+    DisneyMaterial tinted = lacquer;
+    tinted.sheen_tint = {1};
+    expect_values(made(tinted), {0.0529857f, 0.35432f, 0.0940701f, 0, 0, 0}, "tinted sheen");
+}
+
+TEST(MitsubaValues, PrincipledThin) {
+    const DisneyThinMaterial m{.base_color = {0.36f},
+                               .anisotropic = {0.3f},
+                               .eta = {1.4f},
+                               .sheen = {0.5f},
+                               .flatness = {0.4f},
+                               .specular_transmission = {0.6f},
+                               .diffuse_transmission = {0.4f}}; // Mitsuba's diff_trans is 0.8
+    expect_values(made(m), {0.0179583f, 0.157218f, 0.0263103f, 0.125535f, 0.0357154f, 0.57828f}, "thin");
+}
+
 // Mitsuba's sum for the internal reflectance R of rough plastic has 64 points of equal weight from 0 to 1, which gives
 // 63/64 R + R(1)/64 for the reflectance R(1) along the normal.
 TEST(MitsubaValues, RoughPlastic) {
@@ -72,6 +107,29 @@ TEST(MitsubaValues, RoughPlastic) {
     expect(0.1f, NormalDistribution::ggx_separable, 0.112832f, 0.631503f, 1e-3f);
     expect(0.3f, NormalDistribution::ggx_separable, 0.0910974f, 0.306385f, 1e-3f);
     expect(0.6f, NormalDistribution::ggx_separable, 0.0649612f, 0.0797083f, 1e-3f);
+}
+
+// A tint keeps the hue and has luminance 1.
+TEST(DisneyMaterial, TintsHaveUnitLuminance) {
+    SceneView view;
+    view.spectra = palette();
+    const TextureContext context{};
+    double y = 0;
+    constexpr int n = 200;
+    for (int i = 0; i < n; ++i) {
+        SampledWavelengths lambda = SampledWavelengths::sample_visible((static_cast<float>(i) + 0.5f) / n);
+        const ParameterEvaluator at(view, 0, context, lambda);
+        const SampledSpectrum tint = at.tint({red_paint}, 1);
+        for (int k = 0; k < 4; ++k) {
+            const auto nm = static_cast<std::size_t>(lambda.lambda[k] - lambda_min + 0.5f);
+            y += static_cast<double>(tint[k] * cie_y[nm] / lambda.pdf[k]) / cie_y_integral / (4 * n);
+        }
+        EXPECT_EQ(at.tint({red_paint}, 0), SampledSpectrum(1));
+        EXPECT_EQ(at.tint({0.0f}, 1), SampledSpectrum(1));
+        const SampledSpectrum half = at.tint({red_paint}, 0.5f);
+        EXPECT_NEAR(half[1], 0.5f + 0.5f * tint[1], 1e-6f);
+    }
+    EXPECT_NEAR(y, 1, 0.02); // eight wavelengths
 }
 
 } // namespace

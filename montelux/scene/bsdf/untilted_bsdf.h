@@ -8,6 +8,7 @@
 #include "montelux/scene/bsdf/dielectric.h"
 #include "montelux/scene/bsdf/diffuse.h"
 #include "montelux/scene/bsdf/diffuse_transmission.h"
+#include "montelux/scene/bsdf/disney.h"
 #include "montelux/scene/bsdf/hair.h"
 #include "montelux/scene/bsdf/layered.h"
 #include "montelux/scene/bsdf/measured_brdf.h"
@@ -28,6 +29,6 @@ using UntiltedBsdf =
                  LayeredBsdf<DiffuseBsdf, MultiscatterDielectricBsdf>,
                  LayeredBsdf<MultiscatterConductorBsdf, MultiscatterDielectricBsdf>, PrincipledBsdf<false>,
                  PrincipledBsdf<true>, TintedConductorBsdf, TintedDielectricBsdf, TintedThinDielectricBsdf,
-                 PlasticBsdf>;
+                 PlasticBsdf, DisneySolidBsdf, DisneyOpaqueBsdf, DisneySheetBsdf>;
 
 } // namespace montelux

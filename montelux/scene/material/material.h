@@ -10,6 +10,7 @@
 #include "montelux/scene/material/dielectric_material.h"
 #include "montelux/scene/material/diffuse_material.h"
 #include "montelux/scene/material/diffuse_transmission_material.h"
+#include "montelux/scene/material/disney_material.h"
 #include "montelux/scene/material/hair_material.h"
 #include "montelux/scene/material/interface_material.h"
 #include "montelux/scene/material/measured_material.h"
@@ -22,10 +23,11 @@
 
 namespace montelux {
 
-using Material = std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, ThinDielectricMaterial,
-                              CoatedDiffuseMaterial, CoatedConductorMaterial, DiffuseTransmissionMaterial,
-                              InterfaceMaterial, MixMaterial, HairMaterial, MeasuredMaterial,
-                              SubsurfaceMaterial, PrincipledMaterial, PlasticMaterial, SidedMaterial>;
+using Material =
+    std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, ThinDielectricMaterial,
+                 CoatedDiffuseMaterial, CoatedConductorMaterial, DiffuseTransmissionMaterial,
+                 InterfaceMaterial, MixMaterial, HairMaterial, MeasuredMaterial, SubsurfaceMaterial,
+                 PrincipledMaterial, PlasticMaterial, SidedMaterial, DisneyMaterial, DisneyThinMaterial>;
 static_assert(std::is_trivially_copyable_v<Material>);
 
 } // namespace montelux

@@ -203,6 +203,42 @@ TEST(PbrtMaterials, Plastic) {
               "scene:2:20:");
 }
 
+TEST(PbrtMaterials, Disney) {
+    auto m = material<DisneyMaterial>("Material \"disney\"");
+    EXPECT_EQ(m.of(m.base_color.value)(500), 0.5f);
+    EXPECT_EQ(m.roughness.value, 0.5f);
+    EXPECT_EQ(m.eta, 1.5f);
+    for (const FloatParameter& p : {m.metallic, m.anisotropic, m.specular_tint, m.sheen, m.sheen_tint,
+                                    m.flatness, m.clearcoat, m.clearcoat_gloss, m.specular_transmission})
+        EXPECT_EQ(p.value, 0);
+    m = material<DisneyMaterial>(
+        "Material \"disney\" \"rgb basecolor\" [ 0.1 0.2 0.3 ] \"float metallic\" 0.1 \"float roughness\" "
+        "0.2 "
+        "\"float anisotropic\" 0.3 \"float eta\" 1.7 \"float speculartint\" 0.4 \"float sheen\" 0.5 \"float "
+        "sheentint\" 0.6 \"float flatness\" 0.7 \"float clearcoat\" 0.8 \"float clearcoatgloss\" 0.9 \"float "
+        "speculartransmission\" 0.15");
+    expect_same_values(m.of(m.base_color.value),
+                       Spectrum(RgbAlbedoSpectrum(RgbColorSpace::srgb(), {0.1f, 0.2f, 0.3f})));
+    EXPECT_EQ(m.metallic.value, 0.1f);
+    EXPECT_EQ(m.roughness.value, 0.2f);
+    EXPECT_EQ(m.anisotropic.value, 0.3f);
+    EXPECT_EQ(m.eta, 1.7f);
+    EXPECT_EQ(m.specular_tint.value, 0.4f);
+    EXPECT_EQ(m.sheen.value, 0.5f);
+    EXPECT_EQ(m.sheen_tint.value, 0.6f);
+    EXPECT_EQ(m.flatness.value, 0.7f);
+    EXPECT_EQ(m.clearcoat.value, 0.8f);
+    EXPECT_EQ(m.clearcoat_gloss.value, 0.9f);
+    EXPECT_EQ(m.specular_transmission.value, 0.15f);
+    const auto sheet = material<DisneyThinMaterial>(
+        "Material \"disneythin\" \"float eta\" 1.3 \"float diffusetransmission\" 0.4 \"float "
+        "speculartransmission\" 0.3");
+    EXPECT_EQ(sheet.eta.value, 1.3f);
+    EXPECT_EQ(sheet.diffuse_transmission.value, 0.4f);
+    EXPECT_EQ(sheet.specular_transmission.value, 0.3f);
+    EXPECT_EQ(sheet.roughness.value, 0.5f);
+}
+
 TEST(PbrtMaterials, DistributionsAndFactors) {
     const auto metal = material<ConductorMaterial>(
         "Material \"conductor\" \"string distribution\" \"ggx-separable\" \"spectrum specularreflectance\" "

@@ -10,10 +10,19 @@
 namespace montelux {
 namespace {
 
-const char* const all_materials[] = {
-    "diffuse",         "conductor",           "dielectric", "thindielectric", "coateddiffuse",
-    "coatedconductor", "diffusetransmission", "interface",  "hair",           "principled",
-    "plastic"};
+const char* const all_materials[] = {"diffuse",
+                                     "conductor",
+                                     "dielectric",
+                                     "thindielectric",
+                                     "coateddiffuse",
+                                     "coatedconductor",
+                                     "diffusetransmission",
+                                     "interface",
+                                     "hair",
+                                     "principled",
+                                     "plastic",
+                                     "disney",
+                                     "disneythin"};
 
 TEST(PbrtMaterials, EachHasNormalMapAndBumps) {
     TemporaryFolder folder;

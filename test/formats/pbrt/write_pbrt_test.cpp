@@ -145,6 +145,8 @@ TEST_F(WritePbrt, Materials) {
         NamedMaterial "sides" Shape "sphere"
         Material "plastic" "float alpha" 0.1 "string distribution" "ggx-separable" "bool nonlinear" true Shape "sphere"
         Material "conductor" "string distribution" "beckmann" "rgb specularreflectance" [0.1 0.2 0.3] Shape "sphere"
+        Material "disney" "float clearcoat" 0.3 "float sheen" 1.5 "float eta" 1.3 Shape "sphere"
+        Material "disneythin" "float diffusetransmission" 0.3 Shape "sphere"
         Material "dielectric" "rgb speculartransmittance" [0.1 0.2 0.3] Shape "sphere"
         Texture "marbled" "spectrum" "marble"
         Material "interface" Shape "sphere"
