@@ -8,12 +8,20 @@ namespace montelux {
 
 namespace {
 
-// The material at a point: mixes choose one of theirs. Scenes without cycles end this (check_references.h).
+// The material at a point, or no_index for black: mixes and sides choose one of theirs. Scenes without cycles end this
+// (check_references.h).
 Index material_at(const SceneView& scene, const SurfacePoint& surface, Vec3f wo,
                   const TextureContext& context) {
     Index index = surface.shape->material;
-    while (const auto* mix = std::get_if<MixMaterial>(&scene.materials[index]))
-        index = mix->choose(evaluate(scene, mix->amount, context), surface.p, wo, index);
+    while (index != no_index) {
+        const Material& material = scene.materials[index];
+        if (const auto* mix = std::get_if<MixMaterial>(&material))
+            index = mix->choose(evaluate(scene, mix->amount, context), surface.p, wo, index);
+        else if (const auto* sided = std::get_if<SidedMaterial>(&material))
+            index = sided->side(dot(wo, surface.ng) > 0);
+        else
+            break;
+    }
     return index;
 }
 
@@ -39,6 +47,7 @@ Bsdf tilted(const Bsdf& bsdf, Normal3f normal) {
 SurfaceBsdf plain_bsdf(const SceneView& scene, const SurfacePoint& surface, Vec3f wo,
                        const TextureContext& context, SampledWavelengths& lambda, bool widen) {
     const Index index = material_at(scene, surface, wo, context);
+    if (index == no_index) return {DiffuseBsdf{SampledSpectrum(0)}, Frame::from_normal(surface.ns)};
     const ParameterEvaluator at(scene, index, context, lambda, widen);
     return std::visit(
         [&](const auto& m) -> SurfaceBsdf {

@@ -140,6 +140,14 @@ TEST_F(WritePbrt, Materials) {
         MakeNamedMaterial "both" "string type" "mix" "string materials" ["red" "unused"] "float amount" 0.3
         MakeNamedMaterial "unused" "string type" "dielectric"
         NamedMaterial "both" Shape "sphere" Shape "disk"
+        MakeNamedMaterial "sides" "string type" "sided" "string front" "both" "string back" "black"
+        MakeNamedMaterial "black" "string type" "sided" "string back" "red"
+        NamedMaterial "sides" Shape "sphere"
+        Material "plastic" "float alpha" 0.1 "string distribution" "ggx-separable" "bool nonlinear" true Shape "sphere"
+        Material "conductor" "string distribution" "beckmann" "rgb specularreflectance" [0.1 0.2 0.3] Shape "sphere"
+        Material "disney" "float clearcoat" 0.3 "float sheen" 1.5 "float eta" 1.3 Shape "sphere"
+        Material "disneythin" "float diffusetransmission" 0.3 Shape "sphere"
+        Material "dielectric" "rgb speculartransmittance" [0.1 0.2 0.3] Shape "sphere"
         Texture "marbled" "spectrum" "marble"
         Material "interface" Shape "sphere"
         ColorSpace "rec2020" Material "diffuse" "rgb reflectance" [0.123456 0.2 0.7] Shape "sphere")"),
