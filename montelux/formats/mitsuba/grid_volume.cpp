@@ -10,7 +10,7 @@
 namespace montelux::mitsuba {
 namespace {
 
-constexpr std::size_t header_bytes = 48;
+constexpr std::size_t volume_header_bytes = 48;
 
 // Numbers are little-endian, as the machines that this is compiled for.
 template <typename T>
@@ -23,7 +23,7 @@ T number_at(std::span<const std::uint8_t> bytes, std::size_t offset) {
 } // namespace
 
 GridVolume read_grid_volume(std::span<const std::uint8_t> bytes, const std::string& name) {
-    if (bytes.size() < header_bytes || bytes[0] != 'V' || bytes[1] != 'O' || bytes[2] != 'L')
+    if (bytes.size() < volume_header_bytes || bytes[0] != 'V' || bytes[1] != 'O' || bytes[2] != 'L')
         throw Error(name, "is no volume file (.vol)");
     if (bytes[3] != 3)
         throw Error(name, "has version " + std::to_string(bytes[3]) + " of the format; expected 3");
@@ -31,7 +31,7 @@ GridVolume read_grid_volume(std::span<const std::uint8_t> bytes, const std::stri
         throw Error(name,
                     "has samples of encoding " + std::to_string(encoding) + "; expected 1, 32-bit floats");
     GridVolume volume;
-    const std::size_t samples = (bytes.size() - header_bytes) / sizeof(float);
+    const std::size_t samples = (bytes.size() - volume_header_bytes) / sizeof(float);
     std::size_t count = 1;
     const auto multiply = [&](std::int32_t factor, const std::string& what) {
         if (factor < 1) throw Error(name, "has " + std::to_string(factor) + " " + what);
@@ -53,7 +53,7 @@ GridVolume read_grid_volume(std::span<const std::uint8_t> bytes, const std::stri
         volume.upper[a] = number_at<float>(bytes, 36 + 4 * static_cast<std::size_t>(a));
     }
     volume.values.resize(count);
-    std::memcpy(volume.values.data(), bytes.data() + header_bytes, count * sizeof(float));
+    std::memcpy(volume.values.data(), bytes.data() + volume_header_bytes, count * sizeof(float));
     if (!std::ranges::all_of(volume.values, [](float v) { return std::isfinite(v); }))
         throw Error(name, "has a sample that is not finite");
     return volume;
