@@ -15,6 +15,12 @@ namespace montelux::mitsuba {
 namespace {
 
 bool is_one(const FloatParameter& p) { return p.is_constant() && p.value == 1; }
+// Without both of Mitsuba's rules for tilted normals ours hold.
+void read_tilt(Plugin& bsdf, SurfaceDetail& detail) {
+    detail.shadowed = bsdf.flag("use_shadowing_function", true);
+    bsdf.skip("flip_invalid_normals");
+}
+
 bool is_same(const FloatParameter& a, const FloatParameter& b) {
     return a.texture == b.texture && (!a.is_constant() || a.value == b.value);
 }
@@ -153,14 +159,12 @@ MaterialLibrary::Part MaterialLibrary::two_sided(Plugin& bsdf, const SurfaceDeta
     return {.material = add(m, bsdf.id())};
 }
 
-// Mitsuba's `flip_invalid_normals` and `use_shadowing_function` are for artefacts that a TiltedBsdf does not have.
 MaterialLibrary::Part MaterialLibrary::bumpy(Plugin& bsdf, SurfaceDetail detail) {
     if (!detail.displacement.is_constant()) bsdf.error("bump maps within one another are not supported");
     const std::optional<Plugin> texture = bsdf.child("texture");
     if (!texture) bsdf.error(bsdf.describe() + " needs a texture within it");
     const float scale = static_cast<float>(bsdf.number("scale", 1));
-    bsdf.skip("flip_invalid_normals");
-    bsdf.skip("use_shadowing_function");
+    read_tilt(bsdf, detail);
     detail.displacement = textures_.product({scale}, textures_.number(*texture));
     return inner(bsdf, detail);
 }
@@ -169,8 +173,7 @@ MaterialLibrary::Part MaterialLibrary::normal_mapped(Plugin& bsdf, SurfaceDetail
     if (detail.normal_map.is_given()) bsdf.error("normal maps within one another are not supported");
     const std::optional<Plugin> map = bsdf.object("normalmap");
     if (!map || map->kind() != "texture") bsdf.error(bsdf.describe() + " needs a texture 'normalmap'");
-    bsdf.skip("flip_invalid_normals");
-    bsdf.skip("use_shadowing_function");
+    read_tilt(bsdf, detail);
     detail.normal_map.map = textures_.pictures().normal_map(*map);
     return inner(bsdf, detail);
 }

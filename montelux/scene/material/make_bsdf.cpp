@@ -1,5 +1,7 @@
 #include "montelux/scene/material/make_bsdf.h"
 
+#include <algorithm>
+
 #include "montelux/scene/bsdf/multiple_scattering.h"
 #include "montelux/scene/material/parameter_evaluator.h"
 #include "montelux/scene/material/shading_frame.h"
@@ -31,12 +33,19 @@ Frame plain_frame(const SceneView& scene, Index material, const SurfacePoint& su
                : Frame::from_normal(surface.ns);
 }
 
-// `normal`: the geometric normal in the frame of the BSDF.
-Bsdf tilted(const Bsdf& bsdf, Normal3f normal) {
+// The roughness, squared, of microfacets that are on average as steep as a normal at this angle from +z: equation 4 of
+// Estevez, Lecocq, Stein 2019, which takes a quarter of the steepest ones' tangent for the variance.
+float shadowing_of(Normal3f normal) {
+    const float cos2 = normal.z * normal.z;
+    return std::min(0.125f * std::max(1 - cos2, 0.0f) / cos2, 1.0f);
+}
+
+// `normal`: the normal that decides on sides, in the frame of the BSDF.
+Bsdf tilted(const Bsdf& bsdf, Normal3f normal, float shadowing) {
     return std::visit(
         [&]<typename B>(const B& b) -> Bsdf {
             if constexpr (std::is_constructible_v<UntiltedBsdf, B>)
-                return TiltedBsdf{b, normal};
+                return TiltedBsdf{b, normal, shadowing};
             else
                 return b; // already tilted
         },
@@ -52,8 +61,10 @@ SurfaceBsdf plain_bsdf(const SceneView& scene, const SurfacePoint& surface, Vec3
     return std::visit(
         [&](const auto& m) -> SurfaceBsdf {
             if (!m.detail.is_flat())
-                if (auto frame = tilted_frame(scene, m.detail, surface, wo, context))
-                    return {tilted(m.bsdf(at), frame->to_local(surface.ng)), *frame};
+                if (auto frame = tilted_frame(scene, m.detail, surface, wo, context)) {
+                    const Normal3f normal = frame->to_local(m.detail.shadowed ? surface.ns : surface.ng);
+                    return {tilted(m.bsdf(at), normal, m.detail.shadowed ? shadowing_of(normal) : 0), *frame};
+                }
             return {m.bsdf(at), plain_frame(scene, index, surface)};
         },
         scene.materials[index]);

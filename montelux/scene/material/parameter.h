@@ -111,6 +111,7 @@ struct HairColorParameter {
 inline bool has_no_effect(const SpectrumParameter& factor) {
     return factor.is_constant() && factor.value.is_constant() && factor.value.constant == 1;
 }
+inline bool has_no_effect(bool flag) { return !flag; }
 inline bool has_no_effect(NormalDistribution d) { return d == NormalDistribution::ggx; }
 
 // The simple fields of a parameter: visit(name, field) of SceneSpectrum, SpectrumParameter, FloatParameter,

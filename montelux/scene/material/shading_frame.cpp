@@ -98,7 +98,10 @@ std::optional<Frame> tilted_frame(const SceneView& scene, const SurfaceDetail& d
     if (length_squared(surface.vertex_tangent) > 0) t.u = across(surface.vertex_tangent, t.n);
     const bool mapped = add_map(scene, detail.normal_map, context, t);
     if (!bumpy && !mapped) return std::nullopt;
-    return Frame::from_normal_and_tangent(facing(t.n, surface.ng, wo), t.u);
+    if (!detail.shadowed) return Frame::from_normal_and_tangent(facing(t.n, surface.ng, wo), t.u);
+    const Normal3f n = surface.ns;
+    const bool faces = dot(wo, n) * dot(wo, t.n) > 0;
+    return Frame::from_normal_and_tangent(faces ? t.n : n * (2 * dot(n, t.n)) - t.n, t.u);
 }
 
 } // namespace montelux

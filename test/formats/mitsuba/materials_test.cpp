@@ -364,6 +364,7 @@ TEST(MitsubaBumpmap, IsADisplacementOfEachPart) {
     EXPECT_TRUE(m.one_sided);
     const double luminance = dot(RgbColorSpace::srgb().luminance_weights(), Vec3d(test::upper_left));
     EXPECT_NEAR(m.looks.value(m->detail.displacement, {0.25f, 0.25f}), 0.1 * luminance, 1e-6);
+    EXPECT_TRUE(m->detail.shadowed);
     One<MixMaterial> blend(
         bsdf("bumpmap", bitmap("any") + bsdf("blendbsdf",
                                              number("weight", "0.3") + bsdf("diffuse") + bsdf("conductor"))));
@@ -397,6 +398,10 @@ TEST(MitsubaNormalmap, IsAMapOfEachPart) {
                                                  bsdf("twosided", bsdf("diffuse"))));
     ASSERT_TRUE(m->detail.normal_map.is_given());
     EXPECT_TRUE(m.looks.scene.normal_maps.at(m->detail.normal_map.map).right_handed);
+    One<DiffuseMaterial> unshadowed(
+        bsdf("normalmap", "<boolean name=\"use_shadowing_function\" value=\"false\"/>" + bitmap("normalmap") +
+                              bsdf("diffuse")));
+    EXPECT_FALSE(unshadowed->detail.shadowed);
     expect_says(error(bsdf("normalmap", bsdf("diffuse"))), "needs a texture 'normalmap'");
     expect_says(
         error(bsdf("normalmap", "<texture type=\"checkerboard\" name=\"normalmap\"/>" + bsdf("diffuse"))),
