@@ -26,7 +26,8 @@ Spectrum spectrum_of_rgb(Vec3d rgb, SpectrumUse use, const Place& place) {
             place.error(use == SpectrumUse::reflectance ? "a reflectance lies between 0 and 1"
                                                         : "a colour with a negative component");
     const RgbColorSpace& srgb = RgbColorSpace::srgb();
-    if (use == SpectrumUse::reflectance) return RgbAlbedoSpectrum(srgb, Vec3f(rgb));
+    // As in Mitsuba, a colour that can be a reflectance is one.
+    if (std::max({rgb.x, rgb.y, rgb.z}) <= 1) return RgbAlbedoSpectrum(srgb, Vec3f(rgb));
     return RgbUnboundedSpectrum(srgb, Vec3f(rgb));
 }
 

@@ -175,6 +175,19 @@ TEST(MitsubaHeterogeneousMedium, HasAGridInAPlace) {
     EXPECT_EQ(boxed.extinction.unit_from_world.point({5, 4, 16}), (Point3f{1, 0.5f, 1}));
 }
 
+TEST(MitsubaHeterogeneousMedium, ConstantColorsAreThoseOfReflectancesWhereTheyCanBe) {
+    Looks looks(
+        medium("<volume type=\"constvolume\" name=\"sigma_t\"><rgb name=\"value\" value=\"0.5 0.4 0.3\"/>"
+               "</volume>",
+               "heterogeneous"));
+    looks.expect_albedo({read<FieldMedium>(looks).extinction.value}, {}, {0.5f, 0.4f, 0.3f});
+    EXPECT_EQ(
+        error(medium("<volume type=\"constvolume\" name=\"sigma_t\"><rgb name=\"value\" value=\"5 4 3\"/>"
+                     "</volume>",
+                     "heterogeneous")),
+        "");
+}
+
 // The unit cube bounds it as well where it is the same everywhere.
 TEST(MitsubaHeterogeneousMedium, MayBeConstant) {
     const auto m = read<FieldMedium>(
