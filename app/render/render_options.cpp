@@ -207,8 +207,9 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_parsed(c, "--rank-timeout", "TIME", o.rank_timeout, parse_rank_timeout,
                "Under mpirun: a rank that is silent for this long is given up, and the render ends with what "
                "the others did. Default: 60s");
-    c.add_option("--camera", o.camera,
-                 "Of a glTF scene: the camera, by its name or its number from 0. Default: the first")
+    c.add_option(
+         "--camera", o.camera,
+         "Of a glTF or Mitsuba scene: the camera, by its name or its number from 0. Default: the first")
         ->type_name("NAME")
         ->take_last();
     c.add_option("--variant", o.variant, "Of a glTF scene: the variant of its materials, by its name")

@@ -15,14 +15,15 @@ namespace montelux {
 
 namespace {
 
-// Cameras by name, variants and time are asked of glTF scenes only, definitions of Mitsuba's.
+// Cameras by name are asked of glTF and Mitsuba scenes only, variants and time of glTF, definitions of Mitsuba's.
 void check_options(const std::filesystem::path& path, const FileKind& kind, const LoadOptions& options) {
     if (kind.format == SceneFormat::none) return;
     if (kind.format != SceneFormat::mitsuba && !options.definitions.empty())
         throw Error(path.string(), "only Mitsuba scenes have parameters that can be defined");
     if (kind.format == SceneFormat::gltf) return;
-    for (const auto& [is_given, what] : {std::pair(options.camera.has_value(), "a choice of cameras"),
-                                         std::pair(options.variant.has_value(), "variants of materials"),
+    if (kind.format != SceneFormat::mitsuba && options.camera)
+        throw Error(path.string(), "only glTF and Mitsuba scenes have a choice of cameras");
+    for (const auto& [is_given, what] : {std::pair(options.variant.has_value(), "variants of materials"),
                                          std::pair(options.time.has_value(), "a time of animations")})
         if (is_given) throw Error(path.string(), std::string("only glTF scenes have ") + what);
 }

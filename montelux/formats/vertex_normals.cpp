@@ -1,6 +1,7 @@
 #include "montelux/formats/vertex_normals.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <unordered_map>
@@ -157,6 +158,24 @@ void add_normals(TriangleMesh& mesh) {
         }
         mesh.indices[c] = v;
     }
+}
+
+void add_smooth_normals(TriangleMesh& mesh, std::span<const Index> same) {
+    const auto place = [&](Index v) { return same.empty() ? v : same[v]; };
+    std::vector<Vec3d> sums(mesh.positions.size());
+    for (std::size_t t = 0; t + 3 <= mesh.indices.size(); t += 3) {
+        std::array<Vec3d, 3> p;
+        for (std::size_t k = 0; k < 3; ++k) p[k] = Vec3d(mesh.positions[mesh.indices[t + k]]);
+        const Vec3d facing = unit_or_zero(cross(p[1] - p[0], p[2] - p[0]));
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3d a = unit_or_zero(p[(k + 1) % 3] - p[k]), b = unit_or_zero(p[(k + 2) % 3] - p[k]);
+            Vec3d& sum = sums[place(mesh.indices[t + k])];
+            sum = sum + std::acos(std::clamp(dot(a, b), -1.0, 1.0)) * facing;
+        }
+    }
+    mesh.normals.resize(mesh.positions.size());
+    for (std::size_t v = 0; v < mesh.normals.size(); ++v)
+        mesh.normals[v] = Vec3f(unit_or_zero(sums[place(static_cast<Index>(v))]));
 }
 
 } // namespace montelux

@@ -30,4 +30,8 @@ CornerNormals corner_normals(std::span<const Point3f> positions, std::span<const
 // Gives a mesh without normals those of corner_normals; its vertices are split at sharp edges.
 void add_normals(TriangleMesh& mesh);
 
+// Gives a mesh without normals one for each vertex, smooth across all edges: the mean of its triangles' normals weighted
+// by their angles there. `same`: for each vertex the one that it shares its normal with, such as `welded`; empty: none.
+void add_smooth_normals(TriangleMesh& mesh, std::span<const Index> same = {});
+
 } // namespace montelux

@@ -28,7 +28,7 @@ Light plain_light(const SceneRef& scene, const nb::object& o) {
         throw Error("lights", "a SkyLight or SunLight belongs to the sky of its scene file");
     };
     const auto refuse_picture = [] {
-        throw Error("lights", "a GoniometricLight or ProjectionLight refers to a picture of its scene file");
+        throw Error("lights", "a light refers to a picture of its scene file");
     };
     std::visit(
         Overloaded{[](const AreaLight&) {
@@ -41,7 +41,10 @@ Light plain_light(const SceneRef& scene, const nb::object& o) {
                    },
                    [&](const GoniometricLight&) { refuse_picture(); },
                    [&](const ProjectionLight&) { refuse_picture(); }, [&](const SkyLight&) { refuse_sky(); },
-                   [&](const SunLight&) { refuse_sky(); }, [](const PointLight&) {}, [](const SpotLight&) {},
+                   [&](const SunLight&) { refuse_sky(); }, [](const PointLight&) {},
+                   [&](const SpotLight& l) {
+                       if (l.picture != no_index) refuse_picture();
+                   },
                    [](const DistantLight&) {}, [](const UniformInfiniteLight&) {},
                    []<typename L>(const L&) {
                        static_assert(sizeof(L) == 0, "say whether scene.lights takes this light from Python");

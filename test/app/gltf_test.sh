@@ -44,7 +44,7 @@ expect 1 "scene.gltf: there is no camera 'plam' (did you mean 'plan'?); expected
 expect 1 "scene.gltf: there is no variant 'gren' (did you mean 'green'?); expected 'green'" render scene.gltf --variant gren
 expect 2 "--time-of-scene: 'soon' was given" render scene.gltf --time-of-scene soon
 scene old "$sky Shape \"sphere\""
-expect 1 "old.pbrt: only glTF scenes have a choice of cameras" render old.pbrt --camera 0
+expect 1 "old.pbrt: only glTF and Mitsuba scenes have a choice of cameras" render old.pbrt --camera 0
 sed 's/"POSITION": 0/"POSITION": 7/' scene.gltf >broken.gltf
 expect 1 "broken.gltf: /meshes/0/primitives/0/attributes/POSITION: accessor 7 does not exist (there are 3)" render broken.gltf
 finish

@@ -155,6 +155,12 @@ inline void add_deltas(std::vector<Case>& cases) {
                   .place = {}};
         spot.scene.lights.push_back(SpotLight{1.0f, 3, {1, 2, 3}, normalize(Vec3f{1, -2, 2}), start, 0.6f});
         cases.push_back(spot);
+        // Linear in the angle, from one cone to the other.
+        const double s = std::acos(double(start)), e = std::acos(double(0.6f));
+        spot.name = "linear spot";
+        spot.flux = {2 * pi * 3 * (1 - (std::sin(e) - std::sin(s)) / (e - s))};
+        std::get<SpotLight>(spot.scene.lights[0]).profile = SpotFalloff::linear;
+        cases.push_back(spot);
     }
 }
 
@@ -213,8 +219,11 @@ inline void add_pictures(std::vector<Case>& cases) {
     const double at_first = double(white.sample(wavelengths)[0]);
     Image picture(48, 32, {"R", "G", "B"});
     for (float& v : picture.f32()) v = 1;
-    const ProjectionLight projection{.environment = 0, .scale = 3, .fov = 70, .world_from_light = turned};
+    ProjectionLight projection{.environment = 0, .scale = 3, .fov = 70, .world_from_light = turned};
     add("projection of a uniform map", picture, projection, 3 * at_first * solid_angle);
+    // The intensity over the solid angle, 1 / cos^3 by cos^3, is even over the rectangle.
+    projection.profile = ProjectionProfile::irradiance;
+    add("projection of a uniform map, even on a plane", picture, projection, 3 * at_first * 4 * a * b);
 }
 
 inline void add_infinite(std::vector<Case>& cases) {

@@ -21,6 +21,7 @@ TEST(Quadrics, DerivativesAreThoseOfTheCoordinates) {
         Sphere{.radius = 2, .z_min = -1, .z_max = 1.5f, .phi_max = 0.8f, .world_from_object = place},
         Disk{.height = 0.5f, .radius = 2, .world_from_object = place},
         Disk{.radius = 2, .inner_radius = 0.5f, .phi_max = 3, .world_from_object = place},
+        Disk{.radius = 2, .inner_radius = 0.5f, .phi_max = 3, .polar = true, .world_from_object = place},
         Cylinder{.radius = 2, .world_from_object = place},
         Cylinder{.radius = 0.5f, .z_min = 1, .z_max = 1.5f, .phi_max = 0.8f, .world_from_object = place}};
     TestUniforms u(3);

@@ -45,6 +45,7 @@ TEST(SceneDigest, GeometryCounts) {
                     [](Scene& s) { std::swap(s.meshes[0].indices[0], s.meshes[0].indices[1]); },
                     [](Scene& s) { std::get<Sphere>(s.quadrics[0]).z_max = 0.5f; },
                     [](Scene& s) { std::get<Disk>(s.quadrics[1]).inner_radius = 0.5f; },
+                    [](Scene& s) { std::get<Disk>(s.quadrics[1]).polar = true; },
                     [](Scene& s) {
                         std::get<Disk>(s.quadrics[1]).world_from_object = Transform::scale({1, 1, 2});
                     },

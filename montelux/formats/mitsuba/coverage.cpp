@@ -10,7 +10,9 @@ using enum Support;
 
 constexpr std::string_view polarized = "the polarization of light is not rendered";
 constexpr std::string_view by_path = "rendered with the integrator 'path'";
-constexpr std::string_view own_sampler = "the sampler of --sampler takes its place";
+constexpr std::string_view own_sampler = "Sobol' points take its place";
+constexpr std::string_view no_clipping = "the clipping planes have no effect";
+constexpr std::string_view hidden = "hide_emitters hides the environment alone";
 
 constexpr auto all_plugins = std::to_array<PluginCoverage>({
     {"shape", "obj"},
@@ -21,8 +23,9 @@ constexpr auto all_plugins = std::to_array<PluginCoverage>({
     {"shape", "disk"},
     {"shape", "cube"},
     {"shape", "cylinder"},
-    {"shape", "bsplinecurve"},
-    {"shape", "linearcurve"},
+    {"shape", "bsplinecurve", in_part,
+     "ribbons that face each ray, shaded as tubes; textures run along each segment"},
+    {"shape", "linearcurve", in_part, "as bsplinecurve, without round joints and ends"},
     {"shape", "shapegroup"},
     {"shape", "instance"},
     {"shape", "merge"},
@@ -57,14 +60,14 @@ constexpr auto all_plugins = std::to_array<PluginCoverage>({
     {"emitter", "constant"},
     {"emitter", "envmap"},
     {"emitter", "spot"},
-    {"emitter", "projector"},
+    {"emitter", "projector", in_part, "colours and pictures"},
     {"emitter", "directional"},
-    {"emitter", "directionalarea"},
-    {"emitter", "sunsky"},
+    {"emitter", "directionalarea", none, "paths from the camera cannot meet its light"},
+    {"emitter", "sunsky", otherwise, "our own model of the sky"},
     {"emitter", "timed_sunsky", none},
-    {"sensor", "perspective"},
-    {"sensor", "thinlens"},
-    {"sensor", "orthographic"},
+    {"sensor", "perspective", in_part, no_clipping},
+    {"sensor", "thinlens", in_part, no_clipping},
+    {"sensor", "orthographic", in_part, no_clipping},
     {"sensor", "radiancemeter", none},
     {"sensor", "irradiancemeter", none},
     {"sensor", "distant", none},
@@ -78,14 +81,14 @@ constexpr auto all_plugins = std::to_array<PluginCoverage>({
     {"rfilter", "catmullrom"},
     {"rfilter", "lanczos"},
     {"sampler", "independent"},
-    {"sampler", "stratified", otherwise, own_sampler},
+    {"sampler", "stratified"},
     {"sampler", "multijitter", otherwise, own_sampler},
     {"sampler", "orthogonal", otherwise, own_sampler},
     {"sampler", "ldsampler", otherwise, own_sampler},
-    {"integrator", "path"},
-    {"integrator", "direct"},
-    {"integrator", "volpath"},
-    {"integrator", "volpathmis"},
+    {"integrator", "path", in_part, hidden},
+    {"integrator", "direct", in_part, hidden},
+    {"integrator", "volpath", in_part, hidden},
+    {"integrator", "volpathmis", in_part, hidden},
     {"integrator", "depth", otherwise, by_path},
     {"integrator", "aov", otherwise, "the integrator within; --layers chooses the layers"},
     {"integrator", "moment", otherwise, "the integrator within; every pixel has its standard error"},

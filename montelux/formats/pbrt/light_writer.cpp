@@ -175,6 +175,9 @@ void SceneWriter::light(std::size_t i) {
                                l.cos_falloff_start;
                     });
                 if (!delta) warn(what, "the angles of its cone are kept to seven digits");
+                if (l.profile != SpotFalloff::smooth)
+                    warn(what, "its falloff, linear in the angle, becomes pbrt's smooth one");
+                if (l.picture != no_index) warn(what, "its picture is left out");
                 d.number("coneangle",
                          total.value_or(static_cast<float>(std::acos(double{l.cos_total_width}) * 180 / pi)));
                 d.number("conedeltaangle",
@@ -227,6 +230,8 @@ void SceneWriter::light(std::size_t i) {
             },
             [&](const ProjectionLight& l) {
                 DirectiveText d = directive("projection");
+                if (l.profile != ProjectionProfile::intensity)
+                    warn(what, "it lights planes across its axis evenly, which pbrt's projection does not");
                 place(l.world_from_light, l.motion);
                 d.number("fov", l.fov);
                 d.string("filename", environment_file(l.environment));

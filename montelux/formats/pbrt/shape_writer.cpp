@@ -190,6 +190,10 @@ std::string SceneWriter::shape_text(Index i, bool reverse) {
                                                         },
                                                         [&](const Disk& q) {
                                                             DirectiveText d("Shape \"disk\"");
+                                                            if (q.polar)
+                                                                warn("shape " + std::to_string(i),
+                                                                     "its texture coordinates become "
+                                                                     "those of pbrt's disks");
                                                             d.number("height", q.height);
                                                             d.number("radius", q.radius);
                                                             d.number("innerradius", q.inner_radius);

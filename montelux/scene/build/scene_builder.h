@@ -63,8 +63,8 @@ class SceneBuilder {
     // shape, and an environment map with a portal.
     Index add_moving_light(const Light& light, const Transform& start, const Transform& end,
                            SourceLocation at = {}, const std::string& group = {});
-    // A clear sky and, if requested and above the horizon, its sun. Luminances are multiplied by `scale`; a
-    // positive illuminance replaces that of both on the ground.
+    // A clear sky and, if requested and above the horizon, its sun. Luminances are multiplied by `scale` and the factor
+    // of each, of which 0 means none; a positive illuminance replaces that of both on the ground.
     struct SkyLights {
         SkySettings settings;
         bool sun = true;
@@ -72,6 +72,7 @@ class SceneBuilder {
         Transform world_from_light;                         // at the start
         std::string group{};                                // as of add_light
         std::optional<Transform> world_from_light_at_end{}; // of a sky that moves
+        float sun_factor = 1, sky_factor = 1;
     };
     void add_sky(const SkyLights& sky, SourceLocation at = {});
 

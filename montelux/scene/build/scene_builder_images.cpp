@@ -102,7 +102,8 @@ void SceneBuilder::add_sky(const SkyLights& sky, SourceLocation at) {
         const SpectrumTable from_sky = model.sky_irradiance(), from_sun = model.sun_irradiance();
         scale *= static_cast<float>(static_cast<double>(sky.illuminance) /
                                     (luminous_efficacy * integrate_luminance([&](float lambda) {
-                                         return from_sky(lambda) + (sky.sun ? from_sun(lambda) : 0);
+                                         return sky.sky_factor * from_sky(lambda) +
+                                                (sky.sun ? sky.sun_factor * from_sun(lambda) : 0);
                                      })));
     }
     const bool moves = sky.world_from_light_at_end.has_value();
@@ -113,14 +114,15 @@ void SceneBuilder::add_sky(const SkyLights& sky, SourceLocation at) {
         else
             add_light(light, at, sky.group);
     };
-    if (sky.sun && model.sun_radiance().max_value() > 0)
-        add(SunLight{add_spectrum(Spectrum(model.sun_radiance())), scale,
+    if (sky.sun && sky.sun_factor > 0 && model.sun_radiance().max_value() > 0)
+        add(SunLight{add_spectrum(Spectrum(model.sun_radiance())), scale * sky.sun_factor,
                      SunDisc::of_radius(normalize(place.vector(model.sun_direction())), sun_angular_radius),
                      normalize(place.normal(Vec3f(0, 0, 1)))});
+    if (!(sky.sky_factor > 0)) return;
     SkyLight light;
     light.sky = static_cast<Index>(scene_.skies.size());
     light.environment = static_cast<Index>(scene_.environments.size());
-    light.scale = scale;
+    light.scale = scale * sky.sky_factor;
     light.world_from_light = place;
     scene_.environments.push_back(sky_density_map(model, sky_density_rows));
     scene_.skies.push_back(model);

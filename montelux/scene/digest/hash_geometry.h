@@ -23,8 +23,9 @@ inline void hash_values(SceneHasher& h, const Sphere& s) {
     h.all(radius, z_min, z_max, phi_max, world_from_object);
 }
 inline void hash_values(SceneHasher& h, const Disk& d) {
-    const auto& [height, radius, inner_radius, phi_max, world_from_object] = d;
+    const auto& [height, radius, inner_radius, phi_max, polar, world_from_object] = d;
     h.all(height, radius, inner_radius, phi_max, world_from_object);
+    if (polar) h.all(polar);
 }
 inline void hash_values(SceneHasher& h, const Cylinder& c) {
     const auto& [radius, z_min, z_max, phi_max, world_from_object] = c;

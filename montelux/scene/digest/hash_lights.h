@@ -18,9 +18,12 @@ inline void hash_values(SceneHasher& h, const PointLight& l) {
     if (motion != no_index) h.all(motion);
 }
 inline void hash_values(SceneHasher& h, const SpotLight& l) {
-    const auto& [spectrum, scale, position, axis, cos_falloff_start, cos_total_width, motion] = l;
+    const auto& [spectrum, scale, position, axis, cos_falloff_start, cos_total_width, motion, profile,
+                 picture, picture_x, picture_y] = l;
     h.all(spectrum, scale, position, axis, cos_falloff_start, cos_total_width);
     if (motion != no_index) h.all(motion);
+    if (profile != SpotFalloff::smooth) h.all(profile);
+    if (picture != no_index) h.all(picture, picture_x, picture_y);
 }
 inline void hash_values(SceneHasher& h, const DistantLight& l) {
     const auto& [spectrum, scale, to_light, motion] = l;
@@ -57,9 +60,10 @@ inline void hash_values(SceneHasher& h, const GoniometricLight& l) {
     if (motion != no_index) h.all(motion);
 }
 inline void hash_values(SceneHasher& h, const ProjectionLight& l) {
-    const auto& [environment, scale, fov, world_from_light, motion] = l;
+    const auto& [environment, scale, fov, world_from_light, motion, profile] = l;
     h.all(environment, scale, fov, world_from_light);
     if (motion != no_index) h.all(motion);
+    if (profile != ProjectionProfile::intensity) h.all(profile);
 }
 // Its tables follow from its settings.
 inline void hash_values(SceneHasher& h, const SkyModel& sky) {

@@ -85,14 +85,17 @@ LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings
                               [&](const GoniometricLight& l) {
                                   add_environment(scene, i, l.environment, l.layout, settings);
                               },
+                              [&](const SpotLight& l) {
+                                  if (l.picture != no_index) add_spectra(scene, l.picture);
+                              },
                               [&](const ProjectionLight& l) {
                                   const Image& picture = scene.environments[l.environment];
                                   add_spectra(scene, l.environment);
                                   environment_of_light_[i] = static_cast<Index>(projections_.size());
-                                  projections_.emplace_back(picture, l.fov);
+                                  projections_.emplace_back(picture, l.fov, l.profile);
                               },
                               // Sampled in closed form.
-                              [](const PointLight&) {}, [](const SpotLight&) {}, [](const DistantLight&) {},
+                              [](const PointLight&) {}, [](const DistantLight&) {},
                               [](const UniformInfiniteLight&) {}, [](const SunLight&) {},
                               []<typename L>(const L&) {
                                   static_assert(sizeof(L) == 0,

@@ -30,8 +30,8 @@ float LightTablesView::map_value(Index map, const EnvironmentGrid& grid, Vec2f p
     return sum;
 }
 
-SampledSpectrum LightTablesView::picture_radiance(Index map, Point2f uv,
-                                                  const SampledWavelengths& lambda) const {
+SampledSpectrum LightTablesView::picture_color(Index map, Point2f uv,
+                                               const SampledWavelengths& lambda) const {
     const int width = maps[map].width(), height = maps[map].height();
     const auto place = [](float t, int n) { // not a number: 0
         return std::max(0.0f, std::min(t, 1.0f)) * static_cast<float>(n) - 0.5f;
@@ -47,7 +47,7 @@ SampledSpectrum LightTablesView::picture_radiance(Index map, Point2f uv,
                    row = static_cast<std::size_t>(std::clamp(y0 + dy, 0, height - 1));
         sum += texel_factor(map, row * static_cast<std::size_t>(width) + column, lambda) * share;
     }
-    return sum * map_color_space().illuminant().sample(lambda);
+    return sum;
 }
 
 SampledSpectrum LightTablesView::map_radiance(const ImageInfiniteLight& light, const EnvironmentGrid& grid,

@@ -65,7 +65,11 @@ struct LightTablesView {
     float map_value(Index map, const EnvironmentGrid& grid, Vec2f place) const;
     // The colour of a picture on a surface at texture coordinates, which are clamped to [0, 1], under the white
     // illuminant: bilinear, with the top row at v = 1.
-    SampledSpectrum picture_radiance(Index map, Point2f uv, const SampledWavelengths& lambda) const;
+    SampledSpectrum picture_radiance(Index map, Point2f uv, const SampledWavelengths& lambda) const {
+        return picture_color(map, uv, lambda) * map_color_space().illuminant().sample(lambda);
+    }
+    // The same without the illuminant.
+    SampledSpectrum picture_color(Index map, Point2f uv, const SampledWavelengths& lambda) const;
     // The colour of a texel under the white illuminant.
     SampledSpectrum texel_radiance(Index map, std::size_t texel, const SampledWavelengths& lambda) const {
         return texel_factor(map, texel, lambda) * map_color_space().illuminant().sample(lambda);

@@ -15,11 +15,17 @@ const ProjectionTable& table_of(const LightContext& context) {
     return context.tables().projection(context.light);
 }
 
-// The colour of the nearest texel.
-SampledSpectrum intensity(const LightContext& context, const ProjectionLight& light, Vec2f texels,
+// `w`: in the light's space, of any length.
+SampledSpectrum intensity(const LightContext& context, const ProjectionLight& light, Vec2f texels, Vec3f w,
                           const SampledWavelengths& lambda) {
-    const auto x = static_cast<std::size_t>(texels.x), y = static_cast<std::size_t>(texels.y);
     const auto width = static_cast<std::size_t>(table_of(context).screen().width());
+    if (light.profile == ProjectionProfile::irradiance) {
+        const auto height = static_cast<float>(table_of(context).screen().height());
+        const Point2f uv{texels.x / static_cast<float>(width), 1 - texels.y / height};
+        return context.tables().picture_radiance(light.environment, uv, lambda) *
+               (light.scale * intensity_of_white(light.profile, normalize(w).z));
+    }
+    const auto x = static_cast<std::size_t>(texels.x), y = static_cast<std::size_t>(texels.y);
     return context.tables().texel_radiance(light.environment, y * width + x, lambda) * light.scale;
 }
 
@@ -38,9 +44,10 @@ std::optional<LightSample> ProjectionLight::sample_li(const LightContext& contex
                                                       const ReferencePoint& from, Vec2f,
                                                       const SampledWavelengths& lambda) const {
     const Vec3d to = Vec3d(from.p) - world_from_light.point(Vec3d());
-    const auto texels = table_of(context).screen().locate(Vec3f(world_from_light.inverse_vector(to)));
+    const Vec3f own(world_from_light.inverse_vector(to));
+    const auto texels = table_of(context).screen().locate(own);
     if (!texels) return std::nullopt;
-    const SampledSpectrum i = intensity(context, *this, *texels, lambda);
+    const SampledSpectrum i = intensity(context, *this, *texels, own, lambda);
     if (is_black(i)) return std::nullopt;
     return sample_position(position(), i, from);
 }
@@ -58,7 +65,7 @@ std::optional<EmissionSample> ProjectionLight::sample_le(const LightContext& con
     if (!d) return std::nullopt;
     const Vec3f w = normalize(world_from_light.vector(d->w));
     EmissionSample s;
-    s.radiance = intensity(context, *this, d->texels, lambda);
+    s.radiance = intensity(context, *this, d->texels, d->w, lambda);
     s.ray = {position(), w};
     s.pdf_position = 1;
     s.pdf_direction = d->pdf * solid_angle_change(world_from_light, w);

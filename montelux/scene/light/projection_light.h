@@ -3,11 +3,12 @@
 
 #include "montelux/mc/math/transform.h"
 #include "montelux/scene/light/light_model.h"
+#include "montelux/scene/light/projection_table.h"
 
 namespace montelux {
 
 // Intensity scale * the colours of the picture under the white illuminant, W/(sr nm), from the origin of the
-// light's space along its z axis (ProjectionScreen); none beside the picture.
+// light's space along its z axis (ProjectionScreen), by the profile; none beside the picture.
 struct ProjectionLight {
     static constexpr LightKind kind = LightKind::position;
     static constexpr std::string_view name = "projection light";
@@ -17,6 +18,7 @@ struct ProjectionLight {
     float fov = 90; // degrees, of the shorter side
     Transform world_from_light;
     Index motion = no_index; // MovableLight
+    ProjectionProfile profile = ProjectionProfile::intensity;
 
     Point3f position() const { return world_from_light.point(Vec3f()); }
 

@@ -10,14 +10,14 @@ namespace montelux {
 
 namespace {
 
-// visit(texel, solid angle) for the texels of a screen, row by row.
+// visit(texel, solid angle times intensity_of_white) for the texels of a screen, row by row.
 template <typename Visit>
-void visit_texels(const ProjectionScreen& screen, const Visit& visit) {
+void visit_texels(const ProjectionScreen& screen, ProjectionProfile profile, const Visit& visit) {
     std::size_t i = 0;
     for (int y = 0; y < screen.height(); ++y)
         for (int x = 0; x < screen.width(); ++x, ++i) {
             const Vec3f w = screen.direction({static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f});
-            visit(i, double(screen.solid_angle(w.z)));
+            visit(i, double(screen.solid_angle(w.z) * intensity_of_white(profile, w.z)));
         }
 }
 
@@ -29,9 +29,25 @@ double weighted(const Image& picture, std::size_t texel, Vec3d weights) {
     return sum;
 }
 
-std::vector<double> texel_flux(const Image& picture, const ProjectionScreen& screen, Vec3d weights) {
+// Of each texel and its neighbours.
+Image blurred(const Image& picture) {
+    Image result(picture.width(), picture.height(), {"R", "G", "B"});
+    for (int y = 0; y < picture.height(); ++y)
+        for (int x = 0; x < picture.width(); ++x)
+            for (int c = 0; c < 3; ++c) {
+                float sum = 0;
+                for (int k = 0; k < 9; ++k)
+                    sum += picture.value(std::clamp(x + k % 3 - 1, 0, picture.width() - 1),
+                                         std::clamp(y + k / 3 - 1, 0, picture.height() - 1), c);
+                result.set(x, y, c, sum / 9);
+            }
+    return result;
+}
+
+std::vector<double> texel_flux(const Image& picture, const ProjectionScreen& screen,
+                               ProjectionProfile profile, Vec3d weights) {
     std::vector<double> flux(picture.pixel_count());
-    visit_texels(screen,
+    visit_texels(screen, profile,
                  [&](std::size_t i, double angle) { flux[i] = weighted(picture, i, weights) * angle; });
     return flux;
 }
@@ -59,9 +75,11 @@ Vec3f ProjectionScreen::direction(Vec2f texels) const {
                            (2 * texels.y / static_cast<float>(height_) - 1) * half_.y, 1));
 }
 
-ProjectionTable::ProjectionTable(const Image& picture, float fov)
+ProjectionTable::ProjectionTable(const Image& picture, float fov, ProjectionProfile profile)
     : screen_(picture.width(), picture.height(), fov),
-      density_(std::span<const double>(texel_flux(picture, screen_, Vec3d(1, 1, 1) / 3)),
+      density_(std::span<const double>(
+                   texel_flux(profile == ProjectionProfile::irradiance ? blurred(picture) : picture, screen_,
+                              profile, Vec3d(1, 1, 1) / 3)),
                static_cast<std::uint32_t>(picture.width()), static_cast<std::uint32_t>(picture.height()),
                {0, 0}, {static_cast<double>(picture.width()), static_cast<double>(picture.height())}) {}
 
@@ -81,7 +99,7 @@ float ProjectionTable::pdf(Vec3f w) const {
 double projected_flux(const Image& picture, float fov, Vec3d weights) {
     const ProjectionScreen screen(picture.width(), picture.height(), fov);
     double sum = 0;
-    for (const double f : texel_flux(picture, screen, weights)) sum += f;
+    for (const double f : texel_flux(picture, screen, ProjectionProfile::intensity, weights)) sum += f;
     return sum;
 }
 

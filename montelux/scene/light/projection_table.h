@@ -1,6 +1,7 @@
 // ProjectionTable: the directions of a light that projects a picture, and their density.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 
@@ -8,6 +9,14 @@
 #include "montelux/mc/dist/piecewise_2d.h"
 
 namespace montelux {
+
+// What is even about the light of a white picture.
+enum class ProjectionProfile : std::uint8_t {
+    intensity, // the same in all directions, as in pbrt-v4; the colour is that of the nearest texel
+    // The same all over a plane across the axis, as in Mitsuba 3: the intensity is divided by the cubed cosine to the
+    // axis. Colours are bilinear.
+    irradiance,
+};
 
 // The picture fills a rectangle of the plane z = 1 around the z axis; `fov` is the angle of its shorter side,
 // in degrees. Its columns go along x and its rows along y, so that its top row is towards -y.
@@ -30,7 +39,13 @@ class ProjectionScreen {
     float texel_area_;
 };
 
-// Samples texels in proportion to the mean of their colours times their solid angle.
+// Intensity over the colour of the picture, along a unit vector of that z in the light's space.
+constexpr float intensity_of_white(ProjectionProfile profile, float z) {
+    return profile == ProjectionProfile::irradiance ? 1 / (z * z * z) : 1;
+}
+
+// Samples texels in proportion to the mean of their colours times their solid angle and intensity_of_white; where colours
+// are bilinear, of the texels around, too.
 class ProjectionTable {
   public:
     struct Sample {
@@ -40,12 +55,13 @@ class ProjectionTable {
     };
 
     // The picture has the channels R, G and B; negative values count as 0.
-    ProjectionTable(const Image& picture, float fov);
+    ProjectionTable(const Image& picture, float fov,
+                    ProjectionProfile profile = ProjectionProfile::intensity);
 
     const ProjectionScreen& screen() const { return screen_; }
     std::optional<Sample> sample(Vec2f u) const;
     float pdf(Vec3f w) const;
-    // Integral of the mean of the colours over all directions, sr.
+    // Integral of the mean of the colours times intensity_of_white over all directions, sr.
     double flux() const { return density_.integral(); }
 
     // Memory of the table.

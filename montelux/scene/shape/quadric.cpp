@@ -97,27 +97,35 @@ Vec3d radial(Vec3d p) {
     return r > 0 ? Vec3d{p.x / r, p.y / r, 0} : Vec3d{1, 0, 0};
 }
 
-// The point in object space, and its derivatives.
+// Of a point in object space, and its derivatives.
 struct Coordinates {
     double u = 0, v = 0;
-    Vec3d dpdv;
+    Vec3d dpdu, dpdv;
 };
+// The derivative by the share of the azimuth.
+template <typename S>
+Vec3d around(const S& s, Vec3d p) {
+    const Vec3d d = double(s.phi_max) * Vec3d{-p.y, p.x, 0};
+    return dot(d, d) > 0 ? d : Vec3d{0, 1, 0};
+}
 Coordinates coordinates(const Sphere& s, Vec3d p) {
     const double r = s.radius;
     const double theta_min = std::acos(std::clamp(std::min(double(s.z_min), double(s.z_max)) / r, -1.0, 1.0));
     const double theta_max = std::acos(std::clamp(std::max(double(s.z_min), double(s.z_max)) / r, -1.0, 1.0));
     const double theta = std::acos(std::clamp(p.z / r, -1.0, 1.0));
-    return {azimuth(p) / double(s.phi_max), (theta - theta_min) / (theta_max - theta_min),
+    return {azimuth(p) / double(s.phi_max), (theta - theta_min) / (theta_max - theta_min), around(s, p),
             (theta_max - theta_min) * (p.z * radial(p) - Vec3d{0, 0, r * std::sin(theta)})};
 }
 Coordinates coordinates(const Disk& d, Vec3d p) {
     const double width = double(d.radius) - double(d.inner_radius);
-    return {azimuth(p) / double(d.phi_max), (double(d.radius) - std::sqrt(p.x * p.x + p.y * p.y)) / width,
-            -width * radial(p)};
+    const double inwards = (double(d.radius) - std::sqrt(p.x * p.x + p.y * p.y)) / width;
+    const double turn = azimuth(p) / double(d.phi_max);
+    if (d.polar) return {1 - inwards, turn, width * radial(p), around(d, p)};
+    return {turn, inwards, around(d, p), -width * radial(p)};
 }
 Coordinates coordinates(const Cylinder& c, Vec3d p) {
     const double length = double(c.z_max) - double(c.z_min);
-    return {azimuth(p) / double(c.phi_max), (p.z - double(c.z_min)) / length, {0, 0, length}};
+    return {azimuth(p) / double(c.phi_max), (p.z - double(c.z_min)) / length, around(c, p), {0, 0, length}};
 }
 
 template <typename S>
@@ -128,9 +136,7 @@ QuadricPoint to_world(const S& s, Vec3d p, bool with_coordinates) {
     if (!with_coordinates) return q;
     const Coordinates at = coordinates(s, p);
     q.uv = {static_cast<float>(at.u), static_cast<float>(at.v)};
-    Vec3d dpdu = double(s.phi_max) * Vec3d{-p.y, p.x, 0};
-    if (!(dot(dpdu, dpdu) > 0)) dpdu = {0, 1, 0};
-    q.dpdu = s.world_from_object.vector(dpdu);
+    q.dpdu = s.world_from_object.vector(at.dpdu);
     q.dpdv = s.world_from_object.vector(at.dpdv);
     return q;
 }

@@ -11,7 +11,7 @@ namespace montelux {
 
 struct QuadricPoint {
     Vec3d p, n;       // n: unit outward normal (sphere, cylinder), +z (disc); both in world space
-    Point2f uv;       // u = phi / phi_max; v as in pbrt-v4's file format; only on request
+    Point2f uv;       // as in pbrt-v4's file format, but for Disk::polar; only on request
     Vec3d dpdu, dpdv; // only on request; dpdu is replaced by a nonzero vector at poles and disc centres
 };
 

@@ -53,6 +53,8 @@ struct Sphere {
 // The points of the plane z = height between two radii, azimuth in [0, phi_max] (radians); normal +z.
 struct Disk {
     float height = 0, radius = 1, inner_radius = 0, phi_max = 6.2831853f;
+    // Texture coordinates: u from the inner to the outer edge and v around, as in Mitsuba 3, instead of pbrt-v4's.
+    bool polar = false;
     Transform world_from_object;
 };
 

@@ -299,7 +299,7 @@ TEST(GltfErrors, ChoicesOfGltfAreRefusedByPbrt) {
         }
         return {};
     };
-    EXPECT_EQ(error({.camera = "a"}), "a.pbrt: only glTF scenes have a choice of cameras");
+    EXPECT_EQ(error({.camera = "a"}), "a.pbrt: only glTF and Mitsuba scenes have a choice of cameras");
     EXPECT_EQ(error({.variant = "a"}), "a.pbrt: only glTF scenes have variants of materials");
     EXPECT_EQ(error({.time = 1}), "a.pbrt: only glTF scenes have a time of animations");
 }

@@ -1,0 +1,44 @@
+// LightReader: the emitters of a Mitsuba scene as lights.
+#pragma once
+
+#include <map>
+
+#include "montelux/formats/mitsuba/plugin.h"
+#include "montelux/formats/mitsuba/spectra.h"
+#include "montelux/scene/build/scene_builder.h"
+#include "montelux/scene/render_settings.h"
+
+namespace montelux::mitsuba {
+
+class LightReader {
+  public:
+    // Must outlive it.
+    explicit LightReader(SceneBuilder& builder) : builder_(builder) {}
+
+    // An emitter of the scene.
+    void add(Plugin emitter);
+    // The emitter 'area' of a shape.
+    Emission emission(Plugin emitter);
+
+  private:
+    struct Source {
+        SceneSpectrum spectrum;
+        float scale = 1;
+    };
+    // The property `name`, a spectrum; D65 without it.
+    Source source(Plugin& emitter, std::string_view name);
+    // The texture of an object that is a picture, not a spectrum; empty for others and without the property.
+    std::optional<Plugin> picture(Plugin& emitter, std::string_view name);
+
+    void add_point(Plugin& emitter);
+    void add_spot(Plugin& emitter);
+    void add_directional(Plugin& emitter);
+    void add_environment(Plugin& emitter);
+    void add_projector(Plugin& emitter);
+    void add_sky(Plugin& emitter);
+
+    SceneBuilder& builder_;
+    std::map<std::size_t, Index> pictures_; // on surfaces, by Plugin::index
+};
+
+} // namespace montelux::mitsuba
