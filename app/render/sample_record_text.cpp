@@ -71,6 +71,15 @@ void add_inline(Text& t, const char* name, const Ggx& ggx) {
     else
         t.add(", %s GGX alpha ", name).number(ggx.alpha_x).add(" x ").number(ggx.alpha_y);
 }
+void add_inline(Text& t, const char* name, const MicrofacetNormals& normals) {
+    if (normals.is_smooth())
+        t.add(", %s smooth", name);
+    else
+        t.add(", %s %s alpha ", name, name_of(normals.distribution).data())
+            .number(normals.alpha_x)
+            .add(" x ")
+            .number(normals.alpha_y);
+}
 
 // The kind of the BSDF, and its parameters at the vertex.
 void add_bsdf(Text& t, const BsdfModel auto& bsdf) {

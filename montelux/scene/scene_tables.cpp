@@ -18,7 +18,34 @@ namespace montelux {
 
 namespace {
 
-using CoatingKey = std::tuple<float, float, float, int>; // eta, alpha, thickness, max_depth
+using CoatingKey = std::tuple<float, float, float, int>;         // eta, alpha, thickness, max_depth
+using PlasticKey = std::tuple<float, float, NormalDistribution>; // eta, alpha
+
+// Tables of one kind, one for each key.
+template <typename Table, typename Key>
+class TablesByKey {
+  public:
+    Index index_of(const Key& key) {
+        const auto [found, inserted] = index_of_.try_emplace(key, static_cast<Index>(keys_.size()));
+        if (inserted) keys_.push_back(key);
+        return found->second;
+    }
+    std::vector<Table> tables() const {
+        std::vector<std::optional<Table>> made(keys_.size());
+        parallel_for(static_cast<std::int64_t>(keys_.size()), [&](std::int64_t i) {
+            const auto n = static_cast<std::size_t>(i);
+            std::apply([&](const auto&... values) { made[n].emplace(values...); }, keys_[n]);
+        });
+        std::vector<Table> result;
+        result.reserve(made.size());
+        for (auto& table : made) result.push_back(std::move(*table));
+        return result;
+    }
+
+  private:
+    std::map<Key, Index> index_of_;
+    std::vector<Key> keys_;
+};
 
 // The coating's parameters if CoatingTable's closed form applies: constant over the surface, isotropic, with
 // a clear layer, no dispersion and no scattering between microfacets.
@@ -104,7 +131,8 @@ SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environm
                          LightSampling light_sampling, const SurfaceSettings& surfaces)
     : lights_(scene, environments) {
     add_mipmaps(scene);
-    add_materials(scene, surfaces.microfacets);
+    add_materials(scene);
+    add_coatings(scene, surfaces.microfacets);
     add_media(scene);
     view_ = SceneView(scene);
     view_.multiple_scattering = surfaces.microfacets == MicrofacetScattering::multiple;
@@ -113,6 +141,7 @@ SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environm
     view_.follows_tangents = follows_tangents_;
     view_.coating_of_material = coating_of_material_;
     view_.coating_tables = coatings_;
+    view_.plastic_tables = plastics_;
     view_.mipmaps = mipmaps_;
     view_.alpha_mipmap_of_image = alpha_mipmap_of_image_;
     view_.alpha_mipmaps = alpha_mipmaps_;
@@ -157,42 +186,56 @@ bool has_textured_body(const Scene& scene, const Material& material) {
     return body != nullptr && body->surface.is_given();
 }
 
-void SceneTables::add_materials(const Scene& scene, MicrofacetScattering microfacets) {
-    std::map<CoatingKey, Index> index_of;
-    std::vector<CoatingKey> keys;
+void SceneTables::add_materials(const Scene& scene) {
     for (const Material& material : scene.materials) {
         textured_.push_back(uses_coordinates(material) || has_textured_body(scene, material) ? 1 : 0);
         follows_tangents_.push_back(has_textured_bsdf(material) || is_anisotropic(material) ? 1 : 0);
+    }
+    // A surface shows its material's parts: as many rounds as they are nested.
+    const auto add = [](std::vector<char>& flags, std::size_t i, Index part) {
+        const bool news = flags[part] > flags[i];
+        flags[i] = std::max(flags[i], flags[part]);
+        return news;
+    };
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (std::size_t i = 0; i < scene.materials.size(); ++i)
+            visit_parts(scene.materials[i], [&](Index part) {
+                changed |= add(textured_, i, part);
+                changed |= add(follows_tangents_, i, part);
+            });
+    }
+}
+
+void SceneTables::add_coatings(const Scene& scene, MicrofacetScattering microfacets) {
+    TablesByKey<CoatingTable, CoatingKey> coatings;
+    TablesByKey<PlasticTable, PlasticKey> plastics;
+    for (const Material& material : scene.materials) {
         Index table = no_index;
-        if (auto key = closed_form(SceneView(scene), material, microfacets)) {
-            auto [found, inserted] = index_of.try_emplace(*key, static_cast<Index>(keys.size()));
-            if (inserted) keys.push_back(*key);
-            table = found->second;
-        }
+        if (const auto key = closed_form(SceneView(scene), material, microfacets))
+            table = coatings.index_of(*key);
+        else if (const auto* m = std::get_if<PlasticMaterial>(&material))
+            table = plastics.index_of({m->eta, m->alpha, m->distribution});
         coating_of_material_.push_back(table);
     }
-    std::vector<std::optional<CoatingTable>> tables(keys.size());
-    parallel_for(static_cast<std::int64_t>(keys.size()), [&](std::int64_t i) {
-        auto [eta, alpha, thickness, max_depth] = keys[static_cast<std::size_t>(i)];
-        tables[static_cast<std::size_t>(i)].emplace(eta, alpha, thickness, max_depth);
-    });
-    coatings_.reserve(tables.size());
-    for (auto& table : tables) coatings_.push_back(std::move(*table));
+    coatings_ = coatings.tables();
+    plastics_ = plastics.tables();
 }
 
 std::vector<MemoryUse> SceneTables::memory_use() const {
     std::size_t pyramids = vector_bytes(mipmaps_, alpha_mipmaps_, alpha_mipmap_of_image_),
-                coatings = vector_bytes(coatings_), media = vector_bytes(media_);
+                coatings = vector_bytes(coatings_, plastics_), media = vector_bytes(media_);
     for (const MipMap& m : mipmaps_) pyramids += m.bytes();
     for (const MipMap& m : alpha_mipmaps_) pyramids += m.bytes();
     for (const CoatingTable& c : coatings_) coatings += c.bytes();
+    for (const PlasticTable& p : plastics_) coatings += p.bytes();
     for (const MediumTable& m : media_) media += vector_bytes(m.majorants.values);
     std::vector<MemoryUse> table;
     const auto add = [&](std::string_view kind, std::size_t bytes, std::size_t count, std::string_view unit) {
         if (count > 0) table.push_back({kind, bytes, count, unit});
     };
     add("pyramids of images", pyramids, mipmaps_.size() + alpha_mipmaps_.size(), "pyramids");
-    add("tables of coatings", coatings, coatings_.size(), "tables");
+    add("tables of coatings", coatings, coatings_.size() + plastics_.size(), "tables");
     add("bounds of media", media, media_.size(), "media");
     add("tables of lights", lights_.bytes(), view_.lights.size(), "lights");
     add("choice of lights", light_sampler_.bytes(), light_sampler_.size(), "parts of lights");

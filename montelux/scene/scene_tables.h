@@ -28,12 +28,14 @@ class SceneTables {
 
   private:
     void add_mipmaps(const Scene& scene);
-    void add_materials(const Scene& scene, MicrofacetScattering microfacets);
+    void add_materials(const Scene& scene);
+    void add_coatings(const Scene& scene, MicrofacetScattering microfacets);
     void add_media(const Scene& scene);
 
     std::vector<MipMap> mipmaps_, alpha_mipmaps_;
     std::vector<Index> alpha_mipmap_of_image_;
     std::vector<CoatingTable> coatings_;
+    std::vector<PlasticTable> plastics_;
     std::vector<Index> coating_of_material_;
     std::vector<char> textured_, follows_tangents_;
     std::vector<MediumTable> media_;

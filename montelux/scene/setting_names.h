@@ -1,10 +1,11 @@
-// The names of settings in options, headers of pictures and Python.
+// The names of settings in options, scene files, headers of pictures and Python.
 #pragma once
 
 #include <array>
 #include <string_view>
 #include <utility>
 
+#include "montelux/scene/bsdf/microfacet_normals.h"
 #include "montelux/scene/render_settings.h"
 
 namespace montelux {
@@ -40,6 +41,10 @@ inline constexpr SettingNames<MicrofacetScattering, 2> microfacet_scattering_nam
     {{"single", MicrofacetScattering::single}, {"multiple", MicrofacetScattering::multiple}}};
 inline constexpr SettingNames<ShadingTerminator, 2> shading_terminator_names{
     {{"hard", ShadingTerminator::hard}, {"soft", ShadingTerminator::soft}}};
+inline constexpr SettingNames<NormalDistribution, 3> normal_distribution_names{
+    {{"ggx", NormalDistribution::ggx},
+     {"ggx-separable", NormalDistribution::ggx_separable},
+     {"beckmann", NormalDistribution::beckmann}}};
 
 template <typename Setting, std::size_t n>
 constexpr std::string_view name_in(const SettingNames<Setting, n>& names, Setting value) {
@@ -62,6 +67,9 @@ constexpr std::string_view name_of(MicrofacetScattering scattering) {
 }
 constexpr std::string_view name_of(ShadingTerminator terminator) {
     return name_in(shading_terminator_names, terminator);
+}
+constexpr std::string_view name_of(NormalDistribution distribution) {
+    return name_in(normal_distribution_names, distribution);
 }
 
 } // namespace montelux

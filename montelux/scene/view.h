@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "montelux/scene/bsdf/coating.h"
+#include "montelux/scene/bsdf/plastic.h"
 #include "montelux/scene/light/light_tables_view.h"
 #include "montelux/scene/light/sampler/light_sampler.h"
 #include "montelux/scene/scene.h"
@@ -29,8 +30,9 @@ struct SceneView {
     std::span<const Spectrum> spectra;
     std::span<const Material> materials;
     std::span<const char> textured, follows_tangents; // one per material: 0 or 1
-    std::span<const Index> coating_of_material;       // no_index: the random walk is used
-    std::span<const CoatingTable> coating_tables;     // where the closed form holds
+    std::span<const Index> coating_of_material;       // into one of the following; no_index: none
+    std::span<const CoatingTable> coating_tables;     // of coated ones, where the closed form holds
+    std::span<const PlasticTable> plastic_tables;     // of PlasticMaterial
     std::span<const FloatTexture> float_textures;
     std::span<const SpectrumTexture> spectrum_textures;
     std::span<const ImageTexture> normal_maps;
@@ -99,6 +101,10 @@ struct SceneView {
     const CoatingTable* coating(Index material) const {
         const Index table = coating_of_material[material];
         return table == no_index ? nullptr : &coating_tables[table];
+    }
+    // Of a PlasticMaterial.
+    const PlasticTable& plastic(Index material) const {
+        return plastic_tables[coating_of_material[material]];
     }
     const MipMap& mipmap(Index image, ImageChannels channels) const {
         return channels == ImageChannels::alpha ? alpha_mipmaps[alpha_mipmap_of_image[image]]

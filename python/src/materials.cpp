@@ -1,14 +1,17 @@
 #include "python/src/bindings.h"
+#include "python/src/names.h"
 #include "python/src/scene_values.h"
 #include "python/src/shapes.h"
 #include <string>
 
 #include "montelux/scene/material/material_model.h"
+#include "montelux/scene/setting_names.h"
 
 namespace montelux::python {
 namespace {
 
 constexpr const char* spectrum_type = "typing.Any";
+constexpr Names<NormalDistribution, 3> normal_distributions{"distribution", normal_distribution_names};
 
 // The n-th parameter of a material, of type F.
 template <typename F>
@@ -230,37 +233,65 @@ struct Attributes {
         melanin("pheomelanin", &HairColorParameter::pheomelanin, "Concentration of the red pigment.");
     }
 
-    // One attribute for each part. A mix that is in no scene takes parts of one scene only.
+    void add(const ParameterInfo& info, ParameterAt<NormalDistribution> at) const {
+        attribute<M>(
+            c, info.python_name().c_str(), "str",
+            [at](const M& m, const auto&) { return nb::str(std::string(name_of(at(m))).c_str()); },
+            [at](M& m, nb::handle v, auto&, const std::string& what) {
+                std::string given;
+                if (!nb::try_cast(v, given))
+                    throw Error(what, std::string(nb::repr(v).c_str()) +
+                                          " was given; expected 'ggx', 'ggx-separable' or 'beckmann'");
+                at(m) = normal_distributions.value(given);
+            },
+            "Microfacet normals: 'ggx', or as in Mitsuba 'ggx-separable' and 'beckmann', with independent "
+            "masking "
+            "and shadowing.");
+    }
+
     void add(const ParameterInfo&, ParameterAt<MixedMaterials> at) const {
-        const auto part = [&](const char* name, MaterialIndex MixedMaterials::*member, const char* doc) {
-            attribute<M>(
-                c, name, "typing.Any",
-                [=](const M& m, const Ref<M>& r) -> nb::object {
-                    const MaterialIndex& p = at(m).*member;
-                    if (!p.is_given()) return nb::none();
-                    return as_python(Slot<Material>(scene_of_textures(r), p.index));
-                },
-                [=](M& m, nb::handle v, Ref<M>& r, const std::string& what) {
-                    const nb::object given = nb::borrow(v);
-                    if (r.scene()) {
-                        at(m).*member = {material_index(r.scene(), given, what)};
-                        return;
-                    }
-                    const Slot<Material>* slot = material_slot(given);
-                    if (!slot || !slot->scene())
-                        throw Error(what, std::string(nb::repr(v).c_str()) +
-                                              " was given; expected a material of a scene, such as "
-                                              "scene.materials[0]");
-                    require_scene(r, slot->scene(), what);
-                    at(m).*member = {slot->first()};
-                },
-                doc);
-        };
-        part("first", &MixedMaterials::first, "The material where the amount is 0.");
-        part("second", &MixedMaterials::second, "The material where the amount is 1.");
+        add_part(
+            "first", [at](auto& m) -> auto& { return at(m).first; }, "typing.Any",
+            "The material where the amount is 0.");
+        add_part(
+            "second", [at](auto& m) -> auto& { return at(m).second; }, "typing.Any",
+            "The material where the amount is 1.");
+    }
+    void add(const ParameterInfo& info, ParameterAt<MaterialOfSide> at) const {
+        add_part(info.python_name(), at, "typing.Any", info.doc);
     }
 
   private:
+    // `at` finds a MaterialIndex or MaterialOfSide in a material. One that is in no scene takes parts of one scene only.
+    template <typename At>
+    void add_part(const std::string& name, At at, const char* type, const char* doc) const {
+        attribute<M>(
+            c, name.c_str(), type,
+            [at](const M& m, const Ref<M>& r) -> nb::object {
+                if (!at(m).is_given()) return nb::none();
+                return as_python(Slot<Material>(scene_of_textures(r), at(m).index));
+            },
+            [at](M& m, nb::handle v, Ref<M>& r, const std::string& what) {
+                using Part = std::remove_reference_t<decltype(at(m))>;
+                if (std::is_same_v<Part, MaterialOfSide> && v.is_none()) {
+                    at(m) = {};
+                    return;
+                }
+                const nb::object given = nb::borrow(v);
+                if (r.scene()) {
+                    at(m) = {material_index(r.scene(), given, what)};
+                    return;
+                }
+                const Slot<Material>* slot = material_slot(given);
+                if (!slot || !slot->scene())
+                    throw Error(what, std::string(nb::repr(v).c_str()) +
+                                          " was given; expected a material of a scene, such as "
+                                          "scene.materials[0]");
+                require_scene(r, slot->scene(), what);
+                at(m) = {slot->first()};
+            },
+            doc);
+    }
     static void require_range(double x, double least, double most, nb::handle v, const std::string& what) {
         if (!(x >= least && x <= most))
             throw Error(what, std::string(nb::repr(v).c_str()) + " was given; expected a number from " +

@@ -141,8 +141,13 @@ Index material_index(const SceneRef& scene, const nb::object& material, const st
         throw Error(what, "an object of type '" + std::string(nb::type_name(material.type()).c_str()) +
                               "' was given; expected a material, such as Diffuse()");
     if (slot->scene() == scene) return slot->first();
-    if (slot->scene() ? is_textured(slot->read()) : slot->textures_of && slot->textures_of != scene)
-        throw Error(what, "its textures belong to another scene");
+    const auto refers_to_its_scene = [](const Material& m) {
+        bool has_parts = false;
+        visit_parts(m, [&](Index) { has_parts = true; });
+        return has_parts || is_textured(m);
+    };
+    if (slot->scene() ? refers_to_its_scene(slot->read()) : slot->textures_of && slot->textures_of != scene)
+        throw Error(what, "its textures or materials belong to another scene");
     const Material value = value_for(scene, *slot);
     SceneDescription& d = scene->edit();
     d.scene.materials.push_back(value);

@@ -72,7 +72,7 @@ def test_every_material_has_bumps_and_normal_maps():
 
     for material in montelux._core.MATERIALS:
         assert material().normal_map is None and material().displacement == 0
-        if material in (montelux.Interface, montelux.Mix):  # have no surface to tilt
+        if material in (montelux.Interface, montelux.Mix, montelux.Sided):  # have no surface to tilt
             continue
         if material is montelux.Measured:  # needs a file
             continue
@@ -95,6 +95,39 @@ def test_every_material_has_bumps_and_normal_maps():
         scene.materials[0].normal_map = montelux.Scene().normal_map(np.ones((1, 1, 3)))
     with pytest.raises(montelux.Error, match="no channels R, G and B"):
         scene.normal_map(np.ones((2, 2)))
+
+
+def test_sides_have_their_own_materials():
+    scene = montelux.Scene()
+    scene.camera = montelux.PerspectiveCamera(look_at=((0, 0, 4), (0, 0, 0), (0, 1, 0)), fov=1)
+    scene.film.resolution = (4, 4)
+    scene.lights.append(montelux.UniformInfiniteLight())
+    shape = scene.add_disk(3, montelux.Sided(front=None))
+    assert shape.material.front is None and shape.material.back is None
+    assert scene.render(spp=1).mean.max() == 0
+    shape.material.front = montelux.Diffuse(reflectance=0.5)
+    assert scene.render(spp=16).mean == pytest.approx(np.full((4, 4, 3), 0.5), rel=1e-3)
+    assert repr(shape.material.front) == repr(scene.materials[1])
+    shape.material.front, shape.material.back = None, scene.materials[1]
+    assert scene.render(spp=1).mean.max() == 0
+    with pytest.raises(montelux.Error, match="front: an object of type 'int' was given; expected a material"):
+        shape.material.front = 3
+    shape.material.back = shape.material
+    with pytest.raises(montelux.Error, match=r"\(Sided\) depends on itself"):
+        scene.render(spp=1).mean
+
+
+def test_distributions_have_names():
+    metal = montelux.Conductor(roughness=0.2)
+    assert metal.distribution == "ggx"
+    metal.distribution = "beckmann"
+    assert metal.distribution == "beckmann"
+    plastic = montelux.Plastic(alpha=0.3, distribution="ggx-separable", nonlinear=True)
+    assert plastic.distribution == "ggx-separable" and plastic.nonlinear and plastic.eta == 1.5
+    with pytest.raises(montelux.Error, match="did you mean 'beckmann'"):
+        metal.distribution = "bekmann"
+    with pytest.raises(montelux.Error, match="expected 'ggx', 'ggx-separable' or 'beckmann'"):
+        metal.distribution = 3
 
 
 def test_light_shines_through_a_leaf():

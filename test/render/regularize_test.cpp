@@ -161,7 +161,7 @@ TEST(Regularization, CoatsInClosedForm) {
     const Bsdf widened = bsdf(true);
     const auto* layers = std::get_if<LayeredBsdf<DiffuseBsdf>>(&widened);
     ASSERT_NE(layers, nullptr);
-    EXPECT_EQ(layers->coat.ggx.alpha_x, 0.2f);
+    EXPECT_EQ(layers->coat.normals.alpha_x, 0.2f);
 }
 
 } // namespace

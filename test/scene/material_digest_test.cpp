@@ -52,10 +52,22 @@ struct ChangeField {
     void operator()(MeasuredBrdfIndex& x) const { x.index = 7; }
     void operator()(MediumIndex& x) const { x.index = 7; }
     void operator()(MaterialIndex& x) const { x.index = 7; }
+    void operator()(MaterialOfSide& x) const { x.index = 7; }
+    void operator()(NormalDistribution& x) const { x = NormalDistribution::beckmann; }
     void operator()(float& x) const { x += 1; }
     void operator()(int& x) const { x += 1; }
     void operator()(bool& x) const { x = !x; }
 };
+
+// Checkpoints made before these materials had distributions and factors are valid.
+TEST(SceneDigest, AddedParametersWithoutEffectDoNotCount) {
+    Scene scene;
+    scene.materials = {ConductorMaterial{}, DielectricMaterial{}, ThinDielectricMaterial{}};
+    const ContentDigest before{0xdc1d1c2e34220fc0, 0x0fefd8d6d1e4d46e};
+    EXPECT_EQ(digest_of(scene).materials, before);
+    std::get<ConductorMaterial>(scene.materials[0]).specular_reflectance = {0.5f};
+    EXPECT_NE(digest_of(scene).materials, before);
+}
 
 TEST(SceneDigest, EveryParameterOfEveryMaterialCounts) {
     std::size_t changed = 0;

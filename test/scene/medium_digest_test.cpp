@@ -21,6 +21,7 @@ TEST(SceneDigest, MediaCount) {
     const std::type_identity<RgbGridMedium> rgb;
     const std::type_identity<CloudMedium> cloud;
     const std::type_identity<SparseGridMedium> sparse;
+    const std::type_identity<FieldMedium> field;
     const Transform moved = Transform::translate({1, 0, 0});
     expect_changes(&SceneDigest::materials,
                    {[=](Scene& s) { at(s, fog).sigma_a = 2; },
@@ -73,6 +74,16 @@ TEST(SceneDigest, MediaCount) {
                     [=](Scene& s) { at(s, sparse).temperature_offset = 2; },
                     [=](Scene& s) { at(s, sparse).temperature_scale = 2; },
                     [=](Scene& s) { at(s, sparse).phase = Draine{}; },
+                    [=](Scene& s) { at(s, field).box.p0.x = -1; },
+                    [=](Scene& s) { at(s, field).bounded = false; },
+                    [=](Scene& s) { at(s, field).extinction.value = 2; },
+                    [=](Scene& s) { at(s, field).extinction.scalars = 0; },
+                    [=](Scene& s) { at(s, field).extinction.nearest = true; },
+                    [=](Scene& s) { at(s, field).extinction.unit_from_world.rows[1].z = 2; },
+                    [=](Scene& s) { at(s, field).albedo.colors = 0; },
+                    [=](Scene& s) { at(s, field).albedo.unit_from_world.offset.x = 2; },
+                    [=](Scene& s) { at(s, field).scale = 2; },
+                    [=](Scene& s) { at(s, field).phase = Draine{}; },
                     [](Scene& s) { s.sparse_grids[0].node_count[0] = 1; },
                     [](Scene& s) { s.sparse_grids[0].nodes = {0}; },
                     [](Scene& s) { s.sparse_grids[0].blocks = {0}; },

@@ -154,7 +154,7 @@ TEST(MultipleScattering, RouletteKeepsTheMean) {
     for (int i = 0; i < 300000; ++i) {
         const auto s = MultiscatterConductorBsdf{metal}.sample(wo, TransportMode::radiance, stream);
         ended.add(s ? double(s->weight[0]) : 0);
-        MicrosurfaceWalk walk{metal.ggx, -wo};
+        MicrosurfaceWalk walk{metal.normals, -wo};
         float weight = 1;
         while (walk.advance(stream.next_1d())) {
             const Vec3f v = -walk.w, m = walk.sample_facet(stream.next_2d());
@@ -218,6 +218,8 @@ TEST(MultipleScattering, ReplacesRoughMicrofacetsOnly) {
     EXPECT_TRUE(std::holds_alternative<DielectricBsdf>(replaced(DielectricBsdf{1.5f, smooth})));
     EXPECT_TRUE(std::holds_alternative<DielectricBsdf>(replaced(DielectricBsdf{1, rough})));
     EXPECT_TRUE(std::holds_alternative<DiffuseBsdf>(replaced(DiffuseBsdf{})));
+    const TintedDielectricBsdf tinted{{1.5f, {rough, NormalDistribution::beckmann}}};
+    EXPECT_TRUE(std::holds_alternative<TintedDielectricBsdf>(replaced(tinted)));
     const Bsdf tilted = replaced(TiltedBsdf{white_metal(rough), direction(10)});
     ASSERT_TRUE(std::holds_alternative<TiltedBsdf>(tilted));
     EXPECT_TRUE(std::holds_alternative<MultiscatterConductorBsdf>(std::get<TiltedBsdf>(tilted).base));
@@ -229,7 +231,7 @@ TEST(MultipleScattering, ReplacesRoughMicrofacetsOnly) {
     ASSERT_TRUE(std::holds_alternative<RoughDiffuse>(coated));
     const auto& layers = std::get<RoughDiffuse>(coated);
     const auto original = in_fog(layered_diffuse(0.4f, 0.6f), 7);
-    EXPECT_EQ(layers.coat.facets.ggx.alpha_x, 0.4f);
+    EXPECT_EQ(layers.coat.facets.normals.alpha_x, 0.4f);
     EXPECT_EQ(layers.base.reflectance, original.base.reflectance);
     EXPECT_EQ(layers.medium_albedo, original.medium_albedo);
     EXPECT_EQ(layers.g, original.g);

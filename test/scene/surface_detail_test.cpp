@@ -1,4 +1,5 @@
 // Normal maps and bumps: the shading normal that they give at a point.
+#include "test/scene/bsdf_testing.h"
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -94,6 +95,54 @@ TEST(NormalMap, IsInTheFrameOfTheTangents) {
     EXPECT_TRUE(is_tilted(b));
     expect_near(b.frame.n, n);
     expect_near(cross(b.frame.s, b.frame.t), n);
+}
+
+TEST(NormalMap, RightHandedOneDoesNotFollowTheSecondCoordinate) {
+    const Vec3f n = normalize(Vec3f{0.3f, -0.2f, 0.9f});
+    for (const bool right_handed : {false, true}) {
+        Sheet sheet;
+        for (Point2f& uv : sheet.scene.meshes[0].uvs) uv.y = 1 - uv.y;
+        sheet.add_map(n);
+        sheet.scene.normal_maps[0].right_handed = right_handed;
+        expect_near(sheet.shade().frame.n, right_handed ? n : Vec3f{n.x, -n.y, n.z});
+    }
+}
+
+// The normal of the sheet is the one that sides and angles refer to.
+TEST(NormalMap, ShadowedOneFadesTowardsTheTerminator) {
+    Sheet plain, shadowed;
+    const Vec3f n = normalize(Vec3f{0.6f, 0, 0.8f});
+    plain.add_map(n);
+    shadowed.add_map(n);
+    shadowed.material.detail.shadowed = true;
+    const SurfaceBsdf a = plain.shade(), b = shadowed.shade();
+    testing::TestStream stream(1);
+    const float alpha2 = 0.125f * (0.6f * 0.6f / (0.8f * 0.8f));
+    for (const float tan_theta : {0.0f, 1.0f, 10.0f}) {
+        const Vec3f wi = normalize(Vec3f{0.5f * tan_theta, std::sqrt(0.75f) * tan_theta, 1});
+        const auto value = [&](const SurfaceBsdf& s) {
+            return evaluate(s.bsdf, s.frame.to_local({0, 0, 1}), s.frame.to_local(wi), stream).f[0];
+        };
+        EXPECT_NEAR(value(b) / value(a), 2 / (1 + std::sqrt(1 + alpha2 * tan_theta * tan_theta)), 1e-5);
+    }
+    // The weight of a sample is its value by its density.
+    for (int i = 0; i < 100; ++i) {
+        const Vec3f wo = b.frame.to_local({0, 0, 1});
+        const auto s = sample(b.bsdf, wo, stream);
+        if (!s) continue;
+        EXPECT_NEAR(s->weight[0] * s->pdf, evaluate(b.bsdf, wo, s->wi, stream).f[0], 1e-5);
+    }
+}
+
+TEST(NormalMap, ShadowedOneIsMirroredWhereItFacesAway) {
+    Sheet sheet;
+    const Vec3f n = normalize(Vec3f{-0.8f, 0.1f, 0.3f});
+    sheet.add_map(n);
+    sheet.material.detail.shadowed = true;
+    sheet.wo = normalize(Vec3f{0.9f, 0, 0.1f});
+    expect_near(sheet.shade().frame.n, {-n.x, -n.y, n.z});
+    sheet.wo = {0, 0, 1};
+    expect_near(sheet.shade().frame.n, n);
 }
 
 TEST(NormalMap, FlatOneLeavesTheFrame) {

@@ -14,6 +14,7 @@ TEST(SceneDigest, TexturesCount) {
     expect_changes(&SceneDigest::textures,
                    {[](Scene& s) { s.images[0].u8()[5] = 1; },
                     [](Scene& s) { s.normal_maps[0].wrap = TextureWrap::clamp; },
+                    [](Scene& s) { s.normal_maps[0].right_handed = true; },
                     [](Scene& s) { s.images[0].set_encoding(ColorEncoding::linear()); },
                     [](Scene& s) { s.images[0].set_encoding(ColorEncoding::gamma(2)); },
                     [](Scene& s) { s.images[0] = s.images[0].to_linear_f32(); },

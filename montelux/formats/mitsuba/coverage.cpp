@@ -96,7 +96,7 @@ constexpr auto all_plugins = std::to_array<PluginCoverage>({
     {"integrator", "stokes", none, polarized},
     {"texture", "bitmap"},
     {"texture", "checkerboard"},
-    {"texture", "mesh_attribute"},
+    {"texture", "mesh_attribute", in_part, "'vertex_color' as a reflectance"},
     {"texture", "volume", none},
     {"texture", "uniform"},
     {"texture", "regular"},
@@ -109,12 +109,12 @@ constexpr auto all_plugins = std::to_array<PluginCoverage>({
     {"medium", "heterogeneous"},
     {"phase", "isotropic"},
     {"phase", "hg"},
-    {"phase", "rayleigh", none},
+    {"phase", "rayleigh"},
     {"phase", "sggx", none},
     {"phase", "tabphase", none},
     {"phase", "blendphase", none},
     {"volume", "constvolume"},
-    {"volume", "gridvolume"},
+    {"volume", "gridvolume", in_part, "files of 1 or 3 channels"},
 });
 
 } // namespace

@@ -130,8 +130,13 @@ class Directives {
     void finish_options();
     void finish_materials();
     void finish_media();
-    // The medium inside shapes with a material, or no_index.
-    Index interior_of(Index material, Location at) const;
+    // The medium inside shapes with a material, or no_index; ambiguous if its parts have several.
+    struct Interior {
+        Index medium = no_index;
+        bool ambiguous = false;
+    };
+    // Of all materials.
+    std::vector<Interior> interiors() const;
     bool joins_open_curves(const Geometry& geometry, const ShapeSettings& settings, bool is_plain,
                            Location at);
     // `by` names the referrer in messages.

@@ -6,6 +6,7 @@
 #include "montelux/formats/pbrt/curves.h"
 #include "montelux/formats/pbrt/directives.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/scene/material/material_model.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
 namespace montelux::pbrt {
@@ -154,7 +155,7 @@ Index Directives::material_index(const MaterialReference& reference, Location at
                                    " levels deep");
     if (index == no_index) {
         const FindMaterial find = [this](const std::string& name, Location place) {
-            return material_index({true, named_materials_.refer(name)}, place, "this mix's ");
+            return material_index({true, named_materials_.refer(name)}, place, "this material's ");
         };
         open_materials_.push_back(declaration);
         const Material made = make_material(materials_[declaration], builder_, textures_, measured_brdfs_,
@@ -193,16 +194,22 @@ void Directives::medium_interface(const std::string& inside, const std::string& 
     state_.media = {refer(inside), refer(outside)};
 }
 
-Index Directives::interior_of(Index material, Location at) const {
-    if (const auto* body = std::get_if<SubsurfaceMaterial>(&result_.scene.materials[material]))
-        return body->interior.index;
-    const auto* mix = std::get_if<MixMaterial>(&result_.scene.materials[material]);
-    if (mix == nullptr) return no_index;
-    const Index first = interior_of(mix->materials.first.index, at),
-                second = interior_of(mix->materials.second.index, at);
-    if (first != no_index && second != no_index && first != second)
-        diagnostics_.error(at, "the materials of a mix have two interiors ('subsurface'); expected one");
-    return first == no_index ? second : first;
+std::vector<Directives::Interior> Directives::interiors() const {
+    std::vector<Interior> all;
+    for (const Material& material : result_.scene.materials) {
+        Interior interior;
+        if (const auto* body = std::get_if<SubsurfaceMaterial>(&material))
+            interior.medium = body->interior.index;
+        visit_parts(material, [&](Index part) { // made before the whole
+            const Interior& other = all[part];
+            const bool differ =
+                interior.medium != no_index && other.medium != no_index && interior.medium != other.medium;
+            interior.ambiguous |= other.ambiguous || differ;
+            if (interior.medium == no_index) interior.medium = other.medium;
+        });
+        all.push_back(interior);
+    }
+    return all;
 }
 
 void Directives::finish_media() {
@@ -212,10 +219,14 @@ void Directives::finish_media() {
     for (const MediaUse& use : media_uses_)
         result_.scene.shapes[use.shape].media = {resolve(use.media.inside, use.at, "this shape's "),
                                                  resolve(use.media.outside, use.at, "this shape's ")};
+    const std::vector<Interior> interior_of = interiors();
     for (const MaterialUse& use : material_uses_) {
         Shape& shape = result_.scene.shapes[use.shape];
-        const Index interior = interior_of(shape.material, use.at);
-        if (interior != no_index) shape.media.inside = interior;
+        const Interior interior = interior_of[shape.material];
+        if (interior.ambiguous)
+            diagnostics_.error(use.at,
+                               "the material's parts have two interiors ('subsurface'); expected one");
+        if (interior.medium != no_index) shape.media.inside = interior.medium;
     }
     result_.scene.camera.medium = resolve(camera_media_.media.outside, camera_media_.at, "the camera's ");
 }

@@ -9,6 +9,7 @@
 #include "montelux/formats/pbrt/scene_writer.h"
 #include "montelux/scene/material/material_model.h"
 #include "montelux/scene/scene_names.h"
+#include "montelux/scene/setting_names.h"
 
 namespace montelux::pbrt {
 
@@ -91,6 +92,12 @@ class MaterialParameters {
         const std::array<std::string_view, 2> names = {w_.material_names_[m.first.index],
                                                        w_.material_names_[m.second.index]};
         d_.strings("string", info.pbrt_name(), names);
+    }
+    void write(const ParameterInfo& info, const MaterialOfSide& side, const MaterialOfSide&) {
+        if (side.is_given()) d_.string(info.pbrt_name(), w_.material_names_[side.index]);
+    }
+    void write(const ParameterInfo& info, NormalDistribution d, NormalDistribution standard) {
+        if (d != standard) d_.string(info.pbrt_name(), name_of(d));
     }
     void write(const ParameterInfo&, const HairColorParameter& c, const HairColorParameter&) {
         constexpr float none = -1;

@@ -8,6 +8,7 @@
 #include "montelux/formats/pbrt/subsurface.h"
 #include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/material/material_model.h"
+#include "montelux/scene/setting_names.h"
 
 namespace montelux::pbrt {
 namespace {
@@ -27,7 +28,8 @@ class MaterialMaker {
             if (material_type(M::name) != type) return;
             M m = default_material<M>([&](const Spectrum& s) { return builder_.add_spectrum(s); });
             visit_parameters(m, [&](const ParameterInfo& info, auto& field) { read(info, field); });
-            if constexpr (std::is_same_v<M, MixMaterial> || std::is_same_v<M, InterfaceMaterial>) {
+            if constexpr (std::is_same_v<M, MixMaterial> || std::is_same_v<M, SidedMaterial> ||
+                          std::is_same_v<M, InterfaceMaterial>) {
                 if (!m.detail.is_flat())
                     r_.diagnostics().warn(r_.at(), "bumps and normal map of " + in_quotes(type) +
                                                        " are ignored: it has no surface of its own");
@@ -62,6 +64,13 @@ class MaterialMaker {
     }
 
     void read(const ParameterInfo& info, bool& b) { b = r_.boolean(name(info.pbrt_name()), b); }
+
+    void read(const ParameterInfo& info, NormalDistribution& d) {
+        const auto& all = normal_distribution_names;
+        const std::string_view given =
+            r_.choice(name(info.pbrt_name()), {all[0].first, all[1].first, all[2].first}, name_of(d));
+        d = std::ranges::find(all, given, &std::pair<std::string_view, NormalDistribution>::first)->second;
+    }
 
     // An index of refraction: a number or a spectrum.
     void read(const ParameterInfo& info, SceneSpectrum& eta) {
@@ -161,6 +170,12 @@ class MaterialMaker {
             r_.error(parameter, "'mix' needs a parameter 'string materials' with 2 names");
         m.first.index = find_(p->strings[0], p->at);
         m.second.index = find_(p->strings[1], p->at);
+    }
+
+    void read(const ParameterInfo& info, MaterialOfSide& side) {
+        const std::string_view parameter = name(info.pbrt_name());
+        if (std::optional<std::string> material = r_.string(parameter))
+            side.index = find_(*material, r_.at(parameter));
     }
 
     // Values of textures are not known before they are evaluated: a material limits these itself.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -202,6 +203,34 @@ void SceneWriter::medium(Index i) {
                 d.number("wispiness", m.wispiness);
                 d.number("frequency", m.frequency);
                 phase(d, m.phase);
+            },
+            [&](const FieldMedium& m) {
+                if (m.extinction.scalars == no_index || m.albedo.is_grid())
+                    throw Error(what, "pbrt has no medium of extinction and albedo but for grey grids of "
+                                      "extinction with one albedo");
+                d.string("type", "uniformgrid");
+                const ScalarGrid& density = scene_.scalar_grids[m.extinction.scalars];
+                Matrix4 unit_from_world;
+                for (std::size_t a = 0; a < 3; ++a) {
+                    const Vec3f row = m.extinction.unit_from_world.rows[a];
+                    const float offset = m.extinction.unit_from_world.offset[static_cast<int>(a)];
+                    unit_from_world.m[a] = {double(row.x), double(row.y), double(row.z), double(offset)};
+                }
+                const std::optional<Transform> place = Transform::from_matrix(unit_from_world);
+                if (!place) throw Error(what, "its grid has no volume");
+                box(d, transform, {.world_from_medium = place->inverse()});
+                size(d, density.size);
+                d.numbers("float", "density", density.values);
+                const Spectrum albedo = spectrum_of(m.albedo.value, scene_.spectra);
+                const auto share = [&](float lambda) { return std::clamp(albedo(lambda), 0.0f, 1.0f); };
+                spectrum(d, "sigma_s", Spectrum(SpectrumTable::from(share)), RgbMeaning::unbounded, what);
+                spectrum(d, "sigma_a",
+                         Spectrum(SpectrumTable::from([&](float lambda) { return 1 - share(lambda); })),
+                         RgbMeaning::unbounded, what);
+                d.number("scale", m.scale);
+                phase(d, m.phase);
+                warn(what, "its density falls to half at the faces of its grid, as pbrt's does");
+                if (m.extinction.nearest) warn(what, "its density is interpolated");
             },
             [&](const SparseGridMedium& m) {
                 d.string("type", "uniformgrid");

@@ -62,6 +62,7 @@ void SceneWriter::image_texture(DirectiveText& d, std::string& transform, const 
     if (t.invert) d.boolean("invert", true);
     if (t.factor != Vec3f{1, 1, 1}) d.vector("rgb", "factor", t.factor);
     if (t.vertex_colors) d.boolean("vertexcolors", true);
+    if (t.right_handed) d.boolean("righthanded", true);
     if (t.color_space != &RgbColorSpace::srgb())
         warn("image " + std::to_string(t.image),
              "its colours are read as sRGB; pbrt takes the space from the file");
@@ -183,7 +184,7 @@ bool SceneWriter::is_plain_normal_map(Index i) const {
     const ImageTexture plain;
     return m.kind == TextureMapping::Kind::uv && m.su == 1 && m.sv == 1 && m.du == 0 && m.dv == 0 &&
            t.wrap == plain.wrap && t.filter == plain.filter && t.max_anisotropy == plain.max_anisotropy &&
-           t.factor == plain.factor && encoding_of(t.image).value_or("linear") == "linear";
+           t.factor == plain.factor && !t.right_handed && encoding_of(t.image).value_or("linear") == "linear";
 }
 
 std::string SceneWriter::normal_map_texture(Index i) {

@@ -331,6 +331,7 @@ ImageTexture TextureLibrary::image_texture(ParameterReader& r, const TextureDecl
     t.invert = r.boolean("invert", false);
     t.factor = color_factor(r).value_or(t.factor);
     t.vertex_colors = r.boolean("vertexcolors", false);
+    t.right_handed = r.boolean("righthanded", false);
     std::optional<std::string> file = r.string("filename");
     if (!file) r.error("texture 'imagemap' needs a parameter 'filename'");
     t.image = image(*file, r.string("encoding"), r.at("filename"));

@@ -24,7 +24,7 @@ Integrals interface_integrals(const DielectricBsdf& coat, float mu, float thickn
                     (static_cast<float>(j) + 0.5f) / static_cast<float>(n2)};
             float r = coat.is_specular()
                           ? fresnel_dielectric(wo.z, coat.eta)
-                          : fresnel_dielectric(dot(wo, coat.ggx.sample_visible(wo, u)), coat.eta);
+                          : fresnel_dielectric(dot(wo, coat.normals.sample_visible(wo, u)), coat.eta);
             auto reflected = coat.sample_lobes(wo, 0, u, TransportMode::importance, Lobes::reflection);
             if (reflected && r > 0)
                 sum.reflected += double(reflected->weight[0]) * (from_inside ? absorption(reflected->wi) : 1);

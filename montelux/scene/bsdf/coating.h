@@ -73,7 +73,7 @@ struct CoatedDiffuseBsdf {
     template <typename Visit>
     void visit_fields(Visit&& visit) const {
         visit("eta", table->eta());
-        visit("coat", table->coat().ggx);
+        visit("coat", table->coat().normals);
         visit("base albedo", base_albedo);
     }
 

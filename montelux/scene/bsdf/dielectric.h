@@ -1,4 +1,4 @@
-// Glass and other clear interfaces: smooth, or GGX microfacets that reflect and refract.
+// Glass and other clear interfaces: smooth, or microfacets that reflect and refract.
 #pragma once
 
 #include <optional>
@@ -13,24 +13,27 @@ namespace montelux {
 // Which lobes take part: walks through layers ask for one of them.
 enum class Lobes : std::uint8_t { both, reflection, transmission };
 
-// Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces".
-struct DielectricBsdf {
+// Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces". Normals as of ConductorBsdfOf.
+template <typename Normals>
+struct DielectricBsdfOf {
     float eta = 1.5f; // index below the surface (-z) over that above
-    Ggx ggx;
+    Normals normals;
 
     static constexpr const char* name = "dielectric";
     static constexpr BsdfTraits traits{.transmits = true, .uses_tangents = true};
     template <typename Visit>
     void visit_fields(Visit&& visit) const {
         visit("eta", eta);
-        visit("surface", ggx);
+        visit("surface", normals);
     }
 
     // An index of 1 bends nothing, however rough the interface.
-    bool is_specular() const { return eta == 1 || ggx.is_smooth(); }
+    bool is_specular() const { return eta == 1 || normals.is_smooth(); }
     bool has_specular() const { return is_specular(); }
     float transmitted_eta(Vec3f wo) const { return wo.z > 0 ? eta : 1 / eta; }
     SampledSpectrum albedo(Vec3f) const { return SampledSpectrum(1); }
+    // Of a smooth interface.
+    float reflectance(Vec3f wo) const { return fresnel_dielectric(wo.z, eta); }
 
     template <typename Stream>
     BsdfEvaluation evaluate(Vec3f wo, Vec3f wi, TransportMode mode, Stream&) const {
@@ -48,7 +51,7 @@ struct DielectricBsdf {
         bool reflects = same_hemisphere(wo, wi);
         if (lobes != Lobes::both && reflects != (lobes == Lobes::reflection)) return {};
         float eta_p = reflects ? 1 : (wo.z > 0 ? eta : 1 / eta);
-        const auto facet = MicrofacetPair::find(ggx, wo, wi, reflects, eta_p);
+        const auto facet = MicrofacetPair::find(normals, wo, wi, reflects, eta_p);
         if (!facet) return {};
         const float r = fresnel_dielectric(facet->o_m, eta);
         const float fresnel = reflects ? r : 1 - r;
@@ -63,7 +66,7 @@ struct DielectricBsdf {
                                            Lobes lobes) const {
         if (wo.z == 0) return std::nullopt;
         bool smooth = is_specular();
-        Vec3f m = smooth ? Vec3f{0, 0, 1} : ggx.sample_visible(wo, u);
+        Vec3f m = smooth ? Vec3f{0, 0, 1} : normals.sample_visible(wo, u);
         float r = fresnel_dielectric(dot(wo, m), eta);
         float p_reflect = lobes == Lobes::both ? r : (lobes == Lobes::reflection ? 1.0f : 0.0f);
         bool reflects = uc < p_reflect;
@@ -90,15 +93,16 @@ struct DielectricBsdf {
             return s;
         }
         float o_m = dot(wo, m), i_m = dot(s.wi, m);
-        float lambda_o = ggx.lambda(wo);
-        float visible = ggx.d(m) * std::abs(o_m) / ((1 + lambda_o) * std::abs(wo.z));
+        const InverseMasking masking = normals.inverse_masking(wo, s.wi);
+        float visible = normals.d(m) * std::abs(o_m) / (masking.visible * std::abs(wo.z));
         float denominator = i_m + o_m / s.eta;
         float jacobian = reflects ? 1 / (4 * std::abs(o_m)) : std::abs(i_m) / (denominator * denominator);
         s.pdf = visible * jacobian * chosen;
-        s.weight = SampledSpectrum(weight * (1 + lambda_o) / (1 + lambda_o + ggx.lambda(s.wi)));
+        s.weight = SampledSpectrum(weight * masking.visible / masking.both);
         if (!(s.pdf > 0)) return std::nullopt;
         return s;
     }
 };
+using DielectricBsdf = DielectricBsdfOf<Ggx>;
 
 } // namespace montelux

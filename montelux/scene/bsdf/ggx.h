@@ -9,6 +9,12 @@
 
 namespace montelux {
 
+// Reciprocals of Smith's functions for a pair of directions.
+struct InverseMasking {
+    float visible; // 1/G1(wo) in the density of visible normals
+    float both;    // 1/G(wo, wi), masking and shadowing
+};
+
 // Symbols after Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces", and Heitz
 // 2014, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs". Local frame, macronormal
 // +z.
@@ -43,6 +49,11 @@ struct Ggx {
     float g1(Vec3f w) const { return 1 / (1 + lambda(w)); }
     // Height-correlated masking and shadowing.
     float g(Vec3f wo, Vec3f wi) const { return 1 / (1 + lambda(wo) + lambda(wi)); }
+
+    InverseMasking inverse_masking(Vec3f wo, Vec3f wi) const {
+        const float visible = 1 + lambda(wo);
+        return {visible, visible + lambda(wi)};
+    }
 
     // Density of the normals visible from w: G1(w) / |cos theta| D(m) |w.m|, per solid angle of m.
     float visible_pdf(Vec3f w, Vec3f m) const { return g1(w) / std::abs(w.z) * d(m) * std::abs(dot(w, m)); }

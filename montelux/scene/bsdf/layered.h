@@ -38,7 +38,7 @@ struct LayeredBsdf {
     void visit_fields(Visit&& visit) const {
         visit("eta", facets_of_coat().eta);
         visit("thickness", thickness);
-        visit("coat", facets_of_coat().ggx);
+        visit("coat", facets_of_coat().normals);
         if (!is_black(medium_albedo)) visit("medium albedo", medium_albedo);
         visit("base", base);
     }

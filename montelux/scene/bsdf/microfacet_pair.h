@@ -18,7 +18,9 @@ struct MicrofacetPair {
 
     // eta_p: index on the side of wi over that on the side of wo; 1 for reflection. Empty if no microfacet shows
     // its right side to both.
-    static std::optional<MicrofacetPair> find(Ggx ggx, Vec3f wo, Vec3f wi, bool reflects, float eta_p) {
+    template <typename Normals>
+    static std::optional<MicrofacetPair> find(const Normals& normals, Vec3f wo, Vec3f wi, bool reflects,
+                                              float eta_p) {
         MicrofacetPair p;
         p.m = wi * eta_p + wo;
         const float len2 = length_squared(p.m);
@@ -29,10 +31,10 @@ struct MicrofacetPair {
         p.i_m = dot(wi, p.m);
         // Microfacets seen from behind.
         if (p.i_m * wi.z < 0 || p.o_m * wo.z < 0) return std::nullopt;
-        const float lambda_o = ggx.lambda(wo);
-        const float d = ggx.d(p.m);
-        p.shadowing = (1 + lambda_o) / (1 + lambda_o + ggx.lambda(wi));
-        const float visible = d * std::abs(p.o_m) / ((1 + lambda_o) * std::abs(wo.z));
+        const InverseMasking masking = normals.inverse_masking(wo, wi);
+        const float d = normals.d(p.m);
+        p.shadowing = masking.visible / masking.both;
+        const float visible = d * std::abs(p.o_m) / (masking.visible * std::abs(wo.z));
         if (reflects) {
             p.density = visible / (4 * std::abs(p.o_m));
         } else {

@@ -44,7 +44,7 @@ Bsdf with_multiple_scattering(const Bsdf& bsdf) {
             if constexpr (std::same_as<B, TiltedBsdf>)
                 return TiltedBsdf{
                     std::visit([](const auto& base) { return UntiltedBsdf(multiscatter(base)); }, b.base),
-                    b.geometric_normal};
+                    b.geometric_normal, b.shadowing};
             else
                 return std::visit([](const auto& made) { return Bsdf(made); }, UntiltedBsdf(multiscatter(b)));
         },

@@ -24,7 +24,7 @@ SampledSpectrum MultiscatterConductorBsdf::further_reflections(Vec3f wo, Vec3f w
         wo.z = -wo.z;
         wi.z = -wi.z;
     }
-    MicrosurfaceWalk walk{facets.ggx, -wo};
+    MicrosurfaceWalk walk{facets.normals, -wo};
     SampledSpectrum sum, beta(1);
     for (int event = 0; event < MicrosurfaceWalk::most_events; ++event) {
         if (!walk.advance(rng.next_1d())) break;
@@ -32,7 +32,7 @@ SampledSpectrum MultiscatterConductorBsdf::further_reflections(Vec3f wo, Vec3f w
             const Vec3f v = -walk.w;
             const Vec3f m = normalize(v + wi);
             if (m.z > 0) {
-                const float phase = facets.ggx.d(m) * walk.facet_density_scale() / 4;
+                const float phase = facets.normals.d(m) * walk.facet_density_scale() / 4;
                 sum += beta * fresnel_conductor(dot(v, m), facets.eta, facets.k) * (phase * walk.escape(wi));
             }
             if (!survives_roulette(event, beta, rng)) break;
@@ -45,7 +45,7 @@ SampledSpectrum MultiscatterConductorBsdf::further_reflections(Vec3f wo, Vec3f w
 std::optional<BsdfSample> MultiscatterConductorBsdf::walk(Vec3f wo, PhiloxStream& rng) const {
     const bool below = wo.z < 0;
     if (below) wo.z = -wo.z;
-    MicrosurfaceWalk walk{facets.ggx, -wo};
+    MicrosurfaceWalk walk{facets.normals, -wo};
     SampledSpectrum beta(1);
     for (int event = 0; walk.advance(rng.next_1d()); ++event) {
         if (event == MicrosurfaceWalk::most_events || !survives_roulette(event, beta, rng))
@@ -55,7 +55,7 @@ std::optional<BsdfSample> MultiscatterConductorBsdf::walk(Vec3f wo, PhiloxStream
     Vec3f wi = walk.w;
     if (!(wi.z > 0)) return std::nullopt; // by rounding
     const Vec3f m = normalize(wo + wi);
-    const float first = facets.ggx.visible_pdf(wo, m) / (4 * std::max(dot(wo, m), 1e-9f));
+    const float first = facets.normals.visible_pdf(wo, m) / (4 * std::max(dot(wo, m), 1e-9f));
     BsdfSample s{.weight = beta, .wi = wi, .pdf = reported_pdf(wo, wi, first)};
     if (!(s.pdf > 0)) return std::nullopt;
     if (below) s.wi.z = -s.wi.z;
@@ -63,7 +63,7 @@ std::optional<BsdfSample> MultiscatterConductorBsdf::walk(Vec3f wo, PhiloxStream
 }
 
 float MultiscatterConductorBsdf::reported_pdf(Vec3f, Vec3f wi, float first) const {
-    const float further = share_of_further_events(facets.ggx);
+    const float further = share_of_further_events(facets.normals);
     return (1 - further) * first + further * inv_pi_f * abs_cos_theta(wi);
 }
 

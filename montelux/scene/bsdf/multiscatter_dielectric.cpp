@@ -77,7 +77,7 @@ float MultiscatterDielectricBsdf::further_events(Vec3f wo, Vec3f wi, PhiloxStrea
         wi.z = -wi.z;
         eta = 1 / eta;
     }
-    InterfaceWalk light{{facets.ggx, -wo}, eta};
+    InterfaceWalk light{{facets.normals, -wo}, eta};
     float sum = 0;
     for (int event = 0; event < MicrosurfaceWalk::most_events; ++event) {
         if (!light.walk.advance(rng.next_1d())) break;
@@ -91,7 +91,7 @@ float MultiscatterDielectricBsdf::pdf_lobes(Vec3f wo, Vec3f wi, TransportMode mo
     const float first = facets.evaluate_lobes(wo, wi, mode, lobes).pdf;
     if (is_specular()) return first;
     if (lobes != Lobes::both && same_hemisphere(wo, wi) != (lobes == Lobes::reflection)) return 0;
-    const float further = share_of_further_events(facets.ggx);
+    const float further = share_of_further_events(facets.normals);
     const float sides = lobes == Lobes::both ? 0.5f : 1;
     return (1 - further) * first + further * sides * inv_pi_f * abs_cos_theta(wi);
 }
@@ -104,7 +104,7 @@ BsdfEvaluation MultiscatterDielectricBsdf::evaluate_lobes(Vec3f wo, Vec3f wi, Tr
     float f = facets.evaluate_lobes(wo, wi, mode, lobes).f[0];
     float further = further_events(wo, wi, rng);
     if (!reflects) {
-        f *= transmission_masking(facets.ggx.lambda(wo), facets.ggx.lambda(wi));
+        f *= transmission_masking(facets.normals.lambda(wo), facets.normals.lambda(wi));
         const float eta = facets.transmitted_eta(wo);
         if (mode == TransportMode::radiance) further /= eta * eta;
     }
@@ -117,7 +117,7 @@ std::optional<BsdfSample> MultiscatterDielectricBsdf::sample_lobes(Vec3f wo, flo
     if (wo.z == 0) return std::nullopt;
     PhiloxStream rng = PhiloxStream::of_pair(u);
     const bool below = wo.z < 0;
-    InterfaceWalk light{{facets.ggx, below ? Vec3f{-wo.x, -wo.y, wo.z} : -wo},
+    InterfaceWalk light{{facets.normals, below ? Vec3f{-wo.x, -wo.y, wo.z} : -wo},
                         below ? 1 / facets.eta : facets.eta};
     for (int event = 0; light.walk.advance(rng.next_1d()); ++event)
         if (event == MicrosurfaceWalk::most_events || !light.scatters(rng)) return std::nullopt;

@@ -21,16 +21,15 @@ struct PrincipledInterface {
 
     float dielectric = 1, metal = 0;
     float specular = 1; // weight of the dielectric's reflection
-    SampledSpectrum dielectric_f0, metal_f0;
     float film_share = 0;
-    ThinFilm film;
+    float clear = 0;
+    float eta = 1.5f;  // index below the surface over that above; 1: light is not bent
+    bool thin = false; // a sheet: light leaves it mirrored at its plane
+    SampledSpectrum dielectric_f0, metal_f0;
     SampledSpectrum dielectric_bound,
         metal_bound; // as f0 of Schlick's reflectance, with the film; by set_bounds
-
-    float clear = 0;
+    ThinFilm film;
     SampledSpectrum tint; // factor of light that passes
-    float eta = 1.5f;     // index below the surface over that above; 1: light is not bent
-    bool thin = false;    // a sheet: light leaves it mirrored at its plane
 
     // To be called when all else is set.
     void set_bounds() {

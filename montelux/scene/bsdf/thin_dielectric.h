@@ -22,6 +22,12 @@ struct ThinDielectricBsdf {
     bool has_specular() const { return true; }
     float transmitted_eta(Vec3f) const { return 1; }
     SampledSpectrum albedo(Vec3f) const { return SampledSpectrum(1); }
+    // The geometric series of bounces inside the slab (Stokes): R + T R T + T R R R T + ...
+    float reflectance(Vec3f wo) const {
+        float r = fresnel_dielectric(abs_cos_theta(wo), eta);
+        if (r < 1) r += (1 - r) * (1 - r) * r / (1 - r * r);
+        return r;
+    }
 
     template <typename Stream>
     BsdfEvaluation evaluate(Vec3f, Vec3f, TransportMode, Stream&) const {
@@ -30,9 +36,7 @@ struct ThinDielectricBsdf {
 
     template <typename Stream>
     std::optional<BsdfSample> sample(Vec3f wo, TransportMode, Stream& stream) const {
-        float r = fresnel_dielectric(abs_cos_theta(wo), eta);
-        // The geometric series of bounces inside the slab (Stokes): R + T R T + T R R R T + ...
-        if (r < 1) r += (1 - r) * (1 - r) * r / (1 - r * r);
+        const float r = reflectance(wo);
         float uc = stream.next_1d();
         if (uc < r)
             return BsdfSample{

@@ -35,7 +35,9 @@ SampledSpectrum TiltedBsdf::albedo(Vec3f wo) const {
 [[gnu::flatten]] BsdfEvaluation TiltedBsdf::evaluate(Vec3f wo, Vec3f wi, TransportMode mode, Vec2f u) const {
     if (!keeps_side(wo) || !keeps_side(wi)) return {};
     DrawnNumbers numbers{0, u};
-    return std::visit([&](const auto& b) { return b.evaluate(wo, wi, mode, numbers); }, base);
+    BsdfEvaluation e = std::visit([&](const auto& b) { return b.evaluate(wo, wi, mode, numbers); }, base);
+    if (shadowing > 0) e.f *= unshadowed(wi);
+    return e;
 }
 
 [[gnu::flatten]] std::optional<BsdfSample> TiltedBsdf::sample(Vec3f wo, TransportMode mode, float uc,
@@ -44,6 +46,7 @@ SampledSpectrum TiltedBsdf::albedo(Vec3f wo) const {
     DrawnNumbers numbers{uc, u};
     auto s = std::visit([&](const auto& b) { return b.sample(wo, mode, numbers); }, base);
     if (s && !keeps_side(s->wi)) return std::nullopt;
+    if (s && shadowing > 0) s->weight *= unshadowed(s->wi);
     return s;
 }
 

@@ -57,12 +57,16 @@ class FieldCheck {
         if (!r.is_given()) throw Error(owner_ + ", " + std::string(field) + ": no material is given");
         index(field, "material", r.index, scene_.materials.size());
     }
+    void operator()(std::string_view field, const MaterialOfSide& r) const {
+        if (r.is_given()) index(field, "material", r.index, scene_.materials.size());
+    }
     void operator()(std::string_view field, const ImageTexture& t) const {
         index(field, "image", t.image, scene_.images.size());
     }
     void operator()(std::string_view, float) const {}
     void operator()(std::string_view, int) const {}
     void operator()(std::string_view, bool) const {}
+    void operator()(std::string_view, NormalDistribution) const {}
 
   private:
     const Scene& scene_;
@@ -129,31 +133,33 @@ void check_nesting(const Scene& scene) {
     }
 }
 
-// Mixes of mixes of materials: no cycles, and at most most_levels deep.
-class MixNesting {
+// Materials that choose among others: no cycles, and at most most_levels deep.
+class MaterialNesting {
   public:
-    explicit MixNesting(const Scene& scene) : scene_(scene), levels_(scene.materials.size(), unseen) {}
+    explicit MaterialNesting(const Scene& scene) : scene_(scene), levels_(scene.materials.size(), unseen) {}
 
     int levels_of(Index i) {
-        const auto* mix = std::get_if<MixMaterial>(&scene_.materials[i]);
-        if (mix == nullptr) return 1;
-        if (levels_[i] == open) throw Error(numbered("material", i) + " (Mix) depends on itself");
+        if (levels_[i] == open) throw Error(described(i) + " depends on itself");
         if (levels_[i] != unseen) return levels_[i];
         levels_[i] = open;
         check(++depth_, i);
-        const int below =
-            std::max(levels_of(mix->materials.first.index), levels_of(mix->materials.second.index));
+        int levels = 1;
+        visit_parts(scene_.materials[i], [&](Index part) { levels = std::max(levels, levels_of(part) + 1); });
         --depth_;
-        check(below + 1, i);
-        return levels_[i] = below + 1;
+        check(levels, i);
+        return levels_[i] = levels;
     }
 
   private:
     static constexpr int unseen = 0, open = -1;
 
-    static void check(int levels, Index i) {
+    std::string described(Index i) const {
+        const char* name = std::visit([](const auto& m) { return m.name; }, scene_.materials[i]);
+        return numbered("material", i) + " (" + name + ')';
+    }
+    void check(int levels, Index i) const {
         if (levels > most_levels)
-            throw Error(numbered("material", i) + " (Mix): materials refer to one another more than " +
+            throw Error(described(i) + ": materials refer to one another more than " +
                         std::to_string(most_levels) + " levels deep");
     }
 
@@ -196,7 +202,7 @@ void check_materials(const Scene& scene) {
                 });
             },
             scene.materials[i]);
-    MixNesting nesting(scene);
+    MaterialNesting nesting(scene);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) nesting.levels_of(static_cast<Index>(i));
 }
 
@@ -220,7 +226,13 @@ void check_media(const Scene& scene) {
         std::visit(
             [&](const auto& m) {
                 const FieldCheck check(scene, numbered("medium", i) + " (" + m.name + ')');
-                if constexpr (std::is_same_v<decltype(m.sigma_a), SceneSpectrum>) {
+                if constexpr (requires { m.albedo; }) {
+                    for (const MediumField& field : {m.extinction, m.albedo}) {
+                        check("value", field.value);
+                        check_grid(check, "scalars", field.scalars, scene.scalar_grids, "scalar grid");
+                        check_grid(check, "colors", field.colors, scene.color_grids, "color grid");
+                    }
+                } else if constexpr (std::is_same_v<decltype(m.sigma_a), SceneSpectrum>) {
                     check("sigma_a", m.sigma_a);
                     check("sigma_s", m.sigma_s);
                 } else {

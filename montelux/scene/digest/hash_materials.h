@@ -17,6 +17,10 @@ requires requires(const M& m) {
 }
 void hash_values(SceneHasher& h, const M& material) {
     visit_parameters(material, [&](const ParameterInfo& info, const auto& field) {
+        if constexpr (requires { has_no_effect(field); }) {
+            if (info.added && has_no_effect(field)) return;
+            if (info.added) h.all(info.name);
+        }
         visit_leaves(info.name, field, [&](std::string_view, const auto& value) { h.all(value); });
     });
 }
@@ -45,6 +49,10 @@ inline void hash_values(SceneHasher& h, const MeasuredBrdf& b) {
 }
 
 inline void hash_values(SceneHasher& h, const MaterialIndex& r) {
+    const auto& [index] = r;
+    h.all(index);
+}
+inline void hash_values(SceneHasher& h, const MaterialOfSide& r) {
     const auto& [index] = r;
     h.all(index);
 }

@@ -61,6 +61,15 @@ inline void hash_values(SceneHasher& h, const SparseGridMedium& m) {
     h.all(box, density, sigma_a, sigma_s, scale, temperature, temperature_space, le_scale, offset,
           temperature_scale, phase);
 }
+inline void hash_values(SceneHasher& h, const MediumField& f) {
+    const auto& [value, scalars, colors, nearest, unit_from_world] = f;
+    const auto& [rows, offset] = unit_from_world;
+    h.all(value, scalars, colors, nearest, rows, offset);
+}
+inline void hash_values(SceneHasher& h, const FieldMedium& m) {
+    const auto& [box, bounded, extinction, albedo, scale, phase] = m;
+    h.all(box, bounded, extinction, albedo, scale, phase);
+}
 inline void hash_values(SceneHasher& h, const CloudMedium& m) {
     const auto& [box, sigma_a, sigma_s, density, wispiness, frequency, phase] = m;
     h.all(box, sigma_a, sigma_s, density, wispiness, frequency, phase);

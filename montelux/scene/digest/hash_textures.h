@@ -26,11 +26,12 @@ inline void hash_values(SceneHasher& h, const TextureMapping& m) {
 }
 inline void hash_values(SceneHasher& h, const ImageTexture& t) {
     const auto& [image, channels, mapping, filter, wrap, anisotropy, scale, invert, meaning, space, factor,
-                 vertex_colors] = t;
+                 vertex_colors, right_handed] = t;
     h.all(image, channels, mapping, filter, wrap.s, anisotropy, scale, invert, meaning, space);
     // As far as they are not what they were before there were others.
     if (wrap.t != wrap.s) h.all(wrap.t);
     if (!(factor == Vec3f{1, 1, 1}) || vertex_colors) h.all(factor, vertex_colors);
+    if (right_handed) h.all(right_handed);
 }
 inline void hash_values(SceneHasher& h, const VertexColorTexture& t) {
     const auto& [factor] = t;

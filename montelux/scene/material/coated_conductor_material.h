@@ -33,7 +33,7 @@ struct CoatedConductorMaterial {
         const Ggx coat = at.roughness(coating.roughness);
         // Light crosses the coat twice: the widths of the lobes add.
         auto widen = [](float a, float b) { return std::max(std::sqrt(a * a + 2 * b * b), 2e-3f); };
-        const Ggx proxy{widen(base.ggx.alpha_x, coat.alpha_x), widen(base.ggx.alpha_y, coat.alpha_y)};
+        const Ggx proxy{widen(base.normals.alpha_x, coat.alpha_x), widen(base.normals.alpha_y, coat.alpha_y)};
         return at.layered(coating, eta, base, proxy);
     }
 };

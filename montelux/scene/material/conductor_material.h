@@ -1,7 +1,7 @@
 // ConductorMaterial: a metal.
 #pragma once
 
-#include "montelux/scene/bsdf/conductor.h"
+#include "montelux/scene/bsdf/bsdf.h"
 #include "montelux/scene/material/surface_detail.h"
 
 namespace montelux {
@@ -12,17 +12,26 @@ struct ConductorMaterial {
 
     MetalParameter metal{};
     RoughnessParameter roughness{};
+    SpectrumParameter specular_reflectance{1};
+    NormalDistribution distribution = NormalDistribution::ggx;
     SurfaceDetail detail{};
 
     template <typename Self, typename Visit>
     static void visit_parameters(Self& m, Visit&& visit) {
         visit({.name = "metal"}, m.metal);
         visit({.name = "roughness"}, m.roughness);
+        visit(
+            {.name = "specular_reflectance", .doc = "Factor of the reflected light, 0 to 1.", .added = true},
+            m.specular_reflectance);
+        visit({.name = "distribution", .added = true}, m.distribution);
     }
 
     template <typename Evaluator>
-    ConductorBsdf bsdf(const Evaluator& at) const {
-        return at.conductor(metal, roughness, 1);
+    Bsdf bsdf(const Evaluator& at) const {
+        const ConductorBsdf b = at.conductor(metal, roughness, 1);
+        if (has_no_effect(distribution) && has_no_effect(specular_reflectance)) return b;
+        return TintedConductorBsdf{{b.eta, b.k, {b.normals, distribution}},
+                                   at.reflectance(specular_reflectance)};
     }
 };
 

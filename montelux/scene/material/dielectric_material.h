@@ -1,7 +1,7 @@
 // DielectricMaterial: glass, water.
 #pragma once
 
-#include "montelux/scene/bsdf/dielectric.h"
+#include "montelux/scene/bsdf/bsdf.h"
 #include "montelux/scene/material/surface_detail.h"
 
 namespace montelux {
@@ -12,17 +12,33 @@ struct DielectricMaterial {
 
     SceneSpectrum eta{1.5f};
     RoughnessParameter roughness{};
+    SpectrumParameter specular_reflectance{1}, specular_transmittance{1};
+    NormalDistribution distribution = NormalDistribution::ggx;
     SurfaceDetail detail{};
 
     template <typename Self, typename Visit>
     static void visit_parameters(Self& m, Visit&& visit) {
         visit({.name = "eta"}, m.eta);
         visit({.name = "roughness"}, m.roughness);
+        visit(
+            {.name = "specular_reflectance", .doc = "Factor of the reflected light, 0 to 1.", .added = true},
+            m.specular_reflectance);
+        visit({.name = "specular_transmittance",
+               .doc = "Factor of the transmitted light, 0 to 1.",
+               .added = true},
+              m.specular_transmittance);
+        visit({.name = "distribution", .added = true}, m.distribution);
     }
 
     template <typename Evaluator>
-    DielectricBsdf bsdf(const Evaluator& at) const {
-        return {at.refractive_index(eta), at.roughness(roughness)};
+    Bsdf bsdf(const Evaluator& at) const {
+        const DielectricBsdf b{at.refractive_index(eta), at.roughness(roughness)};
+        if (has_no_effect(distribution) && has_no_effect(specular_reflectance) &&
+            has_no_effect(specular_transmittance))
+            return b;
+        return TintedDielectricBsdf{{b.eta, {b.normals, distribution}},
+                                    at.reflectance(specular_reflectance),
+                                    at.reflectance(specular_transmittance)};
     }
 };
 

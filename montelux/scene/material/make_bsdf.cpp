@@ -1,5 +1,7 @@
 #include "montelux/scene/material/make_bsdf.h"
 
+#include <algorithm>
+
 #include "montelux/scene/bsdf/multiple_scattering.h"
 #include "montelux/scene/material/parameter_evaluator.h"
 #include "montelux/scene/material/shading_frame.h"
@@ -8,12 +10,20 @@ namespace montelux {
 
 namespace {
 
-// The material at a point: mixes choose one of theirs. Scenes without cycles end this (check_references.h).
+// The material at a point, or no_index for black: mixes and sides choose one of theirs. Scenes without cycles end this
+// (check_references.h).
 Index material_at(const SceneView& scene, const SurfacePoint& surface, Vec3f wo,
                   const TextureContext& context) {
     Index index = surface.shape->material;
-    while (const auto* mix = std::get_if<MixMaterial>(&scene.materials[index]))
-        index = mix->choose(evaluate(scene, mix->amount, context), surface.p, wo, index);
+    while (index != no_index) {
+        const Material& material = scene.materials[index];
+        if (const auto* mix = std::get_if<MixMaterial>(&material))
+            index = mix->choose(evaluate(scene, mix->amount, context), surface.p, wo, index);
+        else if (const auto* sided = std::get_if<SidedMaterial>(&material))
+            index = sided->side(dot(wo, surface.ng) > 0);
+        else
+            break;
+    }
     return index;
 }
 
@@ -23,12 +33,19 @@ Frame plain_frame(const SceneView& scene, Index material, const SurfacePoint& su
                : Frame::from_normal(surface.ns);
 }
 
-// `normal`: the geometric normal in the frame of the BSDF.
-Bsdf tilted(const Bsdf& bsdf, Normal3f normal) {
+// The roughness, squared, of microfacets that are on average as steep as a normal at this angle from +z: equation 4 of
+// Estevez, Lecocq, Stein 2019, which takes a quarter of the steepest ones' tangent for the variance.
+float shadowing_of(Normal3f normal) {
+    const float cos2 = normal.z * normal.z;
+    return std::min(0.125f * std::max(1 - cos2, 0.0f) / cos2, 1.0f);
+}
+
+// `normal`: the normal that decides on sides, in the frame of the BSDF.
+Bsdf tilted(const Bsdf& bsdf, Normal3f normal, float shadowing) {
     return std::visit(
         [&]<typename B>(const B& b) -> Bsdf {
             if constexpr (std::is_constructible_v<UntiltedBsdf, B>)
-                return TiltedBsdf{b, normal};
+                return TiltedBsdf{b, normal, shadowing};
             else
                 return b; // already tilted
         },
@@ -39,12 +56,15 @@ Bsdf tilted(const Bsdf& bsdf, Normal3f normal) {
 SurfaceBsdf plain_bsdf(const SceneView& scene, const SurfacePoint& surface, Vec3f wo,
                        const TextureContext& context, SampledWavelengths& lambda, bool widen) {
     const Index index = material_at(scene, surface, wo, context);
+    if (index == no_index) return {DiffuseBsdf{SampledSpectrum(0)}, Frame::from_normal(surface.ns)};
     const ParameterEvaluator at(scene, index, context, lambda, widen);
     return std::visit(
         [&](const auto& m) -> SurfaceBsdf {
             if (!m.detail.is_flat())
-                if (auto frame = tilted_frame(scene, m.detail, surface, wo, context))
-                    return {tilted(m.bsdf(at), frame->to_local(surface.ng)), *frame};
+                if (auto frame = tilted_frame(scene, m.detail, surface, wo, context)) {
+                    const Normal3f normal = frame->to_local(m.detail.shadowed ? surface.ns : surface.ng);
+                    return {tilted(m.bsdf(at), normal, m.detail.shadowed ? shadowing_of(normal) : 0), *frame};
+                }
             return {m.bsdf(at), plain_frame(scene, index, surface)};
         },
         scene.materials[index]);

@@ -33,9 +33,10 @@ struct FindTexture {
     void operator()(std::string_view, const NormalMapParameter& p) const { found |= p.is_given(); }
     void operator()(std::string_view, const MeasuredBrdfIndex&) const {}
     void operator()(std::string_view, const MediumIndex&) const {}
-    // Its parts may be textured.
-    void operator()(std::string_view, const MaterialIndex& p) const { found |= p.is_given(); }
+    void operator()(std::string_view, const MaterialIndex&) const {}
+    void operator()(std::string_view, const MaterialOfSide&) const {}
     void operator()(std::string_view, const SceneSpectrum&) const {}
+    void operator()(std::string_view, NormalDistribution) const {}
     void operator()(std::string_view, float) const {}
     void operator()(std::string_view, int) const {}
     void operator()(std::string_view, bool) const {}

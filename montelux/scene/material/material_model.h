@@ -63,6 +63,16 @@ void visit_fields(M& material, Visit&& visit) {
         material);
 }
 
+// visit(index) for each of the materials that it chooses among: those of a mix, the sides that are not black.
+template <typename Visit>
+void visit_parts(const Material& material, Visit&& visit) {
+    visit_fields(material, [&]<typename Field>(std::string_view, const Field& field) {
+        if constexpr (std::is_same_v<Field, MaterialIndex> || std::is_same_v<Field, MaterialOfSide>)
+            if (field.is_given()) visit(field.index);
+    });
+}
+
+// The following say nothing of a material's parts.
 // Whether making the BSDF, or its frame, looks up a texture.
 bool is_textured(const Material& material);
 // Whether the BSDF needs texture coordinates, for textures or itself.

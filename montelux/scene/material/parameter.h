@@ -5,13 +5,14 @@
 #include <string>
 #include <string_view>
 
+#include "montelux/scene/bsdf/microfacet_normals.h"
 #include "montelux/scene/texture/texture.h"
 
 namespace montelux {
 
 // A material lists its parameters once, in a function visit_parameters(material, visit) that calls
 // visit(info, field) for each. A field is a SceneSpectrum (an index of refraction), SpectrumParameter,
-// FloatParameter, float, int, or one of the kinds below. The list defines the readers of scene files, the
+// FloatParameter, float, int, bool, NormalDistribution, or one of the kinds below. The list defines the readers of scene files, the
 // Python attributes, the hash, and whether the material is textured.
 struct ParameterInfo {
     std::string_view prefix{}; // of the parameter's part of the material; may be empty
@@ -21,6 +22,9 @@ struct ParameterInfo {
     // Of numbers and integers; readers refuse others. Not of textures: a material limits their values itself.
     double least = 0, most = std::numeric_limits<double>::max();
     std::string_view pbrt{}; // if not the name without '_'
+    // Part of a scene's digest only where it has an effect (has_no_effect below): checkpoints made before the material
+    // had the parameter stay valid.
+    bool added = false;
 
     // conductor_eta
     std::string python_name() const {
@@ -86,6 +90,12 @@ struct MaterialIndex {
 struct MixedMaterials {
     MaterialIndex first, second;
 };
+// The material of one side of a surface; if none is given, the side is black.
+struct MaterialOfSide {
+    Index index = no_index; // into Scene::materials
+
+    bool is_given() const { return index != no_index; }
+};
 
 // Absorption inside hair: given itself, or computed from the reflectance of many hairs, or from the
 // concentrations of the two melanins.
@@ -97,8 +107,16 @@ struct HairColorParameter {
     int source = melanins;
 };
 
+// Values of parameters that are ParameterInfo::added, if a material with them is as one without the parameter.
+inline bool has_no_effect(const SpectrumParameter& factor) {
+    return factor.is_constant() && factor.value.is_constant() && factor.value.constant == 1;
+}
+inline bool has_no_effect(bool flag) { return !flag; }
+inline bool has_no_effect(NormalDistribution d) { return d == NormalDistribution::ggx; }
+
 // The simple fields of a parameter: visit(name, field) of SceneSpectrum, SpectrumParameter, FloatParameter,
-// float, int, bool, NormalMapParameter, MeasuredBrdfIndex, MediumIndex or MaterialIndex.
+// float, int, bool, NormalDistribution, NormalMapParameter, MeasuredBrdfIndex, MediumIndex, MaterialIndex or
+// MaterialOfSide.
 template <typename Field, typename Visit>
 void visit_leaves(std::string_view name, Field& field, Visit&& visit) {
     if constexpr (requires { field.remap; }) {

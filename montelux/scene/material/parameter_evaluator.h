@@ -2,9 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "montelux/scene/bsdf/bsdf.h"
 #include "montelux/scene/texture/evaluate.h"
+#include "montelux/spectrum/cie.h"
 
 namespace montelux {
 
@@ -40,6 +43,26 @@ class ParameterEvaluator {
         return widen_ ? ggx.widened() : ggx;
     }
 
+    // Burley 2012: elongated with a constant product of both.
+    MicrofacetNormals disney_microfacets(float roughness, float anisotropic) const {
+        const float alpha = roughness * roughness, aspect = std::sqrt(1 - 0.9f * anisotropic);
+        return {microfacets(std::max(alpha / aspect, 1e-3f), std::max(alpha * aspect, 1e-3f)),
+                NormalDistribution::ggx_separable};
+    }
+    // From white to the colour at luminance 1; white if the colour is black.
+    SampledSpectrum tint(const SpectrumParameter& color, float strength) const {
+        const float y = strength > 0 ? luminance(color) : 0;
+        return y > 0 ? lerp(strength, SampledSpectrum(1), reflectance(color) / y) : SampledSpectrum(1);
+    }
+    // Of a reflectance under equal energy, by wavelengths that split the luminous efficiency into equal parts.
+    float luminance(const SpectrumParameter& color) const {
+        static const std::array<SampledWavelengths, 2> nodes = luminance_nodes();
+        float sum = 0;
+        for (const SampledWavelengths& lambda : nodes)
+            sum += average(clamp(evaluate(scene_, color, context_, lambda), 0, 1));
+        return sum / 2;
+    }
+
     float refractive_index(SceneSpectrum eta) const {
         float value = scene_.sample(eta, lambda_)[0];
         if (!scene_.is_constant(eta)) lambda_.terminate_secondary();
@@ -60,7 +83,7 @@ class ParameterEvaluator {
         }
         b.eta /= outside;
         b.k /= outside;
-        b.ggx = roughness(r);
+        b.normals = roughness(r);
         return b;
     }
 
@@ -104,10 +127,25 @@ class ParameterEvaluator {
         return {&scene_.measured_brdfs[b.index], lambda_.lambda};
     }
 
+    // Of a PlasticMaterial.
+    const PlasticTable& plastic_table() const { return scene_.plastic(material_); }
     // Null where the closed form of CoatingTable does not hold for the material.
     const CoatingTable* coating_table() const { return widen_ ? nullptr : scene_.coating(material_); }
 
   private:
+    static std::array<SampledWavelengths, 2> luminance_nodes() {
+        std::array<SampledWavelengths, 2> nodes{};
+        double sum = 0;
+        int found = 0;
+        for (int i = 0; i < visible_samples && found < 8; ++i) {
+            sum += static_cast<double>(cie_y[static_cast<std::size_t>(i)]) / cie_y_integral;
+            if (sum < (found + 0.5) / 8) continue;
+            nodes[static_cast<std::size_t>(found / 4)].lambda[found % 4] = lambda_min + static_cast<float>(i);
+            ++found;
+        }
+        return nodes;
+    }
+
     const SceneView& scene_;
     Index material_;
     const TextureContext& context_;

@@ -53,8 +53,8 @@ bool add_bumps(const SceneView& scene, const FloatParameter& height, const Surfa
     return true;
 }
 
-// Returns false where the map leaves the normal unchanged. The map's second axis points to the side of dp/dv,
-// so mirrored instances and coordinates show mirrored dents.
+// Returns false where the map leaves the normal unchanged. The second axis of most maps points to the side
+// of dp/dv, so mirrored instances and coordinates show mirrored dents.
 bool add_map(const SceneView& scene, const NormalMapParameter& map, const TextureContext& context,
              Tangents& t) {
     if (!map.is_given()) return false;
@@ -66,7 +66,7 @@ bool add_map(const SceneView& scene, const NormalMapParameter& map, const Textur
     const Vec3f m = multiply(2 * rgb - Vec3f{1, 1, 1}, texture.factor);
     if (std::abs(m.x) < lookup_rounding && std::abs(m.y) < lookup_rounding) return false;
     const Frame frame = Frame::from_normal_and_tangent(t.n, t.u);
-    const float side = dot(frame.t, t.v) < 0 ? -1.0f : 1.0f;
+    const float side = !texture.right_handed && dot(frame.t, t.v) < 0 ? -1.0f : 1.0f;
     const Vec3f n = frame.to_world({m.x, side * m.y, m.z});
     const float len = length(n);
     if (!(len > 0 && std::isfinite(len))) return false;
@@ -98,7 +98,10 @@ std::optional<Frame> tilted_frame(const SceneView& scene, const SurfaceDetail& d
     if (length_squared(surface.vertex_tangent) > 0) t.u = across(surface.vertex_tangent, t.n);
     const bool mapped = add_map(scene, detail.normal_map, context, t);
     if (!bumpy && !mapped) return std::nullopt;
-    return Frame::from_normal_and_tangent(facing(t.n, surface.ng, wo), t.u);
+    if (!detail.shadowed) return Frame::from_normal_and_tangent(facing(t.n, surface.ng, wo), t.u);
+    const Normal3f n = surface.ns;
+    const bool faces = dot(wo, n) * dot(wo, t.n) > 0;
+    return Frame::from_normal_and_tangent(faces ? t.n : n * (2 * dot(n, t.n)) - t.n, t.u);
 }
 
 } // namespace montelux

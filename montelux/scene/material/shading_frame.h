@@ -14,7 +14,8 @@ namespace montelux {
 // coordinates. Empty if the normal is unchanged, to the last bit.
 //
 // The normal is on the side of the geometric one, and turned only as far as necessary for the mirror
-// direction of wo to stay above the surface.
+// direction of wo to stay above the surface. Of a `shadowed` detail it is mirrored at the surface's shading normal where
+// it would face away from wo.
 std::optional<Frame> tilted_frame(const SceneView& scene, const SurfaceDetail& detail,
                                   const SurfacePoint& surface, Vec3f wo, const TextureContext& context);
 

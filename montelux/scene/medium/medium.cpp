@@ -1,5 +1,7 @@
 #include "montelux/scene/medium/medium.h"
 
+#include <limits>
+
 #include "montelux/mc/math/fractal_noise.h"
 #include "montelux/mc/math/gradient_noise.h"
 #include "montelux/mc/parallel/parallel_for.h"
@@ -117,6 +119,38 @@ MediumTable SparseGridMedium::table(const Scene& scene) const {
         return values.largest(box.at(lower), box.at(upper));
     };
     return {box.unit_from_world(), box.medium_from_world(), majorant_grid(bound, sparse_majorant_resolution)};
+}
+
+FieldMedium::Sampled FieldMedium::at(const SceneView& scene, Index medium,
+                                     const SampledWavelengths& lambda) const {
+    const auto sampled = [&](const MediumField& f) {
+        return SampledField{&f, grid(scene.scalar_grids, f.scalars), grid(scene.color_grids, f.colors),
+                            scene.sample(f.value, lambda)};
+    };
+    return {this, &scene.medium_tables[medium], sampled(extinction), sampled(albedo), lambda};
+}
+
+MediumTable FieldMedium::table(const Scene& scene) const {
+    if (!bounded) return {};
+    const AffineMap unit_from_world = box.unit_from_world(), medium_from_world = box.medium_from_world();
+    if (!extinction.is_grid()) return {unit_from_world, medium_from_world, {1, {1}}};
+    const auto bound = [&](Point3f lower, Point3f upper) {
+        // The cell in the space of the grid.
+        constexpr float far = std::numeric_limits<float>::infinity();
+        Point3f first(far, far, far), last(-far, -far, -far);
+        for (int corner = 0; corner < 8; ++corner) {
+            const Point3f unit((corner & 1) != 0 ? upper.x : lower.x, (corner & 2) != 0 ? upper.y : lower.y,
+                               (corner & 4) != 0 ? upper.z : lower.z);
+            const Point3f p = extinction.unit_from_world.point(box.world_from_medium.point(box.at(unit)));
+            first = min(first, p);
+            last = max(last, p);
+        }
+        if (extinction.scalars != no_index)
+            return scene.scalar_grids[extinction.scalars].largest(first, last, [](float v) { return v; });
+        return scene.color_grids[extinction.colors].largest(
+            first, last, [](const ScaledPolynomial& s) { return s.max_value(); });
+    };
+    return {unit_from_world, medium_from_world, majorant_grid(bound)};
 }
 
 float CloudMedium::density_at(Point3f p) const {

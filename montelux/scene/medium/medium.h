@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "montelux/scene/medium/cloud_medium.h"
+#include "montelux/scene/medium/field_medium.h"
 #include "montelux/scene/medium/grid_medium.h"
 #include "montelux/scene/medium/homogeneous_medium.h"
 #include "montelux/scene/medium/rgb_grid_medium.h"
@@ -12,7 +13,8 @@
 
 namespace montelux {
 
-using Medium = std::variant<HomogeneousMedium, GridMedium, RgbGridMedium, CloudMedium, SparseGridMedium>;
+using Medium =
+    std::variant<HomogeneousMedium, GridMedium, RgbGridMedium, CloudMedium, SparseGridMedium, FieldMedium>;
 static_assert(std::is_trivially_copyable_v<Medium>);
 
 template <typename... M>

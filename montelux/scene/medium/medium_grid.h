@@ -56,7 +56,44 @@ struct Grid3 {
         return sum;
     }
 
-    // The largest of bound(sample) over the samples that `interpolate` may take for points of a box.
+    // The same with the samples of the border beyond them, not 0.
+    template <typename V, typename Value>
+    V interpolate_extended(Point3f p, const Value& value) const {
+        std::array<std::array<std::size_t, 2>, 3> at{};
+        std::array<float, 3> fraction{};
+        for (std::size_t a = 0; a < 3; ++a) {
+            const auto last = static_cast<float>(size[a] - 1);
+            const float x = std::min(std::max(p[static_cast<int>(a)] * (last + 1) - 0.5f, 0.0f), last);
+            const float floor = std::floor(x);
+            at[a][0] = static_cast<std::size_t>(floor);
+            at[a][1] = std::min(at[a][0] + 1, static_cast<std::size_t>(size[a] - 1));
+            fraction[a] = x - floor;
+        }
+        V sum{};
+        for (std::size_t z = 0; z < 2; ++z)
+            for (std::size_t y = 0; y < 2; ++y)
+                for (std::size_t x = 0; x < 2; ++x) {
+                    const auto share = [&](std::size_t a, std::size_t upper) {
+                        return upper == 0 ? 1 - fraction[a] : fraction[a];
+                    };
+                    sum += value(values[(at[2][z] * std::size_t(size[1]) + at[1][y]) * std::size_t(size[0]) +
+                                        at[0][x]]) *
+                           (share(0, x) * share(1, y) * share(2, z));
+                }
+        return sum;
+    }
+
+    // The sample in whose cell p lies, or the nearest one outside the cube.
+    const T& nearest(Point3f p) const {
+        std::array<std::size_t, 3> at{};
+        for (std::size_t a = 0; a < 3; ++a) {
+            const auto n = static_cast<float>(size[a]);
+            at[a] = static_cast<std::size_t>(std::min(std::max(p[static_cast<int>(a)] * n, 0.0f), n - 1));
+        }
+        return values[(at[2] * std::size_t(size[1]) + at[1]) * std::size_t(size[0]) + at[0]];
+    }
+
+    // The largest of bound(sample) over the samples that these functions may take for points of a box.
     template <typename Bound>
     float largest(Point3f lower, Point3f upper, const Bound& bound) const {
         std::array<int, 3> first{}, last{};
@@ -65,8 +102,11 @@ struct Grid3 {
             const auto n = static_cast<float>(size[at]);
             // Points may lie outside the box by rounding.
             constexpr float margin = 1e-3f;
-            first[at] = std::max(static_cast<int>(std::floor(lower[a] * n - 0.5f - margin)), 0);
-            last[at] = std::min(static_cast<int>(std::floor(upper[a] * n - 0.5f + margin)) + 1, size[at] - 1);
+            const auto sample = [&](float x) {
+                return static_cast<int>(std::min(std::max(std::floor(x), -1.0f), n - 1));
+            };
+            first[at] = std::max(sample(lower[a] * n - 0.5f - margin), 0);
+            last[at] = std::min(sample(upper[a] * n - 0.5f + margin) + 1, size[at] - 1);
         }
         float result = 0;
         for (int z = first[2]; z <= last[2]; ++z)

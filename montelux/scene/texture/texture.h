@@ -60,6 +60,8 @@ struct ImageTexture {
     const RgbColorSpace* color_space = &RgbColorSpace::srgb();
     Vec3f factor{1, 1, 1};
     bool vertex_colors = false; // times those of the mesh; as a number, times the opacities
+    // Of a normal map: its second axis is n x dp/du, on whichever side dp/dv is.
+    bool right_handed = false;
 };
 // The colours of a mesh's vertices times a factor, an albedo; as a number, the opacities of its vertices times factor.x.
 struct VertexColorTexture {

@@ -174,6 +174,126 @@ TEST(PbrtMaterials, Principled) {
               "scene:2:23: parameter 'metallic' is above 1");
 }
 
+TEST(PbrtMaterials, Plastic) {
+    auto m = material<PlasticMaterial>("Material \"plastic\"");
+    EXPECT_EQ(m.of(m.reflectance.value)(500), 0.5f);
+    EXPECT_EQ(m.of(m.specular_reflectance.value)(500), 1);
+    EXPECT_EQ(m.eta, 1.5f);
+    EXPECT_EQ(m.alpha, 0);
+    EXPECT_EQ(m.distribution, NormalDistribution::ggx);
+    EXPECT_FALSE(m.nonlinear);
+    EXPECT_EQ(m.internal_reflectance, 0);
+    m = material<PlasticMaterial>(
+        "Material \"plastic\" \"rgb reflectance\" [ 0.1 0.2 0.3 ] \"rgb specularreflectance\" [ 0.3 0.2 0.1 "
+        "] "
+        "\"float eta\" 1.4 \"float alpha\" 0.2 \"string distribution\" \"beckmann\" \"bool nonlinear\" true "
+        "\"float internalreflectance\" 0.6");
+    const RgbColorSpace& srgb = RgbColorSpace::srgb();
+    expect_same_values(m.of(m.reflectance.value), Spectrum(RgbAlbedoSpectrum(srgb, {0.1f, 0.2f, 0.3f})));
+    expect_same_values(m.of(m.specular_reflectance.value),
+                       Spectrum(RgbAlbedoSpectrum(srgb, {0.3f, 0.2f, 0.1f})));
+    EXPECT_EQ(m.eta, 1.4f);
+    EXPECT_EQ(m.alpha, 0.2f);
+    EXPECT_EQ(m.distribution, NormalDistribution::beckmann);
+    EXPECT_TRUE(m.nonlinear);
+    EXPECT_EQ(m.internal_reflectance, 0.6f);
+    EXPECT_EQ(test::world_error("Material \"plastic\" \"float eta\" 0.9"),
+              "scene:2:20: parameter 'eta' is below 1");
+    EXPECT_EQ(test::world_error("Material \"plastic\" \"spectrum eta\" \"glass-BK7\"").substr(0, 11),
+              "scene:2:20:");
+}
+
+TEST(PbrtMaterials, Disney) {
+    auto m = material<DisneyMaterial>("Material \"disney\"");
+    EXPECT_EQ(m.of(m.base_color.value)(500), 0.5f);
+    EXPECT_EQ(m.roughness.value, 0.5f);
+    EXPECT_EQ(m.eta, 1.5f);
+    for (const FloatParameter& p : {m.metallic, m.anisotropic, m.specular_tint, m.sheen, m.sheen_tint,
+                                    m.flatness, m.clearcoat, m.clearcoat_gloss, m.specular_transmission})
+        EXPECT_EQ(p.value, 0);
+    m = material<DisneyMaterial>(
+        "Material \"disney\" \"rgb basecolor\" [ 0.1 0.2 0.3 ] \"float metallic\" 0.1 \"float roughness\" "
+        "0.2 "
+        "\"float anisotropic\" 0.3 \"float eta\" 1.7 \"float speculartint\" 0.4 \"float sheen\" 0.5 \"float "
+        "sheentint\" 0.6 \"float flatness\" 0.7 \"float clearcoat\" 0.8 \"float clearcoatgloss\" 0.9 \"float "
+        "speculartransmission\" 0.15");
+    expect_same_values(m.of(m.base_color.value),
+                       Spectrum(RgbAlbedoSpectrum(RgbColorSpace::srgb(), {0.1f, 0.2f, 0.3f})));
+    EXPECT_EQ(m.metallic.value, 0.1f);
+    EXPECT_EQ(m.roughness.value, 0.2f);
+    EXPECT_EQ(m.anisotropic.value, 0.3f);
+    EXPECT_EQ(m.eta, 1.7f);
+    EXPECT_EQ(m.specular_tint.value, 0.4f);
+    EXPECT_EQ(m.sheen.value, 0.5f);
+    EXPECT_EQ(m.sheen_tint.value, 0.6f);
+    EXPECT_EQ(m.flatness.value, 0.7f);
+    EXPECT_EQ(m.clearcoat.value, 0.8f);
+    EXPECT_EQ(m.clearcoat_gloss.value, 0.9f);
+    EXPECT_EQ(m.specular_transmission.value, 0.15f);
+    const auto sheet = material<DisneyThinMaterial>(
+        "Material \"disneythin\" \"float eta\" 1.3 \"float diffusetransmission\" 0.4 \"float "
+        "speculartransmission\" 0.3");
+    EXPECT_EQ(sheet.eta.value, 1.3f);
+    EXPECT_EQ(sheet.diffuse_transmission.value, 0.4f);
+    EXPECT_EQ(sheet.specular_transmission.value, 0.3f);
+    EXPECT_EQ(sheet.roughness.value, 0.5f);
+}
+
+TEST(PbrtMaterials, DistributionsAndFactors) {
+    const auto metal = material<ConductorMaterial>(
+        "Material \"conductor\" \"string distribution\" \"ggx-separable\" \"spectrum specularreflectance\" "
+        "[ 300 0.5 800 0.5 ]");
+    EXPECT_EQ(metal.distribution, NormalDistribution::ggx_separable);
+    EXPECT_EQ(metal.of(metal.specular_reflectance.value)(500), 0.5f);
+    const std::string both = "\"spectrum specularreflectance\" [ 300 0.5 800 0.5 ] \"spectrum "
+                             "speculartransmittance\" [ 300 0.3 800 0.3 ]";
+    const auto glass = material<DielectricMaterial>("Material \"dielectric\" \"string distribution\" "
+                                                    "\"beckmann\" " +
+                                                    both);
+    EXPECT_EQ(glass.distribution, NormalDistribution::beckmann);
+    EXPECT_EQ(glass.of(glass.specular_reflectance.value)(500), 0.5f);
+    EXPECT_EQ(glass.of(glass.specular_transmittance.value)(500), 0.3f);
+    const auto pane = material<ThinDielectricMaterial>("Material \"thindielectric\" " + both);
+    EXPECT_EQ(pane.of(pane.specular_reflectance.value)(500), 0.5f);
+    EXPECT_EQ(pane.of(pane.specular_transmittance.value)(500), 0.3f);
+    EXPECT_EQ(
+        test::world_error("Material \"conductor\" \"string distribution\" \"beckman\""),
+        "scene:2:22: parameter 'distribution' is 'beckman'; expected one of ggx, ggx-separable, beckmann "
+        "(did you mean 'beckmann'?)");
+}
+
+TEST(PbrtMaterials, Sided) {
+    const SceneDescription d = parse_world(R"(
+        MakeNamedMaterial "sheet" "string type" "sided" "string front" "paint" "string back" "half"
+        MakeNamedMaterial "half" "string type" "sided" "string back" "paint"
+        MakeNamedMaterial "paint" "string type" "diffuse"
+        NamedMaterial "sheet" Shape "sphere")");
+    const std::vector<Material>& m = d.scene.materials;
+    ASSERT_EQ(m.size(), 3u);
+    const auto& sheet = std::get<SidedMaterial>(m[d.scene.shapes[0].material]);
+    EXPECT_TRUE(std::holds_alternative<DiffuseMaterial>(m[sheet.front.index]));
+    const auto& half = std::get<SidedMaterial>(m[sheet.back.index]);
+    EXPECT_FALSE(half.front.is_given());
+    EXPECT_EQ(half.back.index, sheet.front.index);
+    EXPECT_EQ(test::world_error("MakeNamedMaterial \"a\" \"string type\" \"sided\"\n\"string back\" \"a\""),
+              "scene:3:1: the material depends on itself");
+    EXPECT_EQ(
+        test::world_error("Material \"sided\" \"string front\" \"lost\" Shape \"sphere\"").substr(0, 11),
+        "scene:2:18:");
+}
+
+// Parts of parts are visited once each: a long chain takes no time.
+TEST(PbrtMaterials, InteriorsOfNestedMaterials) {
+    std::string chain = "MakeNamedMaterial \"m0\" \"string type\" \"subsurface\"\n";
+    for (int i = 1; i < 60; ++i) {
+        const std::string part = "\"m" + std::to_string(i - 1) + "\"";
+        chain += "MakeNamedMaterial \"m" + std::to_string(i) +
+                 "\" \"string type\" \"sided\" \"string front\" " + part + " \"string back\" " + part + "\n";
+    }
+    const SceneDescription d = parse_world(chain + "NamedMaterial \"m59\" Shape \"sphere\"");
+    EXPECT_EQ(d.scene.shapes.at(0).media.inside, 0u);
+}
+
 TEST(PbrtMaterials, Measured) {
     TemporaryFolder folder;
     const std::vector<std::uint8_t> bytes =

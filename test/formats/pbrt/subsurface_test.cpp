@@ -80,7 +80,7 @@ TEST(PbrtMaterials, SubsurfaceIsInsideOfItsShapes) {
     EXPECT_EQ(test::world_error("MakeNamedMaterial \"a\" \"string type\" \"subsurface\"\n"
                                 "MakeNamedMaterial \"b\" \"string type\" \"subsurface\"\n"
                                 "Material \"mix\" \"string materials\" [ \"a\" \"b\" ] Shape \"sphere\""),
-              "scene:4:47: the materials of a mix have two interiors ('subsurface'); expected one");
+              "scene:4:47: the material's parts have two interiors ('subsurface'); expected one");
 }
 
 TEST(PbrtMaterials, SubsurfaceErrors) {

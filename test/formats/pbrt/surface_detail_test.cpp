@@ -10,9 +10,19 @@
 namespace montelux {
 namespace {
 
-const char* const all_materials[] = {
-    "diffuse",         "conductor",           "dielectric", "thindielectric", "coateddiffuse",
-    "coatedconductor", "diffusetransmission", "interface",  "hair",           "principled"};
+const char* const all_materials[] = {"diffuse",
+                                     "conductor",
+                                     "dielectric",
+                                     "thindielectric",
+                                     "coateddiffuse",
+                                     "coatedconductor",
+                                     "diffusetransmission",
+                                     "interface",
+                                     "hair",
+                                     "principled",
+                                     "plastic",
+                                     "disney",
+                                     "disneythin"};
 
 TEST(PbrtMaterials, EachHasNormalMapAndBumps) {
     TemporaryFolder folder;
@@ -58,7 +68,7 @@ TEST(PbrtMaterials, NormalMapsThatAreNoneSayWhere) {
 }
 
 TEST(PbrtMaterials, WhatHasNoSurfaceHasNoBumps) {
-    for (const std::string type : {"interface", "mix"}) {
+    for (const std::string type : {"interface", "mix", "sided"}) {
         Warnings warnings;
         test::parse(R"(WorldBegin
 Texture "t" "float" "fbm"

@@ -140,6 +140,14 @@ TEST_F(WritePbrt, Materials) {
         MakeNamedMaterial "both" "string type" "mix" "string materials" ["red" "unused"] "float amount" 0.3
         MakeNamedMaterial "unused" "string type" "dielectric"
         NamedMaterial "both" Shape "sphere" Shape "disk"
+        MakeNamedMaterial "sides" "string type" "sided" "string front" "both" "string back" "black"
+        MakeNamedMaterial "black" "string type" "sided" "string back" "red"
+        NamedMaterial "sides" Shape "sphere"
+        Material "plastic" "float alpha" 0.1 "string distribution" "ggx-separable" "bool nonlinear" true Shape "sphere"
+        Material "conductor" "string distribution" "beckmann" "rgb specularreflectance" [0.1 0.2 0.3] Shape "sphere"
+        Material "disney" "float clearcoat" 0.3 "float sheen" 1.5 "float eta" 1.3 Shape "sphere"
+        Material "disneythin" "float diffusetransmission" 0.3 Shape "sphere"
+        Material "dielectric" "rgb speculartransmittance" [0.1 0.2 0.3] Shape "sphere"
         Texture "marbled" "spectrum" "marble"
         Material "interface" Shape "sphere"
         ColorSpace "rec2020" Material "diffuse" "rgb reflectance" [0.123456 0.2 0.7] Shape "sphere")"),
@@ -188,6 +196,7 @@ TEST_F(WritePbrt, OwnTextures) {
         Texture "d" "spectrum" "vertexcolor" "rgb factor" [0.2 0.3 0.4]
         Texture "e" "float" "step" "texture tex" "a" "float edge" 0.25
         Texture "n" "spectrum" "imagemap" "string filename" "map.exr" "rgb factor" [0.5 0.5 1] "float uscale" 2
+            "bool righthanded" true
         Material "diffuse" "texture reflectance" "c" "texture normalmap" "n" Shape "sphere" "texture alpha" "e"
         Material "diffuse" "texture reflectance" "d" "string normalmap" "map.exr"
         Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0] "rgb colors" [1 0 0 0 1 0 0 0.5 1]

@@ -83,6 +83,7 @@ TEST(SceneReferences, NoParameterIsForgotten) {
         void operator()(MeasuredBrdfIndex& p) const { p.index = 1; }
         void operator()(MediumIndex& p) const { p.index = 1; }
         void operator()(MaterialIndex& p) const { p.index = 9; }
+        void operator()(MaterialOfSide& p) const { p.index = 9; }
     };
     for_each_material_kind([]<typename M>(std::type_identity<M>) {
         std::size_t i = 0;
@@ -121,6 +122,21 @@ TEST(SceneReferences, MixesHaveNoCycles) {
     EXPECT_EQ(chain(63), "");
     EXPECT_NE(chain(64).find("more than 64 levels deep"), std::string::npos) << chain(64);
     EXPECT_NE(chain(100000).find("more than 64 levels deep"), std::string::npos);
+}
+
+TEST(SceneReferences, SidesHaveNoCycles) {
+    EXPECT_EQ(error_of_material(SidedMaterial{}), "");
+    EXPECT_EQ(error_of_material(SidedMaterial{.front = {1}}), "");
+    EXPECT_EQ(error_of_material(SidedMaterial{.back = {3}}),
+              "test: material 2 (Sided), back: there is no material 3; the scene has 3");
+    EXPECT_EQ(error_of_material(SidedMaterial{.front = {2}}), "test: material 2 (Sided) depends on itself");
+    // Through a mix.
+    EXPECT_EQ(finish_error([](Scene& s) {
+                  const auto first = static_cast<Index>(s.materials.size());
+                  s.materials.emplace_back(SidedMaterial{.back = {first + 1}});
+                  s.materials.emplace_back(MixMaterial{.materials = {{0}, {first}}});
+              }),
+              "test: material 2 (Sided) depends on itself");
 }
 
 TEST(SceneReferences, MediaNameTheParameter) {

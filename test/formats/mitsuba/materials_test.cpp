@@ -1,0 +1,434 @@
+// BSDFs of Mitsuba scenes as materials.
+#include "test/formats/mitsuba/looks.h"
+#include "test/scene/measured_brdf_testing.h"
+#include <gtest/gtest.h>
+
+#include "montelux/formats/measured_brdf_file.h"
+#include "montelux/scene/material/conductor_material.h"
+#include "montelux/scene/material/dielectric_material.h"
+#include "montelux/scene/material/diffuse_material.h"
+#include "montelux/scene/material/disney_material.h"
+#include "montelux/scene/material/hair_material.h"
+#include "montelux/scene/material/interface_material.h"
+#include "montelux/scene/material/measured_material.h"
+#include "montelux/scene/material/mix_material.h"
+#include "montelux/scene/material/parameter_evaluator.h"
+#include "montelux/scene/material/plastic_material.h"
+#include "montelux/scene/material/sided_material.h"
+#include "montelux/scene/material/thin_dielectric_material.h"
+
+namespace montelux {
+namespace {
+
+using test::expect_says;
+using test::look_error;
+using test::Looks;
+
+std::string bsdf(const std::string& type, const std::string& content = "") {
+    return "<bsdf type=\"" + type + "\">" + content + "</bsdf>";
+}
+std::string number(const std::string& name, const std::string& value) {
+    return "<float name=\"" + name + "\" value=\"" + value + "\"/>";
+}
+std::string text(const std::string& name, const std::string& value) {
+    return "<string name=\"" + name + "\" value=\"" + value + "\"/>";
+}
+std::string rgb(const std::string& name, const std::string& value) {
+    return "<rgb name=\"" + name + "\" value=\"" + value + "\"/>";
+}
+std::string bitmap(const std::string& name, const std::string& more = "") {
+    return "<texture type=\"bitmap\" name=\"" + name + "\">" + text("filename", "four.pfm") + more +
+           "</texture>";
+}
+std::string error(const std::string& content) {
+    return look_error(content, [](Looks& looks) { looks.look(); });
+}
+
+// The material of the only BSDF that was made, of the front where it has one side. No warnings.
+template <typename M>
+struct One {
+    Looks looks;
+    mitsuba::SurfaceLook look;
+    bool one_sided = false;
+
+    explicit One(const std::string& content, std::map<std::string, std::vector<std::uint8_t>> files = {})
+        : looks(content, std::move(files)), look(looks.look()) {
+        for (const std::string& w : looks.warnings.messages()) ADD_FAILURE() << w;
+        EXPECT_EQ(looks.look().material, look.material); // made once
+        const auto* sided = std::get_if<SidedMaterial>(&looks.scene.materials.at(look.material));
+        if (sided != nullptr && !sided->back.is_given()) {
+            one_sided = true;
+            look.material = sided->front.index;
+        }
+        looks.builder.finish({}, false);
+    }
+    const M& material() const { return looks.material<M>(look.material); }
+    const M* operator->() const { return &material(); }
+};
+
+double value_at(const Looks& looks, SceneSpectrum s, float lambda) {
+    return spectrum_of(s, looks.scene.spectra)(lambda);
+}
+
+TEST(MitsubaDiffuse, HasAColorOrTexture) {
+    One<DiffuseMaterial> standard(bsdf("diffuse"));
+    EXPECT_TRUE(standard.one_sided);
+    EXPECT_FLOAT_EQ(standard->reflectance.value.constant, 0.5f);
+    One<DiffuseMaterial> red(bsdf("diffuse", rgb("reflectance", "0.8 0.1 0.1")));
+    red.looks.expect_albedo(red->reflectance, {}, {0.8f, 0.1f, 0.1f});
+    One<DiffuseMaterial> textured(bsdf("diffuse", bitmap("reflectance")));
+    textured.looks.expect_albedo(textured->reflectance, {0.25f, 0.25f}, test::upper_left);
+    expect_says(error(bsdf("diffuse", rgb("reflectance", "1.2 0 0"))), "a reflectance lies between 0 and 1");
+    Looks odd(bsdf("diffuse", number("reflectence", "1")));
+    odd.look();
+    EXPECT_EQ(odd.warnings.messages().size(), 1u);
+}
+
+TEST(MitsubaDiffuse, IsTheStandardOfShapes) {
+    Looks looks("");
+    const mitsuba::SurfaceLook look = looks.materials.standard();
+    EXPECT_EQ(looks.materials.standard().material, look.material);
+    const Index front = looks.material<SidedMaterial>(look.material).front.index;
+    EXPECT_FLOAT_EQ(looks.material<DiffuseMaterial>(front).reflectance.value.constant, 0.5f);
+}
+
+TEST(MitsubaConductor, IsAMirrorByDefault) {
+    One<ConductorMaterial> m(bsdf("conductor"));
+    EXPECT_TRUE(m.one_sided);
+    EXPECT_EQ(m->metal.eta.value.constant, 0);
+    EXPECT_EQ(m->metal.k.value.constant, 1);
+    const SceneTables tables(m.looks.scene);
+    SampledWavelengths lambda = m.looks.lambda;
+    const ParameterEvaluator at(tables.view(), 0, {}, lambda);
+    EXPECT_NEAR(at.conductor(m->metal, m->roughness, 1).albedo({0, 0, 1})[0], 1, 1e-6);
+    EXPECT_NEAR(at.conductor(m->metal, m->roughness, 1).albedo({0.8f, 0, 0.6f})[0], 1, 1e-6);
+}
+
+TEST(MitsubaConductor, KnowsMaterialsByName) {
+    const auto constants = [](const std::string& name, float lambda) {
+        One<ConductorMaterial> m(bsdf("conductor", text("material", name)));
+        return Vec2d(value_at(m.looks, m->metal.eta.value, lambda),
+                     value_at(m.looks, m->metal.k.value, lambda));
+    };
+    EXPECT_EQ(constants("Cu", 539.0617f), Vec2d(1.04f, 2.583f));
+    EXPECT_EQ(constants("MgO_palik", 546.167f).x, double(1.74077f));
+    EXPECT_EQ(constants("a-C", 563.55f), Vec2d(2.38f, 0.82f));
+    EXPECT_EQ(constants("W_palik", 563.54f), constants("W", 563.54f));
+    EXPECT_NE(constants("Cu_palik", 550), constants("Cu", 550));
+    // Handbooks agree that it is a grey metal.
+    for (const float lambda : {400.0f, 500.0f, 600.0f, 700.0f}) EXPECT_GT(constants("Cr", lambda).y, 2.5);
+    EXPECT_EQ(constants("none", 500), Vec2d(0, 1));
+    const std::string message = error(bsdf("conductor", text("material", "Cuu")));
+    expect_says(message, "the conductor 'Cuu' is not known; did you mean 'Cu'?");
+    expect_says(message, "W");
+    expect_says(error(bsdf("conductor", text("material", "Cu") + number("eta", "1"))),
+                "'material' together with 'eta'");
+}
+
+TEST(MitsubaConductor, HasIndexAndFactor) {
+    One<ConductorMaterial> m(bsdf("conductor", number("eta", "0.2") +
+                                                   "<spectrum name=\"k\" value=\"400:3, 700:4\"/>" +
+                                                   rgb("specular_reflectance", "0.9 0.5 0.4")));
+    EXPECT_FLOAT_EQ(m->metal.eta.value.constant, 0.2f);
+    EXPECT_NEAR(value_at(m.looks, m->metal.k.value, 550), 3.5, 1e-6);
+    m.looks.expect_albedo(m->specular_reflectance, {}, {0.9f, 0.5f, 0.4f});
+    EXPECT_EQ(m->roughness.u.value, 0);
+}
+
+TEST(MitsubaRoughConductor, HasDistributionsAndRoughness) {
+    One<ConductorMaterial> standard(bsdf("roughconductor"));
+    EXPECT_EQ(standard->distribution, NormalDistribution::beckmann);
+    EXPECT_FLOAT_EQ(standard->roughness.u.value, 0.1f);
+    EXPECT_FLOAT_EQ(standard->roughness.v.value, 0.1f);
+    EXPECT_FALSE(standard->roughness.remap);
+    One<ConductorMaterial> m(bsdf("roughconductor", text("distribution", "GGX") + number("alpha_u", "0.3") +
+                                                        bitmap("alpha_v") +
+                                                        "<boolean name=\"sample_visible\" value=\"true\"/>"));
+    EXPECT_EQ(m->distribution, NormalDistribution::ggx_separable);
+    EXPECT_FLOAT_EQ(m->roughness.u.value, 0.3f);
+    EXPECT_FALSE(m->roughness.v.is_constant());
+    expect_says(error(bsdf("roughconductor", text("distribution", "phong"))),
+                "'distribution' is 'phong'; expected one of beckmann, ggx");
+    expect_says(error(bsdf("roughconductor", number("alpha_u", "0.3"))),
+                "expected both 'alpha_u' and 'alpha_v'");
+    expect_says(error(bsdf("roughconductor",
+                           number("alpha_u", "0.3") + number("alpha_v", "0.3") + number("alpha", "0.3"))),
+                "'alpha' together with 'alpha_u'");
+    expect_says(error(bsdf("roughconductor", number("alpha", "-1"))), "'alpha' is -1");
+}
+
+TEST(MitsubaDielectric, HasIndices) {
+    One<DielectricMaterial> standard(bsdf("dielectric"));
+    EXPECT_FALSE(standard.one_sided);
+    EXPECT_FLOAT_EQ(standard->eta.constant, 1.5046f / 1.000277f);
+    EXPECT_EQ(standard->roughness.u.value, 0);
+    One<DielectricMaterial> m(bsdf("dielectric", text("int_ior", "Water") + number("ext_ior", "1.5") +
+                                                     number("specular_transmittance", "0.5")));
+    EXPECT_FLOAT_EQ(m->eta.constant, 1.333f / 1.5f);
+    EXPECT_FLOAT_EQ(m->specular_transmittance.value.constant, 0.5f);
+    EXPECT_FLOAT_EQ(m->specular_reflectance.value.constant, 1);
+    expect_says(error(bsdf("dielectric", text("int_ior", "dimond"))),
+                "the index of refraction of 'dimond' is not known; did you mean 'diamond'?");
+    expect_says(error(bsdf("dielectric", number("int_ior", "-1"))), "'int_ior' is -1");
+}
+
+TEST(MitsubaDielectric, MayBeRoughOrThin) {
+    One<DielectricMaterial> rough(bsdf("roughdielectric", number("alpha", "0.2")));
+    EXPECT_EQ(rough->distribution, NormalDistribution::beckmann);
+    EXPECT_FLOAT_EQ(rough->roughness.v.value, 0.2f);
+    expect_says(error(bsdf("roughdielectric", number("int_ior", "1.3") + number("ext_ior", "1.3"))),
+                "'int_ior' equals 'ext_ior'");
+    One<ThinDielectricMaterial> thin(bsdf("thindielectric", text("int_ior", "bk7") +
+                                                                text("ext_ior", "vacuum") +
+                                                                rgb("specular_reflectance", "0.9 0.5 0.4")));
+    EXPECT_FLOAT_EQ(thin->eta.constant, 1.5046f);
+    thin.looks.expect_albedo(thin->specular_reflectance, {}, {0.9f, 0.5f, 0.4f});
+}
+
+TEST(MitsubaPlastic, HasABaseUnderAnInterface) {
+    One<PlasticMaterial> smooth(bsdf("plastic", rgb("diffuse_reflectance", "0.1 0.3 0.4") +
+                                                    number("int_ior", "1.9") +
+                                                    "<boolean name=\"nonlinear\" value=\"true\"/>"));
+    EXPECT_TRUE(smooth.one_sided);
+    EXPECT_FLOAT_EQ(smooth->eta, 1.9f / 1.000277f);
+    EXPECT_EQ(smooth->alpha, 0);
+    EXPECT_TRUE(smooth->nonlinear);
+    smooth.looks.expect_albedo(smooth->reflectance, {}, {0.1f, 0.3f, 0.4f});
+    One<PlasticMaterial> rough(bsdf("roughplastic", text("distribution", "ggx") + number("alpha", "0.3")));
+    EXPECT_FLOAT_EQ(rough->eta, 1.49f / 1.000277f);
+    EXPECT_FLOAT_EQ(rough->alpha, 0.3f);
+    EXPECT_FALSE(rough->nonlinear);
+    EXPECT_EQ(rough->distribution, NormalDistribution::ggx_separable);
+    expect_says(error(bsdf("plastic", number("int_ior", "1") + number("ext_ior", "1.5"))),
+                "'int_ior' is below 'ext_ior', which is not supported for plastic");
+}
+
+TEST(MitsubaMeasured, ReadsEachFileOnce) {
+    const std::vector<std::uint8_t> file =
+        testing::measured_brdf_file(testing::measured_ggx({{0.5f, 0.5f}}, 8)).bytes();
+    Looks looks(bsdf("measured", text("filename", "a.bsdf")) + bsdf("measured", text("filename", "a.bsdf")),
+                {{"a.bsdf", file}});
+    for (std::size_t i = 0; i < looks.graph.objects.size(); ++i)
+        if (looks.graph.objects[i].kind == "bsdf") looks.materials.of({looks.graph, i});
+    EXPECT_EQ(looks.scene.measured_brdfs.size(), 1u);
+    const std::string message = look_error(bsdf("measured", text("filename", "a.bsdf")),
+                                           [](Looks& l) { l.look(); }, {{"a.bsdf", {1, 2}}});
+    expect_says(message, "scene.xml:1:");
+    expect_says(message, "a.bsdf: is no file of a measured BRDF");
+}
+
+TEST(MitsubaHair, HasPigmentsOrAbsorption) {
+    One<HairMaterial> m(bsdf("hair", number("eumelanin", "0.2") + number("pheomelanin", "0.4") +
+                                         number("longitudinal_roughness", "0.1") +
+                                         number("scale_tilt", "3")));
+    EXPECT_FALSE(m.one_sided);
+    EXPECT_EQ(m->color.source, HairColorParameter::melanins);
+    EXPECT_FLOAT_EQ(m->color.eumelanin.value, 0.2f);
+    EXPECT_FLOAT_EQ(m->color.pheomelanin.value, 0.4f);
+    EXPECT_FLOAT_EQ(m->eta.value, 1.55f / 1.000277f);
+    EXPECT_FLOAT_EQ(m->beta_m.value, 0.1f);
+    EXPECT_FLOAT_EQ(m->beta_n.value, 0.3f);
+    EXPECT_FLOAT_EQ(m->alpha.value, 3);
+    One<HairMaterial> standard(bsdf("hair"));
+    EXPECT_FLOAT_EQ(standard->color.pheomelanin.value, 0.2f);
+    One<HairMaterial> absorbing(bsdf("hair", number("sigma_a", "0.25") + number("scale", "8")));
+    EXPECT_EQ(absorbing->color.source, HairColorParameter::absorption);
+    EXPECT_FLOAT_EQ(absorbing.looks.value(absorbing->color.sigma_a)[0], 2);
+    expect_says(error(bsdf("hair", number("sigma_a", "1") + number("eumelanin", "1"))),
+                "'sigma_a' together with pigments");
+}
+
+TEST(MitsubaPrincipled, HasDisneysParameters) {
+    One<DisneyMaterial> m(bsdf("principled", rgb("base_color", "0.2 0.8 0.1") + number("roughness", "0.15") +
+                                                 number("metallic", "0.7") + number("specular", "0.6") +
+                                                 number("anisotropic", "0.5") + number("spec_tint", "0.4") +
+                                                 number("sheen", "0.3") + number("sheen_tint", "0.2") +
+                                                 number("flatness", "0.1") + number("clearcoat", "0.6") +
+                                                 number("clearcoat_gloss", "0.35") +
+                                                 number("main_specular_sampling_rate", "2")));
+    EXPECT_TRUE(m.one_sided);
+    m.looks.expect_albedo(m->base_color, {}, {0.2f, 0.8f, 0.1f});
+    EXPECT_FLOAT_EQ(m->roughness.value, 0.15f);
+    EXPECT_FLOAT_EQ(m->metallic.value, 0.7f);
+    EXPECT_FLOAT_EQ(m->anisotropic.value, 0.5f);
+    EXPECT_FLOAT_EQ(m->specular_tint.value, 0.4f);
+    EXPECT_FLOAT_EQ(m->sheen.value, 0.3f);
+    EXPECT_FLOAT_EQ(m->sheen_tint.value, 0.2f);
+    EXPECT_FLOAT_EQ(m->flatness.value, 0.1f);
+    EXPECT_FLOAT_EQ(m->clearcoat.value, 0.6f);
+    EXPECT_FLOAT_EQ(m->clearcoat_gloss.value, 0.35f);
+    EXPECT_FLOAT_EQ(m->specular_transmission.value, 0);
+    const double f0 = (m->eta - 1) / (m->eta + 1);
+    EXPECT_NEAR(f0 * f0, 0.08 * 0.6, 1e-6);
+}
+
+TEST(MitsubaPrincipled, HasTwoSidesWhereItTransmits) {
+    One<DisneyMaterial> m(bsdf("principled", number("spec_trans", "0.4") + number("eta", "1")));
+    EXPECT_FALSE(m.one_sided);
+    EXPECT_FLOAT_EQ(m->eta, 1.001f);
+    EXPECT_FLOAT_EQ(m->specular_transmission.value, 0.4f);
+    EXPECT_FALSE(One<DisneyMaterial>(bsdf("principled", bitmap("spec_trans"))).one_sided);
+    EXPECT_TRUE(One<DisneyMaterial>(bsdf("principled", number("spec_trans", "0"))).one_sided);
+    expect_says(error(bsdf("principled", number("eta", "1.5") + number("specular", "0.5"))),
+                "'eta' together with 'specular'");
+    expect_says(error(bsdf("principled", number("metallic", "2"))), "'metallic' is 2;");
+}
+
+TEST(MitsubaPrincipledThin, SharesItsDiffuseLight) {
+    One<DisneyThinMaterial> m(bsdf("principledthin", number("diff_trans", "1.4") + number("eta", "1.33") +
+                                                         number("spec_trans", "0.8")));
+    EXPECT_FALSE(m.one_sided);
+    EXPECT_FLOAT_EQ(m->diffuse_transmission.value, 0.7f);
+    EXPECT_FLOAT_EQ(m->eta.value, 1.33f);
+    EXPECT_FLOAT_EQ(m->specular_transmission.value, 0.8f);
+    One<DisneyThinMaterial> textured(bsdf("principledthin", bitmap("diff_trans")));
+    const double luminance = dot(RgbColorSpace::srgb().luminance_weights(), Vec3d(test::upper_left));
+    EXPECT_NEAR(textured.looks.value(textured->diffuse_transmission, {0.25f, 0.25f}), 0.5 * luminance, 1e-6);
+}
+
+TEST(MitsubaTwosided, HasAMaterialOnEachSide) {
+    One<DiffuseMaterial> one(bsdf("twosided", bsdf("diffuse")));
+    EXPECT_FALSE(one.one_sided);
+    One<SidedMaterial> two(
+        bsdf("twosided", bsdf("diffuse", number("reflectance", "0.1")) + bsdf("conductor")));
+    EXPECT_FLOAT_EQ(two.looks.material<DiffuseMaterial>(two->front.index).reflectance.value.constant, 0.1f);
+    EXPECT_EQ(two.looks.material<ConductorMaterial>(two->back.index).metal.k.value.constant, 1);
+    expect_says(error(bsdf("twosided", bsdf("dielectric"))), "the bsdf 'dielectric' has two sides already");
+    expect_says(error(bsdf("twosided", bsdf("null"))), "lets light through");
+    expect_says(error(bsdf("twosided", bsdf("mask", bsdf("diffuse")))), "lets light through");
+    expect_says(error(bsdf("twosided")), "has 0 BSDFs within it; expected one or two");
+    One<DielectricMaterial> allowed(
+        bsdf("twosided", "<boolean name=\"allow_transmission\" value=\"true\"/>" + bsdf("dielectric")));
+    EXPECT_FALSE(allowed.one_sided);
+}
+
+TEST(MitsubaNull, IsAnInterface) {
+    One<InterfaceMaterial> m(bsdf("null"));
+    EXPECT_FALSE(m.one_sided);
+    EXPECT_TRUE(m.look.alpha.is_constant());
+    EXPECT_EQ(m.look.alpha.value, 1);
+}
+
+TEST(MitsubaMask, IsTheOpacityOfTheShape) {
+    One<DiffuseMaterial> m(bsdf("mask", bsdf("diffuse")));
+    EXPECT_TRUE(m.one_sided);
+    EXPECT_FLOAT_EQ(m.look.alpha.value, 0.5f);
+    One<DiffuseMaterial> nested(
+        bsdf("mask",
+             number("opacity", "0.8") + bsdf("mask", bitmap("opacity") + bsdf("twosided", bsdf("diffuse")))));
+    EXPECT_FALSE(nested.one_sided);
+    const double luminance = dot(RgbColorSpace::srgb().luminance_weights(), Vec3d(test::upper_left));
+    EXPECT_NEAR(nested.looks.value(nested.look.alpha, {0.25f, 0.25f}), 0.8 * luminance, 1e-6);
+    expect_says(error(bsdf("mask")), "the bsdf 'mask' needs a BSDF within it");
+    expect_says(error(bsdf("mask", number("opacity", "1.2") + bsdf("diffuse"))), "'opacity' is 1.2");
+}
+
+TEST(MitsubaBlend, IsAMix) {
+    One<MixMaterial> m(bsdf("blendbsdf", number("weight", "0.3") + bsdf("diffuse") + bsdf("conductor")));
+    EXPECT_TRUE(m.one_sided);
+    EXPECT_FLOAT_EQ(m->amount.value, 0.3f);
+    m.looks.material<DiffuseMaterial>(m->materials.first.index);
+    m.looks.material<ConductorMaterial>(m->materials.second.index);
+    // The diffuse part alone is black from behind.
+    One<MixMaterial> mixed(bsdf("blendbsdf", bitmap("weight") + bsdf("diffuse") + bsdf("dielectric")));
+    EXPECT_FALSE(mixed.one_sided);
+    EXPECT_FALSE(mixed->amount.is_constant());
+    mixed.looks.material<SidedMaterial>(mixed->materials.first.index);
+    mixed.looks.material<DielectricMaterial>(mixed->materials.second.index);
+    expect_says(error(bsdf("blendbsdf", number("weight", "1") + bsdf("diffuse"))), "has 1 BSDFs within it");
+    expect_says(error(bsdf("blendbsdf", bsdf("diffuse") + bsdf("diffuse"))), "needs the property 'weight'");
+}
+
+TEST(MitsubaBlend, WithNullIsAMask) {
+    One<DiffuseMaterial> second(bsdf("blendbsdf", number("weight", "0.3") + bsdf("null") + bsdf("diffuse")));
+    EXPECT_FLOAT_EQ(second.look.alpha.value, 0.3f);
+    One<DiffuseMaterial> first(bsdf("blendbsdf", bitmap("weight") + bsdf("diffuse") + bsdf("null")));
+    const double luminance = dot(RgbColorSpace::srgb().luminance_weights(), Vec3d(test::upper_left));
+    EXPECT_NEAR(first.looks.value(first.look.alpha, {0.25f, 0.25f}), 1 - luminance, 1e-6);
+    One<InterfaceMaterial>(bsdf("blendbsdf", number("weight", "0.3") + bsdf("null") + bsdf("null")));
+}
+
+// Of all light 0.7 x 0.5 meets the first, and 0.3 x 0.9 the second.
+TEST(MitsubaBlend, OfMasks) {
+    const std::string first = bsdf("mask", bsdf("diffuse")),
+                      second = bsdf("mask", number("opacity", "0.9") + bsdf("conductor"));
+    One<MixMaterial> m(bsdf("blendbsdf", number("weight", "0.3") + first + second));
+    EXPECT_FLOAT_EQ(m.look.alpha.value, 0.62f);
+    EXPECT_FLOAT_EQ(m->amount.value, 0.27f / 0.62f);
+    expect_says(error(bsdf("blendbsdf", bitmap("weight") + first + second)),
+                "different masks is not supported");
+}
+
+TEST(MitsubaBumpmap, IsADisplacementOfEachPart) {
+    One<DiffuseMaterial> m(bsdf("bumpmap", number("scale", "0.1") + bitmap("any") + bsdf("diffuse")));
+    EXPECT_TRUE(m.one_sided);
+    const double luminance = dot(RgbColorSpace::srgb().luminance_weights(), Vec3d(test::upper_left));
+    EXPECT_NEAR(m.looks.value(m->detail.displacement, {0.25f, 0.25f}), 0.1 * luminance, 1e-6);
+    EXPECT_TRUE(m->detail.shadowed);
+    One<MixMaterial> blend(
+        bsdf("bumpmap", bitmap("any") + bsdf("blendbsdf",
+                                             number("weight", "0.3") + bsdf("diffuse") + bsdf("conductor"))));
+    EXPECT_FALSE(blend.looks.material<DiffuseMaterial>(blend->materials.first.index).detail.is_flat());
+    EXPECT_FALSE(blend.looks.material<ConductorMaterial>(blend->materials.second.index).detail.is_flat());
+    expect_says(error(bsdf("bumpmap", bsdf("diffuse"))), "needs a texture within it");
+    expect_says(error(bsdf("bumpmap", bitmap("a") + bsdf("bumpmap", bitmap("b") + bsdf("diffuse")))),
+                "bump maps within one another are not supported");
+}
+
+// A BSDF that is used with bumps and without is two materials.
+TEST(MitsubaBumpmap, LeavesTheBsdfAsItIs) {
+    Looks looks("<bsdf type=\"diffuse\" id=\"plain\"/><bsdf type=\"bumpmap\">" + bitmap("any") +
+                "<ref id=\"plain\"/></bsdf>");
+    const mitsuba::SurfaceLook plain = looks.look();
+    std::optional<mitsuba::Plugin> bumpy;
+    for (std::size_t i = 0; i < looks.graph.objects.size(); ++i)
+        if (looks.graph.objects[i].type == "bumpmap") bumpy.emplace(looks.graph, i);
+    const mitsuba::SurfaceLook bumps = looks.materials.of(*bumpy);
+    const auto detail = [&](const mitsuba::SurfaceLook& look) {
+        return looks.material<DiffuseMaterial>(looks.material<SidedMaterial>(look.material).front.index)
+            .detail;
+    };
+    EXPECT_TRUE(detail(plain).is_flat());
+    EXPECT_FALSE(detail(bumps).is_flat());
+    EXPECT_EQ(looks.scene.material_names.at(plain.material), "plain");
+}
+
+TEST(MitsubaNormalmap, IsAMapOfEachPart) {
+    One<DiffuseMaterial> m(bsdf("normalmap", bitmap("normalmap", "<boolean name=\"raw\" value=\"true\"/>") +
+                                                 bsdf("twosided", bsdf("diffuse"))));
+    ASSERT_TRUE(m->detail.normal_map.is_given());
+    EXPECT_TRUE(m.looks.scene.normal_maps.at(m->detail.normal_map.map).right_handed);
+    One<DiffuseMaterial> unshadowed(
+        bsdf("normalmap", "<boolean name=\"use_shadowing_function\" value=\"false\"/>" + bitmap("normalmap") +
+                              bsdf("diffuse")));
+    EXPECT_FALSE(unshadowed->detail.shadowed);
+    expect_says(error(bsdf("normalmap", bsdf("diffuse"))), "needs a texture 'normalmap'");
+    expect_says(
+        error(bsdf("normalmap", "<texture type=\"checkerboard\" name=\"normalmap\"/>" + bsdf("diffuse"))),
+        "a normal map is a texture 'bitmap' or 'rawconstant'");
+    expect_says(error(bsdf("normalmap",
+                           bitmap("normalmap") + bsdf("normalmap", bitmap("normalmap") + bsdf("diffuse")))),
+                "normal maps within one another are not supported");
+}
+
+// A file may refer to the same object exponentially often.
+TEST(MitsubaMaterials, AreMadeOnce) {
+    std::string content = "<bsdf type=\"diffuse\" id=\"b0\"/>";
+    for (int i = 1; i <= 60; ++i) {
+        const std::string ref = "<ref id=\"b" + std::to_string(i - 1) + "\"/>";
+        content += "<bsdf type=\"blendbsdf\" id=\"b" + std::to_string(i) + "\">" + number("weight", "0.5") +
+                   ref + ref + "</bsdf>";
+    }
+    Looks looks(content);
+    for (std::size_t i = 0; i < looks.graph.objects.size(); ++i)
+        if (looks.graph.objects[i].id == "b60") looks.materials.of({looks.graph, i});
+    EXPECT_EQ(looks.scene.materials.size(), 62u);
+}
+
+TEST(MitsubaMaterials, RefuseWhatIsNotRead) {
+    expect_says(error(bsdf("polarizer")), "the bsdf 'polarizer' is not supported: the polarization of light");
+    expect_says(error(bsdf("roughplastc")), "there is no bsdf 'roughplastc'; did you mean 'roughplastic'?");
+}
+
+} // namespace
+} // namespace montelux
