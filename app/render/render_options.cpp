@@ -161,7 +161,7 @@ PixelBounds crop_of(const std::array<double, 4>& c, int width, int height) {
 } // namespace
 
 void declare(CLI::App& c, RenderOptions& o) {
-    c.add_option("SCENE", o.scene, "Scene (pbrt-v4, glTF 2.0) or model (OBJ, PLY, STL); .gz is unpacked")
+    c.add_option("SCENE", o.scene, "Scene (pbrt-v4, glTF 2.0, Mitsuba 3) or model (OBJ, PLY, STL); .gz is unpacked")
         ->required();
     c.add_option("-o,--output", o.outputs,
                  "Picture to write: .exr, .png, .jpg, .hdr or .pfm; may be given several times. Default: the "

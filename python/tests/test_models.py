@@ -100,3 +100,27 @@ def test_gltf_scenes_have_cameras_and_a_time(gltf):
         montelux.load(gltf, camera="fra")
     with pytest.raises(montelux.Error, match="variant"):
         montelux.load(gltf, variant="red")
+
+
+def test_mitsuba_scenes_have_parameters(tmp_path):
+    path = tmp_path / "scene.xml"
+    path.write_text(
+        '<scene version="3.0.0"><default name="grey" value="0.5"/><default name="hidden" value="false"/>'
+        '<sensor type="perspective" id="near"><film type="hdrfilm"><integer name="width" value="12"/>'
+        '<integer name="height" value="8"/></film><transform name="to_world">'
+        '<lookat origin="0 0 5" target="0 0 0" up="0 1 0"/></transform></sensor><emitter type="constant"/>'
+        '<integrator type="path"><boolean name="hide_emitters" value="$hidden"/></integrator>'
+        '<shape type="sphere"><bsdf type="diffuse"><float name="reflectance" value="$grey"/></bsdf></shape></scene>'
+    )
+
+    def middle(scene):
+        return scene.render(spp=4).mean[4, 6, 0]
+
+    assert middle(montelux.load(path, definitions={"grey": 0.25})) < middle(montelux.load(path))
+    assert montelux.load(path, camera="near").film.resolution == (12, 8)
+    with pytest.warns(UserWarning, match="hide_emitters"):
+        montelux.load(path, definitions={"hidden": True})
+    with pytest.raises(montelux.Error, match="'grey' is 'dark'"):
+        montelux.load(path, definitions={"grey": "dark"})
+    with pytest.raises(montelux.Error, match="scene.xml:1:"):
+        montelux.load(path, definitions={"hidden": 3})
