@@ -31,6 +31,8 @@ TEST(SceneDigest, LightsCount) {
          [](Scene& s) { std::get<AreaLight>(s.lights[0]).two_sided = true; },
          [](Scene& s) { std::get<AreaLight>(s.lights[0]).primitive_flux = 1; },
          [](Scene& s) { std::get<AreaLight>(s.lights[0]).picture = 0; },
+         [](Scene& s) { std::get<AreaLight>(s.lights[0]).equal_energy = true; },
+         [](Scene& s) { std::get<ProjectionLight>(s.lights[9]).equal_energy = true; },
          [](Scene& s) { std::get<PointLight>(s.lights[1]).position.x = 1; },
          [](Scene& s) { std::get<SpotLight>(s.lights[2]).cos_total_width = 0.5f; },
          [](Scene& s) { std::get<SpotLight>(s.lights[2]).picture = 0; },

@@ -17,8 +17,10 @@
 namespace montelux::mitsuba {
 namespace {
 
-// Radiance of Montelux's lights per value of a picture whose white is D65.
-float white_of_pictures() { return photometric_scale(Spectrum(RgbColorSpace::srgb().illuminant())); }
+// Radiance of Montelux's lights per value of a picture: its white is D65, or else the constant spectrum.
+float white_of_pictures(bool equal_energy = false) {
+    return photometric_scale(equal_energy ? Spectrum(1.0f) : Spectrum(RgbColorSpace::srgb().illuminant()));
+}
 
 Vec3d direction(const Plugin& emitter, Vec3d v) {
     const double l = length(v);
@@ -58,16 +60,22 @@ double mean_luminance(const Image& picture) {
 
 } // namespace
 
-std::optional<Plugin> LightReader::picture(Plugin& emitter, std::string_view name) {
-    const std::optional<Plugin> texture = emitter.object(name);
-    if (!texture || texture->kind() != "texture" || is_spectrum(*texture)) return std::nullopt;
-    return texture;
+std::optional<LightReader::Picture> LightReader::picture(Plugin& emitter, std::string_view name) {
+    std::optional<Plugin> texture = emitter.object(name);
+    if (!texture || texture->kind() != "texture") return std::nullopt;
+    if (!is_spectrum(*texture)) return Picture{*std::move(texture)};
+    if (texture->type() != "d65") return std::nullopt;
+    const std::optional<Plugin> inner = texture->child("texture");
+    if (!inner || is_spectrum(*inner)) return std::nullopt;
+    const double scale = texture->number("scale", 1, 0);
+    texture->finish();
+    return Picture{*inner, false, scale};
 }
 
 LightReader::Source LightReader::source(Plugin& emitter, std::string_view name) {
-    if (const std::optional<Plugin> texture = picture(emitter, name))
-        texture->error(in_quotes(name) + " of " + emitter.describe() +
-                       " is the same in all directions; expected a spectrum");
+    if (const std::optional<Picture> found = picture(emitter, name))
+        found->texture.error(in_quotes(name) + " of " + emitter.describe() +
+                             " is the same in all directions; expected a spectrum");
     const Property* property = emitter.find(name);
     const EmittedSpectrum emitted =
         property != nullptr ? emitted_spectrum_of(*property, emitter.graph()) : white_light(1);
@@ -81,13 +89,14 @@ Emission LightReader::emission(Plugin emitter) {
         emitter.error("a shape has " + emitter.describe() + "; surfaces shine by the emitter 'area'");
     }
     Emission emission;
-    if (const std::optional<Plugin> texture = picture(emitter, "radiance")) {
-        const auto [known, is_new] = pictures_.try_emplace(texture->index(), no_index);
+    if (const std::optional<Picture> found = picture(emitter, "radiance")) {
+        const auto [known, is_new] = pictures_.try_emplace(found->texture.index(), no_index);
         if (is_new)
-            known->second = builder_.add_light_picture(upside_down(picture_of_texture(*texture)),
-                                                       texture->describe(), texture->at());
+            known->second = builder_.add_light_picture(upside_down(picture_of_texture(found->texture)),
+                                                       found->texture.describe(), found->texture.at());
         emission.picture = known->second;
-        emission.scale = white_of_pictures();
+        emission.equal_energy = found->equal_energy;
+        emission.scale = static_cast<float>(found->scale) * white_of_pictures(found->equal_energy);
         emission.picture_mean = mean_luminance(builder_.scene().environments[known->second]);
     } else {
         const Source s = source(emitter, "radiance");
@@ -146,14 +155,14 @@ void LightReader::add_spot(Plugin& emitter) {
     light.cos_falloff_start = static_cast<float>(std::cos(start * pi / 180));
     light.cos_total_width = static_cast<float>(std::cos(end * pi / 180));
     light.profile = SpotFalloff::linear;
-    if (const std::optional<Plugin> texture = picture(emitter, "texture")) {
+    if (const std::optional<Picture> found = picture(emitter, "texture")) {
         if (!(end < 90)) emitter.error("the picture of a spot light needs a 'cutoff_angle' below 90 degrees");
         // The square around the cone.
         const auto size = static_cast<float>(1 / std::tan(end * pi / 180));
         light.picture_x = size * Vec3f(direction(emitter, to_world.vector(Vec3d(1, 0, 0))));
         light.picture_y = size * Vec3f(direction(emitter, to_world.vector(Vec3d(0, 1, 0))));
-        light.picture =
-            builder_.add_light_picture(picture_of_texture(*texture), texture->describe(), texture->at());
+        light.picture = builder_.add_light_picture(picture_of_texture(found->texture),
+                                                   found->texture.describe(), found->texture.at());
     } else if (emitter.has("texture")) {
         emitter.error("'texture' of a spot light is no picture; expected a 'bitmap'");
     }
@@ -186,8 +195,12 @@ void LightReader::add_environment(Plugin& emitter) {
 void LightReader::add_projector(Plugin& emitter) {
     const Transform to_world = turn(emitter);
     Image picture(1, 1, {"R", "G", "B"});
-    if (const std::optional<Plugin> texture = this->picture(emitter, "irradiance")) {
-        picture = picture_of_texture(*texture);
+    double picture_scale = 1;
+    ProjectionLight light;
+    if (const std::optional<Picture> found = this->picture(emitter, "irradiance")) {
+        picture = picture_of_texture(found->texture);
+        picture_scale = found->scale;
+        light.equal_energy = found->equal_energy;
     } else {
         Vec3d color{1, 1, 1};
         if (const Property* property = emitter.find("irradiance")) {
@@ -201,12 +214,12 @@ void LightReader::add_projector(Plugin& emitter) {
         }
         for (int c = 0; c < 3; ++c) picture.set(0, 0, c, static_cast<float>(color[c]));
     }
-    ProjectionLight light;
     const double aspect = double(picture.width()) / picture.height();
     const double half = std::tan(horizontal_fov(emitter, aspect) * pi / 360);
     light.fov = static_cast<float>(2 * std::atan(aspect > 1 ? half / aspect : half) * 180 / pi);
     // Mitsuba's projector gives the plane at distance 1 pi times its irradiance.
-    light.scale = static_cast<float>(pi * emitter.number("scale", 1, 0)) * white_of_pictures();
+    light.scale = static_cast<float>(pi * picture_scale * emitter.number("scale", 1, 0)) *
+                  white_of_pictures(light.equal_energy);
     light.profile = ProjectionProfile::irradiance;
     light.environment = builder_.add_light_picture(picture, emitter.describe(), emitter.at());
     // The picture's columns go towards -x and its rows towards -y.

@@ -27,8 +27,13 @@ class LightReader {
     };
     // The property `name`, a spectrum; D65 without it.
     Source source(Plugin& emitter, std::string_view name);
-    // The texture of an object that is a picture, not a spectrum; empty for others and without the property.
-    std::optional<Plugin> picture(Plugin& emitter, std::string_view name);
+    // The property `name` that is a texture but no spectrum; empty for others and without the property.
+    struct Picture {
+        Plugin texture;
+        bool equal_energy = true; // a "d65" is around it otherwise
+        double scale = 1;
+    };
+    std::optional<Picture> picture(Plugin& emitter, std::string_view name);
 
     void add_point(Plugin& emitter);
     void add_spot(Plugin& emitter);

@@ -70,7 +70,7 @@ Image environment_rows(const Image& map) {
     // The rows of ours are bands, whose centres lie up to half a row off Mitsuba's. Of maps with few rows each row
     // becomes several, so that this is small.
     constexpr int enough_rows = 256;
-    if (map.height() >= enough_rows || map.height() < 2) return map;
+    if (map.height() >= enough_rows || map.height() < 2 || map.width() > 4 * enough_rows) return map;
     const int rows = (map.height() - 1) * ((enough_rows + map.height() - 2) / (map.height() - 1));
     Image finer(map.width(), rows, {"R", "G", "B"});
     for (int y = 0; y < rows; ++y) {

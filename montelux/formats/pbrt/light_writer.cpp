@@ -81,6 +81,8 @@ std::string SceneWriter::area_light(Index i, bool is_quadric, float area) {
     const auto& l = std::get<AreaLight>(scene_.lights[i]);
     const std::string what = "light " + std::to_string(i);
     DirectiveText d("AreaLightSource \"diffuse\"");
+    if (l.equal_energy)
+        warn(what, "its picture has the constant spectrum for white; pbrt takes an illuminant");
     if (l.picture != no_index) d.string("filename", environment_file(l.picture));
     const Spectrum s = spectrum_of(l.spectrum, scene_.spectra);
     const std::string_view name = l.picture != no_index ? "" : "L";

@@ -25,8 +25,12 @@ float spot_intensity(float flux, double cos_falloff_start, double cos_total_widt
 float sky_luminance(float illuminance) { return illuminance / pi_f; }
 
 AreaLight Emission::light(Index shape, const Geometry& geometry) const {
-    AreaLight light{
-        .spectrum = spectrum, .scale = scale, .two_sided = two_sided, .shape = shape, .picture = picture};
+    AreaLight light{.spectrum = spectrum,
+                    .scale = scale,
+                    .two_sided = two_sided,
+                    .shape = shape,
+                    .picture = picture,
+                    .equal_energy = equal_energy};
     if (!(power > 0)) return light;
     const float power_of_white = static_cast<float>(static_cast<double>(power) / picture_mean);
     const auto* quadric = std::get_if<Quadric>(&geometry);

@@ -27,8 +27,9 @@ struct Emission {
     bool two_sided = false;
     float power = 0; // lm of each primitive, if positive: scale is then multiplied by power / emitted power
     Index picture = no_index; // AreaLight::picture
-    double picture_mean = 1;  // luminance, by which the emitted power is multiplied
-    std::string group{};      // of lights that share a layer (light_groups.h); may be empty
+    bool equal_energy = false;
+    double picture_mean = 1; // luminance, by which the emitted power is multiplied
+    std::string group{};     // of lights that share a layer (light_groups.h); may be empty
 
     // The light of a shape with this geometry.
     AreaLight light(Index shape, const Geometry& geometry) const;

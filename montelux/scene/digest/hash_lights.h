@@ -8,9 +8,10 @@
 namespace montelux {
 
 inline void hash_values(SceneHasher& h, const AreaLight& l) {
-    const auto& [spectrum, scale, two_sided, shape, primitive_flux, picture] = l;
+    const auto& [spectrum, scale, two_sided, shape, primitive_flux, picture, equal_energy] = l;
     h.all(spectrum, scale, two_sided, shape, primitive_flux);
     if (picture != no_index) h.all(picture);
+    if (equal_energy) h.all(equal_energy);
 }
 inline void hash_values(SceneHasher& h, const PointLight& l) {
     const auto& [spectrum, scale, position, motion] = l;
@@ -60,10 +61,11 @@ inline void hash_values(SceneHasher& h, const GoniometricLight& l) {
     if (motion != no_index) h.all(motion);
 }
 inline void hash_values(SceneHasher& h, const ProjectionLight& l) {
-    const auto& [environment, scale, fov, world_from_light, motion, profile] = l;
+    const auto& [environment, scale, fov, world_from_light, motion, profile, equal_energy] = l;
     h.all(environment, scale, fov, world_from_light);
     if (motion != no_index) h.all(motion);
     if (profile != ProjectionProfile::intensity) h.all(profile);
+    if (equal_energy) h.all(equal_energy);
 }
 // Its tables follow from its settings.
 inline void hash_values(SceneHasher& h, const SkyModel& sky) {

@@ -57,15 +57,17 @@ SampledSpectrum color_at(const AreaLight& light, const LightContext& context, Po
     hit.shape = light.shape;
     hit.instance = context.tables().instance(context.light);
     const Point2f uv = surface_point(context.scene, ray_at(context, p, w), hit, true).uv;
-    return context.tables().picture_radiance(light.picture, uv, lambda);
+    return light.equal_energy ? context.tables().picture_color(light.picture, uv, lambda)
+                              : context.tables().picture_radiance(light.picture, uv, lambda);
 }
 
 // As if the picture covered each part evenly.
-double picture_brightness(const LightContext& context, Index picture) {
-    const Image& image = context.tables().maps[picture];
+double picture_brightness(const LightContext& context, const AreaLight& light) {
+    const Image& image = context.tables().maps[light.picture];
     double sum = 0;
     for (std::size_t i = 0; i < image.sample_count(); ++i) sum += double(image.value_at(i));
-    const Spectrum white(RgbIlluminantSpectrum(LightTablesView::map_color_space(), {1, 1, 1}));
+    const Spectrum illuminant(RgbIlluminantSpectrum(LightTablesView::map_color_space(), {1, 1, 1}));
+    const Spectrum white = light.equal_energy ? Spectrum(1.0f) : illuminant;
     return visible_mean(white) * sum / static_cast<double>(image.sample_count());
 }
 
@@ -296,7 +298,7 @@ void AreaLight::powers(const LightContext& context, std::span<double> parts) con
     const Shape& s = context.scene.shapes[shape];
     const float alpha = constant_alpha(context.scene, s).value_or(1);
     const double brightness = picture == no_index ? visible_mean(context.scene.spectrum(spectrum))
-                                                  : picture_brightness(context, picture);
+                                                  : picture_brightness(context, *this);
     auto power = [&](double area, float factor) {
         if (alpha > 0 && alpha < 1) area *= double(alpha);
         return pi * area * (two_sided ? 2 : 1) * double(factor) * brightness;

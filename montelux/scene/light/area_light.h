@@ -23,6 +23,8 @@ struct AreaLight {
     // If given, into Scene::environments: the colours of this picture instead of the spectrum, by the surface's
     // texture coordinates (bilinear; the top row at v = 1). A given flux is then that of a white picture.
     Index picture = no_index;
+    // White of the picture is the constant spectrum 1 instead of the white illuminant.
+    bool equal_energy = false;
 
     // The shape deforms, or is in an instance, which may move.
     bool moves(const LightContext& context) const;

@@ -22,8 +22,11 @@ SampledSpectrum intensity(const LightContext& context, const ProjectionLight& li
     if (light.profile == ProjectionProfile::irradiance) {
         const auto height = static_cast<float>(table_of(context).screen().height());
         const Point2f uv{texels.x / static_cast<float>(width), 1 - texels.y / height};
-        return context.tables().picture_radiance(light.environment, uv, lambda) *
-               (light.scale * intensity_of_white(light.profile, normalize(w).z));
+        const LightTablesView& tables = context.tables();
+        const SampledSpectrum color = light.equal_energy
+                                          ? tables.picture_color(light.environment, uv, lambda)
+                                          : tables.picture_radiance(light.environment, uv, lambda);
+        return color * (light.scale * intensity_of_white(light.profile, normalize(w).z));
     }
     const auto x = static_cast<std::size_t>(texels.x), y = static_cast<std::size_t>(texels.y);
     return context.tables().texel_radiance(light.environment, y * width + x, lambda) * light.scale;
@@ -79,7 +82,8 @@ EmissionPdf ProjectionLight::pdf_le(const LightContext& context, const LightHit&
 
 // Exact for grey pictures, unless the transformation scales unevenly.
 void ProjectionLight::powers(const LightContext& context, std::span<double> parts) const {
-    const Spectrum white(RgbIlluminantSpectrum(LightTablesView::map_color_space(), {1, 1, 1}));
+    const Spectrum illuminant(RgbIlluminantSpectrum(LightTablesView::map_color_space(), {1, 1, 1}));
+    const Spectrum white = equal_energy ? Spectrum(1.0f) : illuminant;
     parts[0] = double(scale) * visible_mean(white) * table_of(context).flux();
 }
 

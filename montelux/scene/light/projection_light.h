@@ -19,6 +19,8 @@ struct ProjectionLight {
     Transform world_from_light;
     Index motion = no_index; // MovableLight
     ProjectionProfile profile = ProjectionProfile::intensity;
+    bool equal_energy =
+        false; // white of the picture is the constant spectrum 1; with the profile `irradiance`
 
     Point3f position() const { return world_from_light.point(Vec3f()); }
 

@@ -186,9 +186,7 @@ TEST(MitsubaEmitters, Projector) {
     const auto& projector = light<ProjectionLight>(s);
     EXPECT_EQ(projector.profile, ProjectionProfile::irradiance);
     EXPECT_NEAR(projector.fov, 90, 1e-4);
-    EXPECT_NEAR(projector.scale /
-                    (2 * pi_f * photometric_scale(Spectrum(RgbColorSpace::srgb().illuminant()))),
-                1, 1e-5);
+    EXPECT_NEAR(projector.scale / (2 * pi_f * photometric_scale(Spectrum(1.0f))), 1, 1e-5);
     const auto texel = [&](Vec3f w) {
         const Image& image = s.scene().environments.at(projector.environment);
         const ProjectionScreen screen(image.width(), image.height(), projector.fov);
@@ -213,6 +211,17 @@ TEST(MitsubaEmitters, PicturesOnSurfaces) {
     const auto& area = light<AreaLight>(s);
     // The top row, which is at v = 0 there, is at v = 1 in ours.
     EXPECT_EQ(s.scene().environments.at(area.picture).value(0, 1, 0), 5);
+    // A bitmap has absolute spectra; in a "d65" its white is the illuminant.
+    EXPECT_TRUE(area.equal_energy);
+    EXPECT_FLOAT_EQ(area.scale, photometric_scale(Spectrum(1.0f)));
+    const WholeScene white = load_scene_text(R"(<shape type="rectangle"><emitter type="area">
+        <texture type="d65" name="radiance"><float name="scale" value="2"/>
+        <texture type="bitmap"><string name="filename" value="p.pfm"/></texture></texture>
+        </emitter></shape>)",
+                                             picture(1, {5, 1}));
+    EXPECT_FALSE(light<AreaLight>(white).equal_energy);
+    EXPECT_FLOAT_EQ(light<AreaLight>(white).scale,
+                    2 * photometric_scale(Spectrum(RgbColorSpace::srgb().illuminant())));
 }
 
 TEST(MitsubaEmitters, Sky) {
