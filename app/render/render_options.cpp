@@ -1,6 +1,7 @@
 #include "app/render/render_options.h"
 
 #include "app/option_values.h"
+#include "app/render/frame_list.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -138,6 +139,13 @@ SampleAddress parse_sample(const std::string& option, const std::string& s) {
         "on, for example 320,240,7");
 }
 
+std::vector<std::uint32_t> read_frames(const std::string& option, const std::string& s) {
+    if (std::optional<std::vector<std::uint32_t>> frames = parse_frames(s)) return *std::move(frames);
+    refuse(option, s,
+           "frames from 1 to " + std::to_string(most_frames) +
+               " are expected, for example 1-48, 1-48x2 (every second one) or 1,5,9");
+}
+
 Orbit read_orbit(const std::string& option, const std::string& s) {
     if (const std::optional<Orbit> orbit = parse_orbit(s)) return *orbit;
     refuse(option, s, "expected " + std::string(orbit_syntax));
@@ -216,6 +224,16 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_parsed(c, "--time-of-scene", "TIME", o.scene_time, parse_duration,
                "Of a glTF scene: the time at which its animations are shown, for example 1.5s. Default: all "
                "at rest");
+    add_parsed(
+        c, "--frames", "LIST", o.frames, read_frames,
+        "Render these frames of a glTF scene's animations to numbered files, out.png to out.0001.png and so "
+        "on: 1-48, 1-48x2 (every second one), 1,5,9. Frames that are finished are skipped");
+    add_parsed(c, "--frame-rate", "RATE", o.frame_rate, parse_positive,
+               "Frames per second: frame n is at the time (n - 1) / RATE. Default: 24");
+    add_whole_number(
+        c, "--turntable", o.turntable, 1, most_frames,
+        "Render a turn of the camera around the scene in N frames, to numbered files; --frames chooses "
+        "among them");
     add_parsed(c, "--resolution", "WxH", o.resolution, parse_resolution,
                "Size of the film in pixels; the scene's crop keeps its place");
     add_parsed(c, "--crop", "x0,x1,y0,y1", o.crop, parse_crop,
@@ -300,6 +318,7 @@ void declare(CLI::App& c, RenderOptions& o) {
         "  montelux render scene.pbrt --resolution 320x240 --crop 0.5,1,0,0.5 -o corner.exr\n"
         "  montelux render scene.pbrt --spp 64 --debug-sample 320,240,7\n"
         "  montelux render model.obj --orbit 60,20 -o model.png\n"
+        "  montelux render model.glb --frames 1-48 -o out.png\n"
         "\n"
         "'mpirun -n 8 montelux render ...' shares the render among machines; the picture is the same.\n"
         "An EXR file holds every layer: mean, standard error, samples, albedo, normal, depth and those of "
@@ -366,6 +385,7 @@ RequestedScene load_requested(const RenderOptions& o, Warnings& warnings, FileSo
                     .variant = o.variant,
                     .time = o.scene_time});
     apply(o, r.description);
+    if (o.turntable) r.axis = turn_axis_of(r.description);
     DiskFiles disk;
     r.added = add_studio(r.description, o.studio, source != nullptr ? *source : disk, warnings, files_read);
     return r;

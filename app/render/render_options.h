@@ -64,6 +64,11 @@ struct RenderOptions {
     // Of glTF scenes: LoadOptions.
     std::optional<std::string> camera, variant;
     std::optional<double> scene_time; // seconds
+    // Of sequences (sequence.h): the frames to render, of which n is at the time (n - 1) / frame_rate; or of one turn of
+    // the camera in so many frames.
+    std::optional<std::vector<std::uint32_t>> frames;
+    double frame_rate = 24;                 // 1/s
+    std::optional<std::uint64_t> turntable; // frames
     int threads = 0;
     double rank_timeout = 60; // seconds
     bool denoise = false, stats = false, memory = false, quiet = false;
@@ -76,6 +81,7 @@ void declare(CLI::App& command, RenderOptions& options);
 struct RequestedScene {
     SceneDescription description;
     StudioParts added;
+    TurnAxis axis{}; // with --turntable
 };
 // `source`: of all files; null: the disk. `files_read` receives their names. Throws the errors of load_scene and
 // add_studio, and UsageError if a crop contains no pixel of the film.

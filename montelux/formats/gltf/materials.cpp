@@ -90,8 +90,8 @@ Index medium_of(const Value& source, SceneBuilder& builder) {
 } // namespace
 
 MaterialLibrary::MaterialLibrary(Document& document, SceneBuilder& builder,
-                                 const std::optional<std::string>& variant)
-    : document_(document), builder_(builder), textures_(document, builder),
+                                 const std::optional<std::string>& variant, bool pictures)
+    : document_(document), builder_(builder), textures_(document, builder, pictures),
       variant_(find_variant(document.root(), variant)) {}
 
 std::optional<Value> MaterialLibrary::material_of(const Value& primitive) const {

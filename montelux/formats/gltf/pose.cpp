@@ -1,9 +1,8 @@
 #include "montelux/formats/gltf/pose.h"
 
 #include <cmath>
+#include <optional>
 #include <string>
-
-#include "montelux/formats/gltf/animation.h"
 
 namespace montelux::gltf {
 namespace {
@@ -82,7 +81,7 @@ Matrix4 matrix_of_columns(const std::vector<double>& columns) {
     return m;
 }
 
-Pose::Pose(Document& document, std::optional<double> time) {
+Pose::Pose(Document& document, const std::vector<Channel>& channels, double time) {
     const std::vector<Value>& nodes = document.all("nodes");
     std::vector<LocalPlace> places;
     places.reserve(nodes.size());
@@ -101,23 +100,20 @@ Pose::Pose(Document& document, std::optional<double> time) {
             children_[i].push_back(c);
         }
     }
-    if (time) {
-        for (const Channel& channel : channels_of(document)) {
-            const std::vector<double> value =
-                value_at(document, channel, *time, weights_[channel.node].size());
-            LocalPlace& place = places[channel.node];
-            if (channel.path == "translation")
-                assign(value, place.translation);
-            else if (channel.path == "rotation")
-                assign(value, place.rotation);
-            else if (channel.path == "scale")
-                assign(value, place.scale);
-            else
-                weights_[channel.node] = value;
-            if (channel.path != "weights" && place.matrix)
-                nodes[channel.node].error(
-                    "is animated, and has a matrix; expected translation, rotation and scale");
-        }
+    for (const Channel& channel : channels) {
+        const std::vector<double> value = value_at(document, channel, time, weights_[channel.node].size());
+        LocalPlace& place = places[channel.node];
+        if (channel.path == "translation")
+            assign(value, place.translation);
+        else if (channel.path == "rotation")
+            assign(value, place.rotation);
+        else if (channel.path == "scale")
+            assign(value, place.scale);
+        else
+            weights_[channel.node] = value;
+        if (channel.path != "weights" && place.matrix)
+            nodes[channel.node].error(
+                "is animated, and has a matrix; expected translation, rotation and scale");
     }
     // Parents before children.
     world_.resize(nodes.size());

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
+#include "montelux/formats/gltf/animation.h"
 #include "montelux/formats/gltf/document.h"
 #include "montelux/mc/math/transform.h"
 
@@ -18,8 +18,9 @@ Matrix4 matrix_of_columns(const std::vector<double>& columns);
 
 class Pose {
   public:
-    // `time`: of the animations, seconds; none: at rest. Errors: nodes that are children of two, or of themselves.
-    Pose(Document& document, std::optional<double> time);
+    // `channels`: of animations, shown at `time`, seconds; none: at rest. Errors: nodes that are children of two, or of
+    // themselves.
+    Pose(Document& document, const std::vector<Channel>& channels, double time);
 
     // From the node to the world.
     const Matrix4& world(std::size_t node) const { return world_[node]; }

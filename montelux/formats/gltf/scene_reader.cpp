@@ -18,8 +18,11 @@ constexpr double instance_bytes = 400;
 
 SceneReader::SceneReader(Document& document, SceneDescription& description, const LoadOptions& options)
     : document_(document), description_(description), options_(options),
-      builder_(description.scene, document.diagnostics()), materials_(document, builder_, options.variant),
-      pose_(document, options.time) {
+      builder_(description.scene, document.diagnostics()),
+      materials_(document, builder_, options.variant, options.pictures),
+      channels_(options.time ? channels_of(document) : std::vector<Channel>()),
+      pose_(document, channels_, options.time.value_or(0)) {
+    description.animation_end = end_of(document, channels_);
     if (const std::optional<Value> all = document.root().extension("KHR_lights_punctual"))
         lights_ = all->elements("lights");
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "montelux/formats/gltf/animation.h"
 #include "montelux/formats/gltf/cameras_lights.h"
 #include "montelux/formats/gltf/document.h"
 #include "montelux/formats/gltf/materials.h"
@@ -52,6 +53,7 @@ class SceneReader {
     const LoadOptions& options_;
     SceneBuilder builder_;
     MaterialLibrary materials_;
+    std::vector<Channel> channels_; // empty: everything at rest
     Pose pose_;
     std::vector<Value> lights_; // of KHR_lights_punctual
     std::vector<PlacedCamera> cameras_;

@@ -15,8 +15,9 @@ namespace montelux::gltf {
 // A textureInfo object is `info`; without one the value is the factor alone. `vertices`: times the colours of vertices.
 class TextureLibrary {
   public:
-    // Both must outlive it.
-    TextureLibrary(Document& document, SceneBuilder& builder) : document_(document), builder_(builder) {}
+    // Both must outlive it. `pictures`: LoadOptions::pictures.
+    TextureLibrary(Document& document, SceneBuilder& builder, bool pictures)
+        : document_(document), builder_(builder), pictures_(pictures) {}
 
     // A linear factor times an sRGB picture.
     SpectrumParameter color(const std::optional<Value>& info, Vec3f factor, RgbMeaning meaning,
@@ -45,6 +46,7 @@ class TextureLibrary {
 
     Document& document_;
     SceneBuilder& builder_;
+    bool pictures_;
     std::map<std::pair<std::uint64_t, Use>, Index> images_;
 };
 
