@@ -139,6 +139,15 @@ SampleAddress parse_sample(const std::string& option, const std::string& s) {
         "on, for example 320,240,7");
 }
 
+RenderOptions::Shutter parse_shutter(const std::string& option, const std::string& s) {
+    const bool is_angle = s.ends_with("deg");
+    RenderOptions::Shutter shutter{is_angle ? parse_not_negative(option, s.substr(0, s.size() - 3))
+                                            : parse_duration(option, s),
+                                   is_angle};
+    if (is_angle && shutter.value > 360) refuse(option, s, "an angle from 0deg to 360deg is expected");
+    return shutter;
+}
+
 std::vector<std::uint32_t> read_frames(const std::string& option, const std::string& s) {
     if (std::optional<std::vector<std::uint32_t>> frames = parse_frames(s)) return *std::move(frames);
     refuse(option, s,
@@ -224,6 +233,11 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_parsed(c, "--time-of-scene", "TIME", o.scene_time, parse_duration,
                "Of a glTF scene: the time at which its animations are shown, for example 1.5s. Default: all "
                "at rest");
+    add_parsed(c, "--shutter", "TIME|ANGLE", o.shutter, parse_shutter,
+               "Of a glTF scene: how long the shutter is open from the time of the picture on, for example "
+               "0.02s, or "
+               "180deg of the 360deg that a frame takes (--frame-rate): what moves meanwhile is blurred. "
+               "Default: 0");
     add_parsed(
         c, "--frames", "LIST", o.frames, read_frames,
         "Render these frames of a glTF scene's animations to numbered files, out.png to out.0001.png and so "
@@ -373,8 +387,14 @@ void apply(const RenderOptions& o, SceneDescription& d) {
 
 } // namespace
 
+double shutter_seconds(const RenderOptions& o) {
+    return o.shutter.is_angle ? o.shutter.value / 360 / o.frame_rate : o.shutter.value;
+}
+
 RequestedScene load_requested(const RenderOptions& o, Warnings& warnings, FileSource* source,
                               std::vector<std::filesystem::path>* files_read) {
+    if (o.shutter.value > 0 && !o.scene_time)
+        throw UsageError("--shutter", "expected --time-of-scene TIME, when it opens, or --frames");
     RequestedScene r;
     r.description =
         load_scene(o.scene, warnings,
@@ -383,7 +403,8 @@ RequestedScene load_requested(const RenderOptions& o, Warnings& warnings, FileSo
                     .texel_file = o.texture_memory ? TexelFile::create(*o.texture_memory) : nullptr,
                     .camera = o.camera,
                     .variant = o.variant,
-                    .time = o.scene_time});
+                    .time = o.scene_time,
+                    .shutter = shutter_seconds(o)});
     apply(o, r.description);
     if (o.turntable) r.axis = turn_axis_of(r.description);
     DiskFiles disk;

@@ -64,6 +64,12 @@ struct RenderOptions {
     // Of glTF scenes: LoadOptions.
     std::optional<std::string> camera, variant;
     std::optional<double> scene_time; // seconds
+    // From the time of the picture on: seconds, or an angle in degrees of which 360 are the time of a frame.
+    struct Shutter {
+        double value = 0;
+        bool is_angle = false;
+    };
+    Shutter shutter{};
     // Of sequences (sequence.h): the frames to render, of which n is at the time (n - 1) / frame_rate; or of one turn of
     // the camera in so many frames.
     std::optional<std::vector<std::uint32_t>> frames;
@@ -87,6 +93,8 @@ struct RequestedScene {
 // add_studio, and UsageError if a crop contains no pixel of the film.
 RequestedScene load_requested(const RenderOptions& options, Warnings& warnings, FileSource* source,
                               std::vector<std::filesystem::path>* files_read = nullptr);
+// How long the shutter stays open.
+double shutter_seconds(const RenderOptions& options);
 // Throws UsageError for incompatible options.
 RenderTarget target_of(const RenderOptions& options);
 

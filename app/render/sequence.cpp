@@ -79,6 +79,7 @@ class Frames {
         return turntable_->description;
     }
 
+    // Those of the last scene.
     const std::vector<std::filesystem::path>& files_read() const { return files_read_; }
 
   private:
@@ -92,6 +93,7 @@ class Frames {
 
     Loaded load(const RenderOptions& options) {
         Warnings warnings;
+        files_read_.clear();
         RequestedScene requested = load_requested(options, warnings, nullptr, &files_read_);
         if (!options.quiet) notices_.print(options.scene, warnings, requested.added);
         CameraSettings camera = requested.description.scene.camera;

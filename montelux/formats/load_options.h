@@ -21,6 +21,8 @@ struct LoadOptions {
     std::optional<std::string> camera{};  // by its name, or its number from 0; empty: the first one
     std::optional<std::string> variant{}; // of the materials; empty: the default ones
     std::optional<double> time{};         // of animations, seconds; empty: everything at rest
+    // How long the shutter stays open from `time` on, seconds: what moves meanwhile is blurred. 0: a still.
+    double shutter = 0;
     // False: pictures of textures and lights are not read, for callers that only ask where things are.
     bool pictures = true;
 };

@@ -1,5 +1,6 @@
 #include "montelux/formats/load_scene.h"
 
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -16,6 +17,10 @@ namespace {
 
 // Cameras by name, variants and time are asked of glTF scenes only.
 void check_options(const std::filesystem::path& path, const FileKind& kind, const LoadOptions& options) {
+    if (!(options.shutter >= 0 && options.shutter <= std::numeric_limits<double>::max()))
+        throw Error("shutter", "expected a number of seconds that is not negative");
+    if (options.shutter > 0 && !options.time)
+        throw Error("shutter", "expected a time of the animations, when it opens");
     if (kind.format == SceneFormat::gltf || kind.format == SceneFormat::none) return;
     for (const auto& [is_given, what] : {std::pair(options.camera.has_value(), "a choice of cameras"),
                                          std::pair(options.variant.has_value(), "variants of materials"),

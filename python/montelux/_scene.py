@@ -148,6 +148,7 @@ def load(
     camera: str | int | None = None,
     variant: str | None = None,
     time: float | None = None,
+    shutter: float = 0,
 ) -> Scene:
     """Reads a scene (pbrt-v4, glTF 2.0) or a model (OBJ, PLY, STL) and all files that it refers to. What it ignores is reported
     by warnings, and in `scene.warnings`. With `texture_memory`, image textures are kept in a temporary file, of which
@@ -160,7 +161,8 @@ def load(
     "black", "grey", "white", "#rrggbb", or linear (r, g, b).
 
     Of glTF scenes: `camera` chooses one by name or number, `variant` one of the file's variants of materials, `time`
-    the moment of its animations, in seconds."""
+    the moment of its animations, in seconds, and `shutter` how long the shutter is open from then on, in seconds: what
+    moves meanwhile is blurred."""
     scene = Scene()
     scene._load(
         os.fspath(path),
@@ -172,6 +174,7 @@ def load(
         None if camera is None else str(camera),
         variant,
         time,
+        float(shutter),
     )
     _tell(scene)
     return scene

@@ -83,7 +83,7 @@ void bind_scene(nb::module_& m) {
                std::optional<std::string> environment, const std::optional<std::string>& orbit,
                std::optional<bool> ground, const std::optional<std::string>& background,
                const std::optional<std::string>& camera, const std::optional<std::string>& variant,
-               std::optional<double> time) {
+               std::optional<double> time, double shutter) {
                 Warnings warnings;
                 SceneDescription d;
                 {
@@ -94,14 +94,15 @@ void bind_scene(nb::module_& m) {
                                    {.texel_file = texel_file(texture_memory),
                                     .camera = camera,
                                     .variant = variant,
-                                    .time = time});
+                                    .time = time,
+                                    .shutter = shutter});
                     DiskFiles files;
                     add_studio(d, studio, files, warnings);
                 }
                 take(s, std::move(d), warnings, path.filename().string());
             },
             "path"_a, "texture_memory"_a.none(), "environment"_a.none(), "orbit"_a.none(), "ground"_a.none(),
-            "background"_a.none(), "camera"_a.none(), "variant"_a.none(), "time"_a.none())
+            "background"_a.none(), "camera"_a.none(), "variant"_a.none(), "time"_a.none(), "shutter"_a)
         .def(
             "_parse",
             [](SceneObject& s, const std::string& text, const std::string& name,

@@ -120,7 +120,8 @@ SurfaceLook MaterialLibrary::make(const std::optional<Value>& given, const Verte
         source.find("pbrMetallicRoughness").value_or(Value(no_json(), "", document_.diagnostics()));
     const bool two_sided = source.boolean("doubleSided", false);
     SurfaceLook look;
-    look.uv_set = uv_set_of(source);
+    look.uv_sets = uv_sets_of(source);
+    textures_.use(look.uv_sets);
     look.alpha = alpha_of(source, base, textures_, builder_, vertices);
     Material material;
     if (source.extension("KHR_materials_unlit")) {

@@ -20,7 +20,7 @@ struct SurfaceLook {
     FloatParameter alpha{1};
     std::optional<Emission> emission{};
     Index medium_inside = no_index;
-    std::uint64_t uv_set = 0; // which texture coordinates its textures use
+    UvSets uv_sets{};
 };
 
 class MaterialLibrary {

@@ -4,6 +4,9 @@
 #include <optional>
 #include <string>
 
+#include "montelux/mc/math/error.h"
+#include "montelux/scene/shape/motion.h"
+
 namespace montelux::gltf {
 namespace {
 
@@ -79,6 +82,16 @@ Matrix4 matrix_of_columns(const std::vector<double>& columns) {
     Matrix4 m;
     for (std::size_t i = 0; i < 16; ++i) m.m[i % 4][i / 4] = columns[i];
     return m;
+}
+
+bool can_move(const Transform& start, const Transform& end, const Value& node) {
+    try {
+        Motion(start, end);
+        return true;
+    } catch (const Error&) {
+        node.warn("is flat at a moment while the shutter is open, or mirrored: it stands still meanwhile");
+        return false;
+    }
 }
 
 Pose::Pose(Document& document, const std::vector<Channel>& channels, double time) {

@@ -34,6 +34,7 @@ void SceneWriter::parameter(DirectiveText& d, std::string_view name, const Spect
 
 void SceneWriter::mapping(DirectiveText& d, std::string& transform, const TextureMapping& m) {
     using Kind = TextureMapping::Kind;
+    if (m.second_uv) refuse("a second set of texture coordinates");
     if (m.kind == Kind::affine) refuse("a mapping of texture coordinates that turns or shears them");
     if (m.kind != Kind::uv) transform = transform_text(m.texture_from_world.inverse());
     if (m.kind == Kind::uv) {
