@@ -196,11 +196,12 @@ TEST_F(WritePbrt, OwnTextures) {
         Texture "d" "spectrum" "vertexcolor" "rgb factor" [0.2 0.3 0.4]
         Texture "e" "float" "step" "texture tex" "a" "float edge" 0.25
         Texture "n" "spectrum" "imagemap" "string filename" "map.exr" "rgb factor" [0.5 0.5 1] "float uscale" 2
+            "bool seconduv" true
             "bool righthanded" true
         Material "diffuse" "texture reflectance" "c" "texture normalmap" "n" Shape "sphere" "texture alpha" "e"
         Material "diffuse" "texture reflectance" "d" "string normalmap" "map.exr"
         Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0] "rgb colors" [1 0 0 0 1 0 0 0.5 1]
-            "float opacities" [1 0.5 0.25]
+            "float opacities" [1 0.5 0.25] "point2 uv2" [0 1 0.5 0.25 1 0]
         Material "conductor" "texture roughness" "b" "texture normalmap" "n" Shape "sphere")"),
               Texts());
 }
@@ -214,6 +215,7 @@ TEST_F(WritePbrt, ColoredMeshesBecomeFiles) {
     TriangleMesh& mesh = d.scene.meshes.at(0);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
         mesh.colors.push_back({0.25f, 0.5f, static_cast<float>(i)});
+        mesh.second_uvs.push_back({0.5f, static_cast<float>(i)});
         mesh.opacities.push_back(0.125f * static_cast<float>(i % 8));
     }
     EXPECT_EQ(test::expect_round_trip(d).messages(), Texts());
