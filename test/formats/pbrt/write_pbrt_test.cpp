@@ -315,7 +315,9 @@ TEST_F(WritePbrt, Settings) {
            "float exposuretime" 0.3 "integer pixelbounds" [1 20 2 19] "float maxcomponentvalue" 10
            "float whitebalance" 5000 "string sensor" "canon_eos_5d_mkiv" "bool savefp16" true
            PixelFilter "mitchell" "float xradius" 1.5 "float B" 0.2 Sampler "halton" "integer pixelsamples" 7 "integer seed" 5
-           Integrator "volpath" "integer maxdepth" 9 "string lightsampler" "power" "bool regularize" true)",
+           Integrator "volpath" "integer maxdepth" 9 "string lightsampler" "power" "bool regularize" true
+           "string shadingterminator" "soft" "string microfacetscattering" "multiple"
+           "string environmentlookup" "bilinear" "rgb background" [0.1 0.2 0.3])",
         R"(Scale -1 1 1 Camera "orthographic" "float frameaspectratio" 2 Film "spectral" "integer nbuckets" 5
            PixelFilter "sinc" "float tau" 2 Sampler "stratified" "integer xsamples" 3 "integer ysamples" 5
            Integrator "simplepath" "bool samplelights" false)",
