@@ -15,14 +15,14 @@ namespace montelux::mitsuba {
 namespace {
 
 bool is_one(const FloatParameter& p) { return p.is_constant() && p.value == 1; }
-// Without both of Mitsuba's rules for tilted normals ours hold.
+bool is_same(const FloatParameter& a, const FloatParameter& b) {
+    return a.texture == b.texture && (!a.is_constant() || a.value == b.value);
+}
+
+// Mitsuba's two rules for tilted normals go together here; without its shadowing ours hold.
 void read_tilt(Plugin& bsdf, SurfaceDetail& detail) {
     detail.shadowed = bsdf.flag("use_shadowing_function", true);
     bsdf.skip("flip_invalid_normals");
-}
-
-bool is_same(const FloatParameter& a, const FloatParameter& b) {
-    return a.texture == b.texture && (!a.is_constant() || a.value == b.value);
 }
 
 } // namespace
@@ -60,7 +60,8 @@ Index MaterialLibrary::sided(const Part& part) {
 }
 
 MaterialLibrary::Part MaterialLibrary::part(const Plugin& bsdf, const SurfaceDetail& detail) {
-    const auto key = std::tuple(bsdf.index(), detail.displacement.texture, detail.normal_map.map);
+    const auto key =
+        std::tuple(bsdf.index(), detail.displacement.texture, detail.normal_map.map, detail.shadowed);
     if (const auto known = parts_.find(key); known != parts_.end()) return known->second;
     return parts_[key] = make(bsdf, detail);
 }

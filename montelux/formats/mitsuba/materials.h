@@ -57,8 +57,8 @@ class MaterialLibrary {
     SceneBuilder& builder_;
     TextureLibrary& textures_;
     MaterialContext context_;
-    // By Plugin::index, and the texture and map of the detail.
-    std::map<std::tuple<std::size_t, Index, Index>, Part> parts_;
+    // By Plugin::index, and the texture, map and rules of the detail.
+    std::map<std::tuple<std::size_t, Index, Index, bool>, Part> parts_;
     std::map<Index, Index> sided_; // by the material of the front
     Index interface_ = no_index, standard_ = no_index;
 };

@@ -390,6 +390,7 @@ TEST(MitsubaBumpmap, LeavesTheBsdfAsItIs) {
     };
     EXPECT_TRUE(detail(plain).is_flat());
     EXPECT_FALSE(detail(bumps).is_flat());
+    EXPECT_TRUE(detail(bumps).shadowed);
     EXPECT_EQ(looks.scene.material_names.at(plain.material), "plain");
 }
 
