@@ -221,10 +221,11 @@ int render_sequence(const RenderOptions& options, SharedRender& shared) {
         std::printf("finished before and skipped: frames %s (%s)\n", frames_text(skipped).c_str(),
                     log->path().string().c_str());
     if (done == numbers.size()) return exit_code;
-    std::fprintf(stderr,
-                 "montelux: interrupted: %zu of %zu frames are finished; the same command renders the "
-                 "others\n",
-                 done, numbers.size());
+    if (!options.quiet)
+        std::fprintf(stderr,
+                     "montelux: interrupted: %zu of %zu frames are finished; the same command renders the "
+                     "others\n",
+                     done, numbers.size());
     return exit_interrupted;
 }
 

@@ -140,10 +140,10 @@ class Studio : public ::testing::Test {
 // A turn by an angle is an orbit from an azimuth that is larger by as much; in left-handed worlds, too.
 TEST_F(Studio, TurntablesAreOrbits) {
     for (const bool is_model : {true, false}) {
-        const auto scene = [&] { return is_model ? model() : pbrt("Translate 1 2 3 Shape \"sphere\""); };
-        const TurnAxis axis = turn_axis_of(scene());
+        const auto unframed = [&] { return is_model ? model() : pbrt("Translate 1 2 3 Shape \"sphere\""); };
+        const TurnAxis axis = turn_axis_of(unframed());
         const auto from = [&](double azimuth) {
-            SceneDescription d = scene();
+            SceneDescription d = unframed();
             add(d, {.orbit = Orbit{azimuth, 20, 1.5}});
             return d.scene.camera;
         };
