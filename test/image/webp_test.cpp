@@ -28,10 +28,10 @@ std::string webp_error(const Bytes& bytes, const ReadOptions& options = {}) {
 
 #ifdef MONTELUX_WEBP
 
-Bytes encoded(const Bytes& pixels, int width, int height, bool alpha) {
+Bytes encoded(const Bytes& pixels, int columns, int rows, bool alpha) {
     std::uint8_t* out = nullptr;
-    const std::size_t size = alpha ? WebPEncodeLosslessRGBA(pixels.data(), width, height, 4 * width, &out)
-                                   : WebPEncodeLosslessRGB(pixels.data(), width, height, 3 * width, &out);
+    const std::size_t size = alpha ? WebPEncodeLosslessRGBA(pixels.data(), columns, rows, 4 * columns, &out)
+                                   : WebPEncodeLosslessRGB(pixels.data(), columns, rows, 3 * columns, &out);
     Bytes bytes(out, out + size);
     WebPFree(out);
     return bytes;
