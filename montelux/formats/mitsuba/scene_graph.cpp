@@ -90,6 +90,7 @@ class GraphReader {
                  const Place& place);
     void add_alias(const std::vector<Attribute>& attributes, const Place& place);
     void add_folder(const std::vector<Attribute>& attributes, const Place& place);
+    void add_folders(const std::filesystem::path& from, const std::filesystem::path& folder);
     void add_property(std::size_t object, Property property);
     void register_id(const std::string& id, std::size_t object, const Place& place);
     void resolve();
@@ -341,13 +342,31 @@ void GraphReader::add_alias(const std::vector<Attribute>& attributes, const Plac
     register_id(values[1], source->second, here);
 }
 
+// Of the folders `folder` and, where it leads up, those that lead up fewer levels: the last is searched first. A scene
+// that was moved away from its data often still stands below it.
+void GraphReader::add_folders(const std::filesystem::path& from, const std::filesystem::path& folder) {
+    std::size_t levels = 0;
+    std::filesystem::path below;
+    for (const std::filesystem::path& part : folder) {
+        if (below.empty() && part == "..")
+            ++levels;
+        else
+            below /= part;
+    }
+    std::filesystem::path up = from;
+    for (std::size_t i = 0; i < levels && !below.empty(); ++i, up /= "..")
+        graph_.files.add_folder(up / below);
+    graph_.files.add_folder(from / folder);
+}
+
 void GraphReader::add_folder(const std::vector<Attribute>& attributes, const Place& here) {
     const std::filesystem::path folder(take("path", attributes, {"value"}, here)[0]);
     const std::filesystem::path own =
         std::filesystem::path(graph_.diagnostics.file_name(here.at().file)).parent_path();
     const std::filesystem::path main = std::filesystem::path(graph_.diagnostics.file_name(0)).parent_path();
-    graph_.files.add_folder(main / folder);
-    if (folder.is_relative() && own != main) graph_.files.add_folder(own / folder);
+    if (folder.is_absolute()) return graph_.files.add_folder(folder);
+    add_folders(main, folder);
+    if (own != main) add_folders(own, folder);
 }
 
 void GraphReader::add_property(std::size_t object, Property property) {

@@ -101,6 +101,17 @@ TEST(MitsubaGraph, IncludesAndFolders) {
     EXPECT_EQ(loaded.files.files_read().size(), 2u);
 }
 
+// A folder that leads up too far, since the scene was moved, is found further down.
+TEST(MitsubaGraph, FoldersOfMovedScenes) {
+    const LoadedGraph loaded(mitsuba_scene(R"(<path value="../../data"/><include filename="grey.xml"/>)"), {},
+                             {{"data/grey.xml", R"(<bsdf version="3.0.0" type="diffuse" id="far"/>)"}});
+    EXPECT_EQ(loaded.plugin("bsdf").id(), "far");
+    const LoadedGraph both(mitsuba_scene(R"(<path value="../data"/><include filename="grey.xml"/>)"), {},
+                           {{"data/grey.xml", R"(<bsdf version="3.0.0" type="diffuse" id="near"/>)"},
+                            {"../data/grey.xml", R"(<bsdf version="3.0.0" type="diffuse" id="meant"/>)"}});
+    EXPECT_EQ(both.plugin("bsdf").id(), "meant");
+}
+
 TEST(MitsubaGraph, ReferencesMayComeBeforeTheirObjects) {
     const LoadedGraph loaded(mitsuba_scene(R"(
         <shape type="cube"><ref id="red"/></shape> <bsdf type="diffuse" id="red"/> <alias id="red" as="rouge"/>
