@@ -8,7 +8,7 @@
 #include "montelux/formats/load_scene.h"
 #include "montelux/mc/math/error.h"
 
-namespace montelux {
+namespace montelux::mitsuba_conformance {
 namespace {
 
 using test::mitsuba_scenes;
@@ -79,4 +79,4 @@ TEST_F(MitsubaConformance, Shapes) {
 }
 
 } // namespace
-} // namespace montelux
+} // namespace montelux::mitsuba_conformance

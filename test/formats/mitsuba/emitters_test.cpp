@@ -13,7 +13,7 @@
 #include "montelux/scene/scene_tables.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
-namespace montelux {
+namespace montelux::mitsuba_emitters {
 namespace {
 
 using test::FileContents;
@@ -275,4 +275,4 @@ TEST(MitsubaEmitters, OthersAreRefused) {
 }
 
 } // namespace
-} // namespace montelux
+} // namespace montelux::mitsuba_emitters

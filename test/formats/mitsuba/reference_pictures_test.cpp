@@ -16,7 +16,7 @@
 #include "montelux/mc/math/error.h"
 #include "montelux/render/renderer.h"
 
-namespace montelux {
+namespace montelux::mitsuba_references {
 namespace {
 
 const std::filesystem::path tests = test::mitsuba_scenes() / "tests";
@@ -168,4 +168,4 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 } // namespace
-} // namespace montelux
+} // namespace montelux::mitsuba_references

@@ -10,8 +10,11 @@
 #include "montelux/formats/mitsuba/serialized.h"
 #include "montelux/mc/math/error.h"
 
-namespace montelux::mitsuba {
+namespace montelux::mitsuba_serialized {
 namespace {
+
+using mitsuba::parse_serialized;
+using mitsuba::SerializedMesh;
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -195,4 +198,4 @@ TEST(MitsubaSerialized, ChangedBits) {
 }
 
 } // namespace
-} // namespace montelux::mitsuba
+} // namespace montelux::mitsuba_serialized

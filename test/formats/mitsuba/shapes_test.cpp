@@ -6,7 +6,7 @@
 #include "montelux/mc/math/constants.h"
 #include "montelux/scene/shape/quadric.h"
 
-namespace montelux {
+namespace montelux::mitsuba_shapes {
 namespace {
 
 using test::bytes_of;
@@ -285,4 +285,4 @@ TEST(MitsubaShapes, TheSameShapeTwiceIsShownOnce) {
 }
 
 } // namespace
-} // namespace montelux
+} // namespace montelux::mitsuba_shapes
