@@ -18,8 +18,8 @@ namespace montelux {
 
 namespace {
 
-using CoatingKey = std::tuple<float, float, float, int>;         // eta, alpha, thickness, max_depth
-using PlasticKey = std::tuple<float, float, NormalDistribution>; // eta, alpha
+using CoatingKey = std::tuple<float, float, float, int>;             // eta, alpha, thickness, max_depth
+using PlasticKey = std::tuple<float, float, MicrofacetDistribution>; // eta, alpha
 
 // Tables of one kind, one for each key.
 template <typename Table, typename Key>

@@ -41,10 +41,10 @@ inline constexpr SettingNames<MicrofacetScattering, 2> microfacet_scattering_nam
     {{"single", MicrofacetScattering::single}, {"multiple", MicrofacetScattering::multiple}}};
 inline constexpr SettingNames<ShadingTerminator, 2> shading_terminator_names{
     {{"hard", ShadingTerminator::hard}, {"soft", ShadingTerminator::soft}}};
-inline constexpr SettingNames<NormalDistribution, 3> normal_distribution_names{
-    {{"ggx", NormalDistribution::ggx},
-     {"ggx-separable", NormalDistribution::ggx_separable},
-     {"beckmann", NormalDistribution::beckmann}}};
+inline constexpr SettingNames<MicrofacetDistribution, 3> normal_distribution_names{
+    {{"ggx", MicrofacetDistribution::ggx},
+     {"ggx-separable", MicrofacetDistribution::ggx_separable},
+     {"beckmann", MicrofacetDistribution::beckmann}}};
 
 template <typename Setting, std::size_t n>
 constexpr std::string_view name_in(const SettingNames<Setting, n>& names, Setting value) {
@@ -68,7 +68,7 @@ constexpr std::string_view name_of(MicrofacetScattering scattering) {
 constexpr std::string_view name_of(ShadingTerminator terminator) {
     return name_in(shading_terminator_names, terminator);
 }
-constexpr std::string_view name_of(NormalDistribution distribution) {
+constexpr std::string_view name_of(MicrofacetDistribution distribution) {
     return name_in(normal_distribution_names, distribution);
 }
 

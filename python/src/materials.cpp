@@ -11,7 +11,7 @@ namespace montelux::python {
 namespace {
 
 constexpr const char* spectrum_type = "typing.Any";
-constexpr Names<NormalDistribution, 3> normal_distributions{"distribution", normal_distribution_names};
+constexpr Names<MicrofacetDistribution, 3> normal_distributions{"distribution", normal_distribution_names};
 
 // The n-th parameter of a material, of type F.
 template <typename F>
@@ -233,7 +233,7 @@ struct Attributes {
         melanin("pheomelanin", &HairColorParameter::pheomelanin, "Concentration of the red pigment.");
     }
 
-    void add(const ParameterInfo& info, ParameterAt<NormalDistribution> at) const {
+    void add(const ParameterInfo& info, ParameterAt<MicrofacetDistribution> at) const {
         attribute<M>(
             c, info.python_name().c_str(), "str",
             [at](const M& m, const auto&) { return nb::str(std::string(name_of(at(m))).c_str()); },

@@ -53,7 +53,7 @@ struct ChangeField {
     void operator()(MediumIndex& x) const { x.index = 7; }
     void operator()(MaterialIndex& x) const { x.index = 7; }
     void operator()(MaterialOfSide& x) const { x.index = 7; }
-    void operator()(NormalDistribution& x) const { x = NormalDistribution::beckmann; }
+    void operator()(MicrofacetDistribution& x) const { x = MicrofacetDistribution::beckmann; }
     void operator()(float& x) const { x += 1; }
     void operator()(int& x) const { x += 1; }
     void operator()(bool& x) const { x = !x; }

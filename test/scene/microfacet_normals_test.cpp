@@ -105,8 +105,8 @@ TEST(MicrofacetNormals, AreThoseOfTheirDistribution) {
     const Beckmann beckmann{0.3f, 0.5f};
     const Vec3f wo = direction(50, 20), wi = direction(70, 130), m = direction(10, 80);
     const Vec2f u{0.2f, 0.7f};
-    const MicrofacetNormals correlated(ggx, NormalDistribution::ggx),
-        separable(ggx, NormalDistribution::ggx_separable), other(ggx, NormalDistribution::beckmann);
+    const MicrofacetNormals correlated(ggx, MicrofacetDistribution::ggx),
+        separable(ggx, MicrofacetDistribution::ggx_separable), other(ggx, MicrofacetDistribution::beckmann);
     for (const MicrofacetNormals& n : {correlated, separable}) {
         EXPECT_EQ(n.d(m), ggx.d(m));
         EXPECT_EQ(n.sample_visible(wo, u), ggx.sample_visible(wo, u));
@@ -125,7 +125,7 @@ TEST(MicrofacetNormals, AreThoseOfTheirDistribution) {
 TEST(TintedBsdf, MultipliesBothSides) {
     const SampledSpectrum reflected(0.1f, 0.2f, 0.3f, 0.4f), transmitted(0.9f, 0.8f, 0.7f, 0.6f);
     for (float alpha : {0.0f, 0.4f}) {
-        const DielectricBsdfOf<MicrofacetNormals> plain{1.5f, {{alpha, alpha}, NormalDistribution::ggx}};
+        const DielectricBsdfOf<MicrofacetNormals> plain{1.5f, {{alpha, alpha}, MicrofacetDistribution::ggx}};
         const TintedDielectricBsdf tinted{plain, reflected, transmitted};
         TestStream a(3), b(3);
         for (int i = 0; i < 100; ++i) {

@@ -8,12 +8,12 @@
 
 namespace montelux::testing {
 
-inline const PlasticTable& plastic_table(float alpha, NormalDistribution distribution) {
-    static std::map<std::pair<float, NormalDistribution>, PlasticTable> tables;
+inline const PlasticTable& plastic_table(float alpha, MicrofacetDistribution distribution) {
+    static std::map<std::pair<float, MicrofacetDistribution>, PlasticTable> tables;
     return tables.try_emplace({alpha, distribution}, 1.5f, alpha, distribution).first->second;
 }
 
-inline PlasticBsdf plastic(float alpha, NormalDistribution distribution, SampledSpectrum rho,
+inline PlasticBsdf plastic(float alpha, MicrofacetDistribution distribution, SampledSpectrum rho,
                            bool nonlinear = false) {
     const PlasticTable& table = plastic_table(alpha, distribution);
     return {&table, {{alpha, alpha}, distribution}, table.base_albedo(rho, nonlinear), SampledSpectrum(1)};
@@ -25,7 +25,7 @@ inline DisneySolid disney_solid(float clear) {
     const SampledSpectrum color(0.3f, 0.4f, 0.5f, 0.6f);
     DisneySolid l;
     l.base = {((1 - metallic) * (1 - clear)) * color, SampledSpectrum(0.2f), 0.6f, 0.5f};
-    l.normals = {{0.5f, 0.3f}, NormalDistribution::ggx_separable};
+    l.normals = {{0.5f, 0.3f}, MicrofacetDistribution::ggx_separable};
     l.metallic = metallic;
     l.transmitting = (1 - metallic) * clear;
     l.tinted = 0.4f;
@@ -40,8 +40,8 @@ inline DisneySheet disney_sheet() {
     const SampledSpectrum color(0.3f, 0.4f, 0.5f, 0.6f);
     DisneySheet l;
     l.base = {0.3f * color, SampledSpectrum(0.2f), 0.6f, 0.5f};
-    l.reflecting = {{0.5f, 0.3f}, NormalDistribution::ggx_separable};
-    l.crossing = {{0.3f, 0.2f}, NormalDistribution::ggx_separable};
+    l.reflecting = {{0.5f, 0.3f}, MicrofacetDistribution::ggx_separable};
+    l.crossing = {{0.3f, 0.2f}, MicrofacetDistribution::ggx_separable};
     l.clear = 0.4f;
     l.tinted = 0.4f;
     l.color = color;
@@ -53,11 +53,11 @@ inline DisneySheet disney_sheet() {
 // Added to the cases of bsdf_testing.h.
 inline std::vector<BsdfCase> mitsuba_cases() {
     const SampledSpectrum eta(0.2f, 0.4f, 0.9f, 1.1f), k(3.9f, 3.0f, 2.4f, 2.1f);
-    const NormalDistribution beckmann = NormalDistribution::beckmann;
-    const auto tinted_conductor = [=](Ggx alpha, NormalDistribution d) {
+    const MicrofacetDistribution beckmann = MicrofacetDistribution::beckmann;
+    const auto tinted_conductor = [=](Ggx alpha, MicrofacetDistribution d) {
         return TintedConductorBsdf{{eta, k, {alpha, d}}, SampledSpectrum(0.5f, 0.7f, 0.9f, 1.0f)};
     };
-    const auto tinted_dielectric = [](Ggx alpha, NormalDistribution d) {
+    const auto tinted_dielectric = [](Ggx alpha, MicrofacetDistribution d) {
         return TintedDielectricBsdf{{1.5f, {alpha, d}},
                                     SampledSpectrum(0.5f, 0.7f, 0.9f, 1.0f),
                                     SampledSpectrum(1, 0.8f, 0.6f, 0.4f)};
@@ -77,7 +77,7 @@ inline std::vector<BsdfCase> mitsuba_cases() {
          }},
         {"separable_conductor",
          [=] {
-             return tinted_conductor({0.3f, 0.6f}, NormalDistribution::ggx_separable);
+             return tinted_conductor({0.3f, 0.6f}, MicrofacetDistribution::ggx_separable);
          }},
         {"beckmann_dielectric_0_2",
          [=] {
@@ -97,15 +97,15 @@ inline std::vector<BsdfCase> mitsuba_cases() {
          }},
         {"tinted_dielectric_tilted",
          [=] {
-             return TiltedBsdf{tinted_dielectric({0.4f, 0.4f}, NormalDistribution::ggx_separable),
+             return TiltedBsdf{tinted_dielectric({0.4f, 0.4f}, MicrofacetDistribution::ggx_separable),
                                direction(25, 200)};
          }},
         {"plastic_smooth", [=] { return plastic(0, beckmann, SampledSpectrum(0.2f, 0.4f, 0.6f, 0.8f)); }},
         {"plastic_beckmann_0_1", [=] { return plastic(0.1f, beckmann, SampledSpectrum(0.9f)); }},
         {"plastic_beckmann_0_5", [=] { return plastic(0.5f, beckmann, SampledSpectrum(0.5f), true); }},
         {"plastic_separable",
-         [=] { return plastic(0.3f, NormalDistribution::ggx_separable, SampledSpectrum(1)); }},
-        {"plastic_dark", [=] { return plastic(0.2f, NormalDistribution::ggx, SampledSpectrum(0.1f)); }},
+         [=] { return plastic(0.3f, MicrofacetDistribution::ggx_separable, SampledSpectrum(1)); }},
+        {"plastic_dark", [=] { return plastic(0.2f, MicrofacetDistribution::ggx, SampledSpectrum(0.1f)); }},
         {"disney", [=] { return DisneyOpaqueBsdf{disney_solid(0)}; }, true, true, true},
         {"disney_glass", [=] { return DisneySolidBsdf{disney_solid(0.7f)}; }},
         {"disney_sheet", [=] { return DisneySheetBsdf{disney_sheet()}; }, true, false},

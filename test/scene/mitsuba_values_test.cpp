@@ -32,18 +32,18 @@ Bsdf made(const auto& material) {
 
 TEST(MitsubaValues, RoughConductor) {
     ConductorMaterial m{.metal = {.eta = {0.2f}, .k = {3.9f}}, .roughness = {{0.3f}, {0.2f}, false}};
-    m.distribution = NormalDistribution::beckmann;
+    m.distribution = MicrofacetDistribution::beckmann;
     // The fifth pair is below the surface, where Mitsuba's is black.
     expect_values(made(m), {0.0568377f, 2.19301f, 0.240558f, 0, 1.17566f, 0}, "Beckmann");
-    m.distribution = NormalDistribution::ggx_separable;
+    m.distribution = MicrofacetDistribution::ggx_separable;
     expect_values(made(m), {0.0958957f, 1.16966f, 0.196785f, 0, 0.833827f, 0}, "GGX");
 }
 
 TEST(MitsubaValues, RoughDielectric) {
     DielectricMaterial m{.eta = 1.5f, .roughness = {{0.3f}, {0.3f}, false}};
-    m.distribution = NormalDistribution::beckmann;
+    m.distribution = MicrofacetDistribution::beckmann;
     expect_values(made(m), {0.0135599f, 0.41636f, 0.0145336f, 0, 0.868675f, 9.58637f}, "Beckmann");
-    m.distribution = NormalDistribution::ggx_separable;
+    m.distribution = MicrofacetDistribution::ggx_separable;
     expect_values(made(m), {0.00964873f, 0.251959f, 0.00991726f, 0.0607287f, 0.627625f, 6.36796f}, "GGX");
 }
 
@@ -86,7 +86,8 @@ TEST(MitsubaValues, PrincipledThin) {
 // 63/64 R + R(1)/64 for the reflectance R(1) along the normal.
 TEST(MitsubaValues, RoughPlastic) {
     const float eta = 1.49f / 1.000277f, f0 = (eta - 1) / (eta + 1);
-    const auto expect = [&](float alpha, NormalDistribution d, float first, float second, float tolerance) {
+    const auto expect = [&](float alpha, MicrofacetDistribution d, float first, float second,
+                            float tolerance) {
         const PlasticTable t(eta, alpha, d);
         const float r = alpha == 0 ? 0 : (63 * t.internal_reflectance() + f0 * f0) / 64;
         const PlasticBsdf b{
@@ -99,14 +100,14 @@ TEST(MitsubaValues, RoughPlastic) {
         EXPECT_NEAR(value(direction(75), direction(60, 180)), second, tolerance * second) << alpha;
     };
     // Of smooth plastic it uses fits for R.
-    expect(0, NormalDistribution::ggx, 0.123074f, 0.0598515f, 2e-3f);
-    const NormalDistribution beckmann = NormalDistribution::beckmann;
+    expect(0, MicrofacetDistribution::ggx, 0.123074f, 0.0598515f, 2e-3f);
+    const MicrofacetDistribution beckmann = MicrofacetDistribution::beckmann;
     expect(0.1f, beckmann, 0.118399f, 0.849908f, 1e-3f);
     expect(0.3f, beckmann, 0.117476f, 0.450473f, 1e-3f);
     expect(0.6f, beckmann, 0.0889462f, 0.13739f, 1e-3f);
-    expect(0.1f, NormalDistribution::ggx_separable, 0.112832f, 0.631503f, 1e-3f);
-    expect(0.3f, NormalDistribution::ggx_separable, 0.0910974f, 0.306385f, 1e-3f);
-    expect(0.6f, NormalDistribution::ggx_separable, 0.0649612f, 0.0797083f, 1e-3f);
+    expect(0.1f, MicrofacetDistribution::ggx_separable, 0.112832f, 0.631503f, 1e-3f);
+    expect(0.3f, MicrofacetDistribution::ggx_separable, 0.0910974f, 0.306385f, 1e-3f);
+    expect(0.6f, MicrofacetDistribution::ggx_separable, 0.0649612f, 0.0797083f, 1e-3f);
 }
 
 // A tint keeps the hue and has luminance 1.

@@ -218,7 +218,7 @@ TEST(MultipleScattering, ReplacesRoughMicrofacetsOnly) {
     EXPECT_TRUE(std::holds_alternative<DielectricBsdf>(replaced(DielectricBsdf{1.5f, smooth})));
     EXPECT_TRUE(std::holds_alternative<DielectricBsdf>(replaced(DielectricBsdf{1, rough})));
     EXPECT_TRUE(std::holds_alternative<DiffuseBsdf>(replaced(DiffuseBsdf{})));
-    const TintedDielectricBsdf tinted{{1.5f, {rough, NormalDistribution::beckmann}}};
+    const TintedDielectricBsdf tinted{{1.5f, {rough, MicrofacetDistribution::beckmann}}};
     EXPECT_TRUE(std::holds_alternative<TintedDielectricBsdf>(replaced(tinted)));
     const Bsdf tilted = replaced(TiltedBsdf{white_metal(rough), direction(10)});
     ASSERT_TRUE(std::holds_alternative<TiltedBsdf>(tilted));

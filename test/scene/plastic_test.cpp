@@ -7,8 +7,8 @@
 namespace montelux::testing {
 namespace {
 
-constexpr NormalDistribution plastic_distributions[] = {
-    NormalDistribution::ggx, NormalDistribution::ggx_separable, NormalDistribution::beckmann};
+constexpr MicrofacetDistribution plastic_distributions[] = {
+    MicrofacetDistribution::ggx, MicrofacetDistribution::ggx_separable, MicrofacetDistribution::beckmann};
 
 // The mean weight of a lobe of the interface for light from wo(): an estimate of its albedo.
 template <typename Direction>
@@ -31,7 +31,7 @@ TEST(PlasticTable, HoldsIntegralsOfTheInterface) {
     const auto diffuse = [](float side) {
         return [side](auto& stream) { return side * sample_cosine_hemisphere(stream.next_2d()); };
     };
-    for (const NormalDistribution d : plastic_distributions)
+    for (const MicrofacetDistribution d : plastic_distributions)
         for (float alpha : {0.1f, 0.5f}) {
             const PlasticTable& table = plastic_table(alpha, d);
             const DielectricBsdfOf<MicrofacetNormals> interface {
@@ -50,7 +50,7 @@ TEST(PlasticTable, HoldsIntegralsOfTheInterface) {
 }
 
 TEST(PlasticTable, OfASmoothInterfaceIsFresnels) {
-    const PlasticTable& table = plastic_table(0, NormalDistribution::beckmann);
+    const PlasticTable& table = plastic_table(0, MicrofacetDistribution::beckmann);
     EXPECT_NEAR(table.internal_reflectance(), internal_diffuse_reflectance(1.5f), 1e-4f);
     EXPECT_NEAR(table.mean_transmittance(), 1 - diffuse_fresnel_reflectance(1.5f), 1e-4f);
     for (double theta : {0.0, 30.0, 60.0, 80.0})
@@ -71,7 +71,7 @@ double furnace_mean(const PlasticBsdf& b, Vec3f wo, std::uint64_t seed) {
 // Of a white base under an even light: a smooth interface loses nothing, a rough one what its facets shadow: the values
 // are those of the quadrature of the closed form over all directions. The mean weights have errors below 2e-3.
 TEST(Plastic, WhiteFurnace) {
-    for (const NormalDistribution d : plastic_distributions)
+    for (const MicrofacetDistribution d : plastic_distributions)
         for (float alpha : {0.0f, 0.1f, 0.5f})
             for (double theta : {15.0, 70.0, 110.0}) {
                 const PlasticBsdf b = plastic(alpha, d, SampledSpectrum(1), true);
@@ -98,12 +98,12 @@ TEST(Plastic, WhiteFurnace) {
 
 // The closed form by its definition.
 TEST(Plastic, IsInterfaceOverBase) {
-    const PlasticTable& t = plastic_table(0.3f, NormalDistribution::beckmann);
+    const PlasticTable& t = plastic_table(0.3f, MicrofacetDistribution::beckmann);
     const SampledSpectrum rho(0.1f, 0.4f, 0.7f, 1.0f), tint(0.2f, 0.4f, 0.8f, 0.9f);
     const Vec3f wo = direction(40), wi = direction(55, 160);
     TestStream stream(1);
     for (const bool nonlinear : {false, true}) {
-        PlasticBsdf b = plastic(0.3f, NormalDistribution::beckmann, rho, nonlinear);
+        PlasticBsdf b = plastic(0.3f, MicrofacetDistribution::beckmann, rho, nonlinear);
         b.reflected = tint;
         const DielectricBsdfOf<MicrofacetNormals> interface { 1.5f, b.normals };
         const SampledSpectrum mirrored = interface.evaluate(wo, wi, TransportMode::radiance, stream).f;
@@ -119,12 +119,12 @@ TEST(Plastic, IsInterfaceOverBase) {
         EXPECT_EQ(below.pdf, e.pdf);
         EXPECT_EQ(b.evaluate(wo, -wi, TransportMode::radiance, stream).f, SampledSpectrum(0));
     }
-    EXPECT_TRUE(plastic(0, NormalDistribution::ggx, rho).has_specular());
-    EXPECT_FALSE(plastic(0.3f, NormalDistribution::beckmann, rho).has_specular());
+    EXPECT_TRUE(plastic(0, MicrofacetDistribution::ggx, rho).has_specular());
+    EXPECT_FALSE(plastic(0.3f, MicrofacetDistribution::beckmann, rho).has_specular());
 }
 
 TEST(PlasticTable, TakesAnotherInternalReflectance) {
-    const PlasticTable& t = plastic_table(0.1f, NormalDistribution::beckmann);
+    const PlasticTable& t = plastic_table(0.1f, MicrofacetDistribution::beckmann);
     const SampledSpectrum rho(0.1f, 0.4f, 0.7f, 1);
     EXPECT_EQ(t.base_albedo(rho, true, t.internal_reflectance()), t.base_albedo(rho, true));
     const SampledSpectrum linear = t.base_albedo(rho, false, 0.5f),
@@ -138,9 +138,9 @@ TEST(PlasticTable, TakesAnotherInternalReflectance) {
 
 // An index of 1 leaves the base.
 TEST(Plastic, WithoutAnIndexItIsDiffuse) {
-    const PlasticTable table(1, 0.3f, NormalDistribution::beckmann);
+    const PlasticTable table(1, 0.3f, MicrofacetDistribution::beckmann);
     const PlasticBsdf b{&table,
-                        {{0.3f, 0.3f}, NormalDistribution::beckmann},
+                        {{0.3f, 0.3f}, MicrofacetDistribution::beckmann},
                         table.base_albedo(SampledSpectrum(0.6f), false),
                         SampledSpectrum(1)};
     TestStream stream(1);

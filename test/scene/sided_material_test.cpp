@@ -116,20 +116,20 @@ TEST(PlasticMaterial, HasATable) {
                          .specular_reflectance = {0.7f},
                          .eta = 1.4f,
                          .alpha = 0.2f,
-                         .distribution = NormalDistribution::beckmann,
+                         .distribution = MicrofacetDistribution::beckmann,
                          .nonlinear = true},
-         PlasticMaterial{.eta = 1.4f, .alpha = 0.2f, .distribution = NormalDistribution::beckmann},
+         PlasticMaterial{.eta = 1.4f, .alpha = 0.2f, .distribution = MicrofacetDistribution::beckmann},
          PlasticMaterial{.eta = 1.4f, .alpha = 0.2f}});
     const SceneTables tables(sheet.scene);
     EXPECT_EQ(tables.view().plastic_tables.size(), 2u);
     EXPECT_EQ(&tables.view().plastic(0), &tables.view().plastic(1));
     EXPECT_NE(&tables.view().plastic(0), &tables.view().plastic(2));
     const auto b = std::get<PlasticBsdf>(sheet.met(1).bsdf);
-    EXPECT_EQ(b.normals.distribution, NormalDistribution::beckmann);
+    EXPECT_EQ(b.normals.distribution, MicrofacetDistribution::beckmann);
     EXPECT_EQ(b.normals.alpha_x, 0.2f);
     EXPECT_EQ(b.normals.alpha_y, 0.2f);
     EXPECT_EQ(b.reflected[0], 0.7f);
-    const PlasticTable table(1.4f, 0.2f, NormalDistribution::beckmann);
+    const PlasticTable table(1.4f, 0.2f, MicrofacetDistribution::beckmann);
     EXPECT_EQ(b.base_albedo, table.base_albedo(SampledSpectrum(0.5f), true));
     EXPECT_EQ(table.eta(), 1.4f);
 }
@@ -141,11 +141,13 @@ TEST(TintedMaterials, AreTintedWhereTheyNeedIt) {
     EXPECT_TRUE(std::holds_alternative<ConductorBsdf>(made(ConductorMaterial{.roughness = rough})));
     EXPECT_TRUE(std::holds_alternative<DielectricBsdf>(made(DielectricMaterial{.roughness = rough})));
     EXPECT_TRUE(std::holds_alternative<ThinDielectricBsdf>(made(ThinDielectricMaterial{})));
-    const auto metal = std::get<TintedConductorBsdf>(made(ConductorMaterial{
-        .roughness = rough, .specular_reflectance = {0.4f}, .distribution = NormalDistribution::beckmann}));
+    const auto metal = std::get<TintedConductorBsdf>(
+        made(ConductorMaterial{.roughness = rough,
+                               .specular_reflectance = {0.4f},
+                               .distribution = MicrofacetDistribution::beckmann}));
     EXPECT_EQ(metal.reflected[0], 0.4f);
     EXPECT_EQ(metal.interface.normals.alpha_x, 0.3f);
-    EXPECT_EQ(metal.interface.normals.distribution, NormalDistribution::beckmann);
+    EXPECT_EQ(metal.interface.normals.distribution, MicrofacetDistribution::beckmann);
     EXPECT_EQ(metal.interface.eta[0], 0.96f);
     EXPECT_EQ(metal.interface.k[0], 6.69f);
     const auto glass = std::get<TintedDielectricBsdf>(made(DielectricMaterial{
@@ -158,12 +160,13 @@ TEST(TintedMaterials, AreTintedWhereTheyNeedIt) {
         std::get<TintedThinDielectricBsdf>(made(ThinDielectricMaterial{.specular_transmittance = {0.2f}}));
     EXPECT_EQ(pane.reflected[0], 1);
     EXPECT_EQ(pane.transmitted[0], 0.2f);
-    for (const Material& m : {Material(ConductorMaterial{.distribution = NormalDistribution::ggx_separable}),
-                              Material(ConductorMaterial{.specular_reflectance = {0.5f}})})
+    for (const Material& m :
+         {Material(ConductorMaterial{.distribution = MicrofacetDistribution::ggx_separable}),
+          Material(ConductorMaterial{.specular_reflectance = {0.5f}})})
         EXPECT_TRUE(std::holds_alternative<TintedConductorBsdf>(made(m)));
     for (const Material& m : {Material(DielectricMaterial{.specular_reflectance = {0.5f}}),
                               Material(DielectricMaterial{.specular_transmittance = {0.5f}}),
-                              Material(DielectricMaterial{.distribution = NormalDistribution::beckmann})})
+                              Material(DielectricMaterial{.distribution = MicrofacetDistribution::beckmann})})
         EXPECT_TRUE(std::holds_alternative<TintedDielectricBsdf>(made(m)));
 }
 

@@ -33,6 +33,6 @@ std::optional<BasicMaterial> read_measured(Plugin& bsdf, MaterialContext& contex
 
 // Parts of several families: `alpha`, or `alpha_u` and `alpha_v`; and their distribution, "beckmann" by default.
 RoughnessParameter read_roughness(Plugin& bsdf, MaterialContext& context);
-NormalDistribution read_distribution(Plugin& bsdf);
+MicrofacetDistribution read_distribution(Plugin& bsdf);
 
 } // namespace montelux::mitsuba

@@ -23,12 +23,12 @@ void read_factors(M& m, Plugin& bsdf, MaterialContext& context) {
 
 } // namespace
 
-NormalDistribution read_distribution(Plugin& bsdf) {
+MicrofacetDistribution read_distribution(Plugin& bsdf) {
     bsdf.skip("sample_visible"); // steers the sampling alone
     std::string name = bsdf.text("distribution", "beckmann");
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-    if (name == "beckmann") return NormalDistribution::beckmann;
-    if (name == "ggx") return NormalDistribution::ggx_separable;
+    if (name == "beckmann") return MicrofacetDistribution::beckmann;
+    if (name == "ggx") return MicrofacetDistribution::ggx_separable;
     bsdf.graph().diagnostics.error(bsdf.find("distribution")->at,
                                    "'distribution' is " + in_quotes(bsdf.text("distribution", "")) +
                                        "; expected one of beckmann, ggx");

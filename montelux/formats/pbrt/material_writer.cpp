@@ -96,7 +96,7 @@ class MaterialParameters {
     void write(const ParameterInfo& info, const MaterialOfSide& side, const MaterialOfSide&) {
         if (side.is_given()) d_.string(info.pbrt_name(), w_.material_names_[side.index]);
     }
-    void write(const ParameterInfo& info, NormalDistribution d, NormalDistribution standard) {
+    void write(const ParameterInfo& info, MicrofacetDistribution d, MicrofacetDistribution standard) {
         if (d != standard) d_.string(info.pbrt_name(), name_of(d));
     }
     void write(const ParameterInfo&, const HairColorParameter& c, const HairColorParameter&) {

@@ -65,11 +65,12 @@ class MaterialMaker {
 
     void read(const ParameterInfo& info, bool& b) { b = r_.boolean(name(info.pbrt_name()), b); }
 
-    void read(const ParameterInfo& info, NormalDistribution& d) {
+    void read(const ParameterInfo& info, MicrofacetDistribution& d) {
         const auto& all = normal_distribution_names;
         const std::string_view given =
             r_.choice(name(info.pbrt_name()), {all[0].first, all[1].first, all[2].first}, name_of(d));
-        d = std::ranges::find(all, given, &std::pair<std::string_view, NormalDistribution>::first)->second;
+        d = std::ranges::find(all, given, &std::pair<std::string_view, MicrofacetDistribution>::first)
+                ->second;
     }
 
     // An index of refraction: a number or a spectrum.

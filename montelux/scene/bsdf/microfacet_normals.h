@@ -9,14 +9,14 @@
 namespace montelux {
 
 // With its masking and shadowing: height-correlated for `ggx`, G1(wo) G1(wi) for the others, as in Mitsuba.
-enum class NormalDistribution : std::uint8_t { ggx, ggx_separable, beckmann };
+enum class MicrofacetDistribution : std::uint8_t { ggx, ggx_separable, beckmann };
 
 struct MicrofacetNormals {
     float alpha_x = 0, alpha_y = 0;
-    NormalDistribution distribution = NormalDistribution::ggx;
+    MicrofacetDistribution distribution = MicrofacetDistribution::ggx;
 
     MicrofacetNormals() = default;
-    MicrofacetNormals(Ggx alpha, NormalDistribution distribution_)
+    MicrofacetNormals(Ggx alpha, MicrofacetDistribution distribution_)
         : alpha_x(alpha.alpha_x), alpha_y(alpha.alpha_y), distribution(distribution_) {}
 
     // The functions of Ggx.
@@ -24,7 +24,7 @@ struct MicrofacetNormals {
     float d(Vec3f m) const { return is_beckmann() ? beckmann().d(m) : ggx().d(m); }
     InverseMasking inverse_masking(Vec3f wo, Vec3f wi) const {
         if (is_beckmann()) return beckmann().inverse_masking(wo, wi);
-        if (distribution == NormalDistribution::ggx) return ggx().inverse_masking(wo, wi);
+        if (distribution == MicrofacetDistribution::ggx) return ggx().inverse_masking(wo, wi);
         const float visible = 1 + ggx().lambda(wo);
         return {visible, visible * (1 + ggx().lambda(wi))};
     }
@@ -33,7 +33,7 @@ struct MicrofacetNormals {
     }
 
   private:
-    bool is_beckmann() const { return distribution == NormalDistribution::beckmann; }
+    bool is_beckmann() const { return distribution == MicrofacetDistribution::beckmann; }
     Ggx ggx() const { return {alpha_x, alpha_y}; }
     Beckmann beckmann() const { return {alpha_x, alpha_y}; }
 };

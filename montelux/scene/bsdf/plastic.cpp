@@ -39,7 +39,7 @@ Crossing crossing(const DielectricBsdfOf<MicrofacetNormals>& interface, float co
 
 } // namespace
 
-PlasticTable::PlasticTable(float eta, float alpha, NormalDistribution distribution)
+PlasticTable::PlasticTable(float eta, float alpha, MicrofacetDistribution distribution)
     : eta_(eta), transmittance_(129) {
     const DielectricBsdfOf<MicrofacetNormals> interface {
         eta, { Ggx{alpha, alpha}, distribution }

@@ -22,7 +22,7 @@ namespace montelux {
 class PlasticTable {
   public:
     // By quadrature, within 1e-3.
-    PlasticTable(float eta, float alpha, NormalDistribution distribution);
+    PlasticTable(float eta, float alpha, MicrofacetDistribution distribution);
 
     float eta() const { return eta_; }
     // T(w) for mu = |cos theta| in [0, 1].

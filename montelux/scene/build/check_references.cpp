@@ -66,7 +66,7 @@ class FieldCheck {
     void operator()(std::string_view, float) const {}
     void operator()(std::string_view, int) const {}
     void operator()(std::string_view, bool) const {}
-    void operator()(std::string_view, NormalDistribution) const {}
+    void operator()(std::string_view, MicrofacetDistribution) const {}
 
   private:
     const Scene& scene_;

@@ -13,7 +13,7 @@ struct ConductorMaterial {
     MetalParameter metal{};
     RoughnessParameter roughness{};
     SpectrumParameter specular_reflectance{1};
-    NormalDistribution distribution = NormalDistribution::ggx;
+    MicrofacetDistribution distribution = MicrofacetDistribution::ggx;
     SurfaceDetail detail{};
 
     template <typename Self, typename Visit>

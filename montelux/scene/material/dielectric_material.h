@@ -13,7 +13,7 @@ struct DielectricMaterial {
     SceneSpectrum eta{1.5f};
     RoughnessParameter roughness{};
     SpectrumParameter specular_reflectance{1}, specular_transmittance{1};
-    NormalDistribution distribution = NormalDistribution::ggx;
+    MicrofacetDistribution distribution = MicrofacetDistribution::ggx;
     SurfaceDetail detail{};
 
     template <typename Self, typename Visit>

@@ -36,7 +36,7 @@ struct FindTexture {
     void operator()(std::string_view, const MaterialIndex&) const {}
     void operator()(std::string_view, const MaterialOfSide&) const {}
     void operator()(std::string_view, const SceneSpectrum&) const {}
-    void operator()(std::string_view, NormalDistribution) const {}
+    void operator()(std::string_view, MicrofacetDistribution) const {}
     void operator()(std::string_view, float) const {}
     void operator()(std::string_view, int) const {}
     void operator()(std::string_view, bool) const {}

@@ -12,7 +12,7 @@ namespace montelux {
 
 // A material lists its parameters once, in a function visit_parameters(material, visit) that calls
 // visit(info, field) for each. A field is a SceneSpectrum (an index of refraction), SpectrumParameter,
-// FloatParameter, float, int, bool, NormalDistribution, or one of the kinds below. The list defines the readers of scene files, the
+// FloatParameter, float, int, bool, MicrofacetDistribution, or one of the kinds below. The list defines the readers of scene files, the
 // Python attributes, the hash, and whether the material is textured.
 struct ParameterInfo {
     std::string_view prefix{}; // of the parameter's part of the material; may be empty
@@ -112,10 +112,10 @@ inline bool has_no_effect(const SpectrumParameter& factor) {
     return factor.is_constant() && factor.value.is_constant() && factor.value.constant == 1;
 }
 inline bool has_no_effect(bool flag) { return !flag; }
-inline bool has_no_effect(NormalDistribution d) { return d == NormalDistribution::ggx; }
+inline bool has_no_effect(MicrofacetDistribution d) { return d == MicrofacetDistribution::ggx; }
 
 // The simple fields of a parameter: visit(name, field) of SceneSpectrum, SpectrumParameter, FloatParameter,
-// float, int, bool, NormalDistribution, NormalMapParameter, MeasuredBrdfIndex, MediumIndex, MaterialIndex or
+// float, int, bool, MicrofacetDistribution, NormalMapParameter, MeasuredBrdfIndex, MediumIndex, MaterialIndex or
 // MaterialOfSide.
 template <typename Field, typename Visit>
 void visit_leaves(std::string_view name, Field& field, Visit&& visit) {

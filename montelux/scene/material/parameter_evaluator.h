@@ -47,7 +47,7 @@ class ParameterEvaluator {
     MicrofacetNormals disney_microfacets(float roughness, float anisotropic) const {
         const float alpha = roughness * roughness, aspect = std::sqrt(1 - 0.9f * anisotropic);
         return {microfacets(std::max(alpha / aspect, 1e-3f), std::max(alpha * aspect, 1e-3f)),
-                NormalDistribution::ggx_separable};
+                MicrofacetDistribution::ggx_separable};
     }
     // From white to the colour at luminance 1; white if the colour is black.
     SampledSpectrum tint(const SpectrumParameter& color, float strength) const {

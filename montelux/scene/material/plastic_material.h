@@ -15,7 +15,7 @@ struct PlasticMaterial {
     SpectrumParameter specular_reflectance{1};
     float eta = 1.5f;
     float alpha = 0;
-    NormalDistribution distribution = NormalDistribution::ggx;
+    MicrofacetDistribution distribution = MicrofacetDistribution::ggx;
     bool nonlinear = false;
     float internal_reflectance = 0;
     SurfaceDetail detail{};

@@ -38,7 +38,9 @@ const std::string leaf = R"("meshes": [{"primitives": [{"attributes": {"POSITION
 SceneDescription blurred(const std::string& members, Warnings* warnings = nullptr, double shutter = 0.5) {
     return load_model(parts().text(members), warnings, {.time = 0.5, .shutter = shutter});
 }
-void expect_near(Point3f a, Point3f b) { EXPECT_LT(length(a - b), 1e-5f) << a.x << ' ' << a.y << ' ' << a.z; }
+void expect_point(Point3f a, Point3f b) {
+    EXPECT_LT(length(a - b), 1e-5f) << a.x << ' ' << a.y << ' ' << a.z;
+}
 
 TEST(GltfMotion, NodesMove) {
     const SceneDescription d =
@@ -46,9 +48,9 @@ TEST(GltfMotion, NodesMove) {
                 animation(0, "translation", 2));
     ASSERT_EQ(d.scene.motions.size(), 1u);
     const Motion& motion = d.scene.motions[d.scene.instances.at(0).motion];
-    expect_near(motion.at(0).point(Point3f()), {2.5f, 0, 1});
-    expect_near(motion.at(0.5f).point(Point3f()), {3.75f, 0, 1});
-    expect_near(motion.at(1).point(Point3f()), {5, 0, 1});
+    expect_point(motion.at(0).point(Point3f()), {2.5f, 0, 1});
+    expect_point(motion.at(0.5f).point(Point3f()), {3.75f, 0, 1});
+    expect_point(motion.at(1).point(Point3f()), {5, 0, 1});
     EXPECT_EQ(d.scene.camera.shutter_open, 0);
     EXPECT_EQ(d.scene.camera.shutter_close, 1);
 }
@@ -99,8 +101,8 @@ TEST(GltfMotion, MorphedMeshesDeform) {
         animation(0, "weights", 5));
     const TriangleMesh& mesh = d.scene.meshes.at(0);
     ASSERT_TRUE(mesh.deforms());
-    expect_near(mesh.position(0, 0), {0, 0, 102});
-    expect_near(mesh.position(0, 1), {0, 0, 104});
+    expect_point(mesh.position(0, 0), {0, 0, 102});
+    expect_point(mesh.position(0, 1), {0, 0, 104});
     EXPECT_TRUE(d.scene.motions.empty());
 }
 
@@ -112,8 +114,8 @@ TEST(GltfMotion, SkinnedMeshesDeform) {
         animation(1, "rotation", 3));
     const TriangleMesh& mesh = d.scene.meshes.at(0);
     ASSERT_TRUE(mesh.deforms());
-    expect_near(mesh.positions[1], {std::sqrt(0.5f), std::sqrt(0.5f), 0});
-    expect_near(mesh.end_positions[1], {0, 1, 0});
+    expect_point(mesh.positions[1], {std::sqrt(0.5f), std::sqrt(0.5f), 0});
+    expect_point(mesh.end_positions[1], {0, 1, 0});
     EXPECT_EQ(mesh.end_normals.size(), 3u);
     EXPECT_TRUE(mesh.tangents.empty());
 }
@@ -124,8 +126,8 @@ TEST(GltfMotion, CamerasMove) {
            "nodes": [{"camera": 0}], )" +
                 animation(0, "translation", 2));
     ASSERT_TRUE(d.scene.camera.motion.has_value());
-    expect_near(d.scene.camera.motion->at(0).point(Point3f()), {2.5f, 0, 0});
-    expect_near(d.scene.camera.motion->at(1).point(Point3f(0, 0, 1)), {5, 0, -1});
+    expect_point(d.scene.camera.motion->at(0).point(Point3f()), {2.5f, 0, 0});
+    expect_point(d.scene.camera.motion->at(1).point(Point3f(0, 0, 1)), {5, 0, -1});
     EXPECT_EQ(d.scene.camera.world_from_camera, d.scene.camera.motion->start());
 }
 
@@ -162,7 +164,7 @@ TEST(GltfMotion, FlatAndMirroredEndsStandStill) {
     };
     SceneDescription d = load(4);
     EXPECT_FALSE(moves(d.scene));
-    expect_near(d.scene.meshes.at(0).positions.at(1), {0.75f, 0, 0});
+    expect_point(d.scene.meshes.at(0).positions.at(1), {0.75f, 0, 0});
     EXPECT_EQ(warnings.messages().at(0),
               "folder/model.gltf: /nodes/0: is flat at a moment while the shutter is open, or mirrored: it "
               "stands still meanwhile");

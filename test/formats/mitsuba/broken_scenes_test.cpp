@@ -12,12 +12,12 @@ struct BrokenScene {
     std::string text, message;
 };
 
-void expect_messages(const std::vector<BrokenScene>& cases) {
+void expect_sentences(const std::vector<BrokenScene>& cases) {
     for (const BrokenScene& c : cases) EXPECT_EQ(graph_error(c.text), c.message) << c.text.substr(0, 500);
 }
 
 TEST(MitsubaErrors, Xml) {
-    expect_messages({
+    expect_sentences({
         {"", "scene.xml:1:1: this is not XML: no element found"},
         {"<scene version=\"3.0.0\">", "scene.xml:1:24: this is not XML: no element found"},
         {"<scene version=\"3.0.0\">\n<shape></scene>", "scene.xml:2:8: <shape> needs the attribute 'type'"},
@@ -48,7 +48,7 @@ TEST(MitsubaErrors, NestingIsLimited) {
 }
 
 TEST(MitsubaErrors, Elements) {
-    expect_messages({
+    expect_sentences({
         {"<shape version=\"3.0.0\" type=\"sphere\"/>",
          "scene.xml:1:1: the outermost element is <shape>; expected <scene>"},
         {"<scene/>", "scene.xml:1:1: <scene> needs the attribute 'version' (such as 3.0.0)"},
@@ -74,7 +74,7 @@ TEST(MitsubaErrors, Elements) {
 
 TEST(MitsubaErrors, Values) {
     const auto at = [](const std::string& sentence) { return "scene.xml:1:24: " + sentence; };
-    expect_messages({
+    expect_sentences({
         {mitsuba_scene("<float value=\"1\"/>"), at("<float> needs the attribute 'name'")},
         {mitsuba_scene("<float name=\"a\"/>"), at("<float> needs the attribute 'value'")},
         {mitsuba_scene("<float name=\"a\" value=\"one\"/>"), at("'a' is 'one'; expected a number")},
@@ -115,7 +115,7 @@ TEST(MitsubaErrors, Transformations) {
         return mitsuba_scene("<transform name=\"t\">" + operation + "</transform>");
     };
     const auto at = [](const std::string& sentence) { return "scene.xml:1:44: " + sentence; };
-    expect_messages({
+    expect_sentences({
         {mitsuba_scene("<transform/>"), "scene.xml:1:24: <transform> needs the attribute 'name'"},
         {within("<rotate x=\"1\"/>"), at("<rotate> needs the attribute angle")},
         {within("<rotate angle=\"10\"/>"), at("the axis of a rotation is zero")},
@@ -136,7 +136,7 @@ TEST(MitsubaErrors, Transformations) {
 }
 
 TEST(MitsubaErrors, Parameters) {
-    expect_messages({
+    expect_sentences({
         {mitsuba_scene("<integer name=\"a\" value=\"$spp\"/>"),
          "scene.xml:1:24: the parameter '$spp' has no value; give one with -D spp=VALUE"},
         {mitsuba_scene("<default name=\"spp\" value=\"1\"/><integer name=\"a\" value=\"$sqp\"/>"),
@@ -153,7 +153,7 @@ TEST(MitsubaErrors, Parameters) {
 }
 
 TEST(MitsubaErrors, ReferencesAndIncludes) {
-    expect_messages({
+    expect_sentences({
         {mitsuba_scene("<bsdf type=\"diffuse\" id=\"red\"/><ref id=\"rad\"/>"),
          "scene.xml:1:54: there is no object 'rad' (did you mean 'red'?)"},
         {mitsuba_scene("<bsdf type=\"twosided\" id=\"a\"><ref id=\"a\"/></bsdf>"),

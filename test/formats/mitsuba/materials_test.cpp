@@ -36,11 +36,11 @@ std::string text(const std::string& name, const std::string& value) {
 std::string rgb(const std::string& name, const std::string& value) {
     return "<rgb name=\"" + name + "\" value=\"" + value + "\"/>";
 }
-std::string bitmap(const std::string& name, const std::string& more = "") {
+std::string four_colors(const std::string& name, const std::string& more = "") {
     return "<texture type=\"bitmap\" name=\"" + name + "\">" + text("filename", "four.pfm") + more +
            "</texture>";
 }
-std::string error(const std::string& content) {
+std::string material_error(const std::string& content) {
     return look_error(content, [](Looks& looks) { looks.look(); });
 }
 
@@ -76,9 +76,10 @@ TEST(MitsubaDiffuse, HasAColorOrTexture) {
     EXPECT_FLOAT_EQ(standard->reflectance.value.constant, 0.5f);
     One<DiffuseMaterial> red(bsdf("diffuse", rgb("reflectance", "0.8 0.1 0.1")));
     red.looks.expect_albedo(red->reflectance, {}, {0.8f, 0.1f, 0.1f});
-    One<DiffuseMaterial> textured(bsdf("diffuse", bitmap("reflectance")));
+    One<DiffuseMaterial> textured(bsdf("diffuse", four_colors("reflectance")));
     textured.looks.expect_albedo(textured->reflectance, {0.25f, 0.25f}, test::upper_left);
-    expect_says(error(bsdf("diffuse", rgb("reflectance", "1.2 0 0"))), "a reflectance lies between 0 and 1");
+    expect_says(material_error(bsdf("diffuse", rgb("reflectance", "1.2 0 0"))),
+                "a reflectance lies between 0 and 1");
     Looks odd(bsdf("diffuse", number("reflectence", "1")));
     odd.look();
     EXPECT_EQ(odd.warnings.messages().size(), 1u);
@@ -118,10 +119,10 @@ TEST(MitsubaConductor, KnowsMaterialsByName) {
     // Handbooks agree that it is a grey metal.
     for (const float lambda : {400.0f, 500.0f, 600.0f, 700.0f}) EXPECT_GT(constants("Cr", lambda).y, 2.5);
     EXPECT_EQ(constants("none", 500), Vec2d(0, 1));
-    const std::string message = error(bsdf("conductor", text("material", "Cuu")));
+    const std::string message = material_error(bsdf("conductor", text("material", "Cuu")));
     expect_says(message, "the conductor 'Cuu' is not known; did you mean 'Cu'?");
     expect_says(message, "W");
-    expect_says(error(bsdf("conductor", text("material", "Cu") + number("eta", "1"))),
+    expect_says(material_error(bsdf("conductor", text("material", "Cu") + number("eta", "1"))),
                 "'material' together with 'eta'");
 }
 
@@ -137,24 +138,24 @@ TEST(MitsubaConductor, HasIndexAndFactor) {
 
 TEST(MitsubaRoughConductor, HasDistributionsAndRoughness) {
     One<ConductorMaterial> standard(bsdf("roughconductor"));
-    EXPECT_EQ(standard->distribution, NormalDistribution::beckmann);
+    EXPECT_EQ(standard->distribution, MicrofacetDistribution::beckmann);
     EXPECT_FLOAT_EQ(standard->roughness.u.value, 0.1f);
     EXPECT_FLOAT_EQ(standard->roughness.v.value, 0.1f);
     EXPECT_FALSE(standard->roughness.remap);
     One<ConductorMaterial> m(bsdf("roughconductor", text("distribution", "GGX") + number("alpha_u", "0.3") +
-                                                        bitmap("alpha_v") +
+                                                        four_colors("alpha_v") +
                                                         "<boolean name=\"sample_visible\" value=\"true\"/>"));
-    EXPECT_EQ(m->distribution, NormalDistribution::ggx_separable);
+    EXPECT_EQ(m->distribution, MicrofacetDistribution::ggx_separable);
     EXPECT_FLOAT_EQ(m->roughness.u.value, 0.3f);
     EXPECT_FALSE(m->roughness.v.is_constant());
-    expect_says(error(bsdf("roughconductor", text("distribution", "phong"))),
+    expect_says(material_error(bsdf("roughconductor", text("distribution", "phong"))),
                 "'distribution' is 'phong'; expected one of beckmann, ggx");
-    expect_says(error(bsdf("roughconductor", number("alpha_u", "0.3"))),
+    expect_says(material_error(bsdf("roughconductor", number("alpha_u", "0.3"))),
                 "expected both 'alpha_u' and 'alpha_v'");
-    expect_says(error(bsdf("roughconductor",
-                           number("alpha_u", "0.3") + number("alpha_v", "0.3") + number("alpha", "0.3"))),
+    expect_says(material_error(bsdf("roughconductor", number("alpha_u", "0.3") + number("alpha_v", "0.3") +
+                                                          number("alpha", "0.3"))),
                 "'alpha' together with 'alpha_u'");
-    expect_says(error(bsdf("roughconductor", number("alpha", "-1"))), "'alpha' is -1");
+    expect_says(material_error(bsdf("roughconductor", number("alpha", "-1"))), "'alpha' is -1");
 }
 
 TEST(MitsubaDielectric, HasIndices) {
@@ -167,16 +168,16 @@ TEST(MitsubaDielectric, HasIndices) {
     EXPECT_FLOAT_EQ(m->eta.constant, 1.333f / 1.5f);
     EXPECT_FLOAT_EQ(m->specular_transmittance.value.constant, 0.5f);
     EXPECT_FLOAT_EQ(m->specular_reflectance.value.constant, 1);
-    expect_says(error(bsdf("dielectric", text("int_ior", "dimond"))),
+    expect_says(material_error(bsdf("dielectric", text("int_ior", "dimond"))),
                 "the index of refraction of 'dimond' is not known; did you mean 'diamond'?");
-    expect_says(error(bsdf("dielectric", number("int_ior", "-1"))), "'int_ior' is -1");
+    expect_says(material_error(bsdf("dielectric", number("int_ior", "-1"))), "'int_ior' is -1");
 }
 
 TEST(MitsubaDielectric, MayBeRoughOrThin) {
     One<DielectricMaterial> rough(bsdf("roughdielectric", number("alpha", "0.2")));
-    EXPECT_EQ(rough->distribution, NormalDistribution::beckmann);
+    EXPECT_EQ(rough->distribution, MicrofacetDistribution::beckmann);
     EXPECT_FLOAT_EQ(rough->roughness.v.value, 0.2f);
-    expect_says(error(bsdf("roughdielectric", number("int_ior", "1.3") + number("ext_ior", "1.3"))),
+    expect_says(material_error(bsdf("roughdielectric", number("int_ior", "1.3") + number("ext_ior", "1.3"))),
                 "'int_ior' equals 'ext_ior'");
     One<ThinDielectricMaterial> thin(bsdf("thindielectric", text("int_ior", "bk7") +
                                                                 text("ext_ior", "vacuum") +
@@ -198,8 +199,8 @@ TEST(MitsubaPlastic, HasABaseUnderAnInterface) {
     EXPECT_FLOAT_EQ(rough->eta, 1.49f / 1.000277f);
     EXPECT_FLOAT_EQ(rough->alpha, 0.3f);
     EXPECT_FALSE(rough->nonlinear);
-    EXPECT_EQ(rough->distribution, NormalDistribution::ggx_separable);
-    expect_says(error(bsdf("plastic", number("int_ior", "1") + number("ext_ior", "1.5"))),
+    EXPECT_EQ(rough->distribution, MicrofacetDistribution::ggx_separable);
+    expect_says(material_error(bsdf("plastic", number("int_ior", "1") + number("ext_ior", "1.5"))),
                 "'int_ior' is below 'ext_ior', which is not supported for plastic");
 }
 
@@ -234,7 +235,7 @@ TEST(MitsubaHair, HasPigmentsOrAbsorption) {
     One<HairMaterial> absorbing(bsdf("hair", number("sigma_a", "0.25") + number("scale", "8")));
     EXPECT_EQ(absorbing->color.source, HairColorParameter::absorption);
     EXPECT_FLOAT_EQ(absorbing.looks.value(absorbing->color.sigma_a)[0], 2);
-    expect_says(error(bsdf("hair", number("sigma_a", "1") + number("eumelanin", "1"))),
+    expect_says(material_error(bsdf("hair", number("sigma_a", "1") + number("eumelanin", "1"))),
                 "'sigma_a' together with pigments");
 }
 
@@ -267,11 +268,11 @@ TEST(MitsubaPrincipled, HasTwoSidesWhereItTransmits) {
     EXPECT_FALSE(m.one_sided);
     EXPECT_FLOAT_EQ(m->eta, 1.001f);
     EXPECT_FLOAT_EQ(m->specular_transmission.value, 0.4f);
-    EXPECT_FALSE(One<DisneyMaterial>(bsdf("principled", bitmap("spec_trans"))).one_sided);
+    EXPECT_FALSE(One<DisneyMaterial>(bsdf("principled", four_colors("spec_trans"))).one_sided);
     EXPECT_TRUE(One<DisneyMaterial>(bsdf("principled", number("spec_trans", "0"))).one_sided);
-    expect_says(error(bsdf("principled", number("eta", "1.5") + number("specular", "0.5"))),
+    expect_says(material_error(bsdf("principled", number("eta", "1.5") + number("specular", "0.5"))),
                 "'eta' together with 'specular'");
-    expect_says(error(bsdf("principled", number("metallic", "2"))), "'metallic' is 2;");
+    expect_says(material_error(bsdf("principled", number("metallic", "2"))), "'metallic' is 2;");
 }
 
 TEST(MitsubaPrincipledThin, SharesItsDiffuseLight) {
@@ -281,7 +282,7 @@ TEST(MitsubaPrincipledThin, SharesItsDiffuseLight) {
     EXPECT_FLOAT_EQ(m->diffuse_transmission.value, 0.7f);
     EXPECT_FLOAT_EQ(m->eta.value, 1.33f);
     EXPECT_FLOAT_EQ(m->specular_transmission.value, 0.8f);
-    One<DisneyThinMaterial> textured(bsdf("principledthin", bitmap("diff_trans")));
+    One<DisneyThinMaterial> textured(bsdf("principledthin", four_colors("diff_trans")));
     const double luminance = dot(RgbColorSpace::srgb().luminance_weights(), Vec3d(test::upper_left));
     EXPECT_NEAR(textured.looks.value(textured->diffuse_transmission, {0.25f, 0.25f}), 0.5 * luminance, 1e-6);
 }
@@ -293,10 +294,11 @@ TEST(MitsubaTwosided, HasAMaterialOnEachSide) {
         bsdf("twosided", bsdf("diffuse", number("reflectance", "0.1")) + bsdf("conductor")));
     EXPECT_FLOAT_EQ(two.looks.material<DiffuseMaterial>(two->front.index).reflectance.value.constant, 0.1f);
     EXPECT_EQ(two.looks.material<ConductorMaterial>(two->back.index).metal.k.value.constant, 1);
-    expect_says(error(bsdf("twosided", bsdf("dielectric"))), "the bsdf 'dielectric' has two sides already");
-    expect_says(error(bsdf("twosided", bsdf("null"))), "lets light through");
-    expect_says(error(bsdf("twosided", bsdf("mask", bsdf("diffuse")))), "lets light through");
-    expect_says(error(bsdf("twosided")), "has 0 BSDFs within it; expected one or two");
+    expect_says(material_error(bsdf("twosided", bsdf("dielectric"))),
+                "the bsdf 'dielectric' has two sides already");
+    expect_says(material_error(bsdf("twosided", bsdf("null"))), "lets light through");
+    expect_says(material_error(bsdf("twosided", bsdf("mask", bsdf("diffuse")))), "lets light through");
+    expect_says(material_error(bsdf("twosided")), "has 0 BSDFs within it; expected one or two");
     One<DielectricMaterial> allowed(
         bsdf("twosided", "<boolean name=\"allow_transmission\" value=\"true\"/>" + bsdf("dielectric")));
     EXPECT_FALSE(allowed.one_sided);
@@ -314,13 +316,13 @@ TEST(MitsubaMask, IsTheOpacityOfTheShape) {
     EXPECT_TRUE(m.one_sided);
     EXPECT_FLOAT_EQ(m.look.alpha.value, 0.5f);
     One<DiffuseMaterial> nested(
-        bsdf("mask",
-             number("opacity", "0.8") + bsdf("mask", bitmap("opacity") + bsdf("twosided", bsdf("diffuse")))));
+        bsdf("mask", number("opacity", "0.8") +
+                         bsdf("mask", four_colors("opacity") + bsdf("twosided", bsdf("diffuse")))));
     EXPECT_FALSE(nested.one_sided);
     const double luminance = dot(RgbColorSpace::srgb().luminance_weights(), Vec3d(test::upper_left));
     EXPECT_NEAR(nested.looks.value(nested.look.alpha, {0.25f, 0.25f}), 0.8 * luminance, 1e-6);
-    expect_says(error(bsdf("mask")), "the bsdf 'mask' needs a BSDF within it");
-    expect_says(error(bsdf("mask", number("opacity", "1.2") + bsdf("diffuse"))), "'opacity' is 1.2");
+    expect_says(material_error(bsdf("mask")), "the bsdf 'mask' needs a BSDF within it");
+    expect_says(material_error(bsdf("mask", number("opacity", "1.2") + bsdf("diffuse"))), "'opacity' is 1.2");
 }
 
 TEST(MitsubaBlend, IsAMix) {
@@ -330,19 +332,21 @@ TEST(MitsubaBlend, IsAMix) {
     m.looks.material<DiffuseMaterial>(m->materials.first.index);
     m.looks.material<ConductorMaterial>(m->materials.second.index);
     // The diffuse part alone is black from behind.
-    One<MixMaterial> mixed(bsdf("blendbsdf", bitmap("weight") + bsdf("diffuse") + bsdf("dielectric")));
+    One<MixMaterial> mixed(bsdf("blendbsdf", four_colors("weight") + bsdf("diffuse") + bsdf("dielectric")));
     EXPECT_FALSE(mixed.one_sided);
     EXPECT_FALSE(mixed->amount.is_constant());
     mixed.looks.material<SidedMaterial>(mixed->materials.first.index);
     mixed.looks.material<DielectricMaterial>(mixed->materials.second.index);
-    expect_says(error(bsdf("blendbsdf", number("weight", "1") + bsdf("diffuse"))), "has 1 BSDFs within it");
-    expect_says(error(bsdf("blendbsdf", bsdf("diffuse") + bsdf("diffuse"))), "needs the property 'weight'");
+    expect_says(material_error(bsdf("blendbsdf", number("weight", "1") + bsdf("diffuse"))),
+                "has 1 BSDFs within it");
+    expect_says(material_error(bsdf("blendbsdf", bsdf("diffuse") + bsdf("diffuse"))),
+                "needs the property 'weight'");
 }
 
 TEST(MitsubaBlend, WithNullIsAMask) {
     One<DiffuseMaterial> second(bsdf("blendbsdf", number("weight", "0.3") + bsdf("null") + bsdf("diffuse")));
     EXPECT_FLOAT_EQ(second.look.alpha.value, 0.3f);
-    One<DiffuseMaterial> first(bsdf("blendbsdf", bitmap("weight") + bsdf("diffuse") + bsdf("null")));
+    One<DiffuseMaterial> first(bsdf("blendbsdf", four_colors("weight") + bsdf("diffuse") + bsdf("null")));
     const double luminance = dot(RgbColorSpace::srgb().luminance_weights(), Vec3d(test::upper_left));
     EXPECT_NEAR(first.looks.value(first.look.alpha, {0.25f, 0.25f}), 1 - luminance, 1e-6);
     One<InterfaceMaterial>(bsdf("blendbsdf", number("weight", "0.3") + bsdf("null") + bsdf("null")));
@@ -355,29 +359,30 @@ TEST(MitsubaBlend, OfMasks) {
     One<MixMaterial> m(bsdf("blendbsdf", number("weight", "0.3") + first + second));
     EXPECT_FLOAT_EQ(m.look.alpha.value, 0.62f);
     EXPECT_FLOAT_EQ(m->amount.value, 0.27f / 0.62f);
-    expect_says(error(bsdf("blendbsdf", bitmap("weight") + first + second)),
+    expect_says(material_error(bsdf("blendbsdf", four_colors("weight") + first + second)),
                 "different masks is not supported");
 }
 
 TEST(MitsubaBumpmap, IsADisplacementOfEachPart) {
-    One<DiffuseMaterial> m(bsdf("bumpmap", number("scale", "0.1") + bitmap("any") + bsdf("diffuse")));
+    One<DiffuseMaterial> m(bsdf("bumpmap", number("scale", "0.1") + four_colors("any") + bsdf("diffuse")));
     EXPECT_TRUE(m.one_sided);
     const double luminance = dot(RgbColorSpace::srgb().luminance_weights(), Vec3d(test::upper_left));
     EXPECT_NEAR(m.looks.value(m->detail.displacement, {0.25f, 0.25f}), 0.1 * luminance, 1e-6);
     EXPECT_TRUE(m->detail.shadowed);
     One<MixMaterial> blend(
-        bsdf("bumpmap", bitmap("any") + bsdf("blendbsdf",
-                                             number("weight", "0.3") + bsdf("diffuse") + bsdf("conductor"))));
+        bsdf("bumpmap", four_colors("any") + bsdf("blendbsdf", number("weight", "0.3") + bsdf("diffuse") +
+                                                                   bsdf("conductor"))));
     EXPECT_FALSE(blend.looks.material<DiffuseMaterial>(blend->materials.first.index).detail.is_flat());
     EXPECT_FALSE(blend.looks.material<ConductorMaterial>(blend->materials.second.index).detail.is_flat());
-    expect_says(error(bsdf("bumpmap", bsdf("diffuse"))), "needs a texture within it");
-    expect_says(error(bsdf("bumpmap", bitmap("a") + bsdf("bumpmap", bitmap("b") + bsdf("diffuse")))),
+    expect_says(material_error(bsdf("bumpmap", bsdf("diffuse"))), "needs a texture within it");
+    expect_says(material_error(
+                    bsdf("bumpmap", four_colors("a") + bsdf("bumpmap", four_colors("b") + bsdf("diffuse")))),
                 "bump maps within one another are not supported");
 }
 
 // A BSDF that is used with bumps and without is two materials.
 TEST(MitsubaBumpmap, LeavesTheBsdfAsItIs) {
-    Looks looks("<bsdf type=\"diffuse\" id=\"plain\"/><bsdf type=\"bumpmap\">" + bitmap("any") +
+    Looks looks("<bsdf type=\"diffuse\" id=\"plain\"/><bsdf type=\"bumpmap\">" + four_colors("any") +
                 "<ref id=\"plain\"/></bsdf>");
     const mitsuba::SurfaceLook plain = looks.look();
     std::optional<mitsuba::Plugin> bumpy;
@@ -395,21 +400,23 @@ TEST(MitsubaBumpmap, LeavesTheBsdfAsItIs) {
 }
 
 TEST(MitsubaNormalmap, IsAMapOfEachPart) {
-    One<DiffuseMaterial> m(bsdf("normalmap", bitmap("normalmap", "<boolean name=\"raw\" value=\"true\"/>") +
-                                                 bsdf("twosided", bsdf("diffuse"))));
+    One<DiffuseMaterial> m(
+        bsdf("normalmap", four_colors("normalmap", "<boolean name=\"raw\" value=\"true\"/>") +
+                              bsdf("twosided", bsdf("diffuse"))));
     ASSERT_TRUE(m->detail.normal_map.is_given());
     EXPECT_TRUE(m.looks.scene.normal_maps.at(m->detail.normal_map.map).right_handed);
     One<DiffuseMaterial> unshadowed(
-        bsdf("normalmap", "<boolean name=\"use_shadowing_function\" value=\"false\"/>" + bitmap("normalmap") +
-                              bsdf("diffuse")));
+        bsdf("normalmap", "<boolean name=\"use_shadowing_function\" value=\"false\"/>" +
+                              four_colors("normalmap") + bsdf("diffuse")));
     EXPECT_FALSE(unshadowed->detail.shadowed);
-    expect_says(error(bsdf("normalmap", bsdf("diffuse"))), "needs a texture 'normalmap'");
+    expect_says(material_error(bsdf("normalmap", bsdf("diffuse"))), "needs a texture 'normalmap'");
+    expect_says(material_error(bsdf("normalmap",
+                                    "<texture type=\"checkerboard\" name=\"normalmap\"/>" + bsdf("diffuse"))),
+                "a normal map is a texture 'bitmap' or 'rawconstant'");
     expect_says(
-        error(bsdf("normalmap", "<texture type=\"checkerboard\" name=\"normalmap\"/>" + bsdf("diffuse"))),
-        "a normal map is a texture 'bitmap' or 'rawconstant'");
-    expect_says(error(bsdf("normalmap",
-                           bitmap("normalmap") + bsdf("normalmap", bitmap("normalmap") + bsdf("diffuse")))),
-                "normal maps within one another are not supported");
+        material_error(bsdf("normalmap", four_colors("normalmap") +
+                                             bsdf("normalmap", four_colors("normalmap") + bsdf("diffuse")))),
+        "normal maps within one another are not supported");
 }
 
 // A file may refer to the same object exponentially often.
@@ -427,8 +434,10 @@ TEST(MitsubaMaterials, AreMadeOnce) {
 }
 
 TEST(MitsubaMaterials, RefuseWhatIsNotRead) {
-    expect_says(error(bsdf("polarizer")), "the bsdf 'polarizer' is not supported: the polarization of light");
-    expect_says(error(bsdf("roughplastc")), "there is no bsdf 'roughplastc'; did you mean 'roughplastic'?");
+    expect_says(material_error(bsdf("polarizer")),
+                "the bsdf 'polarizer' is not supported: the polarization of light");
+    expect_says(material_error(bsdf("roughplastc")),
+                "there is no bsdf 'roughplastc'; did you mean 'roughplastic'?");
 }
 
 } // namespace

@@ -12,18 +12,19 @@ using test::expect_says;
 using test::look_error;
 using test::Looks;
 
-using Bytes = std::vector<std::uint8_t>;
+using VolumeBytes = std::vector<std::uint8_t>;
 
 template <typename T>
-void append(Bytes& bytes, T value) {
+void append(VolumeBytes& bytes, T value) {
     std::uint8_t raw[sizeof(T)];
     std::memcpy(raw, &value, sizeof(T));
     bytes.insert(bytes.end(), raw, raw + sizeof(T));
 }
 
 // A volume file with the box from (0, 0, 0) to (2, 4, 8).
-Bytes volume_file(std::array<std::int32_t, 3> size, std::int32_t channels, const std::vector<float>& values) {
-    Bytes bytes{'V', 'O', 'L', 3};
+VolumeBytes volume_file(std::array<std::int32_t, 3> size, std::int32_t channels,
+                        const std::vector<float>& values) {
+    VolumeBytes bytes{'V', 'O', 'L', 3};
     append(bytes, std::int32_t{1});
     for (const std::int32_t n : size) append(bytes, n);
     append(bytes, channels);
@@ -32,7 +33,7 @@ Bytes volume_file(std::array<std::int32_t, 3> size, std::int32_t channels, const
     return bytes;
 }
 
-std::string volume_error(const Bytes& bytes) {
+std::string volume_error(const VolumeBytes& bytes) {
     try {
         mitsuba::read_grid_volume(bytes, "a.vol");
     } catch (const Error& e) {
@@ -42,7 +43,7 @@ std::string volume_error(const Bytes& bytes) {
 }
 
 TEST(MitsubaVolumeFile, IsRead) {
-    const Bytes bytes = volume_file({2, 1, 3}, 1, {1, 2, 3, 4, 5, 6});
+    const VolumeBytes bytes = volume_file({2, 1, 3}, 1, {1, 2, 3, 4, 5, 6});
     const mitsuba::GridVolume v = mitsuba::read_grid_volume(bytes, "a.vol");
     EXPECT_EQ(v.size, (std::array{2, 1, 3}));
     EXPECT_EQ(v.channels, 1);
@@ -52,7 +53,7 @@ TEST(MitsubaVolumeFile, IsRead) {
 
 TEST(MitsubaVolumeFile, SaysWhatIsWrong) {
     EXPECT_EQ(volume_error({}), "a.vol: is no volume file (.vol)");
-    Bytes bytes = volume_file({1, 1, 1}, 1, {1});
+    VolumeBytes bytes = volume_file({1, 1, 1}, 1, {1});
     EXPECT_EQ(volume_error(bytes), "");
     bytes[3] = 2;
     EXPECT_EQ(volume_error(bytes), "a.vol: has version 2 of the format; expected 3");
@@ -71,10 +72,10 @@ TEST(MitsubaVolumeFile, SaysWhatIsWrong) {
 
 // Each byte in turn, and each length: values or an Error.
 TEST(MitsubaVolumeFile, DamagedOnesAreReadOrRefused) {
-    const Bytes bytes = volume_file({2, 1, 1}, 3, {1, 2, 3, 4, 5, 6});
+    const VolumeBytes bytes = volume_file({2, 1, 1}, 3, {1, 2, 3, 4, 5, 6});
     for (std::size_t i = 0; i < bytes.size(); ++i)
         for (const std::uint8_t value : {0, 1, 127, 128, 255}) {
-            Bytes damaged = bytes;
+            VolumeBytes damaged = bytes;
             damaged[i] = value;
             try {
                 EXPECT_LE(mitsuba::read_grid_volume(damaged, "a.vol").values.size(), 6u);
@@ -83,18 +84,18 @@ TEST(MitsubaVolumeFile, DamagedOnesAreReadOrRefused) {
             }
         }
     for (std::size_t n = 0; n < bytes.size(); ++n)
-        EXPECT_NE(volume_error(Bytes(bytes.begin(), bytes.begin() + std::ptrdiff_t(n))), "") << n;
+        EXPECT_NE(volume_error(VolumeBytes(bytes.begin(), bytes.begin() + std::ptrdiff_t(n))), "") << n;
 }
 
 std::string medium(const std::string& properties, const std::string& type = "homogeneous") {
     return "<medium type=\"" + type + "\">" + properties + "</medium>";
 }
-const std::map<std::string, Bytes> volumes{
+const std::map<std::string, VolumeBytes> volumes{
     {"grey.vol", volume_file({1, 1, 2}, 1, {1, 3})},
     {"color.vol", volume_file({1, 1, 2}, 3, {0.9f, 0.5f, 0.1f, 0.2f, 0.3f, 0.4f})},
     {"flakes.vol", volume_file({1, 1, 1}, 6, {1, 1, 1, 0, 0, 0})},
     {"negative.vol", volume_file({1, 1, 1}, 1, {-1})}};
-std::string error(const std::string& content) {
+std::string medium_error(const std::string& content) {
     return look_error(
         content, [](Looks& looks) { looks.media.of(looks.plugin("medium")); }, volumes);
 }
@@ -181,11 +182,11 @@ TEST(MitsubaHeterogeneousMedium, ConstantColorsAreThoseOfReflectancesWhereTheyCa
                "</volume>",
                "heterogeneous"));
     looks.expect_albedo({read<FieldMedium>(looks).extinction.value}, {}, {0.5f, 0.4f, 0.3f});
-    EXPECT_EQ(
-        error(medium("<volume type=\"constvolume\" name=\"sigma_t\"><rgb name=\"value\" value=\"5 4 3\"/>"
-                     "</volume>",
-                     "heterogeneous")),
-        "");
+    EXPECT_EQ(medium_error(
+                  medium("<volume type=\"constvolume\" name=\"sigma_t\"><rgb name=\"value\" value=\"5 4 3\"/>"
+                         "</volume>",
+                         "heterogeneous")),
+              "");
 }
 
 // The unit cube bounds it as well where it is the same everywhere.
@@ -208,9 +209,10 @@ TEST(MitsubaMedia, PhaseFunctions) {
     EXPECT_FLOAT_EQ(std::get<HenyeyGreenstein>(phase("hg")).g, 0.8f);
     EXPECT_EQ(std::get<Draine>(phase("rayleigh")).alpha, 1);
     EXPECT_EQ(std::get<Draine>(phase("rayleigh")).g, 0);
-    expect_says(error(medium("<phase type=\"sggx\"/>")), "the phase 'sggx' is not supported");
-    expect_says(error(medium("<phase type=\"hg\"><float name=\"g\" value=\"1\"/></phase>")), "'g' is 1;");
-    expect_says(error(medium("<phase type=\"hg\"/><phase type=\"hg\"/>")),
+    expect_says(medium_error(medium("<phase type=\"sggx\"/>")), "the phase 'sggx' is not supported");
+    expect_says(medium_error(medium("<phase type=\"hg\"><float name=\"g\" value=\"1\"/></phase>")),
+                "'g' is 1;");
+    expect_says(medium_error(medium("<phase type=\"hg\"/><phase type=\"hg\"/>")),
                 "several objects of the kind 'phase'");
 }
 
@@ -220,17 +222,17 @@ TEST(MitsubaMedia, SayWhatIsWrong) {
                           file + "\"/></volume>",
                       type);
     };
-    expect_says(error(medium("<float name=\"sigma_s\" value=\"1\"/>")),
+    expect_says(medium_error(medium("<float name=\"sigma_s\" value=\"1\"/>")),
                 "'sigma_s' is not supported; expected 'sigma_t' and 'albedo'");
-    expect_says(error(medium("<float name=\"albedo\" value=\"1.1\"/>")),
+    expect_says(medium_error(medium("<float name=\"albedo\" value=\"1.1\"/>")),
                 "'albedo' is 1.1; expected a number from 0 to 1");
-    expect_says(error(medium("<float name=\"sigma_t\" value=\"-1\"/>")), "'sigma_t' lies below 0");
-    expect_says(error(medium("", "heterogenous")), "did you mean 'heterogeneous'?");
-    expect_says(error(grid("none.vol")), "there is no file 'none.vol'");
-    expect_says(error(grid("flakes.vol")), "flakes.vol: has 6 channels; expected 1 or 3");
-    expect_says(error(grid("negative.vol")), "negative.vol: has a negative sample");
-    expect_says(error(grid("grey.vol", "homogeneous")), "expected a medium 'heterogeneous'");
-    expect_says(error(medium("<volume type=\"gridvolume\" name=\"sigma_t\"/>", "heterogeneous")),
+    expect_says(medium_error(medium("<float name=\"sigma_t\" value=\"-1\"/>")), "'sigma_t' lies below 0");
+    expect_says(medium_error(medium("", "heterogenous")), "did you mean 'heterogeneous'?");
+    expect_says(medium_error(grid("none.vol")), "there is no file 'none.vol'");
+    expect_says(medium_error(grid("flakes.vol")), "flakes.vol: has 6 channels; expected 1 or 3");
+    expect_says(medium_error(grid("negative.vol")), "negative.vol: has a negative sample");
+    expect_says(medium_error(grid("grey.vol", "homogeneous")), "expected a medium 'heterogeneous'");
+    expect_says(medium_error(medium("<volume type=\"gridvolume\" name=\"sigma_t\"/>", "heterogeneous")),
                 "needs the property 'filename'");
 }
 

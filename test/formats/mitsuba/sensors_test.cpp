@@ -28,7 +28,7 @@ Vec3f ray_of(const SceneDescription& d, Point2f film, bool place = false) {
     return place ? ray.o : ray.d;
 }
 
-void expect_near(Vec3f a, Vec3f b, float tolerance = 1e-5f) {
+void expect_close(Vec3f a, Vec3f b, float tolerance = 1e-5f) {
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << "component " << i;
 }
 
@@ -36,19 +36,19 @@ void expect_near(Vec3f a, Vec3f b, float tolerance = 1e-5f) {
 TEST(MitsubaSensors, XPointsToTheLeft) {
     const WholeScene s = load_scene_text(sensor("perspective", R"(<float name="fov" value="90"/>)"));
     EXPECT_TRUE(s.description.has_camera);
-    expect_near(ray_of(s.description, {150, 100}), {0, 0, 1});
+    expect_close(ray_of(s.description, {150, 100}), {0, 0, 1});
     // The left edge, 45 degrees off.
-    expect_near(ray_of(s.description, {0, 100}), normalize(Vec3f(1, 0, 1)));
-    expect_near(ray_of(s.description, {150, 0}), normalize(Vec3f(0, 2.0f / 3, 1)));
+    expect_close(ray_of(s.description, {0, 100}), normalize(Vec3f(1, 0, 1)));
+    expect_close(ray_of(s.description, {150, 0}), normalize(Vec3f(0, 2.0f / 3, 1)));
     EXPECT_TRUE(s.warnings.empty() || s.warnings.size() == 1); // no shapes
 }
 
 TEST(MitsubaSensors, LookAt) {
     const WholeScene s = load_scene_text(sensor("perspective", R"(<float name="fov" value="90"/>
         <transform name="to_world"><lookat origin="1, 2, 3" target="1, 2, 0" up="0, 1, 0"/></transform>)"));
-    expect_near(ray_of(s.description, {150, 100}, true), {1, 2, 3});
-    expect_near(ray_of(s.description, {150, 100}), {0, 0, -1});
-    expect_near(ray_of(s.description, {0, 100}), normalize(Vec3f(-1, 0, -1)));
+    expect_close(ray_of(s.description, {150, 100}, true), {1, 2, 3});
+    expect_close(ray_of(s.description, {150, 100}), {0, 0, -1});
+    expect_close(ray_of(s.description, {0, 100}), normalize(Vec3f(-1, 0, -1)));
 }
 
 // The tangent of half the angle across the width, by the axis of 'fov': the film is 3 wide and 2 high.
@@ -80,7 +80,7 @@ TEST(MitsubaSensors, PrincipalPoint) {
         <float name="principal_point_offset_y" value="-0.2"/>)"));
     // A pixel shows what would be 0.1 of the width further to the right, and 0.2 of the height further up.
     const float x = -0.1f * 2, y = 0.2f * 2 * 2 / 3;
-    expect_near(ray_of(s.description, {150, 100}), normalize(Vec3f(x, y, 1)));
+    expect_close(ray_of(s.description, {150, 100}), normalize(Vec3f(x, y, 1)));
 }
 
 TEST(MitsubaSensors, ThinLens) {
@@ -96,9 +96,9 @@ TEST(MitsubaSensors, ThinLens) {
 TEST(MitsubaSensors, Orthographic) {
     const WholeScene s = load_scene_text(sensor("orthographic", R"(<transform name="to_world">
         <scale x="10" y="10"/><translate z="-4"/></transform>)"));
-    expect_near(ray_of(s.description, {0, 0}, true), {10, 10 * 2.0f / 3, -4});
-    expect_near(ray_of(s.description, {300, 200}, true), {-10, -10 * 2.0f / 3, -4});
-    expect_near(ray_of(s.description, {300, 200}), {0, 0, 1});
+    expect_close(ray_of(s.description, {0, 0}, true), {10, 10 * 2.0f / 3, -4});
+    expect_close(ray_of(s.description, {300, 200}, true), {-10, -10 * 2.0f / 3, -4});
+    expect_close(ray_of(s.description, {300, 200}), {0, 0, 1});
 }
 
 TEST(MitsubaSensors, AreChosenByIdOrNumber) {

@@ -12,7 +12,7 @@ using test::Looks;
 
 // <bsdf> with a texture as its reflectance.
 std::string surface(const std::string& texture) { return "<bsdf type=\"diffuse\">" + texture + "</bsdf>"; }
-std::string bitmap(const std::string& properties, const std::string& file = "four.pfm") {
+std::string bitmap_surface(const std::string& properties, const std::string& file = "four.pfm") {
     return surface("<texture type=\"bitmap\" name=\"reflectance\"><string name=\"filename\" value=\"" + file +
                    "\"/>" + properties + "</texture>");
 }
@@ -25,13 +25,13 @@ FloatParameter number(Looks& looks) {
     mitsuba::Plugin bsdf = looks.plugin("bsdf");
     return looks.textures.number(bsdf, "reflectance", 0.5f, mitsuba::unit_range);
 }
-std::string error(const std::string& content) {
+std::string texture_error(const std::string& content) {
     return look_error(content, [](Looks& looks) { reflectance(looks); });
 }
 
 // The picture's top row is at v = 0.
 TEST(MitsubaBitmap, HasItsTopRowAtZero) {
-    Looks looks(bitmap("<string name=\"filter_type\" value=\"nearest\"/>"));
+    Looks looks(bitmap_surface("<string name=\"filter_type\" value=\"nearest\"/>"));
     const SpectrumParameter p = reflectance(looks);
     looks.expect_albedo(p, {0.25f, 0.25f}, test::upper_left);
     looks.expect_albedo(p, {0.75f, 0.25f}, test::upper_right);
@@ -41,14 +41,14 @@ TEST(MitsubaBitmap, HasItsTopRowAtZero) {
 }
 
 TEST(MitsubaBitmap, IsInterpolatedByDefault) {
-    Looks looks(bitmap(""));
+    Looks looks(bitmap_surface(""));
     looks.expect_albedo(reflectance(looks), {0.5f, 0.25f}, 0.5f * (test::upper_left + test::upper_right));
 }
 
 TEST(MitsubaBitmap, WrapsAsItSays) {
     const std::string nearest = "<string name=\"filter_type\" value=\"nearest\"/>";
     const auto at = [&](const std::string& mode, Vec3f expected) {
-        Looks looks(bitmap(nearest + "<string name=\"wrap_mode\" value=\"" + mode + "\"/>"));
+        Looks looks(bitmap_surface(nearest + "<string name=\"wrap_mode\" value=\"" + mode + "\"/>"));
         looks.expect_albedo(reflectance(looks), {1.25f, 0.25f}, expected);
     };
     at("repeat", test::upper_left);
@@ -58,7 +58,8 @@ TEST(MitsubaBitmap, WrapsAsItSays) {
 
 TEST(MitsubaBitmap, CoordinatesAreTransformed) {
     const auto at = [&](const std::string& transform, Point2f uv, Vec3f expected) {
-        Looks looks(bitmap("<string name=\"filter_type\" value=\"nearest\"/><transform name=\"to_uv\">" +
+        Looks looks(
+            bitmap_surface("<string name=\"filter_type\" value=\"nearest\"/><transform name=\"to_uv\">" +
                            transform + "</transform>"));
         looks.expect_albedo(reflectance(looks), uv, expected);
     };
@@ -94,7 +95,7 @@ std::vector<std::uint8_t> grey_bytes(std::uint8_t value) {
 
 TEST(MitsubaBitmap, RawOnesAreLinear) {
     const auto grey = [](const std::string& properties) {
-        Looks looks(bitmap(properties, "grey.pgm"), {{"grey.pgm", grey_bytes(128)}});
+        Looks looks(bitmap_surface(properties, "grey.pgm"), {{"grey.pgm", grey_bytes(128)}});
         return looks.value(number(looks), {0.5f, 0.5f});
     };
     EXPECT_NEAR(grey(""), srgb_to_linear(128.0f / 255), 1e-6);
@@ -102,25 +103,27 @@ TEST(MitsubaBitmap, RawOnesAreLinear) {
 }
 
 TEST(MitsubaBitmap, AsNumbersAreLuminances) {
-    Looks looks(bitmap("<string name=\"filter_type\" value=\"nearest\"/>"));
+    Looks looks(bitmap_surface("<string name=\"filter_type\" value=\"nearest\"/>"));
     const Vec3d weights = RgbColorSpace::srgb().luminance_weights();
     EXPECT_NEAR(looks.value(number(looks), {0.25f, 0.25f}), dot(weights, Vec3d(test::upper_left)), 1e-6);
 }
 
 TEST(MitsubaBitmap, SaysWhatIsWrong) {
-    expect_says(error(surface("<texture type=\"bitmap\" name=\"reflectance\"/>")),
+    expect_says(texture_error(surface("<texture type=\"bitmap\" name=\"reflectance\"/>")),
                 "the texture 'bitmap' needs the property 'filename'");
-    expect_says(error(bitmap("", "none.png")), "there is no file 'none.png'");
-    expect_says(error(bitmap("<string name=\"wrap_mode\" value=\"black\"/>")),
+    expect_says(texture_error(bitmap_surface("", "none.png")), "there is no file 'none.png'");
+    expect_says(texture_error(bitmap_surface("<string name=\"wrap_mode\" value=\"black\"/>")),
                 "'wrap_mode' is 'black'; expected one of repeat, mirror, clamp");
-    expect_says(error(bitmap("<string name=\"format\" value=\"int\"/>")), "'format' is 'int'");
-    expect_says(error(bitmap("<transform name=\"to_uv\"><scale x=\"0\"/></transform>")),
+    expect_says(texture_error(bitmap_surface("<string name=\"format\" value=\"int\"/>")),
+                "'format' is 'int'");
+    expect_says(texture_error(bitmap_surface("<transform name=\"to_uv\"><scale x=\"0\"/></transform>")),
                 "'to_uv' has no inverse");
-    const std::string broken = look_error(bitmap("", "x.png"), [](Looks& looks) { reflectance(looks); },
-                                          {{"x.png", {0x89, 'P', 'N', 'G', 13, 10, 26, 10, 0}}});
+    const std::string broken =
+        look_error(bitmap_surface("", "x.png"), [](Looks& looks) { reflectance(looks); },
+                   {{"x.png", {0x89, 'P', 'N', 'G', 13, 10, 26, 10, 0}}});
     expect_says(broken, "scene.xml:1:");
     expect_says(broken, "x.png");
-    Looks looks(bitmap("<float name=\"filtertype\" value=\"1\"/>"));
+    Looks looks(bitmap_surface("<float name=\"filtertype\" value=\"1\"/>"));
     reflectance(looks);
     ASSERT_EQ(looks.warnings.messages().size(), 1u);
     expect_says(looks.warnings.messages()[0], "did you mean 'filter_type'");
@@ -163,7 +166,7 @@ TEST(MitsubaTextures, RefuseToBeEvaluatedTooOften) {
         content += "<texture type=\"checkerboard\" id=\"t" + std::to_string(i) + "\"><ref name=\"color0\" " +
                    ref + "<ref name=\"color1\" " + ref + "</texture>";
     }
-    expect_says(error(content + surface("<ref name=\"reflectance\" id=\"t14\"/>")),
+    expect_says(texture_error(content + surface("<ref name=\"reflectance\" id=\"t14\"/>")),
                 "would evaluate more than 4096 textures");
 }
 
@@ -187,7 +190,7 @@ TEST(MitsubaTextures, ConstantsAreNumbersColorsAndSpectra) {
     expect_says(look_error(surface("<string name=\"reflectance\" value=\"red\"/>"),
                            [](Looks& looks) { number(looks); }),
                 "'reflectance' is a text");
-    expect_says(error(surface("<bsdf type=\"diffuse\" name=\"reflectance\"/>")),
+    expect_says(texture_error(surface("<bsdf type=\"diffuse\" name=\"reflectance\"/>")),
                 "'reflectance' is an object; expected a colour, a number or a spectrum");
 }
 
@@ -201,15 +204,15 @@ TEST(MitsubaMeshAttribute, IsTheVertexColor) {
     const SpectrumParameter p = reflectance(looks);
     EXPECT_EQ(std::get<VertexColorTexture>(looks.scene.spectrum_textures.at(p.texture)).factor,
               (Vec3f{0.5f, 0.5f, 0.5f}));
-    expect_says(error(attribute("face_color")), "the attribute 'face_color' is not supported");
+    expect_says(texture_error(attribute("face_color")), "the attribute 'face_color' is not supported");
     expect_says(look_error(attribute("vertex_color"), [](Looks& l) { number(l); }),
                 "only the reflectance by 'vertex_color' is");
 }
 
 TEST(MitsubaTextures, RefuseWhatIsNotRead) {
-    expect_says(error(surface("<texture type=\"volume\" name=\"reflectance\"/>")),
+    expect_says(texture_error(surface("<texture type=\"volume\" name=\"reflectance\"/>")),
                 "the texture 'volume' is not supported");
-    expect_says(error(surface("<texture type=\"bitmp\" name=\"reflectance\"/>")),
+    expect_says(texture_error(surface("<texture type=\"bitmp\" name=\"reflectance\"/>")),
                 "there is no texture 'bitmp'; did you mean 'bitmap'?");
 }
 

@@ -180,7 +180,7 @@ TEST(PbrtMaterials, Plastic) {
     EXPECT_EQ(m.of(m.specular_reflectance.value)(500), 1);
     EXPECT_EQ(m.eta, 1.5f);
     EXPECT_EQ(m.alpha, 0);
-    EXPECT_EQ(m.distribution, NormalDistribution::ggx);
+    EXPECT_EQ(m.distribution, MicrofacetDistribution::ggx);
     EXPECT_FALSE(m.nonlinear);
     EXPECT_EQ(m.internal_reflectance, 0);
     m = material<PlasticMaterial>(
@@ -194,7 +194,7 @@ TEST(PbrtMaterials, Plastic) {
                        Spectrum(RgbAlbedoSpectrum(srgb, {0.3f, 0.2f, 0.1f})));
     EXPECT_EQ(m.eta, 1.4f);
     EXPECT_EQ(m.alpha, 0.2f);
-    EXPECT_EQ(m.distribution, NormalDistribution::beckmann);
+    EXPECT_EQ(m.distribution, MicrofacetDistribution::beckmann);
     EXPECT_TRUE(m.nonlinear);
     EXPECT_EQ(m.internal_reflectance, 0.6f);
     EXPECT_EQ(test::world_error("Material \"plastic\" \"float eta\" 0.9"),
@@ -243,14 +243,14 @@ TEST(PbrtMaterials, DistributionsAndFactors) {
     const auto metal = material<ConductorMaterial>(
         "Material \"conductor\" \"string distribution\" \"ggx-separable\" \"spectrum specularreflectance\" "
         "[ 300 0.5 800 0.5 ]");
-    EXPECT_EQ(metal.distribution, NormalDistribution::ggx_separable);
+    EXPECT_EQ(metal.distribution, MicrofacetDistribution::ggx_separable);
     EXPECT_EQ(metal.of(metal.specular_reflectance.value)(500), 0.5f);
     const std::string both = "\"spectrum specularreflectance\" [ 300 0.5 800 0.5 ] \"spectrum "
                              "speculartransmittance\" [ 300 0.3 800 0.3 ]";
     const auto glass = material<DielectricMaterial>("Material \"dielectric\" \"string distribution\" "
                                                     "\"beckmann\" " +
                                                     both);
-    EXPECT_EQ(glass.distribution, NormalDistribution::beckmann);
+    EXPECT_EQ(glass.distribution, MicrofacetDistribution::beckmann);
     EXPECT_EQ(glass.of(glass.specular_reflectance.value)(500), 0.5f);
     EXPECT_EQ(glass.of(glass.specular_transmittance.value)(500), 0.3f);
     const auto pane = material<ThinDielectricMaterial>("Material \"thindielectric\" " + both);
