@@ -88,6 +88,7 @@ Emission LightReader::emission(Plugin emitter) {
             emitter.refuse();
         emitter.error("a shape has " + emitter.describe() + "; surfaces shine by the emitter 'area'");
     }
+    on_shapes_.insert(emitter.index());
     Emission emission;
     if (const std::optional<Picture> found = picture(emitter, "radiance")) {
         const auto [known, is_new] = pictures_.try_emplace(found->texture.index(), no_index);
@@ -128,8 +129,6 @@ void LightReader::add(Plugin emitter) {
         add_projector(emitter);
     } else if (type == "sunsky") {
         add_sky(emitter);
-    } else if (type == "area") {
-        emitter.error("the emitter 'area' belongs to a shape");
     } else {
         emitter.refuse();
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 
 #include "montelux/formats/mitsuba/plugin.h"
 #include "montelux/formats/mitsuba/spectra.h"
@@ -19,6 +20,8 @@ class LightReader {
     void add(Plugin emitter);
     // The emitter 'area' of a shape.
     Emission emission(Plugin emitter);
+    // Whether `emission` was called for it.
+    bool is_on_shape(const Plugin& emitter) const { return on_shapes_.contains(emitter.index()); }
 
   private:
     struct Source {
@@ -44,6 +47,7 @@ class LightReader {
 
     SceneBuilder& builder_;
     std::map<std::size_t, Index> pictures_; // on surfaces, by Plugin::index
+    std::set<std::size_t> on_shapes_;       // emitters, by Plugin::index
 };
 
 } // namespace montelux::mitsuba

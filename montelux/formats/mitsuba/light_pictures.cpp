@@ -69,7 +69,7 @@ Image picture_of_texture(Plugin texture) {
 Image environment_rows(const Image& map) {
     // The rows of ours are bands, whose centres lie up to half a row off Mitsuba's. Of maps with few rows each row
     // becomes several, so that this is small.
-    constexpr int enough_rows = 256;
+    constexpr int enough_rows = 1024;
     if (map.height() >= enough_rows || map.height() < 2 || map.width() > 4 * enough_rows) return map;
     const int rows = (map.height() - 1) * ((enough_rows + map.height() - 2) / (map.height() - 1));
     Image finer(map.width(), rows, {"R", "G", "B"});

@@ -19,9 +19,14 @@ SceneReader::SceneReader(const SceneGraph& graph, SceneDescription& description,
 void SceneReader::read() {
     Plugin scene(graph_, 0);
     read_settings(scene);
-    for (const Plugin& emitter : scene.children("emitter")) lights_.add(emitter);
+    const std::vector<Plugin> emitters = scene.children("emitter");
+    for (const Plugin& emitter : emitters)
+        if (emitter.type() != "area") lights_.add(emitter);
     for (const Plugin& shape : scene.children("shape"))
         if (shape.type() != "shapegroup") add_shape(shape); // instances place groups
+    for (const Plugin& emitter : emitters)
+        if (emitter.type() == "area" && !lights_.is_on_shape(emitter))
+            emitter.warn("no shape refers to the emitter 'area'");
     // Definitions, for references.
     for (const char* kind : {"bsdf", "texture", "medium", "phase", "volume", "film", "sampler", "rfilter"})
         static_cast<void>(scene.children(kind));

@@ -7,7 +7,7 @@
 #include "montelux/mc/math/constants.h"
 #include "montelux/scene/camera/camera.h"
 
-namespace montelux {
+namespace montelux::mitsuba_sensors {
 namespace {
 
 using test::load_scene_text;
@@ -231,4 +231,4 @@ TEST(MitsubaSettings, WhatIsMissingIsLeftToTheStudio) {
 }
 
 } // namespace
-} // namespace montelux
+} // namespace montelux::mitsuba_sensors

@@ -6,7 +6,7 @@
 #include "montelux/mc/math/constants.h"
 #include "montelux/scene/shape/quadric.h"
 
-namespace montelux {
+namespace montelux::mitsuba_shapes {
 namespace {
 
 using test::bytes_of;
@@ -174,7 +174,7 @@ TEST(MitsubaShapes, ObjFiles) {
     EXPECT_EQ(load(R"(<boolean name="flip_tex_coords" value="false"/>)").scene().meshes.at(0).uvs.at(0).y,
               0.125f);
     EXPECT_NEAR(load(flipped).scene().meshes.at(0).normals.at(2).z, -1, 1e-6);
-    const TriangleMesh& moved =
+    const TriangleMesh moved =
         load(R"(<transform name="to_world"><translate x="5"/></transform>)").scene().meshes.at(0);
     EXPECT_EQ(moved.positions.at(0), Point3f(5, 0, 0));
     EXPECT_NE(scene_text_error(shape("obj", R"(<string name="filename" value="b.obj"/>)")).find("b.obj"),
@@ -285,4 +285,4 @@ TEST(MitsubaShapes, TheSameShapeTwiceIsShownOnce) {
 }
 
 } // namespace
-} // namespace montelux
+} // namespace montelux::mitsuba_shapes
