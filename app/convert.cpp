@@ -17,6 +17,7 @@
 #include "montelux/film/film_layers.h"
 #include "montelux/formats/load_scene.h"
 #include "montelux/formats/pbrt/write_pbrt.h"
+#include "montelux/formats/studio.h"
 #include "montelux/image/image_read.h"
 
 namespace montelux::app {
@@ -78,8 +79,10 @@ void convert_scene(const ConvertSettings& s) {
     check(s.tone, {s.output});
     Warnings warnings;
     std::vector<std::filesystem::path> read;
-    const SceneDescription description =
+    SceneDescription description =
         load_scene(s.input, warnings, {.files_read = &read, .definitions = s.definitions});
+    DiskFiles disk;
+    const StudioParts added = add_studio(description, {}, disk, warnings);
     const std::filesystem::path output = s.output;
     const std::filesystem::path folder = output.parent_path() / (output.stem().string() + "-files");
     std::error_code ignored;
@@ -90,6 +93,12 @@ void convert_scene(const ConvertSettings& s) {
                                            "; what is written needs another name");
     const std::vector<std::filesystem::path> written = write_pbrt(description, output, warnings);
     if (s.quiet) return;
+    if (added.camera || added.lights)
+        std::fprintf(stderr, "montelux: %s has no %s: the studio is written with it\n",
+                     std::filesystem::path(s.input).filename().c_str(),
+                     added.camera && added.lights ? "camera and no lights"
+                     : added.camera               ? "camera"
+                                                  : "lights");
     for (const std::string& w : warnings.messages())
         std::fprintf(stderr, "montelux: warning: %s\n", w.c_str());
     if (warnings.left_out() > 0)

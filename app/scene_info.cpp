@@ -170,7 +170,7 @@ std::string point_of(const Json& v) {
 void print_line(const char* name, const std::string& text) { std::printf("%-12s %s\n", name, text.c_str()); }
 
 void print_text(const Json& j) {
-    constexpr double mib = 1 << 20;
+    constexpr double mebibyte = 1 << 20;
     std::printf("%s: a scene of %s primitives\n", j["file"].get<std::string>().c_str(),
                 j["primitives"].dump().c_str());
     print_line("shapes", list_of(j["shapes"]));
@@ -194,9 +194,9 @@ void print_text(const Json& j) {
                                  : "path, strategy " + integrator["strategy"].get<std::string>() +
                                        ", depth " + integrator["max_depth"].dump());
     char text[80];
-    std::snprintf(text, sizeof text, "%.2f MiB", j["memory_bytes"]["sum"].get<double>() / mib);
+    std::snprintf(text, sizeof text, "%.2f MiB", j["memory_bytes"]["sum"].get<double>() / mebibyte);
     print_line("memory", text);
-    std::snprintf(text, sizeof text, "%zu, %.2f MiB", j["files"].size(), j["file_bytes"].get<double>() / mib);
+    std::snprintf(text, sizeof text, "%zu, %.2f MiB", j["files"].size(), j["file_bytes"].get<double>() / mebibyte);
     print_line("files", text);
     for (const Json& warning : j["ignored"]) print_line("ignored", warning.get<std::string>());
 }

@@ -5,7 +5,8 @@ set -eu
 
 # docs/dependencies.md says what each is for.
 packages="make cmake ninja-build g++ libtbb-dev libboost-math-dev libembree-dev libopenexr-dev libpng-dev
-    libjpeg62-turbo-dev zlib1g-dev libxxhash-dev libstb-dev nlohmann-json3-dev libexpat1-dev libnanovdb-dev libblosc-dev libcli11-dev libmuparser-dev
+    libjpeg62-turbo-dev zlib1g-dev libxxhash-dev libstb-dev nlohmann-json3-dev libexpat1-dev libnanovdb-dev libblosc-dev libmeshoptimizer-dev libdraco-dev libwebp-dev
+    libcli11-dev libmuparser-dev
     libgtest-dev libbenchmark-dev libopenmpi-dev openmpi-bin python3-dev python3-venv"
 dry_run=no
 for argument in "$@"; do

@@ -20,6 +20,8 @@ class SharedRender {
     SharedRender(const SharedRender&) = delete;
     SharedRender& operator=(const SharedRender&) = delete;
 
+    // Whether there are other ranks.
+    bool is_job() const { return job_ != nullptr; }
     // The source of the scene's files; null: the disk.
     FileSource* files() { return job_ != nullptr ? &files_ : nullptr; }
     // Sends scene and settings to the others, which start to prepare them; returns the leader, or null if the

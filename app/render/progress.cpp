@@ -31,7 +31,7 @@ void ProgressPrinter::update(const RenderProgress& p) {
         const auto full = static_cast<std::size_t>(fraction * width);
         numbers = "[" + std::string(full, '#') + std::string(width - full, '.') + "] " + numbers;
     }
-    line_.show("rendering", numbers);
+    line_.show(doing_.c_str(), numbers);
 }
 
 } // namespace montelux::app

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "app/progress_line.h"
+#include <string>
+#include <utility>
 
 #include "montelux/render/renderer.h"
 
@@ -10,9 +12,9 @@ namespace montelux::app {
 class ProgressPrinter {
   public:
     // While the error is above `target` (unless 0), the end is not near whatever number of samples was
-    // expected, except for the upper limit.
-    ProgressPrinter(bool quiet, double target, double most_samples)
-        : line_(quiet), target_(target), most_samples_(most_samples) {}
+    // expected, except for the upper limit. `doing`: what a line begins with where there is no terminal.
+    ProgressPrinter(bool quiet, double target, double most_samples, std::string doing)
+        : line_(quiet), target_(target), most_samples_(most_samples), doing_(std::move(doing)) {}
 
     void update(const RenderProgress& progress);
     // Ends the line of an unfinished bar.
@@ -21,6 +23,7 @@ class ProgressPrinter {
   private:
     ProgressLine line_;
     double target_, most_samples_;
+    std::string doing_;
 };
 
 } // namespace montelux::app

@@ -2,6 +2,7 @@
 
 #include "app/definitions.h"
 #include "app/option_values.h"
+#include "app/render/frame_list.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -139,6 +140,22 @@ SampleAddress parse_sample(const std::string& option, const std::string& s) {
         "on, for example 320,240,7");
 }
 
+RenderOptions::Shutter parse_shutter(const std::string& option, const std::string& s) {
+    const bool is_angle = s.ends_with("deg");
+    RenderOptions::Shutter shutter{is_angle ? parse_not_negative(option, s.substr(0, s.size() - 3))
+                                            : parse_duration(option, s),
+                                   is_angle};
+    if (is_angle && shutter.value > 360) refuse(option, s, "an angle from 0deg to 360deg is expected");
+    return shutter;
+}
+
+std::vector<std::uint32_t> read_frames(const std::string& option, const std::string& s) {
+    if (std::optional<std::vector<std::uint32_t>> frames = parse_frames(s)) return *std::move(frames);
+    refuse(option, s,
+           "frames from 1 to " + std::to_string(most_frames) +
+               " are expected, for example 1-48, 1-48x2 (every second one) or 1,5,9");
+}
+
 Orbit read_orbit(const std::string& option, const std::string& s) {
     if (const std::optional<Orbit> orbit = parse_orbit(s)) return *orbit;
     refuse(option, s, "expected " + std::string(orbit_syntax));
@@ -161,7 +178,8 @@ PixelBounds crop_of(const std::array<double, 4>& c, int width, int height) {
 } // namespace
 
 void declare(CLI::App& c, RenderOptions& o) {
-    c.add_option("SCENE", o.scene, "Scene (pbrt-v4, glTF 2.0, Mitsuba 3) or model (OBJ, PLY, STL); .gz is unpacked")
+    c.add_option("SCENE", o.scene,
+                 "Scene (pbrt-v4, glTF 2.0, Mitsuba 3) or model (OBJ, PLY, STL); .gz is unpacked")
         ->required();
     c.add_option("-o,--output", o.outputs,
                  "Picture to write: .exr, .png, .jpg, .hdr or .pfm; may be given several times. Default: the "
@@ -218,6 +236,21 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_parsed(c, "--time-of-scene", "TIME", o.scene_time, parse_duration,
                "Of a glTF scene: the time at which its animations are shown, for example 1.5s. Default: all "
                "at rest");
+    add_parsed(c, "--shutter", "TIME|ANGLE", o.shutter, parse_shutter,
+               "Of a glTF scene: how long the shutter is open from the time of the picture on, for example "
+               "0.02s, or "
+               "180deg of the 360deg that a frame takes (--frame-rate): what moves meanwhile is blurred. "
+               "Default: 0");
+    add_parsed(
+        c, "--frames", "LIST", o.frames, read_frames,
+        "Render these frames of a glTF scene's animations to numbered files, out.png to out.0001.png and so "
+        "on: 1-48, 1-48x2 (every second one), 1,5,9. Frames that are finished are skipped");
+    add_parsed(c, "--frame-rate", "RATE", o.frame_rate, parse_positive,
+               "Frames per second: frame n is at the time (n - 1) / RATE. Default: 24");
+    add_whole_number(
+        c, "--turntable", o.turntable, 1, most_frames,
+        "Render a turn of the camera around the scene in N frames, to numbered files; --frames chooses "
+        "among them");
     declare_definitions(c, o.definitions);
     add_parsed(c, "--resolution", "WxH", o.resolution, parse_resolution,
                "Size of the film in pixels; the scene's crop keeps its place");
@@ -303,6 +336,7 @@ void declare(CLI::App& c, RenderOptions& o) {
         "  montelux render scene.pbrt --resolution 320x240 --crop 0.5,1,0,0.5 -o corner.exr\n"
         "  montelux render scene.pbrt --spp 64 --debug-sample 320,240,7\n"
         "  montelux render model.obj --orbit 60,20 -o model.png\n"
+        "  montelux render model.glb --frames 1-48 -o out.png\n"
         "\n"
         "'mpirun -n 8 montelux render ...' shares the render among machines; the picture is the same.\n"
         "An EXR file holds every layer: mean, standard error, samples, albedo, normal, depth and those of "
@@ -357,8 +391,14 @@ void apply(const RenderOptions& o, SceneDescription& d) {
 
 } // namespace
 
+double shutter_seconds(const RenderOptions& o) {
+    return o.shutter.is_angle ? o.shutter.value / 360 / o.frame_rate : o.shutter.value;
+}
+
 RequestedScene load_requested(const RenderOptions& o, Warnings& warnings, FileSource* source,
                               std::vector<std::filesystem::path>* files_read) {
+    if (o.shutter.value > 0 && !o.scene_time)
+        throw UsageError("--shutter", "expected --time-of-scene TIME, when it opens, or --frames");
     RequestedScene r;
     r.description =
         load_scene(o.scene, warnings,
@@ -368,8 +408,10 @@ RequestedScene load_requested(const RenderOptions& o, Warnings& warnings, FileSo
                     .camera = o.camera,
                     .variant = o.variant,
                     .time = o.scene_time,
-                    .definitions = o.definitions});
+                    .definitions = o.definitions,
+                    .shutter = shutter_seconds(o)});
     apply(o, r.description);
+    if (o.turntable) r.axis = turn_axis_of(r.description);
     DiskFiles disk;
     r.added = add_studio(r.description, o.studio, source != nullptr ? *source : disk, warnings, files_read);
     return r;

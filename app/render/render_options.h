@@ -66,6 +66,17 @@ struct RenderOptions {
     std::optional<std::string> camera, variant;
     std::optional<double> scene_time;               // seconds
     std::map<std::string, std::string> definitions; // of Mitsuba scenes: LoadOptions
+    // From the time of the picture on: seconds, or an angle in degrees of which 360 are the time of a frame.
+    struct Shutter {
+        double value = 0;
+        bool is_angle = false;
+    };
+    Shutter shutter{};
+    // Of sequences (sequence.h): the frames to render, of which n is at the time (n - 1) / frame_rate; or of one turn of
+    // the camera in so many frames.
+    std::optional<std::vector<std::uint32_t>> frames;
+    double frame_rate = 24;                 // 1/s
+    std::optional<std::uint64_t> turntable; // frames
     int threads = 0;
     double rank_timeout = 60; // seconds
     bool denoise = false, stats = false, memory = false, quiet = false;
@@ -78,11 +89,14 @@ void declare(CLI::App& command, RenderOptions& options);
 struct RequestedScene {
     SceneDescription description;
     StudioParts added;
+    TurnAxis axis{}; // with --turntable
 };
 // `source`: of all files; null: the disk. `files_read` receives their names. Throws the errors of load_scene and
 // add_studio, and UsageError if a crop contains no pixel of the film.
 RequestedScene load_requested(const RenderOptions& options, Warnings& warnings, FileSource* source,
                               std::vector<std::filesystem::path>* files_read = nullptr);
+// How long the shutter stays open.
+double shutter_seconds(const RenderOptions& options);
 // Throws UsageError for incompatible options.
 RenderTarget target_of(const RenderOptions& options);
 

@@ -24,6 +24,10 @@ struct LoadOptions {
     std::optional<double> time{};         // of animations, seconds; empty: everything at rest
     // Values of the parameters `$name` of Mitsuba's XML, before those of its <default>; an Error in other formats.
     std::map<std::string, std::string> definitions{};
+    // How long the shutter stays open from `time` on, seconds: what moves meanwhile is blurred. 0: a still.
+    double shutter = 0;
+    // False: pictures of textures and lights are not read, for callers that only ask where things are.
+    bool pictures = true;
 };
 
 } // namespace montelux

@@ -1,5 +1,6 @@
 #include "montelux/formats/load_scene.h"
 
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -17,6 +18,10 @@ namespace {
 
 // Cameras by name are asked of glTF and Mitsuba scenes only, variants and time of glTF, definitions of Mitsuba's.
 void check_options(const std::filesystem::path& path, const FileKind& kind, const LoadOptions& options) {
+    if (!(options.shutter >= 0 && options.shutter <= std::numeric_limits<double>::max()))
+        throw Error("shutter", "expected a number of seconds that is not negative");
+    if (options.shutter > 0 && !options.time)
+        throw Error("shutter", "expected a time of the animations, when it opens");
     if (kind.format == SceneFormat::none) return;
     if (kind.format != SceneFormat::mitsuba && !options.definitions.empty())
         throw Error(path.string(), "only Mitsuba scenes have parameters that can be defined");

@@ -128,14 +128,14 @@ class AsciiCursor {
     std::string_view name_;
 };
 
-// Where a vertex's properties go: position, normal, texture coordinates, colour, opacity.
-constexpr int slots = 12, first_color = 8, opacity = 11;
+// Where a vertex's properties go: position, normal, both texture coordinates, colour, opacity.
+constexpr int slots = 14, first_color = 10, opacity = 13;
 int slot_of(std::string_view property) {
     struct Name {
         std::string_view name;
         int slot;
     };
-    constexpr std::array<Name, 21> names = {{{"x", 0},
+    constexpr std::array<Name, 29> names = {{{"x", 0},
                                              {"y", 1},
                                              {"z", 2},
                                              {"nx", 3},
@@ -149,13 +149,21 @@ int slot_of(std::string_view property) {
                                              {"texture_v", 7},
                                              {"texture_s", 6},
                                              {"texture_t", 7},
-                                             {"red", 8},
-                                             {"green", 9},
-                                             {"blue", 10},
-                                             {"diffuse_red", 8},
-                                             {"diffuse_green", 9},
-                                             {"diffuse_blue", 10},
-                                             {"alpha", 11}}};
+                                             {"u2", 8},
+                                             {"v2", 9},
+                                             {"red", 10},
+                                             {"green", 11},
+                                             {"blue", 12},
+                                             {"diffuse_red", 10},
+                                             {"diffuse_green", 11},
+                                             {"diffuse_blue", 12},
+                                             {"r", 10},
+                                             {"g", 11},
+                                             {"b", 12},
+                                             {"color_0", 10},
+                                             {"color_1", 11},
+                                             {"color_2", 12},
+                                             {"alpha", 13}}};
     for (const Name& n : names)
         if (n.name == property) return n.slot;
     return -1;
@@ -237,7 +245,9 @@ class BodyParser {
         mesh.positions.resize(e.count);
         if (normals) mesh.normals.resize(e.count);
         if (uvs) mesh.uvs.resize(e.count);
-        const bool colors = have[8] && have[9] && have[10];
+        const bool second_uvs = have[8] && have[9];
+        if (second_uvs) mesh.second_uvs.resize(e.count);
+        const bool colors = have[10] && have[11] && have[12];
         if (colors) mesh.colors.resize(e.count);
         if (have[opacity]) mesh.opacities.resize(e.count);
         std::array<float, slots> v{};
@@ -255,9 +265,11 @@ class BodyParser {
             mesh.positions[i] = {v[0], v[1], v[2]};
             if (normals) mesh.normals[i] = {v[3], v[4], v[5]};
             if (uvs) mesh.uvs[i] = {v[6], v[7]};
-            if (colors) mesh.colors[i] = {v[8], v[9], v[10]};
+            if (colors) mesh.colors[i] = {v[10], v[11], v[12]};
+            if (second_uvs) mesh.second_uvs[i] = {v[8], v[9]};
             if (have[opacity]) mesh.opacities[i] = v[opacity];
-            float sum = v[0] + v[1] + v[2] + v[3] + v[4] + v[5] + v[6] + v[7] + v[8] + v[9] + v[10] + v[11];
+            float sum = v[0] + v[1] + v[2] + v[3] + v[4] + v[5] + v[6] + v[7] + v[8] + v[9] + v[10] + v[11] +
+                        v[12] + v[13];
             if (!std::isfinite(sum)) check_vertex(i, v);
         }
     }

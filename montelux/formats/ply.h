@@ -22,8 +22,8 @@ struct PlyMesh {
 };
 
 // ASCII and binary, little and big endian, properties of any type in any order. Vertices: x, y, z; optional
-// nx, ny, nz; optional u, v (also s, t; texture_u, texture_v; texture_s, texture_t); with `colors` also red, green, blue
-// (also diffuse_red ...), which are sRGB where they are integers and linear where they are floats, and alpha. Faces: a list
+// nx, ny, nz; optional u, v (also s, t; texture_u, texture_v; texture_s, texture_t) and u2, v2; with `colors` also red, green, blue
+// (also diffuse_red ...; r, g, b; color_0, color_1, color_2), which are sRGB where they are integers and linear where they are floats, and alpha. Faces: a list
 // vertex_indices or vertex_index. Triangle strips: an element tristrips with such a list, in which -1 begins a new strip.
 // Other elements and properties are skipped.
 // Allocates no more than the file's size justifies. Throws Error, prefixed with `name`, for a wrong header,
@@ -33,10 +33,8 @@ PlyMesh parse_ply(std::span<const std::uint8_t> bytes, std::string_view name, bo
 // The same for a file, which may be gzipped (".gz").
 PlyMesh read_ply(const std::filesystem::path& path);
 
-// A binary file (little endian, floats) of triangles; `normals`, `uvs`, `colors` and `opacities` are empty or one per
-// vertex.
-void write_ply(AtomicFile& file, std::span<const Point3f> positions, std::span<const Normal3f> normals,
-               std::span<const Point2f> uvs, std::span<const Index> indices,
-               std::span<const Vec3f> colors = {}, std::span<const float> opacities = {});
+// A binary file (little endian, floats) of the mesh as it is at the start, with these normals, which are none or one per
+// vertex, in place of its own.
+void write_ply(AtomicFile& file, const TriangleMesh& mesh, std::span<const Normal3f> normals);
 
 } // namespace montelux

@@ -184,6 +184,11 @@ Vec3d up_axis_of(const CameraSettings& camera) {
     return up;
 }
 
+OrbitFrame orbit_frame_of(const SceneDescription& d) {
+    if (!d.has_camera) return OrbitFrame::of(Vec3d(d.up));
+    return OrbitFrame::of(up_axis_of(d.scene.camera), !d.scene.camera.world_from_camera.swaps_handedness());
+}
+
 } // namespace
 
 OrbitFrame OrbitFrame::of(Vec3d up, bool mirrored) {
@@ -215,6 +220,22 @@ CameraSettings framing_camera(const Bounds3& bounds, const OrbitFrame& frame, co
     return camera;
 }
 
+TurnAxis turn_axis_of(const SceneDescription& d) {
+    const Bounds3 bounds = bounds_of(d.scene);
+    if (bounds.empty()) throw Error("turntable", "the scene has no shape to turn around");
+    const OrbitFrame frame = orbit_frame_of(d);
+    return {bounds.center(), cross(frame.front, frame.right)};
+}
+
+CameraSettings turned_camera(const CameraSettings& camera, const TurnAxis& axis, double degrees) {
+    CameraSettings turned = camera;
+    const Transform turn = Transform::translate(axis.point) * Transform::rotate(degrees, axis.direction) *
+                           Transform::translate(-axis.point);
+    turned.world_from_camera = turn * camera.world_from_camera;
+    if (camera.motion) turned.motion.emplace(turn * camera.motion->start(), turn * camera.motion->end());
+    return turned;
+}
+
 StudioParts add_studio(SceneDescription& d, const StudioSettings& settings, FileSource& files,
                        Warnings& warnings, std::vector<std::filesystem::path>* files_read) {
     StudioParts added;
@@ -225,11 +246,8 @@ StudioParts add_studio(SceneDescription& d, const StudioSettings& settings, File
     const bool unlit = d.wants_studio && !d.has_lights;
     added.camera = d.wants_studio && !d.has_camera;
     added.lights = unlit && !settings.environment;
-    const OrbitFrame frame =
-        d.has_camera
-            ? OrbitFrame::of(up_axis_of(d.scene.camera), !d.scene.camera.world_from_camera.swaps_handedness())
-            : OrbitFrame::of(Vec3d(d.up));
-    const Bounds3 bounds = bounds_of(d.scene);
+    const OrbitFrame frame = orbit_frame_of(d);
+    const Bounds3 bounds = settings.bounds ? *settings.bounds : bounds_of(d.scene);
     const bool ground = settings.ground.value_or(unlit && added.camera);
     if (bounds.empty() && (ground || added.camera || settings.orbit))
         throw Error("studio", "the scene has no shape to put the camera or the ground at");

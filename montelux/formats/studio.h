@@ -44,4 +44,14 @@ double framing_distance(const Bounds3& bounds, const OrbitFrame& frame, double e
 CameraSettings framing_camera(const Bounds3& bounds, const OrbitFrame& frame, const Orbit& orbit, double fov,
                               double aspect);
 
+// The upright axis through the middle of a scene; its direction is such that a camera that turns by a positive angle
+// comes to a larger azimuth.
+struct TurnAxis {
+    Vec3d point, direction;
+};
+// Of a scene before add_studio, whose ground is no part of it. Errors: a scene without shapes.
+TurnAxis turn_axis_of(const SceneDescription& description);
+// The camera, and the path that it moves along, after a turn.
+CameraSettings turned_camera(const CameraSettings& camera, const TurnAxis& axis, double degrees);
+
 } // namespace montelux

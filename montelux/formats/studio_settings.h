@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "montelux/mc/math/vec.h"
+#include "montelux/scene/shape/bounds.h"
 
 namespace montelux {
 
@@ -26,6 +27,9 @@ struct StudioSettings {
         Vec3f color{}; // linear sRGB; black where it is transparent
     };
     std::optional<Background> background{}; // empty: the light that is seen, or the studio's
+    // What camera and ground are fitted to, not a wish of its own: the same for all frames of an animation. Empty: the
+    // bounds of the scene.
+    std::optional<Bounds3> bounds{};
 
     bool empty() const { return !environment && !orbit && !ground && !background; }
 };

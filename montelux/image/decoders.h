@@ -23,6 +23,7 @@ Image decode_jpeg(const EncodedImage& file);
 Image decode_hdr(const EncodedImage& file);
 Image decode_pfm(const EncodedImage& file);
 Image decode_pnm(const EncodedImage& file);
+Image decode_webp(const EncodedImage& file);
 Image decode_stb(const EncodedImage& file); // TGA and BMP
 
 // Throws unless an image of this size is allowed; every decoder checks before it allocates.

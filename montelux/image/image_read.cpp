@@ -60,6 +60,8 @@ Decoder decoder_of(std::span<const std::uint8_t> bytes) {
     if (head.starts_with("#?")) return decode_hdr;
     if (head.starts_with('P') && second("Ff")) return decode_pfm;
     if (head.starts_with('P') && second("123456")) return decode_pnm;
+    if (head.size() >= 12 && head.starts_with("RIFF") && head.substr(8).starts_with("WEBP"))
+        return decode_webp;
     if (head.starts_with("BM")) return decode_stb;
     return nullptr;
 }
@@ -68,8 +70,9 @@ Image decode(const EncodedImage& file) {
     if (file.bytes.empty()) throw Error(file.name, "is empty");
     if (const Decoder decoder = decoder_of(file.bytes)) return decoder(file);
     if (lower_extension(file.name) == ".tga") return decode_stb(file);
-    throw Error(file.name, "is not a picture of a known format (EXR, PNG, JPEG, Radiance HDR, PFM, PNM, BMP; "
-                           "TGA with the extension .tga)");
+    throw Error(file.name,
+                "is not a picture of a known format (EXR, PNG, JPEG, Radiance HDR, PFM, PNM, WebP, BMP; "
+                "TGA with the extension .tga)");
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Reading pictures: untrusted EXR, PNG, JPEG, Radiance HDR, PFM, PNM, TGA and BMP files.
+// Reading pictures: untrusted EXR, PNG, JPEG, Radiance HDR, PFM, PNM, WebP, TGA and BMP files.
 #pragma once
 
 #include <cstdint>
@@ -27,6 +27,9 @@ Image read_image(const std::filesystem::path& path, const ReadOptions& options =
 // The same for a picture in memory (embedded in another file); `name` is used in messages, and its extension.
 Image read_image(std::span<const std::uint8_t> bytes, const std::string& name,
                  const ReadOptions& options = {});
+
+// Whether Montelux was built with libwebp.
+bool reads_webp();
 
 // Whether a file begins as those of a format that read_image knows by its content (all but TGA).
 bool is_picture(std::span<const std::uint8_t> bytes);

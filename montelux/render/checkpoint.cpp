@@ -153,6 +153,15 @@ std::uint64_t render_fingerprint(const Renderer& renderer) {
     return hash;
 }
 
+std::uint64_t picture_fingerprint(const SceneDescription& d, const RenderTarget& target) {
+    std::uint64_t hash = hash_of(
+        version(), d.sampler.spp, std::bit_cast<std::uint64_t>(target.error),
+        std::bit_cast<std::uint64_t>(target.quantile), std::bit_cast<std::uint64_t>(target.time),
+        d.film.layers.half, hash_of_text(text_of(d.film.layers.set)), hash_of_layers(d, film_layers_of(d)));
+    for (const Fingerprint& f : fingerprints(digest_of(d.scene), d, target)) hash = hash_of(hash, f.hash);
+    return hash;
+}
+
 RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDescription& description,
                                const RenderTarget& target) {
     RestoredRender restored{RenderState(description), 0, {}};

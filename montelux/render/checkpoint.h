@@ -33,4 +33,7 @@ RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDes
 // Hash of everything that the values and replicates of samples depend on: equal for the slices of one render.
 std::uint64_t render_fingerprint(const Renderer& renderer);
 
+// Hash of everything that a finished picture depends on; of a render with a limit of time, that limit.
+std::uint64_t picture_fingerprint(const SceneDescription& description, const RenderTarget& target);
+
 } // namespace montelux

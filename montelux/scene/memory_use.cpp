@@ -37,7 +37,7 @@ std::vector<MemoryUse> memory_use(const Scene& s) {
                                      [](const TriangleMesh& m) {
                                          return vector_bytes(m.positions, m.normals, m.uvs, m.indices,
                                                              m.tangents, m.end_positions, m.end_normals,
-                                                             m.colors, m.opacities);
+                                                             m.colors, m.opacities, m.second_uvs);
                                      }),
         sum(s.meshes, [](const TriangleMesh& m) { return m.triangle_count(); }), "triangles");
     add("bilinear meshes",

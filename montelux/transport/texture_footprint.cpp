@@ -31,15 +31,22 @@ class TangentSolver {
 TextureContext texture_context(const Camera& camera, float scale, const SurfacePoint& s) {
     const Camera::Footprint footprint = camera.footprint(s.p, s.ng, scale);
     const TangentSolver in_tangents(s.dpdu, s.dpdv);
-    return {.p = s.p,
-            .n = s.ns,
-            .uv = s.uv,
-            .dpdx = footprint.dpdx,
-            .dpdy = footprint.dpdy,
-            .duvdx = in_tangents(footprint.dpdx),
-            .duvdy = in_tangents(footprint.dpdy),
-            .vertex_color = s.vertex_color,
-            .vertex_opacity = s.vertex_opacity};
+    TextureContext context{.p = s.p,
+                           .n = s.ns,
+                           .uv = s.uv,
+                           .dpdx = footprint.dpdx,
+                           .dpdy = footprint.dpdy,
+                           .duvdx = in_tangents(footprint.dpdx),
+                           .duvdy = in_tangents(footprint.dpdy),
+                           .vertex_color = s.vertex_color,
+                           .vertex_opacity = s.vertex_opacity};
+    if (length_squared(s.second_dpdu) > 0) {
+        const TangentSolver in_second(s.second_dpdu, s.second_dpdv);
+        context.second_uv = s.second_uv;
+        context.second_duvdx = in_second(footprint.dpdx);
+        context.second_duvdy = in_second(footprint.dpdy);
+    }
+    return context;
 }
 
 } // namespace montelux

@@ -148,6 +148,7 @@ def load(
     camera: str | int | None = None,
     variant: str | None = None,
     time: float | None = None,
+    shutter: float = 0,
     definitions: Mapping[str, object] | None = None,
 ) -> Scene:
     """Reads a scene (pbrt-v4, glTF 2.0, Mitsuba 3) or a model (OBJ, PLY, STL) and all files that it refers to. What it ignores is reported
@@ -161,8 +162,9 @@ def load(
     "black", "grey", "white", "#rrggbb", or linear (r, g, b).
 
     Of glTF scenes: `camera` chooses one by name or number, `variant` one of the file's variants of materials, `time`
-    the moment of its animations, in seconds. Of Mitsuba scenes: `definitions` are values of its parameters, {"spp": 32}
-    for $spp."""
+    the moment of its animations, in seconds, and `shutter` how long the shutter is open from then on, in seconds: what
+    moves meanwhile is blurred. Of Mitsuba scenes: `camera` chooses a sensor, `definitions` are values of parameters,
+    {"spp": 32} for $spp."""
     scene = Scene()
     scene._load(
         os.fspath(path),
@@ -174,6 +176,7 @@ def load(
         None if camera is None else str(camera),
         variant,
         time,
+        float(shutter),
         {name: _parameter_text(value) for name, value in (definitions or {}).items()},
     )
     _tell(scene)

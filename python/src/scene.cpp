@@ -83,7 +83,8 @@ void bind_scene(nb::module_& m) {
                std::optional<std::string> environment, const std::optional<std::string>& orbit,
                std::optional<bool> ground, const std::optional<std::string>& background,
                const std::optional<std::string>& camera, const std::optional<std::string>& variant,
-               std::optional<double> time, const std::map<std::string, std::string>& definitions) {
+               std::optional<double> time, double shutter,
+               const std::map<std::string, std::string>& definitions) {
                 Warnings warnings;
                 SceneDescription d;
                 {
@@ -95,14 +96,16 @@ void bind_scene(nb::module_& m) {
                                     .camera = camera,
                                     .variant = variant,
                                     .time = time,
-                                    .definitions = definitions});
+                                    .definitions = definitions,
+                                    .shutter = shutter});
                     DiskFiles files;
                     add_studio(d, studio, files, warnings);
                 }
                 take(s, std::move(d), warnings, path.filename().string());
             },
             "path"_a, "texture_memory"_a.none(), "environment"_a.none(), "orbit"_a.none(), "ground"_a.none(),
-            "background"_a.none(), "camera"_a.none(), "variant"_a.none(), "time"_a.none(), "definitions"_a)
+            "background"_a.none(), "camera"_a.none(), "variant"_a.none(), "time"_a.none(), "shutter"_a,
+            "definitions"_a)
         .def(
             "_parse",
             [](SceneObject& s, const std::string& text, const std::string& name,

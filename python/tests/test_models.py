@@ -96,6 +96,13 @@ def test_gltf_scenes_have_cameras_and_a_time(gltf):
         scene.film.resolution = 16, 12
         depth.append(scene.render(spp=4).layers["depth"])
     assert (depth[0] != depth[1]).any()
+    blurred = montelux.load(gltf, time=0.5, shutter=1)
+    blurred.film.resolution = 16, 12
+    assert (blurred.render(spp=4).layers["depth"] != depth[1]).any()
+    with pytest.raises(montelux.Error, match="shutter: expected a time of the animations, when it opens"):
+        montelux.load(gltf, shutter=1)
+    with pytest.raises(montelux.Error, match="shutter: expected a number of seconds that is not negative"):
+        montelux.load(gltf, time=1, shutter=-1)
     with pytest.raises(montelux.Error, match="there is no camera 'fra'"):
         montelux.load(gltf, camera="fra")
     with pytest.raises(montelux.Error, match="variant"):

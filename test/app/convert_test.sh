@@ -92,6 +92,29 @@ expect 1 "none/x.pbrt" convert full.pbrt none/x.pbrt
 [ -e x.pbrt ] && fail "a failure left a scene"
 [ "$(find . -name '.montelux*' | wc -l)" -eq 0 ] || fail "temporary files are left"
 
+# A textured glTF model, of the studio: pbrt's syntax with extensions holds all that the picture needs.
+cat >model.gltf <<'JSON'
+{"asset": {"version": "2.0"},
+ "buffers": [{"byteLength": 108, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAABAAAAAAAAAAAAAAABAAACAPwAAgD8AAIA/AACAPwAAAD8AAIA/AACAPgAAgD8AAIA/AAAAPwAAgD8AAIA/"}],
+ "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 24},
+                 {"buffer": 0, "byteOffset": 60, "byteLength": 48}],
+ "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+               {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"},
+               {"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC4"}],
+ "images": [{"uri": "ok.png"}], "samplers": [{"wrapS": 33071, "wrapT": 33648, "magFilter": 9729}],
+ "textures": [{"source": 0, "sampler": 0}],
+ "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 1], "roughnessFactor": 0.5,
+     "baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"rotation": 0.5, "scale": [2, 3]}}},
+     "metallicRoughnessTexture": {"index": 0}}, "normalTexture": {"index": 0, "scale": 0.5}, "alphaMode": "MASK"}],
+ "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1, "COLOR_0": 2}, "material": 0}]}],
+ "nodes": [{"mesh": 0}], "extensionsUsed": ["KHR_texture_transform"]}
+JSON
+expect 0 "model.gltf has no camera and no lights: the studio is written with it" convert model.gltf model.pbrt
+grep -q warning out && fail "converting a glTF model loses something: $(cat out)"
+expect 0 "model.exr" render model.gltf --spp 4 --resolution 32x24 -o model.pfm -o model.exr
+expect 0 "model.again" render model.pbrt --spp 4 --resolution 32x24 -o model.again.pfm
+cmp -s model.pfm model.again.pfm || fail "the converted model has another picture"
+
 # Info of scenes and textures.
 expect 0 "shapes       1 triangle mesh" info full.pbrt
 grep -q "lights       1 uniform sky" out || fail "info: no lights"

@@ -137,6 +137,47 @@ class Studio : public ::testing::Test {
     std::vector<std::filesystem::path> files_read_;
 };
 
+// A turn by an angle is an orbit from an azimuth that is larger by as much; in left-handed worlds, too.
+TEST_F(Studio, TurntablesAreOrbits) {
+    for (const bool is_model : {true, false}) {
+        const auto unframed = [&] { return is_model ? model() : pbrt("Translate 1 2 3 Shape \"sphere\""); };
+        const TurnAxis axis = turn_axis_of(unframed());
+        const auto from = [&](double azimuth) {
+            SceneDescription d = unframed();
+            add(d, {.orbit = Orbit{azimuth, 20, 1.5}});
+            return d.scene.camera;
+        };
+        const CameraSettings turned = turned_camera(from(10), axis, 75), expected = from(85);
+        for (const Vec3d& p : {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)})
+            EXPECT_LT(length(turned.world_from_camera.point(p) - expected.world_from_camera.point(p)), 1e-9);
+    }
+}
+
+TEST_F(Studio, MovingCamerasTurnWithTheirPath) {
+    SceneDescription d = model();
+    add(d);
+    const Transform start = d.scene.camera.world_from_camera,
+                    end = start * Transform::translate({1, 0, 0}) * Transform::rotate(40, {0, 1, 0});
+    d.scene.camera.motion.emplace(start, end);
+    const TurnAxis axis{{1, 0, 2}, {0, 1, 0}};
+    const CameraSettings turned = turned_camera(d.scene.camera, axis, 90);
+    const Vec3d before = d.scene.camera.motion->at(0.5f).point(Vec3d()),
+                after = turned.motion->at(0.5f).point(Vec3d());
+    EXPECT_LT(length(after - Vec3d(1 + (before.z - 2), before.y, 2 - (before.x - 1))), 1e-5);
+}
+
+// The frames of an animation share one camera and one ground.
+TEST_F(Studio, GivenBoundsAreFramed) {
+    SceneDescription d = model();
+    Bounds3 bounds;
+    bounds.add({-5, -5, -5});
+    bounds.add({5, 9, 5});
+    add(d, {.bounds = bounds});
+    EXPECT_NEAR(world_bounds(d.scene.quadrics.at(0)).upper.y, -5, 0.01);
+    const Margins m = margins(bounds, d.scene.camera, studio_fov, 4.0 / 3);
+    EXPECT_GT(std::min({m.left, m.right, m.top, m.bottom}), 0.15);
+}
+
 TEST_F(Studio, ModelsGetAllOfIt) {
     SceneDescription d = model();
     EXPECT_FALSE(d.has_camera);

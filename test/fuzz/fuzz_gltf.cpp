@@ -25,6 +25,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     OneFile files({data, data + size});
     return montelux::read_or_refuse([&] {
         montelux::Warnings warnings;
-        montelux::load_gltf({data, data + size}, "scene.gltf", warnings, files, {.time = 0.5});
+        montelux::load_gltf({data, data + size}, "scene.gltf", warnings, files,
+                            {.time = 0.5, .shutter = 0.25});
     });
 }

@@ -199,7 +199,7 @@ TEST_P(EveryBsdf, ConservesEnergy) {
         } else {
             EXPECT_GT(greatest, 0.05) << c.name;
         }
-        if (GetParam() < bsdf_cases().size()) {
+        if (!c.name.starts_with("principled")) {
             EXPECT_LT(most.mean(), 1 + 6 * most.standard_error() + 1e-4) << c.name;
         }
     }

@@ -1,10 +1,11 @@
 // BSDFs to test, and streams of random numbers for them.
 #pragma once
 
+#include "test/scene/bsdf_case.h"
 #include "test/scene/measured_brdf_testing.h"
+#include "test/scene/mitsuba_bsdf_testing.h"
 #include "test/scene/principled_testing.h"
 #include <cmath>
-#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -39,20 +40,6 @@ class FixedStream {
     float uc_;
 };
 
-inline Vec3f direction(double theta_degrees, double phi_degrees = 0) {
-    double t = theta_degrees * pi / 180, p = phi_degrees * pi / 180;
-    return {static_cast<float>(std::sin(t) * std::cos(p)), static_cast<float>(std::sin(t) * std::sin(p)),
-            static_cast<float>(std::cos(t))};
-}
-
-struct BsdfCase {
-    std::string name;
-    std::function<Bsdf()> make; // called within the test: coating tables take a second under sanitizers
-    bool exact_pdf = true;      // the reported pdf is the sampled density
-    bool reciprocal = true;
-    bool black_below = false;
-};
-
 inline const CoatingTable& coating_table(float alpha) {
     static std::map<float, CoatingTable> tables;
     return tables.try_emplace(alpha, 1.5f, alpha, 0.01f, 10).first->second;
@@ -61,48 +48,6 @@ inline const CoatingTable& coating_table(float alpha) {
 inline CoatedDiffuseBsdf coated_diffuse(float alpha, float rho) {
     const CoatingTable& table = coating_table(alpha);
     return {&table, table.base_albedo(SampledSpectrum(rho))};
-}
-
-inline const PlasticTable& plastic_table(float alpha, NormalDistribution distribution) {
-    static std::map<std::pair<float, NormalDistribution>, PlasticTable> tables;
-    return tables.try_emplace({alpha, distribution}, 1.5f, alpha, distribution).first->second;
-}
-
-inline PlasticBsdf plastic(float alpha, NormalDistribution distribution, SampledSpectrum rho,
-                           bool nonlinear = false) {
-    const PlasticTable& table = plastic_table(alpha, distribution);
-    return {&table, {{alpha, alpha}, distribution}, table.base_albedo(rho, nonlinear), SampledSpectrum(1)};
-}
-
-// With all lobes; the share `clear` of the dielectric refracts.
-inline DisneySolid disney_solid(float clear) {
-    constexpr float metallic = 0.3f;
-    const SampledSpectrum color(0.3f, 0.4f, 0.5f, 0.6f);
-    DisneySolid l;
-    l.base = {((1 - metallic) * (1 - clear)) * color, SampledSpectrum(0.2f), 0.6f, 0.5f};
-    l.normals = {{0.5f, 0.3f}, NormalDistribution::ggx_separable};
-    l.metallic = metallic;
-    l.transmitting = (1 - metallic) * clear;
-    l.tinted = 0.4f;
-    l.color = color;
-    l.tinted_f0 = 0.04f * color;
-    l.coat = 0.8f;
-    l.coat_alpha = 0.1f;
-    return l;
-}
-
-inline DisneySheet disney_sheet() {
-    const SampledSpectrum color(0.3f, 0.4f, 0.5f, 0.6f);
-    DisneySheet l;
-    l.base = {0.3f * color, SampledSpectrum(0.2f), 0.6f, 0.5f};
-    l.reflecting = {{0.5f, 0.3f}, NormalDistribution::ggx_separable};
-    l.crossing = {{0.3f, 0.2f}, NormalDistribution::ggx_separable};
-    l.clear = 0.4f;
-    l.tinted = 0.4f;
-    l.color = color;
-    l.tinted_f0 = 0.04f * color;
-    l.transmitting = 0.3f * color;
-    return l;
 }
 
 inline LayeredBsdf<DiffuseBsdf> layered_diffuse(float alpha, float rho) {
@@ -146,15 +91,6 @@ LayeredBsdf<Base, MultiscatterDielectricBsdf> multiscatter_layers(const auto& si
 
 inline std::vector<BsdfCase> bsdf_cases() {
     SampledSpectrum eta(0.2f, 0.4f, 0.9f, 1.1f), k(3.9f, 3.0f, 2.4f, 2.1f);
-    const NormalDistribution beckmann = NormalDistribution::beckmann;
-    const auto tinted_conductor = [=](Ggx alpha, NormalDistribution d) {
-        return TintedConductorBsdf{{eta, k, {alpha, d}}, SampledSpectrum(0.5f, 0.7f, 0.9f, 1.0f)};
-    };
-    const auto tinted_dielectric = [](Ggx alpha, NormalDistribution d) {
-        return TintedDielectricBsdf{{1.5f, {alpha, d}},
-                                    SampledSpectrum(0.5f, 0.7f, 0.9f, 1.0f),
-                                    SampledSpectrum(1, 0.8f, 0.6f, 0.4f)};
-    };
     return {
         {"diffuse", [=] { return DiffuseBsdf{SampledSpectrum(0.2f, 0.4f, 0.6f, 0.8f)}; }},
         {"conductor_smooth",
@@ -277,52 +213,6 @@ inline std::vector<BsdfCase> bsdf_cases() {
          false},
         {"multiscatter_layered_conductor_smooth_coat",
          [=] { return multiscatter_layers<MultiscatterConductorBsdf>(layered_conductor(0, 0.5f)); }, false},
-        {"beckmann_conductor_0_1",
-         [=] {
-             return tinted_conductor({0.1f, 0.1f}, beckmann);
-         }},
-        {"beckmann_conductor_0_5",
-         [=] {
-             return tinted_conductor({0.5f, 0.5f}, beckmann);
-         }},
-        {"beckmann_conductor_anisotropic",
-         [=] {
-             return tinted_conductor({0.8f, 0.2f}, beckmann);
-         }},
-        {"separable_conductor",
-         [=] {
-             return tinted_conductor({0.3f, 0.6f}, NormalDistribution::ggx_separable);
-         }},
-        {"beckmann_dielectric_0_2",
-         [=] {
-             return tinted_dielectric({0.2f, 0.2f}, beckmann);
-         }},
-        {"beckmann_dielectric_anisotropic",
-         [=] {
-             return tinted_dielectric({0.3f, 0.7f}, beckmann);
-         }},
-        {"tinted_dielectric_smooth",
-         [=] {
-             return tinted_dielectric({0, 0}, beckmann);
-         }},
-        {"tinted_thin_dielectric",
-         [=] {
-             return TintedThinDielectricBsdf{{1.5f}, SampledSpectrum(0.3f), SampledSpectrum(0.8f)};
-         }},
-        {"tinted_dielectric_tilted",
-         [=] {
-             return TiltedBsdf{tinted_dielectric({0.4f, 0.4f}, NormalDistribution::ggx_separable),
-                               direction(25, 200)};
-         }},
-        {"plastic_smooth", [=] { return plastic(0, beckmann, SampledSpectrum(0.2f, 0.4f, 0.6f, 0.8f)); }},
-        {"plastic_beckmann_0_1", [=] { return plastic(0.1f, beckmann, SampledSpectrum(0.9f)); }},
-        {"plastic_beckmann_0_5", [=] { return plastic(0.5f, beckmann, SampledSpectrum(0.5f), true); }},
-        {"plastic_separable",
-         [=] { return plastic(0.3f, NormalDistribution::ggx_separable, SampledSpectrum(1)); }},
-        {"plastic_dark", [=] { return plastic(0.2f, NormalDistribution::ggx, SampledSpectrum(0.1f)); }},
-        {"disney", [=] { return DisneyOpaqueBsdf{disney_solid(0)}; }, true, true, true},
-        {"disney_glass", [=] { return DisneySolidBsdf{disney_solid(0.7f)}; }},
-        {"disney_sheet", [=] { return DisneySheetBsdf{disney_sheet()}; }, true, false},
         {"hair_glossy", [=] { return HairBsdf::make(0, 1.55f, 0.1f * eta, 0.15f, 0.2f, 0); }, true, false},
     };
 }
@@ -406,6 +296,7 @@ inline std::vector<BsdfCase> principled_cases() {
 // The cases of bsdf_test.cpp.
 inline std::vector<BsdfCase> all_bsdf_cases() {
     std::vector<BsdfCase> cases = bsdf_cases();
+    for (BsdfCase& c : mitsuba_cases()) cases.push_back(std::move(c));
     for (BsdfCase& c : principled_cases()) cases.push_back(std::move(c));
     return cases;
 }

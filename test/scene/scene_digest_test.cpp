@@ -33,6 +33,7 @@ TEST(SceneDigest, GeometryCounts) {
                     [](Scene& s) {
                         s.meshes[0].opacities = {1, 0, 1};
                     },
+                    [](Scene& s) { s.meshes[0].second_uvs = s.meshes[0].uvs; },
                     [](Scene& s) { s.meshes[0].end_positions = s.meshes[0].positions; },
                     [](Scene& s) {
                         s.meshes[0].end_positions = s.meshes[0].positions;

@@ -38,6 +38,7 @@ TEST(SceneDigest, TexturesCount) {
                     [=](Scene& s) { image(s).color_space = &RgbColorSpace::rec2020(); },
                     [=](Scene& s) { image(s).mapping.kind = TextureMapping::Kind::planar; },
                     [=](Scene& s) { image(s).mapping.dv = 1; },
+                    [=](Scene& s) { image(s).mapping.second_uv = true; },
                     [=](Scene& s) {
                         image(s).mapping.vt = {1, 1, 1};
                     },

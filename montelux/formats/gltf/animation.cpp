@@ -65,6 +65,14 @@ std::vector<float> output_of(Document& document, const Channel& channel) {
     return all;
 }
 
+// Of the keys, at least one, growing.
+std::vector<float> times_of(Document& document, const Channel& channel) {
+    const Value input = channel.sampler.required("input");
+    std::vector<float> times = read_scalars(document, open_accessor(document, input, {"SCALAR"}));
+    if (!std::ranges::is_sorted(times)) input.error("the times of keys do not grow");
+    return times;
+}
+
 } // namespace
 
 std::vector<Channel> channels_of(const Document& document) {
@@ -99,13 +107,16 @@ std::vector<Channel> channels_of(const Document& document) {
     return channels;
 }
 
+double end_of(Document& document, const std::vector<Channel>& channels) {
+    double end = 0;
+    for (const Channel& channel : channels) end = std::max(end, double(times_of(document, channel).back()));
+    return end;
+}
+
 std::vector<double> value_at(Document& document, const Channel& channel, double time,
                              std::size_t weight_count) {
     const std::size_t size = channel.path == "weights" ? weight_count : channel.path == "rotation" ? 4 : 3;
-    const std::vector<float> times =
-        read_scalars(document, open_accessor(document, channel.sampler.required("input"), {"SCALAR"}));
-    if (!std::ranges::is_sorted(times))
-        channel.sampler.required("input").error("the times of keys do not grow");
+    const std::vector<float> times = times_of(document, channel);
     const std::string kind = channel.sampler.text("interpolation", "LINEAR");
     if (std::ranges::find(interpolations, std::string_view(kind)) == interpolations.end())
         channel.sampler.required("interpolation")

@@ -20,6 +20,9 @@ struct Channel {
 // Channels of all animations, the first one of each target; warns of others for the same.
 std::vector<Channel> channels_of(const Document& document);
 
+// The time of their last key, seconds; 0 without channels.
+double end_of(Document& document, const std::vector<Channel>& channels);
+
 // The target's numbers at a time (seconds): 3, 4 (a unit quaternion x y z w), 3, or `weight_count`. Before the first key
 // and after the last one it rests. glTF 2.0 specification, appendix C.
 std::vector<double> value_at(Document& document, const Channel& channel, double time,

@@ -16,9 +16,9 @@ constexpr int longer_side = 800;
 
 Vec3d column(const Matrix4& m, std::size_t i) { return {m.m[0][i], m.m[1][i], m.m[2][i]}; }
 
-// Without the scale of the node, as the specification asks for: x right, y up, z forward. The file's cameras look along
-// -z.
-Transform place_of(const Matrix4& world_from_node, const Value& node) {
+// Without the scale of the node, as the specification asks for: x right, y up, z forward. The file's cameras and lights
+// look along -z.
+Transform place_of(const Matrix4& world_from_node, const Value& node, const std::string& what) {
     const Vec3d x = column(world_from_node, 0), y = column(world_from_node, 1),
                 z = column(world_from_node, 2), p = column(world_from_node, 3);
     const auto matrix = [&] {
@@ -32,7 +32,7 @@ Transform place_of(const Matrix4& world_from_node, const Value& node) {
         return m;
     }();
     const std::optional<Transform> placed = Transform::from_matrix(matrix);
-    if (!placed || !fits_float(*placed)) node.error("its transformation gives the camera no direction");
+    if (!placed || !fits_float(*placed)) node.error("its transformation gives the " + what + " no direction");
     return *placed;
 }
 
@@ -103,39 +103,68 @@ void choose_camera(const std::vector<PlacedCamera>& cameras, const std::optional
         description.scene.camera.model = orthographic(chosen.camera, description.film);
     else
         type.error("unknown camera " + in_quotes(type.text()) + "; expected 'perspective' or 'orthographic'");
-    description.scene.camera.world_from_camera = place_of(chosen.world_from_node, chosen.node);
+    CameraSettings& camera = description.scene.camera;
+    camera.world_from_camera = place_of(chosen.place.start, chosen.node, "camera");
+    if (!chosen.place.moves()) return;
+    const Transform end = place_of(chosen.place.end, chosen.node, "camera");
+    if (can_move(camera.world_from_camera, end, chosen.node))
+        camera.motion.emplace(camera.world_from_camera, end);
 }
 
 // Candela and lux are Montelux' own units: a light of RGB 1 and intensity 1 has 1 cd, and gives film RGB 1 as 1 cd/m^2.
-void add_light(const Value& light, const Matrix4& world_from_node, const Value& node, SceneBuilder& builder) {
+void add_light(const Value& light, const Placement& place, const Value& node, SceneBuilder& builder) {
     const Vec3f color = light.color("color", {1, 1, 1});
     const auto intensity = static_cast<float>(light.number("intensity", 1, 0));
     const Spectrum spectrum(RgbIlluminantSpectrum(RgbColorSpace::srgb(), color));
     const SceneSpectrum emitted = builder.add_spectrum(spectrum);
     const float scale = intensity * photometric_scale(spectrum);
-    const Vec3d origin = column(world_from_node, 3), z = column(world_from_node, 2);
-    const auto axis = [&] {
-        const Vec3d d = normalize(-z);
-        if (!is_finite(d)) node.error("its transformation gives the light no direction");
-        return Vec3f(d);
-    };
-    if (!fits_float(origin)) node.error("the light lies at infinity in world space");
+    const Vec3d origin = column(place.start, 3);
+    if (!fits_float(origin) || !fits_float(column(place.end, 3)))
+        node.error("the light lies at infinity in world space");
     const Value type = light.required("type");
     if (light.find("range"))
         light.diagnostics().warn_once("range", light.pointer(),
                                       "'range' is ignored: light reaches everywhere");
+    if (type.text() == "point") {
+        // It moves, but does not turn.
+        const Transform start = Transform::translate(origin),
+                        end = Transform::translate(column(place.end, 3));
+        const PointLight point{emitted, scale, {}};
+        if (start == end)
+            builder.add_light(point.moved(start), node.place());
+        else
+            builder.add_moving_light(point, start, end, node.place());
+        return;
+    }
+    // `make(origin, axis)`: of the world, or of its own space.
+    const auto add = [&](const auto& make) {
+        if (place.moves()) {
+            const Transform start = place_of(place.start, node, "light"),
+                            end = place_of(place.end, node, "light");
+            if (can_move(start, end, node)) {
+                builder.add_moving_light(make(Vec3f{0, 0, 0}, Vec3f{0, 0, 1}), start, end, node.place());
+                return;
+            }
+        }
+        const Vec3d axis = normalize(-column(place.start, 2));
+        if (!is_finite(axis)) node.error("its transformation gives the light no direction");
+        builder.add_light(make(Vec3f(origin), Vec3f(axis)), node.place());
+    };
     if (type.text() == "directional") {
-        builder.add_light(DistantLight{emitted, scale, -axis()}, node.place());
-    } else if (type.text() == "point") {
-        builder.add_light(PointLight{emitted, scale, Vec3f(origin)}, node.place());
+        add([&](Vec3f, Vec3f axis) { return DistantLight{emitted, scale, -axis}; });
     } else if (type.text() == "spot") {
         const std::optional<Value> spot = light.find("spot");
         const double inner = spot ? spot->number("innerConeAngle", 0, 0) : 0,
                      outer = spot ? spot->number("outerConeAngle", pi / 4, 0, pi / 2 * (1 + 1e-6)) : pi / 4;
         if (!(inner < outer)) spot->error("its inner cone is not narrower than its outer one");
-        builder.add_light(SpotLight{emitted, scale, Vec3f(origin), axis(),
-                                    static_cast<float>(std::cos(inner)), static_cast<float>(std::cos(outer))},
-                          node.place());
+        add([&](Vec3f position, Vec3f axis) {
+            return SpotLight{emitted,
+                             scale,
+                             position,
+                             axis,
+                             static_cast<float>(std::cos(inner)),
+                             static_cast<float>(std::cos(outer))};
+        });
     } else {
         type.error("unknown light " + in_quotes(type.text()) + "; expected 'directional', 'point' or 'spot'");
     }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "montelux/formats/gltf/document.h"
-#include "montelux/mc/math/transform.h"
+#include "montelux/formats/gltf/pose.h"
 #include "montelux/scene/build/scene_builder.h"
 #include "montelux/scene/render_settings.h"
 
@@ -16,7 +16,7 @@ namespace montelux::gltf {
 struct PlacedCamera {
     Value camera;
     std::string name; // its own, or that of its node; may be empty
-    Matrix4 world_from_node;
+    Placement place;
     Value node;
 };
 
@@ -26,6 +26,6 @@ void choose_camera(const std::vector<PlacedCamera>& cameras, const std::optional
                    const Value& root, SceneDescription& description);
 
 // A light of KHR_lights_punctual.
-void add_light(const Value& light, const Matrix4& world_from_node, const Value& node, SceneBuilder& builder);
+void add_light(const Value& light, const Placement& place, const Value& node, SceneBuilder& builder);
 
 } // namespace montelux::gltf

@@ -17,6 +17,8 @@ struct FeatureCoverage {
 
 // By area.
 std::span<const FeatureCoverage> feature_coverage();
+// Null for a name that the table does not have.
+const FeatureCoverage* find_feature(std::string_view name);
 // Whether a scene that requires the extension can be shown.
 bool is_supported_extension(std::string_view name);
 

@@ -1,5 +1,6 @@
 #include "montelux/formats/gltf/document.h"
 
+#include "montelux/formats/gltf/meshopt.h"
 #include "montelux/formats/gltf/uri.h"
 #include "montelux/mc/math/error.h"
 
@@ -53,13 +54,27 @@ std::span<const std::uint8_t> Document::buffer(const Value& index) {
 
 std::span<const std::uint8_t> Document::view(const Value& index) {
     const Value& view = refer(index, "bufferViews", "buffer view");
-    for (const char* compressed : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
-        if (view.extension(compressed))
-            view.error(std::string("is compressed by ") + compressed + ", which is not read");
-    const std::span<const std::uint8_t> bytes = buffer(view.required("buffer"));
-    const std::uint64_t offset = view.whole("byteOffset", 0), length = view.required("byteLength").whole();
+    if (view.extension("KHR_meshopt_compression"))
+        view.error("is compressed by KHR_meshopt_compression, which is not read");
+    if (const std::optional<Value> compressed = view.extension("EXT_meshopt_compression")) {
+        const std::uint64_t i = index.whole();
+        auto known = decoded_.find(i);
+        if (known == decoded_.end()) {
+            const MeshoptView meshopt = meshopt_view(*compressed, view.required("byteLength").whole());
+            charge(static_cast<double>(meshopt.bytes()), view);
+            known =
+                decoded_.emplace(i, decode_meshopt(meshopt, part_of_buffer(*compressed), *compressed)).first;
+        }
+        return known->second;
+    }
+    return part_of_buffer(view);
+}
+
+std::span<const std::uint8_t> Document::part_of_buffer(const Value& part) {
+    const std::span<const std::uint8_t> bytes = buffer(part.required("buffer"));
+    const std::uint64_t offset = part.whole("byteOffset", 0), length = part.required("byteLength").whole();
     if (offset > bytes.size() || length > bytes.size() - offset)
-        view.error("bytes " + std::to_string(offset) + " to " + std::to_string(offset + length) +
+        part.error("bytes " + std::to_string(offset) + " to " + std::to_string(offset + length) +
                    " are not within its buffer of " + std::to_string(bytes.size()) + " bytes");
     return bytes.subspan(offset, length);
 }

@@ -39,6 +39,9 @@ class Document {
     void charge(double bytes, const Value& at);
 
   private:
+    // What "buffer", "byteOffset" and "byteLength" of an object say.
+    std::span<const std::uint8_t> part_of_buffer(const Value& part);
+
     Value root_;
     const Container& container_;
     std::filesystem::path path_;
@@ -46,6 +49,7 @@ class Document {
     std::vector<std::filesystem::path>* files_read_;
     mutable std::map<std::string, std::vector<Value>, std::less<>> arrays_;
     std::map<std::uint64_t, std::vector<std::uint8_t>> buffers_;
+    std::map<std::uint64_t, std::vector<std::uint8_t>> decoded_; // buffer views that are compressed
     double bytes_read_ = 0, charged_ = 0;
 };
 

@@ -32,9 +32,12 @@ void check_asset(const gltf::Value& root) {
 
 void check_extensions(const gltf::Value& root) {
     for (const gltf::Value& name : root.elements("extensionsRequired"))
-        if (!gltf::is_supported_extension(name.text()))
+        if (!gltf::is_supported_extension(name.text())) {
+            const gltf::FeatureCoverage* const known = gltf::find_feature(name.text());
             name.error("the scene requires the extension " + gltf::in_quotes(name.text()) +
-                       ", which is not supported");
+                       ", which is not supported" +
+                       (known != nullptr && !known->note.empty() ? ": " + std::string(known->note) : ""));
+        }
     std::string unknown;
     for (const gltf::Value& name : root.elements("extensionsUsed"))
         if (!gltf::is_supported_extension(name.text()))

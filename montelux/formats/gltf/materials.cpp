@@ -90,8 +90,8 @@ Index medium_of(const Value& source, SceneBuilder& builder) {
 } // namespace
 
 MaterialLibrary::MaterialLibrary(Document& document, SceneBuilder& builder,
-                                 const std::optional<std::string>& variant)
-    : document_(document), builder_(builder), textures_(document, builder),
+                                 const std::optional<std::string>& variant, bool pictures)
+    : document_(document), builder_(builder), textures_(document, builder, pictures),
       variant_(find_variant(document.root(), variant)) {}
 
 std::optional<Value> MaterialLibrary::material_of(const Value& primitive) const {
@@ -120,7 +120,8 @@ SurfaceLook MaterialLibrary::make(const std::optional<Value>& given, const Verte
         source.find("pbrMetallicRoughness").value_or(Value(no_json(), "", document_.diagnostics()));
     const bool two_sided = source.boolean("doubleSided", false);
     SurfaceLook look;
-    look.uv_set = uv_set_of(source);
+    look.uv_sets = uv_sets_of(source);
+    textures_.use(look.uv_sets);
     look.alpha = alpha_of(source, base, textures_, builder_, vertices);
     Material material;
     if (source.extension("KHR_materials_unlit")) {

@@ -20,13 +20,14 @@ struct SurfaceLook {
     FloatParameter alpha{1};
     std::optional<Emission> emission{};
     Index medium_inside = no_index;
-    std::uint64_t uv_set = 0; // which texture coordinates its textures use
+    UvSets uv_sets{};
 };
 
 class MaterialLibrary {
   public:
-    // `variant`: of KHR_materials_variants; an Error if the file does not have it.
-    MaterialLibrary(Document& document, SceneBuilder& builder, const std::optional<std::string>& variant);
+    // `variant`: of KHR_materials_variants; an Error if the file does not have it. `pictures`: LoadOptions::pictures.
+    MaterialLibrary(Document& document, SceneBuilder& builder, const std::optional<std::string>& variant,
+                    bool pictures);
 
     // That of a primitive, made at the first call. Valid as long as the library.
     const SurfaceLook& of(const Value& primitive);

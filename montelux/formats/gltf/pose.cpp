@@ -1,9 +1,11 @@
 #include "montelux/formats/gltf/pose.h"
 
 #include <cmath>
+#include <optional>
 #include <string>
 
-#include "montelux/formats/gltf/animation.h"
+#include "montelux/mc/math/error.h"
+#include "montelux/scene/shape/motion.h"
 
 namespace montelux::gltf {
 namespace {
@@ -82,7 +84,17 @@ Matrix4 matrix_of_columns(const std::vector<double>& columns) {
     return m;
 }
 
-Pose::Pose(Document& document, std::optional<double> time) {
+bool can_move(const Transform& start, const Transform& end, const Value& node) {
+    try {
+        Motion(start, end);
+        return true;
+    } catch (const Error&) {
+        node.warn("is flat at a moment while the shutter is open, or mirrored: it stands still meanwhile");
+        return false;
+    }
+}
+
+Pose::Pose(Document& document, const std::vector<Channel>& channels, double time) {
     const std::vector<Value>& nodes = document.all("nodes");
     std::vector<LocalPlace> places;
     places.reserve(nodes.size());
@@ -101,23 +113,20 @@ Pose::Pose(Document& document, std::optional<double> time) {
             children_[i].push_back(c);
         }
     }
-    if (time) {
-        for (const Channel& channel : channels_of(document)) {
-            const std::vector<double> value =
-                value_at(document, channel, *time, weights_[channel.node].size());
-            LocalPlace& place = places[channel.node];
-            if (channel.path == "translation")
-                assign(value, place.translation);
-            else if (channel.path == "rotation")
-                assign(value, place.rotation);
-            else if (channel.path == "scale")
-                assign(value, place.scale);
-            else
-                weights_[channel.node] = value;
-            if (channel.path != "weights" && place.matrix)
-                nodes[channel.node].error(
-                    "is animated, and has a matrix; expected translation, rotation and scale");
-        }
+    for (const Channel& channel : channels) {
+        const std::vector<double> value = value_at(document, channel, time, weights_[channel.node].size());
+        LocalPlace& place = places[channel.node];
+        if (channel.path == "translation")
+            assign(value, place.translation);
+        else if (channel.path == "rotation")
+            assign(value, place.rotation);
+        else if (channel.path == "scale")
+            assign(value, place.scale);
+        else
+            weights_[channel.node] = value;
+        if (channel.path != "weights" && place.matrix)
+            nodes[channel.node].error(
+                "is animated, and has a matrix; expected translation, rotation and scale");
     }
     // Parents before children.
     world_.resize(nodes.size());

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
+#include "montelux/formats/gltf/animation.h"
 #include "montelux/formats/gltf/document.h"
 #include "montelux/mc/math/transform.h"
 
@@ -16,10 +16,21 @@ Matrix4 matrix_of(const std::array<double, 3>& translation, const std::array<dou
 // 16 numbers, column by column.
 Matrix4 matrix_of_columns(const std::vector<double>& columns);
 
+// From a node to the world, when the shutter opens and when it closes.
+struct Placement {
+    Matrix4 start, end;
+
+    bool moves() const { return start.m != end.m; }
+};
+
+// Whether there is a motion between the two, which differ; otherwise warns that the node stands still.
+bool can_move(const Transform& start, const Transform& end, const Value& node);
+
 class Pose {
   public:
-    // `time`: of the animations, seconds; none: at rest. Errors: nodes that are children of two, or of themselves.
-    Pose(Document& document, std::optional<double> time);
+    // `channels`: of animations, shown at `time`, seconds; none: at rest. Errors: nodes that are children of two, or of
+    // themselves.
+    Pose(Document& document, const std::vector<Channel>& channels, double time);
 
     // From the node to the world.
     const Matrix4& world(std::size_t node) const { return world_[node]; }

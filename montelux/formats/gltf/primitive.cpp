@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <list>
 #include <string>
 #include <utility>
 
 #include "montelux/formats/gltf/accessor.h"
+#include "montelux/formats/gltf/draco.h"
 
 namespace montelux::gltf {
 namespace {
@@ -38,7 +40,7 @@ class PrimitiveReader {
     PrimitiveReader(Document& document, const Value& primitive)
         : document_(document), primitive_(primitive), attributes_(primitive.required("attributes")) {}
 
-    std::optional<TriangleMesh> read(std::uint64_t uv_set, const Deformation& deformation) {
+    std::optional<TriangleMesh> read(const UvSets& uv_sets, const Deformation& deformation) {
         const std::uint64_t mode = primitive_.whole("mode", triangles);
         if (mode > triangle_fan)
             primitive_.required("mode").error("mode " + std::to_string(mode) + " is above 6");
@@ -51,8 +53,9 @@ class PrimitiveReader {
             primitive_.warn("has no POSITION: it is not rendered");
             return std::nullopt;
         }
-        const Accessor positions = open_accessor(document_, *position, {"VEC3"});
-        count_ = positions.count;
+        count_ = open_accessor(document_, *position, {"VEC3"}).count;
+        open_draco();
+        const Accessor positions = *attribute("POSITION", {"VEC3"});
         read_indices_of(mode);
         if (mesh_.indices.empty()) return std::move(mesh_);
         mesh_.positions = read_vec3(document_, positions, chosen_);
@@ -61,10 +64,8 @@ class PrimitiveReader {
         if (!mesh_.normals.empty())
             if (const auto a = attribute("TANGENT", {"VEC4"}))
                 mesh_.tangents = read_vec3(document_, *a, chosen_);
-        if (const auto a = attribute("TEXCOORD_" + std::to_string(uv_set), {"VEC2"}))
-            mesh_.uvs = read_elements<2>(
-                document_, *a, [](const std::array<float, 2>& v) { return Point2f(v[0], 1 - v[1]); },
-                chosen_);
+        mesh_.uvs = read_uvs(uv_sets.first);
+        if (uv_sets.second) mesh_.second_uvs = read_uvs(*uv_sets.second);
         if (const auto a = attribute("COLOR_0", {"VEC3", "VEC4"})) read_colors(*a);
         morph(deformation.weights);
         if (!deformation.joints.empty()) skin(deformation.joints);
@@ -72,9 +73,30 @@ class PrimitiveReader {
     }
 
   private:
+    // Of a compressed primitive, where its attributes lie.
+    void open_draco() {
+        const std::optional<Value> compressed = primitive_.extension("KHR_draco_mesh_compression");
+        if (!compressed) return;
+        const Value view = compressed->required("bufferView");
+        const std::optional<Value> index = primitive_.find("indices");
+        const std::size_t corners = index ? open_accessor(document_, *index, {"SCALAR"}).count : count_;
+        document_.charge(static_cast<double>(corners) * sizeof(Index), *compressed);
+        draco_.emplace(document_.view(view), count_, corners / 3, *compressed);
+        draco_attributes_ = compressed->required("attributes");
+    }
+
     std::optional<Accessor> attribute(const std::string& name,
                                       std::initializer_list<std::string_view> types) {
-        return attribute(attributes_, name, types);
+        std::optional<Accessor> a = attribute(attributes_, name, types);
+        if (!a || !draco_) return a;
+        const std::optional<Value> id = draco_attributes_->find(name);
+        if (!id) return a;
+        document_.charge(static_cast<double>(a->count * a->element_bytes), *id);
+        unpacked_.push_back(draco_->attribute(id->whole(), *a, *id));
+        a->bytes = unpacked_.back();
+        a->stride = a->element_bytes;
+        a->sparse.reset();
+        return a;
     }
     std::optional<Accessor> attribute(const Value& set, const std::string& name,
                                       std::initializer_list<std::string_view> types) {
@@ -89,6 +111,11 @@ class PrimitiveReader {
 
     void read_indices_of(std::uint64_t mode) {
         std::vector<Index>& v = mesh_.indices;
+        if (draco_) {
+            v = draco_->indices();
+            if (v.size() < count_) choose_vertices();
+            return;
+        }
         if (const std::optional<Value> index = primitive_.find("indices")) {
             v = read_indices(document_, open_accessor(document_, *index, {"SCALAR"}));
             for (std::size_t i = 0; i < v.size(); ++i)
@@ -111,6 +138,13 @@ class PrimitiveReader {
         chosen_.erase(std::unique(chosen_.begin(), chosen_.end()), chosen_.end());
         for (Index& v : mesh_.indices)
             v = static_cast<Index>(std::lower_bound(chosen_.begin(), chosen_.end(), v) - chosen_.begin());
+    }
+
+    std::vector<Point2f> read_uvs(std::uint64_t set) {
+        const auto a = attribute("TEXCOORD_" + std::to_string(set), {"VEC2"});
+        if (!a) return {};
+        return read_elements<2>(
+            document_, *a, [](const std::array<float, 2>& v) { return Point2f(v[0], 1 - v[1]); }, chosen_);
     }
 
     void read_colors(const Accessor& a) {
@@ -195,6 +229,9 @@ class PrimitiveReader {
     Document& document_;
     const Value& primitive_;
     Value attributes_;
+    std::optional<DracoMesh> draco_;
+    std::optional<Value> draco_attributes_;
+    std::list<std::vector<std::uint8_t>> unpacked_; // attributes, which accessors refer to
     std::size_t count_ = 0;
     std::vector<Index> chosen_; // in growing order; empty: all vertices
     TriangleMesh mesh_;
@@ -202,11 +239,9 @@ class PrimitiveReader {
 
 } // namespace
 
-std::optional<TriangleMesh> read_primitive(Document& document, const Value& primitive, std::uint64_t uv_set,
+std::optional<TriangleMesh> read_primitive(Document& document, const Value& primitive, const UvSets& uv_sets,
                                            const Deformation& deformation) {
-    if (primitive.extension("KHR_draco_mesh_compression"))
-        primitive.error("is compressed by KHR_draco_mesh_compression, which is not read");
-    return PrimitiveReader(document, primitive).read(uv_set, deformation);
+    return PrimitiveReader(document, primitive).read(uv_sets, deformation);
 }
 
 VertexColorKinds vertex_colors_of(Document& document, const Value& primitive) {

@@ -18,8 +18,13 @@ constexpr double instance_bytes = 400;
 
 SceneReader::SceneReader(Document& document, SceneDescription& description, const LoadOptions& options)
     : document_(document), description_(description), options_(options),
-      builder_(description.scene, document.diagnostics()), materials_(document, builder_, options.variant),
-      pose_(document, options.time) {
+      builder_(description.scene, document.diagnostics()),
+      materials_(document, builder_, options.variant, options.pictures),
+      channels_(options.time ? channels_of(document) : std::vector<Channel>()),
+      pose_(document, channels_, options.time.value_or(0)) {
+    if (options.shutter > 0 && !channels_.empty())
+        end_pose_.emplace(document, channels_, *options.time + options.shutter);
+    description.animation_end = gltf::end_of(document, channels_);
     if (const std::optional<Value> all = document.root().extension("KHR_lights_punctual"))
         lights_ = all->elements("lights");
 }
@@ -69,14 +74,14 @@ void SceneReader::visit(std::size_t i) {
     const Value& node = document_.all("nodes")[i];
     if (const std::optional<Value> index = node.find("camera")) {
         const Value& camera = document_.refer(*index, "cameras", "camera");
-        cameras_.push_back({camera, node.text("name", camera.text("name", "")), pose_.world(i), node});
+        cameras_.push_back({camera, node.text("name", camera.text("name", "")), place_of(i), node});
     }
     if (const std::optional<Value> extension = node.extension("KHR_lights_punctual")) {
         const Value index = extension->required("light");
         if (index.whole() >= lights_.size())
             index.error("light " + std::to_string(index.whole()) + " does not exist (there are " +
                         std::to_string(lights_.size()) + ")");
-        add_light(lights_[index.whole()], pose_.world(i), node, builder_);
+        add_light(lights_[index.whole()], place_of(i), node, builder_);
         description_.has_lights = true;
     }
     const std::optional<Value> mesh = node.find("mesh");
@@ -85,7 +90,7 @@ void SceneReader::visit(std::size_t i) {
     if (const std::optional<Value> instancing = node.extension("EXT_mesh_gpu_instancing"))
         add_gpu_instances(*instancing, i, mesh->whole());
     else
-        uses_[mesh->whole()].push_back({i, pose_.world(i)});
+        uses_[mesh->whole()].push_back({i, place_of(i)});
 }
 
 void SceneReader::add_gpu_instances(const Value& instancing, std::size_t node, std::uint64_t mesh) {
@@ -118,7 +123,7 @@ void SceneReader::add_gpu_instances(const Value& instancing, std::size_t node, s
             matrix_of(translations.empty() ? std::array<double, 3>{0, 0, 0} : doubles(translations[k]),
                       rotations.empty() ? std::array<double, 4>{0, 0, 0, 1} : doubles(rotations[k]),
                       scales.empty() ? std::array<double, 3>{1, 1, 1} : doubles(scales[k]));
-        uses_[mesh].push_back({node, pose_.world(node) * place});
+        uses_[mesh].push_back({node, {pose_.world(node) * place, end_pose().world(node) * place}});
     }
 }
 
@@ -129,53 +134,61 @@ void SceneReader::place_meshes() {
         const Value& mesh = meshes[number];
         std::vector<MeshUse> plain;
         for (const MeshUse& use : uses) {
-            const std::vector<double>& weights = pose_.weights(use.node);
-            const bool morphed = std::ranges::any_of(weights, [](double w) { return w != 0; });
-            if (morphed || nodes[use.node].find("skin"))
+            const auto morphs = [&](const Pose& pose) {
+                return std::ranges::any_of(pose.weights(use.node), [](double w) { return w != 0; });
+            };
+            if (morphs(pose_) || morphs(end_pose()) || nodes[use.node].find("skin"))
                 place_deformed(mesh, use);
             else
                 plain.push_back(use);
         }
         if (plain.size() == 1)
             for (const Value& primitive : mesh.elements("primitives"))
-                add_to_world(mesh, primitive, plain.front(), {});
+                add_to_world(mesh, primitive, plain.front(), {}, {});
         else if (!plain.empty())
             place_object(mesh, mesh.text("name", "mesh") + ' ' + std::to_string(number), plain);
     }
 }
 
-std::vector<Matrix4> SceneReader::joints_of(const Value& node) {
+SceneReader::Joints SceneReader::joints_of(const Value& node) {
     const std::optional<Value> index = node.find("skin");
     if (!index) return {};
     const Value& skin = document_.refer(*index, "skins", "skin");
-    std::vector<Matrix4> joints;
+    Joints joints;
     for (const Value& joint : skin.elements("joints")) {
         document_.refer(joint, "nodes", "node");
-        joints.push_back(pose_.world(joint.whole()));
+        const Placement place = place_of(joint.whole());
+        joints.start.push_back(place.start);
+        joints.end.push_back(place.end);
     }
-    if (joints.empty()) skin.error("has no joints");
+    const std::size_t count = joints.start.size();
+    if (count == 0) skin.error("has no joints");
     if (const std::optional<Value> inverse = skin.find("inverseBindMatrices")) {
         const auto matrices = read_elements<16>(document_, open_accessor(document_, *inverse, {"MAT4"}),
                                                 [](const std::array<float, 16>& v) { return v; });
-        if (matrices.size() < joints.size())
+        if (matrices.size() < count)
             inverse->error("has " + std::to_string(matrices.size()) + " matrices for " +
-                           std::to_string(joints.size()) + " joints");
-        for (std::size_t i = 0; i < joints.size(); ++i)
-            joints[i] = joints[i] * matrix_of_columns({matrices[i].begin(), matrices[i].end()});
+                           std::to_string(count) + " joints");
+        for (std::size_t i = 0; i < count; ++i) {
+            const Matrix4 bind = matrix_of_columns({matrices[i].begin(), matrices[i].end()});
+            joints.start[i] = joints.start[i] * bind;
+            joints.end[i] = joints.end[i] * bind;
+        }
     }
     return joints;
 }
 
 void SceneReader::place_deformed(const Value& mesh, const MeshUse& use) {
-    const std::vector<Matrix4> joints = joints_of(document_.all("nodes")[use.node]);
+    const Joints joints = joints_of(document_.all("nodes")[use.node]);
     // The joints alone place a skinned mesh: section 3.7.3.2.
-    const MeshUse placed{use.node, joints.empty() ? use.world_from_mesh : Matrix4()};
+    const MeshUse placed{use.node, joints.start.empty() ? use.place : Placement()};
     for (const Value& primitive : mesh.elements("primitives"))
-        add_to_world(mesh, primitive, placed, {pose_.weights(use.node), joints});
+        add_to_world(mesh, primitive, placed, {pose_.weights(use.node), joints.start},
+                     {end_pose().weights(use.node), joints.end});
 }
 
-std::optional<Transform> SceneReader::invertible(const MeshUse& use) {
-    std::optional<Transform> t = Transform::from_matrix(use.world_from_mesh);
+std::optional<Transform> SceneReader::start_of(const MeshUse& use) {
+    std::optional<Transform> t = Transform::from_matrix(use.place.start);
     if (!t) {
         const Value& node = document_.all("nodes")[use.node];
         node.warn("its transformation has no inverse: its mesh is not shown");
@@ -183,28 +196,52 @@ std::optional<Transform> SceneReader::invertible(const MeshUse& use) {
     return t;
 }
 
-void SceneReader::add_to_world(const Value& mesh, const Value& primitive, const MeshUse& use,
-                               const Deformation& deformation) {
-    const std::optional<Transform> world_from_mesh = invertible(use);
-    if (!world_from_mesh) return;
-    const SurfaceLook& look = materials_.of(primitive);
-    std::optional<TriangleMesh> triangles = read_primitive(document_, primitive, look.uv_set, deformation);
-    if (!triangles) return;
-    transform_mesh(*triangles, *world_from_mesh);
-    add_shape(*std::move(triangles), mesh, primitive, look, world_from_mesh->swaps_handedness());
+std::optional<Transform> SceneReader::end_of(const MeshUse& use, const Transform& start) {
+    if (!use.place.moves()) return std::nullopt;
+    // One without an inverse has no motion to it either.
+    const Transform end = Transform::from_matrix(use.place.end).value_or(Transform(use.place.end, {}));
+    if (!can_move(start, end, document_.all("nodes")[use.node])) return std::nullopt;
+    return end;
 }
 
-void SceneReader::add_shape(TriangleMesh triangles, const Value& mesh, const Value& primitive,
-                            const SurfaceLook& look, bool flipped) {
-    if (triangles.indices.empty()) return;
+std::optional<TriangleMesh> SceneReader::read_deformed(const Value& primitive, const SurfaceLook& look,
+                                                       const Deformation& at_start,
+                                                       const Deformation& at_end) {
+    std::optional<TriangleMesh> mesh = read_primitive(document_, primitive, look.uv_sets, at_start);
+    if (!mesh || mesh->indices.empty()) return std::nullopt;
+    if (at_start == at_end) return mesh;
+    std::optional<TriangleMesh> end = read_primitive(document_, primitive, look.uv_sets, at_end);
+    mesh->end_positions = std::move(end->positions);
+    mesh->end_normals = std::move(end->normals);
+    mesh->tangents.clear(); // a mesh that deforms has none
+    return mesh;
+}
+
+void SceneReader::add_to_world(const Value& mesh, const Value& primitive, const MeshUse& use,
+                               const Deformation& at_start, const Deformation& at_end) {
+    const std::optional<Transform> start = start_of(use);
+    if (!start) return;
+    const SurfaceLook& look = materials_.of(primitive);
+    std::optional<TriangleMesh> triangles = read_deformed(primitive, look, at_start, at_end);
+    if (!triangles) return;
+    ShapeSettings settings = settings_of(mesh, look);
+    if (const std::optional<Transform> end = end_of(use, *start)) {
+        builder_.add_moving_shape(*std::move(triangles), settings, *start, *end, primitive.place());
+        return;
+    }
+    transform_mesh(*triangles, *start);
+    settings.flip_normal = start->swaps_handedness();
+    builder_.add_shape(*std::move(triangles), settings, primitive.place());
+}
+
+ShapeSettings SceneReader::settings_of(const Value& mesh, const SurfaceLook& look) const {
     ShapeSettings settings;
     settings.material = look.material;
     settings.alpha = look.alpha;
-    settings.flip_normal = flipped;
     if (look.emission) settings.emission = &*look.emission;
     settings.media.inside = look.medium_inside;
     settings.name = mesh.text("name", "");
-    builder_.add_shape(std::move(triangles), settings, primitive.place());
+    return settings;
 }
 
 void SceneReader::place_object(const Value& mesh, const std::string& name, const std::vector<MeshUse>& uses) {
@@ -216,18 +253,19 @@ void SceneReader::place_object(const Value& mesh, const std::string& name, const
             emitters.push_back(primitive);
             continue;
         }
-        std::optional<TriangleMesh> triangles = read_primitive(document_, primitive, look.uv_set, {});
-        if (!triangles || triangles->indices.empty()) continue;
+        std::optional<TriangleMesh> triangles = read_deformed(primitive, look, {}, {});
+        if (!triangles) continue;
         if (!std::exchange(is_open, true)) builder_.begin_object(name, mesh.place());
-        add_shape(*std::move(triangles), mesh, primitive, look, false);
+        builder_.add_shape(*std::move(triangles), settings_of(mesh, look), primitive.place());
     }
     if (is_open) builder_.end_object();
     for (const MeshUse& use : uses) {
         if (is_open) {
-            if (const std::optional<Transform> t = invertible(use))
-                builder_.add_instance(name, *t, document_.all("nodes")[use.node].place());
+            if (const std::optional<Transform> start = start_of(use))
+                builder_.add_instance(name, *start, end_of(use, *start).value_or(*start),
+                                      document_.all("nodes")[use.node].place());
         }
-        for (const Value& primitive : emitters) add_to_world(mesh, primitive, use, {});
+        for (const Value& primitive : emitters) add_to_world(mesh, primitive, use, {}, {});
     }
 }
 

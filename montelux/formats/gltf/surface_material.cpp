@@ -16,10 +16,10 @@ Vec3f base_color_factor(const Value& base) {
     return Vec3f(Vec3d(f[0], f[1], f[2]));
 }
 
-// Members that end in "Texture".
+// Members that end in "Texture", but for one that has no effect.
 void add_textures(const Value& object, std::vector<Value>& found) {
     for (const std::string& key : object.keys())
-        if (key.ends_with("Texture")) found.push_back(object.required(key));
+        if (key.ends_with("Texture") && key != "occlusionTexture") found.push_back(object.required(key));
 }
 
 // Every textureInfo of a material: its own, and those of its extensions.
@@ -35,18 +35,24 @@ std::vector<Value> textures_of(const Value& source) {
 
 } // namespace
 
-std::uint64_t uv_set_of(const Value& source) {
+UvSets uv_sets_of(const Value& source) {
     const std::vector<Value> found = textures_of(source);
-    if (found.empty()) return 0;
+    if (found.empty()) return {};
     const Value* chosen = &found.front();
+    const bool emits = !source.extension("KHR_materials_unlit") && source.find("emissiveTexture");
     for (const Value& info : found)
-        if (info.pointer().ends_with("/baseColorTexture")) chosen = &info;
-    const std::uint64_t set = TextureLibrary::uv_set(*chosen);
-    for (const Value& info : found)
-        if (TextureLibrary::uv_set(info) != set)
-            info.warn("uses TEXCOORD_" + std::to_string(TextureLibrary::uv_set(info)) +
-                      "; the material's textures all use TEXCOORD_" + std::to_string(set));
-    return set;
+        if (info.pointer().ends_with(emits ? "/emissiveTexture" : "/baseColorTexture")) chosen = &info;
+    UvSets sets{TextureLibrary::uv_set(*chosen), {}};
+    for (const Value& info : found) {
+        const std::uint64_t set = TextureLibrary::uv_set(info);
+        if (set == sets.first || set == sets.second) continue;
+        if (sets.second)
+            info.warn("uses TEXCOORD_" + std::to_string(set) +
+                      ", the third set of the material; it gets TEXCOORD_" + std::to_string(sets.first));
+        else
+            sets.second = set;
+    }
+    return sets;
 }
 
 namespace {

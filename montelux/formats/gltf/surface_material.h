@@ -1,8 +1,6 @@
 // make_surface_material: what a glTF material scatters.
 #pragma once
 
-#include <cstdint>
-
 #include "montelux/formats/gltf/textures.h"
 #include "montelux/formats/gltf/value.h"
 #include "montelux/scene/material/material.h"
@@ -13,8 +11,8 @@ namespace montelux::gltf {
 Material make_surface_material(const Value& source, const Value& base, TextureLibrary& textures,
                                SceneBuilder& builder, bool vertices);
 
-// The set of texture coordinates of its textures; warns where they use several, of which the base colour's, or else the
-// first one's, is used for all.
-std::uint64_t uv_set_of(const Value& source);
+// The sets of texture coordinates of its textures; the first is that of the picture that emits, or else of the base
+// colour's. Warns where they use more than two: the others' textures use the first.
+UvSets uv_sets_of(const Value& source);
 
 } // namespace montelux::gltf

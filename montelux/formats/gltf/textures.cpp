@@ -87,8 +87,10 @@ std::uint64_t TextureLibrary::uv_set(const Value& info) {
 }
 
 Value TextureLibrary::source_of(const Value& texture) {
-    if (const std::optional<Value> source = texture.find("source"))
-        return document_.refer(*source, "images", "image");
+    if (reads_webp())
+        if (const std::optional<Value> webp = texture.extension("EXT_texture_webp"))
+            return webp->required("source");
+    if (const std::optional<Value> source = texture.find("source")) return *source;
     for (const char* name :
          {"EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif"})
         if (texture.extension(name))
@@ -98,7 +100,9 @@ Value TextureLibrary::source_of(const Value& texture) {
     texture.error("has no 'source'");
 }
 
-Image TextureLibrary::read_picture(const Value& source) {
+Image TextureLibrary::read_picture(const Value& index) {
+    if (!pictures_) return {1, 1, {"R", "G", "B"}, PixelFormat::u8, ColorEncoding::srgb()};
+    const Value& source = document_.refer(index, "images", "image");
     std::vector<std::uint8_t> read;
     std::span<const std::uint8_t> bytes;
     std::string name = source.diagnostics().file() + ": " + source.pointer();
@@ -121,7 +125,7 @@ Image TextureLibrary::read_picture(const Value& source) {
 
 Index TextureLibrary::image(const Value& texture, Use use) {
     const Value source = source_of(texture);
-    const std::uint64_t number = texture.required("source").whole();
+    const std::uint64_t number = source.whole();
     if (const auto known = images_.find({number, use}); known != images_.end()) return known->second;
     Image picture = read_picture(source);
     const bool integers = picture.format() == PixelFormat::u8 || picture.format() == PixelFormat::u16;
@@ -129,7 +133,8 @@ Index TextureLibrary::image(const Value& texture, Use use) {
         picture = alpha_channel_of(picture);
     else if (integers && use == Use::linear)
         picture.set_encoding(ColorEncoding::linear());
-    return images_[{number, use}] = builder_.add_image(std::move(picture), "the picture", source.place());
+    return images_[{number, use}] = builder_.add_image(std::move(picture), "the picture",
+                                                       document_.refer(source, "images", "image").place());
 }
 
 // The filter of magnification decides: a path is seen through few pixels, and minification is always filtered.
@@ -153,6 +158,7 @@ ImageTexture TextureLibrary::texture(const Value& info, Use use) {
     ImageTexture t;
     t.image = image(texture, use);
     t.mapping = mapping_of(info);
+    t.mapping.second_uv = sets_.second && uv_set(info) == *sets_.second;
     read_sampler(texture, t);
     return t;
 }

@@ -12,11 +12,18 @@
 
 namespace montelux::gltf {
 
+// The sets of texture coordinates that a material's textures use, n of TEXCOORD_n.
+struct UvSets {
+    std::uint64_t first = 0; // of pictures that emit, too
+    std::optional<std::uint64_t> second{};
+};
+
 // A textureInfo object is `info`; without one the value is the factor alone. `vertices`: times the colours of vertices.
 class TextureLibrary {
   public:
-    // Both must outlive it.
-    TextureLibrary(Document& document, SceneBuilder& builder) : document_(document), builder_(builder) {}
+    // Both must outlive it. `pictures`: LoadOptions::pictures.
+    TextureLibrary(Document& document, SceneBuilder& builder, bool pictures)
+        : document_(document), builder_(builder), pictures_(pictures) {}
 
     // A linear factor times an sRGB picture.
     SpectrumParameter color(const std::optional<Value>& info, Vec3f factor, RgbMeaning meaning,
@@ -31,6 +38,8 @@ class TextureLibrary {
 
     // n of TEXCOORD_n.
     static std::uint64_t uv_set(const Value& info);
+    // Of the textures to come: those of the second set are mapped by it, all others by the first.
+    void use(const UvSets& sets) { sets_ = sets; }
 
   private:
     // What is taken of a file's picture.
@@ -38,13 +47,15 @@ class TextureLibrary {
 
     ImageTexture texture(const Value& info, Use use);
     Index image(const Value& source, Use use);
-    Image read_picture(const Value& source);
-    // The image that a texture shows. Errors: only one in a format that is not read.
+    Image read_picture(const Value& index);
+    // The index of the image that a texture shows. Errors: only one in a format that is not read.
     Value source_of(const Value& texture);
     void read_sampler(const Value& texture, ImageTexture& to);
 
     Document& document_;
     SceneBuilder& builder_;
+    bool pictures_;
+    UvSets sets_;
     std::map<std::pair<std::uint64_t, Use>, Index> images_;
 };
 

@@ -5,12 +5,18 @@
 namespace montelux::pbrt {
 namespace {
 
+std::vector<Point2f> read_pairs(ParameterReader& r, std::string_view name) {
+    const std::span<const float> numbers = r.numbers(name, ParameterType::point2, 2);
+    std::vector<Point2f> pairs;
+    pairs.reserve(numbers.size() / 2);
+    for (std::size_t i = 0; i < numbers.size(); i += 2) pairs.emplace_back(numbers[i], numbers[i + 1]);
+    return pairs;
+}
+
 template <typename Mesh>
 void read_values(ParameterReader& r, Mesh& mesh) {
     mesh.normals = r.triples("N", ParameterType::normal);
-    const std::span<const float> uv = r.numbers("uv", ParameterType::point2, 2);
-    mesh.uvs.reserve(uv.size() / 2);
-    for (std::size_t i = 0; i < uv.size(); i += 2) mesh.uvs.emplace_back(uv[i], uv[i + 1]);
+    mesh.uvs = read_pairs(r, "uv");
     const auto drop_unless_one_a_vertex = [&](auto& values, std::string_view name) {
         if (values.empty() || values.size() == mesh.positions.size()) return;
         r.diagnostics().warn(r.at(name), "parameter " + in_quotes(name) + " has " +
@@ -26,6 +32,8 @@ void read_values(ParameterReader& r, Mesh& mesh) {
         drop_unless_one_a_vertex(mesh.tangents, "S");
     }
     if constexpr (requires { mesh.colors; }) {
+        mesh.second_uvs = read_pairs(r, "uv2");
+        drop_unless_one_a_vertex(mesh.second_uvs, "uv2");
         mesh.colors = r.triples("colors", ParameterType::rgb);
         drop_unless_one_a_vertex(mesh.colors, "colors");
         const std::span<const float> opacities = r.numbers("opacities", ParameterType::floating);

@@ -5,32 +5,21 @@
 namespace montelux::pbrt {
 namespace {
 
-constexpr std::string_view shape_parameters[] = {"N",
-                                                 "P",
-                                                 "S",
-                                                 "alpha",
-                                                 "basis",
-                                                 "degree",
-                                                 "displacement",
-                                                 "edgelength",
-                                                 "emissionfilename",
-                                                 "faceIndices",
-                                                 "filename",
-                                                 "height",
-                                                 "indices",
-                                                 "innerradius",
-                                                 "levels",
-                                                 "name",
-                                                 "phimax",
-                                                 "radius",
-                                                 "scheme",
-                                                 "splitdepth",
-                                                 "type",
-                                                 "uv",
-                                                 "width",
-                                                 "width0",
-                                                 "width1",
-                                                 "zmax",
+constexpr std::string_view shape_parameters[] = {"N",           "P",
+                                                 "S",           "alpha",
+                                                 "basis",       "colors",
+                                                 "degree",      "displacement",
+                                                 "edgelength",  "emissionfilename",
+                                                 "faceIndices", "filename",
+                                                 "height",      "indices",
+                                                 "innerradius", "levels",
+                                                 "name",        "opacities",
+                                                 "phimax",      "radius",
+                                                 "scheme",      "splitdepth",
+                                                 "type",        "uv",
+                                                 "uv2",         "vertexcolors",
+                                                 "width",       "width0",
+                                                 "width1",      "zmax",
                                                  "zmin"};
 
 constexpr std::string_view light_parameters[] = {
@@ -140,12 +129,11 @@ constexpr std::string_view medium_parameters[] = {"Le",
                                                   "wispiness"};
 
 constexpr std::string_view texture_parameters[] = {
-    "amount",       "channel",     "dimension", "dir",    "edge",    "encoding",      "factor",
-    "filename",     "filter",      "inside",    "invert", "mapping", "maxanisotropy", "octaves",
-    "outside",      "righthanded", "roughness", "scale",  "sharp",   "swrap",         "tex",
-    "tex1",         "tex2",        "twrap",     "udelta", "uscale",  "v00",           "v01",
-    "v1",           "v10",         "v11",       "v2",     "value",   "variation",     "vdelta",
-    "vertexcolors", "vscale",      "wrap"};
+    "amount",    "channel", "dimension", "dir",     "edge",          "encoding", "factor",  "filename",
+    "filter",    "inside",  "invert",    "mapping", "maxanisotropy", "octaves",  "outside", "righthanded",
+    "roughness", "scale",   "seconduv",  "sharp",   "swrap",         "tex",      "tex1",    "tex2",
+    "twrap",     "udelta",  "uscale",    "v00",     "v01",           "v1",       "v10",     "v11",
+    "v2",        "value",   "variation", "vdelta",  "vertexcolors",  "vscale",   "wrap"};
 
 } // namespace
 

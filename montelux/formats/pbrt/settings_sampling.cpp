@@ -76,6 +76,25 @@ SamplerSettings read_sampler(const Plugin& plugin, Diagnostics& diagnostics, std
     return s;
 }
 
+namespace {
+
+// Those of Montelux that pbrt-v4 does not know.
+void read_own_settings(ParameterReader& r, IntegratorSettings& s) {
+    if (r.choice("environmentlookup", {"nearest", "bilinear"}, "nearest") == "bilinear")
+        s.environment_lookup = EnvironmentLookup::bilinear;
+    if (r.choice("microfacetscattering", {"single", "multiple"}, "single") == "multiple")
+        s.microfacet_scattering = MicrofacetScattering::multiple;
+    if (r.choice("shadingterminator", {"hard", "soft"}, "hard") == "soft")
+        s.shading_terminator = ShadingTerminator::soft;
+    const std::vector<Vec3f> background = r.triples("background", ParameterType::rgb);
+    if (background.size() > 1)
+        r.error("background",
+                "parameter 'background' has " + std::to_string(background.size()) + " colours; expected 1");
+    if (!background.empty()) s.background = background[0];
+}
+
+} // namespace
+
 IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostics) {
     ParameterReader r(plugin.parameters, "integrator " + in_quotes(plugin.name), plugin.at, diagnostics);
     IntegratorSettings s;
@@ -103,6 +122,7 @@ IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostic
         if (lights == "exhaustive")
             diagnostics.warn_once("lightsampler", r.at("lightsampler"),
                                   "lights are chosen by a tree, as with 'bvh'; it changes the noise alone");
+        read_own_settings(r, s);
         r.finish();
     } else if (plugin.name == "simplepath") {
         bool lights = r.boolean("samplelights", true);

@@ -252,9 +252,18 @@ void SceneWriter::integrator() {
     option(s.equiangular == standard.equiangular, "--equiangular off");
     option(s.environment_sampling == standard.environment_sampling, "--environment-sampling");
     option(s.environment_compensation == standard.environment_compensation, "--environment-compensation off");
-    option(s.environment_lookup == standard.environment_lookup, "--environment-lookup bilinear");
-    option(s.microfacet_scattering == standard.microfacet_scattering, "--microfacet-scattering multiple");
-    option(s.shading_terminator == standard.shading_terminator, "--shading-terminator soft");
+    if (by_strategy) {
+        option(s.environment_lookup == standard.environment_lookup, "--environment-lookup bilinear");
+        option(s.microfacet_scattering == standard.microfacet_scattering, "--microfacet-scattering multiple");
+        option(s.shading_terminator == standard.shading_terminator, "--shading-terminator soft");
+        option(!s.background, "--background");
+    } else {
+        if (s.environment_lookup == EnvironmentLookup::bilinear) d.string("environmentlookup", "bilinear");
+        if (s.microfacet_scattering == MicrofacetScattering::multiple)
+            d.string("microfacetscattering", "multiple");
+        if (s.shading_terminator == ShadingTerminator::soft) d.string("shadingterminator", "soft");
+        if (s.background) d.vector("rgb", "background", *s.background);
+    }
     put(d.text());
 }
 

@@ -75,7 +75,7 @@ std::string SceneWriter::mesh_text(Index i, const TriangleMesh& mesh, bool rever
         (mesh.positions.size() > most_inline_vertices && mesh.tangents.empty())) {
         const std::string name = "shape-" + std::to_string(i) + ".ply";
         AtomicFile file(files_.add(name));
-        write_ply(file, mesh.positions, normals, mesh.uvs, mesh.indices, mesh.colors, mesh.opacities);
+        write_ply(file, mesh, normals);
         file.commit();
         DirectiveText d("Shape \"plymesh\"");
         d.string("filename", files_.reference(name));
@@ -88,6 +88,7 @@ std::string SceneWriter::mesh_text(Index i, const TriangleMesh& mesh, bool rever
     if (!normals.empty()) d.numbers("normal", "N", numbers_of(normals));
     if (!mesh.tangents.empty()) d.numbers("vector3", "S", numbers_of(mesh.tangents));
     if (!mesh.uvs.empty()) d.numbers("point2", "uv", numbers_of(mesh.uvs));
+    if (!mesh.second_uvs.empty()) d.numbers("point2", "uv2", numbers_of(mesh.second_uvs));
     if (!mesh.colors.empty()) d.numbers("rgb", "colors", numbers_of(mesh.colors));
     if (!mesh.opacities.empty()) d.numbers("float", "opacities", mesh.opacities);
     d.integers("indices", integers_of(mesh.indices));

@@ -38,6 +38,7 @@ void SceneWriter::mapping(DirectiveText& d, std::string& transform, const Textur
         d.string("mapping", m.kind == Kind::spherical ? "spherical" : "cylindrical");
         return;
     }
+    if (m.second_uv) d.boolean("seconduv", true);
     if (m.du != 0) d.number("udelta", m.du);
     if (m.dv != 0) d.number("vdelta", m.dv);
 }
@@ -184,8 +185,9 @@ bool SceneWriter::is_plain_normal_map(Index i) const {
     const TextureMapping& m = t.mapping;
     const ImageTexture plain;
     return m.kind == TextureMapping::Kind::uv && m.su == 1 && m.sv == 1 && m.du == 0 && m.dv == 0 &&
-           t.wrap == plain.wrap && t.filter == plain.filter && t.max_anisotropy == plain.max_anisotropy &&
-           t.factor == plain.factor && !t.right_handed && encoding_of(t.image).value_or("linear") == "linear";
+           !m.second_uv && t.wrap == plain.wrap && t.filter == plain.filter &&
+           t.max_anisotropy == plain.max_anisotropy && t.factor == plain.factor && !t.right_handed &&
+           encoding_of(t.image).value_or("linear") == "linear";
 }
 
 std::string SceneWriter::normal_map_texture(Index i) {

@@ -293,6 +293,7 @@ TextureMapping TextureLibrary::mapping(ParameterReader& r, const TextureDeclarat
     TextureMapping m;
     std::string_view kind = r.choice("mapping", {"uv", "spherical", "cylindrical", "planar", "affine"}, "uv");
     if (kind != "uv" && kind != "affine") m.texture_from_world = texture_space(r, d);
+    if (kind == "uv" || kind == "affine") m.second_uv = r.boolean("seconduv", false);
     if (kind == "uv") {
         m.su = r.number("uscale", 1);
         m.sv = r.number("vscale", 1);

@@ -51,6 +51,7 @@ void check_mesh(const Mesh& mesh, std::size_t corners, const std::string& primit
     if constexpr (requires { mesh.colors; }) {
         check_one_a_vertex(mesh.colors.size(), vertices, "colours");
         check_one_a_vertex(mesh.opacities.size(), vertices, "opacities");
+        check_one_a_vertex(mesh.second_uvs.size(), vertices, "second texture coordinates");
         for (const Vec3f& c : mesh.colors)
             if (!is_finite(c) || !(c.x >= 0 && c.y >= 0 && c.z >= 0))
                 throw Error("the colour of a vertex is negative or not finite");

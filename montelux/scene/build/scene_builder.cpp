@@ -150,6 +150,7 @@ Index SceneBuilder::add_shape_to(Index object, Geometry geometry, const ShapeSet
                        trim(mesh.tangents);
                        trim(mesh.colors);
                        trim(mesh.opacities);
+                       trim(mesh.second_uvs);
                        scene_.meshes.push_back(std::move(mesh));
                        return MeshIndex{static_cast<Index>(scene_.meshes.size() - 1)};
                    },

@@ -8,8 +8,8 @@
 namespace montelux {
 
 inline void hash_values(SceneHasher& h, const TriangleMesh& m) {
-    const auto& [positions, normals, uvs, indices, tangents, end_positions, end_normals, colors, opacities] =
-        m;
+    const auto& [positions, normals, uvs, indices, tangents, end_positions, end_normals, colors, opacities,
+                 second_uvs] = m;
     h.all(positions, normals, uvs, indices);
     if (!tangents.empty()) h.all(tangents);
     if (m.deforms()) h.all(end_positions, end_normals);
@@ -17,6 +17,7 @@ inline void hash_values(SceneHasher& h, const TriangleMesh& m) {
         h.all(std::uint8_t{1},
               colors); // the first number keeps them distinct from other values in this place
     if (!opacities.empty()) h.all(std::uint8_t{2}, opacities);
+    if (!second_uvs.empty()) h.all(std::uint8_t{3}, second_uvs);
 }
 inline void hash_values(SceneHasher& h, const Sphere& s) {
     const auto& [radius, z_min, z_max, phi_max, world_from_object] = s;

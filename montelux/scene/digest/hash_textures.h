@@ -21,8 +21,9 @@ inline void hash_values(SceneHasher& h, const SpectrumParameter& p) {
     hash_parameter(h, value, texture);
 }
 inline void hash_values(SceneHasher& h, const TextureMapping& m) {
-    const auto& [kind, su, sv, du, dv, vs, vt, texture_from_world] = m;
+    const auto& [kind, su, sv, du, dv, vs, vt, texture_from_world, second_uv] = m;
     h.all(kind, su, sv, du, dv, vs, vt, texture_from_world);
+    if (second_uv) h.all(second_uv);
 }
 inline void hash_values(SceneHasher& h, const ImageTexture& t) {
     const auto& [image, channels, mapping, filter, wrap, anisotropy, scale, invert, meaning, space, factor,

@@ -56,18 +56,23 @@ bool add_bumps(const SceneView& scene, const SurfaceDetail& detail, const Surfac
 
 // Returns false where the map leaves the normal unchanged. The second axis of most maps points to the side
 // of dp/dv, so mirrored instances and coordinates show mirrored dents.
-bool add_map(const SceneView& scene, const NormalMapParameter& map, const TextureContext& context,
-             Tangents& t) {
+bool add_map(const SceneView& scene, const NormalMapParameter& map, const SurfacePoint& surface,
+             const TextureContext& context, Tangents& t) {
     if (!map.is_given()) return false;
     const ImageTexture& texture = scene.normal_maps[map.map];
+    Vec3f u = t.u, v = t.v;
+    if (texture.mapping.second_uv) {
+        if (!(length_squared(surface.vertex_tangent) > 0)) u = across(surface.second_dpdu, t.n);
+        v = across(surface.second_dpdv, t.n);
+    }
     const TextureCoordinates c = texture.mapping(context);
     const Vec3f rgb =
         scene.mipmap(texture.image, texture.channels)
             .lookup(c.st, c.dstdx, c.dstdy, texture.filter, texture.wrap, texture.max_anisotropy);
     const Vec3f m = multiply(2 * rgb - Vec3f{1, 1, 1}, texture.factor);
     if (std::abs(m.x) < lookup_rounding && std::abs(m.y) < lookup_rounding) return false;
-    const Frame frame = Frame::from_normal_and_tangent(t.n, t.u);
-    const float side = !texture.right_handed && dot(frame.t, t.v) < 0 ? -1.0f : 1.0f;
+    const Frame frame = Frame::from_normal_and_tangent(t.n, u);
+    const float side = !texture.right_handed && dot(frame.t, v) < 0 ? -1.0f : 1.0f;
     const Vec3f n = frame.to_world({m.x, side * m.y, m.z});
     const float len = length(n);
     if (!(len > 0 && std::isfinite(len))) return false;
@@ -97,7 +102,7 @@ std::optional<Frame> tilted_frame(const SceneView& scene, const SurfaceDetail& d
     const bool bumpy = add_bumps(scene, detail, surface, context, t);
     // Heights vary with the coordinates, maps of normals refer to the mesh's own tangents.
     if (length_squared(surface.vertex_tangent) > 0) t.u = across(surface.vertex_tangent, t.n);
-    const bool mapped = add_map(scene, detail.normal_map, context, t);
+    const bool mapped = add_map(scene, detail.normal_map, surface, context, t);
     if (!bumpy && !mapped) return std::nullopt;
     if (!detail.shadowed) return Frame::from_normal_and_tangent(facing(t.n, surface.ng, wo), t.u);
     const Normal3f n = surface.ns;

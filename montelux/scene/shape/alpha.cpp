@@ -27,7 +27,8 @@ float alpha_at(const SceneView& scene, const Ray& ray, const Hit& hit) {
                                  .duvdx = {},
                                  .duvdy = {},
                                  .vertex_color = s.vertex_color,
-                                 .vertex_opacity = s.vertex_opacity};
+                                 .vertex_opacity = s.vertex_opacity,
+                                 .second_uv = s.second_uv};
     return evaluate(scene, scene.shapes[hit.shape].alpha, context);
 }
 

@@ -13,7 +13,7 @@
 namespace montelux {
 
 // Positions are in world space, or in the space of the mesh's object definition. `normals`, `uvs`, `tangents`,
-// `colors` and `opacities` are empty or one per vertex. The builder checks the indices.
+// `colors`, `opacities` and `second_uvs` are empty or one per vertex. The builder checks the indices.
 struct TriangleMesh {
     std::vector<Point3f> positions;
     std::vector<Normal3f> normals;
@@ -29,6 +29,8 @@ struct TriangleMesh {
     std::vector<Vec3f> colors{};
     // Of vertices, in [0, 1], for textures of numbers that read them; empty: 1.
     std::vector<float> opacities{};
+    // For textures whose mapping asks for them; empty: (0, 0).
+    std::vector<Point2f> second_uvs{};
 
     std::size_t triangle_count() const { return indices.size() / 3; }
     bool deforms() const { return !end_positions.empty(); }

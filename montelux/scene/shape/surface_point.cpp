@@ -14,17 +14,23 @@ float largest_coordinate(Vec3f p) { return std::max(std::abs(p.x), std::max(std:
 
 // The derivatives of p with respect to uv by those of p (e1, e2) and of uv with respect to two other coordinates.
 // Degenerate uv yield arbitrary tangents.
-void set_tangents(SurfacePoint& s, Vec3f e1, Vec3f e2, Vec2f duv1, Vec2f duv2) {
+struct UvTangents {
+    Vec3f u, v;
+};
+UvTangents uv_tangents_of(Normal3f ng, Vec3f e1, Vec3f e2, Vec2f duv1, Vec2f duv2) {
     float determinant = duv1.x * duv2.y - duv1.y * duv2.x;
     if (std::abs(determinant) > 1e-20f) {
         float inv = 1 / determinant;
-        s.dpdu = (duv2.y * e1 - duv1.y * e2) * inv;
-        s.dpdv = (duv1.x * e2 - duv2.x * e1) * inv;
-        if (length_squared(cross(s.dpdu, s.dpdv)) > 0) return;
+        const UvTangents t{(duv2.y * e1 - duv1.y * e2) * inv, (duv1.x * e2 - duv2.x * e1) * inv};
+        if (length_squared(cross(t.u, t.v)) > 0) return t;
     }
-    Frame frame = Frame::from_normal(s.ng);
-    s.dpdu = frame.s;
-    s.dpdv = frame.t;
+    Frame frame = Frame::from_normal(ng);
+    return {frame.s, frame.t};
+}
+void set_tangents(SurfacePoint& s, Vec3f e1, Vec3f e2, Vec2f duv1, Vec2f duv2) {
+    const UvTangents t = uv_tangents_of(s.ng, e1, e2, duv1, duv2);
+    s.dpdu = t.u;
+    s.dpdv = t.v;
 }
 
 SurfacePoint mesh_point(const TriangleMesh& mesh, const Shape& shape, const Hit& hit, float time,
@@ -62,6 +68,14 @@ SurfacePoint mesh_point(const TriangleMesh& mesh, const Shape& shape, const Hit&
     };
     if (!mesh.colors.empty()) s.vertex_color = interpolated(mesh.colors);
     if (!mesh.opacities.empty()) s.vertex_opacity = interpolated(mesh.opacities);
+    if (!mesh.second_uvs.empty()) {
+        s.second_uv = interpolated(mesh.second_uvs);
+        const Point2f first = mesh.second_uvs[v[0]];
+        const UvTangents t = uv_tangents_of(s.ng, p1 - p0, p2 - p0, mesh.second_uvs[v[1]] - first,
+                                            mesh.second_uvs[v[2]] - first);
+        s.second_dpdu = t.u;
+        s.second_dpdv = t.v;
+    }
     return s;
 }
 
@@ -156,6 +170,8 @@ void transform_by(const Transform& t, SurfacePoint& s) {
     s.dpdu = t.vector(s.dpdu);
     s.dpdv = t.vector(s.dpdv);
     s.vertex_tangent = t.vector(s.vertex_tangent);
+    s.second_dpdu = t.vector(s.second_dpdu);
+    s.second_dpdv = t.vector(s.second_dpdv);
     s.error = transformed_error(s.error, t, s.p);
 }
 

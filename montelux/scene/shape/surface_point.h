@@ -17,6 +17,9 @@ struct SurfacePoint {
     Vec3f vertex_tangent{};      // interpolated; zero where the mesh has none
     Vec3f vertex_color{1, 1, 1}; // interpolated, as the two above; white where the mesh has none
     float vertex_opacity = 1;
+    // Of the mesh's second set of texture coordinates, as uv, dpdu and dpdv; zero where it has none.
+    Point2f second_uv{};
+    Vec3f second_dpdu{}, second_dpdv{};
     const Shape* shape = nullptr;
     Index primitive = 0;
     Vec2f b{}; // Hit::b1 and b2

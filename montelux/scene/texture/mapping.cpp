@@ -25,13 +25,13 @@ Vec2f wrapped_difference(Vec2f a, Vec2f b, int angle) {
 } // namespace
 
 TextureCoordinates TextureMapping::operator()(const TextureContext& c) const {
+    const Point2f uv = second_uv ? c.second_uv : c.uv;
+    const Vec2f duvdx = second_uv ? c.second_duvdx : c.duvdx, duvdy = second_uv ? c.second_duvdy : c.duvdy;
     if (kind == Kind::uv)
-        return {{su * c.uv.x + du, sv * c.uv.y + dv},
-                {su * c.duvdx.x, sv * c.duvdx.y},
-                {su * c.duvdy.x, sv * c.duvdy.y}};
+        return {{su * uv.x + du, sv * uv.y + dv}, {su * duvdx.x, sv * duvdx.y}, {su * duvdy.x, sv * duvdy.y}};
     if (kind == Kind::affine) {
         const auto linear = [&](Vec2f v) { return Vec2f{vs.x * v.x + vs.y * v.y, vt.x * v.x + vt.y * v.y}; };
-        return {linear(c.uv) + Vec2f{du, dv}, linear(c.duvdx), linear(c.duvdy)};
+        return {linear(uv) + Vec2f{du, dv}, linear(duvdx), linear(duvdy)};
     }
     Vec3f p = texture_from_world.point(c.p);
     Vec3f px = texture_from_world.vector(c.dpdx), py = texture_from_world.vector(c.dpdy);

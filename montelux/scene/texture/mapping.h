@@ -19,6 +19,8 @@ struct TextureContext {
     Vec2f duvdx, duvdy;
     Vec3f vertex_color{1, 1, 1}; // SurfacePoint::vertex_color
     float vertex_opacity = 1;
+    Point2f second_uv{}; // SurfacePoint::second_uv, with its footprint
+    Vec2f second_duvdx{}, second_duvdy{};
 };
 
 struct TextureCoordinates {
@@ -35,6 +37,7 @@ struct TextureMapping {
     float su = 1, sv = 1, du = 0, dv = 0;
     Vec3f vs{1, 0, 0}, vt{0, 1, 0};
     Transform texture_from_world;
+    bool second_uv = false; // uv and affine: of the mesh's second set of texture coordinates
 
     TextureCoordinates operator()(const TextureContext& c) const;
 };

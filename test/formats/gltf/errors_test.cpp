@@ -92,7 +92,9 @@ TEST(GltfErrors, Buffers) {
          {one(R"("byteLength": 3, "uri": "gone.bin")", view),
           "/buffers/0/uri: there is no file 'folder/gone.bin'"},
          {one(data, view + R"(, "extensions": {"EXT_meshopt_compression": {}})"),
-          "/bufferViews/0: is compressed by EXT_meshopt_compression, which is not read"}});
+          "/bufferViews/0/extensions/EXT_meshopt_compression: has no 'count', which glTF demands"},
+         {one(data, view + R"(, "extensions": {"KHR_meshopt_compression": {}})"),
+          "/bufferViews/0: is compressed by KHR_meshopt_compression, which is not read"}});
 }
 
 TEST(GltfErrors, Accessors) {
@@ -158,7 +160,8 @@ TEST(GltfErrors, Meshes) {
          {primitive(R"(, "material": 0)"),
           "/meshes/0/primitives/0/material: material 0 does not exist (there are 0)"},
          {primitive(R"(, "extensions": {"KHR_draco_mesh_compression": {}})"),
-          "/meshes/0/primitives/0: is compressed by KHR_draco_mesh_compression, which is not read"},
+          "/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression: has no 'bufferView', which glTF "
+          "demands"},
          {primitive(R"(, "targets": [{}])", "", R"(, "weights": [1, 2])"),
           "/nodes/0/weights: an array of 2 values; expected 1 numbers"},
          {primitive("", "", R"(, "skin": 0)", R"(, "skins": [{"joints": [0]}])"),
@@ -302,6 +305,9 @@ TEST(GltfErrors, ChoicesOfGltfAreRefusedByPbrt) {
     EXPECT_EQ(error({.camera = "a"}), "a.pbrt: only glTF and Mitsuba scenes have a choice of cameras");
     EXPECT_EQ(error({.variant = "a"}), "a.pbrt: only glTF scenes have variants of materials");
     EXPECT_EQ(error({.time = 1}), "a.pbrt: only glTF scenes have a time of animations");
+    EXPECT_EQ(error({.shutter = 1}), "shutter: expected a time of the animations, when it opens");
+    EXPECT_EQ(error({.time = 1, .shutter = -1}),
+              "shutter: expected a number of seconds that is not negative");
 }
 
 } // namespace

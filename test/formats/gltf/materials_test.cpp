@@ -204,7 +204,8 @@ TEST(GltfMaterials, TextureTransforms) {
            {0.1f + c * 0.5f + s * 1.5f, 0.2f - s * 0.5f + c * 1.5f});
 }
 
-TEST(GltfMaterials, OneSetOfTextureCoordinates) {
+// The picture that emits, or else the base colour's, is mapped by the first set.
+TEST(GltfMaterials, TwoSetsOfTextureCoordinates) {
     Model m;
     m.add_triangle();
     m.add<float>({0, 0, 1, 0, 0, 1}, "VEC2");
@@ -212,16 +213,38 @@ TEST(GltfMaterials, OneSetOfTextureCoordinates) {
     test::MemoryFiles files;
     add_picture(files);
     Warnings warnings;
-    const SceneDescription d = load_model(
-        m.text(R"("meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1, "TEXCOORD_1": 2},
-        "material": 0}]}], "nodes": [{"mesh": 0}], "materials": [{"normalTexture": {"index": 0},
-        "pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "texCoord": 1}}}])" +
-               pictures),
-        &warnings, {}, &files);
+    const auto load = [&](const std::string& material) {
+        warnings = {};
+        return load_model(
+            m.text(
+                R"("meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1, "TEXCOORD_1": 2},
+                "material": 0}]}], "nodes": [{"mesh": 0}], "materials": [{)" +
+                material + "}]" + pictures),
+            &warnings, {}, &files);
+    };
+    const std::string base_1 = R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "texCoord": 1}})";
+    SceneDescription d =
+        load(base_1 + R"(, "normalTexture": {"index": 0}, "occlusionTexture": {"index": 0, "texCoord": 2})");
     EXPECT_EQ(d.scene.meshes.at(0).uvs.at(0), Point2f(5, -4));
+    EXPECT_EQ(d.scene.meshes.at(0).second_uvs.at(0), Point2f(0, 1));
+    EXPECT_TRUE(d.scene.normal_maps.at(0).mapping.second_uv);
+    EXPECT_FALSE(picture_of(d, 0).mapping.second_uv);
+    EXPECT_TRUE(warnings.messages().empty());
+
+    d = load(base_1 + R"(, "emissiveTexture": {"index": 0}, "emissiveFactor": [1, 1, 1])");
+    EXPECT_EQ(d.scene.meshes.at(0).uvs.at(0), Point2f(0, 1));
+    EXPECT_EQ(d.scene.meshes.at(0).second_uvs.at(0), Point2f(5, -4));
+    EXPECT_TRUE(picture_of(d, 0).mapping.second_uv);
+
+    d = load(base_1);
+    EXPECT_TRUE(d.scene.meshes.at(0).second_uvs.empty());
+    EXPECT_FALSE(picture_of(d, 0).mapping.second_uv);
+
+    d = load(base_1 + R"(, "normalTexture": {"index": 0},
+        "extensions": {"KHR_materials_clearcoat": {"clearcoatTexture": {"index": 0, "texCoord": 3}}})");
     EXPECT_EQ(warnings.messages().at(0),
-              "folder/model.gltf: /materials/0/normalTexture: uses TEXCOORD_0; the "
-              "material's textures all use TEXCOORD_1");
+              "folder/model.gltf: /materials/0/extensions/KHR_materials_clearcoat/clearcoatTexture: uses "
+              "TEXCOORD_3, the third set of the material; it gets TEXCOORD_1");
 }
 
 } // namespace

@@ -143,6 +143,12 @@ TEST(GltfNodes, AnimatedByCubicSplines) {
     expect_near(first_vertex(animated("CUBICSPLINE", "translation", keys, 0)), {0, 0, 0});
 }
 
+TEST(GltfNodes, TheEndOfAnimationsIsTold) {
+    EXPECT_EQ(animated("LINEAR", "translation", {0, 0, 0, 1, 0, 0}, 0).animation_end, 3);
+    EXPECT_EQ(animated("LINEAR", "translation", {0, 0, 0, 1, 0, 0}, std::nullopt).animation_end, 0);
+    EXPECT_EQ(load_model(with_triangle(R"("nodes": [{"mesh": 0}])"), nullptr, {.time = 1}).animation_end, 0);
+}
+
 TEST(GltfNodes, AnimatedWeights) {
     Model m;
     m.add_triangle();

@@ -81,6 +81,10 @@ inline void expect_same(const SceneDescription& a, const SceneDescription& b) {
     EXPECT_EQ(a.integrator.strategy, b.integrator.strategy);
     EXPECT_EQ(a.integrator.light_sampling, b.integrator.light_sampling);
     EXPECT_EQ(a.integrator.regularize, b.integrator.regularize);
+    EXPECT_EQ(a.integrator.environment_lookup, b.integrator.environment_lookup);
+    EXPECT_EQ(a.integrator.microfacet_scattering, b.integrator.microfacet_scattering);
+    EXPECT_EQ(a.integrator.shading_terminator, b.integrator.shading_terminator);
+    EXPECT_EQ(a.integrator.background, b.integrator.background);
     EXPECT_EQ(a.integrator.occlusion.has_value(), b.integrator.occlusion.has_value());
     EXPECT_EQ(a.output_file, b.output_file);
     EXPECT_EQ(a.scene.light_groups, b.scene.light_groups);

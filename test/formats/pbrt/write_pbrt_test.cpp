@@ -197,11 +197,12 @@ TEST_F(WritePbrt, OwnTextures) {
         Texture "f" "float" "checkerboard" "float tex1" 0.25 "bool sharp" true
         Texture "e" "float" "step" "texture tex" "a" "float edge" 0.25
         Texture "n" "spectrum" "imagemap" "string filename" "map.exr" "rgb factor" [0.5 0.5 1] "float uscale" 2
+            "bool seconduv" true
             "bool righthanded" true
         Material "diffuse" "texture reflectance" "c" "texture normalmap" "n" Shape "sphere" "texture alpha" "e"
         Material "diffuse" "texture reflectance" "d" "string normalmap" "map.exr"
         Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0] "rgb colors" [1 0 0 0 1 0 0 0.5 1]
-            "float opacities" [1 0.5 0.25]
+            "float opacities" [1 0.5 0.25] "point2 uv2" [0 1 0.5 0.25 1 0]
         Material "conductor" "texture roughness" "b" "texture normalmap" "n" "bool shadowed" true Shape "sphere"
         Material "conductor" "texture roughness" "f" Shape "sphere")"),
               Texts());
@@ -216,6 +217,7 @@ TEST_F(WritePbrt, ColoredMeshesBecomeFiles) {
     TriangleMesh& mesh = d.scene.meshes.at(0);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
         mesh.colors.push_back({0.25f, 0.5f, static_cast<float>(i)});
+        mesh.second_uvs.push_back({0.5f, static_cast<float>(i)});
         mesh.opacities.push_back(0.125f * static_cast<float>(i % 8));
     }
     EXPECT_EQ(test::expect_round_trip(d).messages(), Texts());
@@ -315,7 +317,9 @@ TEST_F(WritePbrt, Settings) {
            "float exposuretime" 0.3 "integer pixelbounds" [1 20 2 19] "float maxcomponentvalue" 10
            "float whitebalance" 5000 "string sensor" "canon_eos_5d_mkiv" "bool savefp16" true
            PixelFilter "mitchell" "float xradius" 1.5 "float B" 0.2 Sampler "halton" "integer pixelsamples" 7 "integer seed" 5
-           Integrator "volpath" "integer maxdepth" 9 "string lightsampler" "power" "bool regularize" true)",
+           Integrator "volpath" "integer maxdepth" 9 "string lightsampler" "power" "bool regularize" true
+           "string shadingterminator" "soft" "string microfacetscattering" "multiple"
+           "string environmentlookup" "bilinear" "rgb background" [0.1 0.2 0.3])",
         R"(Scale -1 1 1 Camera "orthographic" "float frameaspectratio" 2 Film "spectral" "integer nbuckets" 5
            PixelFilter "sinc" "float tau" 2 Sampler "stratified" "integer xsamples" 3 "integer ysamples" 5
            Integrator "simplepath" "bool samplelights" false)",
