@@ -2,7 +2,7 @@
 #include "test/formats/mitsuba/looks.h"
 #include <gtest/gtest.h>
 
-namespace montelux {
+namespace montelux::mitsuba_textures_test {
 namespace {
 
 using mitsuba::SpectrumUse;
@@ -226,4 +226,4 @@ TEST(MitsubaNormalMap, IsAPictureOrAVector) {
 }
 
 } // namespace
-} // namespace montelux
+} // namespace montelux::mitsuba_textures_test
