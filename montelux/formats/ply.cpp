@@ -135,7 +135,7 @@ int slot_of(std::string_view property) {
         std::string_view name;
         int slot;
     };
-    constexpr std::array<Name, 23> names = {{{"x", 0},
+    constexpr std::array<Name, 29> names = {{{"x", 0},
                                              {"y", 1},
                                              {"z", 2},
                                              {"nx", 3},
@@ -157,6 +157,12 @@ int slot_of(std::string_view property) {
                                              {"diffuse_red", 10},
                                              {"diffuse_green", 11},
                                              {"diffuse_blue", 12},
+                                             {"r", 10},
+                                             {"g", 11},
+                                             {"b", 12},
+                                             {"color_0", 10},
+                                             {"color_1", 11},
+                                             {"color_2", 12},
                                              {"alpha", 13}}};
     for (const Name& n : names)
         if (n.name == property) return n.slot;

@@ -23,7 +23,7 @@ struct PlyMesh {
 
 // ASCII and binary, little and big endian, properties of any type in any order. Vertices: x, y, z; optional
 // nx, ny, nz; optional u, v (also s, t; texture_u, texture_v; texture_s, texture_t) and u2, v2; with `colors` also red, green, blue
-// (also diffuse_red ...), which are sRGB where they are integers and linear where they are floats, and alpha. Faces: a list
+// (also diffuse_red ...; r, g, b; color_0, color_1, color_2), which are sRGB where they are integers and linear where they are floats, and alpha. Faces: a list
 // vertex_indices or vertex_index. Triangle strips: an element tristrips with such a list, in which -1 begins a new strip.
 // Other elements and properties are skipped.
 // Allocates no more than the file's size justifies. Throws Error, prefixed with `name`, for a wrong header,

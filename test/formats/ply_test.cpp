@@ -171,6 +171,11 @@ TEST(Ply, ColorsOfVertices) {
     EXPECT_EQ(floats.colors[1], (Vec3f{1, 0.5f, 0}));
     EXPECT_EQ(bytes.opacities, std::vector(3, 0.2f));
     EXPECT_EQ(floats.opacities, std::vector(3, 0.2f));
+    std::string numbered = text("float", "1 0.5 0 0.2");
+    for (const auto& [from, to] :
+         {std::pair(" red", " color_0"), std::pair(" green", " color_1"), std::pair(" blue", " color_2")})
+        numbered.replace(numbered.find(from), std::string_view(from).size(), to);
+    EXPECT_EQ(read(numbered).colors, floats.colors);
     EXPECT_TRUE(parse(text("uchar", "1 2 3 4")).mesh.colors.empty());
     EXPECT_TRUE(parse(text("uchar", "1 2 3 4")).mesh.opacities.empty());
 }

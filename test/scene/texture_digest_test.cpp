@@ -49,6 +49,7 @@ TEST(SceneDigest, TexturesCount) {
                     [](Scene& s) { std::get<2>(s.float_textures[1]).scale.texture = 0; },
                     [](Scene& s) { std::get<3>(s.spectrum_textures[1]).amount.value = 0; },
                     [](Scene& s) { std::get<4>(s.spectrum_textures[2]).dimension = 3; },
+                    [](Scene& s) { std::get<4>(s.spectrum_textures[2]).sharp = true; },
                     [](Scene& s) { std::get<4>(s.spectrum_textures[2]).values[1].value = 0.1f; }});
     const Transform moved = Transform::translate({1, 0, 0});
     auto noise = [](Scene& s) -> NoiseTexture& { return std::get<8>(s.float_textures[2]); };

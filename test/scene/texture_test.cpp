@@ -257,6 +257,17 @@ TEST_F(FloatTextures, CheckerboardCells) {
         }
 }
 
+TEST_F(FloatTextures, SharpCheckerboardIsNotFiltered) {
+    CheckerboardTexture<FloatParameter> t;
+    t.values = {FloatParameter{2}, FloatParameter{6}};
+    t.sharp = true;
+    const FloatParameter sharp = add(t), filtered = checks();
+    TextureContext c = at({0.9f, 0.5f});
+    c.duvdx = {0.5f, 0};
+    EXPECT_EQ(value(sharp, c), 2);
+    EXPECT_GT(value(filtered, c), 2);
+}
+
 // The value over a footprint is the mean of the cells under it.
 TEST_F(FloatTextures, CheckerboardIsFiltered) {
     FloatParameter flat = checks();

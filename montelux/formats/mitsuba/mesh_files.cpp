@@ -26,7 +26,8 @@ TriangleMesh read_obj(std::span<const std::uint8_t> bytes, const std::string& na
 }
 
 TriangleMesh read_ply(std::span<const std::uint8_t> bytes, const std::string& name, const Plugin& shape) {
-    PlyMesh ply = parse_ply(bytes, name);
+    constexpr bool with_colors = true; // the attribute "vertex_color"
+    PlyMesh ply = parse_ply(bytes, name, with_colors);
     if (ply.degenerate > 0)
         shape.warn(name + ": " + std::to_string(ply.degenerate) +
                    " faces of fewer than three corners are left out");

@@ -123,19 +123,19 @@ TextureLibrary::Node TextureLibrary::make(const Plugin& texture, Use use) {
     texture.refuse();
 }
 
-// Cells have sides of 1/2. Mitsuba gives color0 to the cells at the origin, but color1 where it is asked for a number.
+// Cells have sides of 1/2 and are not filtered. Mitsuba gives color0 to the cells at the origin, but color1 where it is asked for a number.
 TextureLibrary::Node TextureLibrary::checkerboard(Plugin texture, Use use) {
     const TextureMapping mapping = uv_mapping(texture, false, 2);
     Node made;
     if (use == Use::number) {
-        CheckerboardTexture<FloatParameter> t{.mapping = mapping, .values = {}};
+        CheckerboardTexture<FloatParameter> t{.mapping = mapping, .values = {}, .sharp = true};
         t.values[1] = number(texture, "color0", 0.4f, {}, made.evaluations);
         t.values[0] = number(texture, "color1", 0.2f, {}, made.evaluations);
         made.index = add(FloatTexture(t));
     } else {
         const SpectrumUse colors =
             use == Use::reflectance ? SpectrumUse::reflectance : SpectrumUse::unbounded;
-        CheckerboardTexture<SpectrumParameter> t{.mapping = mapping, .values = {}};
+        CheckerboardTexture<SpectrumParameter> t{.mapping = mapping, .values = {}, .sharp = true};
         t.values[0] = spectrum(texture, "color0", 0.4f, colors, made.evaluations);
         t.values[1] = spectrum(texture, "color1", 0.2f, colors, made.evaluations);
         made.index = add(SpectrumTexture(t));

@@ -129,12 +129,11 @@ constexpr std::string_view medium_parameters[] = {"Le",
                                                   "wispiness"};
 
 constexpr std::string_view texture_parameters[] = {
-    "amount",       "channel",     "dimension", "dir",    "edge",     "encoding",      "factor",
-    "filename",     "filter",      "inside",    "invert", "mapping",  "maxanisotropy", "octaves",
-    "outside",      "righthanded", "roughness", "scale",  "seconduv", "swrap",         "tex",
-    "tex1",         "tex2",        "twrap",     "udelta", "uscale",   "v00",           "v01",
-    "v1",           "v10",         "v11",       "v2",     "value",    "variation",     "vdelta",
-    "vertexcolors", "vscale",      "wrap"};
+    "amount",    "channel", "dimension", "dir",     "edge",          "encoding", "factor",  "filename",
+    "filter",    "inside",  "invert",    "mapping", "maxanisotropy", "octaves",  "outside", "righthanded",
+    "roughness", "scale",   "seconduv",  "sharp",   "swrap",         "tex",      "tex1",    "tex2",
+    "twrap",     "udelta",  "uscale",    "v00",     "v01",           "v1",       "v10",     "v11",
+    "v2",        "value",   "variation", "vdelta",  "vertexcolors",  "vscale",   "wrap"};
 
 } // namespace
 

@@ -118,6 +118,7 @@ void SceneWriter::texture(const TextureNode<Parameter>& node, const std::string&
                               }
                               parameter(d, "tex1", t.values[0], 1, meaning);
                               parameter(d, "tex2", t.values[1], 0, meaning);
+                              if (t.sharp) d.boolean("sharp", true);
                           },
                           [&](const BilerpTexture<Parameter>& t) {
                               d = directive("bilerp");

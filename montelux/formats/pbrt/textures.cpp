@@ -275,6 +275,7 @@ TextureNode<Parameter> TextureLibrary::make_node(Entry& entry, RgbMeaning meanin
             c.mapping.texture_from_world = texture_space(r, d);
         c.values[0] = input<Parameter>(r, "tex1", meaning, 1);
         c.values[1] = input<Parameter>(r, "tex2", meaning, 0);
+        c.sharp = r.boolean("sharp", false);
         node = std::move(c);
     }
     r.finish();

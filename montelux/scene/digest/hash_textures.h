@@ -59,8 +59,9 @@ void hash_values(SceneHasher& h, const MixTexture<Parameter>& t) {
 }
 template <typename Parameter>
 void hash_values(SceneHasher& h, const CheckerboardTexture<Parameter>& t) {
-    const auto& [dimension, mapping, values] = t;
+    const auto& [dimension, mapping, values, sharp] = t;
     h.all(dimension, mapping, values);
+    if (sharp) h.all(sharp);
 }
 template <typename Parameter>
 void hash_values(SceneHasher& h, const BilerpTexture<Parameter>& t) {

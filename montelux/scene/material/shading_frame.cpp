@@ -21,28 +21,29 @@ constexpr float lookup_rounding = 1e-6f;
 Vec3f across(Vec3f a, Normal3f n) { return a - n * dot(n, a); }
 
 // Slope of the height along one coordinate by a forward difference over half a pixel's footprint, as
-// pbrt-v4's BumpMap; without a footprint over less than the texel of a map of width 8192.
-float slope(const SceneView& scene, const FloatParameter& height, float here, const TextureContext& context,
+// pbrt-v4's BumpMap; without a footprint, and of a `shadowed` detail, over less than the texel of a map of width 8192.
+float slope(const SceneView& scene, const SurfaceDetail& detail, float here, const TextureContext& context,
             int axis, Vec3f dp) {
-    const float footprint = 0.5f * (std::abs(context.duvdx[axis]) + std::abs(context.duvdy[axis]));
+    const float footprint =
+        detail.shadowed ? 0 : 0.5f * (std::abs(context.duvdx[axis]) + std::abs(context.duvdy[axis]));
     TextureContext shifted = context;
     shifted.uv[axis] += std::max(footprint, 1.0f / 8192);
     // The actual step after rounding to float.
     const float step = shifted.uv[axis] - context.uv[axis];
     shifted.p += dp * step;
-    const float rise = evaluate(scene, height, shifted) - here;
+    const float rise = evaluate(scene, detail.displacement, shifted) - here;
     const float s = rise / step;
     return std::abs(rise) > lookup_rounding * std::abs(here) && std::isfinite(s) ? s : 0;
 }
 
 // Returns false where the height is constant. Omits the term height * dn/du of the tangents, which flattens
 // slopes by 1 + height / radius of curvature.
-bool add_bumps(const SceneView& scene, const FloatParameter& height, const SurfacePoint& surface,
+bool add_bumps(const SceneView& scene, const SurfaceDetail& detail, const SurfacePoint& surface,
                const TextureContext& context, Tangents& t) {
-    if (height.is_constant()) return false;
-    const float here = evaluate(scene, height, context);
-    const float slope_u = slope(scene, height, here, context, 0, surface.dpdu);
-    const float slope_v = slope(scene, height, here, context, 1, surface.dpdv);
+    if (detail.displacement.is_constant()) return false;
+    const float here = evaluate(scene, detail.displacement, context);
+    const float slope_u = slope(scene, detail, here, context, 0, surface.dpdu);
+    const float slope_v = slope(scene, detail, here, context, 1, surface.dpdv);
     if (slope_u == 0 && slope_v == 0) return false;
     const Vec3f u = t.u + t.n * slope_u, v = t.v + t.n * slope_v;
     Vec3f n = cross(u, v);
@@ -98,7 +99,7 @@ Normal3f facing(Normal3f n, Normal3f geometric, Vec3f wo) {
 std::optional<Frame> tilted_frame(const SceneView& scene, const SurfaceDetail& detail,
                                   const SurfacePoint& surface, Vec3f wo, const TextureContext& context) {
     Tangents t{surface.ns, across(surface.dpdu, surface.ns), across(surface.dpdv, surface.ns)};
-    const bool bumpy = add_bumps(scene, detail.displacement, surface, context, t);
+    const bool bumpy = add_bumps(scene, detail, surface, context, t);
     // Heights vary with the coordinates, maps of normals refer to the mesh's own tangents.
     if (length_squared(surface.vertex_tangent) > 0) t.u = across(surface.vertex_tangent, t.n);
     const bool mapped = add_map(scene, detail.normal_map, surface, context, t);

@@ -11,7 +11,7 @@ struct SurfaceDetail {
     NormalMapParameter normal_map{};
     // As in Mitsuba: light fades towards the terminator of the tilted surface (Estevez, Lecocq, Stein 2019, "A
     // Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem"), and normals that face away from wo are
-    // mirrored at the surface's own, which decides on sides.
+    // mirrored at the surface's own, which decides on sides. Bumps are not smoothed over the pixel.
     bool shadowed = false;
 
     bool is_flat() const { return displacement.is_constant() && !normal_map.is_given(); }

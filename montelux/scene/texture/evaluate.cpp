@@ -30,7 +30,11 @@ float checkerboard_share(const TextureCoordinates& c) {
 
 template <typename Parameter>
 float second_share(const CheckerboardTexture<Parameter>& t, const TextureContext& context) {
-    if (t.dimension == 2) return checkerboard_share(t.mapping(context));
+    if (t.dimension == 2) {
+        TextureCoordinates c = t.mapping(context);
+        if (t.sharp) c.dstdx = c.dstdy = {};
+        return checkerboard_share(c);
+    }
     Vec3f p = t.mapping.texture_from_world.point(context.p);
     auto cell = static_cast<long long>(std::floor(p.x)) + static_cast<long long>(std::floor(p.y)) +
                 static_cast<long long>(std::floor(p.z));

@@ -88,13 +88,14 @@ struct MixTexture {
     Parameter first, second;
     FloatParameter amount;
 };
-// Unit cells of alternating value, in (s, t) or, with dimension 3, in texture space. Box-filtered over the
-// footprint.
+// Unit cells of alternating value, in (s, t) or, with dimension 3, in texture space. In (s, t) box-filtered over the
+// footprint, unless it is `sharp`.
 template <typename Parameter>
 struct CheckerboardTexture {
     int dimension = 2;
     TextureMapping mapping;
     std::array<Parameter, 2> values;
+    bool sharp = false;
 };
 
 // Bilinear between the corners (s, t) of the unit square, and extrapolated beyond; `corners`: v00, v10, v01,

@@ -17,7 +17,7 @@
 #include "montelux/scene/material/sided_material.h"
 #include "montelux/scene/material/thin_dielectric_material.h"
 
-namespace montelux {
+namespace montelux::mitsuba_materials_test {
 namespace {
 
 using test::expect_says;
@@ -441,4 +441,4 @@ TEST(MitsubaMaterials, RefuseWhatIsNotRead) {
 }
 
 } // namespace
-} // namespace montelux
+} // namespace montelux::mitsuba_materials_test

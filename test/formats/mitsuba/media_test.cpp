@@ -5,7 +5,7 @@
 
 #include "montelux/formats/mitsuba/grid_volume.h"
 
-namespace montelux {
+namespace montelux::mitsuba_media_test {
 namespace {
 
 using test::expect_says;
@@ -237,4 +237,4 @@ TEST(MitsubaMedia, SayWhatIsWrong) {
 }
 
 } // namespace
-} // namespace montelux
+} // namespace montelux::mitsuba_media_test

@@ -2,7 +2,7 @@
 #include "test/formats/mitsuba/looks.h"
 #include <gtest/gtest.h>
 
-namespace montelux {
+namespace montelux::mitsuba_textures_test {
 namespace {
 
 using mitsuba::SpectrumUse;
@@ -140,6 +140,8 @@ TEST(MitsubaCheckerboard, HasCellsOfAHalf) {
     looks.expect_albedo(p, {0.7f, 0.8f}, {0.8f, 0.1f, 0.1f});
     EXPECT_NEAR(looks.value(p, {0.7f, 0.3f})[0], 0.2f, 1e-6);
     EXPECT_NEAR(looks.value(p, {0.2f, 1.7f})[0], 0.2f, 1e-6);
+    EXPECT_TRUE(
+        std::get<CheckerboardTexture<SpectrumParameter>>(looks.scene.spectrum_textures.at(p.texture)).sharp);
 }
 
 // As in Mitsuba, whose functions for numbers and for spectra differ.
@@ -227,4 +229,4 @@ TEST(MitsubaNormalMap, IsAPictureOrAVector) {
 }
 
 } // namespace
-} // namespace montelux
+} // namespace montelux::mitsuba_textures_test

@@ -194,6 +194,7 @@ TEST_F(WritePbrt, OwnTextures) {
             "string swrap" "clamp" "string twrap" "mirror" "bool vertexcolors" true
             "string mapping" "affine" "vector3 v1" [0.5 0.1 0] "vector3 v2" [-0.1 2 0] "float udelta" 0.3
         Texture "d" "spectrum" "vertexcolor" "rgb factor" [0.2 0.3 0.4]
+        Texture "f" "float" "checkerboard" "float tex1" 0.25 "bool sharp" true
         Texture "e" "float" "step" "texture tex" "a" "float edge" 0.25
         Texture "n" "spectrum" "imagemap" "string filename" "map.exr" "rgb factor" [0.5 0.5 1] "float uscale" 2
             "bool seconduv" true
@@ -202,7 +203,8 @@ TEST_F(WritePbrt, OwnTextures) {
         Material "diffuse" "texture reflectance" "d" "string normalmap" "map.exr"
         Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0] "rgb colors" [1 0 0 0 1 0 0 0.5 1]
             "float opacities" [1 0.5 0.25] "point2 uv2" [0 1 0.5 0.25 1 0]
-        Material "conductor" "texture roughness" "b" "texture normalmap" "n" Shape "sphere")"),
+        Material "conductor" "texture roughness" "b" "texture normalmap" "n" "bool shadowed" true Shape "sphere"
+        Material "conductor" "texture roughness" "f" Shape "sphere")"),
               Texts());
 }
 
