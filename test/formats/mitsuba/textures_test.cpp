@@ -215,7 +215,7 @@ TEST(MitsubaTextures, RefuseWhatIsNotRead) {
     expect_says(texture_error(surface("<texture type=\"volume\" name=\"reflectance\"/>")),
                 "the texture 'volume' is not supported");
     expect_says(texture_error(surface("<texture type=\"bitmp\" name=\"reflectance\"/>")),
-                "there is no texture 'bitmp'; did you mean 'bitmap'?");
+                "there is no texture 'bitmp' (did you mean 'bitmap'?)");
 }
 
 TEST(MitsubaNormalMap, IsAPictureOrAVector) {
