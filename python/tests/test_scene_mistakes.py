@@ -115,7 +115,7 @@ def test_messages_name_the_kind_of_files_that_are_not_scenes(tmp_path):
         ("bunny.pbrt", "OFF\n3 1 0\n", "an OFF mesh"),
     ]:
         (tmp_path / name).write_text(content)
-        with pytest.raises(montelux.Error, match=f"{name}: this is {kind}; pbrt-v4, glTF 2.0, OBJ, PLY and STL are read"):
+        with pytest.raises(montelux.Error, match=f"{name}: this is {kind}; pbrt-v4, glTF 2.0, Mitsuba 3, OBJ, PLY and STL are read"):
             montelux.load(tmp_path / name)
 
 

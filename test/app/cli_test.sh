@@ -41,12 +41,12 @@ expect 1 "it is a folder" info .
 printf 'no picture' >text.png
 expect 1 "montelux: error: text.png: is not a picture" info text.png
 
-expect 0 "gbuffer              yes: as 'rgb', with its layers" formats pbrt
+expect 0 "gbuffer             yes: as 'rgb', with its layers" formats pbrt
 expect 0 '"plugin": "bilinearmesh"' formats pbrt --json
-expect 2 "a formats command is expected: pbrt, gltf" formats
-expect 0 "light      KHR_lights_punctual                  in part: " formats gltf
+expect 2 "a formats command is expected: pbrt, gltf, mitsuba" formats
+expect 0 "light    KHR_lights_punctual                  in part: " formats gltf
 expect 0 '"feature": "KHR_materials_sheen"' formats gltf --json
-expect 2 "there is no formats command 'pbr' (did you mean 'pbrt'?); expected one of pbrt, gltf" formats pbr
+expect 2 "there is no formats command 'pbr' (did you mean 'pbrt'?); expected one of pbrt, gltf, mitsuba" formats pbr
 
 expect 0 "RMSE 0.353553" compare a.pfm b.pfm
 expect 0 "neither picture has standard errors" compare a.pfm b.pfm

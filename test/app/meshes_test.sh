@@ -76,7 +76,7 @@ expect 1 "broken.obj:3: the face refers to vertex 3; there are 2 so far" render 
 printf 'v 0 0 0\nv 1 0 0\n' >empty.obj
 expect 1 "empty.obj: the file has no faces" render empty.obj
 printf '#usda 1.0\n' >model.usda
-expect 1 "model.usda: this is a USD scene (text); pbrt-v4, glTF 2.0, OBJ, PLY and STL are read" render model.usda
+expect 1 "model.usda: this is a USD scene (text); pbrt-v4, glTF 2.0, Mitsuba 3, OBJ, PLY and STL are read" render model.usda
 
 # Materials and what is missing of them.
 mkdir models

@@ -23,10 +23,10 @@ if [ "$(id -u)" -ne 0 ]; then expect 1 "Permission denied" render long.pbrt -o l
 
 # A file that is not a scene: the message names its kind.
 expect 0 "8 x 6 pixels" render ok.pbrt -o picture.exr --checkpoint ok.state
-expect 1 "picture.exr: this is an OpenEXR picture; pbrt-v4, glTF 2.0, OBJ, PLY and STL are read" render picture.exr
-expect 1 "ok.state: this is a checkpoint of Montelux; pbrt-v4, glTF 2.0, OBJ, PLY and STL are read: give the scene itself" render ok.state
-printf '<?xml version="1.0"?>\n<scene version="3.0.0"/>' >scene.xml
-expect 1 "scene.xml: this is a Mitsuba scene (XML); pbrt-v4" render scene.xml
+expect 1 "picture.exr: this is an OpenEXR picture; pbrt-v4, glTF 2.0, Mitsuba 3, OBJ, PLY and STL are read" render picture.exr
+expect 1 "ok.state: this is a checkpoint of Montelux; pbrt-v4, glTF 2.0, Mitsuba 3, OBJ, PLY and STL are read: give the scene itself" render ok.state
+printf '<?xml version="1.0"?>\n<COLLADA version="1.4.1"/>' >scene.xml
+expect 1 "scene.xml: this is a COLLADA scene; pbrt-v4" render scene.xml
 cp ok.pbrt 'any name'
 expect 0 "8 x 6 pixels" render 'any name' -o picture.exr
 

@@ -60,7 +60,7 @@ broken "the gzip data ends early" 'Shape "plymesh" "string filename" "bad.ply.gz
 expect 1 "empty.pbrt: the file is empty" render empty.pbrt
 expect 1 "missing.pbrt: cannot be opened" render missing.pbrt
 expect 1 "it is a folder" render .
-expect 1 "this is a program; pbrt-v4, glTF 2.0, OBJ, PLY and STL are read" render "$montelux"
+expect 1 "this is a program; pbrt-v4, glTF 2.0, Mitsuba 3, OBJ, PLY and STL are read" render "$montelux"
 expect 1 "cannot be opened" render ''
 
 # Unusual, but valid.

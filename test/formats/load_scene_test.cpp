@@ -29,7 +29,7 @@ class LoadScene : public ::testing::Test {
     }
     std::string refused(const std::string& name, const std::string& kind) {
         return (folder_ / name).string() + ": this is " + kind +
-               "; pbrt-v4, glTF 2.0, OBJ, PLY and STL are read";
+               "; pbrt-v4, glTF 2.0, Mitsuba 3, OBJ, PLY and STL are read";
     }
 
     TemporaryFolder folder_;
@@ -56,9 +56,8 @@ TEST_F(LoadScene, OtherKindsAreNamed) {
     using namespace std::string_literals;
     const Case cases[] = {
         {"a.json", "{\"asset\": 1}", "a JSON file"},
-        {"a.xml", "<scene version='0.6.0'>", "a Mitsuba scene (XML)"},
-        {"b.xml", "\xef\xbb\xbf<?xml?>\n<!-- a comment -->\n<scene version=\"3.0.0\">",
-         "a Mitsuba scene (XML)"},
+        {"a.xml", "<scenery version='0.6.0'>", "an XML file"},
+        {"b.xml", "<!-- <scene> -->\n<story/>", "an XML file"},
         {"a.dae", "<?xml?><COLLADA>", "a COLLADA scene"},
         {"a.svg", "<svg xmlns=''>", "an SVG picture"},
         {"a.usda", "#usda 1.0\n", "a USD scene (text)"},
@@ -74,9 +73,23 @@ TEST_F(LoadScene, OtherKindsAreNamed) {
     const std::vector<std::uint8_t> packed = gzip("WorldBegin");
     EXPECT_EQ(error_of(folder_.write("packed.pbrt", {packed.begin(), packed.end()})),
               refused("packed.pbrt", "a gzip file") + ": the name of a compressed scene ends in .gz");
-    const std::vector<std::uint8_t> packed_xml = gzip("<scene version='3.0.0'>");
+    const std::vector<std::uint8_t> packed_xml = gzip("<COLLADA>");
     EXPECT_EQ(error_of(folder_.write("a.xml.gz", {packed_xml.begin(), packed_xml.end()})),
-              refused("a.xml.gz", "a Mitsuba scene (XML)"));
+              refused("a.xml.gz", "a COLLADA scene"));
+}
+
+TEST_F(LoadScene, MitsubaScenesAreRecognised) {
+    for (const std::string text :
+         {"<scene version='3.0.0'><shape type='cube'/></scene>",
+          "\xef\xbb\xbf<?xml version='1.0'?>\n<!-- <a> -->\n<scene\n version='0.6.0'>"
+          "<shape type='cube'/></scene>"}) {
+        Warnings warnings;
+        EXPECT_EQ(load_scene(folder_.write("any name", text), warnings).scene.shapes.size(), 1u) << text;
+        const std::vector<std::uint8_t> packed = gzip(text);
+        EXPECT_EQ(
+            load_scene(folder_.write("a.gz", {packed.begin(), packed.end()}), warnings).scene.shapes.size(),
+            1u);
+    }
 }
 
 TEST_F(LoadScene, MeshesAreModels) {
@@ -171,7 +184,7 @@ TEST_F(LoadScene, ScenesOfOtherFormatsAreNamed) {
             EXPECT_EQ(kind().format, SceneFormat::pbrt) << entry.path();
             ++pbrt;
         } else if (ending == ".xml" && entry.path().stem() == "cbox") {
-            EXPECT_EQ(kind().name, "a Mitsuba scene (XML)") << entry.path();
+            EXPECT_EQ(kind().format, SceneFormat::mitsuba) << entry.path();
             ++mitsuba;
         }
     }

@@ -20,15 +20,15 @@ TEST(MitsubaErrors, Xml) {
     expect_sentences({
         {"", "scene.xml:1:1: this is not XML: no element found"},
         {"<scene version=\"3.0.0\">", "scene.xml:1:24: this is not XML: no element found"},
-        {"<scene version=\"3.0.0\">\n<shape></scene>", "scene.xml:2:8: <shape> needs the attribute 'type'"},
+        {"<scene version=\"3.0.0\">\n<shape></scene>", "scene.xml:2:1: <shape> needs the attribute 'type'"},
         {"<scene version=\"3.0.0\">\n</shape>", "scene.xml:2:3: this is not XML: mismatched tag"},
         {"<scene version=3.0.0/>", "scene.xml:1:16: this is not XML: not well-formed (invalid token)"},
         {"<scene version=\"3.0.0\"/><scene/>",
          "scene.xml:1:25: this is not XML: junk after document element"},
         {"<!DOCTYPE s [<!ENTITY a \"aaaa\">]><scene version=\"3.0.0\">&a;</scene>",
-         "scene.xml:1:14: entities are not read: write what they stand for"},
+         "scene.xml:1:25: entities are not read: write what they stand for"},
         {"<!DOCTYPE s [<!ENTITY a SYSTEM \"/etc/passwd\">]><scene version=\"3.0.0\">&a;</scene>",
-         "scene.xml:1:14: entities are not read: write what they stand for"},
+         "scene.xml:1:45: entities are not read: write what they stand for"},
         {mitsuba_scene("&nothing;"), "scene.xml:1:24: this is not XML: undefined entity"},
         {std::string("<scene version=\"3.0.0\">\0</scene>", 32),
          "scene.xml:1:24: this is not XML: not well-formed (invalid token)"},
@@ -38,7 +38,7 @@ TEST(MitsubaErrors, Xml) {
 TEST(MitsubaErrors, NestingIsLimited) {
     std::string deep;
     for (int i = 0; i < 100000; ++i) deep += "<bsdf type=\"twosided\">";
-    EXPECT_EQ(graph_error(mitsuba_scene(deep)), "scene.xml:1:2180: elements are nested deeper than 100");
+    EXPECT_EQ(graph_error(mitsuba_scene(deep)), "scene.xml:1:2202: elements are nested deeper than 100");
     std::string chain;
     for (int i = 0; i < 5000; ++i)
         chain += "<bsdf type=\"twosided\" id=\"b" + std::to_string(i) + "\"><ref id=\"b" +
@@ -140,7 +140,7 @@ TEST(MitsubaErrors, Parameters) {
         {mitsuba_scene("<integer name=\"a\" value=\"$spp\"/>"),
          "scene.xml:1:24: the parameter '$spp' has no value; give one with -D spp=VALUE"},
         {mitsuba_scene("<default name=\"spp\" value=\"1\"/><integer name=\"a\" value=\"$sqp\"/>"),
-         "scene.xml:1:54: the parameter '$sqp' has no value (did you mean 'spp'?); give one with -D "
+         "scene.xml:1:55: the parameter '$sqp' has no value (did you mean 'spp'?); give one with -D "
          "sqp=VALUE"},
         {mitsuba_scene("<default name=\"\" value=\"1\"/>"), "scene.xml:1:24: a parameter without a name"},
     });
@@ -155,14 +155,14 @@ TEST(MitsubaErrors, Parameters) {
 TEST(MitsubaErrors, ReferencesAndIncludes) {
     expect_sentences({
         {mitsuba_scene("<bsdf type=\"diffuse\" id=\"red\"/><ref id=\"rad\"/>"),
-         "scene.xml:1:54: there is no object 'rad' (did you mean 'red'?)"},
+         "scene.xml:1:55: there is no object 'rad' (did you mean 'red'?)"},
         {mitsuba_scene("<bsdf type=\"twosided\" id=\"a\"><ref id=\"a\"/></bsdf>"),
          "scene.xml:1:53: references form a circle through 'a'"},
         {mitsuba_scene("<bsdf type=\"twosided\" id=\"a\"><ref id=\"b\"/></bsdf>"
                        "<bsdf type=\"twosided\" id=\"b\"><ref id=\"a\"/></bsdf>"),
          "scene.xml:1:102: references form a circle through 'a'"},
         {mitsuba_scene("<bsdf type=\"diffuse\" id=\"a\"/><bsdf type=\"diffuse\" id=\"a\"/>"),
-         "scene.xml:1:52: the id 'a' is already used at scene.xml:1:24"},
+         "scene.xml:1:53: the id 'a' is already used at scene.xml:1:24"},
         {mitsuba_scene("<alias id=\"a\" as=\"b\"/>"),
          "scene.xml:1:24: there is no object 'a' before this alias"},
         {mitsuba_scene("<include filename=\"none.xml\"/>"), "scene.xml:1:24: there is no file 'none.xml'"},

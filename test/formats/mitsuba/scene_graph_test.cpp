@@ -161,7 +161,7 @@ TEST(MitsubaGraph, PropertiesThatNothingReadsAreReported) {
     EXPECT_EQ(loaded.warnings.messages()[0],
               "scene.xml:2:22: the shape 'sphere' has no property 'radios' (did you mean 'radius'?)");
     EXPECT_EQ(loaded.warnings.messages()[1],
-              "scene.xml:2:55: the shape 'sphere' has no use for the bsdf 'diffuse'");
+              "scene.xml:2:54: the shape 'sphere' has no use for the bsdf 'diffuse'");
 }
 
 } // namespace

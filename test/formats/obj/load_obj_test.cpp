@@ -82,7 +82,7 @@ TEST_F(ObjScene, PhysicallyBasedMaterials) {
     EXPECT_EQ(d.scene.images[roughness.image].encoding(), ColorEncoding::linear());
     EXPECT_EQ(std::get<ImageTexture>(d.scene.float_textures.at(m.metallic.texture)).image, roughness.image);
     const auto& sheen = std::get<ImageTexture>(d.scene.spectrum_textures.at(m.sheen_color.texture));
-    EXPECT_EQ(d.scene.images[sheen.image].encoding(), ColorEncoding::srgb());
+    EXPECT_EQ(d.scene.images[sheen.image].encoding(), ColorEncoding::linear());
     material_of_kind<DielectricMaterial>("Kd 0 0 0\nillum 7\nPr 0.5\n"); // glass
     EXPECT_TRUE(warnings_.messages().empty());
 }

@@ -45,7 +45,8 @@ std::string scene_with(const PluginCoverage& p) {
         return "WorldBegin" + rest + plain + " Shape \"sphere\"";
     if (d == "AreaLightSource") return "WorldBegin" + rest + plain + " Shape \"sphere\"";
     if (d == "Texture") {
-        const bool of_numbers = p.plugin == "fbm" || p.plugin == "windy" || p.plugin == "wrinkled";
+        const bool of_numbers =
+            p.plugin == "fbm" || p.plugin == "windy" || p.plugin == "wrinkled" || p.plugin == "step";
         return "WorldBegin" + rest + "Texture \"t\" \"" + (of_numbers ? "float" : "spectrum") + "\" " +
                quoted + parameters + " Material \"diffuse\" \"texture " +
                (of_numbers ? "displacement" : "reflectance") + "\" \"t\" Shape \"sphere\"";

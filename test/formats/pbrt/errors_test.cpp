@@ -207,8 +207,8 @@ TEST(PbrtErrors, SentencesInTheWorld) {
          "scene:2:32: ./.: cannot be read: it is a folder"},
         {"Texture \"t\" \"float\" \"imagemap\" \"string wrap\" \"repeal\" Shape \"sphere\" \"texture alpha\" "
          "\"t\"",
-         "scene:2:32: parameter 'wrap' is 'repeal'; expected one of repeat, black, clamp, octahedralsphere "
-         "(did "
+         "scene:2:32: parameter 'wrap' is 'repeal'; expected one of repeat, black, clamp, octahedralsphere, "
+         "mirror (did "
          "you mean 'repeat'?)"},
         // Lights.
         {"LightSource \"infinit\"", "scene:2:1: unknown light 'infinit' (did you mean 'infinite'?)"},
