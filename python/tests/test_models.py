@@ -127,7 +127,7 @@ def test_mitsuba_scenes_have_parameters(tmp_path):
     assert montelux.load(path, camera="near").film.resolution == (12, 8)
     with pytest.warns(UserWarning, match="hide_emitters"):
         montelux.load(path, definitions={"hidden": True})
-    with pytest.raises(montelux.Error, match="'grey' is 'dark'"):
+    with pytest.raises(montelux.Error, match="'reflectance' is 'dark'; expected a number"):
         montelux.load(path, definitions={"grey": "dark"})
     with pytest.raises(montelux.Error, match="scene.xml:1:"):
         montelux.load(path, definitions={"hidden": 3})
