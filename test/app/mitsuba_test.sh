@@ -34,7 +34,7 @@ expect 0 "" render scene.xml -D grey=0.25 -o dark.pfm
 cmp -s grey.pfm dark.pfm && fail "-D has no effect"
 expect 0 "" render -D spp=1 scene.xml -o fewer.pfm
 cmp -s grey.pfm fewer.pfm && fail "-D spp has no effect"
-expect 0 "1 shape" info scene.xml -D spp=4
+expect 0 "shapes       1 sphere" info scene.xml -D spp=4
 expect 0 "the scene does not use the parameter 'gray'" render scene.xml -D gray=1 -o other.pfm
 expect 2 "NAME=VALUE" render scene.xml -D grey -o other.pfm
 expect 2 "NAME=VALUE" render scene.xml -D =1 -o other.pfm
