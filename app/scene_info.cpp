@@ -196,7 +196,8 @@ void print_text(const Json& j) {
     char text[80];
     std::snprintf(text, sizeof text, "%.2f MiB", j["memory_bytes"]["sum"].get<double>() / mebibyte);
     print_line("memory", text);
-    std::snprintf(text, sizeof text, "%zu, %.2f MiB", j["files"].size(), j["file_bytes"].get<double>() / mebibyte);
+    std::snprintf(text, sizeof text, "%zu, %.2f MiB", j["files"].size(),
+                  j["file_bytes"].get<double>() / mebibyte);
     print_line("files", text);
     for (const Json& warning : j["ignored"]) print_line("ignored", warning.get<std::string>());
 }

@@ -66,7 +66,8 @@ inline Scene scene_of_all_kinds() {
                 with_spectrum<SunLight>(1.0f),
                 GoniometricLight{.spectrum = 1.0f, .environment = 0, .world_from_map = {}},
                 ProjectionLight{.environment = 0, .world_from_light = {}}};
-    s.media = {HomogeneousMedium{}, GridMedium{}, RgbGridMedium{}, CloudMedium{}, SparseGridMedium{}, FieldMedium{}};
+    s.media = {HomogeneousMedium{}, GridMedium{},       RgbGridMedium{},
+               CloudMedium{},       SparseGridMedium{}, FieldMedium{}};
     s.scalar_grids.emplace_back();
     s.color_grids.emplace_back();
     s.sparse_grids.emplace_back();

@@ -194,8 +194,7 @@ TEST(GltfMeshopt, MistakesAreSentences) {
         bomb.replace(at_length, length.size(), R"("byteLength": 1099511627776)");
     bomb.replace(bomb.find(R"("byteStride": 12, "count": 9)"), 28,
                  R"("byteStride": 256, "count": 4294967296)");
-    EXPECT_NE(model_error(bomb).find("describes more than 64 times the bytes that it has"),
-              std::string::npos)
+    EXPECT_NE(model_error(bomb).find("describes more than 64 times the bytes that it has"), std::string::npos)
         << model_error(bomb);
 }
 
