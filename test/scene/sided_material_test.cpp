@@ -68,7 +68,7 @@ TEST(SidedMaterial, NestsWithMixes) {
 // An interface as a side is what it is as a part of a mix: a surface that all light passes.
 TEST(SidedMaterial, InterfacesLetLightPass) {
     const SidedSheet sheet({SidedMaterial{.front = {1}, .back = {2}}, InterfaceMaterial{}, grey_paint(0.5f)});
-    const auto& through = std::get<ThinDielectricBsdf>(sheet.met(1).bsdf);
+    const auto through = std::get<ThinDielectricBsdf>(sheet.met(1).bsdf);
     EXPECT_EQ(through.reflectance({0, 0, 1}), 0);
     EXPECT_EQ(sheet.reflectance(-1), 0.5f);
     const SceneTables tables(sheet.scene);
