@@ -1,6 +1,8 @@
 // The values of lights and of their skies.
 #pragma once
 
+#include <cstdint>
+
 #include "montelux/scene/digest/scene_hasher.h"
 #include "montelux/scene/light/light.h"
 #include "montelux/scene/light/sky/sky_model.h"
@@ -64,8 +66,9 @@ inline void hash_values(SceneHasher& h, const ProjectionLight& l) {
     const auto& [environment, scale, fov, world_from_light, motion, profile, equal_energy] = l;
     h.all(environment, scale, fov, world_from_light);
     if (motion != no_index) h.all(motion);
-    if (profile != ProjectionProfile::intensity) h.all(profile);
-    if (equal_energy) h.all(equal_energy);
+    // Numbered, as both are a byte.
+    if (profile != ProjectionProfile::intensity) h.all(std::uint8_t{1}, profile);
+    if (equal_energy) h.all(std::uint8_t{2}, equal_energy);
 }
 // Its tables follow from its settings.
 inline void hash_values(SceneHasher& h, const SkyModel& sky) {
