@@ -72,7 +72,7 @@ class Frames {
             options.scene_time = time(frame);
             return load(options).description;
         }
-        // The frame before has been rendered: nobody else looks at the description.
+        // The frame before has been rendered, so nothing else reads the description.
         turntable_->description->scene.camera =
             turned_camera(turntable_->camera, turntable_->axis,
                           360.0 * (frame - 1) / static_cast<double>(*options_.turntable));

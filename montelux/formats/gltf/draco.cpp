@@ -26,7 +26,7 @@ constexpr std::size_t most_vertices_per_byte = 64, always_allowed_vertices = 1 <
 // What the beginning of the data says of sizes. Draco bitstream specification 2.2, sections "Decode" and "Connectivity".
 struct DracoSizes {
     std::uint64_t triangles = 0;
-    std::optional<std::uint64_t> vertices{}; // told only of meshes without connectivity coding
+    std::optional<std::uint64_t> vertices{}; // known only for meshes without connectivity coding
 };
 
 class DracoHeader {
