@@ -2,14 +2,19 @@
 // scene names (included scenes, meshes, pictures, spectra, grids), whatever the name. Nothing is read from the disk.
 #pragma once
 
+#include "test/fuzz/fuzz_target.h"
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "montelux/formats/file_source.h"
+#include "montelux/formats/load_scene.h"
+#include "montelux/formats/warnings.h"
 
 namespace montelux {
 
@@ -32,5 +37,21 @@ class SceneAndFile final : public FileSource {
     std::filesystem::path name_;
     std::vector<std::uint8_t> scene_, other_;
 };
+
+// Loads the input as a scene of that name, or refuses it. libFuzzer leaves out inputs with one of `slow_words`: what they
+// name takes seconds under sanitizers.
+inline int read_or_refuse_scene(const std::uint8_t* data, std::size_t size, const std::filesystem::path& name,
+                                [[maybe_unused]] std::initializer_list<std::string_view> slow_words) {
+#ifdef MONTELUX_FUZZ
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    for (const std::string_view word : slow_words)
+        if (text.find(word) != std::string_view::npos) return 0;
+#endif
+    SceneAndFile files(data, size, name);
+    return read_or_refuse([&] {
+        Warnings warnings;
+        load_scene(name, warnings, {.source = &files});
+    });
+}
 
 } // namespace montelux

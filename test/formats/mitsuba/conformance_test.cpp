@@ -18,10 +18,8 @@ class MitsubaConformance : public ::testing::Test {
     void SetUp() override {
         if (!std::filesystem::exists(mitsuba_scenes())) GTEST_SKIP() << "no shared files";
     }
-    SceneDescription load(const std::filesystem::path& path, LoadOptions options = {}) {
+    SceneDescription load(const std::filesystem::path& path, const LoadOptions& options = {}) {
         Warnings warnings;
-        test::MitsubaFiles files;
-        options.source = &files;
         return load_scene(path, warnings, options);
     }
     // Some scenes leave the number of samples to the user.

@@ -67,12 +67,9 @@ TEST_P(MitsubaReferencePicturesSlowTest, Agree) {
         return scene.parent_path() / "refs" / (stem + "_ref_spectral" + ending + ".exr");
     };
     Warnings warnings;
-    test::MitsubaFiles files;
-    LoadOptions options;
-    options.source = &files;
     SceneDescription d;
     try {
-        d = load_scene(scene, warnings, options);
+        d = load_scene(scene, warnings);
     } catch (const Error& e) {
         if (std::string(e.what()).find("there is no file") != std::string::npos) GTEST_SKIP() << e.what();
         throw;
