@@ -70,8 +70,12 @@ std::optional<CoatingKey> closed_form(const SceneView& scene, const Material& ma
 // The sum over 2^32 parts is finite.
 constexpr double most_power = 1e290;
 
-// Fewer parts are chosen by their power: there a tree gains less than it costs.
-constexpr Index fewest_parts_of_tree = 3;
+// One part needs no choice. Two are chosen by their power, where a tree gains less than it costs, unless one alone is
+// infinite: the power that it sends through the scene says nothing about the light at a point.
+bool wants_tree(const LightParts& parts, const TreeLightSampler::BoundsOfRow& bounds) {
+    if (parts.size() != 2) return parts.size() > 2;
+    return bounds(0).has_value() != bounds(1).has_value();
+}
 
 std::vector<Index> part_counts(const SceneView& scene) {
     std::vector<Index> counts;
@@ -95,11 +99,11 @@ LightSampler make_light_sampler(const SceneView& scene, LightSampling sampling) 
     LightParts parts(counts);
     if (sampling == LightSampling::uniform) return LightSampler(UniformLightSampler(std::move(parts)));
     const std::vector<double> all = part_powers(scene, counts, parts);
-    if (sampling == LightSampling::tree && parts.size() >= fewest_parts_of_tree) {
-        const auto bounds = [&](Index row) {
-            const LightChoice at = parts.at(row);
-            return motion_bounds({scene, at.light}, at.part);
-        };
+    const auto bounds = [&](Index row) {
+        const LightChoice at = parts.at(row);
+        return motion_bounds({scene, at.light}, at.part);
+    };
+    if (sampling == LightSampling::tree && wants_tree(parts, bounds)) {
         const double area = SceneDisk(scene.light_tables.scene_bounds).area();
         if (std::any_of(all.begin(), all.end(), [](double power) { return power > 0; }))
             return LightSampler(TreeLightSampler(parts, all, bounds, area));

@@ -87,7 +87,30 @@ TEST(LightSamplers, InfinitePowerIsMuch) {
     EXPECT_EQ(lights.probability({}, 2, 0), 0.5f);
 }
 
-// Two lights are chosen by their power, more by a tree.
+// The sky sends a hundred times the spot's power through a wide scene, and the spot most of the light to where it shines.
+TEST(LightSamplers, ATreeForASpotBelowTheSky) {
+    Scene scene;
+    TriangleMesh floor;
+    floor.positions = {{-10, -10, 0}, {10, -10, 0}, {0, 10, 0}};
+    floor.indices = {0, 1, 2};
+    scene.meshes.push_back(floor);
+    scene.shapes.push_back({.geometry = MeshIndex{0}});
+    scene.world_shapes.push_back(0);
+    scene.lights.push_back(UniformInfiniteLight{1.0f, 0.1f});
+    scene.lights.push_back(SpotLight{.spectrum = 1.0f,
+                                     .scale = 5,
+                                     .position = {0, 0, 1},
+                                     .axis = {0, 0, -1},
+                                     .cos_falloff_start = 0.96f,
+                                     .cos_total_width = 0.94f});
+    const SceneTables by_tree(scene), by_power(scene, {}, LightSampling::power);
+    const ReferencePoint lit{.p = {0, 0, 0}, .n = {0, 0, 1}}, beside{.p = {3, 0, 0}, .n = {0, 0, 1}};
+    EXPECT_LT(by_power.view().light_sampler->probability(lit, 1, 0), 0.05f);
+    EXPECT_GT(by_tree.view().light_sampler->probability(lit, 1, 0), 0.7f);
+    EXPECT_GT(by_tree.view().light_sampler->probability(beside, 0, 0), 0.9f);
+}
+
+// Two lights of points are chosen by their power, more by a tree.
 TEST(LightSamplers, ATreeFromThreePartsOn) {
     Scene scene;
     for (const float x : {0.0f, 10.0f}) scene.lights.push_back(PointLight{1.0f, 1, {x, 0, 0}});

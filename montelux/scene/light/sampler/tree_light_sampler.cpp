@@ -22,10 +22,12 @@ float sum(Importances w) {
 
 bool usable(float total) { return total > 0 && total <= std::numeric_limits<float>::max(); }
 
-// Of the node's groups for the point; their intensities where no group has any, or the point is no number.
-Importances importances(const LightTreeNode& node, const LitPoint& at) {
-    const Importances w = light_importance(node.groups, at);
+// To choose among the node's groups: their intensities where no group has any importance, or the point is no number.
+Importances choosable(const LightTreeNode& node, Importances w) {
     return usable(sum(w)) ? w : node.groups.intensity;
+}
+Importances importances(const LightTreeNode& node, const LitPoint& at) {
+    return choosable(node, light_importance(node.groups, at));
 }
 
 struct Group {
@@ -101,7 +103,7 @@ LightChoice TreeLightSampler::sample(const ReferencePoint& from, double u) const
     }
     const LitPoint at = tree_->lit_point(from);
     const std::span<const LightTreeNode> nodes = tree_->nodes();
-    Importances w = importances(nodes[0], at);
+    Importances w = light_importance(nodes[0].groups, at);
     if (infinite_) {
         const float share = infinite_share(w);
         if (u < double(share)) {
@@ -112,6 +114,7 @@ LightChoice TreeLightSampler::sample(const ReferencePoint& from, double u) const
         u = std::min((u - double(share)) / (1 - double(share)), largest_below_one<double>);
         probability = 1 - share;
     }
+    w = choosable(nodes[0], w);
     for (Index node = 0;;) {
         const Group group = choose(w, u);
         probability *= group.probability;
@@ -131,13 +134,14 @@ float TreeLightSampler::probability(const ReferencePoint& from, Index light, Ind
     const LitPoint at = tree_->lit_point(from);
     const std::span<const LightTreeNode> nodes = tree_->nodes();
     float probability = 1;
-    Importances w = importances(nodes[0], at);
+    Importances w = light_importance(nodes[0].groups, at);
     if (infinite_) {
         const float share = infinite_share(w);
         if (place >= first_infinite_)
             return std::max(share * infinite_->probability(place - first_infinite_), least_probability);
         probability = 1 - share;
     }
+    w = choosable(nodes[0], w);
     // The places that lead to the light, from below; multiplied in the order of `sample`.
     std::array<Index, LightTree::max_depth> path;
     std::size_t length = 0;
