@@ -223,6 +223,21 @@ inline std::vector<BsdfCase> principled_cases() {
     const auto made = [](const char* name, const M& m) {
         return BsdfCase{std::string("principled_") + name, [=] { return principled(m); }};
     };
+    // Not reciprocal, as all normals that are not those of the surface.
+    const auto with_tilted_coat = [](const char* name, const M& m) {
+        return BsdfCase{std::string("principled_") + name,
+                        [=] {
+                            Bsdf bsdf = principled(m);
+                            std::visit(
+                                [&]<typename B>(B& b) {
+                                    if constexpr (requires { b.layers; })
+                                        b.layers.set_coat_normal(direction(30, 160));
+                                },
+                                bsdf);
+                            return bsdf;
+                        },
+                        true, false};
+    };
     return {
         made("diffuse", M{.base_color = {red_paint}, .specular = {0}}),
         made("plastic", M{.base_color = {red_paint}, .roughness = {0.4f}}),
@@ -241,6 +256,16 @@ inline std::vector<BsdfCase> principled_cases() {
                           .clearcoat = {1},
                           .clearcoat_roughness = {0.4f}}),
         made("smooth_lacquer", M{.base_color = {red_paint}, .clearcoat = {0.7f}, .clearcoat_roughness = {0}}),
+        with_tilted_coat("lacquer_over_waves", M{.base_color = {red_paint},
+                                                 .roughness = {0.6f},
+                                                 .clearcoat = {1},
+                                                 .clearcoat_roughness = {0.5f}}),
+        with_tilted_coat("smooth_lacquer_over_waves", M{.base_color = {red_paint}, .clearcoat = {1}}),
+        with_tilted_coat("coated_leaf", M{.base_color = {blue_paint},
+                                          .diffuse_transmission = {0.5f},
+                                          .clearcoat = {1},
+                                          .clearcoat_roughness = {0.6f},
+                                          .thin_walled = true}),
         made("narrow_fibres", M{.base_color = {0.3f}, .sheen_color = {1}, .sheen_roughness = {0.15f}}),
         made("glass", M{.base_color = {blue_paint}, .roughness = {0.5f}, .transmission = {1}}),
         made("smooth_glass", M{.base_color = {blue_paint}, .roughness = {0}, .transmission = {1}}),

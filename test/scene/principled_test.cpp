@@ -113,6 +113,28 @@ TEST(Principled, ClearcoatReflectsAsInTheSpecification) {
         [](Vec3f v, Vec3f l) { return 0.8 * schlick(v, l, 0.04) * ggx_specular(v, l, 0.25, 0.25); });
 }
 
+TEST(Principled, CoatHasItsOwnNormal) {
+    const Vec3f n = direction(25, 70);
+    const Frame frame = Frame::from_normal(n);
+    Bsdf bsdf = principled(Principled{.base_color = {0},
+                                      .roughness = {1},
+                                      .specular = {0},
+                                      .clearcoat = {0.8f},
+                                      .clearcoat_roughness = {0.5f}});
+    std::get<PrincipledBsdf<false>>(bsdf).layers.set_coat_normal(n);
+    int hidden = 0;
+    for (Vec3f v : some_directions)
+        for (Vec3f l : {direction(10, 100), direction(50, 300), direction(75, 190), direction(88, 250)}) {
+            const Vec3f o = frame.to_local(v), i = frame.to_local(l);
+            const bool faces = o.z > 0 && i.z > 0;
+            hidden += faces ? 0 : 1;
+            const double e =
+                faces ? 0.8 * schlick(v, l, 0.04) * ggx_specular(o, i, 0.25, 0.25) * double(i.z) : 0;
+            EXPECT_NEAR(bsdf_value(bsdf, v, l)[1], e, 2e-4 * e + 1e-7) << v.z << ' ' << l.z;
+        }
+    EXPECT_GT(hidden, 0);
+}
+
 TEST(Principled, SheenReflectsAsInTheSpecification) {
     for (float roughness : {0.4f, 0.7f, 1.0f})
         expect_values(

@@ -21,6 +21,7 @@ Image one_texel(Vec3f n) {
 struct Sheet {
     Scene scene;
     DiffuseMaterial material;
+    std::optional<PrincipledMaterial> coated; // in its place, with its detail
     Ray ray{{0.3f, -0.7f, 2}, {0, 0, -1}};
     bool instance = false;
     Vec3f wo{0, 0, 1};
@@ -67,6 +68,10 @@ struct Sheet {
 
     SurfaceBsdf shade(Vec2f footprint = {0, 0}) {
         scene.materials = {material};
+        if (coated) {
+            coated->detail = material.detail;
+            scene.materials = {*coated};
+        }
         const SceneTables tables(scene);
         // Barycentric weights on the first triangle, (0.25, -0.4) in the sheet's plane.
         const Hit hit{.t = 2, .b1 = 0.225f, .b2 = 0.4f, .shape = 0, .instance = instance ? 0 : no_index};
@@ -105,6 +110,36 @@ TEST(NormalMap, RightHandedOneDoesNotFollowTheSecondCoordinate) {
         sheet.add_map(n);
         sheet.scene.normal_maps[0].right_handed = right_handed;
         expect_near(sheet.shade().frame.n, right_handed ? n : Vec3f{n.x, -n.y, n.z});
+    }
+}
+
+// A smooth coat mirrors at the sheet over the dents of its base, or at the normals of its own map.
+TEST(NormalMap, CoatsHaveTheirOwn) {
+    const Vec3f dent = normalize(Vec3f{0.3f, -0.2f, 0.9f}), own = normalize(Vec3f{-0.2f, 0.1f, 0.9f});
+    for (const auto& [dented, mapped] : {std::pair(true, false), {false, true}, {true, true}}) {
+        Sheet sheet;
+        sheet.add_map(dent);
+        if (!dented) sheet.material.detail.normal_map = {};
+        sheet.coated = PrincipledMaterial{.base_color = {0.5f}, .specular = {0}, .clearcoat = {1}};
+        if (mapped) {
+            sheet.scene.images.push_back(one_texel(own));
+            sheet.scene.normal_maps.push_back(ImageTexture{.image = 1, .mapping = {}});
+            sheet.coated->clearcoat_normal_map.map = 1;
+        }
+        sheet.wo = normalize(Vec3f{0.4f, 0.3f, 1});
+        const SurfaceBsdf b = sheet.shade();
+        EXPECT_EQ(is_tilted(b), dented);
+        expect_near(b.frame.n, dented ? dent : Vec3f{0, 0, 1});
+        const Vec3f n = mapped ? own : Vec3f{0, 0, 1}, mirrored = n * (2 * dot(n, sheet.wo)) - sheet.wo;
+        testing::TestStream stream(3);
+        int found = 0;
+        for (int i = 0; i < 2000; ++i) {
+            const auto s = testing::sample(b.bsdf, b.frame.to_local(sheet.wo), stream);
+            if (!s || !s->specular) continue;
+            ++found;
+            expect_near(b.frame.to_world(s->wi), mirrored, 1e-4f);
+        }
+        EXPECT_GT(found, 20);
     }
 }
 

@@ -56,7 +56,7 @@ const std::vector<FeatureCoverage>& table() {
         {"material", "alphaMode"},
         {"material", "doubleSided", in_part, "decides which sides emit; every surface is seen from both"},
         {"material", "KHR_materials_anisotropy"},
-        {"material", "KHR_materials_clearcoat", in_part, "the coat has the normals of the base"},
+        {"material", "KHR_materials_clearcoat"},
         {"material", "KHR_materials_diffuse_transmission"},
         {"material", "KHR_materials_dispersion"},
         {"material", "KHR_materials_emissive_strength"},

@@ -83,8 +83,8 @@ class SurfaceReader {
         with("KHR_materials_clearcoat", [&](const Value& e) {
             m_.clearcoat = number(e, "clearcoat", 0, ImageChannels::red);
             m_.clearcoat_roughness = number(e, "clearcoatRoughness", 0, ImageChannels::green);
-            if (e.find("clearcoatNormalTexture"))
-                e.warn("clearcoatNormalTexture is ignored: the coat has the normals of the base");
+            if (const std::optional<Value> normals = e.find("clearcoatNormalTexture"))
+                m_.clearcoat_normal_map = textures_.normal_map(*normals);
         });
         with("KHR_materials_sheen", [&](const Value& e) {
             m_.sheen_color = color(e, "sheenColor", {0, 0, 0}, RgbMeaning::albedo);

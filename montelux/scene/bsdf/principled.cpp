@@ -41,9 +41,29 @@ bool PrincipledLayers::has_specular() const {
            (coat > 0 && coat_ggx.is_smooth());
 }
 
+void PrincipledLayers::set_coat_normal(Normal3f n) {
+    // Upright at least a little, so that z follows from x and y.
+    const float sine = std::sqrt(n.x * n.x + n.y * n.y);
+    constexpr float most_sine = 0.999f;
+    const float shrink = n.z > 0 && sine < most_sine ? 1 : most_sine / std::max(sine, 1e-6f);
+    coat_tilt = {n.x * shrink, n.y * shrink};
+}
+Frame PrincipledLayers::coat_frame() const {
+    const float x = coat_tilt.x, y = coat_tilt.y;
+    return Frame::from_normal({x, y, std::sqrt(std::max(1 - x * x - y * y, 0.0f))});
+}
+Vec3f PrincipledLayers::in_coat(Vec3f w) const {
+    if (!is_coat_tilted()) return w;
+    const Vec3f turned = coat_frame().to_local(w);
+    return same_hemisphere(w, turned) ? turned : Vec3f{};
+}
+Vec3f PrincipledLayers::from_coat(Vec3f w) const { return is_coat_tilted() ? coat_frame().to_world(w) : w; }
+
 float PrincipledLayers::coat_albedo(Vec3f w) const {
     if (coat == 0 || !is_outside(w)) return 0;
-    return coat * ggx_schlick_albedo(coat_ggx, abs_cos_theta(w), SampledSpectrum(coat_f0), 1)[0];
+    const float cosine = abs_cos_theta(in_coat(w));
+    if (cosine == 0 && is_coat_tilted()) return 0;
+    return coat * ggx_schlick_albedo(coat_ggx, cosine, SampledSpectrum(coat_f0), 1)[0];
 }
 SampledSpectrum PrincipledLayers::sheen_albedo(Vec3f w) const {
     if (is_black(sheen_color) || !is_outside(w)) return SampledSpectrum(0);
@@ -161,7 +181,9 @@ BsdfEvaluation PrincipledLayers::evaluate(const Shares& p, Vec3f wo, Vec3f wi, T
             pdf += p.sheen * inv_two_pi_f;
         }
         if (coat > 0 && !coat_ggx.is_smooth()) {
-            if (const auto facet = MicrofacetPair::find(coat_ggx, wo, wi, true, 1)) {
+            const Vec3f o = in_coat(wo), i = in_coat(wi);
+            const bool faces = o.z != 0 && i.z != 0;
+            if (const auto facet = faces ? MicrofacetPair::find(coat_ggx, o, i, true, 1) : std::nullopt) {
                 const SampledSpectrum r = fresnel_schlick(std::abs(facet->o_m), SampledSpectrum(coat_f0), 1);
                 f += coat * facet->density * facet->shadowing * r;
                 pdf += p.coat * facet->density;
@@ -189,14 +211,14 @@ std::optional<BsdfSample> PrincipledLayers::sample(Vec3f wo, TransportMode mode,
     } else if ((uc -= p.transmitting) < p.sheen) {
         s.wi = to_side(sample_uniform_hemisphere(u), true);
     } else if (p.coat > 0) {
-        if (coat_ggx.is_smooth()) {
-            const SampledSpectrum r = fresnel_schlick(abs_cos_theta(wo), SampledSpectrum(coat_f0), 1);
-            return BsdfSample{
-                .weight = coat / p.coat * r, .wi = {-wo.x, -wo.y, wo.z}, .pdf = p.coat, .specular = true};
-        }
-        const Vec3f m = coat_ggx.sample_visible(wo, u);
-        s.wi = reflect(wo, m);
+        const Vec3f o = in_coat(wo);
+        const bool smooth = coat_ggx.is_smooth();
+        s.wi = from_coat(smooth ? Vec3f{-o.x, -o.y, o.z} : reflect(o, coat_ggx.sample_visible(o, u)));
         if (!same_hemisphere(wo, s.wi)) return std::nullopt;
+        if (smooth) {
+            const SampledSpectrum r = fresnel_schlick(abs_cos_theta(o), SampledSpectrum(coat_f0), 1);
+            return BsdfSample{.weight = coat / p.coat * r, .wi = s.wi, .pdf = p.coat, .specular = true};
+        }
     } else {
         return std::nullopt;
     }

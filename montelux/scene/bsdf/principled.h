@@ -22,7 +22,11 @@ struct PrincipledLayers {
 
     float coat = 0; // weight
     Ggx coat_ggx;
+    Vec2f coat_tilt{};                      // x and y of the coat's normal
     static constexpr float coat_f0 = 0.04f; // index 1.5
+
+    // The coat's own normal in this frame. Where it faces away from wo or wi there is no coat.
+    void set_coat_normal(Normal3f n);
 
     // What lies below differs from what lies above.
     bool is_solid() const { return !interface.thin && (interface.is_clear() || !is_black(transmitting)); }
@@ -49,6 +53,11 @@ struct PrincipledLayers {
     SampledSpectrum below_sheen(const Shares& shares, Vec3f wi) const;
     SampledSpectrum below_interface(const Shares& shares, Vec3f wi) const;
     bool is_outside(Vec3f w) const { return w.z > 0 || !is_solid(); }
+    bool is_coat_tilted() const { return coat_tilt.x != 0 || coat_tilt.y != 0; }
+    Frame coat_frame() const;
+    // In the frame of the coat; zero where it faces away.
+    Vec3f in_coat(Vec3f w) const;
+    Vec3f from_coat(Vec3f w) const;
     float coat_albedo(Vec3f w) const;
     SampledSpectrum sheen_albedo(Vec3f w) const;
     Vec3f turned(Vec3f w) const;
@@ -81,6 +90,8 @@ struct PrincipledBsdf {
         visit("sheen alpha", layers.sheen.alpha);
         visit("coat", layers.coat);
         visit("coat surface", layers.coat_ggx);
+        visit("coat normal x", layers.coat_tilt.x);
+        visit("coat normal y", layers.coat_tilt.y);
     }
 
     bool is_specular() const { return layers.is_specular(); }

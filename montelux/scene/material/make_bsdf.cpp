@@ -1,6 +1,8 @@
 #include "montelux/scene/material/make_bsdf.h"
 
 #include <algorithm>
+#include <optional>
+#include <type_traits>
 
 #include "montelux/scene/bsdf/multiple_scattering.h"
 #include "montelux/scene/material/parameter_evaluator.h"
@@ -52,6 +54,23 @@ Bsdf tilted(const Bsdf& bsdf, Normal3f normal, float shadowing) {
         bsdf);
 }
 
+// A coat has normals of its own.
+void tilt_coat(const SceneView& scene, const PrincipledMaterial& material, const SurfacePoint& surface,
+               Vec3f wo, const TextureContext& context, const Frame& frame, Bsdf& bsdf) {
+    if (!material.has_coat()) return;
+    const SurfaceDetail detail{.normal_map = material.clearcoat_normal_map};
+    const std::optional<Frame> own =
+        detail.is_flat() ? std::nullopt : tilted_frame(scene, detail, surface, wo, context);
+    const Normal3f normal = own ? own->n : surface.ns;
+    if (normal == frame.n) return;
+    std::visit(
+        [&]<typename B>(B& b) {
+            if constexpr (requires { b.layers.set_coat_normal(normal); })
+                b.layers.set_coat_normal(frame.to_local(normal));
+        },
+        bsdf);
+}
+
 // As the material describes it: with single scattering between microfacets.
 SurfaceBsdf plain_bsdf(const SceneView& scene, const SurfacePoint& surface, Vec3f wo,
                        const TextureContext& context, SampledWavelengths& lambda, bool widen) {
@@ -59,13 +78,18 @@ SurfaceBsdf plain_bsdf(const SceneView& scene, const SurfacePoint& surface, Vec3
     if (index == no_index) return {DiffuseBsdf{SampledSpectrum(0)}, Frame::from_normal(surface.ns)};
     const ParameterEvaluator at(scene, index, context, lambda, widen);
     return std::visit(
-        [&](const auto& m) -> SurfaceBsdf {
+        [&]<typename M>(const M& m) -> SurfaceBsdf {
+            constexpr bool has_own_coat = std::is_same_v<M, PrincipledMaterial>;
             if (!m.detail.is_flat())
                 if (auto frame = tilted_frame(scene, m.detail, surface, wo, context)) {
                     const Normal3f normal = frame->to_local(m.detail.shadowed ? surface.ns : surface.ng);
-                    return {tilted(m.bsdf(at), normal, m.detail.shadowed ? shadowing_of(normal) : 0), *frame};
+                    Bsdf bsdf = m.bsdf(at);
+                    if constexpr (has_own_coat) tilt_coat(scene, m, surface, wo, context, *frame, bsdf);
+                    return {tilted(bsdf, normal, m.detail.shadowed ? shadowing_of(normal) : 0), *frame};
                 }
-            return {m.bsdf(at), plain_frame(scene, index, surface)};
+            SurfaceBsdf plain{m.bsdf(at), plain_frame(scene, index, surface)};
+            if constexpr (has_own_coat) tilt_coat(scene, m, surface, wo, context, plain.frame, plain.bsdf);
+            return plain;
         },
         scene.materials[index]);
 }

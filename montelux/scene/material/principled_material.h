@@ -29,6 +29,7 @@ struct PrincipledMaterial {
     SpectrumParameter diffuse_transmission_color{1};
     FloatParameter clearcoat{};
     FloatParameter clearcoat_roughness{};
+    NormalMapParameter clearcoat_normal_map{};
     SpectrumParameter sheen_color{};
     FloatParameter sheen_roughness{};
     FloatParameter iridescence{};
@@ -67,6 +68,12 @@ struct PrincipledMaterial {
         visit({.name = "clearcoat", .doc = "Weight of the clear coat, 0 to 1.", .most = 1}, m.clearcoat);
         visit({.name = "clearcoat_roughness", .doc = "Square root of the coat's alpha, 0 to 1.", .most = 1},
               m.clearcoat_roughness);
+        visit({.name = "clearcoat_normal_map",
+               .doc =
+                   "Normals of the coat: a NormalMap, or None: those of the surface, without the bumps and "
+                   "normal map of what lies below.",
+               .added = true},
+              m.clearcoat_normal_map);
         visit({.name = "sheen_color", .doc = "Reflectance of fibres on the surface; 0: none."},
               m.sheen_color);
         visit({.name = "sheen_roughness", .doc = "Roughness of the sheen, 0 to 1.", .most = 1},
@@ -79,6 +86,8 @@ struct PrincipledMaterial {
         visit({.name = "thin_walled", .doc = "A sheet: neither refraction nor a medium behind it."},
               m.thin_walled);
     }
+
+    bool has_coat() const { return !clearcoat.is_constant() || clearcoat.value > 0; }
 
     // The lobes are turned or elongated along the tangents.
     bool is_anisotropic() const { return !anisotropy.is_constant() || anisotropy.value != 0; }

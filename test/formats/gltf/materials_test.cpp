@@ -164,6 +164,17 @@ TEST(GltfMaterials, Variants) {
     EXPECT_EQ(load_model(text, nullptr, {.variant = "red"}).scene.material_names.at(0), "red paint");
 }
 
+TEST(GltfMaterials, CoatsHaveTheirOwnNormalMap) {
+    Warnings warnings;
+    const SceneDescription d = with_material(R"("normalTexture": {"index": 0}, "extensions": {
+        "KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatNormalTexture": {"index": 0, "scale": 0.5}}})",
+                                             false, pictures, &warnings);
+    const auto& m = std::get<PrincipledMaterial>(d.scene.materials.at(0));
+    EXPECT_EQ(d.scene.normal_maps.at(m.detail.normal_map.map).factor, Vec3f(1, 1, 1));
+    EXPECT_EQ(d.scene.normal_maps.at(m.clearcoat_normal_map.map).factor, Vec3f(0.5f, 0.5f, 1));
+    EXPECT_TRUE(warnings.messages().empty());
+}
+
 TEST(GltfMaterials, NormalMaps) {
     const SceneDescription d = with_material(R"("normalTexture": {"index": 0, "scale": 0.5})");
     const ImageTexture& map = d.scene.normal_maps.at(0);
