@@ -70,10 +70,10 @@ std::uint64_t hash_of_integrator(const IntegratorSettings& s) {
         return s.background ? hash_of(h, s.background->x, s.background->y, s.background->z) : h;
     };
     if (s.occlusion) return with_background(hash_of(s.occlusion->cosine, s.occlusion->max_distance));
-    return with_background(hash_of(s.max_depth, static_cast<int>(s.strategy), static_cast<int>(s.heuristic),
-                                   static_cast<int>(s.light_sampling), s.equiangular, s.regularize,
-                                   static_cast<int>(s.environment_sampling), s.environment_compensation,
-                                   static_cast<int>(s.environment_lookup),
+    return with_background(hash_of(s.max_depth, s.count_passages, static_cast<int>(s.strategy),
+                                   static_cast<int>(s.heuristic), static_cast<int>(s.light_sampling),
+                                   s.equiangular, s.regularize, static_cast<int>(s.environment_sampling),
+                                   s.environment_compensation, static_cast<int>(s.environment_lookup),
                                    static_cast<int>(s.microfacet_scattering),
                                    static_cast<int>(s.shading_terminator)));
 }

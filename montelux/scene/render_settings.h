@@ -51,6 +51,8 @@ struct OcclusionSettings {
 
 struct IntegratorSettings {
     int max_depth = 5; // scattering events of a path
+    // A straight passage through a thin pane is one of these events. Scenes without media count it in any case.
+    bool count_passages = true;
     Strategy strategy = Strategy::mis;
     Heuristic heuristic = Heuristic::power;
     LightSampling light_sampling = LightSampling::tree;

@@ -144,6 +144,11 @@ class VolumePath : private VolumePathLights<Stream> {
         if (recorder_) recorder_.emitted(radiance);
     }
 
+    void end_in_loop() {
+        state_.radiance += SampledSpectrum(std::numeric_limits<float>::quiet_NaN()); // reported
+        end(PathEnd::bad_throughput);
+    }
+
     // Always false.
     bool end(PathEnd how) {
         state_.alive = false;
@@ -155,6 +160,7 @@ class VolumePath : private VolumePathLights<Stream> {
         if (recorder_)
             recorder_.collided(state_.ray, {.p = p, .sigma_a = m.sigma_a, .sigma_s = m.sigma_s},
                                state_.carried());
+        passages_ = 0;
         const bool in_body = is_in_body();
         if (in_body ? ++body_events_ == most_body_events : state_.depth++ == settings_.max_depth) {
             end(PathEnd::max_depth);
@@ -210,16 +216,15 @@ class VolumePath : private VolumePathLights<Stream> {
         state_.distance += hit.t;
         if (interface) {
             leave(s, w);
-            if (++interfaces_ == most_interfaces) {
-                state_.radiance += SampledSpectrum(std::numeric_limits<float>::quiet_NaN()); // reported
-                end(PathEnd::bad_throughput);
-            }
+            if (++passages_ == most_interfaces) end_in_loop();
             return;
         }
-        interfaces_ = 0;
         const bool in_body = is_in_body();
         if (!in_body) state_.meet(hit);
-        if (in_body ? ++body_events_ == most_body_events : state_.depth++ == settings_.max_depth) {
+        const bool last =
+            in_body ? ++body_events_ == most_body_events : state_.depth++ == settings_.max_depth;
+        const bool may_pass = !settings_.count_passages && !in_body;
+        if (last && !may_pass) {
             end(PathEnd::max_depth);
             return;
         }
@@ -235,7 +240,7 @@ class VolumePath : private VolumePathLights<Stream> {
         if (!was_terminated && state_.lambda.secondary_terminated()) state_.terminate_secondary();
         const Vec3f wo = surface.frame.to_local(-w);
         if (recorder_) recorder_.made_bsdf(surface, wo);
-        if (state_.depth == 1 && !in_body)
+        if (state_.depth == 1 && !in_body && !state_.first.found)
             state_.first = {.albedo = std::visit([&](const auto& b) { return b.albedo(wo); }, surface.bsdf),
                             .normal = surface.frame.n,
                             .depth = state_.distance,
@@ -247,7 +252,7 @@ class VolumePath : private VolumePathLights<Stream> {
         state_.previous = reference_point(s, surface, wo);
         const std::optional<BsdfSample> scattered = std::visit(
             [&](const BsdfModel auto& bsdf) {
-                if (!bsdf.is_specular())
+                if (!bsdf.is_specular() && !last)
                     sample_light(
                         state_.medium,
                         [&](Vec3f wi) {
@@ -264,13 +269,24 @@ class VolumePath : private VolumePathLights<Stream> {
             end(PathEnd::no_direction);
             return;
         }
+        const Vec3f wi = surface.frame.to_world(scattered->wi);
+        // As Mitsuba's flag Null of a sampled BSDF, which its volumetric integrators do not count.
+        if (may_pass && scattered->specular && scattered->transmission && scattered->eta == 1) {
+            --state_.depth;
+            if (++passages_ == most_interfaces) return end_in_loop();
+        } else {
+            if (last) {
+                end(PathEnd::max_depth);
+                return;
+            }
+            passages_ = 0;
+        }
         state_.throughput *= scattered->weight;
         state_.scatter();
         state_.bsdf_pdf = scattered->pdf;
         state_.sees_lights = scattered->specular;
         if (!scattered->specular) state_.scattered_roughly = true;
         if (scattered->transmission) state_.eta_scale *= scattered->eta * scattered->eta;
-        const Vec3f wi = surface.frame.to_world(scattered->wi);
         if (recorder_) recorder_.scattered({*scattered, wi});
         leave(s, wi);
         if (scattered->transmission) state_.body = body_at(state_.medium, context);
@@ -312,7 +328,7 @@ class VolumePath : private VolumePathLights<Stream> {
 
     const VolumePathIntegrator& integrator_;
     int body_events_ = 0; // inside translucent bodies
-    int interfaces_ = 0;  // passed since the last scattering event
+    int passages_ = 0;    // straight ones, not counted, since the last event that was
 };
 
 template <RandomStream Stream>

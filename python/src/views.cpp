@@ -298,6 +298,8 @@ void bind_views(nb::module_& m) {
     flag(integrator, "regularize", &IntegratorSettings::regularize,
          "Widens the reflections of surfaces that a path meets after an event that was not specular: fewer "
          "fireflies, and a bias that standard errors do not contain.");
+    flag(integrator, "count_passages", &IntegratorSettings::count_passages,
+         "In scenes with media: a straight passage through a thin pane is one of the max_depth events.");
     flag(integrator, "equiangular", &IntegratorSettings::equiangular,
          "Where lights are sampled: in media lamps are also looked for from points of the ray "
          "close to "

@@ -69,6 +69,32 @@ TEST(VolumeClosedForms, EmissionOfAThinGas) {
         volume_radiance(b.description, straight, 8), [](float) { return 1e-6; }, "thin gas");
 }
 
+// Three panes before an absorbing slab before a fourth. A path without events passes them all; with one, a pane may
+// mirror it back.
+TEST(VolumeClosedForms, PassagesNeedNotCount) {
+    const double fresnel = 0.04, mirrored = 2 * fresnel / (1 + fresnel), t = 1 - mirrored,
+                 absorbed = std::exp(-0.5);
+    VolumeScene b;
+    b.add_slab(b.add_medium(HomogeneousMedium{.sigma_a = 0.25f, .sigma_s = 0.0f}), 2);
+    const Index pane = b.add(ThinDielectricMaterial{.eta = 1.5f});
+    for (const double z : {-2.0, -1.5, -1.0, 3.0})
+        b.add_mesh(square(Transform::translate({0, 0, z}) * Transform::scale({1e3, 1e3, 1})), pane);
+    b.add_sky();
+    b.description.integrator.count_passages = false;
+    b.description.integrator.max_depth = 0;
+    const double through = std::pow(t, 4) * absorbed;
+    expect_radiance(
+        volume_radiance(b.description, straight, 40000), [&](float) { return through; }, "no event");
+    b.description.integrator.max_depth = 1;
+    const double back =
+        mirrored * (1 + std::pow(t, 2) + std::pow(t, 4) + std::pow(t, 6) * absorbed * absorbed);
+    expect_radiance(
+        volume_radiance(b.description, straight, 40000), [&](float) { return through + back; }, "one event");
+    b.description.integrator.count_passages = true;
+    expect_radiance(
+        volume_radiance(b.description, straight, 40000), [&](float) { return mirrored; }, "all count");
+}
+
 // L = sigma_s p E (1 - e^(-sigma_t d (1 + 1/mu))) / (sigma_t (1 + 1/mu)), mu the cosine of the incident light.
 TEST(VolumeClosedForms, SingleScatteringOfASlab) {
     const double mu = 0.8, d = 1.3;

@@ -15,6 +15,7 @@ bool is_one_of(std::string_view name, const std::array<std::string_view, N>& nam
 }
 
 constexpr auto paths = std::to_array<std::string_view>({"path", "volpath", "volpathmis", "depth", "ptracer"});
+constexpr auto volumetric = std::to_array<std::string_view>({"volpath", "volpathmis"});
 constexpr auto wrappers = std::to_array<std::string_view>({"aov", "moment"});
 
 // Mitsuba counts the segments of a path, from the camera to the light: one event fewer scatters.
@@ -28,6 +29,7 @@ void read_path(Plugin& plugin, IntegratorSettings& settings) {
     if (plugin.type() == "depth" || plugin.type() == "ptracer")
         plugin.warn(plugin.describe() + " is replaced by paths from the camera");
     if (plugin.type() == "volpathmis") plugin.skip("use_spectral_mis");
+    settings.count_passages = !is_one_of(plugin.type(), volumetric);
 }
 
 void read_direct(Plugin& plugin, IntegratorSettings& settings) {

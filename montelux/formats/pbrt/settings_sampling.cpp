@@ -80,6 +80,7 @@ namespace {
 
 // Those of Montelux that pbrt-v4 does not know.
 void read_own_settings(ParameterReader& r, IntegratorSettings& s) {
+    s.count_passages = r.boolean("countpassages", true);
     if (r.choice("environmentlookup", {"nearest", "bilinear"}, "nearest") == "bilinear")
         s.environment_lookup = EnvironmentLookup::bilinear;
     if (r.choice("microfacetscattering", {"single", "multiple"}, "single") == "multiple")

@@ -257,7 +257,9 @@ void SceneWriter::integrator() {
         option(s.microfacet_scattering == standard.microfacet_scattering, "--microfacet-scattering multiple");
         option(s.shading_terminator == standard.shading_terminator, "--shading-terminator soft");
         option(!s.background, "--background");
+        option(s.count_passages, "\"bool countpassages\" false to another integrator");
     } else {
+        if (!s.count_passages) d.boolean("countpassages", false);
         if (s.environment_lookup == EnvironmentLookup::bilinear) d.string("environmentlookup", "bilinear");
         if (s.microfacet_scattering == MicrofacetScattering::multiple)
             d.string("microfacetscattering", "multiple");

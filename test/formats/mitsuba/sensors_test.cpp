@@ -212,6 +212,11 @@ TEST(MitsubaIntegrators, DirectAndWrappers) {
     EXPECT_EQ(strategy(""), Strategy::mis);
     EXPECT_EQ(strategy(R"(<integer name="emitter_samples" value="0"/>)"), Strategy::bsdf);
     EXPECT_EQ(strategy(R"(<integer name="bsdf_samples" value="0"/>)"), Strategy::light);
+    for (const auto& [type, counts] : {std::pair("path", true), {"volpath", false}, {"volpathmis", false}})
+        EXPECT_EQ(load_scene_text("<integrator type=\"" + std::string(type) + "\"/>")
+                      .description.integrator.count_passages,
+                  counts)
+            << type;
     const WholeScene moment = load_scene_text(R"(<integrator type="moment"><integrator type="path">
         <integer name="max_depth" value="4"/></integrator></integrator>)");
     EXPECT_EQ(moment.description.integrator.max_depth, 3);

@@ -319,7 +319,7 @@ TEST_F(WritePbrt, Settings) {
            PixelFilter "mitchell" "float xradius" 1.5 "float B" 0.2 Sampler "halton" "integer pixelsamples" 7 "integer seed" 5
            Integrator "volpath" "integer maxdepth" 9 "string lightsampler" "power" "bool regularize" true
            "string shadingterminator" "soft" "string microfacetscattering" "multiple"
-           "string environmentlookup" "bilinear" "rgb background" [0.1 0.2 0.3])",
+           "string environmentlookup" "bilinear" "rgb background" [0.1 0.2 0.3] "bool countpassages" false)",
         R"(Scale -1 1 1 Camera "orthographic" "float frameaspectratio" 2 Film "spectral" "integer nbuckets" 5
            PixelFilter "sinc" "float tau" 2 Sampler "stratified" "integer xsamples" 3 "integer ysamples" 5
            Integrator "simplepath" "bool samplelights" false)",
