@@ -226,7 +226,8 @@ void bind_scene(nb::module_& m) {
             "points"_a, "width"_a, "material"_a, nb::kw_only(), "kind"_a = "flat", "basis"_a = "bezier",
             "degree"_a = 3, "normals"_a = nb::none(), "transform"_a = nb::none(),
             "Hair, fur, grass: strands of control points, an array of shape (strands, n, 3), with a width or "
-            "one for each end. kind: 'flat' faces each ray, 'cylinder' is shaded as one, 'ribbon' faces its "
+            "one for each end. kind: 'flat' faces each ray, 'cylinder' is shaded as one, 'tube' has "
+            "Mitsuba's texture coordinates, too, 'ribbon' faces its "
             "normals, of shape (strands, segments + 1, 3). basis: 'bezier' or 'bspline', of degree 2 or 3. "
             "See "
             "add_mesh.")

@@ -252,10 +252,12 @@ nb::object add_curves(const SceneRef& scene, const nb::object& points, const nb:
     Curves curves;
     if (kind == "cylinder")
         curves.kind = Curves::Kind::cylinder;
+    else if (kind == "tube")
+        curves.kind = Curves::Kind::tube;
     else if (kind == "ribbon")
         curves.kind = Curves::Kind::ribbon;
     else if (kind != "flat")
-        throw Error("add_curves, kind", "expected 'flat', 'cylinder' or 'ribbon'");
+        throw Error("add_curves, kind", "expected 'flat', 'cylinder', 'tube' or 'ribbon'");
     if (basis != "bezier" && basis != "bspline")
         throw Error("add_curves, basis", "expected 'bezier' or 'bspline'");
     const Transform world = transform_of(transform, "add_curves, transform");

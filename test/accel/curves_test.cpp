@@ -161,5 +161,42 @@ TEST(Curves, PointsOfTheirSurfaces) {
     }
 }
 
+// The normal is that of a tube at the same distance from the axis; u is its azimuth, and v grows over both segments.
+TEST(Curves, Tubes) {
+    Scene built;
+    Curves curves;
+    curves.kind = Curves::Kind::tube;
+    curves.control_points = {{Point3f{-1, 0, 0}, {-2.0f / 3, 0, 0}, {-1.0f / 3, 0, 0}, {0, 0, 0}},
+                             {Point3f{0, 0, 0}, {1.0f / 3, 0, 0}, {2.0f / 3, 0, 0}, {1, 0, 0}}};
+    curves.widths = {{0.2f, 0.2f}, {0.2f, 0.2f}};
+    add_shape(built, curves);
+    const World world(std::move(built));
+    Draws draws(29);
+    int hits = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const double turn = double(draws.uniform(0, 6.28f));
+        Ray ray;
+        ray.d = {0, static_cast<float>(-std::cos(turn)), static_cast<float>(-std::sin(turn))};
+        const Vec3f across = cross(ray.d, Vec3f{1, 0, 0});
+        const float offset = draws.uniform(-0.095f, 0.095f), x = draws.uniform(-0.95f, 0.95f);
+        ray.o = Vec3f{x, 0, 0} + offset * across - 3.0f * ray.d;
+        Hit hit;
+        if (!world.accelerator.intersect(ray, hit)) continue;
+        ++hits;
+        const SurfacePoint s = surface_point(world.tables.view(), ray, hit, true);
+        EXPECT_NEAR(dot(s.ng, across), offset / 0.1f, 1e-3);
+        EXPECT_NEAR(s.ng.x, 0, 1e-5);
+        EXPECT_LT(dot(s.ng, ray.d), 0);
+        EXPECT_NEAR(s.uv.y, (x + 1) / 2, 1e-4);
+        const double azimuth = std::atan2(double(s.ng.z), double(s.ng.y)) / (2 * pi);
+        EXPECT_NEAR(s.uv.x, azimuth < 0 ? azimuth + 1 : azimuth, 1e-5);
+        EXPECT_LT(length(s.dpdv - Vec3f{2, 0, 0}), 1e-4f);
+        const double radians = 2 * pi * double(s.uv.x);
+        const Vec3f around(0, static_cast<float>(-std::sin(radians)), static_cast<float>(std::cos(radians)));
+        EXPECT_LT(length(s.dpdu - static_cast<float>(0.2 * pi) * around), 1e-3f);
+    }
+    EXPECT_GT(hits, 900);
+}
+
 } // namespace
 } // namespace montelux::testing

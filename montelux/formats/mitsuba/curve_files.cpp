@@ -92,7 +92,9 @@ Curves read_curves(Plugin& shape, const Transform& to_world) {
     const std::vector<std::uint8_t> bytes = shape.graph().files.read(path, shape.at());
     std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     Curves curves;
-    curves.kind = Curves::Kind::cylinder;
+    // Hair takes the offset across the fibre for v.
+    const std::optional<Plugin> bsdf = shape.child("bsdf");
+    curves.kind = bsdf && bsdf->type() == "hair" ? Curves::Kind::cylinder : Curves::Kind::tube;
     const auto add = shape.type() == "linearcurve" ? add_polyline : add_spline;
     std::vector<ControlPoint> points;
     std::size_t line_number = 0;

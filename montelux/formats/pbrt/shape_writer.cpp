@@ -99,7 +99,7 @@ std::string SceneWriter::mesh_text(Index i, const TriangleMesh& mesh, bool rever
 // As strands of connected segments whose widths change evenly. Consecutive curves that differ in nothing else become
 // one shape again.
 void SceneWriter::curves_text(std::vector<std::string>& texts, const Curves& curves) const {
-    constexpr std::array kinds = {"flat", "cylinder", "ribbon"};
+    constexpr std::array kinds = {"flat", "cylinder", "ribbon", "cylinder"};
     const std::size_t count = curves.segment_count();
     for (std::size_t first = 0; first < count;) {
         const auto strand_of = [&](std::size_t last, std::vector<Point3f>& points,
@@ -163,6 +163,10 @@ std::string SceneWriter::shape_text(Index i, bool reverse) {
                                   text = d.text();
                               },
                               [&](const Curves& curves) {
+                                  if (curves.kind == Curves::Kind::tube)
+                                      warn("shape " + std::to_string(i),
+                                           "its normals and texture coordinates become those of "
+                                           "pbrt's cylindrical curves");
                                   DirectiveText attributes("");
                                   shape_attributes(attributes, i);
                                   std::string rest = attributes.text();

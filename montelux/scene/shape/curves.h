@@ -18,6 +18,7 @@ struct Curves {
         flat,     // faces each ray
         cylinder, // the same, with the normals of a cylinder
         ribbon,   // faces the normals of its segments
+        tube, // faces each ray, with the normals and coordinates of a tube: u around it and v along all segments
     };
     Kind kind = Kind::flat;
     std::vector<std::array<Point3f, 4>> control_points; // of each segment's cubic Bezier curve

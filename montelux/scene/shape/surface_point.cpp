@@ -1,5 +1,6 @@
 #include "montelux/scene/shape/surface_point.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "montelux/mc/math/constants.h"
@@ -124,6 +125,20 @@ SurfacePoint quadric_point(const Quadric& quadric, const Shape& shape, const Ray
     return s;
 }
 
+// Texture coordinates of a tube, as Mitsuba 3 has them: u is the azimuth around the tangent from a direction that lies
+// across the z axis, v the share of all segments.
+void set_tube_coordinates(SurfacePoint& s, Vec3d tangent, Vec3d n, double radius, Vec3d along, double v,
+                          double segments) {
+    Vec3d upright = Vec3d(0, 0, 1) - tangent * tangent.z;
+    upright = length_squared(upright) > 1e-24 ? normalize(upright) : Vec3d(0, 1, 0);
+    const Vec3d level = cross(upright, tangent);
+    const double sine = dot(upright, n), cosine = dot(level, n);
+    const double azimuth = std::atan2(sine, cosine) / (2 * pi);
+    s.uv = {static_cast<float>(azimuth < 0 ? azimuth + 1 : azimuth), static_cast<float>(v / segments)};
+    s.dpdu = Vec3f((cosine * upright - sine * level) * (2 * pi * radius));
+    s.dpdv = Vec3f(along * segments);
+}
+
 SurfacePoint curve_point(const Curves& curves, const Shape& shape, const Ray& ray, const Hit& hit) {
     SurfacePoint s;
     const CurveSegment segment = curves.segment(hit.primitive);
@@ -154,6 +169,12 @@ SurfacePoint curve_point(const Curves& curves, const Shape& shape, const Ray& ra
         const double theta = (v - 0.5) * pi;
         s.ng = s.ns = Vec3f(normalize(facing * std::cos(theta) + across * std::sin(theta)));
         s.dpdv = Vec3f((across * std::cos(theta) - facing * std::sin(theta)) * width);
+    } else if (curves.kind == Curves::Kind::tube) {
+        const double sine = 2 * v - 1;
+        const Vec3d n = facing * std::sqrt(std::max(0.0, 1 - sine * sine)) + across * sine;
+        s.ng = s.ns = Vec3f(normalize(n));
+        set_tube_coordinates(s, tangent, n, width / 2, along, hit.primitive + u,
+                             static_cast<double>(curves.segment_count()));
     } else {
         s.ng = s.ns = Vec3f(facing);
         s.dpdv = Vec3f(across * width);
