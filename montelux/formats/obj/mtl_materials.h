@@ -20,6 +20,7 @@ struct MtlSurface {
     Index material = no_index;
     FloatParameter alpha{1};
     std::optional<Emission> emission{};
+    bool is_clay = false; // of no MTL file
 };
 
 // Physically based materials (Pr, Pm, Pc, Ps, aniso and their maps) are Principled ones. Models of Phong's time are

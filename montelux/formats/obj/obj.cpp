@@ -43,6 +43,7 @@ class ObjParser {
                                      " corners; their triangles may cover more than they do");
         if (degenerate_ > 0)
             warnings_.add(name_, std::to_string(degenerate_) + " faces of fewer than 3 corners are left out");
+        if (!colors_.empty()) colors_.resize(positions_.size(), Vec3f(1, 1, 1));
         if (settings_.make_normals) make_normals();
         build_parts();
         return std::move(model_);
@@ -99,14 +100,18 @@ class ObjParser {
         positions_.push_back({x, y, z});
         if (words.at_end()) return;
         // One more number is a weight, three are a colour, four are both.
-        std::size_t more = 0;
-        float weight = 1;
-        for (; !words.at_end(); ++more) {
+        std::size_t count = 0;
+        std::array<float, 4> more{};
+        for (; !words.at_end(); ++count) {
             const float value = words.number("a weight or a colour behind the coordinates");
-            if (more == 0) weight = value;
+            if (count < more.size()) more[count] = value;
         }
-        if ((more == 1 || more == 4) && weight != 1) warn_of_vertices("weights", "are ignored");
-        if (more >= 3) warn_of_vertices("colours", "are ignored");
+        if ((count == 1 || count == 4) && more[0] != 1) warn_of_vertices("weights", "are ignored");
+        if (count < 3) return;
+        if (!settings_.colors) return warn_of_vertices("colours", "are ignored");
+        const std::size_t first = count == 3 ? 0 : 1;
+        colors_.resize(positions_.size() - 1, Vec3f(1, 1, 1));
+        colors_.emplace_back(more[first], more[first + 1], more[first + 2]);
     }
     void warn_of_vertices(const std::string& what, const std::string& why) {
         const std::string sentence = what + " of vertices " + why;
@@ -272,6 +277,7 @@ class ObjParser {
             mesh.positions.push_back(positions_[c.position]);
             if (with_uvs) mesh.uvs.push_back(c.uv != no_index ? uvs_[c.uv] : Point2f{});
             if (with_normals) mesh.normals.push_back(normals_[c.normal]);
+            if (!colors_.empty()) mesh.colors.push_back(colors_[c.position]);
             first_[c.position] = no_index;
         }
     }
@@ -282,6 +288,7 @@ class ObjParser {
     ObjSettings settings_;
     ObjModel model_;
     std::vector<Point3f> positions_;
+    std::vector<Vec3f> colors_; // of positions; empty: none has any
     std::vector<Point2f> uvs_;
     std::vector<Normal3f> normals_;
     std::vector<FaceTriangle> triangles_;

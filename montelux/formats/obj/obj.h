@@ -35,6 +35,8 @@ struct ObjSettings {
     bool split = true; // false: all faces are one part, that of the first one
     // Faces without normals get those of corner_normals, by the file's smoothing groups where it has any.
     bool make_normals = true;
+    // Vertices get the colours behind their coordinates, as written; white where others alone have any.
+    bool colors = false;
 };
 
 // Reads v, vt, vn, f, o, g, usemtl, mtllib and s; faces of any number of corners, indices that count from either end,

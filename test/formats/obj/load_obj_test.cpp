@@ -57,6 +57,24 @@ TEST_F(ObjScene, MaterialsAreWhatTheyMeant) {
     EXPECT_TRUE(warnings_.messages().empty());
 }
 
+TEST_F(ObjScene, VertexColorsAreTheReflectanceOfClay) {
+    const std::string triangle = "v 0 0 0 1 0.5 0\nv 1 0 0 0 0 0\nv 0 1 0 2 0 0\nf 1 2 3\n";
+    const SceneDescription d = load_scene(folder_.write("c.obj", triangle), warnings_);
+    const auto& clay = std::get<DiffuseMaterial>(d.scene.materials.at(0));
+    EXPECT_TRUE(
+        std::holds_alternative<VertexColorTexture>(d.scene.spectrum_textures.at(clay.reflectance.texture)));
+    const std::vector<Vec3f>& colors = d.scene.meshes.at(0).colors;
+    ASSERT_EQ(colors.size(), 3u);
+    EXPECT_FLOAT_EQ(colors[0].y, 0.21404114f); // 0.5 of sRGB
+    EXPECT_EQ(colors[2].x, 1);
+    EXPECT_TRUE(warnings_.messages().empty());
+    folder_.write("a.mtl", "newmtl a\nKd 0.5 0.5 0.5\n");
+    const SceneDescription hidden =
+        load_scene(folder_.write("h.obj", "mtllib a.mtl\nusemtl a\n" + triangle), warnings_);
+    EXPECT_TRUE(hidden.scene.meshes.at(0).colors.empty());
+    EXPECT_EQ(warnings_.messages().size(), 1u);
+}
+
 TEST_F(ObjScene, PhysicallyBasedMaterials) {
     picture("rough.png", {"Y"});
     picture("cloth.png", {"R", "G", "B"});

@@ -120,6 +120,20 @@ TEST_F(ObjFile, LinesMayBeContinuedAndEndInAnyWay) {
     EXPECT_TRUE(warnings_.messages().empty());
 }
 
+TEST_F(ObjFile, VerticesMayHaveColors) {
+    const std::string text = "v 0 0 0\nv 1 0 0 0.5 0.25 1\nv 1 1 0 1 0.1 0.2 0.3\nv 0 1 0\nf 1 2 3 4\n";
+    const TriangleMesh m = mesh(text, {.make_normals = false, .colors = true});
+    ASSERT_EQ(m.colors.size(), 4u);
+    const Vec3f expected[] = {{1, 1, 1}, {0.5f, 0.25f, 1}, {0.1f, 0.2f, 0.3f}, {1, 1, 1}};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto at =
+            std::ranges::find(m.positions, Point3f(i == 1 || i == 2 ? 1.0f : 0.0f, i > 1 ? 1.0f : 0.0f, 0));
+        EXPECT_EQ(m.colors[static_cast<std::size_t>(at - m.positions.begin())], expected[i]) << i;
+    }
+    EXPECT_TRUE(mesh(text).colors.empty());
+    EXPECT_TRUE(mesh("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n", {.colors = true}).colors.empty());
+}
+
 TEST_F(ObjFile, WhatIsIgnoredIsToldOnce) {
     mesh("v 0 0 0 1\nv 1 0 0 0.5\nv 1 1 0 1 0 0\nv 0 1 0 0 1 0\nf 1 2 3\nl 1 2\nl 2 3\nfoo 1\nfoo 2\nsurf 0 "
          "1\nf 1 2\n");
