@@ -6,10 +6,10 @@
 #include <optional>
 #include <span>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 
 #include "montelux/formats/mitsuba/parameters.h"
+#include "montelux/formats/mitsuba/references.h"
 #include "montelux/formats/mitsuba/upgrade.h"
 #include "montelux/formats/mitsuba/xml_reader.h"
 #include "montelux/formats/mitsuba/xml_values.h"
@@ -23,7 +23,6 @@ namespace {
 // More would be a circle, or a way to fill the memory.
 constexpr int max_include_depth = 15, max_includes = 10000;
 constexpr std::size_t max_bytes = std::size_t{1} << 28;
-constexpr std::size_t max_reference_depth = 100;
 
 constexpr auto object_elements = std::to_array<std::string_view>(
     {"scene", "shape", "bsdf", "emitter", "sensor", "film", "rfilter", "sampler", "integrator", "texture",
@@ -38,22 +37,16 @@ bool is_one_of(std::string_view name, std::span<const std::string_view> names) {
     return std::ranges::find(names, name) != names.end();
 }
 
-// A reference by id, until all ids are known.
-struct OpenReference {
-    std::size_t object, property;
-    std::string id;
-};
-
 class GraphReader {
   public:
     GraphReader(SceneGraph& graph, const std::map<std::string, std::string>& definitions)
-        : graph_(graph), parameters_(definitions) {}
+        : graph_(graph), parameters_(definitions), references_(graph) {}
 
     void read_main(std::span<const std::uint8_t> bytes, const std::filesystem::path& path) {
         read_file(bytes, path, std::nullopt, {});
-        resolve();
+        references_.resolve();
         for (const std::size_t object : old_) upgrade(graph_.objects[object]);
-        check_circles();
+        references_.check_circles();
         for (const std::string& name : parameters_.unused())
             graph_.diagnostics.warn({}, "the scene does not use the parameter " + name);
     }
@@ -88,13 +81,9 @@ class GraphReader {
     SpectrumValue spectrum_in_file(const std::string& name, const Place& place);
     void include(const File& file, std::size_t object, const std::vector<Attribute>& attributes,
                  const Place& place);
-    void add_alias(const std::vector<Attribute>& attributes, const Place& place);
     void add_folder(const std::vector<Attribute>& attributes, const Place& place);
     void add_folders(const std::filesystem::path& from, const std::filesystem::path& folder);
     void add_property(std::size_t object, Property property);
-    void register_id(const std::string& id, std::size_t object, const Place& place);
-    void resolve();
-    void check_circles() const;
 
     Place place(SourceLocation at) const { return {graph_.diagnostics, at}; }
     // The values of the attributes; empty for optional ones (with '?' at the end of their names) that are missing.
@@ -103,8 +92,7 @@ class GraphReader {
 
     SceneGraph& graph_;
     Parameters parameters_;
-    std::unordered_map<std::string, std::size_t> ids_;
-    std::vector<OpenReference> references_;
+    References references_;
     std::vector<std::size_t> old_; // objects of files before version 2
     std::size_t bytes_ = 0;
     int depth_ = 0, includes_ = 0;
@@ -184,7 +172,8 @@ void GraphReader::begin(File& file, std::string_view element_name, std::vector<A
     } else if (element == "include") {
         include(file, object, attributes, here);
     } else if (element == "alias") {
-        add_alias(attributes, here);
+        const std::vector<std::string> values = take(element, attributes, {"id", "as"}, here);
+        references_.define_alias(values[0], values[1], here);
     } else if (element == "default") {
         const std::vector<std::string> values = take(element, attributes, {"name", "value"}, here);
         if (values[0].empty()) here.error("a parameter without a name");
@@ -247,7 +236,7 @@ std::size_t GraphReader::begin_object(File& file, const std::string& element,
                               .type = values[0],
                               .id = values[1],
                               .at = here.at()});
-    if (!values[1].empty()) register_id(values[1], index, here);
+    if (!values[1].empty()) references_.define(values[1], index, here);
     add_property(parent, {file.version.is_old() ? to_snake_case(values[2]) : values[2], ObjectIndex{index},
                           here.at()});
     return index;
@@ -300,7 +289,7 @@ void GraphReader::add_value(std::size_t object, const File& file, const std::str
         const std::vector<std::string> values = take(element, attributes, {"id", "name?"}, here);
         property.name = values[1];
         property.value = ObjectIndex{};
-        references_.push_back({object, graph_.objects[object].properties.size(), values[0]});
+        references_.add(object, graph_.objects[object].properties.size(), values[0]);
     }
     if (file.version.is_old()) property.name = to_snake_case(property.name);
     add_property(object, std::move(property));
@@ -333,13 +322,6 @@ void GraphReader::include(const File& file, std::size_t object, const std::vecto
     read_file(graph_.files.read(path, here.at()), path, object,
               file.version.is_old() ? to_snake_case(values[1]) : values[1]);
     --depth_;
-}
-
-void GraphReader::add_alias(const std::vector<Attribute>& attributes, const Place& here) {
-    const std::vector<std::string> values = take("alias", attributes, {"id", "as"}, here);
-    const auto source = ids_.find(values[0]);
-    if (source == ids_.end()) here.error("there is no object " + in_quotes(values[0]) + " before this alias");
-    register_id(values[1], source->second, here);
 }
 
 // Of the folders `folder` and, where it leads up, those that lead up fewer levels: the last is searched first. A scene
@@ -379,71 +361,6 @@ void GraphReader::add_property(std::size_t object, Property property) {
                        graph_.diagnostics.describe(same->at));
     }
     all.push_back(std::move(property));
-}
-
-void GraphReader::register_id(const std::string& id, std::size_t object, const Place& here) {
-    const auto [known, is_new] = ids_.emplace(id, object);
-    if (!is_new)
-        here.error("the id " + in_quotes(id) + " is already used at " +
-                   graph_.diagnostics.describe(graph_.objects[known->second].at));
-}
-
-void GraphReader::resolve() {
-    for (const OpenReference& open : references_) {
-        Property& property = graph_.objects[open.object].properties[open.property];
-        const auto found = ids_.find(open.id);
-        if (found == ids_.end()) {
-            std::vector<std::string_view> names;
-            for (const auto& [id, object] : ids_) names.emplace_back(id);
-            place(property.at)
-                .error("there is no object " + in_quotes(open.id) + did_you_mean(open.id, names));
-        }
-        property.value = ObjectIndex{found->second};
-    }
-}
-
-// Depth first, without recursion: a file may chain many objects by references.
-void GraphReader::check_circles() const {
-    enum class State : std::uint8_t { fresh, open, done };
-    struct Visit {
-        std::size_t object, next_property;
-    };
-    std::vector<State> states(graph_.objects.size(), State::fresh);
-    std::vector<std::size_t> heights(graph_.objects.size(), 0);
-    std::vector<Visit> path;
-    for (std::size_t root = 0; root < graph_.objects.size(); ++root) {
-        if (states[root] != State::fresh) continue;
-        states[root] = State::open;
-        path.push_back({root, 0});
-        while (!path.empty()) {
-            Visit& visit = path.back();
-            const std::vector<Property>& properties = graph_.objects[visit.object].properties;
-            if (visit.next_property == properties.size()) {
-                states[visit.object] = State::done;
-                const std::size_t height = heights[visit.object] + 1;
-                path.pop_back();
-                if (!path.empty())
-                    heights[path.back().object] = std::max(heights[path.back().object], height);
-                continue;
-            }
-            const Property& property = properties[visit.next_property++];
-            const auto* child = std::get_if<ObjectIndex>(&property.value);
-            if (child == nullptr) continue;
-            if (states[child->value] == State::open)
-                place(property.at)
-                    .error("references form a circle through " + in_quotes(graph_.objects[child->value].id));
-            if (states[child->value] == State::done)
-                heights[visit.object] = std::max(heights[visit.object], heights[child->value] + 1);
-            if (heights[visit.object] > max_reference_depth || path.size() > max_reference_depth)
-                place(property.at)
-                    .error("objects contain one another more than " + std::to_string(max_reference_depth) +
-                           " levels deep");
-            if (states[child->value] == State::fresh) {
-                states[child->value] = State::open;
-                path.push_back({child->value, 0});
-            }
-        }
-    }
 }
 
 } // namespace
