@@ -53,3 +53,13 @@ pfm() {
 }
 one='\000\000\200\077' minus_one='\000\000\200\277' not_a_number='\000\000\300\177' zero='\000\000\000\000'
 sky='LightSource "infinite" "rgb L" [1 1 1]'
+
+# Members of a glTF file: the positions of a triangle (accessor 0), and an animation of 2 s that moves node 0 by 5 along z.
+gltf_triangle='"buffers": [{"byteLength": 68, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAEAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAoEA="}],
+ "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8},
+                 {"buffer": 0, "byteOffset": 44, "byteLength": 24}],
+ "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+               {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR"},
+               {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}]'
+gltf_motion='"animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+                 "samplers": [{"input": 1, "output": 2}]}]'

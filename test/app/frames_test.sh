@@ -3,19 +3,13 @@
 . "$(dirname "$0")/common.sh"
 
 # A triangle that emits and moves by 5 along z within 2 s; no camera.
-cat >moving.gltf <<'JSON'
+cat >moving.gltf <<JSON
 {"asset": {"version": "2.0"},
- "buffers": [{"byteLength": 68, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAEAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAoEA="}],
- "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8},
-                 {"buffer": 0, "byteOffset": 44, "byteLength": 24}],
- "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
-               {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR"},
-               {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}],
+ $gltf_triangle,
  "materials": [{"emissiveFactor": [1, 0, 0]}],
  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
  "nodes": [{"mesh": 0}],
- "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
-                 "samplers": [{"input": 1, "output": 2}]}]}
+ $gltf_motion}
 JSON
 small='--resolution 32x24 --spp 2'
 

@@ -3,14 +3,9 @@
 . "$(dirname "$0")/common.sh"
 
 # A triangle that emits, two cameras, an animation of 2 s that moves the triangle by 5 along z.
-cat >scene.gltf <<'JSON'
+cat >scene.gltf <<JSON
 {"asset": {"version": "2.0"},
- "buffers": [{"byteLength": 68, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAEAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAoEA="}],
- "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8},
-                 {"buffer": 0, "byteOffset": 44, "byteLength": 24}],
- "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
-               {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR"},
-               {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}],
+ $gltf_triangle,
  "materials": [{"emissiveFactor": [1, 0, 0]}, {"emissiveFactor": [0, 1, 0]}],
  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0, "extensions": {
      "KHR_materials_variants": {"mappings": [{"material": 1, "variants": [0]}]}}}]}],
@@ -18,8 +13,7 @@ cat >scene.gltf <<'JSON'
              {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "zfar": 9, "znear": 0}}],
  "nodes": [{"mesh": 0}, {"camera": 0, "name": "front", "translation": [0.3, 0.3, 1]},
            {"camera": 1, "name": "plan", "translation": [0, 0, 2]}],
- "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
-                 "samplers": [{"input": 1, "output": 2}]}],
+ $gltf_motion,
  "extensions": {"KHR_materials_variants": {"variants": [{"name": "green"}]}}}
 JSON
 
