@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo lab build test test-all fuzz bench bench-integrate bench-hard bench-render lint format install dependencies clean
+.PHONY: help demo lab build test test-all test-peers fuzz bench bench-integrate bench-hard bench-render lint format install dependencies clean
 
 JOBS ?= $(shell cmake/jobs.sh)
 BUILD := build/release
@@ -39,6 +39,15 @@ test-all: dependencies ## every test, the slow ones too, with each file compiled
 	cmake --preset test-all
 	cmake --build build/test-all --parallel $(JOBS)
 	cmake/run-tests.sh 'fast|slow' $(JOBS) build/test-all
+
+PEERS := build/test-peers
+PEER_SCENES ?= ../shared/scenes/mitsuba/docs/scenes
+test-peers: build ## scenes of Mitsuba's documentation by both programs, pixel by pixel (half an hour; less with ONLY=shape_disk,sensor_thinlens)
+	@mkdir -p $(PEERS)
+	bench/render/mitsuba-environment.sh $(PEERS)/mitsuba
+	python=$(PEERS)/mitsuba/bin/python; test -x $$python || python=python3; \
+	$$python test/peers/mitsuba_peers.py $(BUILD)/montelux $(PEER_SCENES) --json $(PEERS)/result.json \
+	    $(if $(ONLY),--only $(ONLY)) $(if $(VARIANT),--variant $(VARIANT)) | tee $(PEERS)/result.md
 
 FUZZ := build/fuzz
 fuzz: dependencies ## libFuzzer on the loaders of files (half an hour each; less with FUZZ_SECONDS=60 LOADERS="ply exr")

