@@ -8,6 +8,7 @@
 
 #include "montelux/formats/mitsuba/object.h"
 #include "montelux/formats/mitsuba/scene_graph.h"
+#include "montelux/formats/mitsuba/xml_values.h"
 
 namespace montelux::mitsuba {
 

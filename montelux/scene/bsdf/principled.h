@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "montelux/mc/math/frame.h"
 #include "montelux/scene/bsdf/bsdf_types.h"
 #include "montelux/scene/bsdf/principled_interface.h"
 #include "montelux/scene/bsdf/sheen.h"
