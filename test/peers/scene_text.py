@@ -64,9 +64,11 @@ def prepared_scene(scene: Path, side: int) -> ET.Element:
     root.extend(list(_children(scene, scene.parent)))
     root.insert(0, ET.Element("path", value=str(scene.parent.resolve())))
     defaults = {e.get("name", ""): e.get("value", "") for e in root.findall("default")}
+    samplers = {e.get("id") for e in root.findall("sampler")}
     for sensor in root.findall("sensor"):
-        for sampler in sensor.findall("sampler"):
-            sensor.remove(sampler)
+        for element in list(sensor):
+            if element.tag == "sampler" or (element.tag == "ref" and element.get("id") in samplers):
+                sensor.remove(element)
         ET.SubElement(sensor, "sampler", type="independent")
         film = _child(sensor, "film")
         if film is None:

@@ -8,12 +8,13 @@ from scene_text import prepared_scene, with_moments, write
 MAIN = """<scene version="3.0.0">
   <path value="../data"/>
   <default name="w" value="400"/>
+  <sampler type="stratified" id="mine"/>
   <integrator type="aov"><string name="aovs" value="d:depth"/>
     <integrator type="path"><integer name="max_depth" value="3"/></integrator></integrator>
   <include filename="parts/camera.xml"/>
   <shape type="sphere"/>
 </scene>"""
-CAMERA = """<scene version="2.1.0"><sensor type="perspective"><sampler type="ldsampler"/>
+CAMERA = """<scene version="2.1.0"><sensor type="perspective"><sampler type="ldsampler"/><ref id="mine"/>
   <film type="hdrfilm"><integer name="width" value="$w"/><integer name="height" value="200"/>
     <integer name="crop_width" value="7"/><rfilter type="gaussian"/></film></sensor></scene>"""
 
@@ -33,7 +34,7 @@ class SceneText(unittest.TestCase):
 
     def test_includes_are_in_their_places(self):
         self.assertEqual(
-            [e.tag for e in self.scene], ["path", "path", "default", "integrator", "sensor", "shape"]
+            [e.tag for e in self.scene], ["path", "path", "default", "sampler", "integrator", "sensor", "shape"]
         )
         folders = [e.get("value") for e in self.scene.findall("path")]
         self.assertEqual(folders, [str(self.root.resolve() / f) for f in ("scene", "data")])
@@ -44,6 +45,7 @@ class SceneText(unittest.TestCase):
         self.assertEqual(numbers, {"width": "64", "height": "32"})
         self.assertEqual([e.get("type") for e in film.findall("rfilter")], ["box"])
         self.assertEqual([e.get("type") for e in self.scene.findall("sensor/sampler")], ["independent"])
+        self.assertEqual(self.scene.findall("sensor/ref"), [])
 
     def test_moments_are_around_the_inner_integrator(self):
         moments = with_moments(self.scene)
