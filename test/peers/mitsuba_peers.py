@@ -1,4 +1,4 @@
-"""Pictures of the scenes in a folder by montelux and by the Python package `mitsuba`, made now, held against each other.
+"""Pictures of the scenes in a folder by montelux and by the Python package `mitsuba`, held against each other.
 
 Usage: mitsuba_peers.py MONTELUX FOLDER [--only NAME,...] [--variant scalar_spectral] [--side 64] [--json FILE]
 Prints a row a scene. Exit status 1 if a scene fails that is not among the known differences (differences.json).
@@ -111,11 +111,13 @@ def main() -> int:
     known: Dict[str, str] = json.loads((HERE / "differences.json").read_text())
     results: Dict[str, Dict[str, Any]] = {}
     failed = 0
-    print("| scene | verdict | pixels that pass, % (by both error bars) | mean X, Y, Z, ratio | |\n|---|---|---|---|---|")
+    program = os.path.abspath(arguments.program)
+    print("| scene | verdict | pixels that pass, % (by both error bars) | mean X, Y, Z, ratio | |")
+    print("|---|---|---|---|---|")
     for scene in scenes:
         with tempfile.TemporaryDirectory() as folder:
             try:
-                result = compared(os.path.abspath(arguments.program), scene, arguments.variant, arguments.side, Path(folder))
+                result = compared(program, scene, arguments.variant, arguments.side, Path(folder))
             except Refused as e:
                 missing = "there is no file" in str(e)
                 verdict = "skipped" if missing else "refused"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import xml.etree.ElementTree as ET
 from pathlib import Path
-from typing import Dict, Iterator, List, Optional
+from typing import Dict, Iterator, List
 
 # Of Mitsuba's films.
 STANDARD_SIZE = (768, 576)
@@ -54,10 +54,6 @@ def _shrink(film: ET.Element, defaults: Dict[str, str], side: int) -> None:
     ET.SubElement(film, "rfilter", type="box")
 
 
-def _child(parent: ET.Element, tag: str) -> Optional[ET.Element]:
-    return parent.find(tag)
-
-
 def prepared_scene(scene: Path, side: int) -> ET.Element:
     """The scene with films of at most `side` pixels on the longer side."""
     root = ET.Element("scene", version="3.0.0")
@@ -70,7 +66,7 @@ def prepared_scene(scene: Path, side: int) -> ET.Element:
             if element.tag == "sampler" or (element.tag == "ref" and element.get("id") in samplers):
                 sensor.remove(element)
         ET.SubElement(sensor, "sampler", type="independent")
-        film = _child(sensor, "film")
+        film = sensor.find("film")
         if film is None:
             film = ET.SubElement(sensor, "film", type="hdrfilm")
         _shrink(film, defaults, side)
@@ -80,13 +76,13 @@ def prepared_scene(scene: Path, side: int) -> ET.Element:
 def with_moments(scene: ET.Element) -> ET.Element:
     """A copy whose integrator, without the layers of an `aov`, is wrapped in `moment`."""
     scene = copy.deepcopy(scene)
-    inner = _child(scene, "integrator")
+    inner = scene.find("integrator")
     if inner is None:
         inner = ET.Element("integrator", type="path")
     else:
         scene.remove(inner)
     while inner.get("type") in ("aov", "moment"):
-        nested = _child(inner, "integrator")
+        nested = inner.find("integrator")
         if nested is None:
             raise ValueError(f"the integrator {inner.get('type')!r} has none within")
         inner = nested

@@ -1,7 +1,7 @@
 // Mitsuba's own test scenes against its spectral reference pictures, by its own test: a z-test of each pixel by the
 // reference's variance, at a significance of 1 % with the correction of Sidak for their number, which 99.75 % of the
-// pixels must pass at 256 samples; and means within 1 %, of more samples. Where our samples vary more than Mitsuba's, or
-// noise decides on a mean, our own error bars take the place of these bounds.
+// pixels must pass at 256 samples; and means within 1 %, of more samples, so that noise does not decide. Scenes that need
+// more than that are named, with the reason.
 #include "test/formats/mitsuba/shared_scenes.h"
 #include <algorithm>
 #include <array>
@@ -22,7 +22,7 @@ namespace montelux::mitsuba_references {
 namespace {
 
 const std::filesystem::path tests = test::mitsuba_scenes() / "tests";
-constexpr std::uint32_t samples = 256, samples_of_means = 1024, samples_of_reference = 32000;
+constexpr std::uint32_t samples = 256, samples_of_means = 2048, samples_of_reference = 32000;
 // Of a sample: what Mitsuba takes for the least variance.
 constexpr double least_variance = 1e-4;
 
@@ -41,22 +41,33 @@ double xyz_variance(const Image& variances, int x, int y, std::size_t channel) {
 // Of a standard normal number.
 double probability_beyond(double z) { return std::erfc(z / std::sqrt(2.0)); }
 
-// Scenes that differ for a known reason (docs/mitsuba.md).
+// What a scene may differ by, beyond Mitsuba's own test (docs/mitsuba.md).
 struct Allowance {
     double means = 0.01;
+    int standard_errors = 0; // of the means, in addition
     double share = 0.9975;
+    bool by_both = false; // pixels are tested by the error bars of both pictures
     std::uint32_t samples = montelux::mitsuba_references::samples;
 };
 const std::map<std::string, Allowance> allowances{
+    // Few paths carry much light: the standard error of a mean is about 1 % or above.
+    {"bsdf_spheres/test_pointlight_path", {.standard_errors = 3}},
+    {"bsdf_spheres/test_roughdielectric_path", {.standard_errors = 3}},
+    // Our samples vary more than Mitsuba's.
+    {"bsdf_spheres/test_normalmap_identity_roughconductor_path", {.by_both = true}},
+    {"participating_media/test_hetero_sigmat_volpath", {.by_both = true}},
+    {"participating_media/test_surf_area_light_volpath", {.by_both = true}},
     // Mitsuba's spectral variants show this environment map in another hue than its RGB ones.
     {"participating_media/test_hetero_spectral_sigmat_no_scattering_volpath", {.means = 0.02}},
     {"participating_media/test_hetero_spectral_sigmat_volpathmis", {.means = 0.04}},
     {"participating_media/test_homo_spectral_sigmat_volpathmis", {.means = 0.02}},
-    {"participating_media/test_homo_dielectric_envmap_volpath", {.share = 0.975}},
-    // Paths find the light behind panes by chance: with few samples error bars are too small.
-    {"participating_media/test_homo_area_light_volpath", {.means = 0.015, .share = 0.995, .samples = 8192}},
-    {"participating_media/test_homo_emitter_inside_medium_volpath", {.means = 0.015, .samples = 4096}},
-    {"participating_media/test_homo_obj_inside_medium_volpath", {.samples = 4096}},
+    {"participating_media/test_homo_dielectric_envmap_volpath", {.share = 0.99}},
+    // Paths find the light behind panes by chance: error bars of few samples are too small. Red and blue of the first,
+    // whose albedos are 0.99 there, are 1 % low for a reason that is not known.
+    {"participating_media/test_homo_area_light_volpath",
+     {.means = 0.015, .share = 0.995, .by_both = true, .samples = 8192}},
+    {"participating_media/test_homo_emitter_inside_medium_volpath", {.by_both = true, .samples = 4096}},
+    {"participating_media/test_homo_obj_inside_medium_volpath", {.by_both = true, .samples = 4096}},
 };
 
 // R, G, B and their standard errors.
@@ -131,9 +142,10 @@ TEST_P(MitsubaReferencePicturesSlowTest, Agree) {
                   std::to_string(std::sqrt(squares[i]) / expected[i]) + ")";
     std::cout << name << ": " << 100 * share << " % pass, by both error bars " << 100 * share_by_both
               << " %; means (standard errors)" << ratios << '\n';
-    EXPECT_GE(std::max(share, share_by_both), allowed.share);
+    EXPECT_GE(allowed.by_both ? share_by_both : share, allowed.share);
     for (std::size_t i = 0; i < 3; ++i)
-        EXPECT_NEAR(sums[i] / expected[i], 1, allowed.means + 3 * std::sqrt(squares[i]) / expected[i])
+        EXPECT_NEAR(sums[i] / expected[i], 1,
+                    allowed.means + allowed.standard_errors * std::sqrt(squares[i]) / expected[i])
             << "channel " << i;
 }
 
