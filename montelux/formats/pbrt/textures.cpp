@@ -1,11 +1,11 @@
 #include "montelux/formats/pbrt/textures.h"
 
-#include <algorithm>
 #include <cmath>
 #include <type_traits>
 #include <utility>
 
 #include "montelux/formats/pbrt/coverage.h"
+#include "montelux/formats/pbrt/texture_parameters.h"
 #include "montelux/image/image_read.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/nearest_name.h"
@@ -21,103 +21,6 @@ constexpr std::size_t most_nested = 64;
 constexpr std::size_t most_evaluations = 4096;
 
 std::string label(const TextureDeclaration& d) { return "texture " + in_quotes(d.plugin); }
-
-std::optional<ColorEncoding> parse_encoding(const std::string& name) {
-    if (name == "sRGB") return ColorEncoding::srgb();
-    if (name == "linear") return ColorEncoding::linear();
-    if (!name.starts_with("gamma ")) return std::nullopt;
-    Warnings ignored;
-    Diagnostics diagnostics(ignored);
-    diagnostics.add_file("encoding");
-    try {
-        Tokenizer tokens(std::string_view(name).substr(6), 0, diagnostics);
-        std::vector<float> numbers;
-        if (tokens.read_numbers(numbers) != 1 || tokens.next().kind != Token::Kind::end) return std::nullopt;
-        return ColorEncoding::gamma(numbers[0]);
-    } catch (const Error&) {
-        return std::nullopt;
-    }
-}
-
-Transform texture_space(ParameterReader& r, const TextureDeclaration& d) {
-    if (!fits_float(d.world_from_texture))
-        r.error("the texture's transformation is beyond what single-precision numbers hold");
-    return d.world_from_texture.inverse();
-}
-
-Vec3f mix_direction(ParameterReader& r, const TextureDeclaration& d) {
-    const Vec3d v = d.world_from_texture.vector(Vec3d(r.vector3("dir").value_or(Vec3f(0, 1, 0))));
-    const double l = length(v);
-    if (!(l > 0 && std::isfinite(l))) r.error("dir", "parameter 'dir' has no direction");
-    return Vec3f(v / l);
-}
-
-// A look-up sums all octaves; finer ones have periods below any rounding error.
-constexpr int most_octaves = 64;
-
-NoiseOctaves noise_octaves(ParameterReader& r) {
-    const NoiseOctaves n{r.integer("octaves", 8), r.number("roughness", 0.5f)};
-    if (n.octaves < 0 || n.octaves > most_octaves)
-        r.error("octaves", "parameter 'octaves' is " + std::to_string(n.octaves) + "; expected 0 to " +
-                               std::to_string(most_octaves));
-    return n;
-}
-
-// Empty without the parameter.
-std::optional<Vec3f> color_factor(ParameterReader& r) {
-    const std::vector<Vec3f> factor = r.triples("factor", ParameterType::rgb);
-    if (factor.size() > 1)
-        r.error("factor", "parameter 'factor' has " + std::to_string(factor.size()) + " colours; expected 1");
-    return factor.empty() ? std::nullopt : std::optional(factor[0]);
-}
-
-TextureWrap wrap_named(std::string_view name) {
-    return name == "repeat"   ? TextureWrap::repeat
-           : name == "black"  ? TextureWrap::black
-           : name == "clamp"  ? TextureWrap::clamp
-           : name == "mirror" ? TextureWrap::mirror
-                              : TextureWrap::octahedral_sphere;
-}
-
-// Of images: the channels that are read; empty where the picture decides, as in pbrt-v4.
-std::optional<ImageChannels> channels_asked(ParameterReader& r) {
-    const std::string_view name =
-        r.choice("channel", {"default", "color", "alpha", "red", "green", "blue", "angle"}, "default");
-    if (name == "color") return ImageChannels::color;
-    if (name == "alpha") return ImageChannels::alpha;
-    if (name == "red") return ImageChannels::red;
-    if (name == "green") return ImageChannels::green;
-    if (name == "blue") return ImageChannels::blue;
-    if (name == "angle") return ImageChannels::angle;
-    return std::nullopt;
-}
-
-// "fbm", "wrinkled", "windy" or "marble", whose type fits that of the texture.
-template <typename Texture>
-Texture procedural_texture(ParameterReader& r, const TextureDeclaration& d) {
-    Texture t;
-    t.texture_from_world = texture_space(r, d);
-    if (d.plugin != "windy") t.octaves = noise_octaves(r);
-    if constexpr (std::is_same_v<Texture, MarbleTexture>) {
-        t.scale = r.number("scale", 1);
-        t.variation = r.number("variation", 0.2f);
-    } else {
-        t.kind = d.plugin == "fbm"     ? NoiseTexture::Kind::fbm
-                 : d.plugin == "windy" ? NoiseTexture::Kind::windy
-                                       : NoiseTexture::Kind::wrinkled;
-    }
-    return t;
-}
-
-// pbrt-v4 takes alpha for the value of a float texture in this case only.
-bool has_transparency(const Image& picture) {
-    const auto alpha = picture.find_channel("A");
-    if (!alpha || picture.color_channels().size() != 3) return false;
-    for (int y = 0; y < picture.height(); ++y)
-        for (int x = 0; x < picture.width(); ++x)
-            if (picture.value(x, y, *alpha) != 1) return true;
-    return false;
-}
 
 } // namespace
 
