@@ -166,12 +166,18 @@ void print_info(const InfoSettings& settings) {
                                                            ".pic", ".pfm", ".pbm", ".pgm",  ".ppm",
                                                            ".pnm", ".tga", ".bmp", ".rgbe", ".tif"};
     constexpr std::size_t most_bytes = std::size_t{1} << 30; // as of pictures
-    if (has_extension(settings.file, std::array<std::string_view, 2>{".pbrt", ".gz"}))
-        return print_scene_info(settings.file, settings.definitions, settings.json);
-    const std::vector<std::uint8_t> bytes = read_file_bytes(settings.file, most_bytes);
+    const auto print_scene = [&] { print_scene_info(settings.file, settings.definitions, settings.json); };
+    if (has_extension(settings.file, std::array<std::string_view, 2>{".pbrt", ".gz"})) return print_scene();
+    const bool is_named_picture = has_extension(settings.file, pictures);
+    std::error_code missing;
+    if (!is_named_picture && std::filesystem::file_size(settings.file, missing) > most_bytes && !missing)
+        return print_scene();
+    std::vector<std::uint8_t> bytes = read_file_bytes(settings.file, most_bytes);
     if (const auto header = texture_header(bytes, settings.file)) return print_texture(settings, *header);
-    if (!has_extension(settings.file, pictures) && !bytes.empty() && !is_picture(bytes))
-        return print_scene_info(settings.file, settings.definitions, settings.json);
+    if (!is_named_picture && !bytes.empty() && !is_picture(bytes)) {
+        bytes = {}; // before the scene is read: its file may be as large as the scene
+        return print_scene();
+    }
     const Image image = read_image(bytes, settings.file);
     if (settings.json)
         print_json(settings, image);

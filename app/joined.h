@@ -1,16 +1,17 @@
 // Names as a sentence lists them.
 #pragma once
 
-#include <span>
+#include <ranges>
 #include <string>
 #include <string_view>
 
 namespace montelux::app {
 
 // "a, b, c"
-inline std::string joined(std::span<const std::string_view> names) {
+template <std::ranges::range Names>
+std::string joined(const Names& names) {
     std::string text;
-    for (std::string_view name : names) {
+    for (const std::string_view name : names) {
         if (!text.empty()) text += ", ";
         text += name;
     }

@@ -1,6 +1,7 @@
 // montelux merge: slices of one render, joined.
 #include "app/commands.h"
 #include "app/interrupt.h"
+#include "app/joined.h"
 #include "app/picture_notices.h"
 #include "app/progress_line.h"
 #include "app/tone_options.h"
@@ -10,12 +11,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "montelux/film/merge_slices.h"
 #include "montelux/image/image_read.h"
 #include "montelux/image/image_write.h"
+#include "montelux/image/visible_error.h"
 
 namespace montelux::app {
 
@@ -57,11 +60,14 @@ void run(const MergeSettings& settings) {
                      merged.missing.size() > 1 ? "s" : "", list.c_str());
     }
     print_clamped(merged.clamped_samples, merged.clamped_luminance, merged.mean_luminance);
-    for (const std::string& output : settings.outputs)
-        std::printf("%s: %d x %d pixels of %zu slice%s, %.7g samples per pixel, relative error %s\n",
-                    output.c_str(), merged.image.width(), merged.image.height(), settings.inputs.size(),
-                    settings.inputs.size() > 1 ? "s" : "", merged.mean_samples,
-                    percent_text(merged.relative_error).c_str());
+    const std::optional<double> visible = visible_error_share(
+        merged.image,
+        tone_curve_of(settings.tone, merged.image.select(std::vector<std::string>{"R", "G", "B"}),
+                      DefaultExposure::suitable));
+    std::printf("%s: %d x %d pixels of %zu slice%s, %.7g samples per pixel, relative error %s%s\n",
+                joined(settings.outputs).c_str(), merged.image.width(), merged.image.height(),
+                settings.inputs.size(), settings.inputs.size() > 1 ? "s" : "", merged.mean_samples,
+                percent_text(merged.relative_error).c_str(), visible_text(visible).c_str());
     print_outliers(merged.outliers);
 }
 

@@ -10,6 +10,11 @@ unsigned long long number(std::uint64_t n) { return n; }
 
 } // namespace
 
+std::string visible_text(const std::optional<double>& share) {
+    if (!share) return "";
+    return ", visible in " + (*share > 0 ? percent_text(*share) : "none") + " of the pixels";
+}
+
 void print_clamped(double samples, double lost, double left) {
     if (!(samples > 0)) return;
     std::fprintf(

@@ -1,7 +1,15 @@
 #include "app/progress_line.h"
 
+#include "app/joined.h"
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <ranges>
+#include <string_view>
+#include <sys/ioctl.h>
+#include <system_error>
 #include <unistd.h>
 #include <utility>
 
@@ -34,7 +42,9 @@ void ProgressLine::show(const char* what, const std::string& line) {
         std::fprintf(stderr, "%s: %s\n", what, line.c_str());
         return;
     }
-    std::fprintf(stderr, "\r%s\033[K", line.c_str());
+    // The last column stays free: some terminals wrap when it is written.
+    const auto columns = static_cast<std::size_t>(terminal_columns() - 1);
+    std::fprintf(stderr, "\r%s\033[K", line.substr(0, columns).c_str());
     std::fflush(stderr);
     drawn_ = true;
 }
@@ -42,6 +52,35 @@ void ProgressLine::show(const char* what, const std::string& line) {
 void ProgressLine::finish() {
     if (drawn_) std::fputc('\n', stderr);
     drawn_ = false;
+}
+
+int terminal_columns() {
+    constexpr int usual = 80, least = 10;
+    winsize size{};
+    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
+        return std::max<int>(size.ws_col, least);
+    if (const char* columns = std::getenv("COLUMNS")) {
+        const std::string_view digits = columns;
+        int n = 0;
+        if (std::from_chars(digits.data(), digits.data() + digits.size(), n).ec == std::errc() && n > 0)
+            return std::max(n, least);
+    }
+    return usual;
+}
+
+std::string joined_to_fit(std::vector<LinePart> parts, std::size_t columns) {
+    const auto line = [&] { return joined(parts | std::views::transform(&LinePart::text)); };
+    while (parts.size() > 1 && line().size() > columns)
+        parts.erase(std::ranges::max_element(parts, {}, &LinePart::rank));
+    return line();
+}
+
+std::string progress_bar(double share, std::size_t columns) {
+    constexpr std::size_t longest = 28, shortest = 8, around = 3;
+    if (columns < shortest + around) return "";
+    const std::size_t width = std::min(longest, columns - around);
+    const auto full = static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(width));
+    return "[" + std::string(full, '#') + std::string(width - full, '.') + "] ";
 }
 
 std::string duration_text(double seconds) {

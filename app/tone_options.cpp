@@ -106,6 +106,17 @@ void check(const ToneOptions& o, const std::vector<std::string>& outputs) {
     if (o.quality && !jpeg) throw UsageError("--quality", "it is for .jpg pictures; none is written");
 }
 
+ToneCurve tone_curve_of(const ToneOptions& o, const Image& picture, DefaultExposure by_default) {
+    ToneCurve curve{.exposure = 0, .kind = o.tone.value_or(ToneKind::srgb)};
+    if (o.exposure)
+        curve.exposure = *o.exposure;
+    else if (o.automatic)
+        curve.exposure = automatic_exposure(picture);
+    else if (by_default == DefaultExposure::suitable)
+        curve.exposure = suitable_exposure(picture, curve.kind);
+    return curve;
+}
+
 WriteOptions tone_of(const ToneOptions& o, const std::string& path, const Image& picture,
                      DefaultExposure by_default, bool quiet) {
     WriteOptions writing;
@@ -114,11 +125,8 @@ WriteOptions tone_of(const ToneOptions& o, const std::string& path, const Image&
     writing.jpeg_quality = o.quality.value_or(95);
     writing.tone.kind = o.tone.value_or(ToneKind::srgb);
     if (picture.color_channels().empty()) return writing; // write_image says so
+    writing.tone = tone_curve_of(o, picture, by_default);
     const bool chosen = o.automatic || (!o.exposure && by_default == DefaultExposure::suitable);
-    writing.tone.exposure = o.exposure    ? *o.exposure
-                            : o.automatic ? automatic_exposure(picture)
-                            : chosen      ? suitable_exposure(picture, writing.tone.kind)
-                                          : 0;
     if (!quiet) print_exposure(path, picture, writing.tone, chosen);
     return writing;
 }

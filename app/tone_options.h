@@ -33,6 +33,9 @@ enum class DefaultExposure {
     zero,     // the scene's film chooses one
 };
 
+// The curve by which `picture` is shown.
+ToneCurve tone_curve_of(const ToneOptions& options, const Image& picture, DefaultExposure by_default);
+
 // How `picture`, whose colours are shown, is written to `path`. Unless `quiet`, prints an exposure that was chosen for
 // it, or that it is black or white all over.
 WriteOptions tone_of(const ToneOptions& options, const std::string& path, const Image& picture,

@@ -15,6 +15,14 @@ for build in "$@"; do
     # The attributes of <testsuite> are one per line; an empty report counts as a failed run.
     count() { sed -n "s/.*[[:space:]]$1=\"\([0-9]*\)\".*/\1/p" "$report" | head -n 1; }
     tests=$(count tests) bad=$(count failures) left_out=$(count skipped)
+    # A share of a program's tests is one test to ctest; its last lines say how many it ran.
+    read -r tests bad left_out <<< "$(awk -v tests="${tests:-0}" -v bad="${bad:-0}" -v left_out="${left_out:-0}" '
+        / Testing: / { share = / Testing: .*\/share_[0-9]+_of_[0-9]+$/ }
+        !share { next }
+        /^\[  PASSED  \] [0-9]+ test/ { tests += $4 - 1 }
+        /^\[  SKIPPED \] [0-9]+ test/ { tests += $4; left_out += $4 }
+        /^\[  FAILED  \] [0-9]+ test/ { tests += $4; bad += $4 - 1 }
+        END { print tests, bad, left_out }' "$build/Testing/Temporary/LastTest.log")"
     total=$((total + ${tests:-0})) failed=$((failed + ${bad:-0})) skipped=$((skipped + ${left_out:-0}))
     if [ $status -ne 0 ] && [ "${bad:-0}" -eq 0 ]; then broken=$((broken + 1)); fi
     rm -f "$report"

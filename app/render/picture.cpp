@@ -3,10 +3,13 @@
 #include "app/commands.h"
 #include "app/denoised_output.h"
 #include "app/interrupt.h"
+#include "app/joined.h"
 #include "app/output_files.h"
 #include "app/picture_notices.h"
+#include "app/render/advice.h"
 #include "app/render/memory_text.h"
 #include "app/render/progress.h"
+#include "app/render/session_notices.h"
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -16,7 +19,9 @@
 #include <string_view>
 #include <utility>
 
+#include "montelux/denoise/oidn_api.h"
 #include "montelux/image/image_write.h"
+#include "montelux/image/visible_error.h"
 #include "montelux/render/render_session.h"
 #include "montelux/render/render_warnings.h"
 #include "montelux/render/sample_allocation.h"
@@ -82,13 +87,6 @@ std::optional<float> write_output(const std::string& output, const RenderSnapsho
     return writing.tone.exposure;
 }
 
-void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed) {
-    if (bad.count() == 0) return;
-    std::fprintf(stderr, "montelux: warning: %s; to see its path, add --debug-sample %d,%d,%llu\n",
-                 bad_sample_warning(bad, seed).c_str(), bad.first->x, bad.first->y,
-                 static_cast<unsigned long long>(bad.first->sample));
-}
-
 // Why the render ended, unless by the number of samples.
 std::string ending_text(const RenderReport& report, const RenderTarget& target) {
     switch (report.stop) {
@@ -103,35 +101,20 @@ std::string ending_text(const RenderReport& report, const RenderTarget& target) 
     }
 }
 
-void print_statistics(const RenderReport& report, double load_seconds, double build_seconds) {
-    auto samples = static_cast<double>(report.samples), rays = static_cast<double>(report.rays.rays());
-    std::printf("load               %.3f s\n", load_seconds);
-    std::printf("build              %.3f s\n", build_seconds);
-    std::printf("render             %.3f s, %.3f s of CPU\n", report.seconds, report.cpu_seconds);
-    std::printf("samples            %ssamples/s, %.3f us of CPU each\n",
-                count_text(samples / report.seconds).c_str(), 1e6 * report.cpu_seconds / samples);
-    std::printf(
-        "rays               %srays/s, %srays/s of CPU, %.2f per sample (%.2f closest hit, %.2f occlusion)\n",
-        count_text(rays / report.seconds).c_str(), count_text(rays / report.cpu_seconds).c_str(),
-        rays / samples, static_cast<double>(report.rays.closest) / samples,
-        static_cast<double>(report.rays.occlusion) / samples);
-    std::printf("inside Embree      %.1f %% of the CPU time\n",
-                100 * report.ray_seconds / report.cpu_seconds);
-    std::printf("peak memory        %.1f MiB\n", static_cast<double>(peak_memory()) / (1 << 20));
+// By the curve that shows the picture, or would show it.
+std::optional<double> visible_error(const Image& image, const ToneOptions& tone, DefaultExposure by_default) {
+    if (image.color_channels().empty()) return std::nullopt;
+    const Image colors = image.select(std::vector<std::string>{"R", "G", "B"});
+    return visible_error_share(image, tone_curve_of(tone, colors, by_default));
 }
 
-void print_resume_notices(const RenderSession& session, bool quiet) {
-    const std::string file = session.settings().checkpoint.string();
-    if (!session.refused_checkpoint().empty())
-        std::fprintf(stderr, "montelux: warning: resuming from the checkpoint before the last: %s\n",
-                     session.refused_checkpoint().c_str());
-    if (quiet) return;
-    if (session.settings().resume && !session.resumed())
-        std::fprintf(stderr, "montelux: %s is not there yet: rendering from the start\n", file.c_str());
-    const std::uint32_t spp = session.description().sampler.spp;
-    if (session.settings().target.slice.count == 1 && session.samples_before() > spp)
-        std::fprintf(stderr, "montelux: %s has %.7g samples per pixel already, more than the requested %u\n",
-                     file.c_str(), session.samples_before(), spp);
+bool denoiser_is_installed() {
+    try {
+        load_oidn();
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
 }
 
 } // namespace
@@ -156,8 +139,7 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
     company.executor = shared.begin(session.description(), sampler, target);
     session.prepare();
     const PixelBounds& crop = session.description().film.crop;
-    ProgressPrinter printer(options.quiet, target.quantile > 0 ? 0 : target.error,
-                            static_cast<double>(crop.width()) * crop.height() * sampler.spp, task.doing);
+    ProgressPrinter printer(options.quiet, task.doing);
     company.progress = [&](const RenderProgress& p) { printer.update(p); };
     company.cancel = &cancel_on_signals();
     // The render continues, and reports it at the end, too.
@@ -196,23 +178,33 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
             if (!done.exposure) done.exposure = exposure;
         });
     if (!options.quiet) {
+        const std::optional<double> visible = visible_error(*result.image, task.tone, by_default);
+        if (session.resumed() && result.error.mean_samples == session.samples_before())
+            print_nothing_left(session, report);
         print_bad_samples(report.bad, sampler.seed);
         print_clamped(static_cast<double>(report.clamped_samples), result.clamped_luminance,
                       result.error.mean_luminance);
-        for (const std::string& output : files.written())
-            std::printf("%s: %d x %d pixels, %.7g samples per pixel, relative error %s, %s%s%s\n",
-                        output.c_str(), crop.width(), crop.height(), result.error.mean_samples,
-                        percent_text(result.error.relative).c_str(), duration_text(report.seconds).c_str(),
+        if (!files.written().empty())
+            std::printf("%s: %d x %d pixels, %.7g samples per pixel, relative error %s%s, %s%s%s\n",
+                        joined(files.written()).c_str(), crop.width(), crop.height(),
+                        result.error.mean_samples, percent_text(result.error.relative).c_str(),
+                        visible_text(visible).c_str(), duration_text(report.seconds).c_str(),
                         ending_text(report, target).c_str(), denoised.c_str());
         if (const std::string warning = missing_error_warning(result, session.renderer()); !warning.empty())
             std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
-        if (!task.is_frame) print_outliers(*result.outliers);
+        if (!task.is_frame) {
+            print_outliers(*result.outliers);
+            const std::string advice = advice_text({.target = target,
+                                                    .report = report,
+                                                    .error = result.error,
+                                                    .outliers = *result.outliers,
+                                                    .visible = visible,
+                                                    .has_checkpoint = !options.checkpoint.empty(),
+                                                    .can_denoise = !denoiser && denoiser_is_installed()});
+            if (!advice.empty()) std::printf("%s\n", advice.c_str());
+        }
         if (options.stats) {
-            print_statistics(report, task.load_seconds, session.renderer().build_seconds());
-            for (const EnvironmentSampler& map : session.renderer().scene().light_tables.environments)
-                std::printf("environment        %s\n", map.description().c_str());
-            for (const PortalSampler& map : session.renderer().scene().light_tables.portals)
-                std::printf("environment        %s\n", map.description().c_str());
+            print_statistics(report, task.load_seconds, session.renderer());
             shared.print_statistics();
         }
         if (options.memory)

@@ -4,34 +4,32 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 namespace montelux::app {
 
 void ProgressPrinter::update(const RenderProgress& p) {
-    if (p.samples_total == 0) return;
-    double fraction = static_cast<double>(p.samples_done) / static_cast<double>(p.samples_total);
-    bool end = p.samples_done == p.samples_total;
-    const bool open = target_ > 0 && !(p.error && p.error->relative <= target_);
-    if (open && static_cast<double>(p.samples_done) < most_samples_) {
-        constexpr double almost = 0.99;
-        fraction = std::min(fraction, almost);
-        end = false;
-    }
-    if (!line_.due(p.seconds) && !end) return;
-    const double rate = p.seconds > 0 ? static_cast<double>(p.samples_done) / p.seconds : 0;
+    const bool due = line_.due(p.seconds);
+    if (!due && !p.ended) return;
+    // Rounding, and an estimate that was exceeded, must not look like the end.
+    constexpr double almost = 0.99;
+    const double share = p.ended ? p.forecast.share : std::min(p.forecast.share, almost);
     char percent[16];
-    std::snprintf(percent, sizeof percent, "%3.0f %%", std::floor(100 * fraction));
-    std::string numbers = std::string(percent) + "  " + duration_text(p.seconds) + " elapsed";
-    if (!end && fraction > 0 && p.samples_done < p.samples_total)
-        numbers += ", " + duration_text(p.seconds * (1 / fraction - 1)) + " left";
-    numbers += ", " + count_text(rate) + "samples/s";
-    if (p.error) numbers += ", error " + percent_text(p.error->relative);
-    if (line_.on_terminal()) {
-        constexpr int width = 28;
-        const auto full = static_cast<std::size_t>(fraction * width);
-        numbers = "[" + std::string(full, '#') + std::string(width - full, '.') + "] " + numbers;
-    }
-    line_.show(doing_.c_str(), numbers);
+    std::snprintf(percent, sizeof percent, "%3.0f %%  ", std::floor(100 * share));
+    enum Rank { left, error, elapsed, rate };
+    std::vector<LinePart> parts{{duration_text(p.seconds) + " elapsed", elapsed}};
+    if (!p.ended && p.forecast.seconds_left)
+        parts.push_back({duration_text(*p.forecast.seconds_left) + " left", left});
+    if (p.error && std::isfinite(p.error->relative))
+        parts.push_back({"error " + percent_text(p.error->relative), error});
+    if (p.seconds > 0)
+        parts.push_back({count_text(static_cast<double>(p.samples_done) / p.seconds) + "samples/s", rate});
+    if (!line_.on_terminal())
+        return line_.show(doing_.c_str(), percent + joined_to_fit(std::move(parts), std::string::npos));
+    const std::size_t room = static_cast<std::size_t>(terminal_columns() - 1) - std::string(percent).size();
+    const std::string numbers = joined_to_fit(std::move(parts), room);
+    line_.show(doing_.c_str(),
+               progress_bar(share, room - std::min(room, numbers.size())) + percent + numbers);
 }
 
 } // namespace montelux::app

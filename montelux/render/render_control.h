@@ -7,6 +7,7 @@
 
 #include "montelux/film/film.h"
 #include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/render/render_forecast.h"
 
 namespace montelux {
 
@@ -27,9 +28,11 @@ struct RenderProgress {
     double seconds = 0;
     // After each round that ends with no open replicate.
     std::optional<FilmError> error;
+    RenderForecast forecast;
+    bool ended = false; // in the last call
 };
 
-// Called from one thread at a time, several times a second.
+// Called from one thread at a time, several times a second, and once at the end.
 using ProgressCallback = std::function<void(const RenderProgress&)>;
 
 struct RenderControl {

@@ -35,7 +35,7 @@ class RenderLoop {
           order_(renderer.sampler(), renderer.target().slice),
           tile_renderer_(context, renderer.accelerator(), order_),
           tiles_(tiles_of(state.film.bounds(), tile_size)), finished_(tiles_.size()),
-          seconds_before_(state.report.seconds) {
+          seconds_before_(state.report.seconds), samples_before_(state.report.samples) {
         if (!round_is_done()) round_ = 0; // in a restored state
         if (control.live != nullptr) control.live->open(state, tiles_, [this] { return report_now(); });
     }
@@ -116,20 +116,35 @@ class RenderLoop {
         if (out_of_time()) return RenderStop::time;
         if (state_.target_samples.empty() || !round_is_done() || !no_replicate_is_open()) return std::nullopt;
         const FilmError error = state_.film.error();
+        const std::optional<double> reached = error_for_target(error);
+        estimate_samples(error, reached);
         report_progress(error);
-        if (target_is_reached(error)) return RenderStop::error;
+        if (target_is_reached(error, reached)) return RenderStop::error;
         return std::nullopt;
     }
-    bool target_is_reached(const FilmError& error) const {
+    // The error that the target limits; empty without a target, and while nothing was seen.
+    std::optional<double> error_for_target(const FilmError& error) const {
+        const RenderTarget& target = renderer_.target();
+        if (!(target.error > 0 && error.mean_luminance > 0)) return std::nullopt;
+        return target.quantile > 0 ? error_quantile(state_.film, target.quantile) : error.relative;
+    }
+    // An error falls with the root of the number of samples.
+    void estimate_samples(const FilmError& error, const std::optional<double>& reached) {
+        if (!reached || !std::isfinite(*reached)) return;
+        const double samples = static_cast<double>(state_.film.pixels().size()) * error.mean_samples *
+                               std::pow(*reached / renderer_.target().error, 2);
+        samples_for_error_ = static_cast<std::uint64_t>(std::min(samples, 1e18));
+    }
+    bool target_is_reached(const FilmError& error, const std::optional<double>& reached) const {
         const RenderTarget& target = renderer_.target();
         if (!(target.error > 0)) return false;
         // Few samples may all be dark by chance; pixels that found no light yet would satisfy a quantile.
         const std::uint64_t least = target.quantile > 0 ? 4 * least_samples : least_samples;
         const std::uint64_t replicates = fewest_replicates();
         if (replicates < least_replicates || replicates * order_.replicate_size() < least) return false;
-        if (!(error.mean_luminance > 0)) return error.mean_samples >= samples_of_black;
-        if (target.quantile > 0) return error_quantile(state_.film, target.quantile) <= target.error;
-        return error.relative <= target.error && error_freedom(state_.film) >= least_freedom;
+        if (!reached) return error.mean_samples >= samples_of_black;
+        return *reached <= target.error &&
+               (target.quantile > 0 || error_freedom(state_.film) >= least_freedom);
     }
     std::uint64_t fewest_replicates() const {
         std::uint64_t fewest = state_.film.pixels().front().replicates().count();
@@ -239,20 +254,19 @@ class RenderLoop {
         if (error) progress_.error = error;
         progress_.seconds = seconds();
         progress_.samples_done = state_.report.samples + samples_beyond_;
-        progress_.samples_total = expected_samples();
+        RenderPace pace{.samples_done = progress_.samples_done,
+                        .samples_most = state_.film.pixels().size() * order_.share(),
+                        .samples_for_error = samples_for_error_,
+                        .seconds = progress_.seconds,
+                        .run_samples = progress_.samples_done - samples_before_,
+                        .run_seconds = seconds_since(begin_)};
+        progress_.samples_total =
+            std::max(progress_.samples_done,
+                     std::min(pace.samples_most, pace.samples_for_error.value_or(pace.samples_most)));
+        const bool complete = ended_ && state_.report.stop != RenderStop::cancelled;
+        progress_.forecast = complete ? RenderForecast{1, 0} : forecast(pace, renderer_.target());
+        progress_.ended = ended_;
         control_.progress(progress_);
-    }
-    // All samples, or an estimate from the last error.
-    std::uint64_t expected_samples() const {
-        const auto pixels = static_cast<double>(state_.film.pixels().size());
-        const double all = pixels * static_cast<double>(order_.share());
-        const RenderTarget& target = renderer_.target();
-        double expected = all;
-        if (target.error > 0 && target.quantile == 0 && progress_.error)
-            expected = pixels * progress_.error->mean_samples *
-                       std::pow(progress_.error->relative / target.error, 2);
-        if (!(expected < all)) expected = all;
-        return std::max(progress_.samples_done, static_cast<std::uint64_t>(expected));
     }
 
     void save_checkpoint() {
@@ -270,9 +284,12 @@ class RenderLoop {
         if (control_.checkpoint) save_checkpoint();
         // Truncated replicates count if they are at least half of one: each is unbiased.
         state_.film.end_replicates(order_.replicate_size());
+        const FilmError error = state_.film.error();
         // The open replicates may have been the only ones missing.
-        if (reason != RenderStop::cancelled && target_is_reached(state_.film.error()))
+        if (reason != RenderStop::cancelled && target_is_reached(error, error_for_target(error)))
             state_.report.stop = RenderStop::error;
+        ended_ = true;
+        report_progress(std::isfinite(error.relative) ? std::optional(error) : std::nullopt);
     }
 
     // Samples per pixel before its error is trusted; and before a picture counts as black.
@@ -290,13 +307,16 @@ class RenderLoop {
     std::vector<PixelBounds> tiles_;
     std::vector<char> finished_;              // of each tile, in this round
     std::uint64_t round_ = ~std::uint64_t{0}; // incremented to 0 by the first round
-    double seconds_before_;                   // of earlier runs of this render
+    // Of earlier runs of this render.
+    double seconds_before_;
+    std::uint64_t samples_before_;
     Clock::time_point begin_ = Clock::now(), last_checkpoint_ = begin_, last_progress_ = begin_;
-    bool every_pixel_seen_ = false;
+    bool every_pixel_seen_ = false, ended_ = false;
     std::atomic<bool> pause_{false};
     std::mutex mutex_; // of the report and the progress
     RenderProgress progress_;
-    std::uint64_t samples_beyond_ = 0; // samples beyond the report, counted by an executor
+    std::uint64_t samples_beyond_ = 0;                 // samples beyond the report, counted by an executor
+    std::optional<std::uint64_t> samples_for_error_{}; // that the target error takes, by the last error
 };
 
 } // namespace

@@ -106,13 +106,11 @@ std::vector<std::uint32_t> next_target_samples(const RenderState& state, const S
     const std::uint64_t pilot = target.adaptive ? pilot_of(order) : 0;
     if (target.adaptive && begin >= pilot) return neyman_allocation(state.film, order, target);
     if (begin >= share) return {};
-    std::uint64_t end = pilot;
-    if (!target.adaptive || target.time > 0) { // 1, 2, 4, 8, 16, 32, 48, ... samples
-        end = begin + std::clamp<std::uint64_t>(std::bit_floor(begin), 1, longest_round);
-        if (order.replicate_size() > 1)
-            end = std::min(end, (begin / order.replicate_size() + 1) * order.replicate_size());
-        if (target.adaptive) end = std::min(end, pilot);
-    }
+    // 1, 2, 4, 8, 16, 32, 48, ... samples: a render that is interrupted early has some in every pixel.
+    std::uint64_t end = begin + std::clamp<std::uint64_t>(std::bit_floor(begin), 1, longest_round);
+    if (order.replicate_size() > 1)
+        end = std::min(end, (begin / order.replicate_size() + 1) * order.replicate_size());
+    if (target.adaptive) end = std::min(end, pilot);
     return std::vector<std::uint32_t>(pixels, static_cast<std::uint32_t>(std::min(end, share)));
 }
 

@@ -102,6 +102,13 @@ class Picture:
         data, height, width, channels = snapshot.screen(stops, tone)
         return np.frombuffer(data, np.uint8).reshape(height, width, channels)
 
+    def visible_error(self, exposure: float | Literal["auto"] = 0.0, tone: Tone = "srgb") -> float | None:
+        """Share of the pixels whose standard error of luminance changes their 8-bit code by at least 1: where noise
+        shows. None where the picture has no standard errors."""
+        snapshot = self._snapshot()
+        stops = snapshot.automatic_exposure() if exposure == "auto" else exposure
+        return snapshot.visible_error(stops, tone)
+
     def save(
         self,
         path: str | os.PathLike[str],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 import time
 from typing import TYPE_CHECKING
@@ -25,6 +26,7 @@ class ProgressLine:
             return
         self._next = now + (0.1 if self._terminal else 10)
         if self._terminal:
+            text = text[: shutil.get_terminal_size().columns - 1]  # a line that wraps cannot be written over
             sys.stderr.write("\r" + text.ljust(self._width))
             self._width = len(text)
         else:
@@ -61,7 +63,7 @@ class RenderProgress:
 
     def __call__(self, p: Progress) -> None:
         error = "" if p.relative_error is None else f", error {100 * p.relative_error:.3g} %"
-        left = f", about {p.seconds * (1 / p.share - 1):.0f} s left" if p.share > 0.01 else ""
+        left = "" if p.seconds_left is None else f", about {p.seconds_left:.0f} s left"
         self._line.show(f"rendering: {100 * p.share:3.0f} %  {p.seconds:.1f} s elapsed{left}{error}")
 
     def finish(self) -> None:

@@ -15,18 +15,24 @@ from ._progress import RenderProgress
 
 class Progress:
     """How far a render is: `samples` of (probably) `samples_total` over all pixels, `seconds`, and the relative
-    error of the picture, None while it is not known."""
+    error of the picture, None while it is not known; `share`, from 0 to 1, of the way to the limit that ends it
+    (samples, error or time), and `seconds_left` until then, None while that cannot be estimated."""
 
-    def __init__(self, samples: int, samples_total: int, seconds: float, relative_error: float | None) -> None:
+    def __init__(
+        self,
+        samples: int,
+        samples_total: int,
+        seconds: float,
+        relative_error: float | None,
+        share: float,
+        seconds_left: float | None,
+    ) -> None:
         self.samples = samples
         self.samples_total = samples_total
         self.seconds = seconds
         self.relative_error = relative_error
-
-    @property
-    def share(self) -> float:
-        """Of the work, from 0 to 1."""
-        return self.samples / self.samples_total if self.samples_total else 0.0
+        self.share = share
+        self.seconds_left = seconds_left
 
     def __repr__(self) -> str:
         error = "" if self.relative_error is None else f", relative error {100 * self.relative_error:.3g} %"

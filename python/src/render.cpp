@@ -10,6 +10,7 @@
 #include "montelux/image/cryptomatte.h"
 #include "montelux/image/exposure.h"
 #include "montelux/image/image_write.h"
+#include "montelux/image/visible_error.h"
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/math/nearest_name.h"
 #include "montelux/render/render_warnings.h"
@@ -168,6 +169,12 @@ void bind_render(nb::module_& m) {
         .def_prop_ro("clamped_samples", [](const RenderSnapshot& l) { return l.report.clamped_samples; })
         .def_prop_ro("stop", [](const RenderSnapshot& l) { return std::string(to_string(l.report.stop)); })
         .def("screen", &screen, "exposure"_a, "tone"_a, "8-bit sRGB: (bytes, height, width, channels).")
+        .def(
+            "visible_error",
+            [](const RenderSnapshot& l, double exposure, const std::string& tone) {
+                return visible_error_share(*l.image, curve_of(exposure, tone));
+            },
+            "exposure"_a, "tone"_a)
         .def("automatic_exposure", [](const RenderSnapshot& l) { return automatic_exposure(shown(l)); })
         .def(
             "save",
@@ -192,7 +199,8 @@ void bind_render(nb::module_& m) {
              [](const RenderJob& j) {
                  const RenderProgress p = j.progress();
                  return nb::make_tuple(p.samples_done, p.samples_total, p.seconds,
-                                       p.error ? nb::object(nb::float_(p.error->relative)) : nb::none());
+                                       p.error ? nb::object(nb::float_(p.error->relative)) : nb::none(),
+                                       p.forecast.share, p.forecast.seconds_left);
              })
         .def("warnings", &warnings_of)
         .def_prop_ro("refused_checkpoint",

@@ -56,12 +56,14 @@ grep -q "the errors are unknown: fewer than two replicates of 62500 samples per 
 
 # Paths in a sphere without absorption are long, and the first signal waits for those of a pixel. A second signal
 # ends the program at once, but not within the same second. Checkpoints stay.
-scene furnace 'Material "diffuse" "spectrum reflectance" [200 1 900 1] Shape "sphere" "float radius" 5' 2 2
-furnace="render furnace.pbrt --sampler sobol --spp 1000 --adaptive on --max-depth 1000000 --checkpoint furnace.state"
-expect 0 "time is up" $furnace --time 0.1
+scene furnace 'Texture "slow" "float" "fbm" "integer octaves" 64
+MakeNamedMaterial "white" "string type" "diffuse" "spectrum reflectance" [200 1 900 1]
+Material "mix" "string materials" ["white" "white"] "texture amount" "slow" Shape "sphere" "float radius" 5' 1 1
+furnace="render furnace.pbrt --sampler independent --adaptive on --max-depth 1000000 --checkpoint furnace.state"
+expect 0 "4 samples per pixel" $furnace --spp 4
 cp furnace.state furnace.expected
 rm -f furnace.exr
-"$montelux" $furnace --resume >out 2>&1 &
+"$montelux" $furnace --spp 1000 --resume >out 2>&1 & # 4 samples are next
 pid=$!
 end_later $pid
 sleep 0.5

@@ -11,6 +11,16 @@ expect 3 "time is up before the target was reached" render ball.pbrt --target-er
 expect 0 "time is up" render ball.pbrt --time 0.2s -o x.exr
 expect 0 "16 samples per pixel" render ball.pbrt --time 1h --spp 16 -o x.exr
 expect 0 "samples were clamped, which removed" render ball.pbrt --clamp 0.5 -o x.exr
+# What would be cleaner: nothing where no error is visible.
+expect 0 "for half the error: --spp 16, about " render ball.pbrt -o x.exr
+grep -qE 'relative error [0-9.]+ %, visible in [0-9.]+ % of the pixels, ' out || fail "no share of visible errors: $(cat out)"
+expect 0 "for half the error: --target-error 4%, about " render ball.pbrt --target-error 8% -o x.exr
+expect 0 "for half the error: --time 1s" render ball.pbrt --time 0.1 --sampler independent -o x.exr
+expect 3 "to reach the target: --max-spp " render ball.pbrt --target-error 0.1% --max-spp 32 -o x.exr
+expect 3 "to reach the target: --time " render ball.pbrt --target-error 1e-5 --time 0.1 -o x.exr
+scene even "$sky"
+expect 0 "visible in none of the pixels" render even.pbrt --spp 4096 -o x.exr
+grep -q "for half the error" out && fail "advice for a picture without noise: $(cat out)"
 # The bar is not full while the target is open.
 if command -v script >/dev/null; then
     scene lit "$sky LightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [0 0.9 1.2] Material \"diffuse\"
@@ -37,6 +47,16 @@ expect 0 "52 samples per pixel" render ball.pbrt --spp 52 --resume --checkpoint 
 expect 0 "state has 52 samples per pixel already, more than the requested 20" render ball.pbrt --spp 20 --resume \
     --checkpoint state -o less.pfm
 cmp -s a.pfm less.pfm || fail "a render that had more samples than asked for changed"
+expect 0 "state: nothing is left to render: all its samples are taken already; a larger --spp continues it" \
+    render ball.pbrt --spp 52 --resume --checkpoint state -o a.pfm
+for option in "--target-error 2%" "--time 0.2"; do
+    rm -f again again.previous
+    # shellcheck disable=SC2086 # two words
+    expect 0 "again is not there yet" render ball.pbrt $option --resume --checkpoint again -o a.exr
+    expect 0 "again: nothing is left to render: " render ball.pbrt $option --resume --checkpoint again -o a.exr
+    grep -qE 'the target error is reached already; a smaller --target-error|0.2 s are used up.*; a longer --time' out ||
+        fail "$option: why nothing is left: $(cat out)"
+done
 expect 0 "" render ball.pbrt --spp 52 -o b.pfm
 cmp -s a.pfm b.pfm || fail "a resumed render differs"
 expect 1 "of another render: the sampler or seed differs" render ball.pbrt --seed 9 --resume --checkpoint state -o x.pfm

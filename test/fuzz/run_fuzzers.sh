@@ -1,6 +1,6 @@
 #!/bin/bash
 # Fuzzes each loader for so many seconds, one after the other, from its corpus. New inputs that reach new code are kept
-# in the build folder and are the start of the next run. Ends with 1 if any input crashed a loader, took more than 10 s
+# in the build folder and are the start of the next run. Ends with 1 if any input crashed a loader, took more than 30 s
 # or more than 2 GB, or leaked.
 # Usage: run_fuzzers.sh build-folder seconds loader...
 set -u
@@ -11,7 +11,7 @@ failed=0
 for loader in "$@"; do
     work=$build/runs/$loader
     mkdir -p "$work/inputs" "$work/failures"
-    options=(-max_total_time="$seconds" -rss_limit_mb=2048 -timeout=10 -max_len=16384 -print_final_stats=1)
+    options=(-max_total_time="$seconds" -rss_limit_mb=2048 -timeout=30 -max_len=16384 -print_final_stats=1)
     dictionary=$(dirname "$corpus")/$loader.dict
     [ ! -e "$dictionary" ] || options+=(-dict="$dictionary")
     echo "== $loader: $seconds s, log in $work/log"

@@ -64,6 +64,27 @@ TEST(SampleAllocation, EqualOnesCoverAllSamplesAndEndWithReplicates) {
               8u);
 }
 
+// A pilot that took all its samples tile by tile would leave most of a picture black when it is interrupted.
+TEST(SampleAllocation, PilotsBeginWithOneSampleOfEachPixel) {
+    for (const SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol})
+        for (const double time : {0.0, 100.0}) {
+            const RenderTarget target{.error = 0.01, .time = time, .adaptive = true};
+            const SamplerSettings s = with_replicates({kind, 0, 1u << 20}, target);
+            const std::uint64_t pilot = pilot_of(SampleOrder(s, {}));
+            RenderState state({.width = 1, .height = 1, .crop = {0, 0, 1, 1}});
+            std::vector<std::uint32_t> counts;
+            while (counts.empty() || counts.back() < pilot) {
+                state.target_samples = next_target_samples(state, s, target);
+                ASSERT_FALSE(state.target_samples.empty());
+                counts.push_back(state.target_samples[0]);
+            }
+            ASSERT_GE(counts.size(), 5u);
+            EXPECT_EQ(std::vector<std::uint32_t>(counts.begin(), counts.begin() + 4),
+                      (std::vector<std::uint32_t>{1, 2, 4, 8}));
+            EXPECT_EQ(counts.back(), pilot);
+        }
+}
+
 // Pixels with n replicates whose values have the given standard deviation.
 Film film_with(const std::vector<double>& deviations, int width, int n, std::uint64_t seed) {
     const int height = static_cast<int>(deviations.size()) / width;

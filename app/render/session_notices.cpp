@@ -1,0 +1,78 @@
+#include "app/render/session_notices.h"
+
+#include "app/progress_line.h"
+#include "app/render/memory_text.h"
+#include <cstdio>
+#include <string>
+
+#include "montelux/render/render_warnings.h"
+
+namespace montelux::app {
+
+void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed) {
+    if (bad.count() == 0) return;
+    std::fprintf(stderr, "montelux: warning: %s; to see its path, add --debug-sample %d,%d,%llu\n",
+                 bad_sample_warning(bad, seed).c_str(), bad.first->x, bad.first->y,
+                 static_cast<unsigned long long>(bad.first->sample));
+}
+
+void print_statistics(const RenderReport& report, double load_seconds, const Renderer& renderer) {
+    auto samples = static_cast<double>(report.samples), rays = static_cast<double>(report.rays.rays());
+    std::printf("load               %.3f s\n", load_seconds);
+    std::printf("build              %.3f s\n", renderer.build_seconds());
+    std::printf("render             %.3f s, %.3f s of CPU\n", report.seconds, report.cpu_seconds);
+    std::printf("samples            %ssamples/s, %.3f us of CPU each\n",
+                count_text(samples / report.seconds).c_str(), 1e6 * report.cpu_seconds / samples);
+    std::printf(
+        "rays               %srays/s, %srays/s of CPU, %.2f per sample (%.2f closest hit, %.2f occlusion)\n",
+        count_text(rays / report.seconds).c_str(), count_text(rays / report.cpu_seconds).c_str(),
+        rays / samples, static_cast<double>(report.rays.closest) / samples,
+        static_cast<double>(report.rays.occlusion) / samples);
+    std::printf("inside Embree      %.1f %% of the CPU time\n",
+                100 * report.ray_seconds / report.cpu_seconds);
+    std::printf("peak memory        %.1f MiB\n", static_cast<double>(peak_memory()) / (1 << 20));
+    for (const EnvironmentSampler& map : renderer.scene().light_tables.environments)
+        std::printf("environment        %s\n", map.description().c_str());
+    for (const PortalSampler& map : renderer.scene().light_tables.portals)
+        std::printf("environment        %s\n", map.description().c_str());
+}
+
+void print_resume_notices(const RenderSession& session, bool quiet) {
+    const std::string file = session.settings().checkpoint.string();
+    if (!session.refused_checkpoint().empty())
+        std::fprintf(stderr, "montelux: warning: resuming from the checkpoint before the last: %s\n",
+                     session.refused_checkpoint().c_str());
+    if (quiet) return;
+    if (session.settings().resume && !session.resumed())
+        std::fprintf(stderr, "montelux: %s is not there yet: rendering from the start\n", file.c_str());
+    const std::uint32_t spp = session.description().sampler.spp;
+    if (session.settings().target.slice.count == 1 && session.samples_before() > spp)
+        std::fprintf(stderr, "montelux: %s has %.7g samples per pixel already, more than the requested %u\n",
+                     file.c_str(), session.samples_before(), spp);
+}
+
+void print_nothing_left(const RenderSession& session, const RenderReport& report) {
+    const RenderTarget& target = session.settings().target;
+    std::string reason, more;
+    switch (report.stop) {
+    case RenderStop::error:
+        reason = "the target error is reached already";
+        more = "a smaller --target-error";
+        break;
+    case RenderStop::time:
+        reason = "its " + duration_text(target.time) + " are used up, since times of resumed runs add up";
+        more = "a longer --time";
+        break;
+    case RenderStop::samples:
+        if (session.samples_before() > session.description().sampler.spp) return; // said when it began
+        reason = "all its samples are taken already";
+        more = target.error > 0 || target.time > 0 ? "a larger --max-spp" : "a larger --spp";
+        break;
+    default:
+        return;
+    }
+    std::fprintf(stderr, "montelux: %s: nothing is left to render: %s; %s continues it\n",
+                 session.settings().checkpoint.c_str(), reason.c_str(), more.c_str());
+}
+
+} // namespace montelux::app
