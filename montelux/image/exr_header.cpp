@@ -94,6 +94,10 @@ void Parser::parse_channels(ExrPart& part, std::uint64_t at, std::uint64_t size)
         if (part.channels.size() > Image::max_channels)
             file_.fail("the file has more than " + std::to_string(Image::max_channels) + " channels");
     }
+    // OpenEXR goes on here, not behind the bytes that the attribute says it has: the rest would be attributes to it
+    // that nobody has checked.
+    if (at != end)
+        file_.damaged("the channel list has " + std::to_string(end - at) + " bytes behind its end");
 }
 
 // Values worth keeping; others are left out of the image's attributes.

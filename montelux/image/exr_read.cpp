@@ -1,4 +1,5 @@
 #include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
@@ -59,12 +60,14 @@ Image decode_exr(const EncodedImage& file) {
         MemoryStream stream(bytes, file.name.c_str());
         Imf::MultiPartInputFile input(stream, 0, false);
         Imf::InputPart part(input, 0);
+        Imath::Box2i window({layout.min_x, layout.min_y},
+                            {layout.min_x + layout.width - 1, layout.min_y + layout.height - 1});
+        // The picture has the size that was checked; pixels of another one would be written beyond it.
+        if (part.header().dataWindow() != window) throw Error("its data window can be read in two ways");
         std::size_t sample = bytes_per_sample(format), pixel = sample * names.size(),
                     row = pixel * layout.width;
         char* base = all_half ? reinterpret_cast<char*>(image.u16().data())
                               : reinterpret_cast<char*>(image.f32().data());
-        Imath::Box2i window({layout.min_x, layout.min_y},
-                            {layout.min_x + layout.width - 1, layout.min_y + layout.height - 1});
         Imf::FrameBuffer buffer;
         for (std::size_t c = 0; c < names.size(); ++c)
             buffer.insert(names[c], Imf::Slice::Make(all_half ? Imf::HALF : Imf::FLOAT, base + c * sample,

@@ -4,6 +4,7 @@
 #include "test/image/image_testing.h"
 #include "test/image/sample_files.h"
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 
 #include "montelux/image/image_read.h"
@@ -152,6 +153,27 @@ TEST(BrokenOnPurposeSlowTest, NothingCrashes) {
             BoundedRun run = read_broken(name, bytes, seed += 1000, 1000);
             EXPECT_EQ(run.ending, Ending::done) << name << " " << seed << ": " << run.message;
         }
+}
+
+// OpenEXR reads channels up to their end mark and goes on there: a larger data window behind it would write beyond the
+// picture.
+TEST(BrokenOnPurpose, ChannelListsHideNothing) {
+    std::string bytes = make_exr({});
+    const std::string list("channels\0chlist\0", 16);
+    const std::size_t size_at = bytes.find(list) + list.size();
+    ASSERT_LT(size_at, bytes.size());
+    std::uint32_t size = 0;
+    std::memcpy(&size, bytes.data() + size_at, 4);
+    const std::string hidden = std::string("dataWindow\0box2i\0\x10\0\0\0", 21) + std::string(8, '\0') +
+                               std::string("\xff\3\0\0\xff\3\0\0", 8);
+    bytes.insert(size_at + 4 + size, hidden);
+    size += static_cast<std::uint32_t>(hidden.size());
+    std::memcpy(bytes.data() + size_at, &size, 4);
+    expect_error(
+        [&] {
+            read_image({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, "a.exr");
+        },
+        {"the channel list has 37 bytes behind its end"});
 }
 
 // The machinery above must notice what it is there for.

@@ -47,13 +47,21 @@ TEST_P(SlowIntegrand, PointsAreEvaluatedAtTheSameTime) {
         auto f = [&](std::span<const double> x) { return calls.during([&] { return sleepy(x); }); };
         return integrate(f, Domain::unit_cube(2), method, {.evaluations = 2500}, {.threads = threads});
     };
-    Calls alone, together;
-    const IntegrationResult one = run(alone, 1), two = run(together, 2);
+    Calls alone;
+    const IntegrationResult one = run(alone, 1);
     EXPECT_EQ(alone.most, 1);
-    EXPECT_EQ(together.most, 2);
     EXPECT_EQ(alone.count, one.evaluations);
-    EXPECT_EQ(together.count, two.evaluations);
-    EXPECT_TRUE(same_but_for_time(one, two));
+    // On a busy machine the second thread may take half a second to leave the loop of an earlier test.
+    int most = 0;
+    for (int attempt = 0; attempt < 20 && most < 2; ++attempt) {
+        Calls together;
+        const IntegrationResult two = run(together, 2);
+        most = together.most;
+        EXPECT_LE(most, 2);
+        EXPECT_EQ(together.count, two.evaluations);
+        EXPECT_TRUE(same_but_for_time(one, two));
+    }
+    EXPECT_EQ(most, 2);
     const auto fast = integrate(kinked, Domain::unit_cube(2), method, {.evaluations = 2500}, {.threads = 2});
     EXPECT_TRUE(same_but_for_time(one, fast));
 }
