@@ -7,12 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <system_error>
 #include <type_traits>
+#include <vector>
 
 #include "montelux/image/image_read.h"
 #include "montelux/image/metrics.h"
@@ -175,7 +178,8 @@ void print_info(const InfoSettings& settings) {
     std::vector<std::uint8_t> bytes = read_file_bytes(settings.file, most_bytes);
     if (const auto header = texture_header(bytes, settings.file)) return print_texture(settings, *header);
     if (!is_named_picture && !bytes.empty() && !is_picture(bytes)) {
-        bytes = {}; // before the scene is read: its file may be as large as the scene
+        bytes =
+            std::vector<std::uint8_t>(); // before the scene is read: the file may be as large as the scene
         return print_scene();
     }
     const Image image = read_image(bytes, settings.file);

@@ -51,7 +51,7 @@ struct Prepared {
         const auto target = in.get<RenderTarget>();
         {
             BundledFiles files(FileBundle::from_bytes(in.get_bytes()));
-            bytes = {};
+            bytes = std::vector<std::uint8_t>(); // {} would keep the memory
             Warnings ignored;
             description = load_requested(options, ignored, &files).description;
         }
