@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ranges>
 #include <string_view>
 #include <sys/ioctl.h>
 #include <system_error>
@@ -69,7 +68,12 @@ int terminal_columns() {
 }
 
 std::string joined_to_fit(std::vector<LinePart> parts, std::size_t columns) {
-    const auto line = [&] { return joined(parts | std::views::transform(&LinePart::text)); };
+    const auto line = [&] {
+        std::vector<std::string_view> texts;
+        texts.reserve(parts.size());
+        for (const LinePart& part : parts) texts.push_back(part.text);
+        return joined(texts);
+    };
     while (parts.size() > 1 && line().size() > columns)
         parts.erase(std::ranges::max_element(parts, {}, &LinePart::rank));
     return line();
