@@ -178,8 +178,8 @@ void print_info(const InfoSettings& settings) {
     std::vector<std::uint8_t> bytes = read_file_bytes(settings.file, most_bytes);
     if (const auto header = texture_header(bytes, settings.file)) return print_texture(settings, *header);
     if (!is_named_picture && !bytes.empty() && !is_picture(bytes)) {
-        bytes =
-            std::vector<std::uint8_t>(); // before the scene is read: the file may be as large as the scene
+        // The file may be as large as the scene, which is read next.
+        bytes = std::vector<std::uint8_t>();
         return print_scene();
     }
     const Image image = read_image(bytes, settings.file);

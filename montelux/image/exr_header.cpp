@@ -94,8 +94,8 @@ void Parser::parse_channels(ExrPart& part, std::uint64_t at, std::uint64_t size)
         if (part.channels.size() > Image::max_channels)
             file_.fail("the file has more than " + std::to_string(Image::max_channels) + " channels");
     }
-    // OpenEXR goes on here, not behind the bytes that the attribute says it has: the rest would be attributes to it
-    // that nobody has checked.
+    // OpenEXR ignores the attribute's size and continues at the end mark: it would read what follows as further,
+    // unchecked attributes.
     if (at != end)
         file_.damaged("the channel list has " + std::to_string(end - at) + " bytes behind its end");
 }
