@@ -14,6 +14,7 @@ inline constexpr int exit_done = 0, exit_failed = 1, exit_usage = 2, exit_stoppe
 void add_integrate(CLI::App& app, int& exit_code);
 void add_sample(CLI::App& app, int& exit_code);
 void add_render(CLI::App& app, int& exit_code);
+void add_view(CLI::App& app, int& exit_code);
 void add_merge(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
 void add_denoise(CLI::App& app, int& exit_code);

@@ -127,6 +127,7 @@ int run(int argc, char** argv) {
                    "  montelux integrate 'sin(x)*y' --over x=0:pi/2 --over y=0:1 --relative-error 1e-4\n"
                    "  montelux sample --set sobol --n 1024 --dim 2 -o points.csv\n"
                    "  montelux render scene.pbrt --spp 64 -o out.exr\n"
+                   "  montelux view scene.pbrt\n"
                    "  montelux denoise out.exr -o out.png\n"
                    "  montelux bake environment sky.hdr -o sky.ktx2\n"
                    "  montelux convert out.exr out.png --tone agx\n"
@@ -140,6 +141,7 @@ int run(int argc, char** argv) {
         add_sample(app, exit_code);
 #ifdef MONTELUX_WITH_RENDER
         add_render(app, exit_code);
+        add_view(app, exit_code);
         add_merge(app, exit_code);
         add_compare(app, exit_code);
         add_denoise(app, exit_code);

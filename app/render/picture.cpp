@@ -10,11 +10,13 @@
 #include "app/render/memory_text.h"
 #include "app/render/progress.h"
 #include "app/render/session_notices.h"
+#include "app/view/render_view.h"
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -130,15 +132,22 @@ void check_slice_option(const SamplerSettings& sampler, const RenderTarget& targ
 PictureResult render_picture(const PictureTask& task, const RenderOptions& options, SharedRender& shared,
                              const std::optional<Denoiser>& denoiser) {
     const RenderTarget& target = task.target;
-    RenderSession session(task.description, {target, std::filesystem::path(options.scene).filename().string(),
-                                             options.checkpoint, options.checkpoint_every, options.resume});
-    print_resume_notices(session, options.quiet);
-    const SamplerSettings sampler = session.sampler();
+    auto session = std::make_unique<RenderSession>(
+        task.description,
+        RenderSessionSettings{target, std::filesystem::path(options.scene).filename().string(),
+                              options.checkpoint, options.checkpoint_every, options.resume});
+    print_resume_notices(*session, options.quiet);
+    const SamplerSettings sampler = session->sampler();
     check_slice_option(sampler, target);
     RenderCompany company;
-    company.executor = shared.begin(session.description(), sampler, target);
-    session.prepare();
-    const PixelBounds& crop = session.description().film.crop;
+    company.executor = shared.begin(session->description(), sampler, target);
+    const DefaultExposure by_default = default_exposure(task.description->film);
+    std::optional<RenderView> view;
+    if (options.view.any())
+        view.emplace(options, ToneCurve{task.tone.exposure.value_or(0), task.tone.tone.value_or(ToneKind::srgb)},
+                     *task.description, session);
+    session->prepare();
+    const PixelBounds crop = task.description->film.crop;
     ProgressPrinter printer(options.quiet, task.doing);
     company.progress = [&](const RenderProgress& p) { printer.update(p); };
     company.cancel = &cancel_on_signals();
@@ -147,7 +156,10 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
         std::fprintf(stderr, "\nmontelux: warning: %s; the render continues without this checkpoint\n",
                      reason.c_str());
     };
-    session.render(company);
+    if (view)
+        view->render(company);
+    else
+        session->render(company);
     printer.finish();
     shared.end();
     // The signal ends a sequence after this frame.
@@ -162,14 +174,14 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
             denoised = ", not denoised";
             denoised = ", " + describe(*denoiser, denoise_image(*denoiser, image), options.quiet);
         };
-    const RenderSnapshot result = session.finish(denoise);
+    const RenderSnapshot result = session->finish(denoise);
+    if (view) view->show(result.image);
     const RenderReport& report = result.report;
     PictureResult done;
     if (report.cancelled() && task.is_frame) {
         done.exit_code = exit_interrupted;
         return done;
     }
-    const DefaultExposure by_default = default_exposure(session.description().film);
     OutputFiles files;
     for (const std::string& output : task.outputs)
         files.write(output, [&] {
@@ -179,8 +191,8 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
         });
     if (!options.quiet) {
         const std::optional<double> visible = visible_error(*result.image, task.tone, by_default);
-        if (session.resumed() && result.error.mean_samples == session.samples_before())
-            print_nothing_left(session, report);
+        if (session->resumed() && result.error.mean_samples == session->samples_before())
+            print_nothing_left(*session, report);
         print_bad_samples(report.bad, sampler.seed);
         print_clamped(static_cast<double>(report.clamped_samples), result.clamped_luminance,
                       result.error.mean_luminance);
@@ -190,7 +202,7 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
                         result.error.mean_samples, percent_text(result.error.relative).c_str(),
                         visible_text(visible).c_str(), duration_text(report.seconds).c_str(),
                         ending_text(report, target).c_str(), denoised.c_str());
-        if (const std::string warning = missing_error_warning(result, session.renderer()); !warning.empty())
+        if (const std::string warning = missing_error_warning(result, session->renderer()); !warning.empty())
             std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
         if (!task.is_frame) {
             print_outliers(*result.outliers);
@@ -204,18 +216,19 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
             if (!advice.empty()) std::printf("%s\n", advice.c_str());
         }
         if (options.stats) {
-            print_statistics(report, task.load_seconds, session.renderer());
+            print_statistics(report, task.load_seconds, session->renderer());
             shared.print_statistics();
         }
         if (options.memory)
-            std::fputs(memory_text(session.renderer().memory_use(), peak_memory()).c_str(), stdout);
+            std::fputs(memory_text(session->renderer().memory_use(), peak_memory()).c_str(), stdout);
     }
     files.throw_failures();
     shared.end_job_if_failed(exit_interrupted);
     if (!result.denoise_failure.empty()) throw Error(result.denoise_failure);
-    if (const std::string failure = session.checkpoint_failure(); !failure.empty())
+    if (const std::string failure = session->checkpoint_failure(); !failure.empty())
         throw Error("the last checkpoint was not written, the picture was", failure);
-    if (report.cancelled())
+    const bool quit_by_page = options.view.stays && !company.cancel->requested();
+    if (report.cancelled() && !quit_by_page)
         done.exit_code = exit_interrupted;
     else if (target.error > 0 && report.stop != RenderStop::error)
         done.exit_code = exit_stopped;

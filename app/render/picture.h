@@ -17,7 +17,7 @@
 namespace montelux::app {
 
 struct PictureTask {
-    std::shared_ptr<const SceneDescription> description;
+    std::shared_ptr<SceneDescription> description; // changes only where a viewer restarts the render
     RenderTarget target;
     std::vector<std::string> outputs;
     ToneOptions tone{};

@@ -4,9 +4,10 @@
 #include "app/interrupt.h"
 #include "app/render/cluster_render.h"
 #include "app/render/picture.h"
+#include "app/render/render_command.h"
 #include "app/render/render_options.h"
 #include "app/render/requests.h"
-#include "app/render/sample_record_text.h"
+
 #include "app/render/sequence.h"
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -24,6 +25,7 @@
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/render/checkpoint.h"
 #include "montelux/render/sample_allocation.h"
+#include "montelux/render/sample_record_text.h"
 
 namespace montelux::app {
 
@@ -80,13 +82,16 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     if (!options.quiet) LoadNotices().print(options.scene, warnings, requested.added);
     const RenderTarget target = target_of(options);
     if (options.debug_sample) return replay(options, description, target);
-    const std::vector<std::string> outputs = outputs_of(options, description);
+    // The command view writes what it is asked for.
+    const bool writes = !options.view.stays || !options.outputs.empty();
+    const std::vector<std::string> outputs =
+        writes ? outputs_of(options, description) : std::vector<std::string>();
     for (const std::string& output : outputs) check_picture_path(output, files_read);
     if (!options.checkpoint.empty()) check_checkpoint(options, outputs, files_read);
     check_requested(description, target, !options.checkpoint.empty());
     std::optional<Denoiser> denoiser; // if it is missing, the error comes before the render
     if (options.denoise) denoiser.emplace(Denoiser::load(options.threads));
-    return render_picture({.description = std::make_shared<const SceneDescription>(std::move(description)),
+    return render_picture({.description = std::make_shared<SceneDescription>(std::move(description)),
                            .target = target,
                            .outputs = outputs,
                            .tone = options.tone,
@@ -95,11 +100,18 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
         .exit_code;
 }
 
-int run(const RenderOptions& options) {
+} // namespace
+
+int run_render(const RenderOptions& options) {
+    check(options.view);
+    if (options.view.any() && (options.frames || options.turntable))
+        throw UsageError("--view", "it shows one picture, not a sequence");
     end_on_signals();
     // A closed pipe of messages must not end the render.
     std::signal(SIGPIPE, SIG_IGN);
     Communicator* const job = join_job(options.rank_timeout);
+    if (job != nullptr && options.view.any())
+        throw UsageError("--view", "a render that mpirun shares among ranks cannot be shown while it runs");
     const int fair_threads = job != nullptr ? job->fair_threads() : 0;
     const int threads = options.threads > 0 ? options.threads : fair_threads;
     return with_threads(threads, [&] {
@@ -112,13 +124,11 @@ int run(const RenderOptions& options) {
     });
 }
 
-} // namespace
-
 void add_render(CLI::App& app, int& exit_code) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "Render a scene: every pixel with its standard error");
     declare(*command, *options);
-    command->callback([options, &exit_code] { exit_code = run(*options); });
+    command->callback([options, &exit_code] { exit_code = run_render(*options); });
 }
 
 } // namespace montelux::app

@@ -211,6 +211,7 @@ void declare(CLI::App& c, RenderOptions& o) {
     c.add_flag("--denoise", o.denoise,
                "Also denoise the picture by Open Image Denoise ('montelux denoise --help'): .exr keeps the "
                "picture and gets the layers denoised.R, G, B; other formats show those");
+    declare_view(c, o.view, !o.view.stays);
     c.add_flag("--stats", o.stats, "Print times, rays per second, memory");
     c.add_flag("--memory", o.memory, "Print what the parts of the scene take in memory");
     c.add_flag("--quiet", o.quiet, "Print nothing but errors");

@@ -3,6 +3,7 @@
 
 #include "app/tone_options.h"
 #include "app/usage_error.h"
+#include "app/view/view_options.h"
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -60,6 +61,7 @@ struct RenderOptions {
     std::optional<bool> layers_in_camera_space, half;
     ToneOptions tone{};
     StudioSettings studio;
+    ViewOptions view{};
     std::optional<SampleAddress> debug_sample; // traced alone, instead of a render
     std::optional<std::size_t> texture_memory; // bytes
     // Of glTF scenes: LoadOptions.

@@ -66,7 +66,7 @@ class Frames {
         return all;
     }
 
-    std::shared_ptr<const SceneDescription> scene(std::uint32_t frame) {
+    std::shared_ptr<SceneDescription> scene(std::uint32_t frame) {
         if (!turntable_) {
             RenderOptions options = options_;
             options.scene_time = time(frame);
@@ -179,7 +179,7 @@ int render_sequence(const RenderOptions& options, SharedRender& shared) {
     for (; done < numbers.size() && !cancel.requested(); ++done) {
         const std::uint32_t number = numbers[done];
         const Clock::time_point begin = Clock::now();
-        std::shared_ptr<const SceneDescription> scene = frames.scene(number);
+        std::shared_ptr<SceneDescription> scene = frames.scene(number);
         const double load_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
         const std::vector<std::string> outputs = outputs_of(options, *scene);
         if (!log) {

@@ -47,6 +47,9 @@ struct RenderControl {
     // For snapshots by other threads; null: none. With an executor a snapshot ends the round early.
     LiveFilm* live = nullptr;
     const CancelFlag* cancel = nullptr;
+    // A render that is cancelled or runs out of time leaves its last replicates open: another call continues it, and
+    // ends with the same bits as one that was not interrupted.
+    bool keep_open = false;
     // Takes the samples; null: the threads of this process. The result is the same.
     RoundExecutor* executor = nullptr;
 };

@@ -37,7 +37,17 @@ SamplerSettings RenderSession::sampler() const {
 
 void RenderSession::prepare() {
     if (!renderer_)
-        renderer_ = std::make_unique<Renderer>(*description_, settings_.target, replicate_points_);
+        renderer_ = std::make_unique<Renderer>(*description_, settings_.target, replicate_points_,
+                                               std::move(settings_.prepared));
+}
+
+void RenderSession::set_target(const RenderTarget& target) {
+    if (renderer_) renderer_->set_target(target);
+    settings_.target = target;
+}
+
+std::uint32_t RenderSession::replicate_size() const {
+    return SampleOrder(renderer_->sampler(), settings_.target.slice).replicate_size();
 }
 
 void RenderSession::render(const RenderCompany& company) {
@@ -48,6 +58,7 @@ void RenderSession::render(const RenderCompany& company) {
     control.live = &live_;
     control.cancel = company.cancel;
     control.executor = company.executor;
+    control.keep_open = company.keep_open;
     control.checkpoint_seconds = settings_.checkpoint_every;
     if (!settings_.checkpoint.empty())
         control.checkpoint = [&](const RenderState& state) { save(state, company); };
@@ -74,6 +85,7 @@ std::string RenderSession::checkpoint_failure() const {
 
 RenderSnapshot RenderSession::finish(const std::function<void(Image&)>& denoise) {
     const RenderReport report = state_->report;
+    state_->film.end_replicates(replicate_size()); // of a render that was kept open
     RenderSnapshot result = picture_of(state_->film, report);
     result.outliers = outliers_of(state_->film);
     state_.reset();
@@ -90,8 +102,14 @@ RenderSnapshot RenderSession::finish(const std::function<void(Image&)>& denoise)
 std::optional<RenderSnapshot> RenderSession::snapshot(double seconds) {
     std::optional<LiveCopy> now = live_.copy(seconds);
     if (!now) return std::nullopt;
-    now->film.end_replicates(SampleOrder(renderer_->sampler(), settings_.target.slice).replicate_size());
+    now->film.end_replicates(replicate_size());
     return picture_of(now->film, now->report);
+}
+
+RenderSnapshot RenderSession::picture() const {
+    Film film = state_->film;
+    film.end_replicates(replicate_size());
+    return picture_of(film, state_->report);
 }
 
 RenderSnapshot RenderSession::picture_of(const Film& film, const RenderReport& report) const {

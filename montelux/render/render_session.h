@@ -17,11 +17,13 @@
 namespace montelux {
 
 struct RenderSessionSettings {
-    RenderTarget target;
-    std::string scene_name;           // for the header of the picture
-    std::filesystem::path checkpoint; // empty: none
+    RenderTarget target{};
+    std::string scene_name{};           // for the header of the picture
+    std::filesystem::path checkpoint{}; // empty: none
     double checkpoint_every = 60;     // seconds
     bool resume = false;              // from the checkpoint, if it exists
+    // Of an earlier session with the same scene (Renderer); null: built by this one.
+    std::shared_ptr<const PreparedScene> prepared{};
 };
 
 // The picture of a render at some moment.
@@ -41,6 +43,7 @@ struct RenderCompany {
     std::function<void(const FinishedTile&)> tile{}; // RenderControl::tile
     const CancelFlag* cancel = nullptr;
     RoundExecutor* executor = nullptr;
+    bool keep_open = false; // RenderControl::keep_open
     // A checkpoint could not be written; the render continues without it.
     std::function<void(const std::string& reason)> checkpoint_failed{};
 };
@@ -48,12 +51,13 @@ struct RenderCompany {
 // Common to the program and the Python package. Uses threads as the caller's ThreadLimit allows.
 class RenderSession {
   public:
-    // Starts a render, or resumes it from the checkpoint. The description must not change afterwards. Throws
+    // Starts a render, or resumes it from the checkpoint. The description must not change while the session lives. Throws
     // Error for invalid settings, for a checkpoint of another render (load_checkpoint), and for an existing
     // checkpoint without `resume`.
     RenderSession(std::shared_ptr<const SceneDescription> description, RenderSessionSettings settings);
 
     const SceneDescription& description() const { return *description_; }
+    const std::shared_ptr<const SceneDescription>& shared_description() const { return description_; }
     const RenderSessionSettings& settings() const { return settings_; }
     // The description's, with the replicates of the resumed render.
     SamplerSettings sampler() const;
@@ -68,8 +72,16 @@ class RenderSession {
     // Valid after prepare().
     const Renderer& renderer() const { return *renderer_; }
 
-    // Takes samples until the target is reached, all are taken, or the render is cancelled. Call once.
+    // Takes samples until the target is reached, all are taken, or the render is cancelled. Call once, and again to
+    // continue a render that was kept open.
     void render(const RenderCompany& company = {});
+    // Between calls of render: Renderer::set_target.
+    void set_target(const RenderTarget& target);
+    // Between calls of render, after the first one: the picture so far. Changes no bit of the result.
+    RenderSnapshot picture() const;
+    const RenderReport& report() const { return state_->report; }
+    // Samples per replicate of the picture. Valid after prepare().
+    std::uint32_t replicate_size() const;
     // The finished picture, after render(). `denoise` adds layers to it, unless the render was cancelled; if
     // it throws, only these layers are lost. Frees the film's memory.
     RenderSnapshot finish(const std::function<void(Image&)>& denoise = {});

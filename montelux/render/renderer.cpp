@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "montelux/mc/math/error.h"
@@ -116,17 +118,16 @@ class RenderLoop {
         if (out_of_time()) return RenderStop::time;
         if (state_.target_samples.empty() || !round_is_done() || !no_replicate_is_open()) return std::nullopt;
         const FilmError error = state_.film.error();
-        const std::optional<double> reached = error_for_target(error);
-        estimate_samples(error, reached);
+        estimate_samples(error, error_for_target(state_.film, error));
         report_progress(error);
-        if (target_is_reached(error, reached)) return RenderStop::error;
+        if (target_is_reached(state_.film, error)) return RenderStop::error;
         return std::nullopt;
     }
     // The error that the target limits; empty without a target, and while nothing was seen.
-    std::optional<double> error_for_target(const FilmError& error) const {
+    std::optional<double> error_for_target(const Film& film, const FilmError& error) const {
         const RenderTarget& target = renderer_.target();
         if (!(target.error > 0 && error.mean_luminance > 0)) return std::nullopt;
-        return target.quantile > 0 ? error_quantile(state_.film, target.quantile) : error.relative;
+        return target.quantile > 0 ? error_quantile(film, target.quantile) : error.relative;
     }
     // An error falls with the root of the number of samples.
     void estimate_samples(const FilmError& error, const std::optional<double>& reached) {
@@ -135,20 +136,21 @@ class RenderLoop {
                                std::pow(*reached / renderer_.target().error, 2);
         samples_for_error_ = static_cast<std::uint64_t>(std::min(samples, 1e18));
     }
-    bool target_is_reached(const FilmError& error, const std::optional<double>& reached) const {
+    bool target_is_reached(const Film& film, const FilmError& error) const {
         const RenderTarget& target = renderer_.target();
         if (!(target.error > 0)) return false;
+        const std::optional<double> reached = error_for_target(film, error);
         // Few samples may all be dark by chance; pixels that found no light yet would satisfy a quantile.
         const std::uint64_t least = target.quantile > 0 ? 4 * least_samples : least_samples;
-        const std::uint64_t replicates = fewest_replicates();
+        const std::uint64_t replicates = fewest_replicates(film);
         if (replicates < least_replicates || replicates * order_.replicate_size() < least) return false;
         if (!reached) return error.mean_samples >= samples_of_black;
         return *reached <= target.error &&
-               (target.quantile > 0 || error_freedom(state_.film) >= least_freedom);
+               (target.quantile > 0 || error_freedom(film) >= least_freedom);
     }
-    std::uint64_t fewest_replicates() const {
-        std::uint64_t fewest = state_.film.pixels().front().replicates().count();
-        for (const Pixel& p : state_.film.pixels()) fewest = std::min(fewest, p.replicates().count());
+    static std::uint64_t fewest_replicates(const Film& film) {
+        std::uint64_t fewest = film.pixels().front().replicates().count();
+        for (const Pixel& p : film.pixels()) fewest = std::min(fewest, p.replicates().count());
         return fewest;
     }
 
@@ -282,11 +284,16 @@ class RenderLoop {
                                         static_cast<double>(state_.report.rays.rays()) /
                                         static_cast<double>(state_.report.rays.timed);
         if (control_.checkpoint) save_checkpoint();
+        // The last replicate of what is left open is closed in a copy.
+        std::optional<Film> copy;
+        if (control_.keep_open && (reason == RenderStop::cancelled || reason == RenderStop::time))
+            copy = state_.film;
+        Film& film = copy ? *copy : state_.film;
         // Truncated replicates count if they are at least half of one: each is unbiased.
-        state_.film.end_replicates(order_.replicate_size());
-        const FilmError error = state_.film.error();
+        film.end_replicates(order_.replicate_size());
+        const FilmError error = film.error();
         // The open replicates may have been the only ones missing.
-        if (reason != RenderStop::cancelled && target_is_reached(error, error_for_target(error)))
+        if (reason != RenderStop::cancelled && target_is_reached(film, error))
             state_.report.stop = RenderStop::error;
         ended_ = true;
         report_progress(std::isfinite(error.relative) ? std::optional(error) : std::nullopt);
@@ -335,7 +342,7 @@ std::string_view to_string(RenderStop reason) {
 }
 
 Renderer::Renderer(const SceneDescription& description, const RenderTarget& target,
-                   std::uint32_t replicate_points)
+                   std::uint32_t replicate_points, std::shared_ptr<const PreparedScene> prepared)
     : description_(description), target_(target),
       sampler_(with_replicates(with_points(description.sampler, replicate_points), target)),
       camera_(description.scene.camera, description.film.width, description.film.height) {
@@ -348,21 +355,19 @@ Renderer::Renderer(const SceneDescription& description, const RenderTarget& targ
         throw Error("slice", "slices are joined by their standard layers; no others can be chosen");
     if (description.integrator.occlusion && description.film.layers.set.has(Layer::light_groups))
         throw Error("film", "ambient occlusion is no light of the scene: 'light-groups' cannot be chosen");
-    auto begin = Clock::now();
     scene_digest_ = digest_of(description.scene);
-    tables_ = std::make_unique<SceneTables>(description.scene, description.integrator.environments(),
-                                            description.integrator.light_sampling,
-                                            description.integrator.surfaces());
-    accelerator_ = std::make_unique<Accelerator>(tables_->view());
-    build_seconds_ = seconds_since(begin);
+    prepared_ = prepared ? std::move(prepared) : std::make_shared<const PreparedScene>(description);
+}
+
+void Renderer::set_target(const RenderTarget& target) {
+    if (target.adaptive != target_.adaptive || target.slice != target_.slice)
+        throw Error("render", "allocation and slice cannot change while a picture is rendered");
+    target_ = target;
 }
 
 std::vector<MemoryUse> Renderer::memory_use() const {
     std::vector<MemoryUse> table = montelux::memory_use(description_.scene);
-    for (const MemoryUse& use : tables_->memory_use()) table.push_back(use);
-    table.push_back({"ray tracer", accelerator_->bytes(),
-                     description_.scene.shapes.size() + description_.scene.instances.size(),
-                     "shapes, instances"});
+    for (const MemoryUse& use : prepared_->memory_use()) table.push_back(use);
     const PixelBounds& crop = description_.film.crop;
     const std::size_t pixels =
         static_cast<std::size_t>(crop.width()) * static_cast<std::size_t>(crop.height());
@@ -372,15 +377,15 @@ std::vector<MemoryUse> Renderer::memory_use() const {
 }
 
 void Renderer::serve(const std::function<void(const TileRenderer&)>& work) const {
-    const SampleContext context(description_, sampler_, tables_->view(), camera_);
-    work(TileRenderer(context, *accelerator_, SampleOrder(sampler_, target_.slice)));
+    const SampleContext context(description_, sampler_, scene(), camera_);
+    work(TileRenderer(context, accelerator(), SampleOrder(sampler_, target_.slice)));
 }
 
 void Renderer::render(RenderState& state, const RenderControl& control) const {
     if (description_.film.spectral && control.executor != nullptr)
         throw Error("film",
                     "a spectral film cannot be rendered by several processes: they exchange RGB alone");
-    const SampleContext context(description_, sampler_, tables_->view(), camera_);
+    const SampleContext context(description_, sampler_, scene(), camera_);
     if (state.film.layers().channels() != context.layers().channels())
         throw Error("film", "its layers are not those of the scene's film");
     RenderLoop(*this, context, state, control).run();

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "montelux/accel/accelerator.h"
 #include "montelux/film/film.h"
+#include "montelux/render/prepared_scene.h"
 #include "montelux/render/render_control.h"
 #include "montelux/render/render_state.h"
 #include "montelux/render/render_target.h"
@@ -15,7 +15,6 @@
 #include "montelux/scene/memory_use.h"
 #include "montelux/scene/render_settings.h"
 #include "montelux/scene/scene_digest.h"
-#include "montelux/scene/scene_tables.h"
 #include "montelux/transport/ray_tracer.h"
 
 namespace montelux {
@@ -23,27 +22,33 @@ namespace montelux {
 struct SampleRecord;
 class TileRenderer;
 
-// Contains the tables built once for a scene. The description must outlive it.
+// The description must outlive it.
 class Renderer {
   public:
     // Throws Error on invalid settings. Uses threads as the caller's ThreadLimit allows. `replicate_points`,
-    // if not 0, are those of the resumed render.
+    // if not 0, are those of the resumed render. `prepared`: by an earlier renderer of the same scene, where only film,
+    // samples and the place of the camera have changed since; null: made here.
     explicit Renderer(const SceneDescription& description, const RenderTarget& target = {},
-                      std::uint32_t replicate_points = 0);
+                      std::uint32_t replicate_points = 0,
+                      std::shared_ptr<const PreparedScene> prepared = nullptr);
 
     const SceneDescription& description() const { return description_; }
     // Digest of the scene when the renderer was made.
     const SceneDigest& scene_digest() const { return scene_digest_; }
-    const Accelerator& accelerator() const { return *accelerator_; }
+    const std::shared_ptr<const PreparedScene>& prepared() const { return prepared_; }
+    const Accelerator& accelerator() const { return prepared_->accelerator(); }
     const Camera& camera() const { return camera_; }
-    const SceneView& scene() const { return tables_->view(); }
+    const SceneView& scene() const { return prepared_->view(); }
     // The description's, with the number of replicates decided.
     const SamplerSettings& sampler() const { return sampler_; }
-    double build_seconds() const { return build_seconds_; }
+    double build_seconds() const { return prepared_->build_seconds(); }
     // Of the scene, its tables, the ray tracer and a film, by kind.
     std::vector<MemoryUse> memory_use() const;
 
     const RenderTarget& target() const { return target_; }
+    // Between runs of a render that was left open: other limits, of error and time. Throws Error if allocation or slice
+    // differ, on which the samples depend.
+    void set_target(const RenderTarget& target);
 
     // Continues a render, new or restored, until its target is reached or all samples are taken, and closes
     // the film. Unless time or the caller stops it, the film depends on description and target only: not on
@@ -65,9 +70,7 @@ class Renderer {
     RenderTarget target_;
     SamplerSettings sampler_;
     SceneDigest scene_digest_;
-    double build_seconds_ = 0;
-    std::unique_ptr<SceneTables> tables_;
-    std::unique_ptr<Accelerator> accelerator_;
+    std::shared_ptr<const PreparedScene> prepared_;
     Camera camera_;
 };
 

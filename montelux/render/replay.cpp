@@ -31,8 +31,8 @@ void check_sample(const SceneDescription& d, int x, int y, std::uint64_t index, 
 
 SampleRecord Renderer::replay(int x, int y, std::uint64_t index) const {
     check_sample(description_, x, y, index, target_);
-    RayTracer tracer(*accelerator_);
-    return SampleContext(description_, sampler_, tables_->view(), camera_).record(tracer, {x, y, index});
+    RayTracer tracer(accelerator());
+    return SampleContext(description_, sampler_, scene(), camera_).record(tracer, {x, y, index});
 }
 
 } // namespace montelux

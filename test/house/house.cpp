@@ -185,7 +185,8 @@ std::vector<std::string> fenced_libraries(const std::vector<SourceFile>& files) 
     static const std::vector<Fence> fences = {
         {std::regex("^embree[0-9]*/"), "montelux/accel/"},
         {std::regex("^(tbb|oneapi/tbb)/"), "montelux/mc/parallel/"},
-        {std::regex("^boost/"), "montelux/mc/math/", "bench/"},
+        {std::regex("^boost/(?!asio|beast|system)"), "montelux/mc/math/", "bench/"},
+        {std::regex("^boost/(asio|beast|system)"), "montelux/view/"},
         {std::regex("^(OpenEXR/|Imf|Imath|png\\.h|jpeglib\\.h|stb_|stb/)"), "montelux/image/"},
         {std::regex("^xxh"), "montelux/scene/"},
         {std::regex("^dlfcn\\.h$"), "montelux/denoise/", "test/"},

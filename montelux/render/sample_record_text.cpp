@@ -1,4 +1,4 @@
-#include "app/render/sample_record_text.h"
+#include "montelux/render/sample_record_text.h"
 
 #include <cmath>
 #include <cstdarg>
@@ -9,7 +9,7 @@
 #include "montelux/mc/math/overloaded.h"
 #include "montelux/scene/setting_names.h"
 
-namespace montelux::app {
+namespace montelux {
 
 namespace {
 
@@ -355,4 +355,4 @@ std::string sample_record_text(const SampleRecord& r, const SceneDescription& d)
     return t.take();
 }
 
-} // namespace montelux::app
+} // namespace montelux
