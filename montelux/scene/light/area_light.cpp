@@ -7,6 +7,7 @@
 #include "montelux/mc/math/frame.h"
 #include "montelux/mc/math/overloaded.h"
 #include "montelux/mc/warp/hemisphere.h"
+#include "montelux/mc/warp/triangle.h"
 #include "montelux/scene/light/emissive_shape.h"
 #include "montelux/scene/light/motion_bounds.h"
 #include "montelux/scene/light/shadow_ray.h"
@@ -139,6 +140,38 @@ float world_density(const AreaLight& light, const LightContext& context, const L
     return area_density(context, light.shape, local) / place.area_scale(hit.n);
 }
 
+// Light from a point of a surface, in the world, if it shines towards the reference; `radiance` maps the direction to
+// it to its radiance.
+template <typename F>
+[[gnu::always_inline]] inline std::optional<LightSample> from_point(const AreaLight& light, const ReferencePoint& from,
+                                                                    Point3f p, Normal3f n, float area_density,
+                                                                    float error, const F& radiance) {
+    std::optional<LightSample> result;
+    const Vec3f d = p - from.p;
+    const float d2 = length_squared(d);
+    if (!(d2 > 0)) return result;
+    const Vec3f wi = d / std::sqrt(d2);
+    const float cosine = -dot(n, wi);
+    if (!shines(light, cosine)) return result;
+    LightSample& s = result.emplace();
+    s.radiance = radiance(wi);
+    s.wi = wi;
+    s.pdf = area_density * d2 / std::abs(cosine);
+    s.shadow = shadow_ray(from, wi, p, n, error);
+    return result;
+}
+
+// As sample_surface, for most lights: LightTablesView::plain_triangles.
+std::optional<LightSample> sample_plain_triangle(const AreaLight& light, const LightContext& context, Index part,
+                                                 const ReferencePoint& from, Vec2f u,
+                                                 const SampledWavelengths& lambda) {
+    const LightTriangle& t = context.tables().triangle(context.light, part);
+    if (!(t.area > 0)) return std::nullopt;
+    const Vec3f b = sample_uniform_triangle(u);
+    return from_point(light, from, t.p0 + b.y * t.e1 + b.z * t.e2, t.n, 1 / t.area, t.error,
+                      [&](Vec3f) { return context.scene.sample(light.spectrum, lambda) * light.scale; });
+}
+
 std::optional<LightSample> sample_surface(const AreaLight& light, const LightContext& context, Index part,
                                           const ReferencePoint& from, Vec2f u,
                                           const SampledWavelengths& lambda) {
@@ -152,21 +185,14 @@ std::optional<LightSample> sample_surface(const AreaLight& light, const LightCon
         share = share_there(context, shape, *point);
         EmitterPlace(context, instance).move(*point);
     }
-    const Vec3f d = point->p - from.p;
-    const float d2 = length_squared(d);
-    if (!(d2 > 0)) return result;
-    const Vec3f wi = d / std::sqrt(d2);
-    const float cosine = -dot(point->n, wi);
-    if (!shines(light, cosine)) return result;
-    if (instance == no_index) share = share_there(context, shape, *point);
-    if (!(share > 0)) return result;
-    LightSample& s = result.emplace();
-    s.radiance = color_at(light, context, point->p, wi, point->hit, lambda) *
-                 radiance_scale(light, context, part) * share;
-    s.wi = wi;
-    s.pdf = point->area_density * d2 / std::abs(cosine);
-    s.invisible = is_invisible(context, shape);
-    s.shadow = shadow_ray(from, wi, point->p, point->n, point->error);
+    result = from_point(light, from, point->p, point->n, point->area_density, point->error, [&](Vec3f wi) {
+        if (instance == no_index) share = share_there(context, shape, *point);
+        if (!(share > 0)) return SampledSpectrum{};
+        return color_at(light, context, point->p, wi, point->hit, lambda) * radiance_scale(light, context, part) *
+               share;
+    });
+    if (!(share > 0)) result.reset();
+    if (result) result->invisible = is_invisible(context, shape);
     return result;
 }
 
@@ -234,6 +260,8 @@ bool AreaLight::moves(const LightContext& context) const {
 std::optional<LightSample> AreaLight::sample_li(const LightContext& context, Index part,
                                                 const ReferencePoint& from, Vec2f u,
                                                 const SampledWavelengths& lambda) const {
+    if (context.tables().has_plain_triangles(context.light)) [[likely]]
+        return sample_plain_triangle(*this, context, part, from, u, lambda);
     const Shape& s = context.scene.shapes[shape];
     std::optional<WorldSphere> moved;
     const auto& sphere = sphere_of(*this, context, moved);

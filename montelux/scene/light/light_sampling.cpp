@@ -25,6 +25,9 @@ auto visit_light(const LightContext& context, const F& f) {
 
 std::optional<LightSample> sample_li(const LightContext& context, Index part, const ReferencePoint& from,
                                      Vec2f u, const SampledWavelengths& lambda) {
+    // Mostly: a comparison is cheaper than the jump of a visit.
+    if (const auto* area = std::get_if<AreaLight>(&context.scene.lights[context.light])) [[likely]]
+        return area->sample_li(context, part, from, u, lambda);
     return visit_light(context, [&](const LightModel auto& light) {
         return light.sample_li(context, part, from, u, lambda);
     });

@@ -155,7 +155,23 @@ void LightTables::add_shape(const Scene& scene, Index light, const AreaLight& ar
                               [](const Curves&) {}});
 }
 
+namespace {
+
+// Whether no interpolation of the vertex normals, if there are any, turns the normal of a triangle.
+bool normals_agree(const TriangleMesh& mesh, std::span<const LightTriangle> triangles) {
+    constexpr float least = 0.01f; // cosine; rounding turns none of those above it
+    for (std::size_t k = 0; k < triangles.size() && !mesh.normals.empty(); ++k)
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const Normal3f n = mesh.normals[mesh.indices[3 * k + corner]];
+            if (!(dot(n, triangles[k].n) > least * length(n))) return false;
+        }
+    return true;
+}
+
+} // namespace
+
 void LightTables::add_triangles(const Scene& scene) {
+    plain_triangles_.assign(scene.lights.size(), 0);
     std::partial_sum(first_triangle_.begin(), first_triangle_.end(), first_triangle_.begin());
     triangles_.resize(first_triangle_.back());
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
@@ -163,10 +179,14 @@ void LightTables::add_triangles(const Scene& scene) {
         if (count == 0) continue;
         const Shape& shape = scene.shapes[std::get<AreaLight>(scene.lights[i]).shape];
         const TriangleMesh& mesh = scene.meshes[std::get<MeshIndex>(shape.geometry).index];
+        const auto& light = std::get<AreaLight>(scene.lights[i]);
         parallel_for(static_cast<std::int64_t>(count), [&](std::int64_t k) {
             triangles_[first + static_cast<std::size_t>(k)] =
                 light_triangle(mesh, shape, static_cast<std::size_t>(k));
         });
+        plain_triangles_[i] = instance_of_light_[i] == no_index && light.picture == no_index &&
+                              !(light.primitive_flux > 0) && !is_cut_out(shape) &&
+                              normals_agree(mesh, std::span(triangles_).subspan(first, count));
     }
 }
 
@@ -198,7 +218,7 @@ void LightTables::add_environment(const Scene& scene, Index light, Index map, En
 std::size_t LightTables::bytes() const {
     std::size_t sum = vector_bytes(triangles_, first_triangle_, patch_areas_, first_patch_, spheres_, disks_,
                                    environments_, portals_, projections_, environment_of_light_, map_spectra_,
-                                   infinite_lights_, instance_of_light_, emits_);
+                                   infinite_lights_, instance_of_light_, emits_, plain_triangles_);
     for (const EnvironmentSampler& e : environments_) sum += e.bytes();
     for (const PortalSampler& p : portals_) sum += p.bytes();
     for (const ProjectionTable& p : projections_) sum += p.bytes();
@@ -210,6 +230,7 @@ LightTablesView LightTables::view(const Scene& scene) const {
     LightTablesView view;
     view.lookup = lookup_;
     view.triangles = triangles_;
+    view.plain_triangles = plain_triangles_;
     view.first_triangle = first_triangle_;
     view.patch_areas = patch_areas_;
     view.first_patch = first_patch_;

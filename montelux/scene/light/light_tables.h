@@ -47,6 +47,7 @@ class LightTables {
     std::vector<Index> infinite_lights_;
     std::vector<Index> instance_of_light_;
     std::vector<char> emits_;
+    std::vector<char> plain_triangles_;
     Bounds3 bounds_;
 };
 

@@ -42,6 +42,8 @@ struct LightTablesView {
     // Of each light of a shape in an object that shines: its one instance; no_index for others.
     std::span<const Index> instance_of_light;
     std::span<const char> emits; // one per shape: 0 or 1
+    // One per light: 1 for still triangles of one radiance and without holes, whose normals no vertex normal turns.
+    std::span<const char> plain_triangles;
     Bounds3 scene_bounds;
 
     // The colour space of all environment maps.
@@ -53,6 +55,7 @@ struct LightTablesView {
     }
     // Whether the mesh of a light deforms, for a light on a mesh that emits.
     bool deforms(Index light) const { return first_triangle[light] == first_triangle[light + 1]; }
+    bool has_plain_triangles(Index light) const { return plain_triangles[light] != 0; }
     // Area of a triangle or a patch in the space of its shape, for a light on such a mesh that emits.
     float area(Index light, Index primitive) const {
         const std::size_t patch = first_patch[light] + primitive;

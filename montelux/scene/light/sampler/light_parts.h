@@ -27,9 +27,10 @@ class LightParts {
     Index size() const { return first_.back(); }
     Index row(Index light, Index part) const { return first_[light] + part; }
     // Only `light` and `part` are set.
-    LightChoice at(Index row) const {
+    [[gnu::always_inline]] LightChoice at(Index row) const {
         if (single_) return {.light = row};
-        const auto after = std::upper_bound(first_.begin(), first_.end(), row);
+        // One light has them all, or they are searched.
+        const auto after = first_.size() == 2 ? first_.end() - 1 : std::upper_bound(first_.begin(), first_.end(), row);
         const auto light = static_cast<Index>(after - first_.begin() - 1);
         return {.light = light, .part = row - first_[light]};
     }

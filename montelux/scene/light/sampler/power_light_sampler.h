@@ -18,7 +18,7 @@ class PowerLightSampler {
     }
 
     Index size() const { return parts_.size(); }
-    LightChoice sample(const ReferencePoint&, double u) const {
+    [[gnu::always_inline]] LightChoice sample(const ReferencePoint&, double u) const {
         const auto chosen = table_->sample(u);
         LightChoice choice = parts_.at(chosen.index);
         choice.probability = static_cast<float>(chosen.probability);
