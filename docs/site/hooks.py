@@ -13,6 +13,7 @@ import json
 import os
 import posixpath
 import re
+import shutil
 from pathlib import Path
 
 from mkdocs.structure.files import File
@@ -43,17 +44,31 @@ def outside_of_code(text, change):
     return "\n".join(lines)
 
 
+def in_paragraph_of_item(lines):
+    """Whether the last line is of an item's second paragraph, or a later one."""
+    for line in reversed(lines):
+        if ITEM.match(line):
+            return False
+        if not line.strip():
+            return True
+    return False
+
+
 def as_python_markdown(text):
-    """Empty lines before lists, tables and code; four spaces before items of inner lists; bare | in code of tables."""
+    """Empty lines before lists, tables and code; four spaces before what is in an item; bare | in code of tables."""
 
     def change(line, before):
         last = before[-1] if before else ""
         item, table = ITEM.match(line), line.startswith("|")
         if item and item[1]:
             line = "    " * (1 if len(item[1]) < 4 else len(item[1]) // 4) + line.lstrip()
+        elif re.match(r" {2,3}\S", line) and not FENCE.match(line):
+            said = next((b for b in reversed(before) if b.strip()), "")
+            if ITEM.match(said) or said.startswith("  "):  # a paragraph of an item
+                line = "    " + line.lstrip()
         if table:
             line = CODE_SPAN.sub(lambda m: m[0].replace(r"\|", "|"), line)
-        continued = ITEM.match(last) or last.startswith(" ")
+        continued = ITEM.match(last) or (last.startswith(" ") and not in_paragraph_of_item(before))
         starts = (item and not continued) or (table and not last.startswith("|")) or FENCE.match(line)
         if starts and last.strip() and not (FENCE.match(line) and line.startswith(" ")):
             before.append("")
@@ -191,6 +206,4 @@ def on_post_build(config):
     """The pages of Doxygen, beside those of MkDocs."""
     made = ROOT / "build/docs/cpp"
     if made.is_dir():
-        import shutil
-
         shutil.copytree(made, os.path.join(config.site_dir, "cpp"), dirs_exist_ok=True)

@@ -151,7 +151,9 @@ class Repository(unittest.TestCase):
         linked = set()
         for _number, line in lines_of(docs / "README.md"):
             linked |= {os.path.normpath(docs / target.partition("#")[0]) for target in targets(line)}
-        missing = [str(p.relative_to(docs)) for p in pages_below(docs) if str(p) not in linked and p.name != "README.md"]
+        missing = [
+            str(p.relative_to(docs)) for p in pages_below(docs) if str(p) not in linked and p.name != "README.md"
+        ]
         self.assertEqual(missing, [])
 
 
