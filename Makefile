@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo lab build test test-all test-peers fuzz bench bench-integrate bench-hard bench-render lint format install dependencies clean
+.PHONY: help demo lab docs build test test-all test-peers fuzz bench bench-integrate bench-hard bench-render lint format install dependencies clean
 
 JOBS ?= $(shell cmake/jobs.sh)
 BUILD := build/release
@@ -23,6 +23,12 @@ lab: dependencies ## every figure of Monte Carlo integration, drawn at build/lab
 	cmake --build $(BUILD) --parallel $(JOBS) --target montelux_python
 	$(LAB_PYTHON) -m pip install --quiet --disable-pip-version-check --only-binary :all: 'matplotlib>=3.8'
 	PYTHONPATH=$(BUILD)/python $(LAB_PYTHON) -m montelux.lab --out build/lab
+
+docs: dependencies ## these pages as a site, with references of program, Python and C++: build/site/index.html
+	cmake/install-dependencies.sh docs
+	cmake --preset release -D MONTELUX_PYTHON=AUTO
+	cmake --build $(BUILD) --parallel $(JOBS) --target montelux $$(test ! -x $(LAB_PYTHON) || echo montelux_python_stub)
+	docs/site/build.sh $(BUILD)/montelux $(BUILD)/python/montelux
 
 build: dependencies ## the program, at build/release/montelux
 	cmake --preset release

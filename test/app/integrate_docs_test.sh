@@ -29,8 +29,8 @@ split() {
     ' "$1"
 }
 
-for page in integration.md usage.md; do
-    mkdir $page && cd $page || exit 1
+for page in integration.md usage.md start.md tutorials/integrate.md; do
+    mkdir -p "$folder/$page" && cd "$folder/$page" || exit 1
     split "$docs/$page"
     for command in *.command; do
         [ -e "$command" ] || break
@@ -50,7 +50,7 @@ for page in integration.md usage.md; do
             cat "${command%.command}.shown"
         }
     done
-    cd ..
 done
+cd "$folder" || exit 1
 [ -e usage.md/004.command ] || fail "no commands were found in docs/usage.md"
 finish
