@@ -6,15 +6,18 @@ SHELL := /bin/bash
 
 JOBS ?= $(shell cmake/jobs.sh)
 BUILD := build/release
-DEMO_SPP ?= 64
+DEMO_TARGET ?= --target-error 5% --target-quantile 90%
 FUZZ_SECONDS ?= 1800
 LOADERS ?= $(sort $(patsubst test/fuzz/fuzz_%.cpp,%,$(wildcard test/fuzz/fuzz_*.cpp)))
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-15s %s\n", $$1, $$2}' Makefile
 
-demo: build ## build, then render a scene of our own (about a minute on two cores)
-	$(BUILD)/montelux render scenes/demo/studio.pbrt --spp $(DEMO_SPP) -o build/demo.exr -o build/demo.png
+demo: build ## build, then render a scene of our own to an error and denoise it (about a minute on two cores)
+	@library=$$(cmake/denoiser.sh build/denoiser); \
+	MONTELUX_OIDN_LIBRARY=$$library $(BUILD)/montelux render scenes/demo/studio.pbrt $(DEMO_TARGET) \
+	    $${library:+--denoise} -o build/demo.exr -o build/demo.png
+	$(BUILD)/montelux convert build/demo.exr build/demo_raw.png --layer mean
 
 LAB_PYTHON := $(BUILD)/python-environment/bin/python
 lab: dependencies ## every figure of Monte Carlo integration, drawn at build/lab/index.html (some minutes)

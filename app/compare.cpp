@@ -3,6 +3,7 @@
 #include "app/json_number.h"
 #include "app/option_values.h"
 #include "app/output_files.h"
+#include "app/picture_layer.h"
 #include "app/usage_error.h"
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -10,6 +11,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
 
 #include "montelux/image/difference_picture.h"
 #include "montelux/image/image_read.h"
@@ -24,7 +28,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct CompareSettings {
-    std::string a, b, error_a, error_b, difference, measure = "relative";
+    std::string a, b, layer_a, layer_b, error_a, error_b, difference, measure = "relative";
     ComparisonOptions options;
     double full_scale = 0;
     bool json = false;
@@ -45,8 +49,10 @@ std::string sibling_error_file(const std::filesystem::path& path) {
     return std::filesystem::is_regular_file(sibling, ignored) ? sibling.string() : std::string();
 }
 
-void load(Side& side, const std::string& file, const std::string& error_option) {
+void load(Side& side, const std::string& file, const std::string& layer, const std::string& error_option) {
     side.image = read_image(file);
+    // Errors belong to the mean alone.
+    if (!layer.empty() && layer != "mean") side.image = layer_of(side.image, layer, file).image;
     side.picture = measured_picture(file, side.image);
     std::string error_file = error_option;
     if (error_file.empty() && side.picture.has_error()) {
@@ -208,8 +214,8 @@ void run_compare(const CompareSettings& s) {
         check_writable(s.difference);
     }
     Side a, b;
-    load(a, s.a, s.error_a);
-    load(b, s.b, s.error_b);
+    load(a, s.a, s.layer_a, s.error_a);
+    load(b, s.b, s.layer_b, s.error_b);
     const std::optional<PixelWindow> common = common_pixels(s.a, a.image, s.b, b.image);
     if (common) {
         cut(a, s.a, *common);
@@ -237,6 +243,11 @@ void add_compare(CLI::App& app, int& exit_code) {
     command->add_option("A", s->a, "The picture")->required();
     command->add_option("B", s->b, "The reference; errors are read from stderr.exr beside a mean.exr")
         ->required();
+    for (const auto& [option, layer, of] :
+         {std::tuple("--layer-a", &s->layer_a, "A"), std::tuple("--layer-b", &s->layer_b, "B")})
+        command->add_option(option, *layer, std::string("The layer of ") + of + ", such as denoised. Default: mean")
+            ->type_name("NAME")
+            ->take_last();
     command->add_option("--stderr-a", s->error_a, "Standard errors of A, in place of its stderr layer");
     command->add_option("--stderr-b", s->error_b, "Standard errors of B, in place of its stderr layer");
     command

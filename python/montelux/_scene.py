@@ -9,6 +9,7 @@ from typing import Any
 
 from . import _core
 from ._core import Error
+from ._denoiser import offer_denoiser
 from ._names import MOST_THREADS, is_number, is_whole, settings_of, strict, strict_arguments, unknown
 from ._render import Progress, Render
 
@@ -108,6 +109,8 @@ class Scene(_core.SceneBase):
             most = _MOST_SAMPLES
         elif spp is not None and max_spp is not None:
             most = min(spp, max_spp)
+        if denoise:
+            offer_denoiser()
         job = _core.start_render(
             self,
             spp=None if most is None else int(most),

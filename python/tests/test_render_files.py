@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -85,6 +86,22 @@ def test_wrong_slices_are_answered(arguments, sentence):
 def test_a_missing_denoiser_is_an_error_before_the_render(monkeypatch, tmp_path):
     monkeypatch.setenv("MONTELUX_OIDN_LIBRARY", str(tmp_path / "no.so"))
     with pytest.raises(montelux.Error, match="Open Image Denoise cannot be loaded"):
+        montelux.parse(TEXT).render(denoise=True)
+
+
+def test_the_denoiser_of_pip_is_found(monkeypatch, tmp_path):
+    library = tmp_path / "pyoidn" / "oidn" / "lib" / "libOpenImageDenoise.so.2"
+    library.parent.mkdir(parents=True)
+    (tmp_path / "pyoidn" / "__init__.py").write_text("raise RuntimeError('it need not be imported')")
+    library.write_text("no library")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "pyoidn", raising=False)
+    monkeypatch.setenv("MONTELUX_OIDN_LIBRARY", "")
+    with pytest.raises(montelux.Error, match=f"cannot be loaded from '{library}'"):
+        montelux.parse(TEXT).render(denoise=True)
+    # A library that the user names comes first.
+    monkeypatch.setenv("MONTELUX_OIDN_LIBRARY", str(tmp_path / "mine.so"))
+    with pytest.raises(montelux.Error, match="mine.so"):
         montelux.parse(TEXT).render(denoise=True)
 
 

@@ -43,12 +43,20 @@ done
 # The layers of the render are those of a render without the option.
 channels() { "$montelux" info "$1" | grep -E '^(R|G|B|stderr\.[RGB]|albedo\.[RGB]|N\.[XYZ]|samples) '; }
 [ "$(channels both.exr)" = "$(channels ok.exr)" ] || fail "denoising changed other layers"
+
 # The other formats show the denoised picture, the same as from the command denoise, on any number of threads.
 expect 0 "with albedo and normal" denoise ok.exr -o later.pfm -o later.png -o later.exr --threads 1
 cmp -s both.pfm later.pfm || fail "render --denoise and denoise give different pictures"
 cmp -s both.png later.png || fail "render --denoise and denoise give different pictures"
 expect 0 "ok" render ok.pbrt -o ok.pfm
 cmp -s both.pfm ok.pfm && fail "the picture was not denoised"
+# The layer is compared and converted as others are.
+expect 0 'RMSE' compare both.exr ok.exr --layer-a denoised
+grep -q '^A  both.exr  (no standard errors)' out || fail "errors of the denoised layer: $(cat out)"
+expect 1 "there is no layer 'denoised'" compare both.exr ok.exr --layer-b denoised
+"$montelux" convert both.exr layer.pfm --layer denoised >out 2>&1 || fail "convert --layer denoised: $(cat out)"
+cmp -s layer.pfm both.pfm || fail "the layer denoised is not what other formats show"
+"$montelux" convert both.exr raw.pfm --layer mean >out 2>&1 && cmp -s raw.pfm ok.pfm || fail "the mean changed"
 expect 0 "later.exr" denoise later.exr -o later.exr
 expect 0 "32 x 24 pixels" info later.exr
 [ "$(grep -c '^denoised\.' out)" -eq 3 ] || fail "denoising twice doubles the layers"
