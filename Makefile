@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo lab docs build test test-all test-peers fuzz bench bench-integrate bench-hard bench-render lint format install dependencies clean
+.PHONY: help demo lab docs build test test-all test-view test-peers fuzz bench bench-integrate bench-hard bench-render lint format install dependencies clean
 
 JOBS ?= $(shell cmake/jobs.sh)
 BUILD := build/release
@@ -57,6 +57,13 @@ test-peers: build ## scenes of Mitsuba's documentation by both programs, pixel b
 	python=$(PEERS)/mitsuba/bin/python; test -x $$python || python=python3; \
 	$$python test/peers/mitsuba_peers.py $(BUILD)/montelux $(PEER_SCENES) --json $(PEERS)/result.json \
 	    $(if $(ONLY),--only $(ONLY)) $(if $(VARIANT),--variant $(VARIANT)) | tee $(PEERS)/result.md
+
+test-view: dependencies ## the viewer's page in Chromium, alone and with the program (some minutes)
+	cmake/install-dependencies.sh browser
+	cmake --preset test
+	cmake --build build/test --parallel $(JOBS) --target montelux
+	test/view/page/environment.sh build/test/browser-environment
+	ctest --test-dir build/test -R '^view/(page|program)$$' --output-on-failure
 
 FUZZ := build/fuzz
 fuzz: dependencies ## libFuzzer on the loaders of files (half an hour each; less with FUZZ_SECONDS=60 LOADERS="ply exr")

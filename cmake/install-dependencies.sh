@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs the Debian packages that are missing, and only those; as root, or with sudo.
-# Usage: install-dependencies.sh [build|bench|bench-render|docs|fuzz|lint] [--dry-run]
+# Usage: install-dependencies.sh [build|bench|bench-render|browser|docs|fuzz|lint] [--dry-run]
 set -eu
 
 # docs/dependencies.md says what each is for.
@@ -14,11 +14,12 @@ for argument in "$@"; do
     build) ;;
     bench) packages="$packages libgsl-dev libcubature-dev" ;;
     bench-render) packages="$packages libllvm19" ;;
+    browser) packages="$packages chromium" ;;
     docs) packages="$packages doxygen" ;;
     fuzz) packages="$packages clang libclang-rt-14-dev" ;;
     lint) packages="$packages clang-format clang-tidy" ;;
     --dry-run) dry_run=yes ;;
-    *) echo "install-dependencies.sh: unknown argument '$argument' (expected build, bench, bench-render, docs, fuzz, lint or --dry-run)" >&2
+    *) echo "install-dependencies.sh: unknown argument '$argument' (expected build, bench, bench-render, browser, docs, fuzz, lint or --dry-run)" >&2
        exit 2 ;;
     esac
 done

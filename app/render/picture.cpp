@@ -175,7 +175,7 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
             denoised = ", " + describe(*denoiser, denoise_image(*denoiser, image), options.quiet);
         };
     const RenderSnapshot result = session->finish(denoise);
-    if (view) view->show(result.image);
+    if (view) view->show(result);
     const RenderReport& report = result.report;
     PictureResult done;
     if (report.cancelled() && task.is_frame) {

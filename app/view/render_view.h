@@ -28,7 +28,7 @@ class RenderView {
     // The render, and after it, with ViewOptions::stays, the wait for its end.
     void render(const RenderCompany& company);
     // The finished picture.
-    void show(std::shared_ptr<const Image> picture) { viewed_.show(std::move(picture)); }
+    void show(const RenderSnapshot& finished) { viewed_.show(finished); }
 
   private:
     RenderSession& restart(const ViewChange& change);

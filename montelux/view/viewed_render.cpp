@@ -225,8 +225,11 @@ ViewedRender::Next ViewedRender::wait(RenderSession& session, const RenderReport
     }
 }
 
-void ViewedRender::show(std::shared_ptr<const Image> picture) {
-    if (const std::shared_ptr<LivePicture> live = this->picture()) live->update(std::move(picture));
+void ViewedRender::show(const RenderSnapshot& finished) {
+    if (const std::shared_ptr<LivePicture> live = picture()) live->update(finished.image);
+    const std::lock_guard lock(mutex_);
+    still_ = finished;
+    ++status_.version;
 }
 
 std::optional<RenderSnapshot> ViewedRender::snapshot(double seconds) {

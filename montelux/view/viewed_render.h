@@ -66,8 +66,8 @@ class ViewedRender {
     // Renders, as the viewers ask. Returns the last session, whose render has ended and is not finished. Its picture is
     // the same to the last bit as without viewers, if they have neither restarted nor retargeted it.
     RenderSession& run(RenderSession& session, const RenderCompany& company);
-    // The finished picture, where run() did not wait.
-    void show(std::shared_ptr<const Image> picture);
+    // After run(): the finished picture, which pages see from now on.
+    void show(const RenderSnapshot& finished);
 
     // All that follows may be called from any thread while run() runs.
 

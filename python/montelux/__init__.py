@@ -91,7 +91,7 @@ from ._filters import pixel_filter
 from ._integrate import METHODS, integrate, integrate_log, train_map
 from ._names import UnknownAttribute, strict
 from ._picture import Picture
-from ._render import Progress, Render
+from ._render import Progress, Render, View
 from ._result import History, LogResult, Result
 from ._scene import Scene, load, parse
 
@@ -192,6 +192,7 @@ __all__ = [
     "UnknownAttribute",
     "Vegas",
     "VegasSobol",
+    "View",
     "warp",
     "ZScores",
 ]

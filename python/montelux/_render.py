@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from . import _core
+from ._core import Error
 from ._picture import Picture
 from ._progress import RenderProgress
 
@@ -37,6 +38,23 @@ class Progress:
     def __repr__(self) -> str:
         error = "" if self.relative_error is None else f", relative error {100 * self.relative_error:.3g} %"
         return f"<Progress: {100 * self.share:.0f} %, {self.seconds:.1f} s{error}>"
+
+
+class View:
+    """The page that shows a render while it runs, in a browser (`url`) or as the value of a notebook's cell. It is on
+    the loopback address: for a notebook on another machine, forward its port."""
+
+    def __init__(self, url: str) -> None:
+        self.url = url
+
+    def __repr__(self) -> str:
+        return f"<View: {self.url}>"
+
+    def _repr_html_(self) -> str:
+        return (
+            f'<iframe src="{self.url}" title="Render" style="width: 100%; height: 720px; border: 0"></iframe>'
+            f'<a href="{self.url}" target="_blank">Open in a window of its own</a>'
+        )
 
 
 class Render(Picture):
@@ -69,6 +87,15 @@ class Render(Picture):
     def progress(self) -> Progress:
         """How far it is; never waits."""
         return Progress(*self._job.progress())
+
+    @property
+    def view(self) -> View:
+        """The page that shows it, for as long as this object lives; after the end, the finished picture. Needs
+        `scene.render(view=True)`."""
+        url = self._job.view_url
+        if not url:
+            raise Error("render: no page shows this render; start it by scene.render(view=True)")
+        return View(url)
 
     @property
     def stopped_by(self) -> str:

@@ -50,6 +50,7 @@ class Scene(_core.SceneBase):
         resume: bool = False,
         slice: tuple[int, int] | None = None,
         denoise: bool = False,
+        view: bool = False,
     ) -> Render:
         """Starts a render in the background, and returns the Render.
 
@@ -68,7 +69,7 @@ class Scene(_core.SceneBase):
 
         slice: (k, n) takes the k-th of n parts of the samples, k from 1 to n; `montelux merge` joins the saved
         parts. denoise: the finished picture is denoised too, by Open Image Denoise (layer 'denoised'), unless it
-        is stopped before.
+        is stopped before. view: a page shows the render while it runs: `Render.view`.
         """
         for name, value in (("spp", spp), ("max_spp", max_spp)):
             if value is not None and not (is_whole(value) and 1 <= value <= 1 << 30):
@@ -125,6 +126,7 @@ class Scene(_core.SceneBase):
             resume=resume,
             slice=part,
             denoise=denoise,
+            view=view,
         )
         if job.refused_checkpoint:
             warnings.warn(

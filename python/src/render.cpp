@@ -31,7 +31,8 @@ std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::ui
                                  std::optional<std::uint64_t> seed, double target_error, double quantile,
                                  double time, bool adaptive, int threads,
                                  const std::filesystem::path& checkpoint, double checkpoint_every,
-                                 bool resume, std::pair<std::uint32_t, std::uint32_t> slice, bool denoise) {
+                                 bool resume, std::pair<std::uint32_t, std::uint32_t> slice, bool denoise,
+                                 bool view) {
     check_scene(*scene.holder);
     std::shared_ptr<const SceneDescription> description = scene.holder->description;
     const SamplerSettings& sampler = description->sampler;
@@ -54,7 +55,7 @@ std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::ui
     settings.checkpoint_every = checkpoint_every;
     settings.resume = resume;
     nb::gil_scoped_release unlocked;
-    return std::make_unique<RenderJob>(std::move(description), std::move(settings), threads, denoise);
+    return std::make_unique<RenderJob>(std::move(description), std::move(settings), threads, denoise, view);
 }
 
 // Warnings about the finished render.
@@ -203,11 +204,12 @@ void bind_render(nb::module_& m) {
                                        p.forecast.share, p.forecast.seconds_left);
              })
         .def("warnings", &warnings_of)
+        .def_prop_ro("view_url", &RenderJob::view_url)
         .def_prop_ro("refused_checkpoint",
                      [](const RenderJob& j) { return j.session().refused_checkpoint(); });
     m.def("start_render", &start, "scene"_a, "spp"_a.none(), "seed"_a.none(), "target_error"_a,
           "target_quantile"_a, "time"_a, "adaptive"_a, "threads"_a, "checkpoint"_a, "checkpoint_every"_a,
-          "resume"_a, "slice"_a, "denoise"_a, "montelux.Scene.render, with everything decided.");
+          "resume"_a, "slice"_a, "denoise"_a, "view"_a, "montelux.Scene.render, with everything decided.");
     m.def("check_writable", &check_writable, "path"_a);
 }
 

@@ -5,11 +5,21 @@
 namespace montelux::python {
 
 RenderJob::RenderJob(std::shared_ptr<const SceneDescription> description, RenderSessionSettings settings,
-                     int threads, bool denoise)
+                     int threads, bool denoise, bool view)
     : session_(std::move(description), std::move(settings)), threads_(threads) {
     // A missing denoiser is reported before the render.
     if (denoise) denoiser_.emplace(Denoiser::load(threads_));
     with_threads(threads_, [&] { session_.prepare(); });
+    if (view) {
+        ViewedRenderSettings viewed;
+        viewed.cancel = &cancel_;
+        viewed_.emplace(std::move(viewed));
+        ViewServerSettings page;
+        page.introduction.name = session_.settings().scene_name;
+        page.introduction.spp = session_.description().sampler.spp;
+        page.introduction.exposure = 0.0f;
+        server_.emplace(*viewed_, page);
+    }
     thread_ = std::thread([this] { run(); });
 }
 
@@ -30,8 +40,14 @@ void RenderJob::run() {
     std::exception_ptr failure;
     std::optional<RenderSnapshot> result;
     try {
-        with_threads(threads_, [&] { session_.render(company); });
+        with_threads(threads_, [&] {
+            if (viewed_)
+                viewed_->run(session_, company);
+            else
+                session_.render(company);
+        });
         result = session_.finish(denoise);
+        if (viewed_) viewed_->show(*result);
     } catch (...) {
         failure = std::current_exception();
     }

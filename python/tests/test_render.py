@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import subprocess
 import sys
 import threading
 import time
+import urllib.error
+import urllib.request
 import zlib
 
 import numpy as np
@@ -286,3 +289,29 @@ def test_the_program_gives_the_same_bits(scene, tmp_path):
             assert np.array_equal(file[channel], render.mean[:, :, i])
             assert np.array_equal(file[f"stderr.{channel}"], render.standard_error[:, :, i])
         assert np.array_equal(file["depth.Z"], render.layers["depth"])
+
+
+def test_a_page_shows_a_render(scene):
+    plain = scene.render()
+    render = scene.render(view=True)
+    url = render.view.url
+    assert url.startswith("http://127.0.0.1:") and url in render.view._repr_html_() and "<iframe" in render.view._repr_html_()
+    with urllib.request.urlopen(url) as page:
+        assert b"<title>" in page.read()
+    with pytest.raises(urllib.error.HTTPError, match="403"):
+        urllib.request.urlopen(url[:-1] + ("0" if url[-1] != "0" else "1"))
+    assert np.array_equal(render.mean, plain.mean) and np.array_equal(render.standard_error, plain.standard_error)
+    with urllib.request.urlopen(url.replace("/?", "/picture.png?")) as picture:  # also after the end
+        assert picture.read().startswith(b"\x89PNG")
+    with pytest.raises(montelux.Error, match="view=True"):
+        plain.view
+    del render
+    gc.collect()
+    with pytest.raises(OSError):
+        urllib.request.urlopen(url)
+
+
+def test_a_viewed_render_is_stopped(scene):
+    render = scene.render(spp=1 << 24, view=True)
+    assert next(iter(render)).mean.max() > 0
+    assert render.stop().stopped_by == "cancelled"
