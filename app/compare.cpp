@@ -245,7 +245,9 @@ void add_compare(CLI::App& app, int& exit_code) {
         ->required();
     for (const auto& [option, layer, of] :
          {std::tuple("--layer-a", &s->layer_a, "A"), std::tuple("--layer-b", &s->layer_b, "B")})
-        command->add_option(option, *layer, std::string("The layer of ") + of + ", such as denoised. Default: mean")
+        command
+            ->add_option(option, *layer,
+                         std::string("The layer of ") + of + ", such as denoised. Default: mean")
             ->type_name("NAME")
             ->take_last();
     command->add_option("--stderr-a", s->error_a, "Standard errors of A, in place of its stderr layer");

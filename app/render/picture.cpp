@@ -144,7 +144,8 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
     const DefaultExposure by_default = default_exposure(task.description->film);
     std::optional<RenderView> view;
     if (options.view.any())
-        view.emplace(options, ToneCurve{task.tone.exposure.value_or(0), task.tone.tone.value_or(ToneKind::srgb)},
+        view.emplace(options,
+                     ToneCurve{task.tone.exposure.value_or(0), task.tone.tone.value_or(ToneKind::srgb)},
                      *task.description, session);
     session->prepare();
     const PixelBounds crop = task.description->film.crop;

@@ -7,7 +7,6 @@
 #include "app/render/render_command.h"
 #include "app/render/render_options.h"
 #include "app/render/requests.h"
-
 #include "app/render/sequence.h"
 #include <CLI/CLI.hpp>
 #include <chrono>

@@ -18,11 +18,13 @@ namespace {
 std::shared_ptr<const Image> reference_of(const std::string& file, const PixelBounds& bounds) {
     if (file.empty()) return nullptr;
     auto image = std::make_shared<Image>(read_image(file));
-    if (image->color_channels().empty()) throw Error(file, "the picture has neither the channels R, G, B nor Y");
+    if (image->color_channels().empty())
+        throw Error(file, "the picture has neither the channels R, G, B nor Y");
     if (image->width() != bounds.width() || image->height() != bounds.height())
         throw UsageError("--reference", file + " has " + std::to_string(image->width()) + " x " +
                                             std::to_string(image->height()) + " pixels, the render " +
-                                            std::to_string(bounds.width()) + " x " + std::to_string(bounds.height()));
+                                            std::to_string(bounds.width()) + " x " +
+                                            std::to_string(bounds.height()));
     return image;
 }
 

@@ -20,8 +20,8 @@ struct RenderSessionSettings {
     RenderTarget target{};
     std::string scene_name{};           // for the header of the picture
     std::filesystem::path checkpoint{}; // empty: none
-    double checkpoint_every = 60;     // seconds
-    bool resume = false;              // from the checkpoint, if it exists
+    double checkpoint_every = 60;       // seconds
+    bool resume = false;                // from the checkpoint, if it exists
     // Of an earlier session with the same scene (Renderer); null: built by this one.
     std::shared_ptr<const PreparedScene> prepared{};
 };

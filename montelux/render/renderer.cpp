@@ -145,8 +145,7 @@ class RenderLoop {
         const std::uint64_t replicates = fewest_replicates(film);
         if (replicates < least_replicates || replicates * order_.replicate_size() < least) return false;
         if (!reached) return error.mean_samples >= samples_of_black;
-        return *reached <= target.error &&
-               (target.quantile > 0 || error_freedom(film) >= least_freedom);
+        return *reached <= target.error && (target.quantile > 0 || error_freedom(film) >= least_freedom);
     }
     static std::uint64_t fewest_replicates(const Film& film) {
         std::uint64_t fewest = film.pixels().front().replicates().count();

@@ -25,8 +25,8 @@ LivePixel live_pixel(const Pixel& p) {
 
 } // namespace
 
-LivePicture::LivePicture(const PixelBounds& bounds, std::uint32_t replicate_size, std::span<const std::string> channels,
-                         std::shared_ptr<const Image> reference)
+LivePicture::LivePicture(const PixelBounds& bounds, std::uint32_t replicate_size,
+                         std::span<const std::string> channels, std::shared_ptr<const Image> reference)
     : bounds_(bounds), replicate_size_(replicate_size), layers_(view_layers(channels, reference != nullptr)),
       reference_(std::move(reference)),
       pixels_(static_cast<std::size_t>(bounds.width()) * static_cast<std::size_t>(bounds.height())),
@@ -58,10 +58,12 @@ void LivePicture::update(const FinishedTile& finished) {
     for (int row = 0; row < b.height(); ++row)
         std::copy_n(&made[static_cast<std::size_t>(row) * static_cast<std::size_t>(b.width())], b.width(),
                     &pixels_[index(x0, y0 + row)]);
-    const std::size_t tiles_in_a_row = static_cast<std::size_t>((bounds_.width() + tile_size - 1) / tile_size);
+    const std::size_t tiles_in_a_row =
+        static_cast<std::size_t>((bounds_.width() + tile_size - 1) / tile_size);
     for (int ty = y0 / tile_size; ty * tile_size < y0 + b.height(); ++ty)
         for (int tx = x0 / tile_size; tx * tile_size < x0 + b.width(); ++tx)
-            tiles_[static_cast<std::size_t>(ty) * tiles_in_a_row + static_cast<std::size_t>(tx)].version = ++clock_;
+            tiles_[static_cast<std::size_t>(ty) * tiles_in_a_row + static_cast<std::size_t>(tx)].version =
+                ++clock_;
 }
 
 void LivePicture::update(std::shared_ptr<const Image> picture) {
@@ -73,7 +75,8 @@ void LivePicture::update(std::shared_ptr<const Image> picture) {
             LivePixel& p = made[index(x, y)];
             for (std::size_t c = 0; c < 3; ++c) {
                 if (mean.size() == 3) p.mean[c] = picture->value(x, y, mean[c]);
-                p.error[c] = error.size() == 3 ? picture->value(x, y, error[c]) : std::numeric_limits<float>::infinity();
+                p.error[c] = error.size() == 3 ? picture->value(x, y, error[c])
+                                               : std::numeric_limits<float>::infinity();
             }
             if (samples) p.samples = picture->value(x, y, *samples);
         }
@@ -127,7 +130,8 @@ void LivePicture::append_values(std::size_t layer, int x, int y, std::vector<flo
     const LivePixel& p = pixels_[index(x, y)];
     const auto reference = [&](const std::vector<int>& channels) {
         std::array<float, 3> rgb{};
-        for (std::size_t c = 0; c < channels.size() && c < 3; ++c) rgb[c] = reference_->linear(x, y, channels[c]);
+        for (std::size_t c = 0; c < channels.size() && c < 3; ++c)
+            rgb[c] = reference_->linear(x, y, channels[c]);
         if (channels.size() == 1) rgb = {rgb[0], rgb[0], rgb[0]};
         return rgb;
     };
@@ -165,7 +169,8 @@ std::vector<LiveTile> LivePicture::changes_since(std::size_t layer, std::uint64_
                                                  std::size_t most_values) const {
     std::vector<LiveTile> changes;
     const std::lock_guard lock(mutex_);
-    if (!is_live(layer) && places_[layer].size() != static_cast<std::size_t>(layers_[layer].channels)) return changes;
+    if (!is_live(layer) && places_[layer].size() != static_cast<std::size_t>(layers_[layer].channels))
+        return changes;
     std::vector<const Tile*> changed;
     for (const Tile& tile : tiles_)
         if ((is_live(layer) ? tile.version : others_version_) > version) changed.push_back(&tile);

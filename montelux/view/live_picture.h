@@ -40,8 +40,8 @@ struct LiveTile {
 class LivePicture {
   public:
     // `replicate_size`: of the render. `channels`: of its pictures. `reference`: of the size of `bounds`, or empty.
-    LivePicture(const PixelBounds& bounds, std::uint32_t replicate_size, std::span<const std::string> channels,
-                std::shared_ptr<const Image> reference = nullptr);
+    LivePicture(const PixelBounds& bounds, std::uint32_t replicate_size,
+                std::span<const std::string> channels, std::shared_ptr<const Image> reference = nullptr);
 
     const PixelBounds& bounds() const { return bounds_; }
     const std::vector<ViewLayer>& layers() const { return layers_; }
@@ -64,7 +64,8 @@ class LivePicture {
 
     // Tiles of a layer that have changed since a version, oldest change first, of about `most_values` numbers; sets the
     // version to that of the last change among them. Empty: nothing has changed.
-    std::vector<LiveTile> changes_since(std::size_t layer, std::uint64_t& version, std::size_t most_values) const;
+    std::vector<LiveTile> changes_since(std::size_t layer, std::uint64_t& version,
+                                        std::size_t most_values) const;
 
   private:
     struct Tile {
@@ -73,7 +74,8 @@ class LivePicture {
     };
 
     std::size_t index(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(bounds_.width()) + static_cast<std::size_t>(x);
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(bounds_.width()) +
+               static_cast<std::size_t>(x);
     }
     bool is_live(std::size_t layer) const { return layers_[layer].of.empty(); }
     void append_values(std::size_t layer, int x, int y, std::vector<float>& out) const;

@@ -22,7 +22,8 @@ Vec3d axis_nearest_to(Vec3d direction) {
 // By so many degrees about an axis through a point, such that what lies in the direction `from` goes towards `to`.
 Transform turn_towards(double degrees, Vec3d pivot, Vec3d axis, Vec3d from, Vec3d to) {
     const double sense = dot(cross(axis, from), to) < 0 ? -1 : 1;
-    return Transform::translate(pivot) * Transform::rotate(sense * degrees, axis) * Transform::translate(-pivot);
+    return Transform::translate(pivot) * Transform::rotate(sense * degrees, axis) *
+           Transform::translate(-pivot);
 }
 
 } // namespace
@@ -42,7 +43,8 @@ Vec3d orbit_pivot(const Renderer& renderer) {
 
 CameraSettings orbited(const CameraSettings& camera, Vec3d pivot, const ViewOrbit& orbit) {
     const Transform& placed = camera.world_from_camera;
-    const Vec3d right = normalize(placed.vector(Vec3d{1, 0, 0})), up = normalize(placed.vector(Vec3d{0, 1, 0})),
+    const Vec3d right = normalize(placed.vector(Vec3d{1, 0, 0})),
+                up = normalize(placed.vector(Vec3d{0, 1, 0})),
                 back = normalize(placed.vector(Vec3d{0, 0, -1}));
     const Transform rise = turn_towards(orbit.elevation, pivot, right, back, up);
     const Transform turn = turn_towards(orbit.azimuth, pivot, axis_nearest_to(up), back, right);

@@ -58,7 +58,8 @@ std::string exr_bytes(const RenderSnapshot& snapshot) {
 std::string png_bytes(const RenderSnapshot& snapshot, const ToneCurve& curve) {
     WriteOptions options;
     options.tone = curve;
-    return file_bytes("picture.png", snapshot.image->select(std::vector<std::string>{"R", "G", "B"}), options);
+    return file_bytes("picture.png", snapshot.image->select(std::vector<std::string>{"R", "G", "B"}),
+                      options);
 }
 
 } // namespace montelux

@@ -70,7 +70,8 @@ class TevStream::Connection {
             throw Error("tev", "'" + where + "' is not HOST:PORT, such as 127.0.0.1:14158");
         boost::system::error_code error;
         std::string host = where.substr(0, colon);
-        if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+        if (host.size() > 2 && host.front() == '[' && host.back() == ']')
+            host = host.substr(1, host.size() - 2);
         const auto addresses = tcp::resolver(io_).resolve(host, where.substr(colon + 1), error);
         if (!error) connect(addresses, error);
         if (error)
@@ -122,11 +123,15 @@ void TevStream::run() {
                 if (tiles.empty()) break;
                 for (const LiveTile& tile : tiles) {
                     Packet packet(update_image);
-                    packet.add(std::uint8_t{0}).add_text(name_).add(static_cast<std::int32_t>(channels.size()));
+                    packet.add(std::uint8_t{0})
+                        .add_text(name_)
+                        .add(static_cast<std::int32_t>(channels.size()));
                     for (const std::string_view channel : channels) packet.add_text(channel);
                     const PixelBounds& b = tile.bounds;
-                    for (const int v : {b.x0, b.y0, b.width(), b.height()}) packet.add(static_cast<std::int32_t>(v));
-                    for (std::size_t c = 0; c < channels.size(); ++c) packet.add(static_cast<std::int64_t>(c));
+                    for (const int v : {b.x0, b.y0, b.width(), b.height()})
+                        packet.add(static_cast<std::int32_t>(v));
+                    for (std::size_t c = 0; c < channels.size(); ++c)
+                        packet.add(static_cast<std::int64_t>(c));
                     for (std::size_t c = 0; c < channels.size(); ++c)
                         packet.add(static_cast<std::int64_t>(channels.size()));
                     for (const float v : tile.values) packet.add(v);

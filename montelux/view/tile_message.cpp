@@ -15,7 +15,8 @@ std::string tile_message(std::size_t index, const ViewLayer& layer, std::uint32_
     append(message, epoch);
     for (const LiveTile& tile : tiles) {
         const PixelBounds& b = tile.bounds;
-        for (const int v : {b.x0, b.y0, b.width(), b.height()}) append(message, static_cast<std::uint16_t>(v));
+        for (const int v : {b.x0, b.y0, b.width(), b.height()})
+            append(message, static_cast<std::uint16_t>(v));
         for (const float v : tile.values) {
             if (layer.exact)
                 append(message, v);

@@ -15,9 +15,9 @@ namespace {
 
 namespace websocket = boost::beast::websocket;
 
-constexpr std::size_t most_incoming = 4096;                         // bytes of a message
-constexpr std::size_t most_answers = 64;                            // that wait to be sent
-constexpr std::size_t values_of_message = std::size_t{1} << 18;     // of tiles
+constexpr std::size_t most_incoming = 4096;                     // bytes of a message
+constexpr std::size_t most_answers = 64;                        // that wait to be sent
+constexpr std::size_t values_of_message = std::size_t{1} << 18; // of tiles
 constexpr std::chrono::milliseconds least_progress_interval{200};
 
 } // namespace
@@ -25,7 +25,8 @@ constexpr std::chrono::milliseconds least_progress_interval{200};
 void ViewClient::accept(const boost::beast::http::request<boost::beast::http::string_body>& upgrade) {
     // The WebSocket has timeouts of its own: pings find clients that are gone.
     boost::beast::get_lowest_layer(socket_).expires_never();
-    websocket::stream_base::timeout timeout = websocket::stream_base::timeout::suggested(boost::beast::role_type::server);
+    websocket::stream_base::timeout timeout =
+        websocket::stream_base::timeout::suggested(boost::beast::role_type::server);
     timeout.idle_timeout = std::chrono::seconds(60);
     socket_.set_option(timeout);
     socket_.read_message_max(most_incoming);
@@ -85,33 +86,36 @@ void ViewClient::answer(const ViewRequest& request) {
         }
     };
     std::visit(
-        Overloaded{
-            [&](const ShowRequest& r) {
-                shown_.clear();
-                for (const std::string& layer : r.layers) shown_.push_back({layer});
-            },
-            [&](const PixelRequest& r) {
-                answers_.push_back(is_inside(r.x, r.y) ? pixel_message(*picture, r.x, r.y)
-                                                       : refused_message("pixel", "the picture has no such pixel"));
-            },
-            [&](const ReplayRequest& r) { answer(r); },
-            [&](const LimitsRequest& r) { render.set_limits(r.error, r.time); },
-            [&](const OrbitRequest& r) {
-                refuse_unless_done("orbit", [&] {
-                    render.change({r.orbit, render.status().change.light_groups});
-                });
-            },
-            [&](const LightGroupsRequest& r) {
-                refuse_unless_done("light groups", [&] { render.change({render.status().change.orbit, r.on}); });
-            },
-            [&](PlainRequest r) {
-                if (r == PlainRequest::pause) render.pause();
-                if (r == PlainRequest::resume) render.resume();
-                if (r == PlainRequest::stop) render.stop();
-                if (r == PlainRequest::quit && render.settings().stays) render.quit();
-                if (r == PlainRequest::quit && !render.settings().stays)
-                    answers_.push_back(refused_message("quit", "the program ends with its render; 'stop' ends that"));
-            }},
+        Overloaded{[&](const ShowRequest& r) {
+                       shown_.clear();
+                       for (const std::string& layer : r.layers) shown_.push_back({layer});
+                   },
+                   [&](const PixelRequest& r) {
+                       answers_.push_back(is_inside(r.x, r.y)
+                                              ? pixel_message(*picture, r.x, r.y)
+                                              : refused_message("pixel", "the picture has no such pixel"));
+                   },
+                   [&](const ReplayRequest& r) { answer(r); },
+                   [&](const LimitsRequest& r) { render.set_limits(r.error, r.time); },
+                   [&](const OrbitRequest& r) {
+                       refuse_unless_done("orbit", [&] {
+                           render.change({r.orbit, render.status().change.light_groups});
+                       });
+                   },
+                   [&](const LightGroupsRequest& r) {
+                       refuse_unless_done("light groups", [&] {
+                           render.change({render.status().change.orbit, r.on});
+                       });
+                   },
+                   [&](PlainRequest r) {
+                       if (r == PlainRequest::pause) render.pause();
+                       if (r == PlainRequest::resume) render.resume();
+                       if (r == PlainRequest::stop) render.stop();
+                       if (r == PlainRequest::quit && render.settings().stays) render.quit();
+                       if (r == PlainRequest::quit && !render.settings().stays)
+                           answers_.push_back(
+                               refused_message("quit", "the program ends with its render; 'stop' ends that"));
+                   }},
         request);
 }
 

@@ -58,7 +58,7 @@ class ViewClient : public std::enable_shared_from_this<ViewClient> {
     std::string goodbye_;
     std::vector<Shown> shown_;
     std::size_t next_shown_ = 0;
-    std::uint32_t epoch_ = ~std::uint32_t{0}; // of the scene message that was sent
+    std::uint32_t epoch_ = ~std::uint32_t{0};                   // of the scene message that was sent
     std::uint64_t status_version_ = 0, statistics_version_ = 0; // that were sent
     std::chrono::steady_clock::time_point last_progress_{};
 };

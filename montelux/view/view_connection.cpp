@@ -30,7 +30,8 @@ std::optional<float> exposure_of(std::string_view text) {
     float value = 0;
     if (text.empty()) return value;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !(value >= least_exposure && value <= most_exposure))
+    if (error != std::errc() || end != text.data() + text.size() ||
+        !(value >= least_exposure && value <= most_exposure))
         return std::nullopt;
     return value;
 }
@@ -42,17 +43,17 @@ void ViewConnection::read() {
     parser_->header_limit(most_header);
     parser_->body_limit(0);
     stream_.expires_after(time_to_ask);
-    http::async_read(stream_, buffer_, *parser_,
-                     [self = shared_from_this()](boost::beast::error_code error, std::size_t) {
-                         if (error == http::error::header_limit)
-                             return self->refuse(http::status::request_header_fields_too_large, "the header is too long");
-                         if (error == http::error::body_limit)
-                             return self->refuse(http::status::payload_too_large, "requests have no body here");
-                         if (error) return self->end();
-                         self->has_request_ = true;
-                         self->request_ = self->parser_->release();
-                         self->on_request();
-                     });
+    http::async_read(
+        stream_, buffer_, *parser_, [self = shared_from_this()](boost::beast::error_code error, std::size_t) {
+            if (error == http::error::header_limit)
+                return self->refuse(http::status::request_header_fields_too_large, "the header is too long");
+            if (error == http::error::body_limit)
+                return self->refuse(http::status::payload_too_large, "requests have no body here");
+            if (error) return self->end();
+            self->has_request_ = true;
+            self->request_ = self->parser_->release();
+            self->on_request();
+        });
 }
 
 bool ViewConnection::is_own_request() const {
@@ -60,7 +61,8 @@ bool ViewConnection::is_own_request() const {
     const auto local = stream_.socket().local_endpoint(error);
     if (error || request_.count(http::field::host) != 1) return false;
     const std::string_view host = view(request_[http::field::host]);
-    if (!is_own_host(host, local.address().to_string(), local.port(), local.address().is_loopback())) return false;
+    if (!is_own_host(host, local.address().to_string(), local.port(), local.address().is_loopback()))
+        return false;
     return request_.find(http::field::origin) == request_.end() ||
            is_own_origin(view(request_[http::field::origin]), host);
 }
@@ -80,8 +82,9 @@ void ViewConnection::on_request() {
     const bool is_known = path == "/" || path == "/live" || path == "/picture.exr" || path == "/picture.png";
     if (!is_known) return refuse(http::status::not_found, "there is no such page");
     if (!hub_.access().knows_token(query_value(target, "token")))
-        return refuse(http::status::forbidden,
-                      "the token of the address is missing or wrong; open the whole address that montelux printed");
+        return refuse(
+            http::status::forbidden,
+            "the token of the address is missing or wrong; open the whole address that montelux printed");
     if (path == "/live") return upgrade();
     if (path == "/picture.exr" || path == "/picture.png") return send_picture(path.ends_with("exr"));
     const PageFile* const index = find_page_file("index.html");
@@ -93,7 +96,8 @@ void ViewConnection::upgrade() {
         return refuse(http::status::upgrade_required, "this address is for WebSockets");
     if (buffer_.size() > 0) return refuse(http::status::bad_request, "nothing may follow before the answer");
     if (hub_.is_full())
-        return refuse(http::status::service_unavailable, "too many pages watch this render; close one of them");
+        return refuse(http::status::service_unavailable,
+                      "too many pages watch this render; close one of them");
     const auto client = std::make_shared<ViewClient>(std::move(stream_), hub_);
     hub_.add(client);
     client->accept(request_);
@@ -105,7 +109,8 @@ void ViewConnection::send_picture(bool exr) {
     const std::optional<float> exposure = exposure_of(query_value(target, "exposure"));
     const std::string_view tone_name = query_value(target, "tone");
     const std::optional<ToneKind> tone = tone_name.empty() ? ToneKind::srgb : tone_named(tone_name);
-    if (!exposure || !tone) return refuse(http::status::bad_request, "exposure or tone is not a value of this viewer");
+    if (!exposure || !tone)
+        return refuse(http::status::bad_request, "exposure or tone is not a value of this viewer");
     struct Result {
         std::string bytes, failure;
     };
@@ -147,8 +152,9 @@ void ViewConnection::reply(http::status status, std::string_view content_type, s
     set("Cross-Origin-Resource-Policy", "same-origin");
     if (content_type.starts_with("text/html")) {
         const std::string host(view(request_[http::field::host]));
-        set("Content-Security-Policy", "default-src 'self'; img-src 'self' blob: data:; connect-src 'self' ws://" + host +
-                                           "; base-uri 'none'; form-action 'none'");
+        set("Content-Security-Policy",
+            "default-src 'self'; img-src 'self' blob: data:; connect-src 'self' ws://" + host +
+                "; base-uri 'none'; form-action 'none'");
     }
     if (!file_name.empty())
         set(http::field::content_disposition, "attachment; filename=\"" + std::string(file_name) + "\"");
@@ -158,12 +164,12 @@ void ViewConnection::reply(http::status status, std::string_view content_type, s
     if (request_.method() != http::verb::head) response->body() = std::move(body);
     response->content_length(length);
     stream_.expires_after(time_to_listen);
-    http::async_write(stream_, *response,
-                      [self = shared_from_this(), response](boost::beast::error_code, std::size_t) {
-                          boost::beast::error_code ignored;
-                          self->stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
-                          self->end();
-                      });
+    http::async_write(
+        stream_, *response, [self = shared_from_this(), response](boost::beast::error_code, std::size_t) {
+            boost::beast::error_code ignored;
+            self->stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+            self->end();
+        });
 }
 
 void ViewConnection::end() {

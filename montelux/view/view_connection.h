@@ -20,7 +20,8 @@ namespace montelux {
 class ViewConnection : public std::enable_shared_from_this<ViewConnection> {
   public:
     // `ended` is called once, when the connection is closed or handed over.
-    ViewConnection(boost::asio::ip::tcp::socket socket, ViewHub& hub, std::function<void(const ViewConnection&)> ended)
+    ViewConnection(boost::asio::ip::tcp::socket socket, ViewHub& hub,
+                   std::function<void(const ViewConnection&)> ended)
         : stream_(std::move(socket)), hub_(hub), ended_(std::move(ended)) {}
 
     void read();

@@ -44,7 +44,8 @@ void ViewHub::tick() {
         refresh_statistics(picture);
         refresh_layers(picture);
     }
-    const std::vector<std::shared_ptr<ViewClient>> now(clients_.begin(), clients_.end()); // one may be removed
+    const std::vector<std::shared_ptr<ViewClient>> now(clients_.begin(),
+                                                       clients_.end()); // one may be removed
     for (const std::shared_ptr<ViewClient>& client : now) client->send_news();
 }
 
@@ -54,12 +55,14 @@ void ViewHub::say_goodbye(std::string_view why) {
 }
 
 bool ViewHub::all_know() const {
-    return std::ranges::all_of(clients_, [](const std::shared_ptr<ViewClient>& client) { return client->knows(); });
+    return std::ranges::all_of(clients_,
+                               [](const std::shared_ptr<ViewClient>& client) { return client->knows(); });
 }
 
 void ViewHub::schedule(Repeated& repeated, Clock::time_point begin, std::chrono::duration<double> least) {
     const std::chrono::duration<double> cost = Clock::now() - begin;
-    repeated.next = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::max(least, cost / share_of_thread));
+    repeated.next =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::max(least, cost / share_of_thread));
     repeated.runs = false;
 }
 
@@ -93,8 +96,9 @@ void ViewHub::refresh_statistics(const std::shared_ptr<LivePicture>& picture) {
 
 // A picture with all layers while it is rendered, if someone looks at them. At other times it has them anyway.
 void ViewHub::refresh_layers(const std::shared_ptr<LivePicture>& picture) {
-    const bool wanted = std::ranges::any_of(
-        clients_, [&](const std::shared_ptr<ViewClient>& client) { return client->shows_layers_of(*picture); });
+    const bool wanted = std::ranges::any_of(clients_, [&](const std::shared_ptr<ViewClient>& client) {
+        return client->shows_layers_of(*picture);
+    });
     if (!wanted || layers_work_.runs || render_.status().state != ViewState::rendering ||
         Clock::now() < layers_work_.next)
         return;
@@ -102,7 +106,8 @@ void ViewHub::refresh_layers(const std::shared_ptr<LivePicture>& picture) {
     layers_work_.runs = run_slow(
         [=, this] {
             *began = Clock::now();
-            if (std::optional<RenderSnapshot> now = render_.snapshot(0.5); now && render_.picture() == picture)
+            if (std::optional<RenderSnapshot> now = render_.snapshot(0.5);
+                now && render_.picture() == picture)
                 picture->update_others(now->image);
         },
         [=, this] { schedule(layers_work_, *began, std::chrono::duration<double>(0.5)); });

@@ -23,7 +23,8 @@ class ViewClient;
 class ViewHub {
   public:
     ViewHub(boost::asio::io_context& io, ViewedRender& render, ViewIntroduction introduction)
-        : render_(render), introduction_(std::move(introduction)), access_(ViewAccess::new_token()), io_(io) {}
+        : render_(render), introduction_(std::move(introduction)), access_(ViewAccess::new_token()), io_(io) {
+    }
     ViewHub(const ViewHub&) = delete;
     ViewHub& operator=(const ViewHub&) = delete;
 

@@ -43,8 +43,10 @@ ViewLayer layer(std::string_view name, std::vector<std::string> channels) {
 std::string light_layer(std::string_view group) { return "light " + std::string(group); }
 
 std::vector<ViewLayer> view_layers(std::span<const std::string> channels, bool with_reference) {
-    std::vector<ViewLayer> layers{
-        {"mean", "color"}, {"error", "error", 1}, {"relative error", "ratio", 1}, {"samples", "count", 1, true}};
+    std::vector<ViewLayer> layers{{"mean", "color"},
+                                  {"error", "error", 1},
+                                  {"relative error", "ratio", 1},
+                                  {"samples", "count", 1, true}};
     if (with_reference) {
         layers.push_back({"reference", "color"});
         layers.push_back({"z", "z", 1});
@@ -52,9 +54,12 @@ std::vector<ViewLayer> view_layers(std::span<const std::string> channels, bool w
     for (std::size_t i = 0; i < channels.size();) {
         const std::string_view name = layer_of(channels[i]);
         std::size_t end = i + 1;
-        while (end < channels.size() && !component_of(channels[i]).empty() && layer_of(channels[end]) == name) ++end;
-        const bool is_live = component_of(channels[i]).empty() && channels[i].size() == 1 && name != "A"; // R, G, B
-        const bool is_shown = !is_live && name != "stderr" && name != "samples" && (!is_matte(name) || is_first_matte(name));
+        while (end < channels.size() && !component_of(channels[i]).empty() && layer_of(channels[end]) == name)
+            ++end;
+        const bool is_live =
+            component_of(channels[i]).empty() && channels[i].size() == 1 && name != "A"; // R, G, B
+        const bool is_shown =
+            !is_live && name != "stderr" && name != "samples" && (!is_matte(name) || is_first_matte(name));
         // Layers have one or three numbers; what has others (texture coordinates) shows each by itself.
         const std::vector<std::string> of(channels.begin() + static_cast<std::ptrdiff_t>(i),
                                           channels.begin() + static_cast<std::ptrdiff_t>(end));

@@ -42,8 +42,8 @@ std::string dump(const Json& json) { return json.dump(-1, ' ', false, Json::erro
 
 } // namespace
 
-std::string scene_message(const ViewIntroduction& introduction, const ViewedRender& render, const LivePicture& picture,
-                          const ViewStatus& status) {
+std::string scene_message(const ViewIntroduction& introduction, const ViewedRender& render,
+                          const LivePicture& picture, const ViewStatus& status) {
     Json layers = Json::array(), lights = Json::array();
     for (const ViewLayer& layer : picture.layers()) {
         layers.push_back({{"name", layer.name},
@@ -78,21 +78,22 @@ std::string scene_message(const ViewIntroduction& introduction, const ViewedRend
 
 std::string progress_message(const ViewStatus& status, const PictureStatistics* statistics) {
     const RenderProgress& p = status.progress;
-    Json message = {{"type", "progress"},
-                    {"epoch", status.epoch},
-                    {"state", name_of(status.state)},
-                    {"seconds", p.seconds},
-                    {"samples", nullptr},
-                    {"share", p.forecast.share},
-                    {"seconds_left", p.forecast.seconds_left ? Json(*p.forecast.seconds_left) : Json(nullptr)},
-                    {"error", nullptr},
-                    {"visible", nullptr},
-                    {"target_error", positive_or_null(status.target.error)},
-                    {"target_quantile", positive_or_null(status.target.quantile)},
-                    {"target_time", positive_or_null(status.target.time)},
-                    {"ended_by", status.ended_by ? Json(to_string(*status.ended_by)) : Json(nullptr)},
-                    {"samples_per_second",
-                     p.seconds > 0 ? Json(static_cast<double>(p.samples_done) / p.seconds) : Json(nullptr)}};
+    Json message = {
+        {"type", "progress"},
+        {"epoch", status.epoch},
+        {"state", name_of(status.state)},
+        {"seconds", p.seconds},
+        {"samples", nullptr},
+        {"share", p.forecast.share},
+        {"seconds_left", p.forecast.seconds_left ? Json(*p.forecast.seconds_left) : Json(nullptr)},
+        {"error", nullptr},
+        {"visible", nullptr},
+        {"target_error", positive_or_null(status.target.error)},
+        {"target_quantile", positive_or_null(status.target.quantile)},
+        {"target_time", positive_or_null(status.target.time)},
+        {"ended_by", status.ended_by ? Json(to_string(*status.ended_by)) : Json(nullptr)},
+        {"samples_per_second",
+         p.seconds > 0 ? Json(static_cast<double>(p.samples_done) / p.seconds) : Json(nullptr)}};
     Json curve = Json::array();
     for (const auto& [seconds, error] : status.curve) curve.push_back({seconds, error});
     message["curve"] = std::move(curve);
@@ -201,13 +202,17 @@ class Members {
 };
 
 std::optional<ViewRequest> request_of(std::string_view type, Members& m) {
-    const auto pixel = [&](const char* name) { return static_cast<int>(m.whole(name, Image::max_dimension)); };
+    const auto pixel = [&](const char* name) {
+        return static_cast<int>(m.whole(name, Image::max_dimension));
+    };
     if (type == "show") return ShowRequest{m.texts("layers")};
     if (type == "pixel") return PixelRequest{pixel("x"), pixel("y")};
     if (type == "replay") return ReplayRequest{pixel("x"), pixel("y"), m.whole("sample", 1u << 31)};
-    if (type == "target") return LimitsRequest{m.real_or_none("error", 1e6), m.real_or_none("time", most_time)};
+    if (type == "target")
+        return LimitsRequest{m.real_or_none("error", 1e6), m.real_or_none("time", most_time)};
     if (type == "orbit")
-        return OrbitRequest{{m.real("azimuth", -1e6, 1e6), m.real("elevation", -180, 180), m.real("zoom", 1e-3, 1e3)}};
+        return OrbitRequest{
+            {m.real("azimuth", -1e6, 1e6), m.real("elevation", -180, 180), m.real("zoom", 1e-3, 1e3)}};
     if (type == "light groups") return LightGroupsRequest{m.boolean("on")};
     if (type == "pause") return PlainRequest::pause;
     if (type == "resume") return PlainRequest::resume;

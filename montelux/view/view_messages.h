@@ -21,8 +21,8 @@ struct ViewIntroduction {
     ToneKind tone = ToneKind::srgb;
 };
 
-std::string scene_message(const ViewIntroduction& introduction, const ViewedRender& render, const LivePicture& picture,
-                          const ViewStatus& status);
+std::string scene_message(const ViewIntroduction& introduction, const ViewedRender& render,
+                          const LivePicture& picture, const ViewStatus& status);
 // `statistics`: of the picture as it is, or a little older; null before the first ones.
 std::string progress_message(const ViewStatus& status, const PictureStatistics* statistics);
 std::string pixel_message(const LivePicture& picture, int x, int y);

@@ -84,13 +84,14 @@ class ViewServer::Implementation {
     }
 
     void add(tcp::socket socket) {
-        const auto connection = std::make_shared<ViewConnection>(
-            std::move(socket), hub_, [this](const ViewConnection& ended) {
+        const auto connection =
+            std::make_shared<ViewConnection>(std::move(socket), hub_, [this](const ViewConnection& ended) {
                 std::erase_if(connections_, [&](const auto& c) { return c.get() == &ended; });
             });
         connections_.push_back(connection);
         if (connections_.size() > most_connections) {
-            const auto silent = std::ranges::find_if(connections_, [](const auto& c) { return !c->has_request(); });
+            const auto silent =
+                std::ranges::find_if(connections_, [](const auto& c) { return !c->has_request(); });
             const auto oldest = silent != connections_.end() ? silent : connections_.begin();
             (*oldest)->close();
             connections_.erase(oldest);

@@ -88,8 +88,9 @@ void ViewedRender::open(RenderSession& session) {
     set_state(ViewState::preparing);
     session.prepare();
     const FilmSettings& film = session.description().film;
-    auto picture = std::make_shared<LivePicture>(film.crop, session.replicate_size(),
-                                                 film_layers_of(session.description()).channels(), settings_.reference);
+    auto picture =
+        std::make_shared<LivePicture>(film.crop, session.replicate_size(),
+                                      film_layers_of(session.description()).channels(), settings_.reference);
     {
         const std::unique_lock alone(session_mutex_);
         session_ = &session;
@@ -246,7 +247,8 @@ std::string ViewedRender::replay(int x, int y, std::uint64_t index) {
     const std::shared_lock shared(session_mutex_);
     if (session_ == nullptr) throw Error("there is no render at this moment");
     const PixelBounds& crop = session_->description().film.crop;
-    return sample_record_text(session_->renderer().replay(crop.x0 + x, crop.y0 + y, index), session_->description());
+    return sample_record_text(session_->renderer().replay(crop.x0 + x, crop.y0 + y, index),
+                              session_->description());
 }
 
 } // namespace montelux

@@ -45,7 +45,8 @@ TEST(LivePicture, TilesGiveThePixelsOfThePicture) {
     RenderSession session(described(), {});
     std::unique_ptr<LivePicture> picture;
     const RenderSnapshot finished = rendered(session, picture);
-    const std::vector<int> mean = finished.image->color_channels(), error = finished.image->color_channels("stderr.");
+    const std::vector<int> mean = finished.image->color_channels(),
+                           error = finished.image->color_channels("stderr.");
     for (int y = 0; y < height - 2; ++y)
         for (int x = 0; x < width - 3; ++x) {
             const LivePixel p = picture->pixel(x, y);
@@ -108,7 +109,8 @@ TEST(LivePicture, LightsSumToTheMean) {
     std::size_t k = 0;
     for (int y = 0; y < height - 2; ++y)
         for (int x = 0; x < width - 3; ++x)
-            for (const float v : picture->pixel(x, y).mean) most = std::max(most, std::abs(double(v) - sum[k++]));
+            for (const float v : picture->pixel(x, y).mean)
+                most = std::max(most, std::abs(double(v) - sum[k++]));
     EXPECT_LT(most, 1e-4);
 }
 
@@ -141,7 +143,8 @@ TEST(LivePicture, ChangesAddUpToThePicture) {
     for (const auto& [corner, values] : seen) {
         const int w = std::min(16, width - 3 - corner.first);
         for (std::size_t i = 0; i < values.size(); i += 3) {
-            const int x = corner.first + static_cast<int>(i / 3) % w, y = corner.second + static_cast<int>(i / 3) / w;
+            const int x = corner.first + static_cast<int>(i / 3) % w,
+                      y = corner.second + static_cast<int>(i / 3) / w;
             for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(values[i + c], picture.pixel(x, y).mean[c]);
         }
     }

@@ -34,24 +34,36 @@ TEST(ViewMessages, RequestsAreRead) {
 
 TEST(ViewMessages, OtherTextsAreNone) {
     const std::string deep(4000, '[');
-    for (const std::string& text :
-         {std::string(), std::string("x"), std::string("[]"), std::string("null"), std::string("{}"), deep,
-          std::string(R"({"type":1})"), std::string(R"({"type":"no such"})"), std::string(R"({"type":"show"})"),
-          std::string(R"({"type":"show","layers":"mean"})"), std::string(R"({"type":"show","layers":[1]})"),
-          std::string(R"({"type":"pixel","x":-1,"y":0})"), std::string(R"({"type":"pixel","x":1.5,"y":0})"),
-          std::string(R"({"type":"pixel","x":1e99,"y":0})"), std::string(R"({"type":"pixel","x":99999999,"y":0})"),
-          std::string(R"({"type":"replay","x":1,"y":1,"sample":-1})"),
-          std::string(R"({"type":"target","error":-1})"), std::string(R"({"type":"target","time":1e300})"),
-          std::string(R"({"type":"target","error":"1%"})"),
-          std::string(R"({"type":"orbit","azimuth":0,"elevation":0,"zoom":0})"),
-          std::string(R"({"type":"orbit","azimuth":0,"elevation":0})"),
-          std::string(R"({"type":"light groups","on":1})"), std::string("{\"type\":\"pause\"}{"),
-          std::string("\xff\xfe{\"type\":\"pause\"}")})
+    for (const std::string& text : {std::string(),
+                                    std::string("x"),
+                                    std::string("[]"),
+                                    std::string("null"),
+                                    std::string("{}"),
+                                    deep,
+                                    std::string(R"({"type":1})"),
+                                    std::string(R"({"type":"no such"})"),
+                                    std::string(R"({"type":"show"})"),
+                                    std::string(R"({"type":"show","layers":"mean"})"),
+                                    std::string(R"({"type":"show","layers":[1]})"),
+                                    std::string(R"({"type":"pixel","x":-1,"y":0})"),
+                                    std::string(R"({"type":"pixel","x":1.5,"y":0})"),
+                                    std::string(R"({"type":"pixel","x":1e99,"y":0})"),
+                                    std::string(R"({"type":"pixel","x":99999999,"y":0})"),
+                                    std::string(R"({"type":"replay","x":1,"y":1,"sample":-1})"),
+                                    std::string(R"({"type":"target","error":-1})"),
+                                    std::string(R"({"type":"target","time":1e300})"),
+                                    std::string(R"({"type":"target","error":"1%"})"),
+                                    std::string(R"({"type":"orbit","azimuth":0,"elevation":0,"zoom":0})"),
+                                    std::string(R"({"type":"orbit","azimuth":0,"elevation":0})"),
+                                    std::string(R"({"type":"light groups","on":1})"),
+                                    std::string("{\"type\":\"pause\"}{"),
+                                    std::string("\xff\xfe{\"type\":\"pause\"}")})
         EXPECT_FALSE(parse_request(text)) << text.substr(0, 80);
 }
 
 TEST(ViewMessages, OutlinesKeepTheirLevels) {
-    const auto json = nlohmann::json::parse(replay_message(1, 2, 3, "vertex 1\n  position   (0, 0)\n    weight 1\n\nend\n"));
+    const auto json = nlohmann::json::parse(
+        replay_message(1, 2, 3, "vertex 1\n  position   (0, 0)\n    weight 1\n\nend\n"));
     ASSERT_EQ(json["lines"].size(), 4u);
     EXPECT_EQ(json["lines"][1]["level"], 1);
     EXPECT_EQ(json["lines"][1]["text"], "position   (0, 0)");
@@ -69,7 +81,8 @@ TEST(ViewMessages, ProgressSaysWhatIsKnown) {
     ViewStatus status;
     auto json = nlohmann::json::parse(progress_message(status, nullptr));
     EXPECT_EQ(json["state"], "preparing");
-    for (const char* name : {"error", "samples", "visible", "target_error", "target_time", "ended_by", "seconds_left"})
+    for (const char* name :
+         {"error", "samples", "visible", "target_error", "target_time", "ended_by", "seconds_left"})
         EXPECT_TRUE(json[name].is_null()) << name;
     status.state = ViewState::ended;
     status.ended_by = RenderStop::time;

@@ -69,7 +69,8 @@ class ViewServerTest : public ::testing::Test {
         boost::asio::write(socket, boost::asio::buffer(request), error);
         return rest_of(socket);
     }
-    std::string get(const std::string& target, const std::string& more = "", const std::string& method = "GET") {
+    std::string get(const std::string& target, const std::string& more = "",
+                    const std::string& method = "GET") {
         return answer_to(method + " " + target + " HTTP/1.1\r\nHost: " + host_ + "\r\n" + more + "\r\n");
     }
     std::string with_token(const std::string& path) const { return path + "?token=" + token_; }
@@ -107,7 +108,9 @@ class ViewServerTest : public ::testing::Test {
     std::string token_, host_;
 };
 
-bool is(const std::string& answer, int status) { return answer.starts_with("HTTP/1.1 " + std::to_string(status) + " "); }
+bool is(const std::string& answer, int status) {
+    return answer.starts_with("HTTP/1.1 " + std::to_string(status) + " ");
+}
 
 TEST_F(ViewServerTest, AnswersWhoKnowsTheToken) {
     EXPECT_TRUE(is(get(with_token("/")), 200));
@@ -127,8 +130,9 @@ TEST_F(ViewServerTest, AnswersWhoKnowsTheToken) {
 }
 
 TEST_F(ViewServerTest, PathsLeadNowhereElse) {
-    for (const char* path : {"/page/", "/page/../view_server.cpp", "/page/..%2f..%2fetc/passwd", "/page//etc/passwd",
-                             "/../../../etc/passwd", "/etc/passwd", "/page/main.js/", "/page/%6dain.js", "//", "/live/"})
+    for (const char* path :
+         {"/page/", "/page/../view_server.cpp", "/page/..%2f..%2fetc/passwd", "/page//etc/passwd",
+          "/../../../etc/passwd", "/etc/passwd", "/page/main.js/", "/page/%6dain.js", "//", "/live/"})
         EXPECT_TRUE(is(get(with_token(path)), 404)) << path;
 }
 
@@ -220,7 +224,8 @@ TEST_F(ViewServerTest, ManyWatchAndTheLastHearGoodbye) {
 
 TEST_F(ViewServerTest, MalformedMessagesEndTheirConnectionAlone) {
     const auto good = watching();
-    for (const std::string& text : {std::string("{"), std::string(R"({"type":"no such"})"), std::string(5000, 'x')}) {
+    for (const std::string& text :
+         {std::string("{"), std::string(R"({"type":"no such"})"), std::string(5000, 'x')}) {
         const auto bad = watching();
         ask(*bad, text);
         boost::system::error_code error;
@@ -232,9 +237,10 @@ TEST_F(ViewServerTest, MalformedMessagesEndTheirConnectionAlone) {
     }
     { // frames that are none
         tcp::socket raw = connected();
-        const std::string request = "GET " + with_token("/live") + " HTTP/1.1\r\nHost: " + host_ +
-                                    "\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
-                                    "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
+        const std::string request =
+            "GET " + with_token("/live") + " HTTP/1.1\r\nHost: " + host_ +
+            "\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+            "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
         boost::asio::write(raw, boost::asio::buffer(request));
         std::string head;
         boost::asio::read_until(raw, boost::asio::dynamic_buffer(head), "\r\n\r\n");
@@ -264,7 +270,8 @@ TEST_F(ViewServerTest, SlowReadersAreNotHeard) {
     const std::string request = R"({"type":"pixel","x":1,"y":1})";
     boost::system::error_code error;
     std::size_t sent = 0;
-    for (const auto begin = std::chrono::steady_clock::now(); std::chrono::steady_clock::now() - begin < 20s;) {
+    for (const auto begin = std::chrono::steady_clock::now();
+         std::chrono::steady_clock::now() - begin < 20s;) {
         slow->write(boost::asio::buffer(request), error);
         if (error) break;
         ++sent;

@@ -143,9 +143,9 @@ float world_density(const AreaLight& light, const LightContext& context, const L
 // Light from a point of a surface, in the world, if it shines towards the reference; `radiance` maps the direction to
 // it to its radiance.
 template <typename F>
-[[gnu::always_inline]] inline std::optional<LightSample> from_point(const AreaLight& light, const ReferencePoint& from,
-                                                                    Point3f p, Normal3f n, float area_density,
-                                                                    float error, const F& radiance) {
+[[gnu::always_inline]] inline std::optional<LightSample>
+from_point(const AreaLight& light, const ReferencePoint& from, Point3f p, Normal3f n, float area_density,
+           float error, const F& radiance) {
     std::optional<LightSample> result;
     const Vec3f d = p - from.p;
     const float d2 = length_squared(d);
@@ -162,8 +162,8 @@ template <typename F>
 }
 
 // As sample_surface, for most lights: LightTablesView::plain_triangles.
-std::optional<LightSample> sample_plain_triangle(const AreaLight& light, const LightContext& context, Index part,
-                                                 const ReferencePoint& from, Vec2f u,
+std::optional<LightSample> sample_plain_triangle(const AreaLight& light, const LightContext& context,
+                                                 Index part, const ReferencePoint& from, Vec2f u,
                                                  const SampledWavelengths& lambda) {
     const LightTriangle& t = context.tables().triangle(context.light, part);
     if (!(t.area > 0)) return std::nullopt;
@@ -188,8 +188,8 @@ std::optional<LightSample> sample_surface(const AreaLight& light, const LightCon
     result = from_point(light, from, point->p, point->n, point->area_density, point->error, [&](Vec3f wi) {
         if (instance == no_index) share = share_there(context, shape, *point);
         if (!(share > 0)) return SampledSpectrum{};
-        return color_at(light, context, point->p, wi, point->hit, lambda) * radiance_scale(light, context, part) *
-               share;
+        return color_at(light, context, point->p, wi, point->hit, lambda) *
+               radiance_scale(light, context, part) * share;
     });
     if (!(share > 0)) result.reset();
     if (result) result->invisible = is_invisible(context, shape);

@@ -30,7 +30,8 @@ class LightParts {
     [[gnu::always_inline]] LightChoice at(Index row) const {
         if (single_) return {.light = row};
         // One light has them all, or they are searched.
-        const auto after = first_.size() == 2 ? first_.end() - 1 : std::upper_bound(first_.begin(), first_.end(), row);
+        const auto after =
+            first_.size() == 2 ? first_.end() - 1 : std::upper_bound(first_.begin(), first_.end(), row);
         const auto light = static_cast<Index>(after - first_.begin() - 1);
         return {.light = light, .part = row - first_[light]};
     }
