@@ -50,6 +50,7 @@ def test_options_of_render_have_the_names_of_python():
     known, ours = options("render"), arguments(montelux.Scene.render)
     assert ours - known == {"progress", "every"}
     of_the_program = {"output", "rank_timeout", "debug_sample", "stats", "memory", "quiet"}
+    of_the_program |= {"port", "host", "reference", "tev"}  # of the page that `view` serves
     loading = (montelux.Scene, montelux.load, montelux.parse)
     of_the_program |= {"texture_memory"}.intersection(*map(arguments, loading))
     of_files = arguments(montelux.load) | set(inspect.signature(montelux.Picture.save).parameters)
