@@ -6,7 +6,7 @@ SHELL := /bin/bash
 
 JOBS ?= $(shell cmake/jobs.sh)
 BUILD := build/release
-DEMO_TARGET ?= --target-error 5% --target-quantile 90%
+DEMO_TARGET ?= --target-error 16% --target-quantile 90%
 FUZZ_SECONDS ?= 1800
 LOADERS ?= $(sort $(patsubst test/fuzz/fuzz_%.cpp,%,$(wildcard test/fuzz/fuzz_*.cpp)))
 
