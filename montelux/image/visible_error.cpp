@@ -10,6 +10,13 @@
 
 namespace montelux {
 
+bool error_is_visible(double luminance, double error, const ToneCurve& curve) {
+    const auto code = [&](double light) {
+        return 255 * double(curve(static_cast<float>(std::max(light, 0.0))));
+    };
+    return !std::isfinite(error) || 0.5 * (code(luminance + error) - code(luminance - error)) >= 1;
+}
+
 std::optional<double> visible_error_share(const Image& image, const ToneCurve& curve) {
     if (image.color_channels().empty()) return std::nullopt;
     const MeasuredPicture picture = measured_picture("", image);
@@ -25,12 +32,7 @@ std::optional<double> visible_error_share(const Image& image, const ToneCurve& c
                 value += weight * picture.value(x, y, static_cast<int>(c));
                 error += weight * picture.standard_error(x, y, static_cast<int>(c));
             }
-            const auto code = [&](double light) {
-                return 255 * double(curve(static_cast<float>(std::max(light, 0.0))));
-            };
-            const bool shows =
-                !std::isfinite(error) || 0.5 * (code(value + error) - code(value - error)) >= 1;
-            visible += shows ? 1 : 0;
+            visible += error_is_visible(value, error, curve) ? 1 : 0;
             ++all;
         }
     return all > 0 ? static_cast<double>(visible) / static_cast<double>(all) : 0.0;

@@ -327,19 +327,6 @@ class RenderLoop {
 
 } // namespace
 
-std::string_view to_string(RenderStop reason) {
-    switch (reason) {
-    case RenderStop::samples:
-        return "samples";
-    case RenderStop::error:
-        return "error";
-    case RenderStop::time:
-        return "time";
-    default:
-        return "cancelled";
-    }
-}
-
 Renderer::Renderer(const SceneDescription& description, const RenderTarget& target,
                    std::uint32_t replicate_points, std::shared_ptr<const PreparedScene> prepared)
     : description_(description), target_(target),

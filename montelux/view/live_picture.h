@@ -49,7 +49,7 @@ class LivePicture {
 
     // The pixels of a tile whose samples are complete for now, from the thread that rendered it.
     void update(const FinishedTile& tile);
-    // The whole picture, with the channels that the constructor was told.
+    // Replaces all pixels and layers. The picture has the channels given to the constructor.
     void update(std::shared_ptr<const Image> picture);
     // Only the layers that update(FinishedTile) does not compute.
     void update_others(std::shared_ptr<const Image> picture);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "montelux/image/visible_error.h"
+
 namespace montelux {
 
 namespace {
@@ -33,8 +35,7 @@ PictureStatistics statistics_of(std::span<const LivePixel> pixels, const ToneCur
         s.samples += double(pixels[i].samples);
         count(s.histogram, mean, error);
         if (i % stride != 0) continue;
-        const auto code = [&](double v) { return 255 * double(curve(static_cast<float>(std::max(v, 0.0)))); };
-        visible += !std::isfinite(error) || 0.5 * (code(mean + error) - code(mean - error)) >= 1 ? 1u : 0u;
+        visible += error_is_visible(mean, error, curve) ? 1u : 0u;
         ++curved;
     }
     const auto n = static_cast<double>(pixels.size());

@@ -7,6 +7,7 @@
 #include <boost/asio/write.hpp>
 #include <chrono>
 #include <cstdint>
+#include <exception>
 #include <optional>
 #include <string_view>
 #include <sys/socket.h>
@@ -112,6 +113,14 @@ TevStream::~TevStream() {
 }
 
 void TevStream::run() {
+    try {
+        send_until_the_end();
+    } catch (const std::exception&) {
+        // Such as too little memory for a packet: the stream ends, and the render goes on.
+    }
+}
+
+void TevStream::send_until_the_end() {
     std::shared_ptr<LivePicture> shown;
     std::array<std::uint64_t, tev_layers.size()> versions{};
     const auto send_changes = [&] {

@@ -26,6 +26,7 @@ class TevStream {
   private:
     class Connection;
     void run();
+    void send_until_the_end();
 
     ViewedRender& render_;
     std::string name_;

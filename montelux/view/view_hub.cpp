@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/post.hpp>
+#include <exception>
 #include <utility>
 #include <vector>
 
@@ -23,7 +24,11 @@ bool ViewHub::run_slow(std::function<void()> work, std::function<void()> done) {
     ++waiting_;
     boost::asio::post(pool_, [this, work = std::move(work), done = std::move(done),
                               guard = boost::asio::make_work_guard(io_)] {
-        work();
+        try {
+            work();
+        } catch (const std::exception&) {
+            // Such as too little memory for a copy: pages keep what they have, and the render goes on.
+        }
         boost::asio::post(io_, [this, done] {
             --waiting_;
             done();

@@ -35,7 +35,7 @@ class ViewHub {
     const std::optional<PictureStatistics>& statistics() const { return statistics_; }
     std::uint64_t statistics_version() const { return statistics_work_.version; }
 
-    // Runs `work` on another thread, then `done` on this one. Work is done one after the other. Returns false, and does
+    // Runs `work` on another thread, then `done` on this one, also if `work` throws. Work is done one after the other. Returns false, and does
     // nothing, if too much is waiting.
     bool run_slow(std::function<void()> work, std::function<void()> done);
 

@@ -99,6 +99,8 @@ std::string progress_message(const ViewStatus& status, const PictureStatistics* 
     message["curve"] = std::move(curve);
     if (!status.curve.empty()) message["error"] = status.curve.back().second;
     if (statistics != nullptr) {
+        // Before the first whole replicates of all pixels.
+        if (status.curve.empty() && statistics->error) message["error"] = *statistics->error;
         message["samples"] = statistics->samples;
         message["visible"] = statistics->visible;
         message["histogram"] = {{"least", ErrorHistogram::least},

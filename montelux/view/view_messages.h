@@ -13,7 +13,7 @@
 
 namespace montelux {
 
-// What the page is told of a render at the start.
+// The fixed properties of a render, sent to a page when it connects.
 struct ViewIntroduction {
     std::string name; // of the scene
     std::uint32_t spp = 0;

@@ -6,6 +6,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
+#include <exception>
 #include <list>
 #include <optional>
 #include <thread>
@@ -34,7 +35,7 @@ class ViewServer::Implementation {
         listen(settings);
         accept();
         tick();
-        thread_ = std::thread([this] { io_.run(); });
+        thread_ = std::thread([this] { run(); });
     }
     ~Implementation() {
         boost::asio::post(io_, [this] { hub_.say_goodbye("the program has ended"); });
@@ -54,6 +55,17 @@ class ViewServer::Implementation {
     }
 
   private:
+    void run() {
+        for (;;) {
+            try {
+                io_.run();
+                return;
+            } catch (const std::exception&) {
+                // Such as too little memory for a message: that one is lost, and the render goes on.
+            }
+        }
+    }
+
     void listen(const ViewServerSettings& settings) {
         boost::system::error_code error;
         const auto address = boost::asio::ip::make_address(settings.address, error);

@@ -84,6 +84,9 @@ TEST(ViewMessages, ProgressSaysWhatIsKnown) {
     for (const char* name :
          {"error", "samples", "visible", "target_error", "target_time", "ended_by", "seconds_left"})
         EXPECT_TRUE(json[name].is_null()) << name;
+    PictureStatistics early;
+    early.error = 0.4;
+    EXPECT_EQ(nlohmann::json::parse(progress_message(status, &early))["error"], 0.4);
     status.state = ViewState::ended;
     status.ended_by = RenderStop::time;
     status.target.error = 0.01;
