@@ -13,10 +13,11 @@ scene long "$world" 200 150 100000
 
 # serve arguments...: starts the program; its page's address is in $url, its process in $!.
 serve() {
+    rm -f view.out view.err # the address of the server before must not be taken for this one's
     "$montelux" "$@" >view.out 2>view.err </dev/null &
     server=$!
     for _ in $(seq 200); do
-        url=$(sed -n 's/^The render is shown at //p' view.err)
+        url=$(sed -n 's/^The render is shown at //p' view.err 2>/dev/null)
         [ -n "$url" ] && return
         sleep 0.05
     done
