@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo lab docs build test test-all test-view test-peers fuzz bench bench-integrate bench-hard bench-render lint format install dependencies clean
+.PHONY: help demo lab docs build test test-all test-view test-peers test-packages packages wheels fuzz bench bench-integrate bench-hard bench-render lint format install dependencies clean
 
 JOBS ?= $(shell cmake/jobs.sh)
 BUILD := build/release
@@ -117,6 +117,23 @@ format: ## rewrite the sources in the house format
 install: build ## headers, libraries and program (PREFIX=/usr/local)
 	cmake --build $(BUILD) --parallel $(JOBS)
 	cmake --install $(BUILD) --prefix $(or $(PREFIX),/usr/local)
+
+PACKAGES := build/packages
+packages: dependencies ## the Debian packages montelux, libmontelux-dev and python3-montelux, at build/packages (see docs/install.md)
+	cmake/install-dependencies.sh packages
+	cmake --preset packages
+	cmake --build $(PACKAGES) --parallel $(JOBS)
+	cmake --build $(PACKAGES) --parallel $(JOBS) --target montelux_python_stub
+	rm -f $(PACKAGES)/*.deb
+	cd $(PACKAGES) && cpack
+	lintian --fail-on error,warning $(PACKAGES)/*.deb
+
+wheels: dependencies ## wheels for Python with all libraries inside, at build/wheels
+	packaging/wheels.sh
+
+test-packages: packages wheels ## installs both on a bare Debian 12, and uses them (root, network)
+	cmake/install-dependencies.sh packages
+	packaging/chroot_test.sh build/wheels $(PACKAGES) build/chroot
 
 dependencies: ## install the missing Debian packages (with sudo when not root)
 	@cmake/install-dependencies.sh build

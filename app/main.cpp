@@ -1,13 +1,16 @@
 #include "app/commands.h"
+#include "app/completion.h"
 #include "app/integrate/integrate_options.h"
 #include "app/joined.h"
 #include "app/usage_error.h"
+#include "app/version_text.h"
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <fcntl.h>
 #include <new>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unistd.h>
@@ -15,13 +18,10 @@
 #include <vector>
 #ifdef MONTELUX_WITH_RENDER
 #include "app/cluster_job.h"
-
-#include "montelux/cluster/communicator.h"
 #endif
 
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/nearest_name.h"
-#include "montelux/mc/math/processor.h"
 
 namespace {
 
@@ -38,16 +38,6 @@ void occupy_standard_streams() {
 #ifdef MONTELUX_WITH_RENDER
 bool can_be_shared(std::string_view command) { return command == "render" || command == "integrate"; }
 #endif
-
-std::string version() {
-    std::string text = "montelux " MONTELUX_VERSION;
-    if (const std::string level = montelux::compiled_processor_level(); !level.empty())
-        text += ", for " + level;
-#ifdef MONTELUX_WITH_RENDER
-    if (const std::string mpi = montelux::mpi_version(); !mpi.empty()) text += ", with MPI (" + mpi + ")";
-#endif
-    return text;
-}
 
 // Prints the error. Only rank 0 of a job prints, so the others wait for it to end first.
 int give_up(const std::string& message, int exit_code) {
@@ -121,8 +111,24 @@ int run(int argc, char** argv) {
     int exit_code = exit_done;
     try {
         CLI::App app("Montelux: Monte Carlo integration and light transport", "montelux");
-        app.set_version_flag("--version", version());
+        app.set_version_flag("--version", version_text);
         app.require_subcommand(1);
+        add_integrate(app, exit_code);
+        add_sample(app, exit_code);
+#ifdef MONTELUX_WITH_RENDER
+        add_render(app, exit_code);
+        add_view(app, exit_code);
+        add_merge(app, exit_code);
+        add_compare(app, exit_code);
+        add_denoise(app, exit_code);
+        add_bake(app, exit_code);
+        add_convert(app, exit_code);
+        add_info(app, exit_code);
+        add_formats(app, exit_code);
+#endif
+        add_completion(app, exit_code);
+        add_manual(app, exit_code);
+        // After the commands, which would inherit it.
         app.footer("Examples:\n"
                    "  montelux integrate 'sin(x)*y' --over x=0:pi/2 --over y=0:1 --relative-error 1e-4\n"
                    "  montelux sample --set sobol --n 1024 --dim 2 -o points.csv\n"
@@ -137,19 +143,11 @@ int run(int argc, char** argv) {
                    "'montelux COMMAND --help' lists a command's options.\n"
                    "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 stopped before the target error,\n"
                    "130 interrupted (the result so far is saved).");
-        add_integrate(app, exit_code);
-        add_sample(app, exit_code);
-#ifdef MONTELUX_WITH_RENDER
-        add_render(app, exit_code);
-        add_view(app, exit_code);
-        add_merge(app, exit_code);
-        add_compare(app, exit_code);
-        add_denoise(app, exit_code);
-        add_bake(app, exit_code);
-        add_convert(app, exit_code);
-        add_info(app, exit_code);
-        add_formats(app, exit_code);
-#endif
+        const std::span<const char* const> words(argv, argv + argc);
+        if (argc > 2 && std::string_view(argv[1]) == "completion" && std::string_view(argv[2]) == "--words") {
+            std::fputs(completions(app, words.subspan(3)).c_str(), stdout);
+            return exit_done;
+        }
         try {
             parse(app, argc, argv);
         } catch (const CLI::Success& e) { // asking for help or the version

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs the Debian packages that are missing, and only those; as root, or with sudo.
-# Usage: install-dependencies.sh [build|bench|bench-render|browser|docs|fuzz|lint] [--dry-run]
+# Usage: install-dependencies.sh [build|bench|bench-render|browser|docs|fuzz|lint|packages] [--dry-run]
 set -eu
 
 # docs/dependencies.md says what each is for.
@@ -18,8 +18,9 @@ for argument in "$@"; do
     docs) packages="$packages doxygen" ;;
     fuzz) packages="$packages clang libclang-rt-14-dev" ;;
     lint) packages="$packages clang-format clang-tidy" ;;
+    packages) packages="$packages dpkg-dev file gzip lintian debootstrap" ;;
     --dry-run) dry_run=yes ;;
-    *) echo "install-dependencies.sh: unknown argument '$argument' (expected build, bench, bench-render, browser, docs, fuzz, lint or --dry-run)" >&2
+    *) echo "install-dependencies.sh: unknown argument '$argument' (expected build, bench, bench-render, browser, docs, fuzz, lint, packages or --dry-run)" >&2
        exit 2 ;;
     esac
 done

@@ -18,7 +18,7 @@ if command -v qemu-x86_64 >/dev/null && "$montelux" --version | grep -q 'x86-64-
 fi
 for command in integrate sample render info compare; do expect 0 "Example" $command --help; done
 expect 0 "--max-depth N" render --help
-expect 2 "a command is expected: integrate, sample, render, view, merge, compare, denoise, bake, convert, info, formats" # no arguments
+expect 2 "a command is expected: integrate, sample, render, view, merge, compare, denoise, bake, convert, info, formats, completion, manual" # no arguments
 expect 2 "there is no command 'rendr' (did you mean 'render'?)" rendr
 expect 2 "there is no bake command 'skye' (did you mean 'sky'?); expected one of environment" bake skye
 expect 2 "a bake command is expected: environment, brdf, report, sky" bake

