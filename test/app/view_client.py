@@ -1,6 +1,6 @@
 """A client of the viewer by the standard library alone, and a stand-in for tev; used by view_test.sh.
 
-Usage: view_client.py URL SCRIPT [FILE]   SCRIPT: final, controls, orbit, lights, hostile
+Usage: view_client.py URL SCRIPT [FILE or COUNT]   SCRIPT: final, controls, orbit, lights, hostile
        view_client.py tev PORT FILE.npz-free text summary
 """
 
@@ -198,29 +198,34 @@ def lights(viewer, path):
     viewer.ask(type="show", layers=["mean"] + names)
     picture, state = Picture(second), None
     indices = [[layer["name"] for layer in second["layers"]].index(name) for name in names]
+
+    def disagreement():
+        for place, mean in picture.layers[0].items():
+            for c in range(3):
+                total = sum(picture.layers[i][place][c] for i in indices if place in picture.layers[i])
+                if abs(total - mean[c]) > 4e-3 * abs(mean[c]) + 1e-4:
+                    return place, total, mean
+        return None if len(picture.layers[0]) == second["width"] * second["height"] else "tiles are missing"
+
     deadline = time.monotonic() + 60
-    while time.monotonic() < deadline:
+    while state != "ended" or disagreement():  # until the last tiles
+        assert time.monotonic() < deadline, disagreement()
         message = viewer.message()
         if isinstance(message, bytes):
             picture.add(message)
         elif message["type"] == "progress":
             state = message["state"]
-        if state == "ended" and all(picture.layers[i] for i in indices):
-            break
-    for place, mean in picture.layers[0].items():
-        for c in range(3):
-            total = sum(picture.layers[i][place][c] for i in indices)
-            assert abs(total - mean[c]) <= 4e-3 * abs(mean[c]) + 1e-4, (place, total, mean)
     print("ok")
 
 
-def hostile(viewer, path):
-    """Attacks for some seconds; then one page is served as if nothing were."""
+def hostile(viewer, count):
+    """Attacks by `count` connections, by default 10,000; then one page is served as if nothing were."""
+    count = int(count or 10000)
     address = (viewer.host, viewer.port)
     host = f"Host: {viewer.host}:{viewer.port}\r\n"
     silent, opened = [], 0
-    end = time.monotonic() + 6
-    while time.monotonic() < end or opened < 10000:
+    end = time.monotonic() + 6e-4 * count
+    while time.monotonic() < end or opened < count:
         try:
             s = socket.create_connection(address, timeout=5)
             opened += 1

@@ -33,13 +33,13 @@ watch() {
     timeout 120 python3 "$client" "$url" "$@" >client.out 2>&1 || fail "$*: $(cat client.out view.err)"
 }
 
-# same_as_plain FILE: all layers have the bits of plain.exr.
-same_as_plain() {
+# same FILE PLAIN: all layers have the same bits.
+same() {
     for layer in mean error skewness albedo normal depth samples replicates outlier warning; do
-        for picture in "$1" plain.exr; do
-            "$montelux" convert $picture $picture.pfm --layer $layer >out 2>&1 || fail "layer '$layer': $(cat out)"
+        for picture in "$1" "$2"; do
+            "$montelux" convert "$picture" "$picture.pfm" --layer $layer >out 2>&1 || fail "layer '$layer': $(cat out)"
         done
-        cmp -s "$1.pfm" plain.exr.pfm || fail "$1: layer '$layer' is not that of plain.exr"
+        cmp -s "$1.pfm" "$2.pfm" || fail "$1: layer '$layer' is not that of $2"
     done
 }
 
@@ -50,7 +50,7 @@ watch final page.exr
 kill -INT $server
 ends 0
 for file in watched.exr page.exr; do
-    same_as_plain $file
+    same $file plain.exr
 done
 case $url in
 http://127.0.0.1:*/\?token=????????????????????????????????) ;;
@@ -78,6 +78,15 @@ after=$(awk '/VmRSS/ { print $2 }' /proc/$server/status)
 ends 0
 grep -q '16\.[0-9]* s' view.out || fail "--time 16 became: $(cat view.out)"
 
+# They change no bit of the picture.
+"$montelux" render lit.pbrt --spp 1500 --quiet -o unseen.exr
+serve view lit.pbrt --spp 1500 -o attacked.exr
+watch hostile 1000
+watch final page.exr # waits for the end
+kill -INT $server
+ends 0
+same attacked.exr unseen.exr
+
 # tev: all pixels arrive, closed and created first.
 port=$((20000 + $$ % 20000))
 timeout 60 python3 "$client" tev $port >tev.out 2>&1 &
@@ -86,7 +95,7 @@ for _ in $(seq 100); do grep -q listening tev.out && break || sleep 0.05; done
 "$montelux" render lit.pbrt --tev 127.0.0.1:$port --quiet -o tev.exr || fail "render --tev"
 wait $tev || fail "tev: $(cat tev.out)"
 grep -q "^\[2, 4\] (70, 50, 'R,G,B,error.Y') 14000 finite=True" tev.out || fail "tev got: $(cat tev.out)"
-same_as_plain tev.exr
+same tev.exr plain.exr
 
 # Mistakes.
 expect 1 'nothing listens on 127.0.0.1:1' render lit.pbrt --tev 127.0.0.1:1 -o x.exr
