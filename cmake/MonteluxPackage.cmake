@@ -1,6 +1,10 @@
 # The Debian packages montelux, libmontelux-dev and python3-montelux, by CPack: `make packages`. docs/install.md.
-set(MONTELUX_MAINTAINER "The Montelux authors <maintainers@montelux.org>" CACHE STRING
-    "Who answers for the Debian packages: NAME <ADDRESS>")
+# Who answers for them: as for Debian's own tools.
+set(maintainer "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
+if("$ENV{DEBEMAIL}" STREQUAL "")
+    set(maintainer "Nobody <nobody@montelux.invalid>")
+endif()
+set(MONTELUX_MAINTAINER "${maintainer}" CACHE STRING "Of the Debian packages: NAME <ADDRESS>")
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME montelux)
@@ -14,7 +18,7 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
     WORLD_READ WORLD_EXECUTE)
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER ${MONTELUX_MAINTAINER})
-set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 0montelux1)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
@@ -43,8 +47,8 @@ macro(debian_package group component name section depends holds)
         install(FILES ${source} DESTINATION share/doc/${name} RENAME ${installed} COMPONENT ${component})
     endforeach()
 endmacro()
-file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/debian)
-execute_process(COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/packaging/debian/changelog
+configure_file(packaging/debian/changelog.in debian/changelog @ONLY)
+execute_process(COMMAND gzip -9nc ${PROJECT_BINARY_DIR}/debian/changelog
     OUTPUT_FILE ${PROJECT_BINARY_DIR}/debian/changelog.Debian.gz COMMAND_ERROR_IS_FATAL ANY)
 
 debian_package(APP app montelux graphics "" "This package holds the program.")
@@ -65,11 +69,20 @@ debian_package(DEVELOPMENT mc libmontelux-dev libdevel "${development}"
 if(TARGET montelux_python)
     set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/debian/postinst
         ${PROJECT_SOURCE_DIR}/packaging/debian/prerm)
-    math(EXPR next "${Python_VERSION_MINOR} + 1")
+    math(EXPR next "${MONTELUX_PYTHON_MINOR} + 1")
     debian_package(PYTHON python python3-montelux python
-        "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy (>= 1:1.22)"
+        "python3 (>= 3.${MONTELUX_PYTHON_MINOR}), python3 (<< 3.${next}), python3-numpy (>= 1:1.22), python3-numpy-abi9"
         "This package holds the module for Python.")
 endif()
+
+# As debhelper does: objects of link-time optimisation serve one version of the compiler only, and are most of the size.
+foreach(library ${libraries})
+    string(REPLACE "montelux_" "" component ${library})
+    install(CODE "execute_process(COMMAND ${CMAKE_STRIP} --strip-debug --enable-deterministic-archives -R .comment
+        -R .gnu.lto_* -R .gnu.debuglto_* -N __gnu_lto_slim -N __gnu_lto_v1
+        \$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/lib${library}.a COMMAND_ERROR_IS_FATAL ANY)"
+        COMPONENT ${component})
+endforeach()
 
 include(CPack)
 foreach(component mc render cluster view)
