@@ -173,7 +173,7 @@ void add_ground(SceneBuilder& builder, const Bounds3& bounds, const OrbitFrame& 
     builder.add_shape(disk, settings);
 }
 
-// The axis of the world that is nearest to a camera's y axis, for scenes with a camera of their own.
+// The axis of the world that is nearest to a camera's y axis, for scenes whose format has no up.
 Vec3d up_axis_of(const CameraSettings& camera) {
     const Vec3d y = camera.world_from_camera.vector(Vec3d(0, 1, 0));
     int axis = 0;
@@ -185,7 +185,7 @@ Vec3d up_axis_of(const CameraSettings& camera) {
 }
 
 OrbitFrame orbit_frame_of(const SceneDescription& d) {
-    if (!d.has_camera) return OrbitFrame::of(Vec3d(d.up));
+    if (d.wants_studio || !d.has_camera) return OrbitFrame::of(Vec3d(d.up));
     return OrbitFrame::of(up_axis_of(d.scene.camera), !d.scene.camera.world_from_camera.swaps_handedness());
 }
 

@@ -91,7 +91,7 @@ struct SceneDescription {
         true; // false: the file has none, or only surfaces that glow without being meant as lamps
     // Of models rather than scenes: what the file lacks is added by a studio (formats/studio.h).
     bool wants_studio = false;
-    Vec3f up{0, 1, 0}; // of a scene without a camera; a unit vector along an axis
+    Vec3f up{0, 1, 0}; // of a model, or of a scene without a camera; a unit vector along an axis
     // Of a scene loaded at a time of its animations: the time of their last key, seconds; 0: it has none.
     double animation_end = 0;
 };

@@ -285,6 +285,22 @@ TEST_F(Studio, EnvironmentsStandUpright) {
     EXPECT_GT(seen({32, 0.5f}).y, 0.99);
 }
 
+// glTF says what is up, so a camera that looks straight down turns no map.
+TEST_F(Studio, EnvironmentsOfModelsDoNotFollowTheirCameras) {
+    write_image(folder_ / "map.exr", Image(64, 32, {"R", "G", "B"}));
+    const StudioSettings settings{.environment = (folder_ / "map.exr").string()};
+    const auto place = [&](const SceneDescription& d) {
+        return std::get<ImageInfiniteLight>(d.scene.lights[0]).world_from_light;
+    };
+    SceneDescription without = model(), with = model();
+    with.has_camera = true;
+    with.scene.camera.world_from_camera = *Transform::look_at({0, 9, 0}, {0, 0, 0}, {0, 0, -1});
+    add(without, settings);
+    add(with, settings);
+    for (const Vec3d axis : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}})
+        EXPECT_EQ(place(with).vector(axis), place(without).vector(axis));
+}
+
 TEST_F(Studio, MistakesAreSentences) {
     const std::string bad = folder_.write("bad.exr", "no picture").string();
     Image map(4, 3, {"R", "G", "B"});

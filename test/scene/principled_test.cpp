@@ -172,6 +172,22 @@ TEST(Principled, BaseLiesBelowTheCoat) {
         [](Vec3f v, Vec3f l) { return schlick(v, l, 0.04) * ggx_specular(v, l, 0.25, 0.25); }, 0.8, 0.07);
 }
 
+TEST(Principled, GrazingLightIsNeverNegative) {
+    for (const float coat_roughness : {0.0f, 0.2f, 1.0f}) {
+        const Bsdf bsdf = principled(Principled{.base_color = {0.9f},
+                                                .roughness = {0.6f},
+                                                .clearcoat = {1},
+                                                .clearcoat_roughness = {coat_roughness},
+                                                .sheen_color = {1}});
+        for (int i = 0; i < 4000; ++i) {
+            const float z = std::pow(10.0f, -7.0f * static_cast<float>(i) / 4000);
+            const Vec3f wi{-std::sqrt(1 - z * z), 0, z}, wo{0.6f, 0, 0.8f};
+            EXPECT_GE(min_value(bsdf_value(bsdf, wo, wi)), 0) << z;
+            EXPECT_GE(min_value(bsdf_value(bsdf, wi, wo)), 0) << z;
+        }
+    }
+}
+
 TEST(Principled, BaseLiesBelowTheSheen) {
     expect_base_below(
         principled(Principled{

@@ -11,7 +11,7 @@ from mathutils import Matrix
 
 from ..run.command import Film
 from .errors import ExportError
-from .space import GLTF_FROM_BLENDER, node_matrix, without_scale
+from .space import node_matrix, without_scale
 
 NAME = "montelux camera"
 
@@ -25,12 +25,6 @@ class Camera:
 
     def node(self, index: int) -> dict:
         return {"name": self.name, "camera": index, "matrix": node_matrix(self.matrix)}
-
-    @property
-    def up(self) -> tuple[float, float, float]:
-        """The camera's y axis in glTF's world."""
-        axis = (GLTF_FROM_BLENDER @ self.matrix).col[1]
-        return axis[0], axis[1], axis[2]
 
 
 @dataclass(frozen=True)

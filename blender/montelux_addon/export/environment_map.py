@@ -12,6 +12,8 @@ CONSTANT_SIZE = (4, 8)  # of the map of a plain colour
 
 # Blender's axes in glTF's world: x, y, z there are x, -z, y here.
 BLENDER_FROM_GLTF = np.array([(1, 0, 0), (0, 0, -1), (0, 1, 0)], float)
+# Columns: the x, y and z axes of the program's map in glTF's world (docs/meshes.md).
+GLTF_FROM_MAP = np.array([(0, -1, 0), (0, 0, 1), (1, 0, 0)], float)
 
 
 @dataclass(frozen=True)
@@ -32,28 +34,14 @@ class World:
         return self.strength <= 0 or not np.any(self.texels > 0)
 
 
-def map_axes(camera_up: tuple[float, float, float]) -> np.ndarray:
-    """Columns: the x, y and z axes of the program's map in glTF's world.
-
-    The program lets a map stand upright for the camera: its pole is the axis of the world that is nearest to the
-    camera's y axis (docs/meshes.md), so a camera that looks straight down would turn the World.
-    """
-    y = np.asarray(camera_up, float)
-    axis = int(np.argmax(np.abs(y)))
-    up = np.zeros(3)
-    up[axis] = -1 if y[axis] < 0 else 1
-    front = np.array((0, -1, 0) if axis == 2 else (0, 0, 1), float)
-    return np.stack([front, -np.cross(up, front), up], axis=1)
-
-
-def environment_map(world: World, camera_up: tuple[float, float, float]) -> np.ndarray:
+def environment_map(world: World) -> np.ndarray:
     """Texels of the map, rows from the top, twice as wide as high."""
     height = world.texels.shape[0]
     if world.texels.shape[:2] == (1, 1):
         return np.broadcast_to(world.texels[0, 0] * world.strength, (*CONSTANT_SIZE, 3)).astype(np.float32)
     width = 2 * height
     azimuth = 2 * np.pi * (np.arange(width) + 0.5) / width
-    to_blender = BLENDER_FROM_GLTF @ map_axes(camera_up)
+    to_blender = BLENDER_FROM_GLTF @ GLTF_FROM_MAP
     picture = np.empty((height, width, 3), np.float32)
     rows_at_once = max(1, (1 << 20) // width)
     for first in range(0, height, rows_at_once):

@@ -65,5 +65,5 @@ def _lights_of(depsgraph: bpy.types.Depsgraph, warnings: list[str]) -> list[Punc
 def _write_world(world: World | None, camera: Camera, path: Path) -> Path | None:
     if world is None or world.is_dark:
         return None
-    write_pfm(path, environment_map(world, camera.up))
+    write_pfm(path, environment_map(world))
     return path
