@@ -16,12 +16,22 @@ std::string_view component_of(std::string_view channel) {
     return dot == std::string_view::npos ? std::string_view() : channel.substr(dot + 1);
 }
 
+// Names of --layers for what EXR files abbreviate.
+std::string_view full_name(std::string_view layer) {
+    constexpr std::pair<std::string_view, std::string_view> names[]{
+        {"N", "normal"}, {"Ng", "geometric-normal"}, {"P", "position"}, {"A", "alpha"}};
+    for (const auto& [short_name, name] : names)
+        if (layer == short_name) return name;
+    return layer;
+}
+
 // A Cryptomatte is shown by the id that covers most of each pixel, the first channel of its first layer.
 bool is_matte(std::string_view layer) { return layer.starts_with("Crypto"); }
 bool is_first_matte(std::string_view layer) { return is_matte(layer) && layer.ends_with("00"); }
 
 ViewLayer layer(std::string_view name, std::vector<std::string> channels) {
-    ViewLayer made{std::string(name), "scalar", static_cast<int>(channels.size()), true, std::move(channels)};
+    ViewLayer made{std::string(full_name(name)), "scalar", static_cast<int>(channels.size()), true,
+                   std::move(channels)};
     const std::string_view first = component_of(made.of.front());
     if (is_first_matte(name)) {
         made.of.resize(1);
