@@ -15,22 +15,26 @@ if ! [ -e "$root/bare" ]; then # a bare system is made once and copied for each 
     mv "$root/new" "$root/bare"
 fi
 
-# The network as it is here: names, mirrors, certificates and settings of pip.
+# The network as it is here: names, mirrors, certificates, pip's index.
 connect() {
     local file
-    for file in /etc/resolv.conf /etc/hosts /etc/apt/sources.list /etc/apt/sources.list.d /etc/apt/apt.conf.d /etc/pip.conf \
-        /etc/ssl/certs/ca-certificates.crt; do
+    rm -f "$1/etc/apt/sources.list"
+    for file in /etc/resolv.conf /etc/hosts /etc/apt/sources.list /etc/apt/sources.list.d /etc/apt/apt.conf.d /etc/pip.conf; do
         [ -e "$file" ] || continue
         mkdir -p "$1$(dirname "$file")"
         rm -rf "${1:?}$file"
         cp -rL "$file" "$1$file"
     done
+    echo 'Dpkg::Use-Pty "0";' >"$1/etc/apt/apt.conf.d/99-no-terminal"
+    cp -L /etc/ssl/certs/ca-certificates.crt "$1/certificates.crt" 2>/dev/null || true
 }
 enter() {
     local system=$1
     shift
-    env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
-        $(env | grep -iE '^(https?_proxy|no_proxy|pip_[a-z_]*|ssl_cert_file|requests_ca_bundle)=' || true) \
+    local certificates=()
+    [ -e "$system/certificates.crt" ] && certificates=({SSL_CERT_FILE,PIP_CERT,REQUESTS_CA_BUNDLE}=/certificates.crt)
+    env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "${certificates[@]}" \
+        $(env | grep -iE '^(https?_proxy|no_proxy|pip_(extra_)?index_url)=' || true) \
         unshare --mount --pid --fork --kill-child chroot "$system" sh -c 'mount -t proc proc /proc && exec "$@"' sh "$@"
 }
 fresh() {
