@@ -5,7 +5,7 @@ apt-get -qq install --no-install-recommends python3-venv >/dev/null
 python3 -m venv /environment
 # By pip's own choice among the wheels: a wrong tag is refused.
 /environment/bin/python -m pip install --quiet --disable-pip-version-check --find-links . --only-binary montelux 'montelux[test]'
-/environment/bin/python -m pip show montelux | head -2
+/environment/bin/python -m pip show montelux | sed -n '1,2p'
 mkdir /use
 cd /use
 ln -s /montelux/scenes scenes
