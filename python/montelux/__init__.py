@@ -91,11 +91,13 @@ from ._filters import pixel_filter
 from ._integrate import METHODS, integrate, integrate_log, train_map
 from ._names import UnknownAttribute, strict
 from ._picture import Picture
+from ._propagation import PropagationWarning
 from ._render import Progress, Render, View
 from ._result import History, LogResult, Result
 from ._scene import Scene, load, parse
+from ._uncertain import Uncertain, covariance, propagate
 
-from . import bake, warp
+from . import _pickling, bake, warp
 
 __all__ = [
     "__version__",
@@ -115,6 +117,7 @@ __all__ = [
     "Comparison",
     "Conductor",
     "ControlVariate",
+    "covariance",
     "Cubature",
     "Dielectric",
     "Diffuse",
@@ -163,6 +166,8 @@ __all__ = [
     "points",
     "Progress",
     "ProjectionLight",
+    "propagate",
+    "PropagationWarning",
     "Quasi",
     "read_channels",
     "RealisticCamera",
@@ -188,6 +193,7 @@ __all__ = [
     "train_map",
     "TrapezoidRule",
     "TriangleFilter",
+    "Uncertain",
     "UniformInfiniteLight",
     "UnknownAttribute",
     "Vegas",

@@ -157,7 +157,7 @@ def integrate(
     checkpoint: a file that keeps the running state, written every `checkpoint_every` seconds and at the end;
     with `resume` the run continues from it, to the digits of an uninterrupted one.
     """
-    return _run(
+    result: Result = _run(
         _core.integrate,
         f,
         domain,
@@ -180,6 +180,7 @@ def integrate(
         resume=resume,
         made=from_core,
     )
+    return result
 
 
 def integrate_log(
@@ -212,7 +213,7 @@ def integrate_log(
     """
     if "absolute_error" in settings:
         raise Error("integrate_log: an absolute_error was given; expected relative_error, which is the error of log Z")
-    return _run(
+    result: LogResult = _run(
         _core.integrate_log,
         log_f,
         domain,
@@ -235,6 +236,7 @@ def integrate_log(
         resume=resume,
         made=log_from_core,
     )
+    return result
 
 
 def _run(
@@ -259,7 +261,7 @@ def _run(
     checkpoint: str | os.PathLike[str] | None,
     checkpoint_every: float,
     resume: bool,
-    made: Callable[[Any, bool], Any],
+    made: Callable[[Any, bool, int], Any],
 ) -> Any:
     """Checks the arguments, calls the library, and makes of its result what `made` does."""
     region = as_domain(domain)
@@ -293,7 +295,7 @@ def _run(
     report = None
     vector = components > 0
     if watch:
-        report = lambda r: watch(from_core(r, vector))  # noqa: E731
+        report = lambda r: watch(from_core(r, vector, int(seed)))  # noqa: E731
     try:
         result = call(
             function,
@@ -317,7 +319,7 @@ def _run(
     finally:
         if isinstance(watch, IntegrationProgress):
             watch.finish()
-    return made(result, vector)
+    return made(result, vector, int(seed))
 
 
 _ARGUMENTS = {

@@ -273,5 +273,5 @@ VALUES = (
     _core.Occlusion,
 )
 for _kind in VALUES:
-    _kind.__repr__ = _represent  # type: ignore[method-assign]
+    setattr(_kind, "__repr__", _represent)
 strict(*VALUES, _core.Shape, _core.Shapes, _core.Materials, _core.Lights, Scene)

@@ -133,7 +133,7 @@ void bind_families(nb::class_<Distribution>& c) {
 
 void bind_distributions(nb::module_& m) {
     nb::class_<Distribution> c(
-        m, "Distribution",
+        m, "Distribution", nb::dynamic_attr(),
         "A random variable of one real number.\n\n"
         "pdf, cdf, quantile and sample take a number or an array of any shape, and give "
         "the same shape. Nothing of it ever changes.");

@@ -75,7 +75,7 @@ nb::tuple map_points(const Domain& domain, const nb::object& u) {
 } // namespace
 
 void bind_domains(nb::module_& m) {
-    nb::class_<Domain>(m, "Domain",
+    nb::class_<Domain>(m, "Domain", nb::dynamic_attr(),
                        "A region of integration, as a map from the unit cube onto it.\n\n"
                        "Where a Domain is expected, a sequence of ranges (lower, upper), one per variable, "
                        "means a box.")

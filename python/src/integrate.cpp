@@ -98,9 +98,6 @@ void bind_integrate(nb::module_& m) {
         .def_ro("warnings", &IntegrationResult::warnings)
         .def_ro("checkpoint_refused_because", &IntegrationResult::checkpoint_refused_because)
         .def_ro("seconds", &IntegrationResult::seconds)
-        .def(
-            "concise", [](const IntegrationResult& r, int c) { return to_string(r.estimate(c)); },
-            "component"_a)
         .def("__str__", [](const IntegrationResult& r) { return to_string(r); });
 
     nb::class_<LogIntegrationResult>(m, "LogIntegrationResult",
@@ -111,6 +108,12 @@ void bind_integrate(nb::module_& m) {
         .def_ro("relative", &LogIntegrationResult::relative)
         .def("__str__", &text_of);
 
+    m.def(
+        "concise",
+        [](double value, double error) {
+            return to_string(Estimate{value, error});
+        },
+        "value"_a, "standard_error"_a, "1.2345(67): the error in units of the last digits.");
     bind_call(
         m, "integrate",
         "montelux.integrate, with everything decided. components 0: one value per point, as shape (n,).",

@@ -2,6 +2,7 @@
 #include "python/src/names.h"
 #include "python/src/numpy_bridge.h"
 #include "python/src/python_function.h"
+#include "python/src/recipe.h"
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,9 +27,9 @@ namespace montelux::python {
 namespace {
 
 // A class of settings, each with its default; `_method` is the Method for integrate().
-template <typename S>
-nb::class_<S> method_class(nb::module_& m, const char* name, const char* doc) {
-    nb::class_<S> c(m, name, doc);
+template <typename S, typename... Extra>
+nb::class_<S> method_class(nb::module_& m, const char* name, const char* doc, const Extra&... extra) {
+    nb::class_<S> c(m, name, doc, extra...);
     c.def("_method", [](const S& settings) { return Method(settings); });
     c.attr("name") = nb::str(S::name.data(), S::name.size());
     return c;
@@ -214,15 +215,26 @@ void bind_sampling(nb::module_& m) {
         .def_rw("pilot", &Metropolis::pilot, "Uniform points among which the starts are chosen.");
 }
 
+// A Technique itself, or one of distributions, as an object of Python.
+nb::object technique_of(const nb::object& given) {
+    return nb::isinstance<Technique>(given) ? given : nb::type<Technique>()(given);
+}
+
 void bind_densities(nb::module_& m) {
     method_class<Importance>(m, "Importance",
-                             "Importance sampling: the mean of f / p over points of density p.")
+                             "Importance sampling: the mean of f / p over points of density p.",
+                             nb::dynamic_attr())
         .def(
             "__init__",
-            [](Importance* s, Technique technique, const std::string& points, bool probes) {
-                new (s) Importance{std::move(technique), importance_points.value(points), probes};
+            [](nb::pointer_and_handle<Importance> self, const nb::object& technique,
+               const std::string& points, bool probes) {
+                const nb::object t = technique_of(technique);
+                new (self.p) Importance{nb::cast<Technique>(t), importance_points.value(points), probes};
+                note_recipe(self.h, nb::make_tuple(t));
             },
-            "technique"_a, nb::kw_only(), "points"_a = "random", "probes"_a = true)
+            "technique"_a, nb::kw_only(), "points"_a = "random", "probes"_a = true,
+            nb::sig("def __init__(self, technique: Technique | Distribution | Sequence[Distribution], *, "
+                    "points: str = 'random', probes: bool = True) -> None"))
         .def_prop_rw(
             "points", [](const Importance& s) { return importance_points.name(s.points); },
             [](Importance& s, const std::string& name) { s.points = importance_points.value(name); },
@@ -232,23 +244,31 @@ void bind_densities(nb::module_& m) {
     method_class<MultipleImportance>(
         m, "MultipleImportance",
         "Multiple importance sampling (Veach 1997): several techniques, combined by "
-        "weights.")
+        "weights.",
+        nb::dynamic_attr())
         .def(
             "__init__",
-            [](MultipleImportance* s, const std::vector<nb::object>& techniques, const std::string& weights,
-               std::optional<double> parameter, bool probes) {
+            [](nb::pointer_and_handle<MultipleImportance> self, const std::vector<nb::object>& techniques,
+               const std::string& weights, std::optional<double> parameter, bool probes) {
                 MultipleImportance settings;
+                nb::list pairs;
                 for (const nb::object& t : techniques) {
                     const bool pair = nb::isinstance<nb::tuple>(t);
-                    settings.techniques.push_back({nb::cast<Technique>(pair ? nb::object(t[0]) : t),
-                                                   pair ? nb::cast<std::uint64_t>(t[1]) : 1});
+                    const nb::object technique = technique_of(pair ? nb::object(t[0]) : t);
+                    const std::uint64_t samples = pair ? nb::cast<std::uint64_t>(t[1]) : 1;
+                    settings.techniques.push_back({nb::cast<Technique>(technique), samples});
+                    pairs.append(nb::make_tuple(technique, samples));
                 }
                 if (weights == "optimal")
                     settings.weights = OptimalWeights{};
                 else
                     settings.weights = heuristic_of(weights, parameter);
                 settings.probes = probes;
-                new (s) MultipleImportance(std::move(settings));
+                new (self.p) MultipleImportance(std::move(settings));
+                nb::dict named;
+                named["weights"] = weights;
+                named["parameter"] = parameter;
+                note_recipe(self.h, nb::make_tuple(nb::tuple(pairs)), named);
             },
             "techniques"_a, nb::kw_only(), "weights"_a = "balance", "parameter"_a = nb::none(),
             "probes"_a = true,
@@ -262,13 +282,18 @@ void bind_densities(nb::module_& m) {
     method_class<ControlVariate>(
         m, "ControlVariate",
         "Control variates: functions with known integrals take away the variance that "
-        "they explain.")
+        "they explain.",
+        nb::dynamic_attr())
         .def(
             "__init__",
-            [](ControlVariate* s, nb::object controls, std::vector<double> integrals, int components) {
-                new (s) ControlVariate{
-                    integrand_of(PythonFunction(std::move(controls), "controls"), components, false),
-                    std::move(integrals)};
+            [](nb::pointer_and_handle<ControlVariate> self, const nb::object& controls,
+               std::vector<double> integrals, int components) {
+                new (self.p)
+                    ControlVariate{integrand_of(PythonFunction(controls, "controls"), components, false),
+                                   std::move(integrals)};
+                nb::dict named;
+                named["components"] = components;
+                note_recipe(self.h, nb::make_tuple(controls), named);
             },
             "controls"_a, "integrals"_a, nb::kw_only(), "components"_a = 0,
             "controls: a batch function as an integrand is; one control as shape (n,), m of them "

@@ -1,3 +1,4 @@
+#include "python/src/recipe.h"
 #include "python/src/warp.h"
 #include <array>
 #include <cmath>
@@ -46,15 +47,17 @@ constexpr const char* sample_signature = "def sample(self, u: object) -> object"
 
 void bind_discrete(nb::module_& m) {
     nb::class_<DiscreteDistribution>(
-        m, "Discrete",
+        m, "Discrete", nb::dynamic_attr(),
         "A variable with the values 0, 1, ... n - 1, drawn by inversion of its cumulative sum.\n\n"
         "Discrete(weights): probabilities in proportion to weights of shape (n,), which are not negative; "
         "all "
         "zero: uniform.")
         .def(
             "__init__",
-            [](DiscreteDistribution* self, const nb::object& weights) {
-                new (self) DiscreteDistribution(weights_of(weights, "Discrete").values);
+            [](nb::pointer_and_handle<DiscreteDistribution> self, const nb::object& weights) {
+                const Numbers given = weights_of(weights, "Discrete");
+                new (self.p) DiscreteDistribution(given.values);
+                note_recipe(self.h, nb::make_tuple(new_array(given.values)));
             },
             "weights"_a)
         .def(
@@ -90,13 +93,15 @@ void bind_discrete(nb::module_& m) {
             return nb::str(("<montelux.Discrete of " + std::to_string(d.size()) + " values>").c_str());
         });
     nb::class_<AliasTable>(
-        m, "AliasTable",
+        m, "AliasTable", nb::dynamic_attr(),
         "A variable with the values 0, 1, ... n - 1, drawn in constant time (Walker 1974, Vose 1991).\n\n"
         "AliasTable(weights): as Discrete. Probabilities are kept in single precision.")
         .def(
             "__init__",
-            [](AliasTable* self, const nb::object& weights) {
-                new (self) AliasTable(weights_of(weights, "AliasTable").values);
+            [](nb::pointer_and_handle<AliasTable> self, const nb::object& weights) {
+                const Numbers given = weights_of(weights, "AliasTable");
+                new (self.p) AliasTable(given.values);
+                note_recipe(self.h, nb::make_tuple(new_array(given.values)));
             },
             "weights"_a)
         .def(

@@ -12,7 +12,7 @@ mkdir -p "$work"
 "$work/environment/bin/python" -m pip download --quiet --no-deps --dest "$work/download" nanobind >/dev/null 2>&1 ||
     { echo "there is no network to install nanobind from"; exit 77; }
 # A folder of its own, so that a compiler cache knows the files again.
-"$work/environment/bin/python" -m pip install --quiet --disable-pip-version-check "$source[test]" \
+"$work/environment/bin/python" -m pip install --quiet --disable-pip-version-check "$source[test,gvar]" \
     --config-settings=build-dir="$work/build"
 cd "$work"
 ln -s "$source/scenes" scenes
