@@ -4,7 +4,7 @@
 # Usage: python-environment.sh FOLDER
 set -eu
 folder=$1
-packages="nanobind==3.1.0 numpy>=1.22 pytest>=7"
+packages="nanobind==3.1.0 numpy>=1.22 pytest>=7 mypy>=1.11"
 python=/usr/bin/python3
 [ -x "$python" ] || python=python3
 fail() {
@@ -12,7 +12,7 @@ fail() {
     exit 1
 }
 
-if [ -x "$folder/bin/python" ] && "$folder/bin/python" -c 'import nanobind, numpy, pytest' 2>/dev/null; then exit 0; fi
+if [ -x "$folder/bin/python" ] && "$folder/bin/python" -c 'import mypy, nanobind, numpy, pytest' 2>/dev/null; then exit 0; fi
 command -v "$python" >/dev/null 2>&1 || fail "there is no python3"
 "$python" -c 'import sys; sys.exit(sys.version_info < (3, 10))' || fail "python3 is older than 3.10"
 [ -e "$("$python" -c 'import sysconfig; print(sysconfig.get_path("include"))')/Python.h" ] ||
