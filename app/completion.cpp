@@ -23,7 +23,7 @@ constexpr Script scripts[] = {
     COMPREPLY=()
     while IFS=$'\t' read -r line _; do
         COMPREPLY+=("$line")
-    done < <("${COMP_WORDS[0]}" completion --words "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null)
+    done < <("${COMP_WORDS[0]}" completion words "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null)
 }
 complete -o bashdefault -o default -F _montelux montelux
 )"},
@@ -34,7 +34,7 @@ _montelux() {
     while IFS= read -r line; do
         names+=("${line%%$'\t'*}")
         texts+=("${line/$'\t'/  }")
-    done < <("${words[1]}" completion --words "${(@)words[2,CURRENT]}" 2>/dev/null)
+    done < <("${words[1]}" completion words "${(@)words[2,CURRENT]}" 2>/dev/null)
     if (( ${#names} )); then
         compadd -l -d texts -a names
     else
@@ -49,7 +49,7 @@ fi
 )"},
     {"fish", R"(function __montelux_words
     set -l words (commandline -opc) (commandline -ct)
-    $words[1] completion --words $words[2..] 2>/dev/null
+    $words[1] completion words $words[2..] 2>/dev/null
 end
 complete -c montelux -a '(__montelux_words)'
 )"},

@@ -144,7 +144,7 @@ int run(int argc, char** argv) {
                    "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 stopped before the target error,\n"
                    "130 interrupted (the result so far is saved).");
         const std::span<const char* const> words(argv, argv + argc);
-        if (argc > 2 && std::string_view(argv[1]) == "completion" && std::string_view(argv[2]) == "--words") {
+        if (argc > 2 && std::string_view(argv[1]) == "completion" && std::string_view(argv[2]) == "words") {
             std::fputs(completions(app, words.subspan(3)).c_str(), stdout);
             return exit_done;
         }

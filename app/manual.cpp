@@ -103,7 +103,9 @@ std::string positionals_of(const CLI::App& command) {
     return out;
 }
 
-std::string sentence(std::string text) { return text.empty() || text.ends_with('.') ? text : text + "."; }
+std::string sentence(const std::string& text) {
+    return text.empty() || text.ends_with('.') ? text : text + ".";
+}
 
 std::string page(const CLI::App& command) {
     const CLI::App* parent = command.get_parent();

@@ -42,7 +42,8 @@ std::string option_type(const CLI::Option& option) {
 }
 
 std::vector<std::string> option_choices(const CLI::Option& option) {
-    const std::string type = option.get_type_name(), help = option.get_description();
+    const std::string type = option.get_type_name();
+    const std::string& help = option.get_description();
     if (const std::size_t brace = type.find(":{"); brace != std::string::npos)
         return names(std::string_view(type).substr(brace + 2, type.find('}') - brace - 2), ",");
     if (type.find('|') != std::string::npos) return names(type, "|");

@@ -124,7 +124,7 @@ Image studio_light() {
                 radiance += box.radiance * soft_disc(dot(w, box.axis), box.inner, box.outer);
             irradiance += radiance * std::max(w.z, 0.0) * grid.solid_angle(y);
             for (int c = 0; c < 3; ++c)
-                map.f32()[static_cast<std::size_t>(3 * (2 * height * y + x) + c)] =
+                map.f32()[3 * (2 * static_cast<std::size_t>(height) * y + x) + c] =
                     static_cast<float>(radiance);
         }
     const double scale = ground_radiance * pi / (double(ground_albedo) * irradiance);

@@ -10,7 +10,7 @@ offers() {
         shift
     done
     shift
-    got=$("$montelux" completion --words "${words[@]}" | cut -f 1 | tr '\n' ' ')
+    got=$("$montelux" completion words "${words[@]}" | cut -f 1 | tr '\n' ' ')
     [ "$got" = "${*:+$* }" ] || fail "after '${words[*]}': '$got' instead of '$*'"
 }
 offers re == render
@@ -29,8 +29,8 @@ offers bake sk == sky
 offers bake environment --up '' == y z
 offers completion '' == bash zsh fish
 offers nothing --x ==
-[ "$("$montelux" completion --words '' | wc -l)" -ge 12 ] || fail "commands are missing"
-"$montelux" completion --words render --sp | grep -q $'^--spp\tSamples per pixel' || fail "no description"
+[ "$("$montelux" completion words '' | wc -l)" -ge 12 ] || fail "commands are missing"
+"$montelux" completion words render --sp | grep -q $'^--spp\tSamples per pixel' || fail "no description"
 
 # The script of bash itself.
 answer=$(bash --norc -c 'source <("$1" completion bash)
@@ -50,7 +50,7 @@ fi
 expect 2 "tcsh not in {bash,zsh,fish}" completion tcsh
 
 # Every command has a page, on which every option of its help stands.
-for command in '' $("$montelux" completion --words '' | cut -f 1); do
+for command in '' $("$montelux" completion words '' | cut -f 1); do
     "$montelux" manual $command >page.1 || fail "manual $command"
     head -1 page.1 | grep -q '^\.TH MONTELUX' || fail "manual $command: no title"
     "$montelux" $command --help | sed -n 's/^  \(-.,\)*\(--[a-z-]*\).*/\2/p' | while read -r option; do

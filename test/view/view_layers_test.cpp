@@ -44,6 +44,7 @@ TEST(ViewLayers, ACryptomatteIsShownByItsFirstIds) {
 
 TEST(ViewLayers, AreAtMostAsManyAsTheProtocolCounts) {
     std::vector<std::string> channels;
+    channels.reserve(400);
     for (int i = 0; i < 400; ++i) channels.push_back("layer" + std::to_string(i) + ".R");
     EXPECT_EQ(view_layers(channels, false).size(), most_view_layers);
 }
