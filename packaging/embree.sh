@@ -20,12 +20,13 @@ apt() {
 apt update
 apt source --tar-only embree
 tar xf embree_*.orig.tar.*
-touch embree-*/readme.pdf # would be installed, and is not in Debian's sources
+source=$(echo embree-*/)
+touch "${source}readme.pdf" # is installed, and left out of Debian's sources
 features=
 for part in SUBDIVISION CURVE GRID POINT QUAD; do features="$features -D EMBREE_GEOMETRY_$part=OFF"; done
 for level in SSE2 SSE42 AVX AVX512; do features="$features -D EMBREE_ISA_$level=OFF"; done
 # shellcheck disable=SC2086
-cmake -S embree-*/ -B build -G Ninja -D CMAKE_BUILD_TYPE=Release -D CMAKE_INSTALL_PREFIX="$folder/install" \
+cmake -S "$source" -B build -G Ninja -D CMAKE_BUILD_TYPE=Release -D CMAKE_INSTALL_PREFIX="$folder/install" \
     -D EMBREE_MAX_ISA=NONE -D EMBREE_ISA_AVX2=ON $features -D EMBREE_RAY_PACKETS=OFF -D EMBREE_ISPC_SUPPORT=OFF \
     -D EMBREE_TUTORIALS=OFF -D EMBREE_TASKING_SYSTEM=TBB >cmake.log
 cmake --build build --parallel "$2" --target install >build.log 2>&1 || { tail -20 build.log && exit 1; }
