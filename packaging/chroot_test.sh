@@ -42,7 +42,7 @@ fresh() {
     cp -a "$root/bare" "$root/$1"
     connect "$root/$1"
     mkdir "$root/$1/montelux"
-    git archive HEAD README.md docs montelux scenes python/tests examples packaging | tar -x -C "$root/$1/montelux"
+    git archive HEAD README.md pyproject.toml docs montelux scenes python/tests examples packaging | tar -x -C "$root/$1/montelux"
 }
 
 fresh wheel

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Builds Embree for wheels at FOLDER/install, from Debian's source package: for AVX2 alone and without the shapes that
-# Montelux does not use, a tenth of the size of Debian's library, which holds the code for six kinds of processors.
+# Montelux does not use, a quarter of the size of Debian's library, which holds the code for several levels of processors.
 # Usage: embree.sh FOLDER JOBS
 set -eu
 mkdir -p "$1"

@@ -29,14 +29,15 @@ for python in ${PYTHONS:-$debian python3.10 python3.11 python3.12}; do
     include=$("$python" -c 'import sysconfig; print(sysconfig.get_path("include"))')
     [ -e "$include/Python.h" ] || { echo "make wheels: no headers of Python $version, so no wheel for it" >&2; continue; }
     built="$built$version "
-    "$python" -m venv --clear build/wheel-$version
-    build/wheel-$version/bin/python -m pip wheel --quiet --disable-pip-version-check --no-deps . \
+    "$python" -m venv --clear build/wheel-$version/environment
+    build/wheel-$version/environment/bin/python -m pip wheel --quiet --disable-pip-version-check --no-deps . \
         --wheel-dir build/wheels-raw --config-settings=build-dir="build/wheel-$version/build" \
         --config-settings=install.strip=true --config-settings=cmake.define.embree_DIR="$(dirname "$config")"
 done
 [ "$built" != " " ] || fail "no Python with headers was found"
 for wheel in build/wheels-raw/*.whl; do
     LD_LIBRARY_PATH=$(dirname "$(find "$embree" -name 'libembree*.so' | head -n 1)") PATH="$PWD/$tools/bin:$PATH" \
-        $tools/bin/auditwheel --quiet repair --strip --plat auto --wheel-dir $out "$wheel"
+        $tools/bin/auditwheel repair --strip --plat auto --wheel-dir $out "$wheel" 2>build/wheels-raw/auditwheel.log ||
+        { cat build/wheels-raw/auditwheel.log && fail "auditwheel could not repair $wheel"; }
 done
 ls -l $out | awk 'NF > 5 { printf "%s  %.1f MB\n", $9, $5 / 1e6 }'
