@@ -37,7 +37,7 @@ apt-get -qq install --no-install-recommends man-db bash-completion >/dev/null
 man -P cat montelux-render | grep -q -- --target-error
 bash -c '. /usr/share/bash-completion/bash_completion; _completion_loader montelux; complete -p montelux' | grep -q _montelux
 
-apt-get -qq install --no-install-recommends ./libmontelux-dev_*.deb cmake g++ make >/dev/null
+apt-get -qq install --no-install-recommends /montelux/libmontelux-dev_*.deb cmake g++ make >/dev/null
 for example in consumer renderer; do
     cmake -S /montelux/examples/$example -B /use/$example -D CMAKE_BUILD_TYPE=Release >/dev/null
     cmake --build /use/$example >/dev/null
