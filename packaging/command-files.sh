@@ -7,7 +7,9 @@ rm -rf "$share"
 man=$share/man/man1 bash=$share/bash-completion/completions zsh=$share/zsh/vendor-completions fish=$share/fish/vendor_completions.d
 mkdir -p "$man" "$bash" "$zsh" "$fish"
 "$program" manual >"$man/montelux.1"
-"$program" completion words '' | cut -f 1 | while read -r command; do
+words=$("$program" completion words '')
+[ -n "$words" ] || { echo "command-files.sh: $program names no command" >&2 && exit 1; }
+for command in $(echo "$words" | cut -f 1); do
     "$program" manual "$command" >"$man/montelux-$command.1"
 done
 gzip -9n "$man"/*.1

