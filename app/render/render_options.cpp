@@ -185,6 +185,12 @@ void declare(CLI::App& c, RenderOptions& o) {
         c, "--light-sampling", o.light_sampling, light_sampling_names,
         "How one light is chosen among many: by its importance for the point that is lit, the default; in "
         "proportion to its power; or all alike: ");
+    add_choice(
+        c, "--guiding", o.guiding, guiding_names,
+        "Whether paths learn where light comes from, and follow it: where that pays, by a trial; always; or "
+        "never, the default: ");
+    add_whole_number(c, "--guiding-memory", o.guiding_memory, 16, 1u << 20,
+                     "MiB that learning may take. Default: 256");
     add_parsed(c, "--equiangular", "on|off", o.equiangular, parse_on_off,
                "In media lamps are also looked for from points of the ray close to them: on, off. "
                "Default: on");
@@ -260,6 +266,8 @@ void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.strategy) d.integrator.strategy = *o.strategy;
     if (o.heuristic) d.integrator.heuristic = *o.heuristic;
     if (o.light_sampling) d.integrator.light_sampling = *o.light_sampling;
+    if (o.guiding) d.integrator.guiding = *o.guiding;
+    if (o.guiding_memory) d.integrator.guiding_memory = *o.guiding_memory;
     if (o.equiangular) d.integrator.equiangular = *o.equiangular;
     if (o.environment_sampling) d.integrator.environment_sampling = *o.environment_sampling;
     if (o.environment_compensation) d.integrator.environment_compensation = *o.environment_compensation;

@@ -50,6 +50,8 @@ struct RenderOptions {
     std::optional<Strategy> strategy;
     std::optional<Heuristic> heuristic;
     std::optional<LightSampling> light_sampling;
+    std::optional<Guiding> guiding;
+    std::optional<std::uint64_t> guiding_memory; // MiB
     std::optional<bool> equiangular;
     std::optional<MicrofacetScattering> microfacet_scattering;
     std::optional<ShadingTerminator> shading_terminator;

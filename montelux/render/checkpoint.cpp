@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view kind = "render";
 // Version of the layout below.
-constexpr std::uint32_t layout_version = 4;
+constexpr std::uint32_t layout_version = 5;
 static_assert(std::is_trivially_copyable_v<Pixel> && std::endian::native == std::endian::little);
 
 template <typename... T>
@@ -69,13 +69,16 @@ std::uint64_t hash_of_integrator(const IntegratorSettings& s) {
     const auto with_background = [&](std::uint64_t h) {
         return s.background ? hash_of(h, s.background->x, s.background->y, s.background->z) : h;
     };
+    const auto with_guiding = [&](std::uint64_t h) {
+        return s.guiding == Guiding::off ? h : hash_of(h, static_cast<int>(s.guiding), s.guiding_memory);
+    };
     if (s.occlusion) return with_background(hash_of(s.occlusion->cosine, s.occlusion->max_distance));
-    return with_background(hash_of(s.max_depth, s.count_passages, static_cast<int>(s.strategy),
-                                   static_cast<int>(s.heuristic), static_cast<int>(s.light_sampling),
-                                   s.equiangular, s.regularize, static_cast<int>(s.environment_sampling),
-                                   s.environment_compensation, static_cast<int>(s.environment_lookup),
-                                   static_cast<int>(s.microfacet_scattering),
-                                   static_cast<int>(s.shading_terminator)));
+    return with_guiding(with_background(
+        hash_of(s.max_depth, s.count_passages, static_cast<int>(s.strategy), static_cast<int>(s.heuristic),
+                static_cast<int>(s.light_sampling), s.equiangular, s.regularize,
+                static_cast<int>(s.environment_sampling), s.environment_compensation,
+                static_cast<int>(s.environment_lookup), static_cast<int>(s.microfacet_scattering),
+                static_cast<int>(s.shading_terminator))));
 }
 // Another version of the program may take different samples.
 std::uint64_t version() { return hash_of(layout_version, hash_of_text(MONTELUX_VERSION)); }
@@ -123,6 +126,7 @@ std::uint64_t hash_of_layers(const SceneDescription& d, const FilmLayers& layers
 
 void save_checkpoint(const std::filesystem::path& path, const Renderer& renderer, const RenderState& state) {
     ByteWriter out;
+    const bool may_be_guided = renderer.description().integrator.guiding != Guiding::off;
     const std::span<const Pixel> pixels = state.film.pixels();
     out.reserve(pixels.size_bytes() + state.film.buckets().size_bytes() +
                 state.film.layer_sums().size_bytes() + state.target_samples.size() * sizeof(std::uint32_t) +
@@ -139,9 +143,13 @@ void save_checkpoint(const std::filesystem::path& path, const Renderer& renderer
     out.put_all(pixels);
     out.put_all(state.film.buckets());
     if (const std::uint64_t layers = hash_of_layers(renderer.description(), state.film.layers());
-        layers != 0) {
+        layers != 0 || may_be_guided) {
         out.put(layers);
         out.put_all(state.film.layer_sums());
+    }
+    if (may_be_guided) {
+        out.put(static_cast<std::uint8_t>(state.guide != nullptr));
+        if (state.guide) state.guide->save(out);
     }
     write_generation(path, kind, out.take());
 }
@@ -167,11 +175,12 @@ RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDes
     RestoredRender restored{RenderState(description), 0, {}};
     RenderState& state = restored.state;
     const std::span<Pixel> pixels = state.film.pixels();
+    const bool may_be_guided = description.integrator.guiding != Guiding::off;
     // An upper bound of the size for this film, generous so that a checkpoint of a larger film is refused by
     // the right message. Larger files are not read into memory.
     const std::size_t most = 64 * (pixels.size_bytes() + pixels.size() * sizeof(std::uint32_t) +
                                    state.film.buckets().size_bytes() + state.film.layer_sums().size_bytes()) +
-                             1024;
+                             1024 + (may_be_guided ? description.integrator.guiding_memory << 20 : 0);
     const Generation generation = read_generation(path, kind, most);
     restored.newest_refused_because = generation.newest_refused_because;
     ByteReader in(generation.payload, "checkpoint");
@@ -195,6 +204,10 @@ RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDes
         throw Error(path.string(),
                     "the checkpoint is of another render: the layers of the film (--layers) differ");
     if (layers != 0) in.get_all(state.film.layer_sums());
+    if (may_be_guided) {
+        if (in.get<std::uint8_t>() != 0)
+            state.guide = std::make_shared<const GuidingField>(GuidingField::load(in));
+    }
     if (!in.at_end() || restored.replicate_points == 0)
         throw Error(path.string(), "the checkpoint is not what its header says");
     return restored;

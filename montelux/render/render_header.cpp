@@ -58,6 +58,11 @@ void add_render_header(Image& image, const std::string& scene_name, const Render
     a["strategy"] = std::string(name_of(description.integrator.strategy));
     a["heuristic"] = std::string(name_of(description.integrator.heuristic));
     a["lightSampling"] = std::string(name_of(description.integrator.light_sampling));
+    if (description.integrator.guiding != Guiding::off) {
+        a["guiding"] = std::string(name_of(description.integrator.guiding));
+        a["guided"] = report.guide.bytes > 0 ? 1 : 0;
+        a["guideTrainingSamples"] = static_cast<int>(report.guide.samples);
+    }
     a["equiangular"] = description.integrator.equiangular ? 1 : 0;
     a["environmentSampling"] = std::string(name_of(description.integrator.environment_sampling));
     a["environmentCompensation"] = description.integrator.environment_compensation ? 1 : 0;

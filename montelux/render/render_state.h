@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string_view>
 #include <vector>
 
 #include "montelux/film/film.h"
 #include "montelux/render/bad_sample_report.h"
+#include "montelux/render/guide_summary.h"
+#include "montelux/transport/guiding/guiding_field.h"
 #include "montelux/transport/ray_tracer.h"
 
 namespace montelux {
@@ -28,6 +31,7 @@ struct RenderReport {
     BadSampleReport bad;
     std::uint64_t clamped_samples = 0; // by the film's limit
     RenderStop stop = RenderStop::samples;
+    GuideSummary guide; // of a render that may be guided
 
     bool cancelled() const { return stop == RenderStop::cancelled; }
 };
@@ -38,7 +42,8 @@ struct RenderState {
     Film film;
     // Target sample count of each pixel in the current round; empty before the first.
     std::vector<std::uint32_t> target_samples;
-    RenderReport report; // so far
+    RenderReport report;                         // so far
+    std::shared_ptr<const GuidingField> guide{}; // that paths follow, or null
 
     explicit RenderState(const FilmSettings& settings) : film(settings) {}
     // Throws Error as film_layers_of() does.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "montelux/mc/math/error.h"
+#include "montelux/render/guide_training.h"
 #include "montelux/render/live_film.h"
 #include "montelux/render/round_executor.h"
 #include "montelux/render/sample_allocation.h"
@@ -31,14 +32,15 @@ constexpr int tile_size = 16;
 // One run of Renderer::render.
 class RenderLoop {
   public:
-    RenderLoop(const Renderer& renderer, const SampleContext& context, RenderState& state,
+    RenderLoop(const Renderer& renderer, SampleContext& context, RenderState& state,
                const RenderControl& control)
-        : renderer_(renderer), state_(state), control_(control),
+        : renderer_(renderer), context_(context), state_(state), control_(control),
           order_(renderer.sampler(), renderer.target().slice),
           tile_renderer_(context, renderer.accelerator(), order_),
           tiles_(tiles_of(state.film.bounds(), tile_size)), finished_(tiles_.size()),
           seconds_before_(state.report.seconds), samples_before_(state.report.samples) {
         if (!round_is_done()) round_ = 0; // in a restored state
+        context_.set_guide(state_.guide);
         if (control.live != nullptr) control.live->open(state, tiles_, [this] { return report_now(); });
     }
     ~RenderLoop() { close_live(); }
@@ -51,6 +53,7 @@ class RenderLoop {
             if (!every_pixel_seen_)
                 every_pixel_seen_ =
                     std::ranges::all_of(state_.film.pixels(), [](const Pixel& p) { return p.samples() > 0; });
+            train_guide_if_due();
             if (const auto reason = stop_between_rounds()) return end(*reason);
             if (round_is_done()) {
                 std::vector<std::uint32_t> target_samples =
@@ -151,6 +154,26 @@ class RenderLoop {
         std::uint64_t fewest = film.pixels().front().replicates().count();
         for (const Pixel& p : film.pixels()) fewest = std::min(fewest, p.replicates().count());
         return fewest;
+    }
+
+    // After a first sample of every pixel: a render that is cancelled early has a picture.
+    void train_guide_if_due() {
+        const IntegratorSettings& settings = renderer_.description().integrator;
+        if (settings.guiding == Guiding::off || state_.report.guide.decided || !every_pixel_seen_ ||
+            !round_is_done() || cancelled() || control_.executor != nullptr)
+            return;
+        const RenderTarget& target = renderer_.target();
+        const GuideTrainingPlan plan{.bounds = state_.film.bounds(),
+                                     .samples = order_.share(),
+                                     .error = target.quantile > 0 ? 0 : target.error,
+                                     .seconds = target.time,
+                                     .cancel = control_.cancel};
+        TrainedGuide trained = train_guide(context_, renderer_.accelerator(), settings, plan);
+        state_.guide = std::move(trained.guide);
+        std::lock_guard lock(mutex_);
+        state_.report.guide = trained.summary;
+        state_.report.cpu_seconds += trained.summary.cpu_seconds;
+        state_.report.seconds = seconds();
     }
 
     void take_samples() {
@@ -306,6 +329,7 @@ class RenderLoop {
     static constexpr double least_freedom = 15;
 
     const Renderer& renderer_;
+    SampleContext& context_;
     RenderState& state_;
     const RenderControl& control_;
     SampleOrder order_;
@@ -371,7 +395,15 @@ void Renderer::render(RenderState& state, const RenderControl& control) const {
     if (description_.film.spectral && control.executor != nullptr)
         throw Error("film",
                     "a spectral film cannot be rendered by several processes: they exchange RGB alone");
-    const SampleContext context(description_, sampler_, scene(), camera_);
+    if (description_.integrator.guiding == Guiding::on && control.executor != nullptr)
+        throw Error("guiding",
+                    "a guided picture cannot be rendered by several processes yet: render it by one, or "
+                    "turn guiding off");
+    SampleContext context(description_, sampler_, scene(), camera_);
+    if (description_.integrator.guiding == Guiding::on && !context.can_be_guided())
+        throw Error("guiding",
+                    "only paths between surfaces can be guided, and this scene has media or renders "
+                    "ambient occlusion: leave guiding to 'auto', or turn it off");
     if (state.film.layers().channels() != context.layers().channels())
         throw Error("film", "its layers are not those of the scene's film");
     RenderLoop(*this, context, state, control).run();

@@ -31,6 +31,10 @@ void check_sample(const SceneDescription& d, int x, int y, std::uint64_t index, 
 
 SampleRecord Renderer::replay(int x, int y, std::uint64_t index) const {
     check_sample(description_, x, y, index, target_);
+    if (description_.integrator.guiding != Guiding::off)
+        throw Error("guiding",
+                    "a guided sample depends on what the render has learned before it: replay samples with "
+                    "guiding off");
     RayTracer tracer(accelerator());
     return SampleContext(description_, sampler_, scene(), camera_).record(tracer, {x, y, index});
 }

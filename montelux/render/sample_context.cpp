@@ -60,7 +60,9 @@ PathStart<SampleStream> SampleContext::begin(const Key& key, FilmPoint& point) c
                   static_cast<float>(key.y) + 0.5f + point.filter.offset.y};
     const CameraRay ray = camera_.generate_ray(point.film, point.lens, point.time);
     point.weight = ray.weight;
-    return {{ray, SampledWavelengths::sample_visible(u_lambda)}, stream};
+    CameraSample camera{ray, SampledWavelengths::sample_visible(u_lambda)};
+    if (guide_) camera.expected = guide_->expected(key.x, key.y);
+    return {camera, stream};
 }
 
 SampleContext::Result SampleContext::finish(const FilmContribution& path, const SampledWavelengths& lambda,
@@ -117,6 +119,29 @@ void SampleContext::sample_layers(const SampleExtras& extras, const FilmContribu
         const Vec3f rgb = sensor_.to_rgb(part * point.weight, path.lambda) * clamp * point.filter.weight;
         for (int c = 0; c < 3; ++c) *to++ = rgb[c];
     }
+}
+
+void SampleContext::set_guide(std::shared_ptr<const GuidingField> guide) {
+    guide_ = std::move(guide);
+    if (auto* path = std::get_if<PathIntegrator>(&integrator_)) path->set_guide(guide_.get());
+}
+
+void SampleContext::trace_for_guide(RayTracer& tracer, std::span<const Key> keys, Batch& batch) const {
+    batch.points.resize(keys.size());
+    batch.paths.resize(keys.size());
+    batch.traces.resize(keys.size());
+    batch.starts.clear();
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        batch.starts.push_back(begin(keys[i], batch.points[i]));
+        batch.traces[i].clear();
+        batch.starts[i].camera.trace = &batch.traces[i];
+    }
+    std::visit(
+        [&](const auto& integrator) {
+            integrator.estimate(scene_, tracer, std::span(batch.starts), batch.integrator,
+                                std::span(batch.paths));
+        },
+        integrator_);
 }
 
 void SampleContext::take(RayTracer& tracer, std::span<const Key> keys, Batch& batch,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "montelux/spectrum/rgb_colorspace.h"
 #include "montelux/spectrum/sensor.h"
 #include "montelux/spectrum/spectrum_table.h"
+#include "montelux/transport/guiding/guiding_trace.h"
 #include "montelux/transport/integrator.h"
 
 namespace montelux {
@@ -46,6 +48,17 @@ class SampleContext {
     // numbers of the film's layers (FilmLayers::values() for each sample) are in the batch.
     void take(RayTracer& tracer, std::span<const Key> keys, Batch& batch, std::span<Result> results) const;
     const FilmLayers& layers() const { return layers_.layers(); }
+
+    // From now on paths follow the guide; null: none does. Not while samples are taken.
+    void set_guide(std::shared_ptr<const GuidingField> guide);
+    const std::shared_ptr<const GuidingField>& guide() const { return guide_; }
+    // Whether paths can follow a guide: those of PathIntegrator.
+    bool can_be_guided() const { return std::holds_alternative<PathIntegrator>(integrator_); }
+    // Samples that a guide learns from and the film does not get: the radiance of each (mean over the wavelengths; 0 if
+    // it is bad), and the records of the paths that keep(i) wants, appended.
+    template <typename Keep>
+    void teach(RayTracer& tracer, std::span<const Key> keys, Batch& batch, std::span<float> radiance,
+               const Keep& keep, std::vector<GuidingRecord>& records) const;
     // One sample by itself, with every step of its path; the contribution is the same to the last bit.
     SampleRecord record(RayTracer& tracer, const Key& key) const;
 
@@ -58,6 +71,7 @@ class SampleContext {
         float time = 0;   // of motions
         float weight = 1; // of the camera's ray
     };
+    void trace_for_guide(RayTracer& tracer, std::span<const Key> keys, Batch& batch) const;
     PathStart<SampleStream> begin(const Key& key, FilmPoint& point) const;
     Result finish(const FilmContribution& path, const SampledWavelengths& lambda, const FilmPoint& point,
                   SpectralSample* spectral, SampleRecord* record = nullptr) const;
@@ -73,6 +87,7 @@ class SampleContext {
     bool normals_in_camera_space_;
     LayerSampler layers_;
     Integrator integrator_;
+    std::shared_ptr<const GuidingField> guide_;
     PixelFilterSampler filter_;
     Sensor sensor_;
     Sensor albedo_sensor_;
@@ -91,10 +106,24 @@ struct SampleContext::Batch {
     std::vector<SpectralSample>
         spectral; // of each sample, of a spectral film; 0 for samples that are left out
     PathBatch integrator;
+    std::vector<GuidingTrace> traces; // of samples that a guide learns from
     // Empty unless the film has layers that need them.
     std::vector<SampleExtras> extras;
     std::vector<SampledSpectrum> parts; // of the radiance
     std::vector<float> layer_values;
 };
+
+template <typename Keep>
+void SampleContext::teach(RayTracer& tracer, std::span<const Key> keys, Batch& batch,
+                          std::span<float> radiance, const Keep& keep,
+                          std::vector<GuidingRecord>& records) const {
+    trace_for_guide(tracer, keys, batch);
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const SampledSpectrum& found = batch.paths[i].radiance;
+        const bool good = all_finite(found) && !has_negative(found);
+        radiance[i] = good ? average(found) : 0;
+        if (good && keep(i)) batch.traces[i].finish(found, guide_.get(), records);
+    }
+}
 
 } // namespace montelux

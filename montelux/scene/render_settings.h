@@ -2,6 +2,7 @@
 // override them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -36,6 +37,9 @@ enum class MicrofacetScattering : std::uint8_t { single, multiple };
 // gradual one (scene/shape/shading_terminator.h).
 enum class ShadingTerminator : std::uint8_t { hard, soft };
 
+// Whether paths learn where light comes from (transport/guiding): where that pays, always, or never.
+enum class Guiding : std::uint8_t { automatic, on, off };
+
 struct SurfaceSettings {
     MicrofacetScattering microfacets = MicrofacetScattering::single;
     ShadingTerminator terminator = ShadingTerminator::hard;
@@ -62,6 +66,8 @@ struct IntegratorSettings {
     // Widens the microfacet lobes of surfaces that the path meets after an event that was not specular (Ggx::widened):
     // biased, without the fireflies of caustics.
     bool regularize = false;
+    Guiding guiding = Guiding::off;
+    std::size_t guiding_memory = 256;             // MiB at most, while a guide is trained
     std::optional<OcclusionSettings> occlusion{}; // the other settings then have no effect
     EnvironmentSampling environment_sampling = EnvironmentSampling::automatic;
     // MIS compensation; effective only with mis and its terms.

@@ -30,6 +30,8 @@ inline constexpr SettingNames<Heuristic, 2> heuristic_names{
     {{"balance", Heuristic::balance}, {"power", Heuristic::power}}};
 inline constexpr SettingNames<LightSampling, 3> light_sampling_names{
     {{"tree", LightSampling::tree}, {"power", LightSampling::power}, {"uniform", LightSampling::uniform}}};
+inline constexpr SettingNames<Guiding, 3> guiding_names{
+    {{"auto", Guiding::automatic}, {"on", Guiding::on}, {"off", Guiding::off}}};
 inline constexpr SettingNames<EnvironmentSampling, 4> environment_sampling_names{
     {{"auto", EnvironmentSampling::automatic},
      {"tabulated", EnvironmentSampling::tabulated},
@@ -56,6 +58,7 @@ constexpr std::string_view name_of(SamplerKind kind) { return name_in(sampler_na
 constexpr std::string_view name_of(Strategy strategy) { return name_in(strategy_names, strategy); }
 constexpr std::string_view name_of(Heuristic heuristic) { return name_in(heuristic_names, heuristic); }
 constexpr std::string_view name_of(LightSampling sampling) { return name_in(light_sampling_names, sampling); }
+constexpr std::string_view name_of(Guiding guiding) { return name_in(guiding_names, guiding); }
 constexpr std::string_view name_of(EnvironmentSampling sampling) {
     return name_in(environment_sampling_names, sampling);
 }

@@ -15,11 +15,14 @@
 namespace montelux {
 
 struct PathRecord;
+class GuidingTrace;
 
 struct CameraSample {
     Ray ray;
     SampledWavelengths lambda;
     SampleExtras* extras = nullptr; // null: not wanted
+    GuidingTrace* trace = nullptr;  // null: nobody learns from the path
+    float expected = 0;             // GuidingField::expected
 };
 
 // A sample before its path: the stream has given the camera's numbers.

@@ -1,6 +1,7 @@
 #include "montelux/transport/path_integrator.h"
 
 #include "montelux/mc/random/sample_stream.h"
+#include "montelux/transport/guiding/guiding_trace.h"
 #include "montelux/transport/path_shading.h"
 
 namespace montelux {
@@ -26,11 +27,15 @@ void PathIntegrator::add_met_light(const SceneView& scene, PathState& state, Ind
                               .light_pdf = pdf,
                               .weight = weight,
                               .counted = counted});
+    if (state.trace != nullptr && shared) [[unlikely]]
+        state.trace->left_to_light_samples(state.throughput * le * (1 - weight));
     if (counted) state.add(state.throughput * le * weight, light);
 }
 
 void PathIntegrator::escape(const SceneView& scene, PathState& state, PathRecorder recorder) const {
     if (recorder) recorder.left_scene(state.ray, state.throughput);
+    if (state.trace != nullptr) [[unlikely]]
+        state.trace->arrive(state.radiance);
     state.leave(state.throughput);
     if (!settings_.background || state.depth > 0)
         for (Index light : scene.light_tables.infinite_lights)

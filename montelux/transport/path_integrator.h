@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "montelux/scene/render_settings.h"
+#include "montelux/transport/guiding/guiding_field.h"
 #include "montelux/transport/path_batch.h"
 #include "montelux/transport/path_recorder.h"
 #include "montelux/transport/path_state.h"
@@ -34,6 +35,10 @@ class PathIntegrator {
     // samples per pixel each needs little filtering.
     PathIntegrator(const IntegratorSettings& settings, const Camera& camera, float footprint_scale = 1)
         : settings_(settings), camera_(&camera), footprint_scale_(footprint_scale) {}
+
+    // From now on directions are also drawn from what the guide has learned (transport/guiding); null: from BSDFs
+    // alone. It must outlive the paths.
+    void set_guide(const GuidingField* guide) { guide_ = guide; }
 
     // `record`, if given, receives the path vertex by vertex; the radiance is the same to the last bit.
     template <RandomStream Stream>
@@ -73,6 +78,7 @@ class PathIntegrator {
     IntegratorSettings settings_;
     const Camera* camera_;
     float footprint_scale_;
+    const GuidingField* guide_ = nullptr;
 };
 
 } // namespace montelux

@@ -8,6 +8,7 @@
 #include "montelux/scene/material/soft_terminator.h"
 #include "montelux/scene/shape/surface_point.h"
 #include "montelux/transport/diffuse_lanes.h"
+#include "montelux/transport/guiding/guided_scattering.h"
 #include "montelux/transport/light_choice.h"
 #include "montelux/transport/path_integrator.h"
 #include "montelux/transport/uniform_scattering.h"
@@ -22,8 +23,9 @@ struct PathIntegrator::Vertex {
     PathState& state;
     Stream& stream;
     PathRecorder recorder;
-    const Frame& frame; // of the BSDF
-    Vec3f wo;           // in it
+    const Frame& frame;          // of the BSDF
+    Vec3f wo;                    // in it
+    const GuidingRegion* region; // null: directions are the BSDF's
 
     // Next-event estimation: one light, one point on it. Lights that scattering cannot find are sampled in
     // every strategy.
@@ -45,6 +47,8 @@ struct PathIntegrator::Vertex {
         const BsdfEvaluation e =
             bsdf.evaluate(wo, frame.to_local(light->wi), TransportMode::radiance, stream);
         const float light_pdf = choice * light->pdf;
+        const float scatter_pdf =
+            region == nullptr ? e.pdf : region->mixed_pdf(region->pdf(light->wi), e.pdf);
         auto record = [&](Outcome outcome, float weight) {
             if (recorder)
                 recorder.sampled_light({.outcome = outcome,
@@ -57,7 +61,7 @@ struct PathIntegrator::Vertex {
                                         .radiance = light->radiance,
                                         .f = e.f,
                                         .light_pdf = light_pdf,
-                                        .bsdf_pdf = e.pdf,
+                                        .bsdf_pdf = scatter_pdf,
                                         .weight = weight});
         };
         if (is_black(e.f) || is_black(light->radiance)) {
@@ -67,12 +71,14 @@ struct PathIntegrator::Vertex {
         const Strategy strategy = path.settings_.strategy;
         const float weight = light->invisible || strategy == Strategy::light
                                  ? 1
-                                 : path_weight(path.settings_, light_pdf, e.pdf);
+                                 : path_weight(path.settings_, light_pdf, scatter_pdf);
         if (strategy == Strategy::mis_bsdf) {
             record(Outcome::other_term, weight);
             return;
         }
         record(Outcome::counted, weight);
+        if (state.trace != nullptr) [[unlikely]]
+            state.trace->aim();
         ShadowRay& ray = shadow.emplace();
         ray.ray = light->shadow;
         ray.ray.time = state.ray.time;
@@ -84,8 +90,33 @@ struct PathIntegrator::Vertex {
     std::optional<BsdfSample> sample_direction(const B& bsdf) const {
         if (path.settings_.strategy == Strategy::uniform && !bsdf.is_specular())
             return sample_uniform(bsdf, wo, stream);
-        return bsdf.sample(wo, TransportMode::radiance, stream);
+        if (region != nullptr && !bsdf.is_specular())
+            return sample_guided(bsdf, frame, wo, *region, stream, state.trace);
+        const std::optional<BsdfSample> s = bsdf.sample(wo, TransportMode::radiance, stream);
+        if (state.trace != nullptr && s && !s->specular) [[unlikely]]
+            state.trace->scatter(frame.to_world(s->wi), s->pdf, s->pdf, 0);
+        return s;
     }
+
+    // Russian roulette on what the path is expected to bring, beside what its pixel expects (Vorba and Krivanek 2016,
+    // "Adjoint-Driven Russian Roulette and Splitting in Light Transport Simulation"). Returns false if the path ends.
+    bool is_worth_going_on() const {
+        if (state.depth <= 2 || !(state.expected > 0)) return true;
+        const float brings = average(state.throughput) * region->radiance;
+        const float survival = std::max(brings / state.expected, least_survival);
+        if (!(survival < 1)) return true;
+        const float u = stream.next_1d();
+        if (recorder) recorder.played_roulette({.survival = survival, .u = u});
+        if (!(u < survival)) {
+            if (recorder) recorder.ended(PathEnd::roulette);
+            return false;
+        }
+        state.throughput /= survival;
+        if (state.trace != nullptr) [[unlikely]]
+            state.trace->survive(survival);
+        return true;
+    }
+    static constexpr float least_survival = 0.3f;
 
     // Russian roulette on the throughput to the film. Returns false if the path ends.
     bool survives() const {
@@ -98,7 +129,7 @@ struct PathIntegrator::Vertex {
                                                           : PathEnd::bad_throughput);
             return false;
         }
-        if (!(strength < 1) || state.depth <= 1) return true;
+        if (!(strength < 1) || state.depth <= 1 || region != nullptr) return true;
         const float u = stream.next_1d();
         if (recorder) recorder.played_roulette({.survival = strength, .u = u});
         if (!(u < strength)) {
@@ -120,6 +151,8 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     SurfacePoint s = surface_point(scene, state.ray, hit, textured || scene.frame_follows_tangents(material));
     if (recorder) recorder.hit_surface(state.ray, hit, s, state.throughput);
     state.meet(hit);
+    if (state.trace != nullptr) [[unlikely]]
+        state.trace->arrive(state.radiance);
     if (const Index light = scene.light_at(hit); light != no_index)
         add_met_light(scene, state, light, {.wi = w, .part = s.primitive, .p = s.p, .n = s.ng, .b = s.b},
                       recorder);
@@ -147,7 +180,16 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     }
 
     state.previous = reference_point(s, surface, wo);
-    const Vertex<Stream> vertex{*this, scene, state, stream, recorder, surface.frame, wo};
+    const Facing facing = facing_of(dot(s.ng, w) < 0 ? s.ng : -s.ng);
+    const bool guides = (guide_ != nullptr || state.trace != nullptr) &&
+                        !std::visit([](const auto& b) { return b.is_specular(); }, surface.bsdf);
+    const GuidingRegion* const region = guides && guide_ != nullptr && settings_.strategy != Strategy::uniform
+                                            ? guide_->find(s.p, facing)
+                                            : nullptr;
+    const Vertex<Stream> vertex{*this, scene, state, stream, recorder, surface.frame, wo, region};
+    if (guides && state.trace != nullptr) [[unlikely]]
+        state.trace->begin(s.p, facing, state.throughput, state.radiance);
+    if (region != nullptr && !vertex.is_worth_going_on()) return shadow;
     const std::optional<BsdfSample> scattered = std::visit(
         [&](const BsdfModel auto& bsdf) {
             if (!bsdf.is_specular()) vertex.sample_light(bsdf, shadow);
@@ -204,7 +246,7 @@ void PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer, std::sp
         batch.states.emplace_back(start.camera);
     }
     constexpr bool in_lanes = std::same_as<Stream, SampleStream>;
-    const bool samples_bsdfs = settings_.strategy != Strategy::uniform;
+    const bool in_plain_lanes = settings_.strategy != Strategy::uniform && guide_ == nullptr;
     HitGroup<native_lanes> groups[2];
     constexpr std::array levels{LaneShading::all, LaneShading::scattering};
     while (!batch.alive.empty()) {
@@ -223,7 +265,9 @@ void PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer, std::sp
                 continue;
             }
             if constexpr (in_lanes) {
-                const LaneShading level = samples_bsdfs ? lane_shading(scene, hit) : LaneShading::none;
+                const LaneShading level = in_plain_lanes && starts[i].camera.trace == nullptr
+                                              ? lane_shading(scene, hit)
+                                              : LaneShading::none;
                 if (level != LaneShading::none) {
                     HitGroup<native_lanes>& group = groups[level == LaneShading::all ? 0 : 1];
                     group.add(i, state, hit, starts[i].stream);

@@ -21,8 +21,12 @@ struct PathState {
     FirstHit first;
     float transparency = 0;         // as in FilmContribution
     SampleExtras* extras = nullptr; // null: not wanted
+    GuidingTrace* trace = nullptr;  // null: nobody learns from the path
+    float expected = 0;             // GuidingField::expected
 
-    PathState(const CameraSample& camera) : ray(camera.ray), lambda(camera.lambda), extras(camera.extras) {
+    PathState(const CameraSample& camera)
+        : ray(camera.ray), lambda(camera.lambda), extras(camera.extras), trace(camera.trace),
+          expected(camera.expected) {
         previous.p = camera.ray.o;
     }
     // Radiance of a light, or of a medium (no_index), after `depth` scattering events, and `more` on the ray.

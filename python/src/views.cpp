@@ -20,6 +20,7 @@ namespace montelux::python {
 namespace {
 
 constexpr Names<SamplerKind, 6> sampler_kinds{"sampler", sampler_names};
+constexpr Names<Guiding, 3> guidings{"guiding", guiding_names};
 constexpr Names<LightSampling, 3> light_samplings{"light_sampling", light_sampling_names};
 constexpr Names<MicrofacetScattering, 2> microfacet_scatterings{"microfacet_scattering",
                                                                 microfacet_scattering_names};
@@ -292,6 +293,9 @@ void bind_views(nb::module_& m) {
     choice(integrator, "light_sampling", &IntegratorSettings::light_sampling, light_samplings,
            "How one light is chosen among many: by its importance for the point that is lit, in a 'tree'; in "
            "proportion to its 'power'; or 'uniform'.");
+    choice(integrator, "guiding", &IntegratorSettings::guiding, guidings,
+           "Whether paths learn where light comes from, and follow it: 'auto' (where that pays), 'on' or "
+           "'off'.");
     choice(
         integrator, "environment_sampling", &IntegratorSettings::environment_sampling, environment_samplings,
         "How directions to environment maps are sampled: 'auto', 'tabulated', 'median-cut' or 'structured'.");

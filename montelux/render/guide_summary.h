@@ -1,0 +1,19 @@
+// GuideSummary: how a render came by its guide, or why it has none.
+#pragma once
+
+#include <cstdint>
+
+namespace montelux {
+
+// The outcome of a training. Trivially copyable.
+struct GuideSummary {
+    bool decided = false;                  // the training is over
+    std::uint32_t rounds = 0, samples = 0; // samples per pixel of all rounds
+    // Samples that an unguided render takes in the time of a guided one with the same error, over those of the guided
+    // one; estimated from the training.
+    double gain = 0;
+    std::uint64_t regions = 0, bytes = 0; // of the guide; 0: paths are not guided
+    double cpu_seconds = 0;
+};
+
+} // namespace montelux

@@ -1,0 +1,252 @@
+#include "montelux/render/guide_training.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "montelux/mc/random/hash.h"
+#include "montelux/render/tile_renderer.h"
+#include "montelux/transport/guiding/guiding_learner.h"
+
+namespace montelux {
+namespace {
+
+constexpr int training_tile = 16;
+constexpr std::size_t training_batch = 256;
+// Sample indices that no render takes.
+constexpr std::uint64_t first_training_index = std::uint64_t{1} << 40;
+// The first round has at most as many paths, or one for each pixel.
+constexpr std::uint64_t first_paths = 1u << 16;
+// Shares of the render's samples.
+constexpr double all_training = 1.0 / 6, trial = 1.0 / 30;
+// Guided paths are shaded one by one and look up densities: a ray of theirs takes so many times as long.
+constexpr double cost_of_guiding = 1.6;
+// Gain of a guide that is kept: the training is lost, and the estimate of the gain uncertain.
+constexpr double least_gain = 1.3;
+// Guesses before the first round, of its records per sample.
+constexpr double first_records_per_sample = 6;
+// No path counts as more than the root of this many times what its pixel expects: the rarest ones would decide alone.
+constexpr double most_relative_square = 1e5;
+
+// Sums over the samples of each pixel of one round.
+struct TrainingRound {
+    std::vector<std::vector<GuidingRecord>> records; // of each tile
+    std::vector<double> sums, squares;               // of the radiance
+    std::uint32_t samples = 0;                       // per pixel
+    std::uint64_t rays = 0;
+    double cpu_seconds = 0;
+
+    std::size_t record_count() const {
+        std::size_t count = 0;
+        for (const auto& list : records) count += list.size();
+        return count;
+    }
+};
+
+double cpu_seconds_now() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+// `share` of the paths are kept as records, `most` records of each tile; of a pixel probably `expected_records`.
+TrainingRound take_round(const SampleContext& context, const Accelerator& accelerator,
+                         const GuideTrainingPlan& plan, std::uint64_t first, std::uint32_t samples,
+                         double share, double expected_records, std::size_t most) {
+    const std::vector<PixelBounds> tiles = tiles_of(plan.bounds, training_tile);
+    const auto width = static_cast<std::size_t>(plan.bounds.width());
+    TrainingRound round;
+    round.samples = samples;
+    round.records.resize(tiles.size());
+    round.sums.resize(pixel_count(plan.bounds));
+    round.squares.resize(round.sums.size());
+    struct Cost {
+        std::uint64_t rays = 0;
+        double cpu_seconds = 0;
+    };
+    std::vector<Cost> costs(tiles.size());
+    const auto kept = static_cast<std::uint64_t>(share * 0x1p32);
+    parallel_for(
+        static_cast<std::int64_t>(tiles.size()),
+        [&](std::int64_t t) {
+            const double begin = cpu_seconds_now();
+            const auto index = static_cast<std::size_t>(t);
+            const PixelBounds& tile = tiles[index];
+            std::vector<GuidingRecord>& records = round.records[index];
+            records.reserve(
+                std::min(most, static_cast<std::size_t>(expected_records * double(pixel_count(tile)))));
+            SampleContext::Batch batch;
+            RayTracer tracer(accelerator);
+            std::vector<SampleContext::Key> keys;
+            std::vector<std::size_t> places;
+            std::vector<float> radiance(training_batch);
+            const auto take = [&] {
+                context.teach(
+                    tracer, keys, batch, radiance,
+                    [&](std::size_t i) {
+                        const SampleContext::Key& key = keys[i];
+                        const std::uint64_t h = hash_key(0x7061746873u, static_cast<std::uint64_t>(key.x),
+                                                         static_cast<std::uint64_t>(key.y), key.index);
+                        return (h >> 32) < kept && records.size() < most;
+                    },
+                    records);
+                for (std::size_t i = 0; i < keys.size(); ++i) {
+                    const double v = double(radiance[i]);
+                    round.sums[places[i]] += v;
+                    round.squares[places[i]] += v * v;
+                }
+                keys.clear();
+                places.clear();
+            };
+            for (int y = tile.y0; y < tile.y1; ++y)
+                for (int x = tile.x0; x < tile.x1; ++x)
+                    for (std::uint32_t s = 0; s < samples; ++s) {
+                        keys.push_back({x, y, first_training_index + first + s});
+                        places.push_back(static_cast<std::size_t>(y - plan.bounds.y0) * width +
+                                         static_cast<std::size_t>(x - plan.bounds.x0));
+                        if (keys.size() == training_batch) take();
+                    }
+            if (!keys.empty()) take();
+            costs[index] = {tracer.statistics.rays(), cpu_seconds_now() - begin};
+        },
+        plan.cancel);
+    for (const Cost& c : costs) {
+        round.rays += c.rays;
+        round.cpu_seconds += c.cpu_seconds;
+    }
+    return round;
+}
+
+// What each pixel expects: means around it, no sample of which counts for much, and none below a share of the picture's.
+std::vector<float> expected_radiance(const TrainingRound& round, const PixelBounds& bounds) {
+    constexpr int radius = 3;
+    constexpr double most_of_mean = 20, least_of_mean = 0.02;
+    const int width = bounds.width(), height = bounds.height();
+    double mean = 0;
+    for (const double s : round.sums) mean += s / round.samples;
+    mean /= static_cast<double>(round.sums.size());
+    std::vector<float> expected(round.sums.size());
+    parallel_for(height, [&](std::int64_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < width; ++x) {
+            double sum = 0;
+            int count = 0;
+            for (int v = std::max(0, y - radius); v < std::min(height, y + radius + 1); ++v)
+                for (int u = std::max(0, x - radius); u < std::min(width, x + radius + 1); ++u) {
+                    const std::size_t i = static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
+                                          static_cast<std::size_t>(u);
+                    sum += std::min(round.sums[i] / round.samples, most_of_mean * mean);
+                    ++count;
+                }
+            expected[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                     static_cast<std::size_t>(x)] =
+                static_cast<float>(std::max(sum / count, least_of_mean * mean));
+        }
+    });
+    return expected;
+}
+
+// Mean over the pixels of the second moment of a sample, over the square of what the pixel expects.
+double relative_second_moment(const TrainingRound& round, const std::vector<float>& expected) {
+    double sum = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        const double e = double(expected[i]);
+        if (e > 0) sum += std::min(round.squares[i] / round.samples / (e * e), most_relative_square);
+    }
+    return sum / static_cast<double>(expected.size());
+}
+
+// Samples per pixel that the render will take without a guide.
+double samples_of_render(const GuideTrainingPlan& plan, const TrainingRound& first, double wall_seconds) {
+    double samples = static_cast<double>(plan.samples);
+    if (plan.seconds > 0) samples = std::min(samples, plan.seconds / wall_seconds * first.samples);
+    if (plan.error > 0) {
+        double mean = 0, variance = 0;
+        for (std::size_t i = 0; i < first.sums.size(); ++i) {
+            const double m = first.sums[i] / first.samples;
+            mean += m;
+            variance += first.squares[i] / first.samples - (first.samples > 1 ? m * m : 0);
+        }
+        mean /= static_cast<double>(first.sums.size());
+        variance /= static_cast<double>(first.sums.size());
+        if (mean > 0) samples = std::min(samples, variance / std::pow(plan.error * mean, 2));
+    }
+    return samples;
+}
+
+} // namespace
+
+TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
+                         const IntegratorSettings& settings, const GuideTrainingPlan& plan) {
+    using Clock = std::chrono::steady_clock;
+    TrainedGuide trained;
+    GuideSummary& summary = trained.summary;
+    summary.decided = !context.can_be_guided();
+    if (summary.decided) return trained;
+    const bool automatic = settings.guiding == Guiding::automatic;
+    const std::size_t memory = settings.guiding_memory << 20;
+    // Records are sorted by pointers to them; the guide has the rest.
+    const std::size_t most_records = memory / 8 * 7 / (sizeof(GuidingRecord) + sizeof(void*));
+    const std::size_t tiles = tiles_of(plan.bounds, training_tile).size();
+    const GuidingLearnerSettings learner{.most_bytes = memory / 8};
+    const std::uint64_t pixels = pixel_count(plan.bounds);
+    // Of small pictures several for each pixel; not so many that three rounds take more than their share.
+    auto samples = static_cast<std::uint32_t>(
+        std::clamp(all_training / 7 * static_cast<double>(plan.samples), 1.0,
+                   std::max(1.0, static_cast<double>(first_paths) / static_cast<double>(pixels))));
+    double records_per_sample = first_records_per_sample, budget = std::numeric_limits<double>::infinity();
+    double unguided = 0; // second moment times cost, of a sample
+    for (;;) {
+        const double wanted = records_per_sample * double(pixels) * samples;
+        const double share = std::min(1.0, 0.9 * static_cast<double>(most_records) / wanted);
+        const auto begin = Clock::now();
+        TrainingRound round = take_round(context, accelerator, plan, summary.samples, samples, share,
+                                         share * records_per_sample * samples, most_records / tiles);
+        summary.cpu_seconds += round.cpu_seconds;
+        if (plan.cancel != nullptr && plan.cancel->requested()) {
+            context.set_guide(nullptr);
+            return {nullptr, {}};
+        }
+        summary.samples += samples;
+        ++summary.rounds;
+        std::vector<float> expected = expected_radiance(round, plan.bounds);
+        const double cost = static_cast<double>(round.rays) / (double(pixels) * samples) *
+                            (context.guide() ? cost_of_guiding : 1);
+        const double effort = relative_second_moment(round, expected) * cost;
+        if (!context.guide()) {
+            unguided = effort;
+            budget =
+                samples_of_render(plan, round, std::chrono::duration<double>(Clock::now() - begin).count());
+        } else if (effort > 0) {
+            summary.gain = unguided / effort;
+        }
+        const bool next_is_trial = summary.samples + 2.0 * samples <= trial * budget;
+        const bool gives_up = automatic && !next_is_trial && summary.gain < least_gain;
+        const bool nothing_found = round.record_count() == 0 || !(unguided > 0);
+        if (gives_up || nothing_found) {
+            context.set_guide(nullptr);
+            break;
+        }
+        records_per_sample = static_cast<double>(round.record_count()) / (share * double(pixels) * samples);
+        const double learning = cpu_seconds_now();
+        context.set_guide(std::make_shared<const GuidingField>(
+            GuidingLearner::learn(round.records, learner, plan.bounds, std::move(expected))));
+        summary.cpu_seconds += cpu_seconds_now() - learning;
+        samples *= 2;
+        // Twice at least: what the first guide learned without another one is noisy.
+        if (summary.rounds >= 3 && summary.samples + double(samples) > all_training * budget) break;
+    }
+    trained.guide = context.guide();
+    if (trained.guide) {
+        summary.regions = trained.guide->regions();
+        summary.bytes = trained.guide->bytes();
+    }
+    summary.decided = true;
+    return trained;
+}
+
+} // namespace montelux

@@ -1,0 +1,70 @@
+#include "montelux/transport/guiding/guiding_field.h"
+
+#include <span>
+
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+
+std::size_t GuidingField::bytes() const {
+    std::size_t bytes = expected_.size() * sizeof(float) + regions_.size() * sizeof(GuidingRegion);
+    for (const std::vector<Node>& nodes : trees_) bytes += nodes.size() * sizeof(Node);
+    for (const GuidingRegion& region : regions_) bytes += region.directions.bytes();
+    return bytes;
+}
+
+void GuidingField::save(ByteWriter& out) const {
+    for (const std::vector<Node>& nodes : trees_) {
+        out.put(static_cast<std::uint64_t>(nodes.size()));
+        out.put_all(std::span<const Node>(nodes));
+    }
+    out.put(static_cast<std::uint64_t>(regions_.size()));
+    for (const GuidingRegion& region : regions_) {
+        region.directions.save(out);
+        out.put(region.share);
+        out.put(region.radiance);
+    }
+    out.put(bounds_);
+    out.put(static_cast<std::uint64_t>(expected_.size()));
+    out.put_all(std::span<const float>(expected_));
+}
+
+GuidingField GuidingField::load(ByteReader& in) {
+    GuidingField field;
+    const auto damaged = [](bool is) {
+        if (is) throw Error("guiding", "the saved guide is damaged");
+    };
+    constexpr std::uint64_t most = 1u << 28;
+    for (std::vector<Node>& nodes : field.trees_) {
+        const auto count = in.get<std::uint64_t>();
+        damaged(count > most);
+        nodes.resize(count);
+        in.get_all(std::span<Node>(nodes));
+    }
+    const auto regions = in.get<std::uint64_t>();
+    damaged(regions > most);
+    for (std::uint64_t i = 0; i < regions; ++i) {
+        GuidingRegion& region = field.regions_.emplace_back();
+        region.directions = QuadtreeDensity::load(in);
+        region.share = in.get<float>();
+        region.radiance = in.get<float>();
+        damaged(!(region.share >= 0 && region.share < 1));
+    }
+    for (const std::vector<Node>& nodes : field.trees_)
+        for (std::size_t n = 0; n < nodes.size(); ++n) {
+            const Node& node = nodes[n];
+            damaged(node.axis > 3 || (node.axis == 3 && node.low >= regions) ||
+                    (node.axis < 3 && (node.low <= n || node.high <= n || node.low >= nodes.size() ||
+                                       node.high >= nodes.size())));
+        }
+    field.bounds_ = in.get<PixelBounds>();
+    const auto pixels = in.get<std::uint64_t>();
+    const std::uint64_t held = std::uint64_t(std::max(field.bounds_.width(), 0)) *
+                               std::uint64_t(std::max(field.bounds_.height(), 0));
+    damaged(pixels != 0 && pixels != held);
+    field.expected_.resize(pixels);
+    in.get_all(std::span<float>(field.expected_));
+    return field;
+}
+
+} // namespace montelux

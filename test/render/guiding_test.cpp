@@ -1,0 +1,190 @@
+// Guided renders: the same picture with less noise, whatever the guide has learned.
+#include "test/render/mixed_scene.h"
+#include "test/sanitized.h"
+#include "test/temporary_folder.h"
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/stats/z_test.h"
+#include "montelux/render/checkpoint.h"
+
+namespace montelux::testing {
+namespace {
+
+// A closed box; a wall across it leaves a slit, behind which a lamp shines. What the camera sees is lit through it.
+SceneBuilder hidden_lamp(int size) {
+    SceneBuilder b;
+    b.description.film.width = b.description.film.height = size;
+    b.description.film.crop = {0, 0, size, size};
+    b.description.integrator.max_depth = 12;
+    const Index grey = b.add(DiffuseMaterial{gray(0.7f)}), black = b.add(DiffuseMaterial{gray(0)});
+    const auto wall = [&](const Transform& t, Index material, float emission = 0) {
+        b.add_mesh(square(t), material, emission);
+    };
+    const Transform wide = Transform::scale({2, 1, 1});
+    wall(Transform::translate({0, 0, -1}) * wide, grey);
+    wall(Transform::translate({0, 0, 1}) * Transform::rotate(180, {1, 0, 0}) * wide, grey);
+    wall(Transform::translate({0, 1, 0}) * Transform::rotate(90, {1, 0, 0}) * wide, grey);
+    wall(Transform::translate({0, -1, 0}) * Transform::rotate(-90, {1, 0, 0}) * wide, grey);
+    wall(Transform::translate({-2, 0, 0}) * Transform::rotate(90, {0, 1, 0}), grey);
+    wall(Transform::translate({2, 0, 0}) * Transform::rotate(-90, {0, 1, 0}), grey);
+    // Across the box at x = 0.8, but for a slit beside y = 1.
+    wall(Transform::translate({0.8, -0.1, 0}) * Transform::rotate(90, {0, 1, 0}) *
+             Transform::scale({1, 0.9, 1}),
+         grey);
+    wall(Transform::translate({1.95, -0.6, 0}) * Transform::rotate(-90, {0, 1, 0}) *
+             Transform::scale({0.2, 0.2, 1}),
+         black, 100);
+    b.look({0.6, -0.9, 0.4}, {-2, 0.2, -0.5}, 60);
+    return b;
+}
+
+double mean_luminance(const Film& film, double* error = nullptr) {
+    double sum = 0, squares = 0;
+    for (const Pixel& p : film.pixels()) {
+        sum += p.replicates().mean(1);
+        squares += std::pow(p.replicates().standard_error(1), 2);
+    }
+    const double pixels = static_cast<double>(film.pixels().size());
+    if (error != nullptr) *error = std::sqrt(squares) / pixels;
+    return sum / pixels;
+}
+
+RenderState render_guided(const SceneDescription& d, const RenderControl& control = {}) {
+    RenderState state(d);
+    Renderer(d).render(state, control);
+    return state;
+}
+
+TEST(Guiding, FindsHiddenLightFarBetter) {
+    SceneBuilder b = hidden_lamp(40);
+    b.description.sampler.spp = 256;
+    const RenderState plain = render_guided(b.description);
+    b.description.integrator.guiding = Guiding::on;
+    const RenderState guided = render_guided(b.description);
+    EXPECT_NE(guided.guide, nullptr);
+    EXPECT_GE(guided.report.guide.rounds, 3u);
+    EXPECT_GT(guided.report.guide.gain, 1);
+    const double before = plain.film.error().relative, after = guided.film.error().relative;
+    EXPECT_LT(after * after, before * before / 3) << before << " " << after;
+}
+
+// Pooled over the pixels of several seeds, which the training of each guide differs with.
+TEST(Guiding, IsUnbiased) {
+    for (const bool mixed : {false, true}) {
+        SceneBuilder b = mixed ? mixed_scene(1, 24, 24) : hidden_lamp(24);
+        b.description.sampler.spp = 1024;
+        b.description.sampler.seed = 1000;
+        double reference_error = 0;
+        const double reference = mean_luminance(render_guided(b.description).film, &reference_error);
+        b.description.integrator.guiding = Guiding::on;
+        b.description.sampler.spp = 64;
+        std::vector<double> means, errors;
+        for (std::uint64_t seed = 0; seed < 12; ++seed) {
+            b.description.sampler.seed = seed;
+            double error = 0;
+            means.push_back(mean_luminance(render_guided(b.description).film, &error));
+            errors.push_back(error);
+        }
+        double sum = 0, variance = 0, claimed = 0;
+        for (const double m : means) sum += m / double(means.size());
+        for (std::size_t i = 0; i < means.size(); ++i) {
+            variance += std::pow(means[i] - sum, 2) / double(means.size() - 1);
+            claimed += errors[i] * errors[i] / double(means.size());
+        }
+        const double error = std::sqrt(claimed / double(means.size()) + reference_error * reference_error);
+        EXPECT_LT(std::abs(sum - reference), 5 * error) << sum << " " << reference << " +- " << error;
+        EXPECT_LT(error, 0.02 * reference); // so that a bias would be seen
+        // Chi-squared of 11 degrees of freedom: beyond 4.2 times its mean in one case of 10^7.
+        EXPECT_LT(variance, 4.2 * claimed);
+    }
+}
+
+TEST(Guiding, AnyNumberOfThreads) {
+    SceneBuilder b = hidden_lamp(20);
+    b.description.sampler.spp = under_sanitizers ? 8 : 32;
+    b.description.integrator.guiding = Guiding::on;
+    std::vector<RenderState> states;
+    for (int threads : {1, 2, 7})
+        with_threads(threads, [&] { states.push_back(render_guided(b.description)); });
+    for (std::size_t s = 1; s < states.size(); ++s)
+        for (std::size_t i = 0; i < states[0].film.pixels().size(); ++i)
+            ASSERT_TRUE(same_pixel(states[0].film.pixels()[i], states[s].film.pixels()[i]));
+}
+
+// In the training too: then it begins anew.
+TEST(Guiding, InterruptedRendersEndWithTheSameBits) {
+    TemporaryFolder folder;
+    const std::filesystem::path path = folder / "guided.state";
+    SceneBuilder b = hidden_lamp(20);
+    b.description.sampler.spp = 40;
+    b.description.integrator.guiding = Guiding::on;
+    const RenderState whole = render_guided(b.description);
+    for (const std::uint64_t after : {400u, 401u, 3000u}) {
+        RenderState state(b.description);
+        {
+            const Renderer renderer(b.description);
+            CancelFlag cancel;
+            RenderControl control;
+            control.cancel = &cancel;
+            control.progress = [&](const RenderProgress& p) {
+                if (p.samples_done >= after) cancel.request();
+            };
+            control.checkpoint = [&](const RenderState& s) { save_checkpoint(path, renderer, s); };
+            renderer.render(state, control);
+            ASSERT_TRUE(state.report.cancelled());
+        }
+        RestoredRender restored = load_checkpoint(path, b.description, {});
+        SceneDescription description = b.description;
+        description.sampler.replicate_points = restored.replicate_points;
+        Renderer(description).render(restored.state);
+        for (std::size_t i = 0; i < whole.film.pixels().size(); ++i)
+            ASSERT_TRUE(same_pixel(whole.film.pixels()[i], restored.state.film.pixels()[i])) << after;
+    }
+    b.description.integrator.guiding = Guiding::off;
+    EXPECT_THROW(load_checkpoint(path, b.description, {}), Error);
+}
+
+// An evenly lit floor leaves nothing to learn: the picture is that of a render that never tried.
+TEST(Guiding, AutomaticGivesUpWhereItCannotWin) {
+    SceneBuilder b;
+    b.add_mesh(square(Transform::scale({100, 100, 1})), b.add(DiffuseMaterial{gray(0.6f)}));
+    b.add_uniform_light(1);
+    b.look({0, -0.5, 5}, {0, 0, 0}, 20);
+    b.description.film.width = b.description.film.height = 64;
+    b.description.film.crop = {0, 0, 64, 64};
+    b.description.sampler.spp = 64;
+    const RenderState plain = render_guided(b.description);
+    b.description.integrator.guiding = Guiding::automatic;
+    const RenderState tried = render_guided(b.description);
+    EXPECT_TRUE(tried.report.guide.decided);
+    EXPECT_EQ(tried.guide, nullptr);
+    for (std::size_t i = 0; i < plain.film.pixels().size(); ++i)
+        ASSERT_TRUE(same_pixel(plain.film.pixels()[i], tried.film.pixels()[i]));
+}
+
+TEST(Guiding, WithoutLightThereIsNoGuide) {
+    SceneBuilder b;
+    b.add_mesh(square(Transform()), b.add(DiffuseMaterial{gray(0.6f)}));
+    b.look({0, -0.5, 5}, {0, 0, 0}, 20);
+    b.description.integrator.guiding = Guiding::on;
+    const RenderState state = render_guided(b.description);
+    EXPECT_EQ(state.guide, nullptr);
+    EXPECT_TRUE(state.report.guide.decided);
+    EXPECT_EQ(mean_luminance(state.film), 0);
+}
+
+TEST(Guiding, WhatCannotBeGuidedSaysSo) {
+    SceneBuilder b = hidden_lamp(8);
+    b.description.integrator.guiding = Guiding::on;
+    b.description.integrator.occlusion.emplace();
+    EXPECT_THROW(render_guided(b.description), Error);
+    b.description.integrator.guiding = Guiding::automatic;
+    EXPECT_EQ(render_guided(b.description).guide, nullptr);
+    b.description.integrator.occlusion.reset();
+    EXPECT_THROW(Renderer(b.description).replay(1, 1, 0), Error);
+}
+
+} // namespace
+} // namespace montelux::testing

@@ -1,0 +1,173 @@
+// What a guide learns, and directions that are drawn from it and a BSDF together.
+#include "test/significance.h"
+#include <cmath>
+#include <gtest/gtest.h>
+#include <vector>
+
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/random/sample_stream.h"
+#include "montelux/mc/stats/chi_squared.h"
+#include "montelux/scene/bsdf/diffuse.h"
+#include "montelux/transport/guiding/guided_scattering.h"
+#include "montelux/transport/guiding/guiding_learner.h"
+
+namespace montelux {
+namespace {
+
+const Vec3f bright = normalize(Vec3f{1, 0, 1});
+
+// Records on the floor z = 0 of the square [-1, 1]^2; light comes from near `bright` where x > 0, evenly elsewhere.
+std::vector<std::vector<GuidingRecord>> floor_records(int count, std::uint64_t seed) {
+    TestUniforms u(seed);
+    std::vector<std::vector<GuidingRecord>> lists(4);
+    for (int i = 0; i < count; ++i) {
+        GuidingRecord r;
+        r.p = {2 * u.next_float() - 1, 2 * u.next_float() - 1, 0};
+        r.facing = facing_of({0, 0, 1});
+        const Vec3f wi = equal_area_square_to_sphere(u.next_2f());
+        r.direction = equal_area_sphere_to_square(wi);
+        r.pdf = r.bsdf_pdf = inv_four_pi_f;
+        r.estimate = r.p.x > 0 ? (dot(wi, bright) > 0.95f ? 40.0f : 0.02f) : 1.0f;
+        r.radiance = r.estimate;
+        lists[static_cast<std::size_t>(i) % lists.size()].push_back(r);
+    }
+    return lists;
+}
+
+GuidingField floor_field(std::size_t region_records = 4000) {
+    return GuidingLearner::learn(floor_records(100000, 1), {.region_records = region_records}, {0, 0, 1, 1},
+                                 {1.0f});
+}
+
+TEST(GuidingField, LearnsWhereLightComesFrom) {
+    const GuidingField field = floor_field();
+    const Facing up = facing_of({0, 0, 1});
+    const GuidingRegion* lit = field.find({0.6f, 0.1f, 0}, up);
+    const GuidingRegion* even = field.find({-0.6f, 0.1f, 0}, up);
+    ASSERT_NE(lit, nullptr);
+    ASSERT_NE(even, nullptr);
+    EXPECT_GT(lit->pdf(bright), 10 * lit->pdf(-bright));
+    EXPECT_LT(even->pdf(bright), 3 * inv_four_pi_f);
+    EXPECT_GT(even->pdf(bright), inv_four_pi_f / 3);
+    EXPECT_NEAR(double(even->radiance), 1, 1e-3);
+    // The other side of a floor has seen no path, nor has the air.
+    EXPECT_EQ(field.find({0.6f, 0.1f, 0}, facing_of({0, 0, -1})), nullptr);
+    EXPECT_EQ(field.find({0.6f, 0.1f, 0}, Facing::medium), nullptr);
+    EXPECT_GT(field.regions(), 10u);
+    EXPECT_EQ(field.expected(0, 0), 1);
+}
+
+TEST(GuidingField, FacingsAreTheNearestAxes) {
+    EXPECT_EQ(facing_of({-1, 0.2f, 0}), Facing::left);
+    EXPECT_EQ(facing_of({1, 0.2f, -0.9f}), Facing::right);
+    EXPECT_EQ(facing_of({0.1f, -1, 0}), Facing::down);
+    EXPECT_EQ(facing_of({0.1f, 1, 0}), Facing::up);
+    EXPECT_EQ(facing_of({0, 0, -1}), Facing::back);
+    EXPECT_EQ(facing_of({0, 0.5f, 1}), Facing::front);
+}
+
+TEST(GuidingField, IsTheSameForAnyNumberOfThreadsAndComesBackFromBytes) {
+    std::vector<std::vector<std::uint8_t>> bytes;
+    for (int threads : {1, 2, 7})
+        with_threads(threads, [&] {
+            ByteWriter out;
+            floor_field(500).save(out);
+            bytes.push_back(out.take());
+        });
+    EXPECT_EQ(bytes[0], bytes[1]);
+    EXPECT_EQ(bytes[0], bytes[2]);
+    ByteReader in(bytes[0]);
+    ByteWriter again;
+    GuidingField::load(in).save(again);
+    EXPECT_TRUE(in.at_end());
+    EXPECT_EQ(again.take(), bytes[0]);
+}
+
+TEST(GuidingField, DamagedBytesAreRefusedOrHarmless) {
+    ByteWriter out;
+    GuidingLearner::learn(floor_records(3000, 1), {.region_records = 500}, {0, 0, 1, 1}, {1.0f}).save(out);
+    const std::vector<std::uint8_t> good = out.take();
+    TestUniforms u(19);
+    int refused = 0;
+    for (int i = 0; i < 300; ++i) {
+        std::vector<std::uint8_t> bytes = good;
+        // Mostly in the trees of space, at the beginning.
+        const double at = std::pow(u.next(), 3) * double(bytes.size());
+        bytes[static_cast<std::size_t>(at)] ^= static_cast<std::uint8_t>(1 + u.next() * 255);
+        if (i % 5 == 0) bytes.resize(bytes.size() / 2);
+        try {
+            ByteReader in(bytes);
+            const GuidingField field = GuidingField::load(in);
+            for (int k = 0; k < 20; ++k)
+                field.find({u.next_float(), u.next_float(), 0}, facing_of({0, 0, 1}));
+        } catch (const Error&) {
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 60);
+}
+
+// Many records: regions stay within their memory.
+TEST(GuidingField, KeepsToItsMemory) {
+    const auto records = floor_records(100000, 2);
+    const GuidingField small =
+        GuidingLearner::learn(records, {.region_records = 100, .most_bytes = 1 << 18}, {0, 0, 1, 1}, {1.0f});
+    const GuidingField large =
+        GuidingLearner::learn(records, {.region_records = 100, .most_bytes = 1 << 28}, {0, 0, 1, 1}, {1.0f});
+    EXPECT_LT(small.bytes(), std::size_t{1} << 18);
+    EXPECT_GT(large.bytes(), std::size_t{1} << 18);
+}
+
+// Light that can be seen is left to light samples; light that is mostly hidden from them is learned.
+TEST(GuidingLearner, LearnsLightThatLightSamplesRarelyFind) {
+    for (const bool visible : {false, true}) {
+        auto lists = floor_records(20000, 4);
+        for (auto& list : lists)
+            for (GuidingRecord& r : list) {
+                r.estimate = 0.01f;
+                const Vec3f wi = equal_area_square_to_sphere(r.direction);
+                r.left_to_light_samples = dot(wi, bright) > 0.95f ? 100.0f : 0.0f;
+                r.aimed = true;
+                r.visible = visible;
+            }
+        const GuidingField field = GuidingLearner::learn(lists, {}, {0, 0, 1, 1}, {1.0f});
+        const float pdf = field.find({0.5f, 0.5f, 0}, facing_of({0, 0, 1}))->pdf(bright);
+        if (visible)
+            EXPECT_LT(pdf, 3 * inv_four_pi_f);
+        else
+            EXPECT_GT(pdf, 10 * inv_four_pi_f);
+    }
+}
+
+// The mean weight over directions of a diffuse surface is its albedo, and the reported density that of the directions.
+TEST(GuidedScattering, FollowsItsDensityAndKeepsTheAlbedo) {
+    const GuidingField field = floor_field();
+    const GuidingRegion& region = *field.find({0.6f, 0.1f, 0}, facing_of({0, 0, 1}));
+    ASSERT_GT(region.share, 0);
+    const Frame frame = Frame::from_normal({0, 0, 1});
+    const DiffuseBsdf bsdf{SampledSpectrum(0.6f)};
+    const Vec3f wo = normalize(Vec3f{0.3f, -0.2f, 0.8f});
+    double sum = 0, squares = 0;
+    constexpr int count = 200000;
+    for (int i = 0; i < count; ++i) {
+        SampleStream numbers({.kind = SamplerKind::independent, .seed = 7}, 0, 0,
+                             static_cast<std::uint64_t>(i));
+        const auto s = sample_guided(bsdf, frame, wo, region, numbers, nullptr);
+        const double w = s ? double(average(s->weight)) : 0;
+        if (s) {
+            const Vec3f wi = frame.to_world(s->wi);
+            const BsdfEvaluation e = bsdf.evaluate(wo, s->wi, TransportMode::radiance, numbers);
+            ASSERT_NEAR(double(s->pdf), double(region.mixed_pdf(region.pdf(wi), e.pdf)),
+                        2e-3 * double(s->pdf));
+        }
+        sum += w;
+        squares += w * w;
+    }
+    const double mean = sum / count, error = std::sqrt((squares / count - mean * mean) / count);
+    EXPECT_LT(std::abs(mean - 0.6), 5 * error);
+    EXPECT_GT(error, 0);
+}
+
+} // namespace
+} // namespace montelux
