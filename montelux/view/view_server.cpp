@@ -30,8 +30,8 @@ constexpr std::chrono::milliseconds tick_interval{50}, pause_after_failure{100};
 constexpr std::chrono::seconds time_for_goodbyes{1};
 // That wait to be accepted: while attacks fill them, a page needs some luck; afterwards they are soon gone.
 constexpr int most_waiting_connections = 128;
-// Of the program's CPU time while it renders. Above this many seconds since the last connection the thread did other work.
-constexpr double share_of_connections = 0.03, most_for_connection = 1e-3;
+// Of the program's CPU time while it renders. Beyond this many seconds the thread did other work meanwhile.
+constexpr double share_of_connections = 0.02, most_for_connection = 1e-3;
 constexpr std::chrono::milliseconds pause_without_budget{5};
 
 } // namespace

@@ -292,7 +292,7 @@ TEST_F(ViewServerTest, ConnectionsDoNotTakeTheRendersTime) {
         rest_of(socket);
         ++connections;
     }
-    EXPECT_LT(connections, 1500); // of 60 microseconds and more, for which there are 0.09 s
+    EXPECT_LT(connections, 700); // of 90 microseconds and more, for which there are 0.06 s
     EXPECT_TRUE(is(get(with_token("/")), 200));
 }
 
