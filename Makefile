@@ -13,7 +13,7 @@ LOADERS ?= $(sort $(patsubst test/fuzz/fuzz_%.cpp,%,$(wildcard test/fuzz/fuzz_*.
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-15s %s\n", $$1, $$2}' Makefile
 
-demo: build ## build, then render a scene of our own to an error and denoise it (about a minute on two cores)
+demo: build ## build, then render a scene of our own to an error and denoise it (three minutes on two cores)
 	@library=$$(cmake/denoiser.sh build/denoiser); \
 	MONTELUX_OIDN_LIBRARY=$$library $(BUILD)/montelux render scenes/demo/studio.pbrt $(DEMO_TARGET) \
 	    $${library:+--denoise} -o build/demo.exr -o build/demo.png

@@ -55,8 +55,7 @@ OidnApi load_oidn() {
     throw Error(
         "Open Image Denoise",
         "the library was not found; tried libOpenImageDenoise.so.2, .so.1 and .so where the system "
-        "looks for libraries. 'pip install pyoidn' brings it, for Python without more ado; for the program "
-        "set " +
+        "looks for libraries. 'pip install pyoidn' brings it; Python finds it there, for the program set " +
             std::string(oidn_library_variable) +
             " to the file pyoidn/oidn/lib/libOpenImageDenoise.so.2 in the folder that 'pip show pyoidn' "
             "names as Location");

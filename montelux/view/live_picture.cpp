@@ -117,51 +117,64 @@ LivePixel LivePicture::pixel(int x, int y) const {
 std::vector<float> LivePicture::values(std::size_t layer, int x, int y) const {
     std::vector<float> out;
     const std::lock_guard lock(mutex_);
-    if (is_live(layer) || others_) append_values(layer, x, y, out);
+    if (is_live(layer) || others_) append_values(layer, {x, y, x + 1, y + 1}, out);
     return out;
 }
 
+std::array<float, 3> LivePicture::reference(int x, int y, const std::vector<int>& channels) const {
+    std::array<float, 3> rgb{};
+    for (std::size_t c = 0; c < channels.size() && c < 3; ++c) rgb[c] = reference_->linear(x, y, channels[c]);
+    if (channels.size() == 1) rgb = {rgb[0], rgb[0], rgb[0]};
+    return rgb;
+}
+
 // Called with the lock held.
-void LivePicture::append_values(std::size_t layer, int x, int y, std::vector<float>& out) const {
-    if (!is_live(layer)) {
-        for (const int channel : places_.at(layer)) out.push_back(others_->value(x, y, channel));
-        return;
-    }
-    const LivePixel& p = pixels_[index(x, y)];
-    const auto reference = [&](const std::vector<int>& channels) {
-        std::array<float, 3> rgb{};
-        for (std::size_t c = 0; c < channels.size() && c < 3; ++c)
-            rgb[c] = reference_->linear(x, y, channels[c]);
-        if (channels.size() == 1) rgb = {rgb[0], rgb[0], rgb[0]};
-        return rgb;
+void LivePicture::append_values(std::size_t layer, const PixelBounds& b, std::vector<float>& out) const {
+    if (is_live(layer)) return append_live_values(static_cast<LiveLayer>(layer), b, out);
+    for (int y = b.y0; y < b.y1; ++y)
+        for (int x = b.x0; x < b.x1; ++x)
+            for (const int channel : places_.at(layer)) out.push_back(others_->value(x, y, channel));
+}
+
+void LivePicture::append_live_values(LiveLayer layer, const PixelBounds& b, std::vector<float>& out) const {
+    const std::size_t begin = out.size(),
+                      channels = static_cast<std::size_t>(layers_[static_cast<std::size_t>(layer)].channels);
+    out.resize(begin + pixel_count(b) * channels);
+    float* to = &out[begin];
+    const auto each = [&](const auto& write) {
+        for (int y = b.y0; y < b.y1; ++y)
+            for (int x = b.x0; x < b.x1; ++x, to += channels) write(pixels_[index(x, y)], x, y);
     };
-    switch (static_cast<LiveLayer>(layer)) {
+    switch (layer) {
     case LiveLayer::mean:
-        out.insert(out.end(), p.mean.begin(), p.mean.end());
+        each([&](const LivePixel& p, int, int) { std::ranges::copy(p.mean, to); });
         break;
     case LiveLayer::error:
-        out.push_back(static_cast<float>(luminance(p.error)));
+        each([&](const LivePixel& p, int, int) { *to = static_cast<float>(luminance(p.error)); });
         break;
-    case LiveLayer::relative_error: {
-        const double mean = luminance(p.mean), error = luminance(p.error);
-        const double none = error > 0 ? std::numeric_limits<double>::infinity() : 0;
-        out.push_back(static_cast<float>(mean > 0 ? error / mean : none));
+    case LiveLayer::relative_error:
+        each([&](const LivePixel& p, int, int) {
+            const double mean = luminance(p.mean), error = luminance(p.error);
+            const double none = error > 0 ? std::numeric_limits<double>::infinity() : 0;
+            *to = static_cast<float>(mean > 0 ? error / mean : none);
+        });
         break;
-    }
     case LiveLayer::samples:
-        out.push_back(p.samples);
+        each([&](const LivePixel& p, int, int) { *to = p.samples; });
         break;
-    case LiveLayer::reference: {
-        const auto rgb = reference(reference_->color_channels());
-        out.insert(out.end(), rgb.begin(), rgb.end());
+    case LiveLayer::reference:
+        each([&](const LivePixel&, int x, int y) {
+            std::ranges::copy(reference(x, y, reference_->color_channels()), to);
+        });
         break;
-    }
-    case LiveLayer::z: {
-        const double difference = luminance(p.mean) - luminance(reference(reference_->color_channels()));
-        const double error = std::hypot(luminance(p.error), luminance(reference(reference_error_)));
-        out.push_back(difference == 0 ? 0.0f : static_cast<float>(difference / error));
+    case LiveLayer::z:
+        each([&](const LivePixel& p, int x, int y) {
+            const double difference =
+                luminance(p.mean) - luminance(reference(x, y, reference_->color_channels()));
+            const double error = std::hypot(luminance(p.error), luminance(reference(x, y, reference_error_)));
+            *to = difference == 0 ? 0.0f : static_cast<float>(difference / error);
+        });
         break;
-    }
     }
 }
 
@@ -178,8 +191,7 @@ std::vector<LiveTile> LivePicture::changes_since(std::size_t layer, std::uint64_
     std::size_t values = 0;
     for (const Tile* tile : changed) {
         LiveTile& change = changes.emplace_back(LiveTile{tile->bounds, {}});
-        for (int y = tile->bounds.y0; y < tile->bounds.y1; ++y)
-            for (int x = tile->bounds.x0; x < tile->bounds.x1; ++x) append_values(layer, x, y, change.values);
+        append_values(layer, tile->bounds, change.values);
         version = is_live(layer) ? tile->version : others_version_;
         values += change.values.size();
         // The others have one version for all tiles: they are given whole.

@@ -78,7 +78,9 @@ class LivePicture {
                static_cast<std::size_t>(x);
     }
     bool is_live(std::size_t layer) const { return layers_[layer].of.empty(); }
-    void append_values(std::size_t layer, int x, int y, std::vector<float>& out) const;
+    void append_values(std::size_t layer, const PixelBounds& pixels, std::vector<float>& out) const;
+    void append_live_values(LiveLayer layer, const PixelBounds& pixels, std::vector<float>& out) const;
+    std::array<float, 3> reference(int x, int y, const std::vector<int>& channels) const;
 
     PixelBounds bounds_;
     std::uint32_t replicate_size_;

@@ -17,7 +17,9 @@ void count(ErrorHistogram& histogram, double mean, double error) {
         return;
     }
     constexpr double width = (ErrorHistogram::most - ErrorHistogram::least) / ErrorHistogram::bins;
-    const double place = error > 0 ? (std::log10(error / mean) - ErrorHistogram::least) / width : 0;
+    const double place =
+        error > 0 ? (double(std::log10(static_cast<float>(error / mean))) - ErrorHistogram::least) / width
+                  : 0;
     ++histogram.counts[static_cast<std::size_t>(std::clamp(place, 0.0, double(ErrorHistogram::bins - 1)))];
 }
 

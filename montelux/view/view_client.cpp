@@ -7,6 +7,7 @@
 
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/overloaded.h"
+#include "montelux/mc/parallel/cpu_time.h"
 #include "montelux/view/tile_message.h"
 
 namespace montelux {
@@ -20,6 +21,12 @@ constexpr std::size_t most_answers = 64;                        // that wait to 
 constexpr std::size_t values_of_message = std::size_t{1} << 18; // of tiles
 constexpr std::chrono::milliseconds least_progress_interval{200};
 
+std::size_t values_in(const std::vector<LiveTile>& tiles) {
+    std::size_t values = 0;
+    for (const LiveTile& tile : tiles) values += tile.values.size();
+    return values;
+}
+
 } // namespace
 
 void ViewClient::accept(const boost::beast::http::request<boost::beast::http::string_body>& upgrade) {
@@ -30,6 +37,7 @@ void ViewClient::accept(const boost::beast::http::request<boost::beast::http::st
     timeout.idle_timeout = std::chrono::seconds(60);
     socket_.set_option(timeout);
     socket_.read_message_max(most_incoming);
+    socket_.auto_fragment(false); // else a frame, a copy and a system call for each 4 kB
     socket_.async_accept(upgrade, [self = shared_from_this()](boost::beast::error_code error) {
         if (error) return self->end();
         self->open_ = true;
@@ -142,14 +150,15 @@ bool ViewClient::shows_layers_of(const LivePicture& picture) const {
     });
 }
 
-std::string ViewClient::next_tiles() {
+std::string ViewClient::next_tiles(bool has_budget) {
     const std::shared_ptr<LivePicture> picture = hub_.render().picture();
     for (std::size_t i = 0; picture && i < shown_.size(); ++i) {
         next_shown_ = (next_shown_ + 1) % shown_.size();
         Shown& shown = shown_[next_shown_];
         const std::optional<std::size_t> layer = picture->find_layer(shown.layer);
-        if (!layer) continue;
+        if (!layer || (shown.is_whole && !has_budget)) continue;
         const std::vector<LiveTile> tiles = picture->changes_since(*layer, shown.version, values_of_message);
+        shown.is_whole = shown.is_whole || values_in(tiles) < values_of_message;
         if (!tiles.empty()) return tile_message(*layer, picture->layers()[*layer], epoch_, tiles);
     }
     return {};
@@ -164,7 +173,7 @@ void ViewClient::send_news() {
         const ViewStatus status = render.status();
         if (status.epoch != epoch_) {
             epoch_ = status.epoch;
-            for (Shown& shown : shown_) shown.version = 0;
+            for (Shown& shown : shown_) shown.version = 0, shown.is_whole = false;
             return send(scene_message(hub_.introduction(), render, *picture, status), false);
         }
     }
@@ -182,7 +191,13 @@ void ViewClient::send_news() {
         last_progress_ = now;
         return send(progress_message(render.status(), statistics), false);
     }
-    if (std::string tiles = next_tiles(); !tiles.empty()) return send(std::move(tiles), true);
+    const bool has_budget =
+        is_leaving_ || hub_.has_time_for_tiles() || render.state() != ViewState::rendering;
+    const double begin = thread_cpu_seconds();
+    if (std::string tiles = next_tiles(has_budget); !tiles.empty()) {
+        send(std::move(tiles), true);
+        return hub_.spend_on_tiles(thread_cpu_seconds() - begin);
+    }
     if (!goodbye_.empty()) send(std::exchange(goodbye_, {}), false);
 }
 

@@ -37,6 +37,7 @@ class ViewClient : public std::enable_shared_from_this<ViewClient> {
     struct Shown {
         std::string layer;
         std::uint64_t version = 0; // of the picture, as sent
+        bool is_whole = false;     // all tiles have been sent once
     };
 
     void read();
@@ -44,8 +45,8 @@ class ViewClient : public std::enable_shared_from_this<ViewClient> {
     void answer(const ViewRequest& request);
     void answer(const ReplayRequest& request);
     void send(std::string message, bool binary);
-    // The next tiles of a shown layer; empty if none has changed.
-    std::string next_tiles();
+    // The next tiles of a shown layer; empty if none has changed. What the page has not seen yet needs no budget.
+    std::string next_tiles(bool has_budget);
     void end();
 
     boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;

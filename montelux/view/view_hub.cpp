@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "montelux/mc/parallel/cpu_time.h"
 #include "montelux/view/view_client.h"
 
 namespace montelux {
@@ -14,8 +15,6 @@ namespace montelux {
 namespace {
 
 constexpr std::size_t most_waiting = 16, most_clients = 16;
-// Repeated work takes at most this share of one thread.
-constexpr double share_of_thread = 0.01;
 
 } // namespace
 
@@ -64,11 +63,25 @@ bool ViewHub::all_know() const {
                                [](const std::shared_ptr<ViewClient>& client) { return client->knows(); });
 }
 
-void ViewHub::schedule(Repeated& repeated, Clock::time_point begin, std::chrono::duration<double> least) {
-    const std::chrono::duration<double> cost = Clock::now() - begin;
-    repeated.next =
-        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::max(least, cost / share_of_thread));
-    repeated.runs = false;
+bool ViewHub::may_run(const Repeated& repeated) {
+    return std::chrono::steady_clock::now() >= repeated.next &&
+           repeated.budget.allows_work(process_cpu_seconds());
+}
+
+void ViewHub::repeat(Repeated& repeated, std::function<void()> work, std::function<void()> done) {
+    const auto seconds = std::make_shared<double>();
+    repeated.runs = run_slow(
+        [seconds, work = std::move(work)] {
+            const double begin = thread_cpu_seconds();
+            work();
+            *seconds = thread_cpu_seconds() - begin;
+        },
+        [seconds, &repeated, done = std::move(done)] {
+            done();
+            repeated.budget.spend(*seconds, process_cpu_seconds());
+            repeated.next = std::chrono::steady_clock::now() + repeated.interval;
+            repeated.runs = false;
+        });
 }
 
 void ViewHub::refresh_statistics(const std::shared_ptr<LivePicture>& picture) {
@@ -80,22 +93,17 @@ void ViewHub::refresh_statistics(const std::shared_ptr<LivePicture>& picture) {
     const std::uint64_t version = picture->version();
     const bool is_still = render_.status().state != ViewState::rendering;
     if (statistics_work_.runs || version == statistics_work_.version ||
-        (!is_still && Clock::now() < statistics_work_.next))
+        (!is_still && !may_run(statistics_work_)))
         return;
     const ToneCurve curve{introduction_.exposure.value_or(0), introduction_.tone};
     const auto result = std::make_shared<PictureStatistics>();
-    const auto began = std::make_shared<Clock::time_point>();
-    statistics_work_.runs = run_slow(
-        [=] {
-            *began = Clock::now();
-            *result = statistics_of(picture->pixels(), curve);
-        },
+    repeat(
+        statistics_work_, [=] { *result = statistics_of(picture->pixels(), curve); },
         [=, this] {
             if (statistics_of_.lock() == picture) {
                 statistics_ = *result;
                 statistics_work_.version = version;
             }
-            schedule(statistics_work_, *began, std::chrono::duration<double>(0.25));
         });
 }
 
@@ -105,17 +113,16 @@ void ViewHub::refresh_layers(const std::shared_ptr<LivePicture>& picture) {
         return client->shows_layers_of(*picture);
     });
     if (!wanted || layers_work_.runs || render_.status().state != ViewState::rendering ||
-        Clock::now() < layers_work_.next)
+        !may_run(layers_work_))
         return;
-    const auto began = std::make_shared<Clock::time_point>();
-    layers_work_.runs = run_slow(
+    repeat(
+        layers_work_,
         [=, this] {
-            *began = Clock::now();
             if (std::optional<RenderSnapshot> now = render_.snapshot(0.5);
                 now && render_.picture() == picture)
                 picture->update_others(now->image);
         },
-        [=, this] { schedule(layers_work_, *began, std::chrono::duration<double>(0.5)); });
+        [] {});
 }
 
 } // namespace montelux

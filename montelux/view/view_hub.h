@@ -11,10 +11,12 @@
 #include <optional>
 #include <string>
 
+#include "montelux/mc/parallel/cpu_time.h"
 #include "montelux/view/picture_statistics.h"
 #include "montelux/view/view_access.h"
 #include "montelux/view/view_messages.h"
 #include "montelux/view/viewed_render.h"
+#include "montelux/view/work_budget.h"
 
 namespace montelux {
 
@@ -44,6 +46,10 @@ class ViewHub {
     void add(const std::shared_ptr<ViewClient>& client) { clients_.push_back(client); }
     void remove(const ViewClient& client);
 
+    // Whether tiles may be sent to pages that have the whole picture, and the CPU time that it took. Pages share a budget.
+    bool has_time_for_tiles() const { return tiles_budget_.allows_work(process_cpu_seconds()); }
+    void spend_on_tiles(double seconds) { tiles_budget_.spend(seconds, process_cpu_seconds()); }
+
     // Several times a second: sends what is new, and computes what is missing.
     void tick();
     // The last message to all, and whether all have been sent it.
@@ -53,17 +59,19 @@ class ViewHub {
     void close() { pool_.join(); }
 
   private:
-    using Clock = std::chrono::steady_clock;
     // Work that is repeated while the picture changes: seldom enough to cost little.
     struct Repeated {
+        WorkBudget budget;
+        std::chrono::milliseconds interval; // the least one
+        std::chrono::steady_clock::time_point next{};
         bool runs = false;
         std::uint64_t version = 0; // of the picture when it ran last
-        Clock::time_point next{};
     };
+    static bool may_run(const Repeated& repeated);
     void refresh_statistics(const std::shared_ptr<LivePicture>& picture);
     void refresh_layers(const std::shared_ptr<LivePicture>& picture);
-    // Schedules the next run after one that took from `begin` until now.
-    static void schedule(Repeated& repeated, Clock::time_point begin, std::chrono::duration<double> least);
+    // As run_slow, on the work's budget.
+    void repeat(Repeated& repeated, std::function<void()> work, std::function<void()> done);
 
     ViewedRender& render_;
     ViewIntroduction introduction_;
@@ -74,7 +82,9 @@ class ViewHub {
     std::list<std::shared_ptr<ViewClient>> clients_;
     std::optional<PictureStatistics> statistics_;
     std::weak_ptr<const LivePicture> statistics_of_;
-    Repeated statistics_work_, layers_work_;
+    Repeated statistics_work_{WorkBudget(0.005), std::chrono::milliseconds(250)},
+        layers_work_{WorkBudget(0.005), std::chrono::milliseconds(500)};
+    WorkBudget tiles_budget_{0.01};
 };
 
 } // namespace montelux

@@ -10,10 +10,13 @@
 #include <list>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/cpu_time.h"
 #include "montelux/view/view_connection.h"
 #include "montelux/view/view_hub.h"
+#include "montelux/view/work_budget.h"
 
 namespace montelux {
 
@@ -25,6 +28,11 @@ using boost::asio::ip::tcp;
 constexpr std::size_t most_connections = 128;
 constexpr std::chrono::milliseconds tick_interval{50}, pause_after_failure{100};
 constexpr std::chrono::seconds time_for_goodbyes{1};
+// That wait to be accepted: while attacks fill them, a page needs some luck; afterwards they are soon gone.
+constexpr int most_waiting_connections = 128;
+// Of the program's CPU time while it renders. Beyond this many seconds the thread did other work meanwhile.
+constexpr double share_of_connections = 0.02, most_for_connection = 1e-3;
+constexpr std::chrono::milliseconds pause_without_budget{5};
 
 } // namespace
 
@@ -74,7 +82,7 @@ class ViewServer::Implementation {
         acceptor_.open(endpoint.protocol(), error);
         if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
         if (!error) acceptor_.bind(endpoint, error);
-        if (!error) acceptor_.listen(boost::asio::socket_base::max_listen_connections, error);
+        if (!error) acceptor_.listen(most_waiting_connections, error);
         if (error)
             throw Error("view", settings.address + ":" + std::to_string(settings.port) +
                                     " cannot be served: " + error.message());
@@ -83,16 +91,27 @@ class ViewServer::Implementation {
     void accept() {
         acceptor_.async_accept([this](boost::system::error_code error, tcp::socket socket) {
             if (error == boost::asio::error::operation_aborted) return;
-            if (error) { // no more files may be open: others will be closed
-                retry_.expires_after(pause_after_failure);
-                retry_.async_wait([this](boost::system::error_code stopped) {
-                    if (!stopped) accept();
-                });
-                return;
-            }
+            if (error)
+                return accept_after(pause_after_failure); // others will be closed: files may be used up
             add(std::move(socket));
-            accept();
+            const double cpu = thread_cpu_seconds();
+            connections_budget_.spend(
+                std::min(cpu - std::exchange(cpu_at_connection_, cpu), most_for_connection),
+                process_cpu_seconds());
+            accept_within_budget();
         });
+    }
+    void accept_after(std::chrono::milliseconds pause) {
+        retry_.expires_after(pause);
+        retry_.async_wait([this](boost::system::error_code stopped) {
+            if (!stopped) accept_within_budget();
+        });
+    }
+    void accept_within_budget() {
+        if (hub_.render().state() == ViewState::rendering &&
+            !connections_budget_.allows_work(process_cpu_seconds()))
+            return accept_after(pause_without_budget);
+        accept();
     }
 
     void add(tcp::socket socket) {
@@ -137,6 +156,8 @@ class ViewServer::Implementation {
     tcp::acceptor acceptor_;
     boost::asio::steady_timer timer_, retry_;
     std::list<std::shared_ptr<ViewConnection>> connections_;
+    WorkBudget connections_budget_{share_of_connections};
+    double cpu_at_connection_ = 0; // of the thread
     std::thread thread_;
 };
 

@@ -73,6 +73,10 @@ std::uint64_t ViewedRender::status_version() const {
     const std::lock_guard lock(mutex_);
     return status_.version;
 }
+ViewState ViewedRender::state() const {
+    const std::lock_guard lock(mutex_);
+    return status_.state;
+}
 std::shared_ptr<LivePicture> ViewedRender::picture() const {
     const std::lock_guard lock(mutex_);
     return picture_;

@@ -74,6 +74,7 @@ class ViewedRender {
     const ViewedRenderSettings& settings() const { return settings_; }
     ViewStatus status() const;
     std::uint64_t status_version() const;
+    ViewState state() const;
     // Of the current epoch; null before the first.
     std::shared_ptr<LivePicture> picture() const;
     // Ends the render if ViewedRenderSettings::cancel asks for it. To be called several times a second.

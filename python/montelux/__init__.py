@@ -10,6 +10,10 @@ docs/python.md is the guide; docs/integration.md says which method is for what.
 
 from __future__ import annotations
 
+from ._processor import check as _check_processor
+
+_check_processor()  # before anything loads the compiled module
+
 from ._core import (
     Adaptive,
     AdaptiveMap,

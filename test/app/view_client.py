@@ -226,9 +226,11 @@ def hostile(viewer, count):
     silent, opened = [], 0
     end = time.monotonic() + 6e-4 * count
     while time.monotonic() < end or opened < count:
+        s = socket.socket()
+        s.setblocking(False)  # the program lets them wait
+        s.connect_ex(address)
+        opened += 1
         try:
-            s = socket.create_connection(address, timeout=5)
-            opened += 1
             kind = opened % 5
             if kind == 0:
                 s.sendall(b"GET / HTTP/1.1\r\nHost: x")  # half a request
@@ -238,9 +240,9 @@ def hostile(viewer, count):
                 s.sendall(f"GET /page/main.js HTTP/1.1\r\n{host}\r\n".encode())  # never read
             elif kind == 3:
                 s.sendall(os.urandom(500))
-            silent.append(s)
         except OSError:
             pass
+        silent.append(s)
         if len(silent) > 400:
             silent.pop(0).close()
     slow = [Viewer(viewer.url) for _ in range(8)]

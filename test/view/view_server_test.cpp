@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/cpu_time.h"
 #include "montelux/view/view_server.h"
 
 namespace montelux::testing {
@@ -279,6 +280,20 @@ TEST_F(ViewServerTest, SlowReadersAreNotHeard) {
     EXPECT_EQ(error, boost::asio::error::would_block) << sent; // the buffers of the system are full
     const auto other = watching();
     EXPECT_EQ(next(*other, "scene")["type"], "scene");
+}
+
+// Who connects again and again gets a share of the program's time, and the page its turn.
+TEST_F(ViewServerTest, ConnectionsDoNotTakeTheRendersTime) {
+    const double begin = process_cpu_seconds();
+    int connections = 0;
+    while (process_cpu_seconds() < begin + 3) {
+        tcp::socket socket = connected();
+        boost::asio::write(socket, boost::asio::buffer("GET / HTTP/1.1\r\n\r\n", 18));
+        rest_of(socket);
+        ++connections;
+    }
+    EXPECT_LT(connections, 700); // of 90 microseconds and more, for which there are 0.06 s
+    EXPECT_TRUE(is(get(with_token("/")), 200));
 }
 
 TEST(ViewServer, AddressesThatCannotBeServedAreErrors) {
