@@ -149,6 +149,10 @@ class Film {
 
     // Ends the open replicate of every pixel; whole replicates have this many points.
     void end_replicates(std::uint32_t points = 1);
+    // Ends the open replicates of a part of the film, whatever their number of samples.
+    void end_replicates(const PixelBounds& part);
+    // Forgets the open replicate of every pixel.
+    void drop_replicates();
     FilmError error() const { return error_of(*this); }
     // Of the layers of the film: R, G, B (mean); stderr.R, G, B; skewness.R, G, B (of the mean); samples;
     // replicates (from which the standard error is computed); outlier (Pixel::largest_share); warning

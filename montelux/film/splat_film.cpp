@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "montelux/mc/math/error.h"
 
@@ -44,6 +45,23 @@ bool SplatFilm::add(int x, int y, Vec3d rgb) {
         if (overflowed) std::atomic_ref(overflows_).fetch_add(1, std::memory_order_relaxed);
     }
     return true;
+}
+
+void SplatFilm::add_filtered(const PixelFilterSampler& filter, Point2f film, Vec3d rgb) {
+    const Vec2f r = filter.radius();
+    const auto range = [](float at, float radius, int low, int high) {
+        const float from = std::ceil(at - 0.5f - radius), to = std::floor(at - 0.5f + radius);
+        return std::pair(static_cast<int>(std::max(from, static_cast<float>(low))),
+                         static_cast<int>(std::min(to, static_cast<float>(high - 1))));
+    };
+    const auto [x0, x1] = range(film.x, r.x, bounds_.x0, bounds_.x1);
+    const auto [y0, y1] = range(film.y, r.y, bounds_.y0, bounds_.y1);
+    for (int y = y0; y <= y1; ++y)
+        for (int x = x0; x <= x1; ++x) {
+            const Vec2f offset{film.x - (static_cast<float>(x) + 0.5f),
+                               film.y - (static_cast<float>(y) + 0.5f)};
+            if (const float weight = filter.normalized(offset); weight != 0) add(x, y, rgb * double(weight));
+        }
 }
 
 Vec3d SplatFilm::sum(int x, int y) const {

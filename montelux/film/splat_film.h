@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "montelux/film/pixel_filter.h"
 #include "montelux/mc/math/vec.h"
 #include "montelux/scene/film/film_settings.h"
 
@@ -31,6 +32,10 @@ class SplatFilm {
     // Adds to a pixel's sum; pixels outside of the bounds ignore it. Returns false, and counts the contribution as bad,
     // if it is NaN, infinite or too large in any component: then nothing is added. From any thread.
     bool add(int x, int y, Vec3d rgb);
+
+    // Adds to all pixels whose filter reaches the film point, in pixels: `rgb` times the filter over its integral.
+    // From any thread.
+    void add_filtered(const PixelFilterSampler& filter, Point2f film, Vec3d rgb);
 
     // The members below must not run at the same time as add().
 

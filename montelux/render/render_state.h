@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "montelux/film/film.h"
+#include "montelux/film/splat_film.h"
 #include "montelux/render/bad_sample_report.h"
 #include "montelux/transport/ray_tracer.h"
 
@@ -39,11 +41,16 @@ struct RenderState {
     // Target sample count of each pixel in the current round; empty before the first.
     std::vector<std::uint32_t> target_samples;
     RenderReport report; // so far
+    // Of an integrator that traces light, what its paths brought in the open pass over the film: a pass is one replicate
+    // of every pixel.
+    std::optional<SplatFilm> splats;
 
     explicit RenderState(const FilmSettings& settings) : film(settings) {}
     // Throws Error as film_layers_of() does.
     explicit RenderState(const SceneDescription& description)
-        : film(description.film, film_layers_of(description)) {}
+        : film(description.film, film_layers_of(description)) {
+        if (traces_light(description.integrator.method)) splats.emplace(description.film.crop);
+    }
 };
 
 } // namespace montelux

@@ -11,6 +11,7 @@
 #include "montelux/spectrum/wavelengths.h"
 #include "montelux/transport/ray_tracer.h"
 #include "montelux/transport/sample_extras.h"
+#include "montelux/transport/splat.h"
 
 namespace montelux {
 
@@ -20,6 +21,7 @@ struct CameraSample {
     Ray ray;
     SampledWavelengths lambda;
     SampleExtras* extras = nullptr; // null: not wanted
+    SplatList* splats = nullptr;    // gets those of the sample; null: not wanted
 };
 
 // A sample before its path: the stream has given the camera's numbers.
