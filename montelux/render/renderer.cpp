@@ -16,6 +16,7 @@
 #include "montelux/render/sample_context.h"
 #include "montelux/render/splat_pass.h"
 #include "montelux/render/tile_renderer.h"
+#include "montelux/scene/light_tracing_support.h"
 #include "montelux/scene/setting_names.h"
 
 namespace montelux {
@@ -360,6 +361,8 @@ namespace {
 // What a film filled by light paths cannot have.
 void check_light_tracing(const SceneDescription& description, const RenderTarget& target) {
     const std::string where = "integrator " + std::string(name_of(description.integrator.method));
+    if (const auto obstacle = light_tracing_obstacle(description.scene, description.integrator))
+        throw Error(where, *obstacle + "; choose 'path'");
     if (target.adaptive)
         throw Error(where,
                     "its light paths reach all pixels at once: samples cannot be allocated to single ones; "
@@ -392,8 +395,6 @@ Renderer::Renderer(const SceneDescription& description, const RenderTarget& targ
     if (traces_light(description.integrator.method)) check_light_tracing(description, target);
     scene_digest_ = digest_of(description.scene);
     prepared_ = prepared ? std::move(prepared) : std::make_shared<const PreparedScene>(description);
-    if (traces_light(description.integrator.method))
-        check_bidirectional(description.integrator, scene(), camera_);
 }
 
 void Renderer::set_target(const RenderTarget& target) {

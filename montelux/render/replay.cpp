@@ -5,6 +5,7 @@
 #include "montelux/render/renderer.h"
 #include "montelux/render/sample_context.h"
 #include "montelux/render/sample_record.h"
+#include "montelux/scene/setting_names.h"
 
 namespace montelux {
 
@@ -31,6 +32,9 @@ void check_sample(const SceneDescription& d, int x, int y, std::uint64_t index, 
 
 SampleRecord Renderer::replay(int x, int y, std::uint64_t index) const {
     check_sample(description_, x, y, index, target_);
+    if (traces_light(description_.integrator.method))
+        throw Error("integrator " + std::string(name_of(description_.integrator.method)),
+                    "its samples cannot be replayed: they have many paths; choose 'path'");
     RayTracer tracer(accelerator());
     return SampleContext(description_, sampler_, scene(), camera_).record(tracer, {x, y, index});
 }

@@ -31,7 +31,7 @@ Integrator make_integrator(const SceneDescription& description, const SceneView&
                            const Camera& camera) {
     const IntegratorSettings& settings = description.integrator;
     if (traces_light(settings.method))
-        return BidirectionalIntegrator(settings, scene, camera, footprint_scale, description.film.crop,
+        return BidirectionalIntegrator(settings, camera, footprint_scale, description.film.crop,
                                        filter_radius(description.film.filter));
     if (settings.occlusion) return OcclusionIntegrator(settings, camera, footprint_scale);
     if (scene.has_media()) return VolumePathIntegrator(settings, camera, footprint_scale);

@@ -50,18 +50,15 @@ struct BidirectionalMemory {
 // IntegratorKind::light_tracing takes the strategies t = 1 alone, and s = 0 for lights that the camera sees directly.
 // It finds no light on its way from a mirror or smooth glass straight to the camera.
 //
-// For scenes without media and cameras with Camera::has_importance().
-// Throws Error for settings, cameras and scenes that it cannot do.
-void check_bidirectional(const IntegratorSettings& settings, const SceneView& scene, const Camera& camera);
-
+// For scenes and cameras without light_tracing_obstacle().
 class BidirectionalIntegrator {
   public:
     static constexpr std::string_view name = "bidirectional";
 
     // The camera must outlive it. `film`: where splats count; `light_paths`: for each path that starts at a square
-    // pixel. Throws Error as check_bidirectional does.
-    BidirectionalIntegrator(const IntegratorSettings& settings, const SceneView& scene, const Camera& camera,
-                            float footprint_scale, const PixelBounds& crop, Vec2f filter_radius);
+    // pixel.
+    BidirectionalIntegrator(const IntegratorSettings& settings, const Camera& camera, float footprint_scale,
+                            const PixelBounds& crop, Vec2f filter_radius);
 
     using Batch = BidirectionalMemory;
     // Splats go to camera.splats, unless null.

@@ -107,8 +107,9 @@ TEST(CameraImportance, NothingBehindTheCameraIsSeen) {
     for (const CameraCase& c : cameras()) {
         const Ray ray = c.camera.generate_ray({30, 20}, {0.5f, 0.5f});
         EXPECT_FALSE(c.camera.sample_wi(ray.o - ray.d, {0.5f, 0.5f}, 0)) << c.name;
-        if (c.name.find("ortho") == std::string::npos || c.name.find("lens") != std::string::npos)
+        if (c.name.find("ortho") == std::string::npos || c.name.find("lens") != std::string::npos) {
             EXPECT_EQ(c.camera.pdf_we(-ray.d, 0), 0) << c.name;
+        }
         EXPECT_TRUE(c.camera.has_importance());
     }
     EXPECT_FALSE(Camera({SphericalCamera{}, {}}, 64, 64).has_importance());
