@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "montelux/mc/random/stream.h"
 #include "montelux/scene/light/light_model.h"
 #include "montelux/scene/material/make_bsdf.h"
 #include "montelux/scene/shape/surface_point.h"
