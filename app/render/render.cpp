@@ -79,7 +79,7 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     SceneDescription& description = requested.description;
     const double load_seconds = std::chrono::duration<double>(Clock::now() - load_begin).count();
     if (!options.quiet) LoadNotices().print(options.scene, warnings, requested.added);
-    const RenderTarget target = target_of(options);
+    const RenderTarget target = target_of(options, description.integrator);
     if (options.debug_sample) return replay(options, description, target);
     // The command view writes what it is asked for.
     const bool writes = !options.view.stays || !options.outputs.empty();

@@ -13,6 +13,7 @@
 #include "montelux/formats/load_scene.h"
 #include "montelux/image/texel_file.h"
 #include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/scene/light_tracing_support.h"
 #include "montelux/scene/setting_names.h"
 
 namespace montelux::app {
@@ -178,6 +179,11 @@ void declare(CLI::App& c, RenderOptions& o) {
         "--no-half", [&o] { o.half = false; }, "They hold 32-bit floats, whatever the scene's savefp16 says");
     declare(c, o.tone);
     add_choice(c, "--sampler", o.sampler, sampler_names, "Where samples are taken: ");
+    add_choice(
+        c, "--integrator", o.integrator, integrator_names,
+        "How paths are found: from the camera, the default; from the camera and from lights, joined in all "
+        "ways, for caustics and lamps in shades; or from lights alone, which misses what mirrors and smooth "
+        "glass show the camera: ");
     add_choice(c, "--strategy", o.strategy, strategy_names, "How light is found: ");
     add_choice(c, "--heuristic", o.heuristic, heuristic_names,
                "Weights of the strategy mis and its two terms: ");
@@ -263,7 +269,11 @@ void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.spp) d.sampler.spp = static_cast<std::uint32_t>(std::min(*o.spp, o.max_spp.value_or(*o.spp)));
     if (o.seed) d.sampler.seed = *o.seed;
     if (o.sampler) d.sampler.kind = *o.sampler;
-    if (o.strategy) d.integrator.strategy = *o.strategy;
+    if (o.integrator) d.integrator.method = *o.integrator;
+    if (o.strategy)
+        d.integrator.strategy = *o.strategy;
+    else if (o.integrator && traces_light(*o.integrator))
+        d.integrator.strategy = Strategy::mis; // whatever the scene's integrator was
     if (o.heuristic) d.integrator.heuristic = *o.heuristic;
     if (o.light_sampling) d.integrator.light_sampling = *o.light_sampling;
     if (o.guiding) d.integrator.guiding = *o.guiding;
@@ -304,13 +314,14 @@ RequestedScene load_requested(const RenderOptions& o, Warnings& warnings, FileSo
                     .definitions = o.definitions,
                     .shutter = shutter_seconds(o)});
     apply(o, r.description);
+    if (o.integrator == IntegratorKind::light_tracing) warnings.add("--integrator", light_tracing_warning);
     if (o.turntable) r.axis = turn_axis_of(r.description);
     DiskFiles disk;
     r.added = add_studio(r.description, o.studio, source != nullptr ? *source : disk, warnings, files_read);
     return r;
 }
 
-RenderTarget target_of(const RenderOptions& o) {
+RenderTarget target_of(const RenderOptions& o, const IntegratorSettings& integrator) {
     if (o.target_quantile && !o.target_error)
         throw UsageError("--target-quantile", "expected --target-error ERROR, the error of that share");
     if (o.resume && o.checkpoint.empty())
@@ -319,7 +330,7 @@ RenderTarget target_of(const RenderOptions& o) {
     target.error = o.target_error.value_or(0);
     target.quantile = o.target_quantile.value_or(0);
     target.time = o.time.value_or(0);
-    target.adaptive = o.adaptive.value_or(o.target_error.has_value());
+    target.adaptive = o.adaptive.value_or(o.target_error.has_value() && !traces_light(integrator.method));
     target.slice = o.slice;
     if (target.slice.count > 1 && (target.error > 0 || target.adaptive))
         throw UsageError("--slice",

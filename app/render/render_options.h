@@ -47,6 +47,7 @@ struct RenderOptions {
     std::optional<std::pair<int, int>> resolution;
     std::optional<std::array<double, 4>> crop; // x0, x1, y0, y1 as fractions of the film
     std::optional<SamplerKind> sampler;
+    std::optional<IntegratorKind> integrator;
     std::optional<Strategy> strategy;
     std::optional<Heuristic> heuristic;
     std::optional<LightSampling> light_sampling;
@@ -102,6 +103,7 @@ RequestedScene load_requested(const RenderOptions& options, Warnings& warnings, 
 // How long the shutter stays open.
 double shutter_seconds(const RenderOptions& options);
 // Throws UsageError for incompatible options.
-RenderTarget target_of(const RenderOptions& options);
+// Light paths reach all pixels at once: without --adaptive their samples are not allocated.
+RenderTarget target_of(const RenderOptions& options, const IntegratorSettings& integrator);
 
 } // namespace montelux::app

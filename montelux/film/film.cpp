@@ -89,6 +89,26 @@ void Film::end_replicates(std::uint32_t points) {
     }
 }
 
+void Film::end_replicates(const PixelBounds& part) {
+    for (int y = part.y0; y < part.y1; ++y)
+        for (int x = part.x0; x < part.x1; ++x) {
+            Pixel& p = pixel(x, y);
+            if (layers_.sums() > 0)
+                layers_.end_replicate(&layer_sums_[index(x, y) * layers_.sums()], p.open_samples());
+            for (std::size_t k = 0, n = buckets_per_pixel(); k < n && p.open_samples() > 0; ++k)
+                buckets_[index(x, y) * n + k].end_replicate(p.open_samples(), p.replicates().count() + 1);
+            p.end_replicate();
+        }
+}
+
+void Film::drop_replicates() {
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        if (layers_.sums() > 0) layers_.drop_replicate(&layer_sums_[i * layers_.sums()]);
+        pixels_[i].drop_replicate();
+    }
+    for (BucketMoments& b : buckets_) b.open = 0;
+}
+
 Image Film::develop(bool as_slice) const {
     std::vector<std::string> channels = layers_.channels();
     if (as_slice) channels.insert(channels.end(), {"brightest.R", "brightest.G", "brightest.B"});

@@ -67,6 +67,7 @@ std::uint64_t hash_of_film(const FilmSettings& f) {
 }
 std::uint64_t hash_of_integrator(const IntegratorSettings& s) {
     const auto with_background = [&](std::uint64_t h) {
+        if (s.method != IntegratorKind::path) h = hash_of(h, static_cast<int>(s.method));
         return s.background ? hash_of(h, s.background->x, s.background->y, s.background->z) : h;
     };
     const auto with_guiding = [&](std::uint64_t h) {
@@ -122,6 +123,10 @@ std::uint64_t hash_of_layers(const SceneDescription& d, const FilmLayers& layers
     return h == 0 ? 1 : h;
 }
 
+std::size_t splat_bytes(const RenderState& state) {
+    return state.splats ? state.splats->sums().size_bytes() + 2 * sizeof(std::uint64_t) : 0;
+}
+
 } // namespace
 
 void save_checkpoint(const std::filesystem::path& path, const Renderer& renderer, const RenderState& state) {
@@ -129,8 +134,8 @@ void save_checkpoint(const std::filesystem::path& path, const Renderer& renderer
     const bool may_be_guided = renderer.description().integrator.guiding != Guiding::off;
     const std::span<const Pixel> pixels = state.film.pixels();
     out.reserve(pixels.size_bytes() + state.film.buckets().size_bytes() +
-                state.film.layer_sums().size_bytes() + state.target_samples.size() * sizeof(std::uint32_t) +
-                1024);
+                state.film.layer_sums().size_bytes() + splat_bytes(state) +
+                state.target_samples.size() * sizeof(std::uint32_t) + 1024);
     out.put(version());
     for (const Fingerprint& f :
          fingerprints(renderer.scene_digest(), renderer.description(), renderer.target()))
@@ -150,6 +155,11 @@ void save_checkpoint(const std::filesystem::path& path, const Renderer& renderer
     if (may_be_guided) {
         out.put(static_cast<std::uint8_t>(state.guide != nullptr));
         if (state.guide) state.guide->save(out);
+    }
+    if (state.splats) {
+        out.put_all(std::as_const(*state.splats).sums());
+        out.put(state.splats->bad());
+        out.put(state.splats->overflows());
     }
     write_generation(path, kind, out.take());
 }
@@ -178,9 +188,10 @@ RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDes
     const bool may_be_guided = description.integrator.guiding != Guiding::off;
     // An upper bound of the size for this film, generous so that a checkpoint of a larger film is refused by
     // the right message. Larger files are not read into memory.
-    const std::size_t most = 64 * (pixels.size_bytes() + pixels.size() * sizeof(std::uint32_t) +
-                                   state.film.buckets().size_bytes() + state.film.layer_sums().size_bytes()) +
-                             1024 + (may_be_guided ? description.integrator.guiding_memory << 20 : 0);
+    const std::size_t most =
+        64 * (pixels.size_bytes() + pixels.size() * sizeof(std::uint32_t) +
+              state.film.buckets().size_bytes() + state.film.layer_sums().size_bytes() + splat_bytes(state)) +
+        1024;
     const Generation generation = read_generation(path, kind, most);
     restored.newest_refused_because = generation.newest_refused_because;
     ByteReader in(generation.payload, "checkpoint");
@@ -200,13 +211,19 @@ RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDes
     in.get_all(pixels);
     in.get_all(state.film.buckets());
     const std::uint64_t layers = hash_of_layers(description, state.film.layers());
-    if ((in.at_end() ? 0 : in.get<std::uint64_t>()) != layers)
+    const bool has_layers = in.remaining() > splat_bytes(state);
+    if ((has_layers ? in.get<std::uint64_t>() : 0) != layers)
         throw Error(path.string(),
                     "the checkpoint is of another render: the layers of the film (--layers) differ");
     if (layers != 0) in.get_all(state.film.layer_sums());
     if (may_be_guided) {
         if (in.get<std::uint8_t>() != 0)
             state.guide = std::make_shared<const GuidingField>(GuidingField::load(in));
+    }
+    if (state.splats) {
+        in.get_all(state.splats->sums());
+        const auto bad = in.get<std::uint64_t>(), overflows = in.get<std::uint64_t>();
+        state.splats->set_counts(bad, overflows);
     }
     if (!in.at_end() || restored.replicate_points == 0)
         throw Error(path.string(), "the checkpoint is not what its header says");

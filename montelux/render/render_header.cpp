@@ -55,6 +55,8 @@ void add_render_header(Image& image, const std::string& scene_name, const Render
     a["samplesTaken"] = static_cast<float>(error.mean_samples);
     a["interrupted"] = report.cancelled() ? 1 : 0;
     a["sampler"] = std::string(name_of(description.sampler.kind));
+    if (description.integrator.method != IntegratorKind::path)
+        a["integrator"] = std::string(name_of(description.integrator.method));
     a["strategy"] = std::string(name_of(description.integrator.strategy));
     a["heuristic"] = std::string(name_of(description.integrator.heuristic));
     a["lightSampling"] = std::string(name_of(description.integrator.light_sampling));

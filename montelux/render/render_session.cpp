@@ -8,6 +8,7 @@
 #include "montelux/render/render_header.h"
 #include "montelux/render/sample_allocation.h"
 #include "montelux/render/sample_order.h"
+#include "montelux/render/splat_pass.h"
 
 namespace montelux {
 
@@ -85,7 +86,7 @@ std::string RenderSession::checkpoint_failure() const {
 
 RenderSnapshot RenderSession::finish(const std::function<void(Image&)>& denoise) {
     const RenderReport report = state_->report;
-    state_->film.end_replicates(replicate_size()); // of a render that was kept open
+    end_replicates(state_->film); // of a render that was kept open
     RenderSnapshot result = picture_of(state_->film, report);
     result.outliers = outliers_of(state_->film);
     state_.reset();
@@ -102,14 +103,25 @@ RenderSnapshot RenderSession::finish(const std::function<void(Image&)>& denoise)
 std::optional<RenderSnapshot> RenderSession::snapshot(double seconds) {
     std::optional<LiveCopy> now = live_.copy(seconds);
     if (!now) return std::nullopt;
-    now->film.end_replicates(replicate_size());
+    // A copy is made while samples are taken: the splats of its open pass are not known.
+    if (traces_light(description_->integrator.method))
+        drop_pass(now->film);
+    else
+        now->film.end_replicates(replicate_size());
     return picture_of(now->film, now->report);
 }
 
 RenderSnapshot RenderSession::picture() const {
     Film film = state_->film;
-    film.end_replicates(replicate_size());
+    end_replicates(film);
     return picture_of(film, state_->report);
+}
+
+void RenderSession::end_replicates(Film& film) const {
+    if (state_->splats)
+        end_pass(film, *state_->splats, replicate_size());
+    else
+        film.end_replicates(replicate_size());
 }
 
 RenderSnapshot RenderSession::picture_of(const Film& film, const RenderReport& report) const {

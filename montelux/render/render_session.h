@@ -95,6 +95,8 @@ class RenderSession {
     std::string checkpoint_failure() const;
 
   private:
+    // Of a picture that gets no more samples.
+    void end_replicates(Film& film) const;
     RenderSnapshot picture_of(const Film& film, const RenderReport& report) const;
     void save(const RenderState& state, const RenderCompany& company);
 

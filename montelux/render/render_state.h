@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "montelux/film/film.h"
+#include "montelux/film/splat_film.h"
 #include "montelux/render/bad_sample_report.h"
 #include "montelux/render/guide_summary.h"
 #include "montelux/transport/guiding/guiding_field.h"
@@ -42,13 +44,18 @@ struct RenderState {
     Film film;
     // Target sample count of each pixel in the current round; empty before the first.
     std::vector<std::uint32_t> target_samples;
-    RenderReport report;                         // so far
+    RenderReport report; // so far
+    // Of an integrator that traces light, what its paths brought in the open pass over the film: a pass is one replicate
+    // of every pixel.
+    std::optional<SplatFilm> splats;
     std::shared_ptr<const GuidingField> guide{}; // that paths follow, or null
 
     explicit RenderState(const FilmSettings& settings) : film(settings) {}
     // Throws Error as film_layers_of() does.
     explicit RenderState(const SceneDescription& description)
-        : film(description.film, film_layers_of(description)) {}
+        : film(description.film, film_layers_of(description)) {
+        if (traces_light(description.integrator.method)) splats.emplace(description.film.crop);
+    }
 };
 
 } // namespace montelux

@@ -15,7 +15,10 @@
 #include "montelux/render/round_executor.h"
 #include "montelux/render/sample_allocation.h"
 #include "montelux/render/sample_context.h"
+#include "montelux/render/splat_pass.h"
 #include "montelux/render/tile_renderer.h"
+#include "montelux/scene/light_tracing_support.h"
+#include "montelux/scene/setting_names.h"
 
 namespace montelux {
 
@@ -51,8 +54,9 @@ class RenderLoop {
     void run() {
         for (;;) {
             if (!every_pixel_seen_)
-                every_pixel_seen_ =
-                    std::ranges::all_of(state_.film.pixels(), [](const Pixel& p) { return p.samples() > 0; });
+                every_pixel_seen_ = std::ranges::all_of(state_.film.pixels(), [this](const Pixel& p) {
+                    return state_.splats ? p.replicates().count() > 0 : p.samples() > 0;
+                });
             train_guide_if_due();
             if (const auto reason = stop_between_rounds()) return end(*reason);
             if (round_is_done()) {
@@ -65,6 +69,7 @@ class RenderLoop {
                 ++round_;
             }
             take_samples();
+            if (state_.splats && round_is_done() && no_replicate_is_open()) close_pass();
             {
                 std::lock_guard lock(mutex_);
                 state_.report.seconds = seconds();
@@ -184,6 +189,26 @@ class RenderLoop {
             [&](std::int64_t t) { render_tile(static_cast<std::size_t>(t)); }, control_.cancel);
     }
 
+    // The splats of a pass become part of its replicates.
+    void close_pass() {
+        SplatFilm& splats = *state_.splats;
+        if (splats.overflows() > 0 || splats.bad() > 0)
+            throw Error("film",
+                        "the sums of light that is brought to a pixel are too large; lower the exposure");
+        const std::uint64_t samples = open_samples(state_.film);
+        if (samples == 0) return; // closed before the render was interrupted
+        LiveFilm* const live = control_.live;
+        parallel_for(static_cast<std::int64_t>(tiles_.size()), [&](std::int64_t i) {
+            const auto t = static_cast<std::size_t>(i);
+            const PixelBounds& tile = tiles_[t];
+            const auto held = live != nullptr ? live->hold(t) : std::unique_lock<std::mutex>();
+            add_splats(state_.film, splats, tile, samples);
+            state_.film.end_replicates(tile);
+        });
+        splats.clear();
+        for (std::size_t t = 0; t < tiles_.size(); ++t) report_if_finished(t);
+    }
+
     void let_executor_take_samples() {
         LiveFilm* const live = control_.live;
         const RoundWatch watch{[&](bool something_done) {
@@ -206,7 +231,7 @@ class RenderLoop {
 
     void render_tile(std::size_t index) {
         // A tile may have its samples of this round before any are taken: then the round may end in this pause.
-        if (pause_) return report_if_finished(index);
+        if (pause_) return state_.splats ? void() : report_if_finished(index);
         const PixelBounds& film = state_.film.bounds();
         const PixelBounds& tile = tiles_[index];
         const auto stride = static_cast<std::size_t>(film.width());
@@ -228,13 +253,14 @@ class RenderLoop {
                  .bucket_count = state_.film.buckets_per_pixel(),
                  .target_samples = &state_.target_samples[first],
                  .target_stride = stride,
-                 .layer_sums = state_.film.layer_sums().data() + first * state_.film.layers().sums()},
+                 .layer_sums = state_.film.layer_sums().data() + first * state_.film.layers().sums(),
+                 .splats = state_.splats ? &*state_.splats : nullptr},
                 tally, stopped, [&] {
                     pause_if_due();
                     return stopped();
                 });
         }
-        report_if_finished(index);
+        if (!state_.splats) report_if_finished(index); // otherwise after the pass
         std::lock_guard lock(mutex_);
         tally.add_to(state_.report);
         // Only after some samples: short intervals must not stop progress.
@@ -312,7 +338,10 @@ class RenderLoop {
             copy = state_.film;
         Film& film = copy ? *copy : state_.film;
         // Truncated replicates count if they are at least half of one: each is unbiased.
-        film.end_replicates(order_.replicate_size());
+        if (state_.splats)
+            end_pass(film, *state_.splats, order_.replicate_size());
+        else
+            film.end_replicates(order_.replicate_size());
         const FilmError error = film.error();
         // The open replicates may have been the only ones missing.
         if (reason != RenderStop::cancelled && target_is_reached(film, error))
@@ -351,6 +380,28 @@ class RenderLoop {
 
 } // namespace
 
+namespace {
+
+// What a film filled by light paths cannot have.
+void check_light_tracing(const SceneDescription& description, const RenderTarget& target) {
+    const std::string where = "integrator " + std::string(name_of(description.integrator.method));
+    if (const auto obstacle = light_tracing_obstacle(description.scene, description.integrator))
+        throw Error(where, *obstacle + "; choose 'path'");
+    if (target.adaptive)
+        throw Error(where,
+                    "its light paths reach all pixels at once: samples cannot be allocated to single ones; "
+                    "leave out --adaptive or choose 'path'");
+    if (description.film.spectral)
+        throw Error(where, "a spectral film cannot be rendered by it; choose 'path'");
+    for (const Layer layer : {Layer::direct, Layer::indirect, Layer::light_groups})
+        if (description.film.layers.set.has(layer))
+            throw Error(where,
+                        "the parts of the light (layers direct, indirect, light-groups) cannot be rendered "
+                        "by it; choose 'path'");
+}
+
+} // namespace
+
 Renderer::Renderer(const SceneDescription& description, const RenderTarget& target,
                    std::uint32_t replicate_points, std::shared_ptr<const PreparedScene> prepared)
     : description_(description), target_(target),
@@ -365,6 +416,7 @@ Renderer::Renderer(const SceneDescription& description, const RenderTarget& targ
         throw Error("slice", "slices are joined by their standard layers; no others can be chosen");
     if (description.integrator.occlusion && description.film.layers.set.has(Layer::light_groups))
         throw Error("film", "ambient occlusion is no light of the scene: 'light-groups' cannot be chosen");
+    if (traces_light(description.integrator.method)) check_light_tracing(description, target);
     scene_digest_ = digest_of(description.scene);
     prepared_ = prepared ? std::move(prepared) : std::make_shared<const PreparedScene>(description);
 }
@@ -395,6 +447,9 @@ void Renderer::render(RenderState& state, const RenderControl& control) const {
     if (description_.film.spectral && control.executor != nullptr)
         throw Error("film",
                     "a spectral film cannot be rendered by several processes: they exchange RGB alone");
+    if (state.splats && control.executor != nullptr)
+        throw Error("integrator " + std::string(name_of(description_.integrator.method)),
+                    "it cannot be used by several processes yet: render slices, or choose 'path'");
     if (description_.integrator.guiding == Guiding::on && control.executor != nullptr)
         throw Error("guiding",
                     "a guided picture cannot be rendered by several processes yet: render it by one, or "
@@ -402,8 +457,9 @@ void Renderer::render(RenderState& state, const RenderControl& control) const {
     SampleContext context(description_, sampler_, scene(), camera_);
     if (description_.integrator.guiding == Guiding::on && !context.can_be_guided())
         throw Error("guiding",
-                    "only paths between surfaces can be guided, and this scene has media or renders "
-                    "ambient occlusion: leave guiding to 'auto', or turn it off");
+                    "only the path integrator can be guided, and only between surfaces: leave guiding to "
+                    "'auto' in scenes with media and for other integrators, or turn it off");
+    if (context.makes_splats() && !state.splats) state.splats.emplace(state.film.bounds());
     if (state.film.layers().channels() != context.layers().channels())
         throw Error("film", "its layers are not those of the scene's film");
     RenderLoop(*this, context, state, control).run();

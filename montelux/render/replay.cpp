@@ -5,6 +5,7 @@
 #include "montelux/render/renderer.h"
 #include "montelux/render/sample_context.h"
 #include "montelux/render/sample_record.h"
+#include "montelux/scene/setting_names.h"
 
 namespace montelux {
 
@@ -35,6 +36,9 @@ SampleRecord Renderer::replay(int x, int y, std::uint64_t index) const {
         throw Error("guiding",
                     "a guided sample depends on what the render has learned before it: replay samples with "
                     "guiding off");
+    if (traces_light(description_.integrator.method))
+        throw Error("integrator " + std::string(name_of(description_.integrator.method)),
+                    "its samples cannot be replayed: they have many paths; choose 'path'");
     RayTracer tracer(accelerator());
     return SampleContext(description_, sampler_, scene(), camera_).record(tracer, {x, y, index});
 }

@@ -108,7 +108,7 @@ std::vector<std::uint32_t> next_target_samples(const RenderState& state, const S
     if (begin >= share) return {};
     // 1, 2, 4, 8, 16, 32, 48, ... samples: a render that is interrupted early has some in every pixel.
     std::uint64_t end = begin + std::clamp<std::uint64_t>(std::bit_floor(begin), 1, longest_round);
-    if (order.replicate_size() > 1)
+    if (order.replicate_size() > 1 || state.splats) // passes end with a round
         end = std::min(end, (begin / order.replicate_size() + 1) * order.replicate_size());
     if (target.adaptive) end = std::min(end, pilot);
     return std::vector<std::uint32_t>(pixels, static_cast<std::uint32_t>(std::min(end, share)));

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
+
+#include "montelux/film/splat_film.h"
 
 namespace montelux {
 
@@ -24,7 +27,12 @@ std::optional<BadSample::Kind> badness(Vec3f rgb, SampledSpectrum radiance) {
 constexpr float footprint_scale = 0.125f;
 
 // Scenes without media pay nothing for them.
-Integrator make_integrator(const IntegratorSettings& settings, const SceneView& scene, const Camera& camera) {
+Integrator make_integrator(const SceneDescription& description, const SceneView& scene,
+                           const Camera& camera) {
+    const IntegratorSettings& settings = description.integrator;
+    if (traces_light(settings.method))
+        return BidirectionalIntegrator(settings, camera, footprint_scale, description.film.crop,
+                                       filter_radius(description.film.filter));
     if (settings.occlusion) return OcclusionIntegrator(settings, camera, footprint_scale);
     if (scene.has_media()) return VolumePathIntegrator(settings, camera, footprint_scale);
     return PathIntegrator(settings, camera, footprint_scale);
@@ -37,7 +45,7 @@ SampleContext::SampleContext(const SceneDescription& description, const SamplerS
     : sampler_(sampler), max_component_value_(description.film.max_component_value), scene_(scene),
       camera_(camera), moves_(moves(description.scene)),
       normals_in_camera_space_(description.film.layers.in_camera_space), layers_(description, scene, camera),
-      integrator_(make_integrator(description.integrator, scene, camera)), filter_(description.film.filter),
+      integrator_(make_integrator(description, scene, camera)), filter_(description.film.filter),
       sensor_(RgbColorSpace::srgb(), {description.film.exposure_time, description.film.iso,
                                       description.film.white_balance, description.film.sensor}),
       white_(RgbColorSpace::srgb().illuminant()),
@@ -111,6 +119,25 @@ SampleContext::Result SampleContext::finish(const FilmContribution& path, const 
     return result;
 }
 
+void SampleContext::finish_splats(const SplatList& splats, const SampledWavelengths& lambda, Result& result,
+                                  std::vector<FilmSplat>& out) const {
+    for (const Splat& splat : splats) {
+        Vec3f rgb = sensor_.to_rgb(splat.radiance, lambda);
+        if (result.bad) return;
+        result.bad = badness(rgb, splat.radiance);
+        const float largest = max_component(rgb);
+        // The filter's weight in a pixel may exceed 1.
+        if (!result.bad && largest > static_cast<float>(SplatFilm::most * 0x1p-10))
+            result.bad = BadSample::Kind::infinite;
+        if (largest > max_component_value_) [[unlikely]] {
+            const float clamp = max_component_value_ / largest;
+            result.clamped += static_cast<float>(dot(Vec3d(rgb), luminance_weight)) * (1 - clamp);
+            rgb *= clamp;
+        }
+        out.push_back({splat.film, rgb});
+    }
+}
+
 void SampleContext::sample_layers(const SampleExtras& extras, const FilmContribution& path,
                                   const FilmPoint& point, float clamp, std::span<float> values) const {
     layers_.sample(extras, point.film, point.lens, point.filter.weight, values);
@@ -138,7 +165,8 @@ void SampleContext::trace_for_guide(RayTracer& tracer, std::span<const Key> keys
     }
     std::visit(
         [&](const auto& integrator) {
-            integrator.estimate(scene_, tracer, std::span(batch.starts), batch.integrator,
+            using I = std::decay_t<decltype(integrator)>;
+            integrator.estimate(scene_, tracer, std::span(batch.starts), batch.integrator.of<I>(),
                                 std::span(batch.paths));
         },
         integrator_);
@@ -163,9 +191,17 @@ void SampleContext::take(RayTracer& tracer, std::span<const Key> keys, Batch& ba
         for (std::size_t i = 0; i < keys.size(); ++i) batch.starts[i].camera.extras = &batch.extras[i];
         batch.layer_values.resize(keys.size() * layers().values());
     }
+    if (makes_splats()) {
+        if (batch.splats.size() < keys.size()) batch.splats.resize(keys.size());
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            batch.splats[i].clear();
+            batch.starts[i].camera.splats = &batch.splats[i];
+        }
+    }
     std::visit(
         [&](const auto& integrator) {
-            integrator.estimate(scene_, tracer, std::span(batch.starts), batch.integrator,
+            using I = std::decay_t<decltype(integrator)>;
+            integrator.estimate(scene_, tracer, std::span(batch.starts), batch.integrator.of<I>(),
                                 std::span(batch.paths));
         },
         integrator_);
@@ -173,6 +209,14 @@ void SampleContext::take(RayTracer& tracer, std::span<const Key> keys, Batch& ba
     for (std::size_t i = 0; i < keys.size(); ++i)
         results[i] = finish(batch.paths[i], batch.starts[i].camera.lambda, batch.points[i],
                             buckets_ ? &batch.spectral[i] : nullptr);
+    if (makes_splats()) {
+        batch.film_splats.clear();
+        batch.first_splat.assign(1, 0);
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            finish_splats(batch.splats[i], batch.paths[i].lambda, results[i], batch.film_splats);
+            batch.first_splat.push_back(batch.film_splats.size());
+        }
+    }
     if (!layers_.wants_extras()) return;
     const std::size_t values = layers().values();
     for (std::size_t i = 0; i < keys.size(); ++i)

@@ -28,7 +28,7 @@ class SampleContext {
         FilmSample film;
         // Why the sample is left out; `film` is then empty.
         std::optional<BadSample::Kind> bad;
-        float clamped = 0; // luminance removed by the film's limit, filter weight applied
+        float clamped = 0; // luminance removed by the film's limit, filter weight applied; of splats, too
         float clamp = 1;   // factor of the film's limit
     };
 
@@ -39,6 +39,11 @@ class SampleContext {
     };
     // The memory for many samples at once; allocated once and used again.
     struct Batch;
+    // What a light path brings to a point of the film: linear sRGB, to be weighted by the pixel filter.
+    struct FilmSplat {
+        Point2f film; // in pixels
+        Vec3f rgb;
+    };
 
     // All arguments must outlive the context. Throws Error as light_groups() does.
     SampleContext(const SceneDescription& description, const SamplerSettings& sampler, const SceneView& scene,
@@ -48,6 +53,9 @@ class SampleContext {
     // numbers of the film's layers (FilmLayers::values() for each sample) are in the batch.
     void take(RayTracer& tracer, std::span<const Key> keys, Batch& batch, std::span<Result> results) const;
     const FilmLayers& layers() const { return layers_.layers(); }
+    // Whether samples bring splats: Batch::film_splats, those of sample i in Batch::splats_of(i).
+    bool makes_splats() const { return std::holds_alternative<BidirectionalIntegrator>(integrator_); }
+    const PixelFilterSampler& filter() const { return filter_; }
 
     // From now on paths follow the guide; null: none does. Not while samples are taken.
     void set_guide(std::shared_ptr<const GuidingField> guide);
@@ -75,6 +83,9 @@ class SampleContext {
     PathStart<SampleStream> begin(const Key& key, FilmPoint& point) const;
     Result finish(const FilmContribution& path, const SampledWavelengths& lambda, const FilmPoint& point,
                   SpectralSample* spectral, SampleRecord* record = nullptr) const;
+    // Appends the splats of a sample to `out`; limits them, and finds out whether they are bad.
+    void finish_splats(const SplatList& splats, const SampledWavelengths& lambda, Result& result,
+                       std::vector<FilmSplat>& out) const;
     // Of a good sample.
     void sample_layers(const SampleExtras& extras, const FilmContribution& path, const FilmPoint& point,
                        float clamp, std::span<float> values) const;
@@ -105,8 +116,15 @@ struct SampleContext::Batch {
     std::vector<FilmContribution> paths;
     std::vector<SpectralSample>
         spectral; // of each sample, of a spectral film; 0 for samples that are left out
-    PathBatch integrator;
+    IntegratorBatch integrator;
     std::vector<GuidingTrace> traces; // of samples that a guide learns from
+    // Of integrators that make splats: those of each sample, and in RGB those of all samples, one after the other.
+    std::vector<SplatList> splats;
+    std::vector<FilmSplat> film_splats;
+    std::vector<std::size_t> first_splat; // of each sample; at the end the total
+    std::span<const FilmSplat> splats_of(std::size_t i) const {
+        return std::span(film_splats).subspan(first_splat[i], first_splat[i + 1] - first_splat[i]);
+    }
     // Empty unless the film has layers that need them.
     std::vector<SampleExtras> extras;
     std::vector<SampledSpectrum> parts; // of the radiance

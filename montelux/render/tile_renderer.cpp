@@ -31,7 +31,7 @@ TileRenderer::SampleBatch& TileRenderer::batch_of_this_thread() {
     return batch;
 }
 
-void TileRenderer::take(RayTracer& tracer, SampleBatch& batch, TileTally& tally) const {
+void TileRenderer::take(RayTracer& tracer, SampleBatch& batch, TileTally& tally, SplatFilm* splats) const {
     batch.results.resize(batch.keys.size());
     context_.take(tracer, batch.keys, batch.memory, batch.results);
     const FilmLayers& layers = context_.layers();
@@ -47,6 +47,9 @@ void TileRenderer::take(RayTracer& tracer, SampleBatch& batch, TileTally& tally)
             pixel.add_sample(r.film);
             if (has_sums)
                 layers.add(batch.places[k].layer_sums, &batch.memory.layer_values[k * layers.values()]);
+            if (splats != nullptr)
+                for (const SampleContext::FilmSplat& s : batch.memory.splats_of(k))
+                    splats->add_filtered(context_.filter(), s.film, Vec3d(s.rgb));
         }
         if (r.clamped != 0) {
             ++tally.clamped_samples;
@@ -54,7 +57,7 @@ void TileRenderer::take(RayTracer& tracer, SampleBatch& batch, TileTally& tally)
         }
         const std::span<BucketMoments> buckets = batch.places[k].buckets;
         if (!buckets.empty()) add_sample(buckets, batch.memory.spectral[k]);
-        if (order_.closed(batch.places[k].number + 1)) {
+        if (splats == nullptr && order_.closed(batch.places[k].number + 1)) {
             for (BucketMoments& b : buckets)
                 b.end_replicate(pixel.open_samples(), pixel.replicates().count() + 1);
             if (has_sums) layers.end_replicate(batch.places[k].layer_sums, pixel.open_samples());

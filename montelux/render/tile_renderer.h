@@ -9,6 +9,7 @@
 
 #include "montelux/accel/accelerator.h"
 #include "montelux/film/film.h"
+#include "montelux/film/splat_film.h"
 #include "montelux/mc/parallel/cpu_time.h"
 #include "montelux/render/bad_sample_report.h"
 #include "montelux/render/render_state.h"
@@ -47,6 +48,8 @@ struct TileView {
     std::size_t target_stride = 0;
     // FilmLayers::sums() numbers for each pixel, in the same rows; unused if that is 0.
     double* layer_sums = nullptr;
+    // Of integrators that trace light; null otherwise. Replicates then stay open until the pass ends.
+    SplatFilm* splats = nullptr;
     // At most this many new samples per pixel.
     std::uint32_t most = ~std::uint32_t{0};
 };
@@ -89,12 +92,12 @@ class TileRenderer {
                 for (std::uint64_t i = pixel.samples(); i < target && !stopped; ++i) {
                     batch.add(pixel, buckets, sums, i, {x, y, order_.index(i)});
                     if (batch.full()) {
-                        take(tracer, batch, tally);
+                        take(tracer, batch, tally, tile.splats);
                         stopped = check();
                     }
                 }
             }
-        if (!stopped && !batch.empty()) take(tracer, batch, tally);
+        if (!stopped && !batch.empty()) take(tracer, batch, tally, tile.splats);
         tally.rays.merge(tracer.statistics);
         tally.cpu_seconds += thread_cpu_seconds() - begin;
     }
@@ -128,7 +131,7 @@ class TileRenderer {
     };
     static SampleBatch& batch_of_this_thread();
 
-    void take(RayTracer& tracer, SampleBatch& batch, TileTally& tally) const;
+    void take(RayTracer& tracer, SampleBatch& batch, TileTally& tally, SplatFilm* splats) const;
 
     const SampleContext& context_;
     const Accelerator& accelerator_;

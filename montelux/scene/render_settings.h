@@ -16,6 +16,15 @@
 
 namespace montelux {
 
+// How paths between lights and camera are found.
+enum class IntegratorKind : std::uint8_t {
+    path,          // from the camera (transport/path_integrator.h, volume_path_integrator.h)
+    bidirectional, // from the camera and from lights, joined in all ways (transport/bidirectional_integrator.h)
+    light_tracing, // from lights, joined to the camera; an oracle for the former
+};
+// Whether paths start at lights, too.
+inline constexpr bool traces_light(IntegratorKind kind) { return kind != IntegratorKind::path; }
+
 // How direct light is found (MISSION C5, C9). From `light` on, lights are sampled.
 enum class Strategy : std::uint8_t {
     uniform, // directions uniform over the sphere (hemisphere for opaque surfaces)
@@ -54,6 +63,7 @@ struct OcclusionSettings {
 };
 
 struct IntegratorSettings {
+    IntegratorKind method = IntegratorKind::path;
     int max_depth = 5; // scattering events of a path
     // A straight passage through a thin pane is one of these events. Scenes without media count it in any case.
     bool count_passages = true;
@@ -80,7 +90,9 @@ struct IntegratorSettings {
     std::optional<Vec3f> background{};
 
     EnvironmentSettings environments() const {
-        return {environment_sampling, environment_compensation && strategy >= Strategy::mis,
+        return {environment_sampling,
+                environment_compensation && strategy >= Strategy::mis &&
+                    method != IntegratorKind::light_tracing,
                 environment_lookup};
     }
     SurfaceSettings surfaces() const { return {microfacet_scattering, shading_terminator}; }

@@ -132,7 +132,7 @@ std::optional<PowerLightSampler> make_segment_lights(const SceneView& scene) {
 } // namespace
 
 SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environments,
-                         LightSampling light_sampling, const SurfaceSettings& surfaces)
+                         LightSampling light_sampling, const SurfaceSettings& surfaces, bool traces_light)
     : lights_(scene, environments) {
     add_mipmaps(scene);
     add_materials(scene);
@@ -155,6 +155,13 @@ SceneTables::SceneTables(const Scene& scene, const EnvironmentSettings& environm
     view_.light_sampler = &light_sampler_;
     segment_lights_ = make_segment_lights(view_);
     if (segment_lights_) view_.segment_lights = &*segment_lights_;
+    if (traces_light) {
+        const std::vector<Index> counts = part_counts(view_);
+        LightParts parts(counts);
+        const std::vector<double> powers = part_powers(view_, counts, parts);
+        emitting_lights_.emplace(std::move(parts), powers);
+        view_.emitting_lights = &*emitting_lights_;
+    }
 }
 
 void SceneTables::add_mipmaps(const Scene& scene) {

@@ -16,7 +16,7 @@ class SceneTables {
     // in parallel.
     explicit SceneTables(const Scene& scene, const EnvironmentSettings& environments = {},
                          LightSampling light_sampling = LightSampling::tree,
-                         const SurfaceSettings& surfaces = {});
+                         const SurfaceSettings& surfaces = {}, bool traces_light = false);
 
     SceneTables(const SceneTables&) = delete;
     SceneTables& operator=(const SceneTables&) = delete;
@@ -41,7 +41,7 @@ class SceneTables {
     std::vector<MediumTable> media_;
     LightTables lights_;
     LightSampler light_sampler_;
-    std::optional<PowerLightSampler> segment_lights_;
+    std::optional<PowerLightSampler> segment_lights_, emitting_lights_;
     SceneView view_;
 };
 

@@ -55,6 +55,8 @@ struct SceneView {
     const LightSampler* light_sampler = nullptr;
     // Parts of lights that have a position, for rays through media; null without media or without such lights.
     const PowerLightSampler* segment_lights = nullptr;
+    // Parts of all lights, for paths that start there; null unless the integrator traces such (traces_light).
+    const PowerLightSampler* emitting_lights = nullptr;
 
     // MicrofacetScattering::multiple and ShadingTerminator::soft.
     bool multiple_scattering = false, soft_terminator = false;

@@ -11,6 +11,7 @@
 #include "montelux/spectrum/wavelengths.h"
 #include "montelux/transport/ray_tracer.h"
 #include "montelux/transport/sample_extras.h"
+#include "montelux/transport/splat.h"
 
 namespace montelux {
 
@@ -23,6 +24,7 @@ struct CameraSample {
     SampleExtras* extras = nullptr; // null: not wanted
     GuidingTrace* trace = nullptr;  // null: nobody learns from the path
     float expected = 0;             // GuidingField::expected
+    SplatList* splats = nullptr;    // gets those of the sample; null: not wanted
 };
 
 // A sample before its path: the stream has given the camera's numbers.

@@ -26,9 +26,12 @@ expect 2 "--checkpoint: the name of a file is expected" render ok.pbrt --checkpo
 expect 2 "--spp: '0' was given; a whole number from 1 to" render ok.pbrt --spp 0
 expect 2 "--threads: '5000'" render ok.pbrt --threads 5000
 expect 2 "--rank-timeout: '1' was given; a time of at least 2s" render ok.pbrt --rank-timeout 1
-for option in --sampler --strategy --heuristic --light-sampling --microfacet-scattering --shading-terminator; do
+for option in --sampler --integrator --strategy --heuristic --light-sampling --microfacet-scattering --shading-terminator; do
     expect 2 "$option: 'foo' was given; one of" render ok.pbrt $option foo
 done
+expect 2 "path, bidirectional, light-tracing is expected" render ok.pbrt --integrator bdpt
+expect 1 "leave out --adaptive or choose 'path'" render ok.pbrt --integrator bidirectional --adaptive on
+expect 1 "cannot be replayed" render ok.pbrt --integrator bidirectional --debug-sample 0,0,0
 expect 2 "mis, mis-bsdf, mis-light is expected" render ok.pbrt --strategy mis_bsdf
 expect 1 "GiB of memory; this machine has" render ok.pbrt --resolution 65536x65536
 [ -e ok.exr ] && fail "a picture was written in spite of an error"
@@ -66,7 +69,7 @@ for sampler in independent stratified halton hammersley sobol sobol-blue-noise; 
     dd if=crop.pfm bs=4 skip=3 of=got 2>/dev/null
     [ -s expected ] && cmp -s expected got || fail "$sampler: a crop differs from that part of the picture"
 done
-for change in "--max-depth 1" "--spp 9" "--sampler halton" "--strategy bsdf" "--heuristic balance" "--light-sampling uniform"; do
+for change in "--max-depth 1" "--spp 9" "--sampler halton" "--strategy bsdf" "--integrator bidirectional" "--integrator light-tracing" "--heuristic balance" "--light-sampling uniform"; do
     render -o one.pfm
     render -o two.pfm $change
     cmp -s one.pfm two.pfm && fail "$change changes nothing"

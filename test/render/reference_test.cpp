@@ -9,6 +9,7 @@
 #include "montelux/image/image_read.h"
 #include "montelux/image/metrics.h"
 #include "montelux/render/renderer.h"
+#include "montelux/scene/light_tracing_support.h"
 
 namespace montelux {
 namespace {
@@ -20,13 +21,16 @@ class ReferenceSlowTest : public ::testing::TestWithParam<const char*> {};
 // What is left is not the normal law: the reference's errors come from eight pictures (Student's t), and
 // errors differ between neighbours, so bounds of the shares are wide. On killeroo-simple pbrt's weights of
 // rough coats, which do not sum to one, add a true difference (docs/measurements/rendering-against-pbrt.md).
-TEST_P(ReferenceSlowTest, AgreesWithPbrt) {
+void expect_agreement_with_pbrt(const std::string& name, IntegratorKind method) {
     namespace fs = std::filesystem;
-    fs::path folder = fs::path(MONTELUX_SHARED_DIR) / "scenes" / "pbrt" / GetParam();
+    fs::path folder = fs::path(MONTELUX_SHARED_DIR) / "scenes" / "pbrt" / name;
     if (!fs::exists(folder / "ref" / "mean.exr")) GTEST_SKIP() << "no reference pictures";
     Warnings warnings;
     SceneDescription d = load_scene(folder / "scene.pbrt", warnings);
     d.sampler = {SamplerKind::independent, 1, 64, 1};
+    d.integrator.method = method;
+    if (traces_light(method) && light_tracing_obstacle(d.scene, d.integrator))
+        GTEST_SKIP() << *light_tracing_obstacle(d.scene, d.integrator);
     Film film(d.film);
     RenderReport report = Renderer(d).render(film);
     EXPECT_EQ(report.bad.count(), 0u);
@@ -40,31 +44,36 @@ TEST_P(ReferenceSlowTest, AgreesWithPbrt) {
     EXPECT_EQ(c.not_finite, 0u);
     for (const ChannelComparison& channel : c.channels) {
         double tolerance = std::max(0.01, 4 * channel.mean_difference_error / channel.mean_b);
-        RecordProperty("relative difference " + channel.name,
-                       std::to_string(channel.relative_mean_difference));
-        RecordProperty("its error " + channel.name,
-                       std::to_string(channel.mean_difference_error / channel.mean_b));
+        ::testing::Test::RecordProperty("relative difference " + channel.name,
+                                        std::to_string(channel.relative_mean_difference));
+        ::testing::Test::RecordProperty("its error " + channel.name,
+                                        std::to_string(channel.mean_difference_error / channel.mean_b));
         EXPECT_NEAR(channel.relative_mean_difference, 0, tolerance) << channel.name;
     }
     // Some of its pixels are dominated by one sample in 64, so that their errors are too small.
-    if (std::string(GetParam()) == "hair-curl") return;
+    if (name == "hair-curl") return;
     const ZScores& z = c.pooled;
-    RecordProperty("z mean", std::to_string(z.mean));
-    RecordProperty("z sd", std::to_string(z.standard_deviation));
-    RecordProperty("naive z mean", std::to_string(c.z.mean));
-    RecordProperty("naive z sd", std::to_string(c.z.standard_deviation));
-    RecordProperty("seconds", std::to_string(report.seconds));
+    ::testing::Test::RecordProperty("z mean", std::to_string(z.mean));
+    ::testing::Test::RecordProperty("z sd", std::to_string(z.standard_deviation));
+    ::testing::Test::RecordProperty("naive z mean", std::to_string(c.z.mean));
+    ::testing::Test::RecordProperty("naive z sd", std::to_string(c.z.standard_deviation));
+    ::testing::Test::RecordProperty("seconds", std::to_string(report.seconds));
     for (int k = 0; k < 3; ++k)
-        RecordProperty("within " + std::to_string(k + 1),
-                       std::to_string(z.within[static_cast<std::size_t>(k)]));
+        ::testing::Test::RecordProperty("within " + std::to_string(k + 1),
+                                        std::to_string(z.within[static_cast<std::size_t>(k)]));
     EXPECT_GT(z.within[0], 0.65);
     EXPECT_LT(z.within[0], 0.77);
     EXPECT_GT(z.within[1], 0.92);
     EXPECT_LT(z.within[1], 0.97);
     EXPECT_GT(z.within[2], 0.985);
-    EXPECT_NEAR(z.mean, 0, std::string(GetParam()) == "killeroo-simple" ? 0.15 : 0.1);
+    EXPECT_NEAR(z.mean, 0, name == "killeroo-simple" ? 0.15 : 0.1);
     EXPECT_GT(z.standard_deviation, 0.9);
     EXPECT_LT(z.standard_deviation, 1.2);
+}
+
+TEST_P(ReferenceSlowTest, AgreesWithPbrt) { expect_agreement_with_pbrt(GetParam(), IntegratorKind::path); }
+TEST_P(ReferenceSlowTest, BidirectionalAgreesWithPbrt) {
+    expect_agreement_with_pbrt(GetParam(), IntegratorKind::bidirectional);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ReferenceSlowTest,

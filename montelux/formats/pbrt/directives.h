@@ -163,6 +163,7 @@ class Directives {
     std::vector<std::pair<std::string, std::shared_ptr<const TransformPair>>> replaced_systems_;
     std::size_t open_imports_ = 0;
     std::optional<Plugin> camera_, film_, filter_, sampler_, integrator_;
+    Location integrator_at_{};
     std::optional<std::uint64_t> seed_;
     double transform_start_ = 0, transform_end_ = 1;
 

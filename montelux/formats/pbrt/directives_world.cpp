@@ -6,7 +6,9 @@
 #include "montelux/formats/pbrt/curves.h"
 #include "montelux/formats/pbrt/directives.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/scene/light_tracing_support.h"
 #include "montelux/scene/material/material_model.h"
+#include "montelux/scene/setting_names.h"
 #include "montelux/spectrum/rgb_colorspace.h"
 
 namespace montelux::pbrt {
@@ -137,6 +139,7 @@ void Directives::finish_options() {
     };
     camera.shutter_open = motion_time(camera.shutter_open);
     camera.shutter_close = motion_time(camera.shutter_close);
+    if (integrator_) integrator_at_ = integrator_->at;
     result_.integrator = read_integrator(plugin(integrator_, "volpath"), diagnostics_);
     result_.sampler = read_sampler(plugin(sampler_, "zsobol"), diagnostics_, seed_.value_or(0));
 }
@@ -241,6 +244,12 @@ SceneDescription Directives::finish(Location end) {
     finish_media();
     textures_.warn_of_unused();
     builder_.finish(end, !result_.integrator.occlusion);
+    if (IntegratorKind& method = result_.integrator.method; traces_light(method))
+        if (const auto obstacle = light_tracing_obstacle(result_.scene, result_.integrator)) {
+            diagnostics_.warn(integrator_at_, "integrator '" + std::string(name_of(method)) +
+                                                  "': the scene is rendered with 'path': " + *obstacle);
+            method = IntegratorKind::path;
+        }
     return std::move(result_);
 }
 

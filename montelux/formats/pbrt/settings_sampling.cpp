@@ -6,6 +6,7 @@
 #include "montelux/formats/pbrt/parameter_reader.h"
 #include "montelux/formats/pbrt/settings.h"
 #include "montelux/mc/math/nearest_name.h"
+#include "montelux/scene/light_tracing_support.h"
 
 namespace montelux::pbrt {
 namespace {
@@ -24,7 +25,7 @@ std::string_view substitute_of(std::string_view integrator) {
         return "it integrates test functions and no scene; the scene is rendered with 'path'";
     if (integrator == "simplevolpath")
         return "the scene is rendered with 'volpath', which computes the same picture with less noise";
-    // bdpt, mlt, sppm, lightpath
+    // mlt, sppm
     return "the scene is rendered with 'path', which computes the same picture; caustics of small lights are "
            "noisier";
 }
@@ -132,6 +133,15 @@ IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostic
         if (lights && !bsdf)
             diagnostics.warn(r.at("samplebsdf"),
                              "BSDFs are sampled all the same; it changes the noise alone");
+        r.finish();
+    } else if (plugin.name == "bdpt" || plugin.name == "lightpath") {
+        s.method = plugin.name == "bdpt" ? IntegratorKind::bidirectional : IntegratorKind::light_tracing;
+        if (s.method == IntegratorKind::light_tracing)
+            diagnostics.warn(plugin.at, std::string(light_tracing_warning));
+        else if (r.boolean("regularize", false))
+            diagnostics.warn(r.at("regularize"),
+                             "'regularize' is ignored: light is joined with unchanged surfaces");
+        read_own_settings(r, s);
         r.finish();
     } else if (plugin.name == "randomwalk") {
         s.strategy = Strategy::uniform;

@@ -224,11 +224,15 @@ void SceneWriter::integrator() {
         if (std::isfinite(s.occlusion->max_distance)) d.number("maxdistance", s.occlusion->max_distance);
         return put(d.text());
     }
-    const bool by_strategy =
-        s.strategy == Strategy::uniform || s.strategy == Strategy::bsdf || s.strategy == Strategy::light;
-    DirectiveText d(std::string("Integrator ") + (s.strategy == Strategy::uniform ? "\"randomwalk\""
-                                                  : by_strategy                   ? "\"simplepath\""
-                                                                                  : "\"volpath\""));
+    const bool traces = traces_light(s.method);
+    const bool by_strategy = !traces && (s.strategy == Strategy::uniform || s.strategy == Strategy::bsdf ||
+                                         s.strategy == Strategy::light);
+    DirectiveText d(std::string("Integrator ") + (s.method == IntegratorKind::bidirectional ? "\"bdpt\""
+                                                  : traces                                  ? "\"lightpath\""
+                                                  : by_strategy && s.strategy == Strategy::uniform
+                                                      ? "\"randomwalk\""
+                                                  : by_strategy ? "\"simplepath\""
+                                                                : "\"volpath\""));
     d.integer("maxdepth", s.max_depth);
     if (by_strategy && s.strategy != Strategy::uniform) {
         d.boolean("samplelights", s.strategy == Strategy::light);
@@ -238,7 +242,9 @@ void SceneWriter::integrator() {
         if (!is_standard)
             warn("integrator", "pbrt has no setting for it; add " + text + " where the scene is rendered");
     };
-    if (!by_strategy) {
+    if (traces) {
+        option(s.light_sampling == standard.light_sampling, "--light-sampling");
+    } else if (!by_strategy) {
         if (s.regularize) d.boolean("regularize", true);
         if (s.light_sampling == LightSampling::uniform) d.string("lightsampler", "uniform");
         if (s.light_sampling == LightSampling::power) d.string("lightsampler", "power");

@@ -75,6 +75,7 @@ class ByteReader {
         return {bytes.begin(), bytes.end()};
     }
     bool at_end() const { return bytes_.empty(); }
+    std::size_t remaining() const { return bytes_.size(); }
 
   private:
     std::span<const std::uint8_t> bytes_;

@@ -36,7 +36,7 @@ SampledSpectrum TiltedBsdf::albedo(Vec3f wo) const {
     if (!keeps_side(wo) || !keeps_side(wi)) return {};
     DrawnNumbers numbers{0, u};
     BsdfEvaluation e = std::visit([&](const auto& b) { return b.evaluate(wo, wi, mode, numbers); }, base);
-    if (shadowing > 0) e.f *= unshadowed(wi);
+    if (shadowing > 0) e.f *= unshadowed(mode == TransportMode::radiance ? wi : wo);
     return e;
 }
 
@@ -46,7 +46,7 @@ SampledSpectrum TiltedBsdf::albedo(Vec3f wo) const {
     DrawnNumbers numbers{uc, u};
     auto s = std::visit([&](const auto& b) { return b.sample(wo, mode, numbers); }, base);
     if (s && !keeps_side(s->wi)) return std::nullopt;
-    if (s && shadowing > 0) s->weight *= unshadowed(s->wi);
+    if (s && shadowing > 0) s->weight *= unshadowed(mode == TransportMode::radiance ? s->wi : wo);
     return s;
 }
 

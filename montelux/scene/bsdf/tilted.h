@@ -10,8 +10,9 @@
 namespace montelux {
 
 // The base in the frame of the tilted normal, zero for directions above the plane of one normal but below
-// that of the other (Veach 1997, section 5.3). With `shadowing` it is multiplied by the masking of wi by microfacets of
-// that roughness around the other normal: 2 / (1 + sqrt(1 + alpha^2 tan^2 theta)) (Estevez, Lecocq, Stein 2019).
+// that of the other (Veach 1997, section 5.3). With `shadowing` it is multiplied by the masking of the light's
+// direction by microfacets of that roughness around the other normal: 2 / (1 + sqrt(1 + alpha^2 tan^2 theta))
+// (Estevez, Lecocq, Stein 2019).
 struct TiltedBsdf {
     UntiltedBsdf base;
     Normal3f geometric_normal; // in the local frame, on the side of +z

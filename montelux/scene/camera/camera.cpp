@@ -129,6 +129,54 @@ CameraRay Camera::generate_ray(Point2f film, Point2f lens, float time) const {
     return ray;
 }
 
+// A pixel is an area `a` of the plane z = 1. Of camera space: 1 / (a cos^3) per solid angle, with or without a lens, as
+// rays through one point of the lens spread over the focal plane. A linear map that takes unit vectors v to M v
+// divides densities by |det M| / |M v|^3.
+float Camera::direction_pdf(const Placement& placed, Vec3f d) const {
+    float area = std::abs(dx_ * dy_);
+    if (is_parallel()) return length(placed.axes[2]) / (area * std::abs(placed.determinant()));
+    const float z = placed.in_camera(d).z;
+    if (!(z > 0)) return 0;
+    if (kind_ == Kind::orthographic) area /= focal_distance_ * focal_distance_;
+    return 1 / (area * z * z * z * std::abs(placed.determinant()));
+}
+
+float Camera::pdf_we(Vec3f d, float time) const { return direction_pdf(placement(time), d); }
+
+std::optional<CameraConnection> Camera::sample_wi(Point3f p, Point2f lens, float time) const {
+    const Placement placed = placement(time);
+    CameraConnection c;
+    if (is_parallel()) {
+        const Vec3f at = placed.in_camera(p - placed.origin);
+        if (!(at.z > 0)) return std::nullopt;
+        c.film = {(at.x - x0_) / dx_, (at.y - y0_) / dy_};
+        c.lens = placed.point({at.x, at.y, 0});
+        c.wi = -normalize(placed.axes[2]);
+        c.density = direction_pdf(placed, -c.wi);
+        return c;
+    }
+    Vec3f o;
+    if (lens_radius_ > 0) {
+        const Point2f on_lens = lens_radius_ * sample_uniform_disk_concentric(lens);
+        o = {on_lens.x, on_lens.y, 0};
+    }
+    c.lens = placed.point(o);
+    const Vec3f to_p = p - c.lens;
+    const Vec3f w = placed.in_camera(to_p);
+    if (!(w.z > 0)) return std::nullopt;
+    // On the plane z = 1 without a lens, else on the focal plane.
+    Vec3f at = w / w.z;
+    if (lens_radius_ > 0) {
+        at = o + at * focal_distance_;
+        if (kind_ == Kind::perspective) at = at / focal_distance_;
+    }
+    c.film = {(at.x - x0_) / dx_, (at.y - y0_) / dy_};
+    const float distance2 = length_squared(to_p);
+    c.wi = -to_p / std::sqrt(distance2);
+    c.density = direction_pdf(placed, -c.wi) / distance2;
+    return c;
+}
+
 std::optional<Vec2d> Camera::project(Vec3d p) const {
     const Vec2d step{double(dx_), double(dy_)}, start{double(x0_), double(y0_)};
     const auto on_film = [&](double x, double y) {

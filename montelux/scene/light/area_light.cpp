@@ -101,6 +101,8 @@ std::optional<LightSample> sample_sphere(const AreaLight& light, const LightCont
     Vec3f n = Vec3f(normalize(p - sphere.center));
     s.shadow =
         shadow_ray(from, s.wi, Vec3f(p), n, coordinate_error(size_of(p) + static_cast<float>(sphere.radius)));
+    s.p = Vec3f(p);
+    s.n = flipped ? -n : n;
     return s;
 }
 
@@ -144,8 +146,8 @@ float world_density(const AreaLight& light, const LightContext& context, const L
 // it to its radiance.
 template <typename F>
 [[gnu::always_inline]] inline std::optional<LightSample>
-from_point(const AreaLight& light, const ReferencePoint& from, Point3f p, Normal3f n, float area_density,
-           float error, const F& radiance) {
+from_point(const AreaLight& light, const ReferencePoint& from, Point3f p, Normal3f n, Vec2f b,
+           float area_density, float error, const F& radiance) {
     std::optional<LightSample> result;
     const Vec3f d = p - from.p;
     const float d2 = length_squared(d);
@@ -158,6 +160,9 @@ from_point(const AreaLight& light, const ReferencePoint& from, Point3f p, Normal
     s.wi = wi;
     s.pdf = area_density * d2 / std::abs(cosine);
     s.shadow = shadow_ray(from, wi, p, n, error);
+    s.p = p;
+    s.n = n;
+    s.b = b;
     return result;
 }
 
@@ -168,7 +173,7 @@ std::optional<LightSample> sample_plain_triangle(const AreaLight& light, const L
     const LightTriangle& t = context.tables().triangle(context.light, part);
     if (!(t.area > 0)) return std::nullopt;
     const Vec3f b = sample_uniform_triangle(u);
-    return from_point(light, from, t.p0 + b.y * t.e1 + b.z * t.e2, t.n, 1 / t.area, t.error,
+    return from_point(light, from, t.p0 + b.y * t.e1 + b.z * t.e2, t.n, {b.y, b.z}, 1 / t.area, t.error,
                       [&](Vec3f) { return context.scene.sample(light.spectrum, lambda) * light.scale; });
 }
 
@@ -185,7 +190,8 @@ std::optional<LightSample> sample_surface(const AreaLight& light, const LightCon
         share = share_there(context, shape, *point);
         EmitterPlace(context, instance).move(*point);
     }
-    result = from_point(light, from, point->p, point->n, point->area_density, point->error, [&](Vec3f wi) {
+    const Vec2f b{point->hit.b1, point->hit.b2};
+    result = from_point(light, from, point->p, point->n, b, point->area_density, point->error, [&](Vec3f wi) {
         if (instance == no_index) share = share_there(context, shape, *point);
         if (!(share > 0)) return SampledSpectrum{};
         return color_at(light, context, point->p, wi, point->hit, lambda) *
@@ -313,6 +319,9 @@ std::optional<EmissionSample> AreaLight::sample_le(const LightContext& context, 
     s.cosine = local.z;
     s.pdf_position = point->area_density;
     s.pdf_direction = cosine_hemisphere_pdf(local.z) / sides(*this);
+    s.invisible = is_invisible(context, context.scene.shapes[shape]);
+    s.p = point->p;
+    s.b = {point->hit.b1, point->hit.b2};
     return s;
 }
 

@@ -44,6 +44,10 @@ struct LightSample {
     bool delta = false;       // kinds position and direction
     bool invisible = false;   // BSDF sampling cannot find this light: delta, or a surface of alpha 0
     Ray shadow;               // unoccluded if the light is visible
+    // As LightHit, of kind surface.
+    Point3f p{};
+    Normal3f n{};
+    Vec2f b{};
 };
 
 // Where a ray hits a light.
@@ -65,6 +69,10 @@ struct EmissionSample {
     float cosine = 1;         // between n and the ray; 1 for kinds without a surface
     float pdf_position = 0;   // per area of the surface, or of a plane across the ray; 1 for kind position
     float pdf_direction = 0;  // per solid angle; 1 for kind direction
+    bool invisible = false;   // as LightSample
+    // As LightHit, of kind surface.
+    Point3f p{};
+    Vec2f b{};
 };
 // Densities of EmissionSample; 0 where a position or direction is a delta.
 struct EmissionPdf {

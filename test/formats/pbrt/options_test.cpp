@@ -141,10 +141,33 @@ TEST(PbrtOptions, SensorsBucketsAndOcclusion) {
     EXPECT_EQ(test::error_of("Integrator \"ao\" \"float maxdistance\" 0 WorldBegin"),
               "scene:1:17: parameter 'maxdistance' must be positive");
     warnings = {};
-    parse("Integrator \"bdpt\"" + end, &warnings);
+    parse("Integrator \"mlt\"" + end, &warnings);
     ASSERT_EQ(warnings.messages().size(), 1u);
-    EXPECT_NE(warnings.messages()[0].find("integrator 'bdpt': the scene is rendered with 'path'"),
+    EXPECT_NE(warnings.messages()[0].find("integrator 'mlt': the scene is rendered with 'path'"),
               std::string::npos);
+}
+
+TEST(PbrtOptions, IntegratorsThatTraceLight) {
+    const std::string light = "WorldBegin LightSource \"point\"";
+    Warnings warnings;
+    SceneDescription d = parse("Integrator \"bdpt\" \"integer maxdepth\" 7 " + light, &warnings);
+    EXPECT_EQ(d.integrator.method, IntegratorKind::bidirectional);
+    EXPECT_EQ(d.integrator.max_depth, 7);
+    EXPECT_TRUE(warnings.messages().empty());
+    d = parse("Integrator \"lightpath\" " + light, &warnings);
+    EXPECT_EQ(d.integrator.method, IntegratorKind::light_tracing);
+    ASSERT_EQ(warnings.messages().size(), 1u);
+    EXPECT_NE(warnings.messages()[0].find("straight from a mirror"), std::string::npos);
+    EXPECT_EQ(parse("Integrator \"path\" " + light).integrator.method, IntegratorKind::path);
+    // What they cannot do is rendered with paths from the camera.
+    warnings = {};
+    d = parse("Camera \"spherical\" Integrator \"bdpt\" " + light, &warnings);
+    EXPECT_EQ(d.integrator.method, IntegratorKind::path);
+    ASSERT_EQ(warnings.messages().size(), 1u);
+    EXPECT_NE(
+        warnings.messages()[0].find("'bidirectional': the scene is rendered with 'path': spherical cameras"),
+        std::string::npos)
+        << warnings.messages()[0];
 }
 
 // Everything that is read but has no effect gives a warning.

@@ -1,0 +1,91 @@
+// BidirectionalIntegrator: paths from the camera and from lights, joined in all ways; or light paths alone.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "montelux/scene/film/film_settings.h"
+#include "montelux/scene/render_settings.h"
+#include "montelux/transport/integrator_model.h"
+#include "montelux/transport/splat.h"
+#include "montelux/transport/strategy_weight.h"
+#include "montelux/transport/subpath.h"
+#include "montelux/transport/texture_footprint.h"
+
+namespace montelux {
+
+// A path that a strategy found, for tests: its first s vertices are of the light's side, the other t of the camera's.
+struct FoundPath {
+    std::size_t s = 0, t = 0;
+    const LightEnd& end;                   // v_0
+    std::span<const SubpathVertex> light;  // v_1 to v_{s-1}
+    std::span<const SubpathVertex> camera; // v_{n-2} and so on, to v_s (v_1 for s = 0)
+    Point3f lens;                          // v_{n-1}
+    const PathDensities& densities;
+    double weight = 0;
+    SampledSpectrum value; // unweighted
+};
+struct PathObserver {
+    void (*found)(void* self, const FoundPath& path);
+    void* self;
+};
+
+// The memory of a sample; allocated once and used again.
+struct BidirectionalMemory {
+    std::vector<SubpathVertex> camera, light; // z_1, z_2 ... and y_1, y_2 ...
+    PathDensities densities;
+    std::vector<double> scratch;
+    SplatList ignored; // where the caller wants no splats
+};
+
+// Bidirectional path tracing (Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation", chapter 10;
+// Lafortune, Willems 1993). A sample traces one path from its pixel and one from a light, and joins all their vertices;
+// what reaches the lens is a Splat. Every strategy s >= 0, t >= 1 takes part, weighted by multiple importance sampling
+// over all by their densities (strategy_weight.h). The one that joins a light to the lens is left to s = 0. Samples at
+// vertices (s = 1) choose lights as PathIntegrator does, so that this is its special case without light paths.
+//
+// Depths, wavelengths and the order of events are those of PathIntegrator: both estimate the same integral for each
+// max_depth. Where one of the two subpaths has met a dispersive surface, the first wavelength stands for all.
+//
+// IntegratorKind::light_tracing takes the strategies t = 1 alone, and s = 0 for lights that the camera sees directly.
+// It finds no light on its way from a mirror or smooth glass straight to the camera.
+//
+// For scenes and cameras without light_tracing_obstacle().
+class BidirectionalIntegrator {
+  public:
+    static constexpr std::string_view name = "bidirectional";
+
+    // The camera must outlive it. `film`: where splats count; `light_paths`: for each path that starts at a square
+    // pixel.
+    BidirectionalIntegrator(const IntegratorSettings& settings, const Camera& camera, float footprint_scale,
+                            const PixelBounds& crop, Vec2f filter_radius);
+
+    using Batch = BidirectionalMemory;
+    // Splats go to camera.splats, unless null.
+    template <RandomStream Stream>
+    FilmContribution estimate(const SceneView& scene, RayTracer& tracer, const CameraSample& camera,
+                              Stream& stream, PathRecord* record = nullptr) const;
+    template <RandomStream Stream>
+    void estimate(const SceneView& scene, RayTracer& tracer, std::span<PathStart<Stream>> starts,
+                  Batch& memory, std::span<FilmContribution> results) const;
+    // Of one sample; `observer`, unless null, sees each path found.
+    template <RandomStream Stream>
+    FilmContribution estimate(const SceneView& scene, RayTracer& tracer, const CameraSample& camera,
+                              Stream& stream, Batch& memory, const PathObserver* observer) const;
+
+  private:
+    template <RandomStream Stream>
+    friend class BidirectionalSample;
+
+    bool on_film(Point2f p) const {
+        return p.x >= window_min_.x && p.x < window_max_.x && p.y >= window_min_.y && p.y < window_max_.y;
+    }
+
+    IntegratorSettings settings_;
+    const Camera* camera_;
+    float footprint_scale_;
+    Vec2f window_min_, window_max_; // film points that some pixel's filter reaches
+    double light_paths_;
+};
+
+} // namespace montelux

@@ -1,0 +1,43 @@
+#include "montelux/transport/strategy_weight.h"
+
+#include <algorithm>
+
+namespace montelux {
+
+double strategy_weight(const PathDensities& path, std::size_t s, Heuristic heuristic,
+                       std::vector<double>& scratch) {
+    const std::size_t n = path.vertices();
+    if (n == 2) return s == 0 ? 1 : 0;
+    // Products over vertices, each divided by the larger of its two densities: only ratios count, and no product of
+    // many becomes infinite.
+    const auto scale = [&](std::size_t i) {
+        const double largest = std::max(path.from_light[i], path.from_camera[i]);
+        return largest > 0 ? 1 / largest : 1;
+    };
+    scratch.assign(n, 0);
+    double product = 1; // over the vertices of the camera's side
+    for (std::size_t k = n - 1; k >= 2; --k) {
+        scratch[k] = product;
+        product *= path.from_camera[k - 1] * scale(k - 1);
+    }
+    scratch[1] = product * path.next_event;
+    scratch[0] = product * path.from_camera[0];
+    product = path.from_light[0] * path.from_light[1] * scale(1);
+    for (std::size_t k = 2; k < n; ++k) {
+        scratch[k] *= product;
+        if (k < n - 1) product *= path.from_light[k] * scale(k);
+    }
+    scratch[n - 1] *= path.light_paths;
+
+    double all = 0;
+    const auto powered = [&](double p) { return heuristic == Heuristic::power ? p * p : p; };
+    for (std::size_t k = 0; k < n; ++k) {
+        const bool joins_deltas =
+            (k >= 2 && path.delta[k - 1] != 0) || (k >= 1 && k < n - 1 && path.delta[k] != 0);
+        scratch[k] = joins_deltas ? 0 : powered(scratch[k]);
+        all += scratch[k];
+    }
+    return all > 0 ? scratch[s] / all : 0;
+}
+
+} // namespace montelux

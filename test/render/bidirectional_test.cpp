@@ -1,0 +1,213 @@
+// Bidirectional path tracing as a render: known answers, the errors of its pixels, and that the picture depends on scene
+// and seed alone.
+#include "test/render/mixed_scene.h"
+#include "test/render/seed_means.h"
+#include "test/sanitized.h"
+#include "test/temporary_folder.h"
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <gtest/gtest.h>
+#include <vector>
+
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/random/hash.h"
+#include "montelux/render/checkpoint.h"
+#include "montelux/render/render_session.h"
+#include "montelux/render/sample_record.h"
+#include "montelux/render/splat_pass.h"
+
+namespace montelux::testing {
+namespace {
+
+// Inside a closed surface of albedo rho that emits E, radiance is E (1 + rho + rho^2 + ...).
+TEST(BidirectionalPictures, Furnace) {
+    SceneBuilder b;
+    b.add_quadric(Sphere{}, b.add(DiffuseMaterial{gray(0.5f)}), 1, true);
+    b.look({0.2, 0.1, -0.3}, {1, 0, 0}, 60);
+    for (const int depth : {0, 1, 2, 200}) {
+        b.description.integrator.max_depth = depth;
+        const double truth = 2 - std::pow(0.5, depth);
+        for (const Heuristic heuristic : {Heuristic::balance, Heuristic::power}) {
+            b.description.integrator.heuristic = heuristic;
+            const SeedMeans m = render_of_seeds(b.description, IntegratorKind::bidirectional, 16);
+            EXPECT_NEAR(m.channel[1].mean(), truth, 7 * m.channel[1].standard_error() + 2e-4 * truth)
+                << depth;
+        }
+    }
+}
+
+// The share of seeds in which the truth lies within one and two errors of a pixel, by Student's law of the passes.
+TEST(BidirectionalPictures, ErrorsOfPixelsAreCalibrated) {
+    SceneBuilder b = lit_corner();
+    add_box_lamp(b);
+    const SeedMeans truth = render_of_seeds(b.description, IntegratorKind::path, 2048);
+    for (const SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
+        b.description.sampler.kind = kind;
+        b.description.sampler.replicates = kind == SamplerKind::sobol ? 32 : 0;
+        const SeedMeans renders = render_of_seeds(b.description, IntegratorKind::bidirectional, 512, 60);
+        double within_one = 0, within_two = 0, count = 0;
+        for (std::size_t p = 0; p < renders.films[0].pixels().size(); ++p) {
+            double expected = 0, variance = 0;
+            for (const Film& film : truth.films) {
+                expected += film.pixels()[p].replicates().mean(1) / bidirectional_seeds;
+                variance += film.pixels()[p].replicates().variance_of_mean(1) /
+                            (bidirectional_seeds * bidirectional_seeds);
+            }
+            for (const Film& film : renders.films) {
+                const SkewMoments<3>& r = film.pixels()[p].replicates();
+                EXPECT_EQ(r.count(), kind == SamplerKind::sobol ? 32u : 512u);
+                if (!(variance > 0)) continue; // past the floor
+                const double t = std::abs(r.mean(1) - expected) / std::sqrt(r.variance_of_mean(1) + variance);
+                within_one += t < 1;
+                within_two += t < 2;
+                ++count;
+            }
+        }
+        // Of Student's law with 31 and 511 degrees of freedom: 67.5 and 68.2 %, 94.6 and 95.4 %. A little less here: few
+        // light paths reach a pixel, so that its mean is skewed. The scores of one render are dependent.
+        EXPECT_GT(within_one / count, 0.62) << int(kind);
+        EXPECT_LT(within_one / count, 0.72) << int(kind);
+        EXPECT_GT(within_two / count, 0.90) << int(kind);
+        EXPECT_LT(within_two / count, 0.97) << int(kind);
+    }
+}
+
+int differing(const Film& a, const Film& b) {
+    int n = 0;
+    for (std::size_t i = 0; i < a.pixels().size(); ++i) n += !same_pixel(a.pixels()[i], b.pixels()[i]);
+    return n;
+}
+
+SceneBuilder bidirectional_room(int width, int height) {
+    SceneBuilder b = mixed_scene(1, width, height);
+    b.description.integrator.method = IntegratorKind::bidirectional;
+    b.description.film.filter = GaussianFilter{};
+    return b;
+}
+
+TEST(BidirectionalPictures, AnyNumberOfThreadsGivesTheSameBits) {
+    SceneBuilder b = bidirectional_room(40, 24);
+    b.description.sampler.spp = under_sanitizers ? 2 : 6;
+    for (const SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
+        b.description.sampler.kind = kind;
+        b.description.sampler.replicates = kind == SamplerKind::sobol ? 2 : 0;
+        std::vector<Film> films;
+        for (const int threads : {1, 2, 7})
+            with_threads(threads, [&] { films.push_back(render(b.description)); });
+        for (std::size_t i = 1; i < films.size(); ++i)
+            EXPECT_EQ(differing(films[0], films[i]), 0) << int(kind);
+        b.description.sampler.seed = 2;
+        EXPECT_GT(differing(films[0], render(b.description)), 900);
+        b.description.sampler.seed = 0;
+    }
+}
+
+// Interrupted within passes, saved, and resumed.
+TEST(BidirectionalPictures, ResumedRendersHaveTheSameBits) {
+    const TemporaryFolder folder;
+    const std::filesystem::path path = folder / "render.state";
+    for (const SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
+        SceneBuilder b = bidirectional_room(40, 24);
+        b.description.sampler.kind = kind;
+        b.description.sampler.spp = under_sanitizers ? 6 : 28;
+        RenderState whole(b.description);
+        Renderer(b.description).render(whole);
+        int stops = 0, within_passes = 0;
+        for (bool ended = false; !ended; ++stops) {
+            RenderState state(b.description);
+            SceneDescription description = b.description;
+            if (stops > 0) {
+                RestoredRender restored = load_checkpoint(path, description, {});
+                description.sampler.replicate_points = restored.replicate_points;
+                state = std::move(restored.state);
+                within_passes += open_samples(state.film) > 0;
+            }
+            const Renderer renderer(description);
+            CancelFlag cancel;
+            const std::uint64_t begin = state.report.samples, more = 1 + hash_key(7, stops) % 15000;
+            RenderControl control;
+            control.cancel = &cancel;
+            control.checkpoint_seconds = 0.002;
+            control.checkpoint = [&](const RenderState& s) {
+                save_checkpoint(path, renderer, s);
+                if (s.report.samples >= begin + more) cancel.request();
+            };
+            renderer.render(state, control);
+            ended = !state.report.cancelled();
+            if (ended) {
+                EXPECT_EQ(differing(state.film, whole.film), 0) << int(kind);
+            }
+            ASSERT_LT(stops, 1000);
+        }
+        EXPECT_GT(stops, 2) << int(kind);
+        EXPECT_GT(within_passes, 0) << int(kind);
+    }
+}
+
+// A picture of an interrupted render contains whole passes only; one that was kept open goes on to the same bits.
+TEST(BidirectionalPictures, OpenPassesAreLeftOut) {
+    SceneBuilder b = bidirectional_room(40, 24);
+    b.description.sampler = {.kind = SamplerKind::sobol, .seed = 5, .spp = 32};
+    b.description.sampler.replicates = 4;
+    RenderState whole(b.description);
+    Renderer(b.description).render(whole);
+    const auto description = std::make_shared<const SceneDescription>(b.description);
+    RenderSession session(description, {});
+    CancelFlag cancel;
+    RenderCompany company;
+    company.keep_open = true;
+    company.cancel = &cancel;
+    company.progress = [&](const RenderProgress& p) {
+        if (p.samples_done >= 12 * 960) cancel.request();
+    };
+    session.render(company);
+    ASSERT_TRUE(session.report().cancelled());
+    const RenderSnapshot part = session.picture();
+    const std::optional<int> replicates = part.image->find_channel("replicates");
+    ASSERT_TRUE(replicates);
+    for (int y = 0; y < 24; ++y)
+        for (int x = 0; x < 40; ++x)
+            EXPECT_EQ(part.image->value(x, y, *replicates), part.image->value(0, 0, *replicates));
+    session.render({});
+    const RenderSnapshot finished = session.finish();
+    for (int y = 0; y < 24; ++y)
+        for (int x = 0; x < 40; ++x)
+            ASSERT_EQ(finished.image->value(x, y, 1),
+                      static_cast<float>(whole.film.pixel(x, y).replicates().mean(1)));
+}
+
+std::string refusal_of(const SceneDescription& d, const RenderTarget& target = {}) {
+    try {
+        Renderer renderer(d, target);
+    } catch (const Error& e) {
+        return e.what();
+    }
+    return "";
+}
+
+TEST(BidirectionalPictures, RefusesWhatItCannotDo) {
+    const SceneBuilder room = bidirectional_room(8, 8);
+    EXPECT_EQ(refusal_of(room.description), "");
+    const auto expect_refused = [&](const std::function<void(SceneDescription&)>& change, const char* word) {
+        SceneDescription d = room.description;
+        change(d);
+        EXPECT_NE(refusal_of(d).find(word), std::string::npos) << word << ": " << refusal_of(d);
+        d.integrator.method = IntegratorKind::path;
+        EXPECT_EQ(refusal_of(d), "") << word;
+    };
+    expect_refused(
+        [](auto& d) { d.scene.media.push_back(HomogeneousMedium{.sigma_a = 0.1f, .sigma_s = 0.0f}); },
+        "media");
+    expect_refused([](auto& d) { d.scene.camera.model = SphericalCamera{}; }, "spherical");
+    expect_refused([](auto& d) { d.integrator.strategy = Strategy::light; }, "strategies");
+    expect_refused([](auto& d) { d.integrator.regularize = true; }, "regularization");
+    expect_refused([](auto& d) { d.integrator.shading_terminator = ShadingTerminator::soft; }, "terminator");
+    expect_refused([](auto& d) { d.film.layers.set.add(Layer::direct); }, "parts of the light");
+    expect_refused([](auto& d) { d.film.spectral = SpectralSettings{}; }, "spectral");
+    EXPECT_NE(refusal_of(room.description, {.adaptive = true}).find("--adaptive"), std::string::npos);
+    EXPECT_THROW(Renderer(room.description).replay(1, 1, 0), Error);
+}
+
+} // namespace
+} // namespace montelux::testing
