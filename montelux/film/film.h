@@ -58,6 +58,20 @@ class Pixel {
         ++samples_;
         ++bad_;
     }
+    // Adds to the open replicate's mean what light paths bring to the pixel in its pass over the film (SplatFilm).
+    void add_splats(Vec3d mean) { replicate_sum_ += mean * static_cast<double>(replicate_samples_); }
+    // Adds a whole replicate of that mean, which stands for so many samples; none may be open.
+    void add_replicate(Vec3d mean, std::uint32_t samples) {
+        replicate_sum_ = mean * static_cast<double>(samples);
+        replicate_samples_ = samples;
+        samples_ += samples;
+        end_replicate();
+    }
+    // Forgets the open replicate's sum; its samples stay counted.
+    void drop_replicate() {
+        replicate_sum_ = {};
+        replicate_samples_ = 0;
+    }
     // Closes the replicate of the samples since the last call.
     void end_replicate() {
         if (replicate_samples_ == 0) return;
@@ -77,10 +91,7 @@ class Pixel {
     }
     // end_replicate(), or forgets the open one.
     void end_last_replicate(std::uint32_t points) {
-        if (drops_last_replicate(points)) {
-            replicate_sum_ = {};
-            replicate_samples_ = 0;
-        }
+        if (drops_last_replicate(points)) drop_replicate();
         end_replicate();
     }
 

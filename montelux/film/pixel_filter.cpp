@@ -99,6 +99,16 @@ float PixelFilterSampler::sample_axis(const Axis& axis, float u, float& weight) 
     return s.x;
 }
 
+float PixelFilterSampler::normalized(const Axis& axis, float x) const {
+    if (!(x >= -axis.radius && x < axis.radius)) return 0;
+    if (is_box_) return 1 / (2 * axis.radius);
+    if (!axis.density) return (axis.radius - std::abs(x)) / (axis.radius * axis.radius);
+    const float step = std::max(0.0f, (x + axis.radius) * axis.steps_per_unit);
+    const std::size_t i = std::min(static_cast<std::size_t>(step), axis.weight.size() - 2);
+    const float t = step - static_cast<float>(i);
+    return (1 - t) * axis.weight[i] + t * axis.weight[i + 1];
+}
+
 FilterSample PixelFilterSampler::sample(Vec2f u) const {
     FilterSample s;
     s.offset.x = sample_axis(axes_[0], u.x, s.weight);

@@ -28,6 +28,13 @@ class PixelFilterSampler {
 
     FilterSample sample(Vec2f u) const;
 
+    // The filter over its integral, per pixel area, at an offset from the centre: as `sample` means it. Half open at
+    // the radius, so that the boxes of neighbouring pixels do not overlap.
+    float normalized(Vec2f offset) const {
+        return normalized(axes_[0], offset.x) * normalized(axes_[1], offset.y);
+    }
+    Vec2f radius() const { return {axes_[0].radius, axes_[1].radius}; }
+
   private:
     // Every filter is a product of one factor per axis.
     struct Axis {
@@ -37,6 +44,7 @@ class PixelFilterSampler {
         float steps_per_unit = 0;
     };
     float sample_axis(const Axis& axis, float u, float& weight) const;
+    float normalized(const Axis& axis, float x) const;
 
     bool is_box_ = false;
     Axis axes_[2];

@@ -44,6 +44,40 @@ double along(const PixelFilter& filter, int axis, double x) {
     return filter_value(filter, p);
 }
 
+// Splats weigh by the filter where samples are drawn by it: both mean the same filter.
+TEST(PixelFilter, NormalizedIsTheFilterOverItsIntegral) {
+    for (const FilterCase& c : filters()) {
+        const PixelFilterSampler sampler(c.filter);
+        const Vec2f r = filter_radius(c.filter);
+        EXPECT_EQ(sampler.radius(), r);
+        const auto at = [&](float x, float y) { return sampler.normalized({x, y}); };
+        for (const int axis : {0, 1}) {
+            const auto value = [&](double x) { return along(c.filter, axis, x); };
+            const double radius = double(r[axis]), integral = integrate(value, -radius, radius);
+            const double other =
+                double(axis == 0 ? at(0, 0) : at(0, 0)) / along(c.filter, axis, 0) * integral;
+            for (const double x : {-0.93, -0.4, 0.0, 0.31, 0.77}) {
+                const auto p = static_cast<float>(x * radius);
+                const double got = double(axis == 0 ? at(p, 0) : at(0, p));
+                EXPECT_NEAR(got, value(double(p)) / integral * other, 2e-4 * other) << c.name << " at " << p;
+            }
+        }
+        double mass = 0;
+        constexpr int n = 400;
+        for (int i = 0; i < n * n; ++i) {
+            const double x = (i % n + 0.5) / n * 2 - 1, y = (i / n + 0.5) / n * 2 - 1;
+            mass += double(at(static_cast<float>(x) * r.x, static_cast<float>(y) * r.y));
+        }
+        EXPECT_NEAR(mass * 4 * double(r.x) * double(r.y) / (n * n), 1, 1e-3) << c.name;
+        EXPECT_EQ(at(r.x, 0), 0) << c.name;
+        EXPECT_EQ(at(0, -1.001f * r.y), 0) << c.name;
+    }
+    // Neighbouring boxes tile the film.
+    const PixelFilterSampler box(BoxFilter{});
+    EXPECT_EQ(box.normalized({-0.5f, 0}), 1);
+    EXPECT_EQ(box.normalized({0.5f, 0}), 0);
+}
+
 TEST(PixelFilter, ValuesInClosedForm) {
     for (float x : {0.0f, 0.3f, -0.45f}) {
         EXPECT_EQ(filter_value(BoxFilter{}, {x, -x}), 1);
