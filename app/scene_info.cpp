@@ -126,7 +126,8 @@ Json describe_scene(const std::string& file, const SceneDescription& d, const Wa
     if (d.integrator.occlusion)
         out["integrator"] = {{"kind", "ambient occlusion"}};
     else
-        out["integrator"] = {{"strategy", setting_name(strategy_names, d.integrator.strategy)},
+        out["integrator"] = {{"method", setting_name(integrator_names, d.integrator.method)},
+                             {"strategy", setting_name(strategy_names, d.integrator.strategy)},
                              {"max_depth", d.integrator.max_depth}};
     Json memory = Json::object();
     std::size_t sum = 0;
@@ -191,8 +192,9 @@ void print_text(const Json& j) {
     const Json& integrator = j["integrator"];
     print_line("integrator", integrator.contains("kind")
                                  ? integrator["kind"].get<std::string>()
-                                 : "path, strategy " + integrator["strategy"].get<std::string>() +
-                                       ", depth " + integrator["max_depth"].dump());
+                                 : integrator["method"].get<std::string>() + ", strategy " +
+                                       integrator["strategy"].get<std::string>() + ", depth " +
+                                       integrator["max_depth"].dump());
     char text[80];
     std::snprintf(text, sizeof text, "%.2f MiB", j["memory_bytes"]["sum"].get<double>() / mebibyte);
     print_line("memory", text);

@@ -178,6 +178,12 @@ void declare(CLI::App& c, RenderOptions& o) {
         "--no-half", [&o] { o.half = false; }, "They hold 32-bit floats, whatever the scene's savefp16 says");
     declare(c, o.tone);
     add_choice(c, "--sampler", o.sampler, sampler_names, "Where samples are taken: ");
+    add_choice(
+        c, "--integrator", o.integrator, integrator_names,
+        "How paths are found: independently, or by Markov chains that stay near bright ones, for light that "
+        "path tracing rarely finds: ");
+    add_parsed(c, "--large-steps", "SHARE", o.large_steps, parse_share,
+               "Of metropolis: share of the steps that start a path anew. Default: chosen by a pilot");
     add_choice(c, "--strategy", o.strategy, strategy_names, "How light is found: ");
     add_choice(c, "--heuristic", o.heuristic, heuristic_names,
                "Weights of the strategy mis and its two terms: ");
@@ -257,6 +263,8 @@ void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.spp) d.sampler.spp = static_cast<std::uint32_t>(std::min(*o.spp, o.max_spp.value_or(*o.spp)));
     if (o.seed) d.sampler.seed = *o.seed;
     if (o.sampler) d.sampler.kind = *o.sampler;
+    if (o.integrator) d.integrator.method = *o.integrator;
+    if (o.large_steps) d.integrator.large_step_probability = static_cast<float>(*o.large_steps);
     if (o.strategy) d.integrator.strategy = *o.strategy;
     if (o.heuristic) d.integrator.heuristic = *o.heuristic;
     if (o.light_sampling) d.integrator.light_sampling = *o.light_sampling;
@@ -302,7 +310,7 @@ RequestedScene load_requested(const RenderOptions& o, Warnings& warnings, FileSo
     return r;
 }
 
-RenderTarget target_of(const RenderOptions& o) {
+RenderTarget target_of(const RenderOptions& o, IntegratorKind integrator) {
     if (o.target_quantile && !o.target_error)
         throw UsageError("--target-quantile", "expected --target-error ERROR, the error of that share");
     if (o.resume && o.checkpoint.empty())
@@ -311,7 +319,9 @@ RenderTarget target_of(const RenderOptions& o) {
     target.error = o.target_error.value_or(0);
     target.quantile = o.target_quantile.value_or(0);
     target.time = o.time.value_or(0);
-    target.adaptive = o.adaptive.value_or(o.target_error.has_value());
+    // Chains choose themselves where they take samples.
+    const bool may_adapt = integrator == IntegratorKind::path;
+    target.adaptive = o.adaptive.value_or(o.target_error.has_value() && may_adapt);
     target.slice = o.slice;
     if (target.slice.count > 1 && (target.error > 0 || target.adaptive))
         throw UsageError("--slice",

@@ -47,6 +47,8 @@ struct RenderOptions {
     std::optional<std::pair<int, int>> resolution;
     std::optional<std::array<double, 4>> crop; // x0, x1, y0, y1 as fractions of the film
     std::optional<SamplerKind> sampler;
+    std::optional<IntegratorKind> integrator;
+    std::optional<double> large_steps;
     std::optional<Strategy> strategy;
     std::optional<Heuristic> heuristic;
     std::optional<LightSampling> light_sampling;
@@ -100,6 +102,6 @@ RequestedScene load_requested(const RenderOptions& options, Warnings& warnings, 
 // How long the shutter stays open.
 double shutter_seconds(const RenderOptions& options);
 // Throws UsageError for incompatible options.
-RenderTarget target_of(const RenderOptions& options);
+RenderTarget target_of(const RenderOptions& options, IntegratorKind integrator);
 
 } // namespace montelux::app

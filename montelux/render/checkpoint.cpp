@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view kind = "render";
 // Version of the layout below.
-constexpr std::uint32_t layout_version = 4;
+constexpr std::uint32_t layout_version = 5;
 static_assert(std::is_trivially_copyable_v<Pixel> && std::endian::native == std::endian::little);
 
 template <typename... T>
@@ -67,6 +67,8 @@ std::uint64_t hash_of_film(const FilmSettings& f) {
 }
 std::uint64_t hash_of_integrator(const IntegratorSettings& s) {
     const auto with_background = [&](std::uint64_t h) {
+        if (s.method != IntegratorKind::path)
+            h = hash_of(h, static_cast<int>(s.method), s.large_step_probability);
         return s.background ? hash_of(h, s.background->x, s.background->y, s.background->z) : h;
     };
     if (s.occlusion) return with_background(hash_of(s.occlusion->cosine, s.occlusion->max_distance));

@@ -7,6 +7,7 @@
 
 #include "montelux/film/film.h"
 #include "montelux/render/bad_sample_report.h"
+#include "montelux/render/metropolis/chain_statistics.h"
 #include "montelux/transport/ray_tracer.h"
 
 namespace montelux {
@@ -27,6 +28,7 @@ struct RenderReport {
     RayStatistics rays;
     BadSampleReport bad;
     std::uint64_t clamped_samples = 0; // by the film's limit
+    ChainStatistics chains;            // of a Metropolis render
     RenderStop stop = RenderStop::samples;
 
     bool cancelled() const { return stop == RenderStop::cancelled; }

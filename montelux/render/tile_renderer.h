@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <ctime>
 #include <span>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "montelux/render/render_state.h"
 #include "montelux/render/sample_context.h"
 #include "montelux/render/sample_order.h"
+#include "montelux/render/thread_time.h"
 
 namespace montelux {
 
@@ -100,13 +100,6 @@ class TileRenderer {
     }
 
   private:
-    // CPU time of the calling thread: other programs do not affect it.
-    static double thread_cpu_seconds() {
-        timespec t{};
-        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-        return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-    }
-
     // Samples that are computed together, and the pixels that they are added to. More would leave the caches.
     struct SampleBatch {
         static constexpr std::size_t capacity = 256;

@@ -15,6 +15,11 @@
 
 namespace montelux {
 
+// How paths between lights and camera are found.
+enum class IntegratorKind : std::uint8_t {
+    path,       // path tracing: independent paths from the camera
+    metropolis, // Markov chains over the random numbers of such paths (docs/metropolis.md)
+};
 // How direct light is found (MISSION C5, C9). From `light` on, lights are sampled.
 enum class Strategy : std::uint8_t {
     uniform, // directions uniform over the sphere (hemisphere for opaque surfaces)
@@ -50,6 +55,7 @@ struct OcclusionSettings {
 };
 
 struct IntegratorSettings {
+    IntegratorKind method = IntegratorKind::path;
     int max_depth = 5; // scattering events of a path
     // A straight passage through a thin pane is one of these events. Scenes without media count it in any case.
     bool count_passages = true;
@@ -72,6 +78,8 @@ struct IntegratorSettings {
     // Linear sRGB of the picture where camera rays leave the scene unscattered, in place of the infinite lights there;
     // neither exposed nor clamped as light is. Empty: the lights are seen.
     std::optional<Vec3f> background{};
+    // Of metropolis: probability of a large step, in (0, 1]; 0: chosen by a pilot.
+    float large_step_probability = 0;
 
     EnvironmentSettings environments() const {
         return {environment_sampling, environment_compensation && strategy >= Strategy::mis,

@@ -20,6 +20,8 @@ inline constexpr SettingNames<SamplerKind, 6> sampler_names{
      {"hammersley", SamplerKind::hammersley},
      {"sobol", SamplerKind::sobol},
      {"sobol-blue-noise", SamplerKind::sobol_blue_noise}}};
+inline constexpr SettingNames<IntegratorKind, 2> integrator_names{
+    {{"path", IntegratorKind::path}, {"metropolis", IntegratorKind::metropolis}}};
 inline constexpr SettingNames<Strategy, 6> strategy_names{{{"uniform", Strategy::uniform},
                                                            {"bsdf", Strategy::bsdf},
                                                            {"light", Strategy::light},
@@ -53,6 +55,7 @@ constexpr std::string_view name_in(const SettingNames<Setting, n>& names, Settin
     return "?";
 }
 constexpr std::string_view name_of(SamplerKind kind) { return name_in(sampler_names, kind); }
+constexpr std::string_view name_of(IntegratorKind kind) { return name_in(integrator_names, kind); }
 constexpr std::string_view name_of(Strategy strategy) { return name_in(strategy_names, strategy); }
 constexpr std::string_view name_of(Heuristic heuristic) { return name_in(heuristic_names, heuristic); }
 constexpr std::string_view name_of(LightSampling sampling) { return name_in(light_sampling_names, sampling); }

@@ -24,6 +24,7 @@ void read_camera(const Plugin& plugin, Files& files, Diagnostics& diagnostics, F
                  CameraSettings& settings);
 // `seed` applies unless the sampler has its own.
 SamplerSettings read_sampler(const Plugin& plugin, Diagnostics& diagnostics, std::uint64_t seed);
-IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostics);
+// An integrator that takes a number of samples of its own sets that of the sampler.
+IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostics, SamplerSettings& sampler);
 
 } // namespace montelux::pbrt

@@ -24,7 +24,7 @@ std::string_view substitute_of(std::string_view integrator) {
         return "it integrates test functions and no scene; the scene is rendered with 'path'";
     if (integrator == "simplevolpath")
         return "the scene is rendered with 'volpath', which computes the same picture with less noise";
-    // bdpt, mlt, sppm, lightpath
+    // bdpt, sppm, lightpath
     return "the scene is rendered with 'path', which computes the same picture; caustics of small lights are "
            "noisier";
 }
@@ -96,7 +96,7 @@ void read_own_settings(ParameterReader& r, IntegratorSettings& s) {
 
 } // namespace
 
-IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostics) {
+IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostics, SamplerSettings& sampler) {
     ParameterReader r(plugin.parameters, "integrator " + in_quotes(plugin.name), plugin.at, diagnostics);
     IntegratorSettings s;
     if (plugin.name == "ambientocclusion" || plugin.name == "ao") {
@@ -132,6 +132,20 @@ IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostic
         if (lights && !bsdf)
             diagnostics.warn(r.at("samplebsdf"),
                              "BSDFs are sampled all the same; it changes the noise alone");
+        r.finish();
+    } else if (plugin.name == "mlt") {
+        s.method = IntegratorKind::metropolis;
+        sampler.spp = read_count(r, "mutationsperpixel", 100);
+        s.large_step_probability = r.number("largestepprobability", 0);
+        if (!(s.large_step_probability >= 0 && s.large_step_probability <= 1))
+            r.error("largestepprobability", "parameter 'largestepprobability' must be between 0 and 1");
+        s.regularize = r.boolean("regularize", false);
+        for (const char* name : {"chains", "bootstrapsamples", "sigma"})
+            if (r.ignored(name) != nullptr)
+                diagnostics.warn(r.at(name),
+                                 "parameter " + in_quotes(name) +
+                                     " is ignored: it is chosen for each scene, and changes the noise alone");
+        read_own_settings(r, s);
         r.finish();
     } else if (plugin.name == "randomwalk") {
         s.strategy = Strategy::uniform;
