@@ -19,7 +19,7 @@ namespace montelux {
 // for the Metropolis Light Transport Algorithm", section 3.2.
 class SmallStep {
   public:
-    static constexpr double ratio = 16; // of the longest to the shortest
+    static constexpr double ratio = 64; // of the longest to the shortest
     // 0 < longest < 1/2.
     explicit SmallStep(double longest) : longest_(longest) {}
 
@@ -37,7 +37,7 @@ class SmallStep {
     }
 
   private:
-    static constexpr double log2_of_ratio = 4;
+    static constexpr double log2_of_ratio = 6;
     static constexpr double largest = 1 - 0x1p-53;
     double longest_;
 };

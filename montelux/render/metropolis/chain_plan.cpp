@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -16,11 +15,8 @@ namespace {
 constexpr std::uint64_t piece = 1024;         // paths that a thread takes at a time
 constexpr std::uint64_t most_paths = 1 << 22; // in search of light
 constexpr std::size_t adapting_chains = 16, adapting_steps = 768;
-double tuned(const char* name, double otherwise) {
-    const char* v = std::getenv(name);
-    return v != nullptr ? std::atof(v) : otherwise;
-}
-const double wanted_acceptance = tuned("MLT_TARGET", 0.35);
+constexpr double wanted_acceptance = 0.5;
+constexpr double fewest_large_steps = 0.1, most_large_steps = 0.5; // shares
 
 // A path of the pilot.
 struct PilotPoint {
@@ -67,8 +63,7 @@ double mean_size(const std::vector<PilotPoint>& points) {
 // 1 / brightness of cells with 64 points or so each. The brightest points count less, and dark cells are not quite so
 // important, for their brightness is not known well.
 FilmImportance importance_of(const PrimarySampler& sampler, const std::vector<PilotPoint>& points) {
-    constexpr double points_per_cell = 64, brightest = 8;
-    const double floor = tuned("MLT_FLOOR", 0.1);
+    constexpr double points_per_cell = 64, brightest = 8, floor = 0.1;
     const Vec2f size = sampler.film_size();
     const double cells = static_cast<double>(points.size()) / points_per_cell;
     const double width = std::max(8.0, std::sqrt(double(size.x) * double(size.y) / cells));
@@ -88,16 +83,20 @@ FilmImportance importance_of(const PrimarySampler& sampler, const std::vector<Pi
     }
     for (std::size_t i = 0; i < count; ++i) {
         const double brightness = numbers[i] > 0 ? sums[i] / numbers[i] : mean;
-        importance.values()[i] = static_cast<float>(std::pow(mean / (brightness + floor * mean), tuned("MLT_IMP", 1)));
+        importance.values()[i] = static_cast<float>(mean / (brightness + floor * mean));
     }
     return importance;
 }
 
 // Chains that start at points of the pilot; the step grows or shrinks after each of their steps, less and less
 // (Robbins, Monro 1951, "A Stochastic Approximation Method").
-double adapted_step(const PrimarySampler& sampler, const Accelerator& accelerator, const ChainKeys& keys,
-                    const ChainPlan& plan, const std::vector<PilotPoint>& points,
-                    const std::function<bool()>& stop) {
+struct Adaptation {
+    double step = 0;
+    double large_acceptance = 0; // of large steps
+};
+Adaptation adapt(const PrimarySampler& sampler, const Accelerator& accelerator, const ChainKeys& keys,
+                 const ChainPlan& plan, const std::vector<PilotPoint>& points,
+                 const std::function<bool()>& stop) {
     std::vector<double> cdf;
     double sum = 0;
     for (const PilotPoint& p : points) cdf.push_back(sum += double(p.size) * plan.importance.at(p.film));
@@ -111,20 +110,25 @@ double adapted_step(const PrimarySampler& sampler, const Accelerator& accelerato
     RayTracer tracer(accelerator);
     ChainBundle bundle(sampler, plan.importance);
     bundle.begin(tracer, starts, walks);
+    double large = 0, large_accepted = 0;
     double log_step = std::log(plan.small_step.longest());
     for (std::size_t t = 0; t < adapting_steps && !stop(); ++t) {
         double accepted = 0, small = 0;
         bundle.step(tracer, plan.large_step_probability, SmallStep(std::exp(log_step)),
                     [&](std::size_t, const Mutation& m) {
-                        if (m.large) return;
+                        if (m.large) {
+                            large_accepted += m.acceptance;
+                            large += 1;
+                            return;
+                        }
                         accepted += m.acceptance;
                         small += 1;
                     });
         if (small == 0) continue;
         log_step += (accepted / small - wanted_acceptance) / std::pow(1 + 0.1 * static_cast<double>(t), 0.7);
-        log_step = std::clamp(log_step, std::log(1e-4), std::log(tuned("MLT_MAX", 0.25)));
+        log_step = std::clamp(log_step, std::log(1e-4), std::log(0.25));
     }
-    return std::exp(log_step);
+    return {std::exp(log_step), large > 0 ? large_accepted / large : 0};
 }
 
 } // namespace
@@ -156,7 +160,12 @@ std::optional<ChainPlan> make_chain_plan(const PrimarySampler& sampler, const Ac
     plan.importance = importance_of(sampler, points);
     for (const PilotPoint& p : points)
         plan.scale += double(p.size) * plan.importance.at(p.film) / static_cast<double>(points.size());
-    plan.small_step = SmallStep(adapted_step(sampler, accelerator, keys, plan, points, stop));
+    const Adaptation adaptation = adapt(sampler, accelerator, keys, plan, points, stop);
+    plan.small_step = SmallStep(adaptation.step);
+    // Where large steps are often accepted, they explore as well as small ones, and are independent.
+    if (!(description.integrator.large_step_probability > 0))
+        plan.large_step_probability =
+            std::clamp(adaptation.large_acceptance, fewest_large_steps, most_large_steps);
     plan.pilot_paths += adapting_chains * adapting_steps;
     if (stop()) return std::nullopt;
     return plan;

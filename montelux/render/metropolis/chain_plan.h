@@ -73,7 +73,7 @@ struct ChainPlan {
 // The plan for groups of so many paths per pixel. It follows from a pilot: paths of its own, which no group contains, so
 // that each group is unbiased given the plan, and all are alike. First independent paths: for the scale, the
 // importance, and starting points; until one finds light, but at most 2^22. Then chains whose small steps adapt to an
-// acceptance near `ChainPlan`'s target.
+// acceptance of one half; the share of large steps follows from how often these are accepted.
 // Empty if `stop`, which any thread asks now and then, returns true.
 std::optional<ChainPlan> make_chain_plan(const PrimarySampler& sampler, const Accelerator& accelerator,
                                          const SceneDescription& description, std::uint32_t samples_per_pixel,

@@ -19,11 +19,11 @@ IntegratorSettings direct_integrator(IntegratorSettings settings) {
     settings.max_depth = std::min(settings.max_depth, 1);
     return settings;
 }
-// Of half as many rays as a group has samples; a group is a replicate.
+// Of as many rays as a group has samples; a group is a replicate.
 SamplerSettings direct_sampler(const SamplerSettings& settings, std::uint32_t group_samples) {
     SamplerSettings s = settings;
     s.seed = hash_key(settings.seed, 0x646972656374);
-    s.replicate_points = (group_samples + 1) / 2;
+    s.replicate_points = group_samples;
     return s;
 }
 

@@ -33,7 +33,7 @@ struct ChainWatch {
 // Groups are replicates: that of the film's n-th replicate has the number that `order` gives its samples. They are
 // taken a few at a time, so that all threads have work, and added in order. Memory: a SplatFilm for every eight threads.
 //
-// Light after at most one scattering event comes from camera rays of each pixel, half as many as it has samples, which
+// Light after at most one scattering event comes from camera rays of each pixel, as many as it has samples, which
 // are stratified as SampleContext's are; chains follow all other light. They are a part of the group, and give albedo,
 // normal and depth. If the film limits samples, whose limit holds for the sum of both kinds of light, chains follow all
 // light.

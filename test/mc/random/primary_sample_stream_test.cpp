@@ -68,21 +68,21 @@ TEST(PrimarySamples, SampleADensity) {
     EXPECT_GT(chi_squared_test(observed, expected).p_value, significance);
 }
 
-// Steps up and down are equally likely, and their lengths have the density 1 / (length log 16).
+// Steps up and down are equally likely, and their lengths have the density 1 / (length log 64).
 TEST(SmallStep, IsSymmetricAndLogUniform) {
     PhiloxStream numbers(11);
     const SmallStep step(0.04);
-    std::vector<double> up(16, 0), down(16, 0);
+    std::vector<double> up(24, 0), down(24, 0);
     constexpr int n = 200000;
     for (int i = 0; i < n; ++i) {
         const double x = numbers.next_double(), y = step(x, numbers);
         ASSERT_TRUE(y >= 0 && y < 1);
         const double moved = y - x - std::round(y - x), length = std::abs(moved);
-        ASSERT_TRUE(length < 0.04 * (1 + 1e-9) && length > 0.0025 * (1 - 1e-9)) << moved;
-        const auto cell = static_cast<std::size_t>(std::min(15.0, 4 * std::log2(length / 0.0025)));
+        ASSERT_TRUE(length < 0.04 * (1 + 1e-9) && length > (0.04 / 64) * (1 - 1e-9)) << moved;
+        const auto cell = static_cast<std::size_t>(std::min(23.0, 4 * std::log2(length / (0.04 / 64))));
         ++(moved > 0 ? up : down)[cell];
     }
-    const std::vector<double> expected(16, n / 32.0);
+    const std::vector<double> expected(24, n / 48.0);
     EXPECT_GT(chi_squared_test(up, expected).p_value, significance);
     EXPECT_GT(chi_squared_test(down, expected).p_value, significance);
 }
