@@ -137,8 +137,10 @@ void Directives::finish_options() {
     };
     camera.shutter_open = motion_time(camera.shutter_open);
     camera.shutter_close = motion_time(camera.shutter_close);
+    std::optional<std::uint32_t> samples;
+    result_.integrator = read_integrator(plugin(integrator_, "volpath"), diagnostics_, samples);
     result_.sampler = read_sampler(plugin(sampler_, "zsobol"), diagnostics_, seed_.value_or(0));
-    result_.integrator = read_integrator(plugin(integrator_, "volpath"), diagnostics_, result_.sampler);
+    if (samples) result_.sampler.spp = *samples;
 }
 
 // Materials of a mix are made by a call from within.

@@ -96,7 +96,8 @@ void read_own_settings(ParameterReader& r, IntegratorSettings& s) {
 
 } // namespace
 
-IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostics, SamplerSettings& sampler) {
+IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostics,
+                                   std::optional<std::uint32_t>& samples) {
     ParameterReader r(plugin.parameters, "integrator " + in_quotes(plugin.name), plugin.at, diagnostics);
     IntegratorSettings s;
     if (plugin.name == "ambientocclusion" || plugin.name == "ao") {
@@ -135,7 +136,7 @@ IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostic
         r.finish();
     } else if (plugin.name == "mlt") {
         s.method = IntegratorKind::metropolis;
-        sampler.spp = read_count(r, "mutationsperpixel", 100);
+        samples = read_count(r, "mutationsperpixel", 100);
         s.large_step_probability = r.number("largestepprobability", 0);
         if (!(s.large_step_probability >= 0 && s.large_step_probability <= 1))
             r.error("largestepprobability", "parameter 'largestepprobability' must be between 0 and 1");

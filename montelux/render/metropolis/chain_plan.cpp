@@ -21,7 +21,7 @@ constexpr double fewest_large_steps = 0.1, most_large_steps = 0.5; // shares
 // A path of the pilot.
 struct PilotPoint {
     Point2f film;
-    float size = 0;
+    float size = 0, brightness = 0;
 };
 
 bool take_paths(const PrimarySampler& sampler, const Accelerator& accelerator, const ChainKeys& keys,
@@ -48,7 +48,7 @@ bool take_paths(const PrimarySampler& sampler, const Accelerator& accelerator, c
             }
             sampler.evaluate(tracer, states, FilmImportance(), memory, results);
             for (std::size_t k = 0; k < at_once; ++k)
-                points[i + k] = {results[k].film, static_cast<float>(results[k].size)};
+                points[i + k] = {results[k].film, static_cast<float>(results[k].size), results[k].brightness};
         }
     });
     return !stopped;
@@ -71,12 +71,14 @@ FilmImportance importance_of(const PrimarySampler& sampler, const std::vector<Pi
     const int rows = std::max(1, static_cast<int>(double(size.y) / width));
     const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
     FilmImportance importance(sampler.film_begin(), size, columns, rows, std::vector<float>(count, 1.0f));
-    const double limit = brightest * mean_size(points);
+    double all = 0;
+    for (const PilotPoint& p : points) all += double(p.brightness) / static_cast<double>(points.size());
+    const double limit = brightest * all;
     std::vector<double> sums(count, 0), numbers(count, 0);
     double mean = 0;
     for (const PilotPoint& p : points) {
         const std::size_t cell = importance.cell(p.film);
-        const double brightness = std::min(double(p.size), limit);
+        const double brightness = std::min(double(p.brightness), limit);
         sums[cell] += brightness;
         numbers[cell] += 1;
         mean += brightness / static_cast<double>(points.size());

@@ -16,6 +16,10 @@ path_integrator_of(const IntegratorSettings& settings, const SceneView& scene, c
     return PathIntegrator(settings, camera, footprint_scale);
 }
 
+double mean_magnitude(Vec3f rgb) {
+    return (std::abs(double(rgb.x)) + std::abs(double(rgb.y)) + std::abs(double(rgb.z))) / 3;
+}
+
 constexpr RadianceSplit indirect_split{.indirect = 0};
 
 } // namespace
@@ -64,17 +68,19 @@ void PrimarySampler::evaluate(RayTracer& tracer, std::span<PrimarySamples* const
         integrator_);
     for (std::size_t i = 0; i < states.size(); ++i) {
         FilmContribution& path = memory.paths[i];
+        const FilmExposure::Exposed all = exposure_(path, memory.weights[i]);
+        results[i].brightness = all.bad ? 0 : static_cast<float>(mean_magnitude(all.rgb));
+        FilmExposure::Exposed exposed = all;
         // What makes a sample bad is left where it is.
         if (indirect_only_ && all_finite(path.radiance)) {
             path.radiance = memory.indirect[i];
             path.transparency = 0;
+            exposed = exposure_(path, memory.weights[i]);
         }
-        const FilmExposure::Exposed exposed = exposure_(path, memory.weights[i]);
         PrimarySample& r = results[i];
         r.bad = exposed.bad;
         r.rgb = r.bad ? Vec3f{} : exposed.rgb * area_;
-        const double size =
-            (std::abs(double(r.rgb.x)) + std::abs(double(r.rgb.y)) + std::abs(double(r.rgb.z))) / 3;
+        const double size = mean_magnitude(r.rgb);
         r.size = size > 0 ? size * importance.at(r.film) : 0;
         r.clamped = !r.bad && exposed.clamp < 1 ? exposed.clamped() * area_ : 0;
     }

@@ -25,7 +25,8 @@ struct PrimarySample {
     Vec3f rgb;    // linear sRGB of the path, times the film's area in pixels: its value over its density
     double size =
         0; // the scalar that chains follow: mean magnitude of rgb, times the importance of the point
-    float clamped = 0;                  // luminance removed by the film's limit, times the film's area
+    float brightness = 0; // of all light of the path, followed or not: mean magnitude of its RGB
+    float clamped = 0;    // luminance removed by the film's limit, times the film's area
     std::optional<BadSample::Kind> bad; // then nothing else is set
 };
 
