@@ -166,7 +166,7 @@ TEST(PrimarySamples, RestartsAreReproducible) {
     again.accept();
     again.restart(PhiloxStream(4));
     for (PrimarySamples* s : {&once, &again}) {
-        s->propose_large();
+        s->propose_small(SmallStep(0.1)); // of no state: all is drawn anew
         draw(*s, 3);
         s->accept();
         s->propose_small(SmallStep(0.1));
