@@ -194,7 +194,7 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
         const std::optional<double> visible = visible_error(*result.image, task.tone, by_default);
         if (session->resumed() && result.error.mean_samples == session->samples_before())
             print_nothing_left(*session, report);
-        print_bad_samples(report.bad, sampler.seed);
+        print_bad_samples(report.bad, sampler.seed, !sampler.chains);
         print_clamped(static_cast<double>(report.clamped_samples), result.clamped_luminance,
                       result.error.mean_luminance);
         if (!files.written().empty())
@@ -203,6 +203,8 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
                         result.error.mean_samples, percent_text(result.error.relative).c_str(),
                         visible_text(visible).c_str(), duration_text(report.seconds).c_str(),
                         ending_text(report, target).c_str(), denoised.c_str());
+        if (const std::string warning = chain_warning(report.chains); !warning.empty())
+            std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
         if (const std::string warning = missing_error_warning(result, session->renderer()); !warning.empty())
             std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
         if (!task.is_frame) {

@@ -22,6 +22,7 @@
 #include "montelux/image/image_write.h"
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/render/check_render.h"
 #include "montelux/render/checkpoint.h"
 #include "montelux/render/sample_allocation.h"
 #include "montelux/render/sample_record_text.h"
@@ -60,7 +61,7 @@ int replay(const RenderOptions& options, const SceneDescription& description, co
     if (!options.quiet && (!options.outputs.empty() || options.stats))
         std::fprintf(stderr, "montelux: warning: --debug-sample renders no picture: nothing is written, and "
                              "there are no statistics\n");
-    check_slice_option(with_points(description.sampler, replicate_points), target);
+    check_slice_option(with_points(sampler_of(description), replicate_points), target);
     const Renderer renderer(description, target, replicate_points);
     std::fputs(sample_record_text(renderer.replay(s.x, s.y, s.index), description).c_str(), stdout);
     return exit_done;
@@ -79,7 +80,7 @@ int load_and_render(const RenderOptions& options, SharedRender& shared) {
     SceneDescription& description = requested.description;
     const double load_seconds = std::chrono::duration<double>(Clock::now() - load_begin).count();
     if (!options.quiet) LoadNotices().print(options.scene, warnings, requested.added);
-    const RenderTarget target = target_of(options, description.integrator);
+    const RenderTarget target = target_of(options, description.integrator.method);
     if (options.debug_sample) return replay(options, description, target);
     // The command view writes what it is asked for.
     const bool writes = !options.view.stays || !options.outputs.empty();

@@ -182,8 +182,12 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_choice(
         c, "--integrator", o.integrator, integrator_names,
         "How paths are found: from the camera, the default; from the camera and from lights, joined in all "
-        "ways, for caustics and lamps in shades; or from lights alone, which misses what mirrors and smooth "
-        "glass show the camera: ");
+        "ways, for caustics and lamps in shades; from lights alone, which misses what mirrors and smooth "
+        "glass show the camera; or from the camera by Markov chains that stay near bright paths, for light "
+        "that "
+        "path tracing rarely finds: ");
+    add_parsed(c, "--large-steps", "SHARE", o.large_steps, parse_share,
+               "Of metropolis: share of the steps that start a path anew. Default: chosen by a pilot");
     add_choice(c, "--strategy", o.strategy, strategy_names, "How light is found: ");
     add_choice(c, "--heuristic", o.heuristic, heuristic_names,
                "Weights of the strategy mis and its two terms: ");
@@ -270,6 +274,7 @@ void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.seed) d.sampler.seed = *o.seed;
     if (o.sampler) d.sampler.kind = *o.sampler;
     if (o.integrator) d.integrator.method = *o.integrator;
+    if (o.large_steps) d.integrator.large_step_probability = static_cast<float>(*o.large_steps);
     if (o.strategy)
         d.integrator.strategy = *o.strategy;
     else if (o.integrator && traces_light(*o.integrator))
@@ -321,7 +326,7 @@ RequestedScene load_requested(const RenderOptions& o, Warnings& warnings, FileSo
     return r;
 }
 
-RenderTarget target_of(const RenderOptions& o, const IntegratorSettings& integrator) {
+RenderTarget target_of(const RenderOptions& o, IntegratorKind integrator) {
     if (o.target_quantile && !o.target_error)
         throw UsageError("--target-quantile", "expected --target-error ERROR, the error of that share");
     if (o.resume && o.checkpoint.empty())
@@ -330,7 +335,9 @@ RenderTarget target_of(const RenderOptions& o, const IntegratorSettings& integra
     target.error = o.target_error.value_or(0);
     target.quantile = o.target_quantile.value_or(0);
     target.time = o.time.value_or(0);
-    target.adaptive = o.adaptive.value_or(o.target_error.has_value() && !traces_light(integrator.method));
+    // Light paths reach all pixels at once, and chains choose themselves where they take samples.
+    const bool may_adapt = integrator == IntegratorKind::path;
+    target.adaptive = o.adaptive.value_or(o.target_error.has_value() && may_adapt);
     target.slice = o.slice;
     if (target.slice.count > 1 && (target.error > 0 || target.adaptive))
         throw UsageError("--slice",

@@ -48,6 +48,7 @@ struct RenderOptions {
     std::optional<std::array<double, 4>> crop; // x0, x1, y0, y1 as fractions of the film
     std::optional<SamplerKind> sampler;
     std::optional<IntegratorKind> integrator;
+    std::optional<double> large_steps;
     std::optional<Strategy> strategy;
     std::optional<Heuristic> heuristic;
     std::optional<LightSampling> light_sampling;
@@ -103,7 +104,7 @@ RequestedScene load_requested(const RenderOptions& options, Warnings& warnings, 
 // How long the shutter stays open.
 double shutter_seconds(const RenderOptions& options);
 // Throws UsageError for incompatible options.
-// Light paths reach all pixels at once: without --adaptive their samples are not allocated.
-RenderTarget target_of(const RenderOptions& options, const IntegratorSettings& integrator);
+// Without --adaptive only samples of paths that belong to one pixel are allocated.
+RenderTarget target_of(const RenderOptions& options, IntegratorKind integrator);
 
 } // namespace montelux::app

@@ -162,7 +162,7 @@ int render_sequence(const RenderOptions& options, SharedRender& shared) {
     check_options(options, shared);
     for (const std::string& output : options.outputs) check_writable(output);
     check(options.tone, options.outputs);
-    target_of(options, {}); // wrong options are refused before scenes are read
+    target_of(options, IntegratorKind::path); // wrong options are refused before scenes are read
     LoadNotices notices;
     Frames frames(options, notices);
     std::optional<Denoiser> denoiser;
@@ -181,7 +181,7 @@ int render_sequence(const RenderOptions& options, SharedRender& shared) {
         const Clock::time_point begin = Clock::now();
         std::shared_ptr<SceneDescription> scene = frames.scene(number);
         const double load_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-        const RenderTarget target = target_of(options, scene->integrator);
+        const RenderTarget target = target_of(options, scene->integrator.method);
         const std::vector<std::string> outputs = outputs_of(options, *scene);
         if (!log) {
             check_requested(*scene, target, false);

@@ -9,12 +9,32 @@
 
 namespace montelux::app {
 
-void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed) {
+void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed, bool can_replay) {
     if (bad.count() == 0) return;
+    if (!can_replay) {
+        std::fprintf(stderr, "montelux: warning: %s\n", bad_sample_warning(bad, seed).c_str());
+        return;
+    }
     std::fprintf(stderr, "montelux: warning: %s; to see its path, add --debug-sample %d,%d,%llu\n",
                  bad_sample_warning(bad, seed).c_str(), bad.first->x, bad.first->y,
                  static_cast<unsigned long long>(bad.first->sample));
 }
+
+namespace {
+
+void print_chains(const ChainStatistics& s) {
+    const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
+    std::printf(
+        "chains             %llu groups of %llu chains of %llu states, from %llu independent paths each\n",
+        number(s.groups), number(s.chains), number(s.states), number(s.starting_points));
+    std::printf("small steps        %.1f %% accepted, of at most %.3g\n", 100 * s.small_acceptance(),
+                double(s.longest_step));
+    std::printf("large steps        %.1f %% accepted, %.0f %% of all\n", 100 * s.large_acceptance(),
+                100 * double(s.large_step_probability));
+    std::printf("agreement          R-hat %.3f over groups\n", s.agreement.worst_r_hat());
+}
+
+} // namespace
 
 void print_statistics(const RenderReport& report, double load_seconds, const Renderer& renderer) {
     auto samples = static_cast<double>(report.samples), rays = static_cast<double>(report.rays.rays());
@@ -28,6 +48,7 @@ void print_statistics(const RenderReport& report, double load_seconds, const Ren
         count_text(rays / report.seconds).c_str(), count_text(rays / report.cpu_seconds).c_str(),
         rays / samples, static_cast<double>(report.rays.closest) / samples,
         static_cast<double>(report.rays.occlusion) / samples);
+    if (report.chains.groups > 0) print_chains(report.chains);
     std::printf("inside Embree      %.1f %% of the CPU time\n",
                 100 * report.ray_seconds / report.cpu_seconds);
     std::printf("peak memory        %.1f MiB\n", static_cast<double>(peak_memory()) / (1 << 20));

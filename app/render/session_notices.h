@@ -11,7 +11,8 @@ namespace montelux::app {
 void print_resume_notices(const RenderSession& session, bool quiet);
 // Why a resumed render took no samples.
 void print_nothing_left(const RenderSession& session, const RenderReport& report);
-void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed);
+// `can_replay`: by --debug-sample.
+void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed, bool can_replay);
 void print_statistics(const RenderReport& report, double load_seconds, const Renderer& renderer);
 
 } // namespace montelux::app

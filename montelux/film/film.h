@@ -60,6 +60,13 @@ class Pixel {
     }
     // Adds to the open replicate's mean what light paths bring to the pixel in its pass over the film (SplatFilm).
     void add_splats(Vec3d mean) { replicate_sum_ += mean * static_cast<double>(replicate_samples_); }
+    // Adds features of the first surface that stand for so many samples.
+    void add_features(Vec3f albedo, Vec3f normal, float depth, std::uint32_t samples) {
+        const auto n = static_cast<float>(samples);
+        albedo_ += albedo * n;
+        normal_ += normal * n;
+        depth_ += depth * n;
+    }
     // Adds a whole replicate of that mean, which stands for so many samples; none may be open.
     void add_replicate(Vec3d mean, std::uint32_t samples) {
         replicate_sum_ = mean * static_cast<double>(samples);

@@ -67,7 +67,8 @@ std::uint64_t hash_of_film(const FilmSettings& f) {
 }
 std::uint64_t hash_of_integrator(const IntegratorSettings& s) {
     const auto with_background = [&](std::uint64_t h) {
-        if (s.method != IntegratorKind::path) h = hash_of(h, static_cast<int>(s.method));
+        if (s.method != IntegratorKind::path)
+            h = hash_of(h, static_cast<int>(s.method), s.large_step_probability);
         return s.background ? hash_of(h, s.background->x, s.background->y, s.background->z) : h;
     };
     const auto with_guiding = [&](std::uint64_t h) {

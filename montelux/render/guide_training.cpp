@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "montelux/mc/parallel/cpu_time.h"
 #include "montelux/mc/random/hash.h"
 #include "montelux/render/tile_renderer.h"
 #include "montelux/transport/guiding/guiding_learner.h"
@@ -47,12 +47,6 @@ struct TrainingRound {
     }
 };
 
-double cpu_seconds_now() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 // `share` of the paths are kept as records, `most` records of each tile; of a pixel probably `expected_records`.
 TrainingRound take_round(const SampleContext& context, const Accelerator& accelerator,
                          const GuideTrainingPlan& plan, std::uint64_t first, std::uint32_t samples,
@@ -73,7 +67,7 @@ TrainingRound take_round(const SampleContext& context, const Accelerator& accele
     parallel_for(
         static_cast<std::int64_t>(tiles.size()),
         [&](std::int64_t t) {
-            const double begin = cpu_seconds_now();
+            const double begin = thread_cpu_seconds();
             const auto index = static_cast<std::size_t>(t);
             const PixelBounds& tile = tiles[index];
             std::vector<GuidingRecord>& records = round.records[index];
@@ -111,7 +105,7 @@ TrainingRound take_round(const SampleContext& context, const Accelerator& accele
                         if (keys.size() == training_batch) take();
                     }
             if (!keys.empty()) take();
-            costs[index] = {tracer.statistics.rays(), cpu_seconds_now() - begin};
+            costs[index] = {tracer.statistics.rays(), thread_cpu_seconds() - begin};
         },
         plan.cancel);
     for (const Cost& c : costs) {
@@ -232,10 +226,10 @@ TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
             break;
         }
         records_per_sample = static_cast<double>(round.record_count()) / (share * double(pixels) * samples);
-        const double learning = cpu_seconds_now();
+        const double learning = thread_cpu_seconds();
         context.set_guide(std::make_shared<const GuidingField>(
             GuidingLearner::learn(round.records, learner, plan.bounds, std::move(expected))));
-        summary.cpu_seconds += cpu_seconds_now() - learning;
+        summary.cpu_seconds += thread_cpu_seconds() - learning;
         samples *= 2;
         // Twice at least: what the first guide learned without another one is noisy.
         if (summary.rounds >= 3 && summary.samples + double(samples) > all_training * budget) break;

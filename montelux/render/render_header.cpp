@@ -55,8 +55,15 @@ void add_render_header(Image& image, const std::string& scene_name, const Render
     a["samplesTaken"] = static_cast<float>(error.mean_samples);
     a["interrupted"] = report.cancelled() ? 1 : 0;
     a["sampler"] = std::string(name_of(description.sampler.kind));
-    if (description.integrator.method != IntegratorKind::path)
-        a["integrator"] = std::string(name_of(description.integrator.method));
+    a["integrator"] = std::string(name_of(description.integrator.method));
+    if (description.integrator.method == IntegratorKind::metropolis) {
+        const ChainStatistics& chains = report.chains;
+        a["chainsPerReplicate"] = static_cast<int>(chains.chains);
+        a["statesPerChain"] = static_cast<int>(std::min<std::uint64_t>(chains.states, 1u << 30));
+        a["largeStepProbability"] = chains.large_step_probability;
+        a["longestSmallStep"] = chains.longest_step;
+        a["rHat"] = static_cast<float>(chains.agreement.worst_r_hat());
+    }
     a["strategy"] = std::string(name_of(description.integrator.strategy));
     a["heuristic"] = std::string(name_of(description.integrator.heuristic));
     a["lightSampling"] = std::string(name_of(description.integrator.light_sampling));

@@ -4,6 +4,7 @@
 
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/render/check_render.h"
 #include "montelux/render/checkpoint.h"
 #include "montelux/render/render_header.h"
 #include "montelux/render/sample_allocation.h"
@@ -33,7 +34,7 @@ RenderSession::RenderSession(std::shared_ptr<const SceneDescription> description
 }
 
 SamplerSettings RenderSession::sampler() const {
-    return with_points(description_->sampler, replicate_points_);
+    return with_points(sampler_of(*description_), replicate_points_);
 }
 
 void RenderSession::prepare() {

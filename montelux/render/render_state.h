@@ -11,6 +11,7 @@
 #include "montelux/film/splat_film.h"
 #include "montelux/render/bad_sample_report.h"
 #include "montelux/render/guide_summary.h"
+#include "montelux/render/metropolis/chain_statistics.h"
 #include "montelux/transport/guiding/guiding_field.h"
 #include "montelux/transport/ray_tracer.h"
 
@@ -32,6 +33,7 @@ struct RenderReport {
     RayStatistics rays;
     BadSampleReport bad;
     std::uint64_t clamped_samples = 0; // by the film's limit
+    ChainStatistics chains;            // of a Metropolis render
     RenderStop stop = RenderStop::samples;
     GuideSummary guide; // of a render that may be guided
 

@@ -1,6 +1,7 @@
 #include "montelux/render/render_warnings.h"
 
 #include <cmath>
+#include <cstdio>
 
 #include "montelux/render/sample_order.h"
 
@@ -16,6 +17,28 @@ std::string bad_sample_warning(const BadSampleReport& bad, std::uint64_t seed) {
            text(bad.infinite) + " infinite, " + text(bad.negative) + " negative); the first, " + kind +
            ", is sample " + text(bad.first->sample) + " of pixel " + text(bad.first->x) + "," +
            text(bad.first->y) + " with seed " + text(seed);
+}
+
+std::string chain_warning(const ChainStatistics& chains) {
+    if (chains.groups == 0) return {};
+    const auto text = [](std::uint64_t n) { return std::to_string(n); };
+    if (chains.dark_groups == chains.groups)
+        return "no chain found light to start from among " + text(chains.groups * chains.starting_points) +
+               " independent paths: the picture contains only what such paths find, and its errors know no "
+               "other "
+               "light";
+    if (chains.dark_groups > 0)
+        return text(chains.dark_groups) + " of " + text(chains.groups) +
+               " groups of chains found no light to start from; more samples per pixel make them larger";
+    constexpr double accepted = 1.1;
+    const double r_hat = chains.agreement.worst_r_hat();
+    if (chains.groups < 2 || !(r_hat > accepted)) return {};
+    char number[32];
+    std::snprintf(number, sizeof number, "%.2f", r_hat);
+    return std::string("groups of chains differ more than their lengths explain (R-hat ") + number +
+           ", expected at most 1.10): light that few of them found may be missing from the errors; more "
+           "samples "
+           "per pixel make them longer";
 }
 
 std::string missing_error_warning(const RenderSnapshot& result, const Renderer& renderer) {

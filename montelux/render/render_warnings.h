@@ -10,6 +10,9 @@ namespace montelux {
 // The samples left out, and how to replay the first; empty without any.
 std::string bad_sample_warning(const BadSampleReport& bad, std::uint64_t seed);
 
+// Of a Metropolis render whose chains do not agree, or found no light; empty otherwise.
+std::string chain_warning(const ChainStatistics& chains);
+
 // For an interrupted render whose picture has no errors; empty if they are known, and for slices, which get
 // errors when they are merged.
 std::string missing_error_warning(const RenderSnapshot& result, const Renderer& renderer);

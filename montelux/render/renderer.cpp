@@ -10,12 +10,15 @@
 #include <vector>
 
 #include "montelux/mc/math/error.h"
+#include "montelux/render/check_render.h"
 #include "montelux/render/guide_training.h"
 #include "montelux/render/live_film.h"
+#include "montelux/render/metropolis/chain_renderer.h"
 #include "montelux/render/round_executor.h"
 #include "montelux/render/sample_allocation.h"
 #include "montelux/render/sample_context.h"
 #include "montelux/render/splat_pass.h"
+#include "montelux/render/stopping_rule.h"
 #include "montelux/render/tile_renderer.h"
 #include "montelux/scene/light_tracing_support.h"
 #include "montelux/scene/setting_names.h"
@@ -35,11 +38,12 @@ constexpr int tile_size = 16;
 // One run of Renderer::render.
 class RenderLoop {
   public:
-    RenderLoop(const Renderer& renderer, SampleContext& context, RenderState& state,
+    // `chains`: take the samples; null: tiles do.
+    RenderLoop(const Renderer& renderer, SampleContext& context, ChainRenderer* chains, RenderState& state,
                const RenderControl& control)
         : renderer_(renderer), context_(context), state_(state), control_(control),
           order_(renderer.sampler(), renderer.target().slice),
-          tile_renderer_(context, renderer.accelerator(), order_),
+          tile_renderer_(context, renderer.accelerator(), order_), chains_(chains),
           tiles_(tiles_of(state.film.bounds(), tile_size)), finished_(tiles_.size()),
           seconds_before_(state.report.seconds), samples_before_(state.report.samples) {
         if (!round_is_done()) round_ = 0; // in a restored state
@@ -87,8 +91,9 @@ class RenderLoop {
         return control_.checkpoint && seconds_since(last_checkpoint_) >= control_.checkpoint_seconds;
     }
     bool out_of_time() const {
-        // A time limit ends the render only after one sample per pixel.
-        return renderer_.target().time > 0 && every_pixel_seen_ && seconds() >= renderer_.target().time;
+        // A time limit ends the render only after one sample per pixel, or two groups of chains.
+        const bool may_end = chains_ != nullptr ? errors_are_known_ : every_pixel_seen_;
+        return renderer_.target().time > 0 && may_end && seconds() >= renderer_.target().time;
     }
     bool pause_is_due() const { return checkpoint_is_due() || out_of_time(); }
     void pause_if_due() {
@@ -126,16 +131,10 @@ class RenderLoop {
         if (out_of_time()) return RenderStop::time;
         if (state_.target_samples.empty() || !round_is_done() || !no_replicate_is_open()) return std::nullopt;
         const FilmError error = state_.film.error();
-        estimate_samples(error, error_for_target(state_.film, error));
+        estimate_samples(error, stopping_.error_for_target(state_.film, error));
         report_progress(error);
-        if (target_is_reached(state_.film, error)) return RenderStop::error;
+        if (stopping_.is_reached(state_.film, error)) return RenderStop::error;
         return std::nullopt;
-    }
-    // The error that the target limits; empty without a target, and while nothing was seen.
-    std::optional<double> error_for_target(const Film& film, const FilmError& error) const {
-        const RenderTarget& target = renderer_.target();
-        if (!(target.error > 0 && error.mean_luminance > 0)) return std::nullopt;
-        return target.quantile > 0 ? error_quantile(film, target.quantile) : error.relative;
     }
     // An error falls with the root of the number of samples.
     void estimate_samples(const FilmError& error, const std::optional<double>& reached) {
@@ -144,23 +143,6 @@ class RenderLoop {
                                std::pow(*reached / renderer_.target().error, 2);
         samples_for_error_ = static_cast<std::uint64_t>(std::min(samples, 1e18));
     }
-    bool target_is_reached(const Film& film, const FilmError& error) const {
-        const RenderTarget& target = renderer_.target();
-        if (!(target.error > 0)) return false;
-        const std::optional<double> reached = error_for_target(film, error);
-        // Few samples may all be dark by chance; pixels that found no light yet would satisfy a quantile.
-        const std::uint64_t least = target.quantile > 0 ? 4 * least_samples : least_samples;
-        const std::uint64_t replicates = fewest_replicates(film);
-        if (replicates < least_replicates || replicates * order_.replicate_size() < least) return false;
-        if (!reached) return error.mean_samples >= samples_of_black;
-        return *reached <= target.error && (target.quantile > 0 || error_freedom(film) >= least_freedom);
-    }
-    static std::uint64_t fewest_replicates(const Film& film) {
-        std::uint64_t fewest = film.pixels().front().replicates().count();
-        for (const Pixel& p : film.pixels()) fewest = std::min(fewest, p.replicates().count());
-        return fewest;
-    }
-
     // After a first sample of every pixel: a render that is cancelled early has a picture.
     void train_guide_if_due() {
         const IntegratorSettings& settings = renderer_.description().integrator;
@@ -182,6 +164,7 @@ class RenderLoop {
     }
 
     void take_samples() {
+        if (chains_ != nullptr) return take_groups();
         if (control_.executor != nullptr) return let_executor_take_samples();
         pause_ = false;
         parallel_for(
@@ -227,6 +210,26 @@ class RenderLoop {
         samples_beyond_ = 0;
         for (std::size_t t = 0; t < tiles_.size(); ++t) report_if_finished(t);
         if (live != nullptr) live->wait_for_copies();
+    }
+
+    void take_groups() {
+        LiveFilm* const live = control_.live;
+        const auto tell = [this](std::uint64_t paths) {
+            std::lock_guard lock(mutex_);
+            samples_beyond_ = paths;
+            if (seconds_since(last_progress_) > 0.2) report_progress(std::nullopt);
+        };
+        const auto add = [&](const std::function<void()>& change) {
+            const auto held = live != nullptr ? live->hold_all() : std::unique_lock<std::timed_mutex>();
+            std::lock_guard lock(mutex_);
+            change();
+            samples_beyond_ = 0;
+        };
+        chains_->run(
+            state_, state_.target_samples.front(),
+            {[this] { return cancelled() || out_of_time(); }, [this] { return pause_is_due(); }, tell, add});
+        errors_are_known_ = state_.film.pixels().front().replicates().count() >= 2;
+        for (std::size_t t = 0; t < tiles_.size(); ++t) report_if_finished(t);
     }
 
     void render_tile(std::size_t index) {
@@ -344,25 +347,20 @@ class RenderLoop {
             film.end_replicates(order_.replicate_size());
         const FilmError error = film.error();
         // The open replicates may have been the only ones missing.
-        if (reason != RenderStop::cancelled && target_is_reached(film, error))
+        if (reason != RenderStop::cancelled && stopping_.is_reached(film, error))
             state_.report.stop = RenderStop::error;
         ended_ = true;
         report_progress(std::isfinite(error.relative) ? std::optional(error) : std::nullopt);
     }
-
-    // Samples per pixel before its error is trusted; and before a picture counts as black.
-    static constexpr std::uint64_t least_samples = 16, least_replicates = 4, samples_of_black = 4096;
-    // Degrees of freedom of the picture's error, as many as 16 replicates of one pixel have: stopping at the
-    // first error that is small enough selects errors that are small by chance, the more so the less certain
-    // they are.
-    static constexpr double least_freedom = 15;
 
     const Renderer& renderer_;
     SampleContext& context_;
     RenderState& state_;
     const RenderControl& control_;
     SampleOrder order_;
+    StoppingRule stopping_{renderer_.target(), order_.replicate_size()};
     TileRenderer tile_renderer_;
+    ChainRenderer* chains_;
     std::vector<PixelBounds> tiles_;
     std::vector<char> finished_;              // of each tile, in this round
     std::uint64_t round_ = ~std::uint64_t{0}; // incremented to 0 by the first round
@@ -371,6 +369,7 @@ class RenderLoop {
     std::uint64_t samples_before_;
     Clock::time_point begin_ = Clock::now(), last_checkpoint_ = begin_, last_progress_ = begin_;
     bool every_pixel_seen_ = false, ended_ = false;
+    bool errors_are_known_ = state_.film.pixels().front().replicates().count() >= 2;
     std::atomic<bool> pause_{false};
     std::mutex mutex_; // of the report and the progress
     RenderProgress progress_;
@@ -380,43 +379,14 @@ class RenderLoop {
 
 } // namespace
 
-namespace {
-
-// What a film filled by light paths cannot have.
-void check_light_tracing(const SceneDescription& description, const RenderTarget& target) {
-    const std::string where = "integrator " + std::string(name_of(description.integrator.method));
-    if (const auto obstacle = light_tracing_obstacle(description.scene, description.integrator))
-        throw Error(where, *obstacle + "; choose 'path'");
-    if (target.adaptive)
-        throw Error(where,
-                    "its light paths reach all pixels at once: samples cannot be allocated to single ones; "
-                    "leave out --adaptive or choose 'path'");
-    if (description.film.spectral)
-        throw Error(where, "a spectral film cannot be rendered by it; choose 'path'");
-    for (const Layer layer : {Layer::direct, Layer::indirect, Layer::light_groups})
-        if (description.film.layers.set.has(layer))
-            throw Error(where,
-                        "the parts of the light (layers direct, indirect, light-groups) cannot be rendered "
-                        "by it; choose 'path'");
-}
-
-} // namespace
+namespace {} // namespace
 
 Renderer::Renderer(const SceneDescription& description, const RenderTarget& target,
                    std::uint32_t replicate_points, std::shared_ptr<const PreparedScene> prepared)
     : description_(description), target_(target),
-      sampler_(with_replicates(with_points(description.sampler, replicate_points), target)),
+      sampler_(with_replicates(with_points(sampler_of(description), replicate_points), target)),
       camera_(description.scene.camera, description.film.width, description.film.height) {
-    if (description.sampler.spp < 1) throw Error("sampler", "at least 1 sample per pixel is needed");
-    check_slice(with_points(description.sampler, replicate_points), target);
-    if (description.film.spectral && target.slice.count > 1)
-        throw Error("film",
-                    "a spectral film cannot be rendered in slices: merge has no layers of wavelengths");
-    if (target.slice.count > 1 && description.film.layers.set != LayerSet::standard())
-        throw Error("slice", "slices are joined by their standard layers; no others can be chosen");
-    if (description.integrator.occlusion && description.film.layers.set.has(Layer::light_groups))
-        throw Error("film", "ambient occlusion is no light of the scene: 'light-groups' cannot be chosen");
-    if (traces_light(description.integrator.method)) check_light_tracing(description, target);
+    check_render(description, with_points(sampler_of(description), replicate_points), target);
     scene_digest_ = digest_of(description.scene);
     prepared_ = prepared ? std::move(prepared) : std::make_shared<const PreparedScene>(description);
 }
@@ -444,16 +414,7 @@ void Renderer::serve(const std::function<void(const TileRenderer&)>& work) const
 }
 
 void Renderer::render(RenderState& state, const RenderControl& control) const {
-    if (description_.film.spectral && control.executor != nullptr)
-        throw Error("film",
-                    "a spectral film cannot be rendered by several processes: they exchange RGB alone");
-    if (state.splats && control.executor != nullptr)
-        throw Error("integrator " + std::string(name_of(description_.integrator.method)),
-                    "it cannot be used by several processes yet: render slices, or choose 'path'");
-    if (description_.integrator.guiding == Guiding::on && control.executor != nullptr)
-        throw Error("guiding",
-                    "a guided picture cannot be rendered by several processes yet: render it by one, or "
-                    "turn guiding off");
+    if (control.executor != nullptr) check_sharing(description_);
     SampleContext context(description_, sampler_, scene(), camera_);
     if (description_.integrator.guiding == Guiding::on && !context.can_be_guided())
         throw Error("guiding",
@@ -462,7 +423,11 @@ void Renderer::render(RenderState& state, const RenderControl& control) const {
     if (context.makes_splats() && !state.splats) state.splats.emplace(state.film.bounds());
     if (state.film.layers().channels() != context.layers().channels())
         throw Error("film", "its layers are not those of the scene's film");
-    RenderLoop(*this, context, state, control).run();
+    std::optional<ChainRenderer> chains;
+    if (sampler_.chains)
+        chains.emplace(description_, sampler_, scene(), camera_, accelerator(),
+                       SampleOrder(sampler_, target_.slice));
+    RenderLoop(*this, context, chains ? &*chains : nullptr, state, control).run();
 }
 
 RenderReport Renderer::render(Film& film, const ProgressCallback& progress, const CancelFlag* cancel) const {

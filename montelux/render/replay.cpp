@@ -18,6 +18,11 @@ std::string range(int begin, int end) {
 } // namespace
 
 void check_sample(const SceneDescription& d, int x, int y, std::uint64_t index, const RenderTarget& target) {
+    if (d.integrator.method == IntegratorKind::metropolis)
+        throw Error(
+            "metropolis",
+            "a state of a chain follows from all before it and cannot be traced alone; replay a sample of "
+            "the integrator path");
     const PixelBounds& crop = d.film.crop;
     if (x < crop.x0 || x >= crop.x1 || y < crop.y0 || y >= crop.y1) {
         const bool whole = crop == PixelBounds{0, 0, d.film.width, d.film.height};

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::uint64_t longest_round = 16;
 constexpr std::uint32_t points_for_targets = 8;
+constexpr std::uint32_t groups_of_chains = 32, chain_samples_for_targets = 2;
 constexpr std::uint32_t many_samples = 256; // from here on split into 16 replicates
 // Samples and replicates of the pilot of adaptive renders.
 constexpr std::uint64_t pilot_samples = 16, pilot_replicates = 4;
@@ -71,6 +72,14 @@ std::uint64_t pilot_of(const SampleOrder& order) {
 }
 
 SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& target) {
+    if (settings.chains) {
+        if (settings.replicate_points != 0) return settings;
+        const std::uint32_t groups = std::max(groups_of_chains, target.slice.count);
+        settings.replicate_points = std::max(1u, settings.spp / groups);
+        if (target.error > 0 || target.time > 0)
+            settings.replicate_points = std::min(settings.replicate_points, chain_samples_for_targets);
+        return settings;
+    }
     if (settings.kind == SamplerKind::independent || settings.replicates >= 2 ||
         settings.replicate_points != 0)
         return settings;
@@ -106,6 +115,12 @@ std::vector<std::uint32_t> next_target_samples(const RenderState& state, const S
     const std::uint64_t pilot = target.adaptive ? pilot_of(order) : 0;
     if (target.adaptive && begin >= pilot) return neyman_allocation(state.film, order, target);
     if (begin >= share) return {};
+    if (sampler.chains) { // the same numbers of whole groups
+        const std::uint64_t groups = begin / order.replicate_size();
+        const std::uint64_t more = std::clamp<std::uint64_t>(std::bit_floor(groups), 1, longest_round);
+        const std::uint64_t end = std::min(begin + more * order.replicate_size(), share);
+        return std::vector<std::uint32_t>(pixels, static_cast<std::uint32_t>(end));
+    }
     // 1, 2, 4, 8, 16, 32, 48, ... samples: a render that is interrupted early has some in every pixel.
     std::uint64_t end = begin + std::clamp<std::uint64_t>(std::bit_floor(begin), 1, longest_round);
     if (order.replicate_size() > 1 || state.splats) // passes end with a round

@@ -17,7 +17,8 @@ namespace montelux {
 // with seven degrees of freedom and leave most samples to the point sets: the truth then lies within two
 // errors in 91 % of the pixels. From 256 samples on there are sixteen (94 %), and never fewer than slices.
 // Below eight samples each is a replicate. A target or a time needs many short replicates, of at most eight
-// points each, since the number of samples is not known beforehand.
+// points each, since the number of samples is not known beforehand. Chains come in 32 groups, never fewer than
+// slices; with a target or a time, of at most two samples per pixel each.
 SamplerSettings with_replicates(SamplerSettings settings, const RenderTarget& target);
 
 // The same for a resumed render, with its original points per replicate; 0: as chosen above.

@@ -10,26 +10,9 @@ namespace montelux {
 
 namespace {
 
-// The reason to leave a sample out, if any.
-std::optional<BadSample::Kind> badness(Vec3f rgb, SampledSpectrum radiance) {
-    // The radiance first: with infinite light RGB contains differences of infinities.
-    if (has_nan(radiance)) return BadSample::Kind::nan;
-    if (!all_finite(radiance)) return BadSample::Kind::infinite;
-    if (std::isnan(rgb.x + rgb.y + rgb.z)) return BadSample::Kind::nan;
-    if (!is_finite(rgb)) return BadSample::Kind::infinite;
-    // RGB may be negative for colours outside the gamut; the spectrum may not.
-    if (has_negative(radiance)) return BadSample::Kind::negative;
-    return std::nullopt;
-}
-
-// Scale of a pixel's footprint on textures: pbrt-v4's value from 64 samples per pixel on. The pixel filter
-// does the rest, and a sample must not depend on the number of others.
-constexpr float footprint_scale = 0.125f;
-
 // Scenes without media pay nothing for them.
-Integrator make_integrator(const SceneDescription& description, const SceneView& scene,
-                           const Camera& camera) {
-    const IntegratorSettings& settings = description.integrator;
+Integrator make_integrator(const SceneDescription& description, const IntegratorSettings& settings,
+                           const SceneView& scene, const Camera& camera) {
     if (traces_light(settings.method))
         return BidirectionalIntegrator(settings, camera, footprint_scale, description.film.crop,
                                        filter_radius(description.film.filter));
@@ -41,18 +24,13 @@ Integrator make_integrator(const SceneDescription& description, const SceneView&
 } // namespace
 
 SampleContext::SampleContext(const SceneDescription& description, const SamplerSettings& sampler,
-                             const SceneView& scene, const Camera& camera)
-    : sampler_(sampler), max_component_value_(description.film.max_component_value), scene_(scene),
-      camera_(camera), moves_(moves(description.scene)),
+                             const SceneView& scene, const Camera& camera,
+                             const IntegratorSettings& integrator)
+    : sampler_(sampler), scene_(scene), camera_(camera), moves_(moves(description.scene)),
       normals_in_camera_space_(description.film.layers.in_camera_space), layers_(description, scene, camera),
-      integrator_(make_integrator(description, scene, camera)), filter_(description.film.filter),
-      sensor_(RgbColorSpace::srgb(), {description.film.exposure_time, description.film.iso,
-                                      description.film.white_balance, description.film.sensor}),
-      white_(RgbColorSpace::srgb().illuminant()),
-      white_scale_(static_cast<float>(1 / integrate_luminance(white_))),
-      background_(description.integrator.background),
-      signed_filter_(std::holds_alternative<MitchellFilter>(description.film.filter) ||
-                     std::holds_alternative<LanczosFilter>(description.film.filter)) {
+      integrator_(make_integrator(description, integrator, scene, camera)), filter_(description.film.filter),
+      exposure_(description), white_(RgbColorSpace::srgb().illuminant()),
+      white_scale_(static_cast<float>(1 / integrate_luminance(white_))) {
     if (description.film.spectral) buckets_.emplace(*description.film.spectral);
 }
 
@@ -78,36 +56,27 @@ SampleContext::Result SampleContext::finish(const FilmContribution& path, const 
                                             SampleRecord* record) const {
     Result result;
     const FilterSample& filter = point.filter;
-    const Vec3f sensor_rgb = sensor_.to_rgb(path.radiance * point.weight, path.lambda);
-    const float largest = max_component(sensor_rgb);
-    const float clamp = largest > max_component_value_ ? max_component_value_ / largest : 1;
-    Vec3f rgb = sensor_rgb * clamp * filter.weight;
-    Vec3f background;
-    if (background_) [[unlikely]] {
-        // Weights differ from 1 by the filter's table: a constant need not get its noise.
-        background = *background_ * (path.transparency * (signed_filter_ ? filter.weight : 1.0f));
-        rgb += background;
-    }
+    const FilmExposure::Exposed exposed = exposure_(path, point.weight, filter.weight);
+    const float clamp = exposed.clamp;
     result.clamp = clamp;
-    result.bad = badness(rgb, path.radiance);
+    result.bad = exposed.bad;
     if (record != nullptr) [[unlikely]] {
         record->filter = filter;
         record->lambda = lambda;
         record->lambda_end = path.lambda;
-        record->sensor_rgb = sensor_rgb;
+        record->sensor_rgb = exposed.sensor_rgb;
         record->clamp = clamp;
-        record->background = background;
-        record->rgb = rgb;
+        record->background = exposed.background;
+        record->rgb = exposed.rgb;
         record->bad = result.bad;
     }
     if (result.bad) return result;
-    result.film.radiance = rgb;
+    result.film.radiance = exposed.rgb;
     if (spectral != nullptr) [[unlikely]]
         *spectral =
             spectral_sample(*buckets_, path.radiance, path.lambda, point.weight * clamp * filter.weight);
     if (clamp < 1) [[unlikely]]
-        result.clamped =
-            static_cast<float>(dot(Vec3d(sensor_rgb), luminance_weight)) * (1 - clamp) * filter.weight;
+        result.clamped = exposed.clamped() * filter.weight;
     if (const FirstHit& first = path.first; first.found) {
         result.film.albedo =
             albedo_sensor_.to_rgb(first.albedo * white_.sample(lambda) * white_scale_, lambda);
@@ -122,19 +91,15 @@ SampleContext::Result SampleContext::finish(const FilmContribution& path, const 
 void SampleContext::finish_splats(const SplatList& splats, const SampledWavelengths& lambda, Result& result,
                                   std::vector<FilmSplat>& out) const {
     for (const Splat& splat : splats) {
-        Vec3f rgb = sensor_.to_rgb(splat.radiance, lambda);
         if (result.bad) return;
-        result.bad = badness(rgb, splat.radiance);
-        const float largest = max_component(rgb);
+        const FilmExposure::Exposed exposed = exposure_({.radiance = splat.radiance, .lambda = lambda}, 1);
+        result.bad = exposed.bad;
         // The filter's weight in a pixel may exceed 1.
-        if (!result.bad && largest > static_cast<float>(SplatFilm::most * 0x1p-10))
+        if (!result.bad && max_component(exposed.rgb) > static_cast<float>(SplatFilm::most * 0x1p-10))
             result.bad = BadSample::Kind::infinite;
-        if (largest > max_component_value_) [[unlikely]] {
-            const float clamp = max_component_value_ / largest;
-            result.clamped += static_cast<float>(dot(Vec3d(rgb), luminance_weight)) * (1 - clamp);
-            rgb *= clamp;
-        }
-        out.push_back({splat.film, rgb});
+        if (exposed.clamp < 1) [[unlikely]]
+            result.clamped += exposed.clamped();
+        out.push_back({splat.film, exposed.rgb});
     }
 }
 
@@ -143,7 +108,8 @@ void SampleContext::sample_layers(const SampleExtras& extras, const FilmContribu
     layers_.sample(extras, point.film, point.lens, point.filter.weight, values);
     float* to = values.data() + layers().first_part();
     for (const SampledSpectrum& part : extras.parts) {
-        const Vec3f rgb = sensor_.to_rgb(part * point.weight, path.lambda) * clamp * point.filter.weight;
+        const Vec3f rgb =
+            exposure_.sensor().to_rgb(part * point.weight, path.lambda) * clamp * point.filter.weight;
         for (int c = 0; c < 3; ++c) *to++ = rgb[c];
     }
 }

@@ -10,6 +10,7 @@
 #include "montelux/film/film.h"
 #include "montelux/film/pixel_filter.h"
 #include "montelux/mc/random/sample_stream.h"
+#include "montelux/render/film_exposure.h"
 #include "montelux/render/layer_sampler.h"
 #include "montelux/render/sample_record.h"
 #include "montelux/scene/render_settings.h"
@@ -20,6 +21,10 @@
 #include "montelux/transport/integrator.h"
 
 namespace montelux {
+
+// Size of a pixel's footprint on textures, in pixels: pbrt-v4's value from 64 samples per pixel on. The pixel filter
+// does the rest, and a sample must not depend on the number of others.
+inline constexpr float footprint_scale = 0.125f;
 
 // Everything that one sample needs, shared by all threads.
 class SampleContext {
@@ -47,7 +52,11 @@ class SampleContext {
 
     // All arguments must outlive the context. Throws Error as light_groups() does.
     SampleContext(const SceneDescription& description, const SamplerSettings& sampler, const SceneView& scene,
-                  const Camera& camera);
+                  const Camera& camera)
+        : SampleContext(description, sampler, scene, camera, description.integrator) {}
+    // With an integrator other than the description's.
+    SampleContext(const SceneDescription& description, const SamplerSettings& sampler, const SceneView& scene,
+                  const Camera& camera, const IntegratorSettings& integrator);
 
     // Each result is a pure function of its key (the tracer counts rays); `results` has the size of `keys`. The
     // numbers of the film's layers (FilmLayers::values() for each sample) are in the batch.
@@ -91,7 +100,6 @@ class SampleContext {
                        float clamp, std::span<float> values) const;
 
     const SamplerSettings& sampler_;
-    float max_component_value_;
     SceneView scene_;
     const Camera& camera_;
     bool moves_; // the scene; otherwise samples have no time
@@ -100,14 +108,12 @@ class SampleContext {
     Integrator integrator_;
     std::shared_ptr<const GuidingField> guide_;
     PixelFilterSampler filter_;
-    Sensor sensor_;
+    FilmExposure exposure_;
     Sensor albedo_sensor_;
     // Spectrum of the white light of albedos.
     const SpectrumTable& white_;
     std::optional<BucketLayout> buckets_; // of a spectral film
     float white_scale_;
-    std::optional<Vec3f> background_; // IntegratorSettings::background
-    bool signed_filter_;              // the pixel filter has negative lobes
 };
 
 struct SampleContext::Batch {

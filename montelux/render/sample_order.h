@@ -14,13 +14,16 @@ struct Slice {
     bool operator==(const Slice&) const = default;
 };
 
-// A replicate is a single sample of the independent sampler, and one randomisation of the point set of the
-// others; replicates are independent of one another. Slice k of n takes the replicates k, k + n, k + 2n, ...
+// A replicate is a single sample of the independent sampler, one randomisation of the point set of the
+// others, and a group of chains if samples are states of these; replicates are independent of one another. Slice k of n takes the replicates k, k + n, k + 2n, ...
 class SampleOrder {
   public:
     SampleOrder(const SamplerSettings& sampler, Slice slice)
-        : replicate_size_(sampler.kind == SamplerKind::independent ? 1 : points_per_replicate(sampler)),
-          samples_(sampler.spp), slice_(slice) {}
+        : replicate_size_(sampler.kind == SamplerKind::independent && !sampler.chains
+                              ? 1
+                              : points_per_replicate(sampler)),
+          samples_(sampler.chains ? sampler.spp / replicate_size_ * replicate_size_ : sampler.spp),
+          slice_(slice) {}
 
     std::uint32_t replicate_size() const { return replicate_size_; }
     // Sample index of the i-th sample that this slice takes.
@@ -29,7 +32,7 @@ class SampleOrder {
     }
     // Is every replicate complete after the first n samples?
     bool closed(std::uint64_t n) const { return n % replicate_size_ == 0; }
-    // Samples that this slice takes of spp; the last replicate may be shorter than the others.
+    // Samples that this slice takes of spp; the last replicate may be shorter than the others, but no group of chains.
     std::uint64_t share() const {
         const std::uint64_t whole = samples_ / replicate_size_, rest = samples_ % replicate_size_;
         const std::uint64_t mine = whole / slice_.count + (slice_.index < whole % slice_.count);

@@ -21,9 +21,12 @@ enum class IntegratorKind : std::uint8_t {
     path,          // from the camera (transport/path_integrator.h, volume_path_integrator.h)
     bidirectional, // from the camera and from lights, joined in all ways (transport/bidirectional_integrator.h)
     light_tracing, // from lights, joined to the camera; an oracle for the former
+    metropolis,    // Markov chains over the random numbers of paths from the camera (docs/metropolis.md)
 };
 // Whether paths start at lights, too.
-inline constexpr bool traces_light(IntegratorKind kind) { return kind != IntegratorKind::path; }
+inline constexpr bool traces_light(IntegratorKind kind) {
+    return kind == IntegratorKind::bidirectional || kind == IntegratorKind::light_tracing;
+}
 
 // How direct light is found (MISSION C5, C9). From `light` on, lights are sampled.
 enum class Strategy : std::uint8_t {
@@ -88,6 +91,8 @@ struct IntegratorSettings {
     // Linear sRGB of the picture where camera rays leave the scene unscattered, in place of the infinite lights there;
     // neither exposed nor clamped as light is. Empty: the lights are seen.
     std::optional<Vec3f> background{};
+    // Of metropolis: probability of a large step, in (0, 1]; 0: chosen by a pilot.
+    float large_step_probability = 0;
 
     EnvironmentSettings environments() const {
         return {environment_sampling,

@@ -140,8 +140,10 @@ void Directives::finish_options() {
     camera.shutter_open = motion_time(camera.shutter_open);
     camera.shutter_close = motion_time(camera.shutter_close);
     if (integrator_) integrator_at_ = integrator_->at;
-    result_.integrator = read_integrator(plugin(integrator_, "volpath"), diagnostics_);
+    std::optional<std::uint32_t> samples;
+    result_.integrator = read_integrator(plugin(integrator_, "volpath"), diagnostics_, samples);
     result_.sampler = read_sampler(plugin(sampler_, "zsobol"), diagnostics_, seed_.value_or(0));
+    if (samples) result_.sampler.spp = *samples;
 }
 
 // Materials of a mix are made by a call from within.

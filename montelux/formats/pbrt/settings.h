@@ -1,6 +1,8 @@
 // Film, filter, camera, sampler and integrator of a pbrt scene file as Montelux's settings.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "montelux/formats/pbrt/files.h"
@@ -24,6 +26,8 @@ void read_camera(const Plugin& plugin, Files& files, Diagnostics& diagnostics, F
                  CameraSettings& settings);
 // `seed` applies unless the sampler has its own.
 SamplerSettings read_sampler(const Plugin& plugin, Diagnostics& diagnostics, std::uint64_t seed);
-IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostics);
+// `samples`: per pixel, in place of the sampler's, of an integrator that has a number of its own.
+IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostics,
+                                   std::optional<std::uint32_t>& samples);
 
 } // namespace montelux::pbrt

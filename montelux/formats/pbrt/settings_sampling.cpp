@@ -25,7 +25,7 @@ std::string_view substitute_of(std::string_view integrator) {
         return "it integrates test functions and no scene; the scene is rendered with 'path'";
     if (integrator == "simplevolpath")
         return "the scene is rendered with 'volpath', which computes the same picture with less noise";
-    // mlt, sppm
+    // sppm
     return "the scene is rendered with 'path', which computes the same picture; caustics of small lights are "
            "noisier";
 }
@@ -97,7 +97,8 @@ void read_own_settings(ParameterReader& r, IntegratorSettings& s) {
 
 } // namespace
 
-IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostics) {
+IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostics,
+                                   std::optional<std::uint32_t>& samples) {
     ParameterReader r(plugin.parameters, "integrator " + in_quotes(plugin.name), plugin.at, diagnostics);
     IntegratorSettings s;
     if (plugin.name == "ambientocclusion" || plugin.name == "ao") {
@@ -141,6 +142,18 @@ IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostic
         else if (r.boolean("regularize", false))
             diagnostics.warn(r.at("regularize"),
                              "'regularize' is ignored: light is joined with unchanged surfaces");
+    } else if (plugin.name == "mlt") {
+        s.method = IntegratorKind::metropolis;
+        samples = read_count(r, "mutationsperpixel", 100);
+        s.large_step_probability = r.number("largestepprobability", 0);
+        if (!(s.large_step_probability >= 0 && s.large_step_probability <= 1))
+            r.error("largestepprobability", "parameter 'largestepprobability' must be between 0 and 1");
+        s.regularize = r.boolean("regularize", false);
+        for (const char* name : {"chains", "bootstrapsamples", "sigma"})
+            if (r.ignored(name) != nullptr)
+                diagnostics.warn(r.at(name),
+                                 "parameter " + in_quotes(name) +
+                                     " is ignored: it is chosen for each scene, and changes the noise alone");
         read_own_settings(r, s);
         r.finish();
     } else if (plugin.name == "randomwalk") {

@@ -227,13 +227,19 @@ void SceneWriter::integrator() {
     const bool traces = traces_light(s.method);
     const bool by_strategy = !traces && (s.strategy == Strategy::uniform || s.strategy == Strategy::bsdf ||
                                          s.strategy == Strategy::light);
+    const bool by_chains = s.method == IntegratorKind::metropolis && !by_strategy;
     DirectiveText d(std::string("Integrator ") + (s.method == IntegratorKind::bidirectional ? "\"bdpt\""
                                                   : traces                                  ? "\"lightpath\""
                                                   : by_strategy && s.strategy == Strategy::uniform
                                                       ? "\"randomwalk\""
                                                   : by_strategy ? "\"simplepath\""
+                                                  : by_chains   ? "\"mlt\""
                                                                 : "\"volpath\""));
     d.integer("maxdepth", s.max_depth);
+    if (by_chains) {
+        d.integer("mutationsperpixel", static_cast<int>(description_.sampler.spp));
+        if (s.large_step_probability > 0) d.number("largestepprobability", s.large_step_probability);
+    }
     if (by_strategy && s.strategy != Strategy::uniform) {
         d.boolean("samplelights", s.strategy == Strategy::light);
         d.boolean("samplebsdf", true);
@@ -242,8 +248,13 @@ void SceneWriter::integrator() {
         if (!is_standard)
             warn("integrator", "pbrt has no setting for it; add " + text + " where the scene is rendered");
     };
+    option(s.method != IntegratorKind::metropolis || by_chains, "--integrator metropolis");
     if (traces) {
         option(s.light_sampling == standard.light_sampling, "--light-sampling");
+    } else if (by_chains) {
+        if (s.regularize) d.boolean("regularize", true);
+        option(s.light_sampling == standard.light_sampling, "--light-sampling");
+        option(s.strategy == Strategy::mis, "--strategy");
     } else if (!by_strategy) {
         if (s.regularize) d.boolean("regularize", true);
         if (s.light_sampling == LightSampling::uniform) d.string("lightsampler", "uniform");

@@ -20,10 +20,14 @@ class PhiloxStream {
                                                                 static_cast<std::uint32_t>(key >> 32)} {}
 
     // A stream of its own for a nested estimate (a random walk inside a layered surface, say), so that it
-    // takes one pair of numbers from its parent however long it runs.
+    // takes one pair of numbers from its parent however long it runs. A parent may tell such pairs from numbers
+    // that a sample varies with smoothly.
     template <typename Stream>
     static PhiloxStream split(Stream& parent) {
-        return of_pair(parent.next_2d());
+        if constexpr (requires { parent.next_key(); })
+            return of_pair(parent.next_key());
+        else
+            return of_pair(parent.next_2d());
     }
     // The same for a pair that was drawn already.
     static PhiloxStream of_pair(Vec2f u) {

@@ -20,6 +20,8 @@ struct SamplerSettings {
     std::uint32_t spp = 16;
     std::uint32_t replicates = 1; // independent randomisations that the samples of a pixel are split into
     std::uint32_t replicate_points = 0; // if not 0: points of each, however many replicates that makes
+    // Samples are states of Markov chains: whatever the kind, those of a replicate depend on one another.
+    bool chains = false;
 };
 
 // Points of one randomisation: spp / replicates, rounded up, and at least 1, unless they are

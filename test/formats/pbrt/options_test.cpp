@@ -170,6 +170,30 @@ TEST(PbrtOptions, IntegratorsThatTraceLight) {
         << warnings.messages()[0];
 }
 
+// Metropolis takes its samples per pixel from the integrator, as in pbrt.
+TEST(PbrtOptions, MetropolisIntegrator) {
+    Warnings warnings;
+    SceneDescription d = parse("Integrator \"mlt\" \"integer maxdepth\" 9 \"integer mutationsperpixel\" 40 "
+                               "\"float largestepprobability\" 0.2 \"integer chains\" 500 "
+                               "Sampler \"sobol\" \"integer pixelsamples\" 7 "
+                               "WorldBegin LightSource \"point\"",
+                               &warnings);
+    EXPECT_EQ(d.integrator.method, IntegratorKind::metropolis);
+    EXPECT_EQ(d.integrator.max_depth, 9);
+    EXPECT_EQ(d.integrator.large_step_probability, 0.2f);
+    EXPECT_EQ(d.sampler.spp, 40u);
+    ASSERT_EQ(warnings.messages().size(), 1u);
+    EXPECT_NE(warnings.messages()[0].find("'chains' is ignored"), std::string::npos);
+    d = parse("Integrator \"mlt\" WorldBegin LightSource \"point\"");
+    EXPECT_EQ(d.sampler.spp, 100u);
+    EXPECT_EQ(d.integrator.large_step_probability, 0);
+    EXPECT_NE(test::error_of("Integrator \"mlt\" \"float largestepprobability\" 1.5 WorldBegin")
+                  .find("between 0 and 1"),
+              std::string::npos);
+    d = parse("Integrator \"volpath\" WorldBegin LightSource \"point\"");
+    EXPECT_EQ(d.integrator.method, IntegratorKind::path);
+}
+
 // Everything that is read but has no effect gives a warning.
 TEST(PbrtOptions, IgnoredOptionsGiveAWarning) {
     Warnings warnings;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "montelux/mc/integrate/metropolis/chain_agreement.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/stats/moments.h"
 
@@ -109,9 +110,7 @@ double split_r_hat(std::span<const ChainTrace> chains, int k) {
         }
     within /= static_cast<double>(2 * chains.size());
     const double n = static_cast<double>(half) * static_cast<double>(chains[0].batch_length());
-    const double between = means.variance();
-    if (!(within > 0)) return between > 0 ? std::numeric_limits<double>::infinity() : 1;
-    return std::sqrt(((n - 1) / n * within + between) / within);
+    return r_hat_of(n, within, means.variance());
 }
 
 ChainSummary summarize(std::span<const ChainTrace> chains, int k) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "montelux/mc/integrate/metropolis/acceptance.h"
 #include "montelux/mc/integrate/metropolis/chain_trace.h"
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
@@ -149,9 +150,8 @@ ChainOutcome run_chain(const Density& log_density, const Propose& propose, const
         const std::optional<double> log_ratio = propose(numbers, x, y);
         double acceptance = 0;
         if (log_ratio) {
-            // Hastings 1970: accept with probability min(1, p(y) q(x|y) / (p(x) q(y|x))).
             const double proposed = density(y);
-            acceptance = proposed == nothing ? 0 : std::exp(std::min(0.0, proposed - current + *log_ratio));
+            acceptance = proposed == nothing ? 0 : acceptance_of_log_ratio(proposed - current + *log_ratio);
             const double u = numbers.next_double();
             if (u < acceptance) {
                 x.swap(y);

@@ -1,0 +1,200 @@
+#include "montelux/render/metropolis/chain_renderer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <utility>
+
+#include "montelux/mc/parallel/cpu_time.h"
+#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/render/tile_renderer.h"
+
+namespace montelux {
+namespace {
+
+constexpr int threads_per_group = 8;
+
+// Paths of at most one scattering event; features of the first surface are known from it on.
+IntegratorSettings direct_integrator(IntegratorSettings settings) {
+    settings.max_depth = std::min(settings.max_depth, 1);
+    return settings;
+}
+// Of as many rays as a group has samples; a group is a replicate.
+SamplerSettings direct_sampler(const SamplerSettings& settings, std::uint32_t group_samples) {
+    SamplerSettings s = settings;
+    s.seed = hash_key(settings.seed, 0x646972656374);
+    s.replicate_points = group_samples;
+    return s;
+}
+
+} // namespace
+
+ChainRenderer::ChainRenderer(const SceneDescription& description, const SamplerSettings& sampler,
+                             const SceneView& scene, const Camera& camera, const Accelerator& accelerator,
+                             SampleOrder order)
+    : description_(description), accelerator_(accelerator), order_(order),
+      separates_direct_light_(!std::isfinite(description.film.max_component_value)),
+      sampler_(description, scene, camera, separates_direct_light_), keys_(sampler.seed),
+      direct_sampler_(direct_sampler(sampler, order.replicate_size())),
+      direct_context_(description, direct_sampler_, scene, camera,
+                      direct_integrator(description.integrator)) {}
+
+template <typename Task>
+bool ChainRenderer::run_tasks(std::size_t count, const ChainWatch& watch, std::uint64_t paths,
+                              const Task& task) {
+    std::atomic<bool> abandoned{false};
+    parallel_for(static_cast<std::int64_t>(count), [&](std::int64_t i) {
+        if (abandoned || watch.abandon()) {
+            abandoned = true;
+            return;
+        }
+        const double begin = thread_cpu_seconds();
+        RayTracer tracer(accelerator_);
+        task(static_cast<std::size_t>(i), tracer);
+        const double seconds = thread_cpu_seconds() - begin;
+        std::uint64_t taken;
+        {
+            std::lock_guard lock(mutex_);
+            costs_.rays.merge(tracer.statistics);
+            costs_.cpu_seconds += seconds;
+            taken = paths_ += paths;
+        }
+        watch.tell(taken);
+        if (watch.abandon()) abandoned = true; // the task may have returned early
+    });
+    return !abandoned;
+}
+
+void ChainRenderer::take_direct_light(std::uint64_t group, int row, std::span<DirectLight> into,
+                                      RayTracer& tracer, BadSampleReport& bad) const {
+    const PixelBounds& crop = description_.film.crop;
+    const std::uint32_t rays = direct_sampler_.replicate_points;
+    constexpr int columns = 64; // pixels whose rays are traced together
+    std::vector<SampleContext::Key> keys;
+    std::vector<SampleContext::Result> results;
+    SampleContext::Batch batch;
+    for (int begin = crop.x0; begin < crop.x1; begin += columns) {
+        const int end = std::min(begin + columns, crop.x1);
+        for (std::uint32_t ray = 0; ray < rays; ++ray) {
+            keys.clear();
+            for (int x = begin; x < end; ++x) keys.push_back({x, crop.y0 + row, group * rays + ray});
+            results.resize(keys.size());
+            direct_context_.take(tracer, keys, batch, results);
+            for (std::size_t i = 0; i < keys.size(); ++i) {
+                const SampleContext::Result& r = results[i];
+                DirectLight& d = into[static_cast<std::size_t>(begin - crop.x0) + i];
+                if (r.bad) {
+                    bad.add({*r.bad, keys[i].x, keys[i].y, keys[i].index});
+                    continue;
+                }
+                d.radiance += Vec3d(r.film.radiance);
+                d.albedo += r.film.albedo;
+                d.normal += r.film.normal;
+                d.depth += r.film.depth;
+            }
+        }
+    }
+    for (DirectLight& d : into) {
+        const float scale = 1 / static_cast<float>(rays);
+        d.radiance = separates_direct_light_ ? d.radiance / static_cast<double>(rays) : Vec3d();
+        d.albedo *= scale;
+        d.normal *= scale;
+        d.depth *= scale;
+    }
+}
+
+bool ChainRenderer::take(std::uint64_t first, std::size_t count, const ChainWatch& watch) {
+    const PixelBounds& crop = description_.film.crop;
+    while (groups_.size() < count)
+        groups_.push_back(std::make_unique<ChainGroup>(sampler_, *plan_, keys_, crop));
+    direct_.resize(groups_.size());
+    bad_.assign(groups_.size(), {});
+    const std::uint32_t m = order_.replicate_size();
+    for (std::size_t g = 0; g < count; ++g) {
+        // Groups are counted over all slices of a render.
+        groups_[g]->begin(order_.index((first + g) * m) / m);
+        direct_[g].assign(pixel_count(crop), {});
+    }
+    const std::size_t starting = groups_[0]->starting_tasks(), walking = groups_[0]->walking_tasks();
+    const std::uint64_t of_start = plan_->size.starting_points / starting;
+    const std::uint64_t of_walk = plan_->size.chains * plan_->size.states;
+    if (!run_tasks(count * starting, watch, of_start, [&](std::size_t i, RayTracer& tracer) {
+            groups_[i / starting]->take_starting_points(i % starting, tracer);
+        }))
+        return false;
+    for (std::size_t g = 0; g < count; ++g) groups_[g]->choose_starts();
+    if (!run_tasks(count * walking, watch, of_walk, [&](std::size_t i, RayTracer& tracer) {
+            groups_[i / walking]->walk(i % walking, tracer, watch.abandon);
+        }))
+        return false;
+    const auto rows = static_cast<std::size_t>(crop.height());
+    const auto width = static_cast<std::size_t>(crop.width());
+    return run_tasks(count * rows, watch, 0, [&](std::size_t i, RayTracer& tracer) {
+        const std::size_t g = i / rows, row = i % rows;
+        BadSampleReport bad;
+        take_direct_light(order_.index((first + g) * m) / m, static_cast<int>(row),
+                          std::span(direct_[g]).subspan(row * width, width), tracer, bad);
+        if (bad.count() == 0) return;
+        std::lock_guard lock(mutex_);
+        bad_[g].merge(bad);
+    });
+}
+
+void ChainRenderer::add(RenderState& state, const ChainGroup& group,
+                        std::span<const DirectLight> direct) const {
+    const PixelBounds& crop = description_.film.crop;
+    const std::uint32_t m = order_.replicate_size();
+    ChainGroup::Tally tally = group.tally();
+    parallel_for(crop.height(), [&](std::int64_t row) {
+        const int y = crop.y0 + static_cast<int>(row);
+        for (int x = crop.x0; x < crop.x1; ++x) {
+            Pixel& pixel = state.film.pixel(x, y);
+            const std::size_t i = static_cast<std::size_t>(row) * static_cast<std::size_t>(crop.width()) +
+                                  static_cast<std::size_t>(x - crop.x0);
+            const DirectLight& d = direct[i];
+            pixel.add_features(d.albedo, d.normal, d.depth, m);
+            pixel.add_replicate(group.mean(x, y) + d.radiance, m);
+            if (tally.clamped > 0) pixel.add_clamped(static_cast<float>(tally.clamped * m));
+        }
+    });
+    ChainStatistics& s = state.report.chains;
+    s.merge(tally.statistics);
+    s.longest_step = static_cast<float>(plan_->small_step.longest());
+    s.large_step_probability = static_cast<float>(plan_->large_step_probability);
+    s.chains = plan_->size.all_chains();
+    s.states = plan_->size.states;
+    s.starting_points = plan_->size.starting_points;
+    state.report.bad.merge(tally.bad);
+    state.report.clamped_samples += tally.clamped_samples;
+    state.report.samples += std::uint64_t{m} * pixel_count(crop);
+}
+
+void ChainRenderer::run(RenderState& state, std::uint32_t target_samples, const ChainWatch& watch) {
+    if (!plan_) {
+        const double begin = thread_cpu_seconds();
+        plan_ = make_chain_plan(sampler_, accelerator_, description_, order_.replicate_size(), watch.abandon);
+        costs_.cpu_seconds += thread_cpu_seconds() - begin;
+        if (!plan_) return;
+    }
+    const std::uint64_t target = target_samples / order_.replicate_size();
+    const auto most = static_cast<std::size_t>(1 + (thread_count() - 1) / threads_per_group);
+    for (;;) {
+        const std::uint64_t done = state.film.pixels().front().replicates().count();
+        if (done >= target) return;
+        const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(most, target - done));
+        const bool complete = take(done, count, watch);
+        watch.add([&] {
+            for (std::size_t g = 0; g < count && complete; ++g) {
+                add(state, *groups_[g], direct_[g]);
+                state.report.bad.merge(bad_[g]);
+            }
+            const Costs costs = std::exchange(costs_, {});
+            state.report.rays.merge(costs.rays);
+            state.report.cpu_seconds += costs.cpu_seconds;
+        });
+        paths_ = 0;
+        if (!complete || watch.pause()) return;
+    }
+}
+
+} // namespace montelux
