@@ -379,8 +379,6 @@ class RenderLoop {
 
 } // namespace
 
-namespace {} // namespace
-
 Renderer::Renderer(const SceneDescription& description, const RenderTarget& target,
                    std::uint32_t replicate_points, std::shared_ptr<const PreparedScene> prepared)
     : description_(description), target_(target),

@@ -92,7 +92,7 @@ void SampleContext::finish_splats(const SplatList& splats, const SampledWaveleng
                                   std::vector<FilmSplat>& out) const {
     for (const Splat& splat : splats) {
         if (result.bad) return;
-        const FilmExposure::Exposed exposed = exposure_({.radiance = splat.radiance, .lambda = lambda}, 1);
+        const FilmExposure::Exposed exposed = exposure_({splat.radiance, lambda, {}, 0}, 1);
         result.bad = exposed.bad;
         // The filter's weight in a pixel may exceed 1.
         if (!result.bad && max_component(exposed.rgb) > static_cast<float>(SplatFilm::most * 0x1p-10))

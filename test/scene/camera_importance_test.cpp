@@ -11,7 +11,7 @@
 namespace montelux {
 namespace {
 
-constexpr int width = 60, height = 40;
+constexpr int film_width = 60, film_height = 40;
 
 struct CameraCase {
     std::string name;
@@ -25,13 +25,13 @@ std::vector<CameraCase> cameras() {
     const Transform mirrored = Transform::translate({0, 0, -7}) * Transform::scale({-3, 3, 3});
     const PerspectiveCamera lens{.fov = 50, .lens_radius = 0.3f, .focal_distance = 2.5f};
     const OrthographicCamera wide{.lens_radius = 0.2f, .focal_distance = 3};
-    return {{"pinhole", Camera({PerspectiveCamera{.fov = 70}, placed.inverse()}, width, height)},
-            {"stretched pinhole", Camera({PerspectiveCamera{.fov = 40}, stretched}, width, height)},
-            {"thin lens", Camera({lens, mirrored}, width, height)},
-            {"stretched lens", Camera({lens, stretched}, width, height)},
-            {"orthographic", Camera({OrthographicCamera{}, mirrored}, width, height)},
-            {"stretched orthographic", Camera({OrthographicCamera{}, stretched}, width, height)},
-            {"orthographic with a lens", Camera({wide, stretched}, width, height)}};
+    return {{"pinhole", Camera({PerspectiveCamera{.fov = 70}, placed.inverse()}, film_width, film_height)},
+            {"stretched pinhole", Camera({PerspectiveCamera{.fov = 40}, stretched}, film_width, film_height)},
+            {"thin lens", Camera({lens, mirrored}, film_width, film_height)},
+            {"stretched lens", Camera({lens, stretched}, film_width, film_height)},
+            {"orthographic", Camera({OrthographicCamera{}, mirrored}, film_width, film_height)},
+            {"stretched orthographic", Camera({OrthographicCamera{}, stretched}, film_width, film_height)},
+            {"orthographic with a lens", Camera({wide, stretched}, film_width, film_height)}};
 }
 
 const std::vector<Vec2f> lenses{{0.5f, 0.5f}, {0.1f, 0.7f}, {0.93f, 0.22f}};
@@ -84,7 +84,7 @@ TEST(CameraImportance, IntegratesToTheNumberOfPixels) {
     for (const CameraCase& c : cameras()) {
         if (c.name.find("ortho") != std::string::npos) continue;
         const Vec2f lens{0.3f, 0.8f};
-        const Point3f origin = c.camera.generate_ray({30, 20}, lens).o;
+        const Point3f ray_origin = c.camera.generate_ray({30, 20}, lens).o;
         double mass = 0;
         constexpr int rows = 800, columns = 1600;
         for (int i = 0; i < rows; ++i)
@@ -92,14 +92,14 @@ TEST(CameraImportance, IntegratesToTheNumberOfPixels) {
                 const double z = 1 - (i + 0.5) * 2 / rows, phi = (j + 0.5) * 2 * pi / columns;
                 const double r = std::sqrt(1 - z * z);
                 const Vec3f d(Vec3d{r * std::cos(phi), r * std::sin(phi), z});
-                const auto seen = c.camera.sample_wi(origin + d, lens, 0);
-                if (!seen || seen->film.x < 0 || seen->film.x >= width || seen->film.y < 0 ||
-                    seen->film.y >= height)
+                const auto seen = c.camera.sample_wi(ray_origin + d, lens, 0);
+                if (!seen || seen->film.x < 0 || seen->film.x >= film_width || seen->film.y < 0 ||
+                    seen->film.y >= film_height)
                     continue;
                 mass += double(c.camera.pdf_we(d, 0));
             }
         mass *= 4 * pi / (double(rows) * columns);
-        EXPECT_NEAR(mass / (width * height), 1, 0.01) << c.name;
+        EXPECT_NEAR(mass / (film_width * film_height), 1, 0.01) << c.name;
     }
 }
 
@@ -121,7 +121,7 @@ TEST(CameraImportance, MovesWithTheCamera) {
                     b = Transform::translate({2, 1, -4}) * Transform::rotate(30, {0, 1, 0});
     CameraSettings settings{PerspectiveCamera{.fov = 60}, a};
     settings.motion = Motion(a, b);
-    const Camera camera(settings, width, height);
+    const Camera camera(settings, film_width, film_height);
     for (const float time : {0.0f, 0.4f, 1.0f}) {
         const Ray ray = camera.generate_ray({12, 31}, {0.5f, 0.5f}, time);
         const auto back = camera.sample_wi(ray.o + 3 * ray.d, {0.5f, 0.5f}, time);
