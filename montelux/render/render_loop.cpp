@@ -1,0 +1,383 @@
+#include "montelux/render/render_loop.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "montelux/mc/math/error.h"
+#include "montelux/render/guide_training.h"
+#include "montelux/render/live_film.h"
+#include "montelux/render/round_executor.h"
+#include "montelux/render/sample_allocation.h"
+#include "montelux/render/splat_pass.h"
+#include "montelux/render/stopping_rule.h"
+#include "montelux/render/tile_renderer.h"
+
+namespace montelux {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+constexpr int tile_size = 16;
+
+// One run of Renderer::render.
+class RenderLoop {
+  public:
+    // `chains`: take the samples; null: tiles do.
+    RenderLoop(const Renderer& renderer, SampleContext& context, ChainRenderer* chains, RenderState& state,
+               const RenderControl& control)
+        : renderer_(renderer), context_(context), state_(state), control_(control),
+          order_(renderer.sampler(), renderer.target().slice),
+          tile_renderer_(context, renderer.accelerator(), order_), chains_(chains),
+          tiles_(tiles_of(state.film.bounds(), tile_size)), finished_(tiles_.size()),
+          seconds_before_(state.report.seconds), samples_before_(state.report.samples) {
+        if (!round_is_done()) round_ = 0; // in a restored state
+        context_.set_guide(state_.guide);
+        if (control.live != nullptr) control.live->open(state, tiles_, [this] { return report_now(); });
+    }
+    ~RenderLoop() { close_live(); }
+    RenderLoop(const RenderLoop&) = delete;
+    RenderLoop& operator=(const RenderLoop&) = delete;
+
+    // The loop over rounds.
+    void run() {
+        for (;;) {
+            if (!every_pixel_seen_)
+                every_pixel_seen_ = std::ranges::all_of(state_.film.pixels(), [this](const Pixel& p) {
+                    return state_.splats ? p.replicates().count() > 0 : p.samples() > 0;
+                });
+            train_guide_if_due();
+            if (const auto reason = stop_between_rounds()) return end(*reason);
+            if (round_is_done()) {
+                std::vector<std::uint32_t> target_samples =
+                    next_target_samples(state_, renderer_.sampler(), renderer_.target());
+                if (target_samples.empty()) return end(RenderStop::samples);
+                state_.target_samples = std::move(target_samples);
+                join_rounds();
+                std::ranges::fill(finished_, char{0});
+                ++round_;
+            }
+            take_samples();
+            if (state_.splats && round_is_done() && no_replicate_is_open()) close_pass();
+            {
+                std::lock_guard lock(mutex_);
+                state_.report.seconds = seconds();
+            }
+            if (cancelled() || (control_.executor != nullptr && control_.executor->failed()))
+                return end(all_taken() ? RenderStop::samples : RenderStop::cancelled);
+            if (checkpoint_is_due()) save_checkpoint();
+        }
+    }
+
+  private:
+    double seconds() const { return seconds_before_ + seconds_since(begin_); }
+    bool cancelled() const { return control_.cancel != nullptr && control_.cancel->requested(); }
+    bool checkpoint_is_due() const {
+        return control_.checkpoint && seconds_since(last_checkpoint_) >= control_.checkpoint_seconds;
+    }
+    bool out_of_time() const {
+        // A time limit ends the render only after one sample per pixel, or two groups of chains.
+        const bool may_end = chains_ != nullptr ? errors_are_known_ : every_pixel_seen_;
+        return renderer_.target().time > 0 && may_end && seconds() >= renderer_.target().time;
+    }
+    bool pause_is_due() const { return checkpoint_is_due() || out_of_time(); }
+    void pause_if_due() {
+        if (pause_is_due()) pause_ = true;
+    }
+    // With an executor, ends of rounds are expensive. If no decision depends on the error, one round takes
+    // all remaining samples after the first one; so does a pilot.
+    void join_rounds() {
+        const RenderTarget& target = renderer_.target();
+        if (control_.executor == nullptr || !every_pixel_seen_) return;
+        const std::uint64_t pilot = std::min(pilot_of(order_), order_.share());
+        if (target.adaptive && state_.target_samples.front() < pilot)
+            std::ranges::fill(state_.target_samples, static_cast<std::uint32_t>(pilot));
+        if (!target.adaptive && !(target.error > 0))
+            std::ranges::fill(state_.target_samples, static_cast<std::uint32_t>(order_.share()));
+    }
+    // Pixels of a restored film may lack samples of the current round, as after an interrupted loop.
+    bool round_is_done() const {
+        if (state_.target_samples.empty()) return true;
+        const std::span<const Pixel> pixels = state_.film.pixels();
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+            if (pixels[i].samples() < state_.target_samples[i]) return false;
+        return true;
+    }
+    bool all_taken() const {
+        return round_is_done() &&
+               next_target_samples(state_, renderer_.sampler(), renderer_.target()).empty();
+    }
+    bool no_replicate_is_open() const {
+        return std::ranges::all_of(state_.target_samples,
+                                   [&](std::uint32_t target) { return order_.closed(target); });
+    }
+
+    std::optional<RenderStop> stop_between_rounds() {
+        if (out_of_time()) return RenderStop::time;
+        if (state_.target_samples.empty() || !round_is_done() || !no_replicate_is_open()) return std::nullopt;
+        const FilmError error = state_.film.error();
+        estimate_samples(error, stopping_.error_for_target(state_.film, error));
+        report_progress(error);
+        if (stopping_.is_reached(state_.film, error)) return RenderStop::error;
+        return std::nullopt;
+    }
+    // An error falls with the root of the number of samples.
+    void estimate_samples(const FilmError& error, const std::optional<double>& reached) {
+        if (!reached || !std::isfinite(*reached)) return;
+        const double samples = static_cast<double>(state_.film.pixels().size()) * error.mean_samples *
+                               std::pow(*reached / renderer_.target().error, 2);
+        samples_for_error_ = static_cast<std::uint64_t>(std::min(samples, 1e18));
+    }
+    // After a first sample of every pixel: a render that is cancelled early has a picture.
+    void train_guide_if_due() {
+        const IntegratorSettings& settings = renderer_.description().integrator;
+        if (settings.guiding == Guiding::off || settings.method != IntegratorKind::path ||
+            state_.report.guide.decided || !every_pixel_seen_ || !round_is_done() || cancelled() ||
+            control_.executor != nullptr)
+            return;
+        const RenderTarget& target = renderer_.target();
+        const GuideTrainingPlan plan{.bounds = state_.film.bounds(),
+                                     .samples = order_.share(),
+                                     .error = target.quantile > 0 ? 0 : target.error,
+                                     .seconds = target.time,
+                                     .cancel = control_.cancel};
+        TrainedGuide trained = train_guide(context_, renderer_.accelerator(), settings, plan);
+        state_.guide = std::move(trained.guide);
+        std::lock_guard lock(mutex_);
+        state_.report.guide = trained.summary;
+        state_.report.cpu_seconds += trained.summary.cpu_seconds;
+        state_.report.seconds = seconds();
+    }
+
+    void take_samples() {
+        if (chains_ != nullptr) return take_groups();
+        if (control_.executor != nullptr) return let_executor_take_samples();
+        pause_ = false;
+        parallel_for(
+            static_cast<std::int64_t>(tiles_.size()),
+            [&](std::int64_t t) { render_tile(static_cast<std::size_t>(t)); }, control_.cancel);
+    }
+
+    // The splats of a pass become part of its replicates.
+    void close_pass() {
+        SplatFilm& splats = *state_.splats;
+        if (splats.overflows() > 0 || splats.bad() > 0)
+            throw Error("film",
+                        "the sums of light that is brought to a pixel are too large; lower the exposure");
+        const std::uint64_t samples = open_samples(state_.film);
+        if (samples == 0) return; // closed before the render was interrupted
+        LiveFilm* const live = control_.live;
+        parallel_for(static_cast<std::int64_t>(tiles_.size()), [&](std::int64_t i) {
+            const auto t = static_cast<std::size_t>(i);
+            const PixelBounds& tile = tiles_[t];
+            const auto held = live != nullptr ? live->hold(t) : std::unique_lock<std::mutex>();
+            add_splats(state_.film, splats, tile, samples);
+            state_.film.end_replicates(tile);
+        });
+        splats.clear();
+        for (std::size_t t = 0; t < tiles_.size(); ++t) report_if_finished(t);
+    }
+
+    void let_executor_take_samples() {
+        LiveFilm* const live = control_.live;
+        const RoundWatch watch{[&](bool something_done) {
+                                   const bool copy_wanted = live != nullptr && live->is_wanted();
+                                   return cancelled() || (something_done && (pause_is_due() || copy_wanted));
+                               },
+                               [this](std::uint64_t samples, const std::optional<FilmError>& error) {
+                                   samples_beyond_ = samples;
+                                   report_progress(error);
+                               },
+                               control_.cancel};
+        {
+            const auto held = live != nullptr ? live->hold_all() : std::unique_lock<std::timed_mutex>();
+            control_.executor->run(tile_renderer_, state_, watch);
+        }
+        samples_beyond_ = 0;
+        for (std::size_t t = 0; t < tiles_.size(); ++t) report_if_finished(t);
+        if (live != nullptr) live->wait_for_copies();
+    }
+
+    void take_groups() {
+        LiveFilm* const live = control_.live;
+        const auto tell = [this](std::uint64_t paths) {
+            std::lock_guard lock(mutex_);
+            samples_beyond_ = paths;
+            if (seconds_since(last_progress_) > 0.2) report_progress(std::nullopt);
+        };
+        const auto add = [&](const std::function<void()>& change) {
+            const auto held = live != nullptr ? live->hold_all() : std::unique_lock<std::timed_mutex>();
+            std::lock_guard lock(mutex_);
+            change();
+            samples_beyond_ = 0;
+        };
+        chains_->run(
+            state_, state_.target_samples.front(),
+            {[this] { return cancelled() || out_of_time(); }, [this] { return pause_is_due(); }, tell, add});
+        errors_are_known_ = state_.film.pixels().front().replicates().count() >= 2;
+        for (std::size_t t = 0; t < tiles_.size(); ++t) report_if_finished(t);
+    }
+
+    void render_tile(std::size_t index) {
+        // A tile may have its samples of this round before any are taken: then the round may end in this pause.
+        if (pause_) return state_.splats ? void() : report_if_finished(index);
+        const PixelBounds& film = state_.film.bounds();
+        const PixelBounds& tile = tiles_[index];
+        const auto stride = static_cast<std::size_t>(film.width());
+        const std::size_t first = static_cast<std::size_t>(tile.y0 - film.y0) * stride +
+                                  static_cast<std::size_t>(tile.x0 - film.x0);
+        TileTally tally;
+        LiveFilm* const live = control_.live;
+        auto stopped = [&] {
+            if (live != nullptr) live->between_samples(index);
+            return pause_ || cancelled();
+        };
+        {
+            const auto held = live != nullptr ? live->hold(index) : std::unique_lock<std::mutex>();
+            tile_renderer_.render(
+                {.bounds = tile,
+                 .pixels = &state_.film.pixels()[first],
+                 .stride = stride,
+                 .buckets = buckets_at(first),
+                 .bucket_count = state_.film.buckets_per_pixel(),
+                 .target_samples = &state_.target_samples[first],
+                 .target_stride = stride,
+                 .layer_sums = state_.film.layer_sums().data() + first * state_.film.layers().sums(),
+                 .splats = state_.splats ? &*state_.splats : nullptr},
+                tally, stopped, [&] {
+                    pause_if_due();
+                    return stopped();
+                });
+        }
+        if (!state_.splats) report_if_finished(index); // otherwise after the pass
+        std::lock_guard lock(mutex_);
+        tally.add_to(state_.report);
+        // Only after some samples: short intervals must not stop progress.
+        if (tally.samples > 0) pause_if_due();
+        if (seconds_since(last_progress_) > 0.2) report_progress(std::nullopt);
+    }
+
+    BucketMoments* buckets_at(std::size_t pixel) {
+        const std::size_t n = state_.film.buckets_per_pixel();
+        return n > 0 ? &state_.film.buckets()[pixel * n] : nullptr;
+    }
+
+    void report_if_finished(std::size_t index) {
+        if (!control_.tile || finished_[index] != 0) return;
+        const PixelBounds& film = state_.film.bounds();
+        const PixelBounds& tile = tiles_[index];
+        for (int y = tile.y0; y < tile.y1; ++y)
+            for (int x = tile.x0; x < tile.x1; ++x) {
+                const std::size_t i =
+                    static_cast<std::size_t>(y - film.y0) * static_cast<std::size_t>(film.width()) +
+                    static_cast<std::size_t>(x - film.x0);
+                if (state_.film.pixels()[i].samples() < state_.target_samples[i]) return;
+            }
+        finished_[index] = 1;
+        control_.tile({tile, round_, &state_.film});
+    }
+
+    RenderReport report_now() {
+        std::lock_guard lock(mutex_);
+        RenderReport report = state_.report;
+        report.seconds = seconds();
+        return report;
+    }
+    void close_live() {
+        if (control_.live != nullptr) control_.live->close();
+    }
+
+    void report_progress(const std::optional<FilmError>& error) {
+        if (!control_.progress) return;
+        last_progress_ = Clock::now();
+        if (error) progress_.error = error;
+        progress_.seconds = seconds();
+        progress_.samples_done = state_.report.samples + samples_beyond_;
+        RenderPace pace{.samples_done = progress_.samples_done,
+                        .samples_most = state_.film.pixels().size() * order_.share(),
+                        .samples_for_error = samples_for_error_,
+                        .seconds = progress_.seconds,
+                        .run_samples = progress_.samples_done - samples_before_,
+                        .run_seconds = seconds_since(begin_)};
+        progress_.samples_total =
+            std::max(progress_.samples_done,
+                     std::min(pace.samples_most, pace.samples_for_error.value_or(pace.samples_most)));
+        const bool complete = ended_ && state_.report.stop != RenderStop::cancelled;
+        progress_.forecast = complete ? RenderForecast{1, 0} : forecast(pace, renderer_.target());
+        progress_.ended = ended_;
+        control_.progress(progress_);
+    }
+
+    void save_checkpoint() {
+        control_.checkpoint(state_);
+        last_checkpoint_ = Clock::now();
+    }
+    void end(RenderStop reason) {
+        close_live();
+        state_.report.seconds = seconds();
+        state_.report.stop = reason;
+        if (state_.report.rays.timed > 0)
+            state_.report.ray_seconds = state_.report.rays.timed_seconds *
+                                        static_cast<double>(state_.report.rays.rays()) /
+                                        static_cast<double>(state_.report.rays.timed);
+        if (control_.checkpoint) save_checkpoint();
+        // The last replicate of what is left open is closed in a copy.
+        std::optional<Film> copy;
+        if (control_.keep_open && (reason == RenderStop::cancelled || reason == RenderStop::time))
+            copy = state_.film;
+        Film& film = copy ? *copy : state_.film;
+        // Truncated replicates count if they are at least half of one: each is unbiased.
+        if (state_.splats)
+            end_pass(film, *state_.splats, order_.replicate_size());
+        else
+            film.end_replicates(order_.replicate_size());
+        const FilmError error = film.error();
+        // The open replicates may have been the only ones missing.
+        if (reason != RenderStop::cancelled && stopping_.is_reached(film, error))
+            state_.report.stop = RenderStop::error;
+        ended_ = true;
+        report_progress(std::isfinite(error.relative) ? std::optional(error) : std::nullopt);
+    }
+
+    const Renderer& renderer_;
+    SampleContext& context_;
+    RenderState& state_;
+    const RenderControl& control_;
+    SampleOrder order_;
+    StoppingRule stopping_{renderer_.target(), order_.replicate_size()};
+    TileRenderer tile_renderer_;
+    ChainRenderer* chains_;
+    std::vector<PixelBounds> tiles_;
+    std::vector<char> finished_;              // of each tile, in this round
+    std::uint64_t round_ = ~std::uint64_t{0}; // incremented to 0 by the first round
+    // Of earlier runs of this render.
+    double seconds_before_;
+    std::uint64_t samples_before_;
+    Clock::time_point begin_ = Clock::now(), last_checkpoint_ = begin_, last_progress_ = begin_;
+    bool every_pixel_seen_ = false, ended_ = false;
+    bool errors_are_known_ = state_.film.pixels().front().replicates().count() >= 2;
+    std::atomic<bool> pause_{false};
+    std::mutex mutex_; // of the report and the progress
+    RenderProgress progress_;
+    std::uint64_t samples_beyond_ = 0;                 // samples beyond the report, counted by an executor
+    std::optional<std::uint64_t> samples_for_error_{}; // that the target error takes, by the last error
+};
+
+} // namespace
+
+void run_render_loop(const Renderer& renderer, SampleContext& context, ChainRenderer* chains,
+                     RenderState& state, const RenderControl& control) {
+    RenderLoop(renderer, context, chains, state, control).run();
+}
+
+} // namespace montelux
