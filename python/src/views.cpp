@@ -286,10 +286,11 @@ void bind_views(nb::module_& m) {
             s.max_depth = static_cast<int>(whole_number_of(v, 0, 1'000'000, what));
         },
         "Scattering events of a path at most.");
-    choice(integrator, "method", &IntegratorSettings::method, integrator_kinds,
-           "How paths are found: from the camera ('path'), from the camera and from lights "
-           "('bidirectional'), from lights alone ('light-tracing'), or by Markov chains that stay near bright "
-           "paths ('metropolis').");
+    choice(
+        integrator, "method", &IntegratorSettings::method, integrator_kinds,
+        "How paths are found: from the camera ('path'), from the camera and from lights "
+        "('bidirectional'), from lights alone ('light-tracing'), or by Markov chains that stay near bright "
+        "paths ('metropolis').");
     number(
         integrator, "large_step_probability", &IntegratorSettings::large_step_probability,
         [](double x) { return x >= 0 && x <= 1; }, "a number from 0 to 1",
@@ -305,6 +306,13 @@ void bind_views(nb::module_& m) {
     choice(integrator, "guiding", &IntegratorSettings::guiding, guidings,
            "Whether paths learn where light comes from, and follow it: 'auto' (where that pays), 'on' or "
            "'off'.");
+    attribute<IntegratorSettings>(
+        integrator, "guiding_memory", "int",
+        [](const IntegratorSettings& s, const auto&) { return nb::cast(s.guiding_memory); },
+        [](IntegratorSettings& s, nb::handle v, auto&, const std::string& what) {
+            s.guiding_memory = static_cast<std::size_t>(whole_number_of(v, 16, 1 << 20, what));
+        },
+        "MiB that learning may take.");
     choice(
         integrator, "environment_sampling", &IntegratorSettings::environment_sampling, environment_samplings,
         "How directions to environment maps are sampled: 'auto', 'tabulated', 'median-cut' or 'structured'.");

@@ -198,7 +198,7 @@ TEST(BidirectionalPicturesSlowTest, NoBiasOfOnePerCent) {
             const Agreement r = agreement_in(cases[i], i, 40);
             EXPECT_LT(r.sigmas, 7) << cases[i].name << ": " << 100 * r.bias << " %";
             EXPECT_LT(r.bias, 0.01) << cases[i].name;
-            EXPECT_LT(r.error, 0.004) << cases[i].name;
+            EXPECT_LT(r.error, 0.006) << cases[i].name;
         }
 }
 

@@ -39,9 +39,9 @@ TEST(MetropolisReferenceSlowTest, DoorThatIsAjar) {
     const ComparisonOptions options{.relative_epsilon = 0.01, .set_aside_percent = 1};
     const Comparison chains = compare_pictures(measured_picture("chains", by_chains), reference, options);
     const Comparison paths = compare_pictures(measured_picture("paths", by_paths), reference, options);
-    // Pixels of a group share its estimate of the mean light: the mean has a larger error than independent pixels.
+    // Pixels of a group share its estimate of the mean light: the means of pictures of several seeds scatter by 2.5 %.
     for (const ChannelComparison& c : chains.channels)
-        EXPECT_NEAR(c.relative_mean_difference, 0, 0.06) << c.name;
+        EXPECT_NEAR(c.relative_mean_difference, 0, 0.12) << c.name;
     EXPECT_NEAR(chains.pooled.mean, 0, 0.25);
     EXPECT_GT(chains.pooled.standard_deviation, 0.9);
     EXPECT_LT(chains.pooled.standard_deviation, 1.2);

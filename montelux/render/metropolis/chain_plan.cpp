@@ -136,10 +136,10 @@ Adaptation adapt(const PrimarySampler& sampler, const Accelerator& accelerator, 
 } // namespace
 
 std::optional<ChainPlan> make_chain_plan(const PrimarySampler& sampler, const Accelerator& accelerator,
-                                         const SceneDescription& description, std::uint32_t samples_per_pixel,
+                                         const SceneDescription& description, std::uint32_t spp,
                                          const std::function<bool()>& stop) {
     const PixelBounds& crop = description.film.crop;
-    const std::uint64_t paths = std::uint64_t{samples_per_pixel} * static_cast<std::uint64_t>(crop.width()) *
+    const std::uint64_t paths = std::uint64_t{spp} * static_cast<std::uint64_t>(crop.width()) *
                                 static_cast<std::uint64_t>(crop.height());
     const ChainKeys keys(description.sampler.seed);
     ChainPlan plan;

@@ -76,7 +76,7 @@ struct ChainPlan {
 // acceptance of one half; the share of large steps follows from how often these are accepted.
 // Empty if `stop`, which any thread asks now and then, returns true.
 std::optional<ChainPlan> make_chain_plan(const PrimarySampler& sampler, const Accelerator& accelerator,
-                                         const SceneDescription& description, std::uint32_t samples_per_pixel,
+                                         const SceneDescription& description, std::uint32_t spp,
                                          const std::function<bool()>& stop);
 
 } // namespace montelux
