@@ -29,7 +29,7 @@ expect 2 "--rank-timeout: '1' was given; a time of at least 2s" render ok.pbrt -
 for option in --sampler --integrator --strategy --heuristic --light-sampling --microfacet-scattering --shading-terminator; do
     expect 2 "$option: 'foo' was given; one of" render ok.pbrt $option foo
 done
-expect 2 "path, bidirectional, light-tracing is expected" render ok.pbrt --integrator bdpt
+expect 2 "path, bidirectional, light-tracing, metropolis is expected" render ok.pbrt --integrator bdpt
 expect 1 "leave out --adaptive or choose 'path'" render ok.pbrt --integrator bidirectional --adaptive on
 expect 1 "cannot be replayed" render ok.pbrt --integrator bidirectional --debug-sample 0,0,0
 expect 2 "mis, mis-bsdf, mis-light is expected" render ok.pbrt --strategy mis_bsdf
