@@ -41,7 +41,7 @@ def main() -> int:
     for name, options in METHODS.items():
         picture = folder / (name.replace(", ", "-").replace(" ", "-") + ".exr")
         render = subprocess.run(
-            [arguments.program, "render", arguments.scene, "--time", str(arguments.seconds), "--max-spp", "1000000",
+            [arguments.program, "render", arguments.scene, "--time", str(arguments.seconds), "--spp", "1000000",
              "--threads", str(arguments.threads), "--quiet", "-o", str(picture), *arguments.options.split(), *options],
             capture_output=True, text=True)
         if not picture.exists():

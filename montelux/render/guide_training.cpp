@@ -232,7 +232,10 @@ TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
         summary.cpu_seconds += thread_cpu_seconds() - learning;
         samples *= 2;
         // Twice at least: what the first guide learned without another one is noisy.
-        if (summary.rounds >= 3 && summary.samples + double(samples) > all_training * budget) break;
+        const bool memory_is_full = share < 0.5;
+        if (summary.rounds >= 3 &&
+            (memory_is_full || summary.samples + double(samples) > all_training * budget))
+            break;
     }
     trained.guide = context.guide();
     if (trained.guide) {

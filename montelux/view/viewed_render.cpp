@@ -211,12 +211,7 @@ ViewedRender::Next ViewedRender::wait(RenderSession& session, const RenderReport
             return Next::leave;
         }
         if (!ended && !paused_) return Next::go_on;
-        status_.state = ended ? ViewState::ended : ViewState::paused;
-        if (ended) {
-            status_.ended_by = report.stop;
-            paused_ = false;
-        }
-        if (!shown) { // all layers, for as long as nothing changes
+        if (!shown) { // all layers, for as long as nothing changes; whoever hears of the pause can see them
             lock.unlock();
             RenderSnapshot still = session.picture();
             const std::shared_ptr<LivePicture> picture = this->picture();
@@ -225,6 +220,15 @@ ViewedRender::Next ViewedRender::wait(RenderSession& session, const RenderReport
             still_ = std::move(still);
             shown = true;
             ++status_.version;
+            continue;
+        }
+        if (const ViewState state = ended ? ViewState::ended : ViewState::paused; status_.state != state) {
+            status_.state = state;
+            ++status_.version;
+        }
+        if (ended) {
+            status_.ended_by = report.stop;
+            paused_ = false;
         }
         changed_.wait_for(lock, 100ms);
     }

@@ -37,9 +37,10 @@ std::vector<PluginCoverage> make_coverage() {
          plugin("paddedsobol"), plugin("zsobol"), plugin("pmj02bn", otherwise, "read as 'zsobol'")});
     add("Integrator",
         {plugin("path"), plugin("volpath"), plugin("simplepath"), plugin("randomwalk"),
-         plugin("simplevolpath", otherwise, by_path), plugin("bdpt"), plugin("mlt", Support::full, "over unidirectional paths"),
-         plugin("sppm", otherwise, by_path), plugin("lightpath"), plugin("ambientocclusion"), plugin("ao"),
-         plugin("function", otherwise, by_path)});
+         plugin("simplevolpath", otherwise, by_path), plugin("bdpt"),
+         plugin("mlt", Support::full, "over unidirectional paths"), plugin("sppm", otherwise, by_path),
+         plugin("lightpath", otherwise, "without what mirrors and smooth glass show the camera straight"),
+         plugin("ambientocclusion"), plugin("ao"), plugin("function", otherwise, by_path)});
     add("Accelerator", {plugin("bvh", otherwise, own_tracer), plugin("kdtree", otherwise, own_tracer)});
     add("ColorSpace", {plugin("srgb"), plugin("dci-p3"), plugin("rec2020"), plugin("aces2065-1")});
     add("Shape", {plugin("sphere"), plugin("disk"), plugin("cylinder"), plugin("bilinearmesh"),

@@ -141,9 +141,9 @@ TEST(PbrtOptions, SensorsBucketsAndOcclusion) {
     EXPECT_EQ(test::error_of("Integrator \"ao\" \"float maxdistance\" 0 WorldBegin"),
               "scene:1:17: parameter 'maxdistance' must be positive");
     warnings = {};
-    parse("Integrator \"mlt\"" + end, &warnings);
+    parse("Integrator \"sppm\"" + end, &warnings);
     ASSERT_EQ(warnings.messages().size(), 1u);
-    EXPECT_NE(warnings.messages()[0].find("integrator 'mlt': the scene is rendered with 'path'"),
+    EXPECT_NE(warnings.messages()[0].find("integrator 'sppm': the scene is rendered with 'path'"),
               std::string::npos);
 }
 
