@@ -87,7 +87,8 @@ void QuadtreeDensity::save(ByteWriter& out) const {
 QuadtreeDensity QuadtreeDensity::load(ByteReader& in) {
     QuadtreeDensity density;
     const auto count = in.get<std::uint64_t>();
-    if (count > 0x10000) throw Error("density", "the saved density has more nodes than there can be");
+    if (count > 0x10000 || count > in.remaining() / sizeof(Node))
+        throw Error("density", "the saved density has more nodes than there can be");
     density.nodes_.resize(count);
     in.get_all(std::span<Node>(density.nodes_));
     for (std::size_t n = 0; n < count; ++n) {

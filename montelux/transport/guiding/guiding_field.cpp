@@ -34,15 +34,14 @@ GuidingField GuidingField::load(ByteReader& in) {
     const auto damaged = [](bool is) {
         if (is) throw Error("guiding", "the saved guide is damaged");
     };
-    constexpr std::uint64_t most = 1u << 28;
     for (std::vector<Node>& nodes : field.trees_) {
         const auto count = in.get<std::uint64_t>();
-        damaged(count > most);
+        damaged(count > in.remaining() / sizeof(Node));
         nodes.resize(count);
         in.get_all(std::span<Node>(nodes));
     }
     const auto regions = in.get<std::uint64_t>();
-    damaged(regions > most);
+    damaged(regions > in.remaining());
     for (std::uint64_t i = 0; i < regions; ++i) {
         GuidingRegion& region = field.regions_.emplace_back();
         region.directions = QuadtreeDensity::load(in);
@@ -58,10 +57,12 @@ GuidingField GuidingField::load(ByteReader& in) {
                                        node.high >= nodes.size())));
         }
     field.bounds_ = in.get<PixelBounds>();
+    for (const int edge : {field.bounds_.x0, field.bounds_.y0, field.bounds_.x1, field.bounds_.y1})
+        damaged(edge < 0 || edge > 1 << 24);
     const auto pixels = in.get<std::uint64_t>();
     const std::uint64_t held = std::uint64_t(std::max(field.bounds_.width(), 0)) *
                                std::uint64_t(std::max(field.bounds_.height(), 0));
-    damaged(pixels != 0 && pixels != held);
+    damaged((pixels != 0 && pixels != held) || pixels > in.remaining() / sizeof(float));
     field.expected_.resize(pixels);
     in.get_all(std::span<float>(field.expected_));
     return field;
