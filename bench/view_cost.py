@@ -3,8 +3,8 @@
 
 view_cost.py PROGRAM SCENE [--rounds 6] [--ways plain,served,watched,attacked] [--connections 10000] [-- RENDER OPTIONS]
 
-Each round renders the scene once in each way, on one thread: `plain` without a page, `served` with one that nobody
-opens, `watched` with one that shows the layers mean and error, `attacked` with attacks until the render has ended
+Each round renders the scene once in each way, on one thread: `plain` without a page, `served` with one that no
+browser opens, `watched` with one that shows the layers mean and error, `attacked` with attacks until the render has ended
 (`hostile` of test/app/view_client.py). The program has one processor, so what its page takes is what the render loses;
 pages and attackers have the others. Printed are medians, over the rounds, of the ratio to the first way of the same
 round:

@@ -226,10 +226,10 @@ TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
             break;
         }
         records_per_sample = static_cast<double>(round.record_count()) / (share * double(pixels) * samples);
-        const double learning = thread_cpu_seconds();
+        const double learning = process_cpu_seconds(); // all threads learn
         context.set_guide(std::make_shared<const GuidingField>(
             GuidingLearner::learn(round.records, learner, plan.bounds, std::move(expected))));
-        summary.cpu_seconds += thread_cpu_seconds() - learning;
+        summary.cpu_seconds += process_cpu_seconds() - learning;
         samples *= 2;
         // Twice at least: what the first guide learned without another one is noisy.
         const bool memory_is_full = share < 0.5;

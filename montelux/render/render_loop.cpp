@@ -141,9 +141,8 @@ class RenderLoop {
     // After a first sample of every pixel: a render that is cancelled early has a picture.
     void train_guide_if_due() {
         const IntegratorSettings& settings = renderer_.description().integrator;
-        if (settings.guiding == Guiding::off || settings.method != IntegratorKind::path ||
-            state_.report.guide.decided || !every_pixel_seen_ || !round_is_done() || cancelled() ||
-            control_.executor != nullptr)
+        if (settings.guiding == Guiding::off || state_.report.guide.decided || !every_pixel_seen_ ||
+            !round_is_done() || cancelled() || control_.executor != nullptr)
             return;
         const RenderTarget& target = renderer_.target();
         const GuideTrainingPlan plan{.bounds = state_.film.bounds(),

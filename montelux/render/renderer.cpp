@@ -49,11 +49,10 @@ void Renderer::serve(const std::function<void(const TileRenderer&)>& work) const
 void Renderer::render(RenderState& state, const RenderControl& control) const {
     if (control.executor != nullptr) check_sharing(description_);
     SampleContext context(description_, sampler_, scene(), camera_);
-    if (description_.integrator.guiding == Guiding::on &&
-        (!context.can_be_guided() || description_.integrator.method != IntegratorKind::path))
+    if (description_.integrator.guiding == Guiding::on && !context.can_be_guided())
         throw Error("guiding",
-                    "only the path integrator can be guided, and only between surfaces: leave guiding to "
-                    "'auto' in scenes with media and for other integrators, or turn it off");
+                    "only the path integrator can be guided, between surfaces and by a strategy other than "
+                    "'uniform': leave guiding to 'auto' elsewhere, or turn it off");
     if (context.makes_splats() && !state.splats) state.splats.emplace(state.film.bounds());
     if (state.film.layers().channels() != context.layers().channels())
         throw Error("film", "its layers are not those of the scene's film");

@@ -30,7 +30,10 @@ SampleContext::SampleContext(const SceneDescription& description, const SamplerS
       normals_in_camera_space_(description.film.layers.in_camera_space), layers_(description, scene, camera),
       integrator_(make_integrator(description, integrator, scene, camera)), filter_(description.film.filter),
       exposure_(description), white_(RgbColorSpace::srgb().illuminant()),
-      white_scale_(static_cast<float>(1 / integrate_luminance(white_))) {
+      white_scale_(static_cast<float>(1 / integrate_luminance(white_))),
+      can_be_guided_(std::holds_alternative<PathIntegrator>(integrator_) &&
+                     description.integrator.method == IntegratorKind::path &&
+                     integrator.strategy != Strategy::uniform) {
     if (description.film.spectral) buckets_.emplace(*description.film.spectral);
 }
 
@@ -119,16 +122,18 @@ void SampleContext::set_guide(std::shared_ptr<const GuidingField> guide) {
     if (auto* path = std::get_if<PathIntegrator>(&integrator_)) path->set_guide(guide_.get());
 }
 
-void SampleContext::trace_for_guide(RayTracer& tracer, std::span<const Key> keys, Batch& batch) const {
+void SampleContext::begin(std::span<const Key> keys, Batch& batch) const {
     batch.points.resize(keys.size());
     batch.paths.resize(keys.size());
-    batch.traces.resize(keys.size());
     batch.starts.clear();
+    batch.starts.reserve(keys.size());
     for (std::size_t i = 0; i < keys.size(); ++i) {
-        batch.starts.push_back(begin(keys[i], batch.points[i]));
-        batch.traces[i].clear();
-        batch.starts[i].camera.trace = &batch.traces[i];
+        const auto beginning = [&] { return begin(keys[i], batch.points[i]); };
+        batch.starts.emplace_back(InPlace(beginning));
     }
+}
+
+void SampleContext::trace(RayTracer& tracer, Batch& batch) const {
     std::visit(
         [&](const auto& integrator) {
             using I = std::decay_t<decltype(integrator)>;
@@ -138,16 +143,19 @@ void SampleContext::trace_for_guide(RayTracer& tracer, std::span<const Key> keys
         integrator_);
 }
 
+void SampleContext::trace_for_guide(RayTracer& tracer, std::span<const Key> keys, Batch& batch) const {
+    begin(keys, batch);
+    batch.traces.resize(keys.size());
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        batch.traces[i].clear();
+        batch.starts[i].camera.trace = &batch.traces[i];
+    }
+    trace(tracer, batch);
+}
+
 void SampleContext::take(RayTracer& tracer, std::span<const Key> keys, Batch& batch,
                          std::span<Result> results) const {
-    batch.points.resize(keys.size());
-    batch.paths.resize(keys.size());
-    batch.starts.clear();
-    batch.starts.reserve(keys.size());
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-        const auto beginning = [&] { return begin(keys[i], batch.points[i]); };
-        batch.starts.emplace_back(InPlace(beginning));
-    }
+    begin(keys, batch);
     if (layers_.wants_extras()) [[unlikely]] {
         const std::size_t parts = layers().parts();
         batch.parts.assign(keys.size() * parts, SampledSpectrum());
@@ -164,13 +172,7 @@ void SampleContext::take(RayTracer& tracer, std::span<const Key> keys, Batch& ba
             batch.starts[i].camera.splats = &batch.splats[i];
         }
     }
-    std::visit(
-        [&](const auto& integrator) {
-            using I = std::decay_t<decltype(integrator)>;
-            integrator.estimate(scene_, tracer, std::span(batch.starts), batch.integrator.of<I>(),
-                                std::span(batch.paths));
-        },
-        integrator_);
+    trace(tracer, batch);
     if (buckets_) batch.spectral.assign(keys.size(), {});
     for (std::size_t i = 0; i < keys.size(); ++i)
         results[i] = finish(batch.paths[i], batch.starts[i].camera.lambda, batch.points[i],

@@ -69,8 +69,8 @@ class SampleContext {
     // From now on paths follow the guide; null: none does. Not while samples are taken.
     void set_guide(std::shared_ptr<const GuidingField> guide);
     const std::shared_ptr<const GuidingField>& guide() const { return guide_; }
-    // Whether paths can follow a guide: those of PathIntegrator.
-    bool can_be_guided() const { return std::holds_alternative<PathIntegrator>(integrator_); }
+    // Whether paths can follow a guide: those of PathIntegrator whose directions are drawn from BSDFs.
+    bool can_be_guided() const { return can_be_guided_; }
     // Samples that a guide learns from and the film does not get: the radiance of each (mean over the wavelengths; 0 if
     // it is bad), and the records of the paths that keep(i) wants, appended.
     template <typename Keep>
@@ -88,6 +88,9 @@ class SampleContext {
         float time = 0;   // of motions
         float weight = 1; // of the camera's ray
     };
+    void begin(std::span<const Key> keys, Batch& batch) const;
+    // The paths that have begun.
+    void trace(RayTracer& tracer, Batch& batch) const;
     void trace_for_guide(RayTracer& tracer, std::span<const Key> keys, Batch& batch) const;
     PathStart<SampleStream> begin(const Key& key, FilmPoint& point) const;
     Result finish(const FilmContribution& path, const SampledWavelengths& lambda, const FilmPoint& point,
@@ -114,6 +117,7 @@ class SampleContext {
     const SpectrumTable& white_;
     std::optional<BucketLayout> buckets_; // of a spectral film
     float white_scale_;
+    bool can_be_guided_;
 };
 
 struct SampleContext::Batch {

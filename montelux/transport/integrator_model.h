@@ -22,7 +22,7 @@ struct CameraSample {
     Ray ray;
     SampledWavelengths lambda;
     SampleExtras* extras = nullptr; // null: not wanted
-    GuidingTrace* trace = nullptr;  // null: nobody learns from the path
+    GuidingTrace* trace = nullptr;  // null: no guide learns from the path
     float expected = 0;             // GuidingField::expected
     SplatList* splats = nullptr;    // gets those of the sample; null: not wanted
 };

@@ -21,7 +21,7 @@ struct PathState {
     FirstHit first;
     float transparency = 0;         // as in FilmContribution
     SampleExtras* extras = nullptr; // null: not wanted
-    GuidingTrace* trace = nullptr;  // null: nobody learns from the path
+    GuidingTrace* trace = nullptr;  // null: no guide learns from the path
     float expected = 0;             // GuidingField::expected
 
     PathState(const CameraSample& camera)

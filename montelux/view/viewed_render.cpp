@@ -211,7 +211,7 @@ ViewedRender::Next ViewedRender::wait(RenderSession& session, const RenderReport
             return Next::leave;
         }
         if (!ended && !paused_) return Next::go_on;
-        if (!shown) { // all layers, for as long as nothing changes; whoever hears of the pause can see them
+        if (!shown) { // all layers, before the state changes: a client that reads the new state finds them
             lock.unlock();
             RenderSnapshot still = session.picture();
             const std::shared_ptr<LivePicture> picture = this->picture();

@@ -193,12 +193,15 @@ TEST(BidirectionalPictures, GlassWithDispersion) { expect_agreement_of(glass());
 
 // The same with so many samples that a bias of 1 % would show.
 TEST(BidirectionalPicturesSlowTest, NoBiasOfOnePerCent) {
-    for (const auto& cases : {lights_of_all_kinds(), rooms(), surfaces_and_cameras(), glass()})
+    // Caustics of glass are noisier, and take more samples for the same precision.
+    const std::pair<std::vector<AgreementCase>, std::uint32_t> sets[] = {
+        {lights_of_all_kinds(), 40}, {rooms(), 40}, {surfaces_and_cameras(), 40}, {glass(), 80}};
+    for (const auto& [cases, more] : sets)
         for (std::size_t i = 0; i < cases.size(); ++i) {
-            const Agreement r = agreement_in(cases[i], i, 40);
+            const Agreement r = agreement_in(cases[i], i, more);
             EXPECT_LT(r.sigmas, 7) << cases[i].name << ": " << 100 * r.bias << " %";
             EXPECT_LT(r.bias, 0.01) << cases[i].name;
-            EXPECT_LT(r.error, 0.006) << cases[i].name;
+            EXPECT_LT(r.error, 0.004) << cases[i].name;
         }
 }
 

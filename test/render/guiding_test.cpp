@@ -8,6 +8,7 @@
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/stats/z_test.h"
 #include "montelux/render/checkpoint.h"
+#include "montelux/render/guide_training.h"
 
 namespace montelux::testing {
 namespace {
@@ -113,7 +114,6 @@ TEST(Guiding, AnyNumberOfThreads) {
             ASSERT_TRUE(same_pixel(states[0].film.pixels()[i], states[s].film.pixels()[i]));
 }
 
-// In the training too: then it begins anew.
 TEST(Guiding, InterruptedRendersEndWithTheSameBits) {
     TemporaryFolder folder;
     const std::filesystem::path path = folder / "guided.state";
@@ -144,6 +144,25 @@ TEST(Guiding, InterruptedRendersEndWithTheSameBits) {
     }
     b.description.integrator.guiding = Guiding::off;
     EXPECT_THROW(load_checkpoint(path, b.description, {}), Error);
+}
+
+// A training that is cancelled leaves no guide and no decision: the render that goes on trains anew.
+TEST(Guiding, CancelledTrainingsDecideNothing) {
+    SceneBuilder b = hidden_lamp(20);
+    b.description.integrator.guiding = Guiding::on;
+    const Renderer renderer(b.description);
+    SampleContext context(b.description, renderer.sampler(), renderer.scene(), renderer.camera());
+    CancelFlag cancel;
+    const GuideTrainingPlan plan{.bounds = b.description.film.crop, .samples = 64, .cancel = &cancel};
+    const IntegratorSettings& settings = b.description.integrator;
+    EXPECT_TRUE(train_guide(context, renderer.accelerator(), settings, plan).summary.decided);
+    EXPECT_NE(context.guide(), nullptr);
+    context.set_guide(nullptr);
+    cancel.request();
+    const TrainedGuide trained = train_guide(context, renderer.accelerator(), settings, plan);
+    EXPECT_FALSE(trained.summary.decided);
+    EXPECT_EQ(trained.guide, nullptr);
+    EXPECT_EQ(context.guide(), nullptr);
 }
 
 // An evenly lit floor leaves nothing to learn: the picture is that of a render that never tried.
@@ -183,6 +202,9 @@ TEST(Guiding, WhatCannotBeGuidedSaysSo) {
     b.description.integrator.guiding = Guiding::automatic;
     EXPECT_EQ(render_guided(b.description).guide, nullptr);
     b.description.integrator.occlusion.reset();
+    b.description.integrator.guiding = Guiding::on;
+    b.description.integrator.strategy = Strategy::uniform;
+    EXPECT_THROW(render_guided(b.description), Error);
     EXPECT_THROW(Renderer(b.description).replay(1, 1, 0), Error);
 }
 

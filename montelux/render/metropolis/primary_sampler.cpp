@@ -87,21 +87,7 @@ void PrimarySampler::evaluate(RayTracer& tracer, std::span<PrimarySamples* const
 }
 
 void PrimarySampler::splat(SplatFilm& film, const PrimarySample& sample, double weight) const {
-    const Vec2f radius = filter_.radius();
-    // Pixels whose centre is within the radius; the filter is 0 at those beyond.
-    const auto first = [](float at, float r, int begin) {
-        return std::max(begin, static_cast<int>(std::floor(at - 0.5f - r)));
-    };
-    const auto last = [](float at, float r, int end) {
-        return std::min(end - 1, static_cast<int>(std::ceil(at - 0.5f + r)));
-    };
-    const int x1 = last(sample.film.x, radius.x, crop_.x1), y1 = last(sample.film.y, radius.y, crop_.y1);
-    for (int y = first(sample.film.y, radius.y, crop_.y0); y <= y1; ++y)
-        for (int x = first(sample.film.x, radius.x, crop_.x0); x <= x1; ++x) {
-            const float filter = filter_.normalized({sample.film.x - (static_cast<float>(x) + 0.5f),
-                                                     sample.film.y - (static_cast<float>(y) + 0.5f)});
-            if (filter != 0) film.add(x, y, Vec3d(sample.rgb) * (weight * double(filter)));
-        }
+    film.add_filtered(filter_, sample.film, Vec3d(sample.rgb) * weight);
 }
 
 Vec2<int> PrimarySampler::pixel_of(Point2f film) const {
