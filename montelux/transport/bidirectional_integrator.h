@@ -7,6 +7,7 @@
 #include "montelux/scene/film/film_settings.h"
 #include "montelux/scene/render_settings.h"
 #include "montelux/transport/integrator_model.h"
+#include "montelux/transport/light_end.h"
 #include "montelux/transport/splat.h"
 #include "montelux/transport/strategy_weight.h"
 #include "montelux/transport/subpath.h"

@@ -45,30 +45,10 @@ class BidirectionalSample {
   private:
     using Vertices = std::vector<SubpathVertex>;
 
-    // A surface that a ray of a subpath hits, up to its BSDF.
-    SubpathVertex& add_vertex(Vertices& path, const Ray& ray, const Hit& hit, SampledSpectrum throughput) {
-        SubpathVertex& v = path.emplace_back();
-        const Index material = scene_.shapes[hit.shape].material;
-        v.s = surface_point(scene_, ray, hit,
-                            scene_.is_textured(material) || scene_.frame_follows_tangents(material));
-        v.throughput = throughput;
-        v.w = ray.d;
-        v.distance2 = hit.t * hit.t;
-        return v;
-    }
-    // Returns false where nothing scatters.
-    bool make_scattering(SubpathVertex& v, SampledWavelengths& lambda) {
-        const Index material = v.s.shape->material;
-        const TextureContext context =
-            scene_.is_textured(material)
-                ? texture_context(*integrator_.camera_, integrator_.footprint_scale_, v.s)
-                : TextureContext();
-        v.surface = make_bsdf(scene_, v.s, -v.w, context, lambda);
-        v.lambda = lambda;
-        v.wo = v.surface.frame.to_local(-v.w);
-        v.connectible =
-            v.wo.z != 0 && !std::visit([](const auto& b) { return b.is_specular(); }, v.surface.bsdf);
-        return v.wo.z != 0;
+    // Of v, whose ray has just hit; false where nothing scatters.
+    bool make_scattering(SubpathVertex& v, SampledWavelengths& lambda) const {
+        return montelux::make_scattering(scene_, *integrator_.camera_, integrator_.footprint_scale_, v,
+                                         lambda);
     }
 
     // Goes on from the last vertex of a subpath. Empty if that ends there; otherwise the density of the ray's direction,
@@ -124,7 +104,7 @@ class BidirectionalSample {
             Hit hit;
             if (!tracer_.intersect(ray, hit)) return leave_scene(ray, throughput, lambda, k, pdf);
             if (k == 1 && camera_.extras != nullptr) camera_.extras->meet(ray, hit);
-            SubpathVertex& v = add_vertex(memory_.camera, ray, hit, throughput);
+            SubpathVertex& v = add_vertex(memory_.camera, scene_, ray, hit, throughput);
             v.forward = k == 1
                             ? integrator_.camera_->density(ray.d, hit.t, time_) * std::abs(dot(v.s.ng, ray.d))
                             : v.per_area(pdf, v.w, v.distance2);
@@ -189,34 +169,19 @@ class BidirectionalSample {
         for (std::size_t j = 1; j <= max_depth; ++j) {
             Hit hit;
             if (!tracer_.intersect(ray, hit)) return;
-            SubpathVertex& v = add_vertex(memory_.light, ray, hit, throughput);
+            SubpathVertex& v = add_vertex(memory_.light, scene_, ray, hit, throughput);
             v.forward =
                 j == 1 ? end_.edge_density(v.s.ng, v.w, v.distance2) : v.per_area(pdf, v.w, v.distance2);
             if (!make_scattering(v, lambda)) return;
-            if (j == 1) end_next_event_ = next_event_density(end_, v.reference(v.wo), v.w, v.distance2);
+            if (j == 1)
+                end_next_event_ =
+                    next_event_density(scene_, time_, end_, v.reference(v.wo), v.w, v.distance2);
             if (j == max_depth) return;
             const auto direction =
                 scatter(memory_.light, TransportMode::importance, ray, throughput, ignored);
             if (!direction || !survives(throughput, max_value(throughput) / all, j)) return;
             pdf = *direction;
         }
-    }
-
-    // Density of next-event estimation finding the end from a point, to which its light comes along w.
-    float next_event_density(LightEnd& end, const ReferencePoint& from, Vec3f w, float distance2) const {
-        const float choice = scene_.light_sampler->probability(from, end.light, end.hit.part);
-        if (end.is_delta()) return choice;
-        end.hit.wi = -w;
-        return end.of_light(choice * pdf_li({scene_, end.light, time_}, from, end.hit), w, distance2);
-    }
-    // A light that the camera's side found; `w`: from it to the next vertex.
-    LightEnd end_at(Index light, const LightHit& hit, Vec3f w) const {
-        LightEnd end{.light = light, .kind = kind_of(scene_.lights[light]), .hit = hit};
-        const float choice = scene_.emitting_lights->probability({}, light, hit.part);
-        const EmissionPdf pdf = pdf_le({scene_, light, time_}, hit, w);
-        end.emission = choice * (end.is_delta() ? 1 : end.at_infinity() ? pdf.direction : pdf.position);
-        end.edge = end.at_infinity() ? pdf.position : pdf.direction;
-        return end;
     }
 
     // s = 0: ray number k of the camera's path meets a light. `density`: of the light's point or direction.
@@ -227,7 +192,7 @@ class BidirectionalSample {
         const SampledSpectrum le = incident_radiance({scene_, light, time_}, previous, hit, lambda);
         if (is_black(le)) return;
         const std::size_t t = k + 1;
-        LightEnd end = end_at(light, hit, -hit.wi);
+        LightEnd end = end_at(scene_, time_, light, hit, -hit.wi);
         PathDensities& d = memory_.densities;
         fill(0, t);
         if (k > 1) {
@@ -236,7 +201,7 @@ class BidirectionalSample {
             d.from_light[0] = double(end.emission);
             d.from_light[1] = double(end.edge_density(v.s.ng, -hit.wi, distance2));
             d.from_camera[0] = double(density);
-            d.next_event = double(next_event_density(end, previous, -hit.wi, distance2));
+            d.next_event = double(next_event_density(scene_, time_, end, previous, -hit.wi, distance2));
         }
         add(end, 0, t, throughput * le, lambda);
     }
@@ -254,7 +219,7 @@ class BidirectionalSample {
         const float light_pdf = chosen.choice * light.pdf;
         const SampledSpectrum value = v.throughput * e.f * light.radiance / light_pdf;
         if (is_black(value) || is_occluded(light.shadow)) return;
-        LightEnd end = end_at(chosen.light,
+        LightEnd end = end_at(scene_, time_, chosen.light,
                               {.wi = light.wi, .part = chosen.part, .p = light.p, .n = light.n, .b = light.b},
                               -light.wi);
         end.invisible = light.invisible;

@@ -183,9 +183,7 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     const Facing facing = facing_of(dot(s.ng, w) < 0 ? s.ng : -s.ng);
     const bool guides = (guide_ != nullptr || state.trace != nullptr) &&
                         !std::visit([](const auto& b) { return b.is_specular(); }, surface.bsdf);
-    const GuidingRegion* const region = guides && guide_ != nullptr
-                                            ? guide_->find(s.p, facing)
-                                            : nullptr;
+    const GuidingRegion* const region = guides && guide_ != nullptr ? guide_->find(s.p, facing) : nullptr;
     const Vertex<Stream> vertex{*this, scene, state, stream, recorder, surface.frame, wo, region};
     if (guides && state.trace != nullptr) [[unlikely]]
         state.trace->begin(s.p, facing, state.throughput, state.radiance);

@@ -1,6 +1,9 @@
 #include "montelux/transport/strategy_weight.h"
 
 #include <algorithm>
+#include <span>
+
+#include "montelux/mc/integrate/mis.h"
 
 namespace montelux {
 
@@ -29,15 +32,13 @@ double strategy_weight(const PathDensities& path, std::size_t s, Heuristic heuri
     }
     scratch[n - 1] *= path.light_paths;
 
-    double all = 0;
-    const auto powered = [&](double p) { return heuristic == Heuristic::power ? p * p : p; };
     for (std::size_t k = 0; k < n; ++k) {
         const bool joins_deltas =
             (k >= 2 && path.delta[k - 1] != 0) || (k >= 1 && k < n - 1 && path.delta[k] != 0);
-        scratch[k] = joins_deltas ? 0 : powered(scratch[k]);
-        all += scratch[k];
+        if (joins_deltas) scratch[k] = 0;
     }
-    return all > 0 ? scratch[s] / all : 0;
+    const MisHeuristic mis = heuristic == Heuristic::power ? MisHeuristic::power() : MisHeuristic::balance();
+    return mis_weight(mis, std::span(scratch), s);
 }
 
 } // namespace montelux

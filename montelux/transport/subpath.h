@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "montelux/mc/random/stream.h"
-#include "montelux/scene/light/light_model.h"
+#include "montelux/scene/camera/camera.h"
 #include "montelux/scene/material/make_bsdf.h"
 #include "montelux/scene/shape/surface_point.h"
 
@@ -37,28 +37,12 @@ struct SubpathVertex {
     }
 };
 
-// Where a path begins at a light: v_0 of PathDensities.
-struct LightEnd {
-    Index light = no_index;
-    LightKind kind = LightKind::surface;
-    bool invisible = false; // no ray of the camera hits it
-    LightHit hit;           // from the next vertex; of kind position the point alone
-    float emission = 0;     // PathDensities::from_light[0]
-    float edge = 0;         // density of the emission's other part, for from_light[1]: see edge_density
-
-    bool at_infinity() const { return kind == LightKind::infinite || kind == LightKind::direction; }
-    bool is_delta() const { return kind == LightKind::position || kind == LightKind::direction; }
-    // from_light[1] at a point with normal n, to which light comes along w (unit) over that squared distance.
-    float edge_density(Normal3f n, Vec3f w, float distance2) const {
-        const float density = edge * std::abs(dot(n, w));
-        return at_infinity() ? density : density / distance2;
-    }
-    // A density per solid angle of the direction to the light (-w) as one per area of the light.
-    float of_light(float pdf, Vec3f w, float distance2) const {
-        if (kind != LightKind::surface) return pdf;
-        return pdf * std::abs(dot(hit.n, w)) / distance2;
-    }
-};
+// Adds the surface that a ray of the subpath hits, up to its BSDF.
+SubpathVertex& add_vertex(std::vector<SubpathVertex>& path, const SceneView& scene, const Ray& ray,
+                          const Hit& hit, SampledSpectrum throughput);
+// The BSDF of a vertex, as make_bsdf. Returns false where nothing scatters.
+bool make_scattering(const SceneView& scene, const Camera& camera, float footprint_scale, SubpathVertex& v,
+                     SampledWavelengths& lambda);
 
 // Veach 1997, section 5.3: the adjoint of a BSDF with shading normals. f |cos theta_i| of the BSDF in the mode of
 // importance, times this, is what light brings from wo to wi; both in the frame of the BSDF.

@@ -13,6 +13,7 @@
 #include "montelux/scene/light/light_sampling.h"
 #include "montelux/scene/scene_tables.h"
 #include "montelux/transport/bidirectional_sample.h"
+#include "montelux/transport/light_end.h"
 
 namespace montelux::testing {
 namespace {

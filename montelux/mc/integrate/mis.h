@@ -81,7 +81,7 @@ T mis_weight(const MisHeuristic& heuristic, std::span<const T> q, std::size_t i)
     auto term = [&](T v) {
         T r = v / largest;
         if (!(r > 0) || r < alpha) return T(0);
-        return beta == 1 ? r : std::pow(r, beta);
+        return beta == 1 ? r : beta == 2 ? r * r : std::pow(r, beta);
     };
     T sum = 0;
     for (T v : q) sum += term(v);
