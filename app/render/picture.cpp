@@ -13,6 +13,7 @@
 #include "app/view/render_view.h"
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -101,6 +102,11 @@ std::string ending_text(const RenderReport& report, const RenderTarget& target) 
     default:
         return target.error > 0 ? ", samples are used up before the target was reached" : "";
     }
+}
+
+std::string quantile_text(const std::optional<ErrorQuantile>& quantile) {
+    if (!quantile || !std::isfinite(quantile->error)) return "";
+    return ", " + percent_text(quantile->share) + " of the pixels within " + percent_text(quantile->error);
 }
 
 // By the curve that shows the picture, or would show it.
@@ -198,11 +204,12 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
         print_clamped(static_cast<double>(report.clamped_samples), result.clamped_luminance,
                       result.error.mean_luminance);
         if (!files.written().empty())
-            std::printf("%s: %d x %d pixels, %.7g samples per pixel, relative error %s%s, %s%s%s\n",
+            std::printf("%s: %d x %d pixels, %.7g samples per pixel, relative error %s%s%s, %s%s%s\n",
                         joined(files.written()).c_str(), crop.width(), crop.height(),
                         result.error.mean_samples, percent_text(result.error.relative).c_str(),
-                        visible_text(visible).c_str(), duration_text(report.seconds).c_str(),
-                        ending_text(report, target).c_str(), denoised.c_str());
+                        quantile_text(result.quantile).c_str(), visible_text(visible).c_str(),
+                        duration_text(report.seconds).c_str(), ending_text(report, target).c_str(),
+                        denoised.c_str());
         if (const std::string warning = chain_warning(report.chains); !warning.empty())
             std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
         if (const std::string warning = missing_error_warning(result, session->renderer()); !warning.empty())

@@ -20,7 +20,10 @@ void ProgressPrinter::update(const RenderProgress& p) {
     std::vector<LinePart> parts{{duration_text(p.seconds) + " elapsed", elapsed}};
     if (!p.ended && p.forecast.seconds_left)
         parts.push_back({duration_text(*p.forecast.seconds_left) + " left", left});
-    if (p.error && std::isfinite(p.error->relative))
+    if (p.quantile && std::isfinite(p.quantile->error))
+        parts.push_back(
+            {percent_text(p.quantile->share) + " within " + percent_text(p.quantile->error), error});
+    else if (p.error && std::isfinite(p.error->relative))
         parts.push_back({"error " + percent_text(p.error->relative), error});
     if (p.seconds > 0)
         parts.push_back({count_text(static_cast<double>(p.samples_done) / p.seconds) + "samples/s", rate});

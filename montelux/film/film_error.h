@@ -33,6 +33,10 @@ double error_freedom(const Film& film);
 
 // The error, relative to the picture's mean luminance, that a share `quantile` of the pixels does not exceed.
 double error_quantile(const Film& film, double quantile);
+struct ErrorQuantile {
+    double share = 0; // of the pixels
+    double error = 0;
+};
 
 // Mean over pixels of the luminance that clamping removed.
 double clamped_luminance(const Film& film);

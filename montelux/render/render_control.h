@@ -28,6 +28,7 @@ struct RenderProgress {
     double seconds = 0;
     // After each round that ends with no open replicate.
     std::optional<FilmError> error;
+    std::optional<ErrorQuantile> quantile; // with a target quantile, as `error`
     RenderForecast forecast;
     bool ended = false; // in the last call
 };

@@ -1,6 +1,7 @@
 #include "montelux/render/render_forecast.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace montelux {
 namespace {
@@ -8,6 +9,12 @@ namespace {
 double share_of(double done, double all) { return all > 0 ? std::clamp(done / all, 0.0, 1.0) : 1; }
 
 } // namespace
+
+std::optional<std::uint64_t> samples_for_error(double samples, double error, double target) {
+    const double wanted = samples * std::pow(error / target, 2);
+    if (!std::isfinite(wanted)) return std::nullopt;
+    return static_cast<std::uint64_t>(std::min(wanted, 1e18));
+}
 
 RenderForecast forecast(const RenderPace& pace, const RenderTarget& target) {
     const auto done = static_cast<double>(pace.samples_done);
@@ -24,7 +31,9 @@ RenderForecast forecast(const RenderPace& pace, const RenderTarget& target) {
         if (speed > 0) consider(share_of(done, n), (n - done) / speed);
     };
     if (target.error > 0) {
-        if (pace.samples_for_error) consider_samples(std::min(*pace.samples_for_error, pace.samples_most));
+        if (pace.samples_for_error)
+            consider_samples(
+                std::min(std::max(*pace.samples_for_error, pace.end_of_round), pace.samples_most));
     } else {
         consider_samples(pace.samples_most);
     }

@@ -13,6 +13,7 @@ struct RenderPace {
     std::uint64_t samples_done = 0;
     std::uint64_t samples_most = 0;                   // all that may be taken
     std::optional<std::uint64_t> samples_for_error{}; // that the target error takes, once it is estimated
+    std::uint64_t end_of_round = 0;                   // the samples after which the error is looked at next
     double seconds = 0;                               // of all runs of this render
     // Of this run alone, after a resumption: they give the speed.
     std::uint64_t run_samples = 0;
@@ -23,6 +24,9 @@ struct RenderForecast {
     double share = 0; // of the way, from 0 to 1
     std::optional<double> seconds_left{};
 };
+
+// The samples that an error takes, from the error after some samples: it falls with the root of their number.
+std::optional<std::uint64_t> samples_for_error(double samples, double error, double target);
 
 // The limit that is met first decides: the target's time, its error, or the number of samples. As long as the error
 // cannot be estimated, it might be met long before the last sample: then a limit of time alone gives a forecast.

@@ -41,7 +41,10 @@ class RenderLoop {
           tile_renderer_(context, renderer.accelerator(), order_), chains_(chains),
           tiles_(tiles_of(state.film.bounds(), tile_size)), finished_(tiles_.size()),
           seconds_before_(state.report.seconds), samples_before_(state.report.samples) {
-        if (!round_is_done()) round_ = 0; // in a restored state
+        if (!round_is_done()) { // in a restored state
+            round_ = 0;
+            end_of_round_ = samples_at_end_of_round();
+        }
         context_.set_guide(state_.guide);
         if (control.live != nullptr) control.live->open(state, tiles_, [this] { return report_now(); });
     }
@@ -64,6 +67,7 @@ class RenderLoop {
                 if (target_samples.empty()) return end(RenderStop::samples);
                 state_.target_samples = std::move(target_samples);
                 join_rounds();
+                end_of_round_ = samples_at_end_of_round();
                 std::ranges::fill(finished_, char{0});
                 ++round_;
             }
@@ -113,6 +117,13 @@ class RenderLoop {
             if (pixels[i].samples() < state_.target_samples[i]) return false;
         return true;
     }
+    std::uint64_t samples_at_end_of_round() const {
+        const std::span<const Pixel> pixels = state_.film.pixels();
+        std::uint64_t samples = 0;
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+            samples += std::max<std::uint64_t>(pixels[i].samples(), state_.target_samples[i]);
+        return samples;
+    }
     bool all_taken() const {
         return round_is_done() &&
                next_target_samples(state_, renderer_.sampler(), renderer_.target()).empty();
@@ -126,17 +137,18 @@ class RenderLoop {
         if (out_of_time()) return RenderStop::time;
         if (state_.target_samples.empty() || !round_is_done() || !no_replicate_is_open()) return std::nullopt;
         const FilmError error = state_.film.error();
-        estimate_samples(error, stopping_.error_for_target(state_.film, error));
+        learn_from(error);
         report_progress(error);
         if (stopping_.is_reached(state_.film, error)) return RenderStop::error;
         return std::nullopt;
     }
-    // An error falls with the root of the number of samples.
-    void estimate_samples(const FilmError& error, const std::optional<double>& reached) {
-        if (!reached || !std::isfinite(*reached)) return;
-        const double samples = static_cast<double>(state_.film.pixels().size()) * error.mean_samples *
-                               std::pow(*reached / renderer_.target().error, 2);
-        samples_for_error_ = static_cast<std::uint64_t>(std::min(samples, 1e18));
+    void learn_from(const FilmError& error) {
+        const RenderTarget& target = renderer_.target();
+        const std::optional<double> reached = stopping_.error_for_target(state_.film, error);
+        if (!reached) return;
+        if (target.quantile > 0) progress_.quantile = {target.quantile, *reached};
+        const double samples = static_cast<double>(state_.film.pixels().size()) * error.mean_samples;
+        samples_for_error_ = samples_for_error(samples, *reached, target.error);
     }
     // After a first sample of every pixel: a render that is cancelled early has a picture.
     void train_guide_if_due() {
@@ -305,6 +317,7 @@ class RenderLoop {
         RenderPace pace{.samples_done = progress_.samples_done,
                         .samples_most = state_.film.pixels().size() * order_.share(),
                         .samples_for_error = samples_for_error_,
+                        .end_of_round = end_of_round_,
                         .seconds = progress_.seconds,
                         .run_samples = progress_.samples_done - samples_before_,
                         .run_seconds = seconds_since(begin_)};
@@ -369,6 +382,7 @@ class RenderLoop {
     std::mutex mutex_; // of the report and the progress
     RenderProgress progress_;
     std::uint64_t samples_beyond_ = 0;                 // samples beyond the report, counted by an executor
+    std::uint64_t end_of_round_ = 0;                   // samples then
     std::optional<std::uint64_t> samples_for_error_{}; // that the target error takes, by the last error
 };
 

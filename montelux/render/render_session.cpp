@@ -90,6 +90,9 @@ RenderSnapshot RenderSession::finish(const std::function<void(Image&)>& denoise)
     end_replicates(state_->film); // of a render that was kept open
     RenderSnapshot result = picture_of(state_->film, report);
     result.outliers = outliers_of(state_->film);
+    if (settings_.target.quantile > 0)
+        result.quantile = {settings_.target.quantile,
+                           error_quantile(state_->film, settings_.target.quantile)};
     state_.reset();
     if (denoise && !report.cancelled()) {
         try {

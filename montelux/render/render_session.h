@@ -31,8 +31,10 @@ struct RenderSnapshot {
     std::shared_ptr<const Image> image; // the layers of Film::develop() with the header of a render
     FilmError error;
     RenderReport report;
-    double clamped_luminance = 0;            // mean over pixels, removed by the film's limit
-    std::optional<OutlierReport> outliers{}; // of the finished picture
+    double clamped_luminance = 0; // mean over pixels, removed by the film's limit
+    // Of the finished picture.
+    std::optional<OutlierReport> outliers{};
+    std::optional<ErrorQuantile> quantile{}; // with a target quantile
     std::string denoise_failure{};           // why requested denoising failed
     bool half = false; // an EXR file of it holds 16-bit floats where those suffice (half_channels_of)
 };

@@ -4,11 +4,13 @@
 #include <bit>
 #include <cmath>
 #include <functional>
+#include <span>
 #include <string>
 
 #include "montelux/mc/math/compensated.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/render/stopping_rule.h"
 
 namespace montelux {
 namespace {
@@ -64,6 +66,25 @@ std::vector<double> deviations(const Film& film) {
     return result;
 }
 
+// Where a quantile of the errors is small enough and some pixels have too few samples to believe it: the samples they
+// lack. Empty otherwise, or if that is more than may be taken.
+std::vector<std::uint32_t> missing_to_trust(const Film& film, const SampleOrder& order,
+                                            const RenderTarget& target) {
+    if (!(target.error > 0 && target.quantile > 0)) return {};
+    const std::uint64_t trusted = samples_to_trust(target, order.replicate_size());
+    const std::span<const Pixel> pixels = film.pixels();
+    if (std::ranges::all_of(pixels, [&](const Pixel& p) { return p.samples() >= trusted; })) return {};
+    if (!(error_quantile(film, target.quantile) <= target.error)) return {};
+    std::vector<std::uint32_t> target_samples(pixels.size());
+    std::uint64_t total = 0;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        target_samples[i] =
+            static_cast<std::uint32_t>(std::max<std::uint64_t>(pixels[i].samples(), trusted));
+        total += target_samples[i];
+    }
+    return total <= order.share() * pixels.size() ? target_samples : std::vector<std::uint32_t>();
+}
+
 } // namespace
 
 std::uint64_t pilot_of(const SampleOrder& order) {
@@ -113,7 +134,10 @@ std::vector<std::uint32_t> next_target_samples(const RenderState& state, const S
     const std::size_t pixels = state.film.pixels().size();
     const std::uint64_t begin = state.target_samples.empty() ? 0 : state.target_samples.front();
     const std::uint64_t pilot = target.adaptive ? pilot_of(order) : 0;
-    if (target.adaptive && begin >= pilot) return neyman_allocation(state.film, order, target);
+    if (target.adaptive && begin >= pilot) {
+        std::vector<std::uint32_t> missing = missing_to_trust(state.film, order, target);
+        return missing.empty() ? neyman_allocation(state.film, order, target) : missing;
+    }
     if (begin >= share) return {};
     if (sampler.chains) { // the same numbers of whole groups
         const std::uint64_t groups = begin / order.replicate_size();

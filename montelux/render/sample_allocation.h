@@ -37,7 +37,8 @@ std::uint64_t pilot_of(const SampleOrder& order);
 // Without adaptive allocation all pixels get the same: rounds are short at first, so that a first snapshot
 // comes early, and never long. Adaptively: a pilot of equal counts, then rounds of whole replicates
 // (neyman_allocation). The pilot is one round; with a time limit it consists of several short ones, between
-// which it can end.
+// which it can end. Where a quantile of the errors meets its target before all pixels have the samples that make it
+// credible (samples_to_trust), a round gives these to the pixels that lack them.
 std::vector<std::uint32_t> next_target_samples(const RenderState& state, const SamplerSettings& sampler,
                                                const RenderTarget& target);
 

@@ -20,6 +20,12 @@ std::uint64_t fewest_replicates(const Film& film) {
 
 } // namespace
 
+std::uint64_t samples_to_trust(const RenderTarget& target, std::uint64_t replicate_size) {
+    // Few samples may all be dark by chance; pixels that found no light yet would satisfy a quantile.
+    const std::uint64_t samples = target.quantile > 0 ? 4 * least_samples : least_samples;
+    return std::max(least_replicates, (samples + replicate_size - 1) / replicate_size) * replicate_size;
+}
+
 std::optional<double> StoppingRule::error_for_target(const Film& film, const FilmError& error) const {
     if (!(target_.error > 0 && error.mean_luminance > 0)) return std::nullopt;
     return target_.quantile > 0 ? error_quantile(film, target_.quantile) : error.relative;
@@ -28,10 +34,7 @@ std::optional<double> StoppingRule::error_for_target(const Film& film, const Fil
 bool StoppingRule::is_reached(const Film& film, const FilmError& error) const {
     if (!(target_.error > 0)) return false;
     const std::optional<double> reached = error_for_target(film, error);
-    // Few samples may all be dark by chance; pixels that found no light yet would satisfy a quantile.
-    const std::uint64_t least = target_.quantile > 0 ? 4 * least_samples : least_samples;
-    const std::uint64_t replicates = fewest_replicates(film);
-    if (replicates < least_replicates || replicates * replicate_size_ < least) return false;
+    if (fewest_replicates(film) * replicate_size_ < samples_to_trust(target_, replicate_size_)) return false;
     if (!reached) return error.mean_samples >= samples_of_black;
     return *reached <= target_.error && (target_.quantile > 0 || error_freedom(film) >= least_freedom);
 }

@@ -9,6 +9,9 @@
 
 namespace montelux {
 
+// Samples of each pixel before a target of its error counts as met: whole replicates, enough to trust their spread.
+std::uint64_t samples_to_trust(const RenderTarget& target, std::uint64_t replicate_size);
+
 class StoppingRule {
   public:
     StoppingRule(const RenderTarget& target, std::uint32_t replicate_size)

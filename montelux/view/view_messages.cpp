@@ -100,7 +100,8 @@ std::string progress_message(const ViewStatus& status, const PictureStatistics* 
     if (!status.curve.empty()) message["error"] = status.curve.back().second;
     if (statistics != nullptr) {
         // Before the first whole replicates of all pixels.
-        if (status.curve.empty() && statistics->error) message["error"] = *statistics->error;
+        if (status.curve.empty() && statistics->error && !(status.target.quantile > 0))
+            message["error"] = *statistics->error;
         message["samples"] = statistics->samples;
         message["visible"] = statistics->visible;
         message["histogram"] = {{"least", ErrorHistogram::least},

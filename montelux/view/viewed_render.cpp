@@ -22,6 +22,13 @@ void add_point(std::vector<std::pair<double, double>>& curve, std::pair<double, 
     curve.push_back(point);
 }
 
+// The error that the target limits: only that says when it is met.
+std::optional<double> limited_error(const RenderProgress& p) {
+    if (!p.error) return std::nullopt;
+    const double error = p.quantile ? p.quantile->error : p.error->relative;
+    return std::isfinite(error) ? std::optional(error) : std::nullopt;
+}
+
 } // namespace
 
 template <typename F>
@@ -116,9 +123,9 @@ void ViewedRender::watch(const RenderProgress& progress, const ProgressCallback&
     {
         const std::lock_guard lock(mutex_);
         status_.progress = progress;
-        if (progress.error && std::isfinite(progress.error->relative) &&
-            (status_.curve.empty() || status_.curve.back().second != progress.error->relative))
-            add_point(status_.curve, {progress.seconds, progress.error->relative});
+        const std::optional<double> error = limited_error(progress);
+        if (error && (status_.curve.empty() || status_.curve.back().second != *error))
+            add_point(status_.curve, {progress.seconds, *error});
         ++status_.version;
         // The end of a run is not the end of the render.
         if (is_interrupted() && !stopped_ && !quit_ && !is_cancelled()) told.ended = false;

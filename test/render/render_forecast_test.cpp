@@ -1,3 +1,6 @@
+#include <cstdint>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "montelux/render/render_forecast.h"
@@ -47,6 +50,23 @@ TEST(RenderForecast, OfAnError) {
     p.samples_for_error = 900;
     EXPECT_DOUBLE_EQ(forecast(p, {.error = 0.01}).share, 1);
     EXPECT_DOUBLE_EQ(forecast(p, {.error = 0.01}).seconds_left.value(), 0);
+}
+
+// A render whose error is nearly small enough still ends only where the error is looked at.
+TEST(RenderForecast, ErrorsAreLookedAtBetweenRounds) {
+    RenderPace p = pace();
+    p.samples_for_error = 1010;
+    p.end_of_round = 2000;
+    const RenderForecast f = forecast(p, {.error = 0.01});
+    EXPECT_DOUBLE_EQ(f.share, 0.5);
+    EXPECT_DOUBLE_EQ(f.seconds_left.value(), 2);
+    EXPECT_DOUBLE_EQ(forecast(p, {}).seconds_left.value(), 18); // without a target they do not count
+}
+
+TEST(RenderForecast, SamplesForAnError) {
+    EXPECT_EQ(samples_for_error(100, 0.2, 0.1), 400u);
+    EXPECT_EQ(samples_for_error(100, 1e20, 1e-20), std::uint64_t(1e18));
+    EXPECT_FALSE(samples_for_error(100, std::numeric_limits<double>::infinity(), 0.1));
 }
 
 TEST(RenderForecast, SpeedIsThatOfThisRun) {

@@ -157,6 +157,29 @@ TEST(NeymanAllocation, GoesAsFarAsTheTargetNeedsInWholeReplicates) {
     EXPECT_TRUE(neyman_allocation(film, SampleOrder(s, {}), {.error = 1e-4}).empty());
 }
 
+// A quantile that few samples meet: the pixels that lack samples get just these, and no other pixel any.
+TEST(SampleAllocation, QuantilesThatAreMetGetTheSamplesToTrustThem) {
+    constexpr int width = 8;
+    const RenderTarget target{.error = 0.05, .quantile = 0.9, .adaptive = true};
+    const SamplerSettings s{SamplerKind::sobol, 0, 1u << 20, 1, 8};
+    const auto next = [&](int samples, double deviation, const SamplerSettings& sampler) {
+        RenderState state({.width = width, .height = width, .crop = {0, 0, width, width}});
+        state.film = film_with(std::vector<double>(width * width, deviation), width, samples, 3);
+        for (int k = 0; k < 80; ++k) state.film.pixels()[5].add_sample({.radiance = {10, 10, 10}, .albedo = {}, .normal = {}});
+        state.target_samples.assign(width * width, static_cast<std::uint32_t>(samples));
+        return next_target_samples(state, sampler, target);
+    };
+    const std::vector<std::uint32_t> met = next(32, 0.01, s);
+    for (std::size_t i = 0; i < met.size(); ++i) EXPECT_EQ(met[i], i == 5 ? 112u : 64u);
+    // Not met: as the deviations have it.
+    const std::vector<std::uint32_t> wanting = next(32, 9, s);
+    EXPECT_GT(sum(wanting), 1.5 * 32 * width * width);
+    // More than may be taken.
+    SamplerSettings few = s;
+    few.spp = 48;
+    EXPECT_LE(sum(next(32, 0.01, few)), 48.0 * width * width);
+}
+
 TEST(NeymanAllocation, BlackPicturesAndSinglePixelsContinue) {
     SamplerSettings s{SamplerKind::independent, 0, 1u << 20};
     Film black({.width = 4, .height = 4, .crop = {0, 0, 4, 4}});

@@ -22,8 +22,9 @@ class ByteWriter {
     }
     template <typename T>
     void put_all(std::span<const T> values) requires std::is_trivially_copyable_v<T> {
-        const auto* begin = reinterpret_cast<const std::uint8_t*>(values.data());
-        bytes_.insert(bytes_.end(), begin, begin + values.size_bytes());
+        const std::size_t begin = bytes_.size();
+        bytes_.resize(begin + values.size_bytes());
+        if (!values.empty()) std::memcpy(bytes_.data() + begin, values.data(), values.size_bytes());
     }
     // Its length before it.
     void put_bytes(std::span<const std::uint8_t> bytes) {
