@@ -40,8 +40,8 @@ void define_functions(const Define& define) {
     define("mod", [](double x, double y) { return x - y * std::floor(x / y); });
 }
 
-// A parser with the functions and those constants whose names the user does not want for variables.
-mu::Parser make_parser(const std::vector<std::string>& variables) {
+// A parser with the functions, the given constants, and those others whose names the user does not want for variables.
+mu::Parser make_parser(const std::vector<std::string>& variables, const NamedConstants& given = {}) {
     mu::Parser parser;
     parser.ClearConst();
     // Of all parsers, and not guarded: threads make parsers at the same time.
@@ -51,6 +51,7 @@ mu::Parser make_parser(const std::vector<std::string>& variables) {
     for (const auto& [name, value] : constants)
         if (std::find(variables.begin(), variables.end(), name) == variables.end())
             parser.DefineConst(name, value);
+    for (const auto& [name, value] : given) parser.DefineConst(name, value);
     return parser;
 }
 
@@ -97,7 +98,9 @@ std::string unknown_name(const std::string& name, bool called, bool word, const 
         what += variables.size() == 1 ? "; the variable is " : "; the variables are ";
         for (std::size_t i = 0; i < variables.size(); ++i) what += (i ? ", " : "") + variables[i];
     }
-    return option.empty() ? what + " (--over " + name + "=LOWER:UPPER adds one)" : what;
+    return option.empty()
+               ? what + " (--over " + name + "=LOWER:UPPER adds one, --let " + name + "=VALUE a constant)"
+               : what;
 }
 
 // What is wrong, in words, from muParser's code.
@@ -168,6 +171,7 @@ struct Formulas::Pool {
     };
 
     std::vector<std::string> texts, variables;
+    NamedConstants given;
     std::string option;
     std::mutex mutex;
     std::vector<std::unique_ptr<Lease>> free;
@@ -176,7 +180,7 @@ struct Formulas::Pool {
         auto lease = std::make_unique<Lease>();
         lease->values.resize(variables.size());
         for (const std::string& text : texts) {
-            mu::Parser parser = make_parser(variables);
+            mu::Parser parser = make_parser(variables, given);
             try {
                 for (std::size_t d = 0; d < variables.size(); ++d)
                     parser.DefineVar(variables[d], &lease->values[d]);
@@ -207,11 +211,12 @@ struct Formulas::Pool {
 };
 
 Formulas::Formulas(const std::vector<std::string>& texts, const std::vector<std::string>& variables,
-                   const std::string& option)
+                   const std::string& option, const NamedConstants& given)
     : pool_(std::make_shared<Pool>()) {
     for (const std::string& text : texts) check_form(text, option);
     pool_->texts = texts;
     pool_->variables = variables;
+    pool_->given = given;
     pool_->option = option;
     pool_->give_back(pool_->make());
 }
@@ -237,9 +242,9 @@ double Formulas::operator()(double x) const {
     return y;
 }
 
-double constant(const std::string& text, const std::string& option) {
+double constant(const std::string& text, const std::string& option, const NamedConstants& given) {
     check_form(text, option);
-    mu::Parser parser = make_parser({});
+    mu::Parser parser = make_parser({}, given);
     try {
         parser.SetExpr(text);
         return parser.Eval();

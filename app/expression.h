@@ -4,14 +4,18 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "montelux/mc/integrate/points.h"
 
 namespace montelux::app {
 
+// Names that stand for numbers in formulas, in the order in which they were given.
+using NamedConstants = std::vector<std::pair<std::string, double>>;
+
 // Formulas in the same variables; each is one component of a function of a point. Known besides the
-// variables: + - * / ^, comparisons, && ||, c ? a : b, the constants pi, e, inf and nan, and the functions
+// variables and the given constants: + - * / ^, comparisons, && ||, c ? a : b, the constants pi, e, inf and nan, and the functions
 // that formula_functions() lists. Evaluation may run on many threads at once: a parser of muParser belongs
 // to one thread at a time (its variables are places in memory), so each call borrows one from a pool.
 class Formulas {
@@ -19,7 +23,7 @@ class Formulas {
     // `option` says in errors where the texts come from ("" for the command's argument). Throws UsageError
     // with the place, marked by a caret, of what cannot be read, and with the nearest known name.
     Formulas(const std::vector<std::string>& texts, const std::vector<std::string>& variables,
-             const std::string& option);
+             const std::string& option, const NamedConstants& given = {});
 
     int count() const;
     const std::vector<std::string>& texts() const;
@@ -33,8 +37,8 @@ class Formulas {
     std::shared_ptr<Pool> pool_;
 };
 
-// A number that may be written as a formula without variables: "pi/2", "-inf", "1e-4".
-double constant(const std::string& text, const std::string& option);
+// A number that may be written as a formula without variables: "pi/2", "-inf", "1e-4", or with constants.
+double constant(const std::string& text, const std::string& option, const NamedConstants& given = {});
 
 // A name that formulas may use for a variable; throws UsageError where it is none.
 void check_variable_name(const std::string& name, const std::string& option);

@@ -66,7 +66,7 @@ std::vector<std::string> read_names(const std::string& text, const std::string& 
     return names;
 }
 
-Range read_range(const std::string& text, const std::string& option) {
+Range read_range(const std::string& text, const std::string& option, const NamedConstants& given) {
     const std::size_t colon = find_outside_brackets(text, ':');
     if (colon == std::string::npos || find_outside_brackets(text, ':', colon + 1) != std::string::npos)
         throw UsageError(option, "'" + text + "' is not a range; expected LOWER:UPPER, for example 0:pi/2");
@@ -77,7 +77,7 @@ Range read_range(const std::string& text, const std::string& option) {
         if (ends[i].empty())
             throw UsageError(option, std::string("the range has no ") + (i == 0 ? "lower" : "upper") +
                                          " end; expected LOWER:UPPER, for example 0:pi/2");
-        values[i] = constant(ends[i], option);
+        values[i] = constant(ends[i], option, given);
         if (std::isnan(values[i]))
             throw UsageError(option, "the " + std::string(i == 0 ? "lower" : "upper") + " end '" + ends[i] +
                                          "' is not a number");
@@ -91,7 +91,7 @@ Range read_range(const std::string& text, const std::string& option) {
 
 } // namespace
 
-Variables read_variables(const std::vector<std::string>& over, bool boxes) {
+Variables read_variables(const std::vector<std::string>& over, bool boxes, const NamedConstants& given) {
     if (over.empty())
         throw UsageError("--over", boxes ? "no variable is given; expected one --over NAME=LOWER:UPPER a "
                                            "variable, for example --over x=0:pi/2"
@@ -109,15 +109,40 @@ Variables read_variables(const std::vector<std::string>& over, bool boxes) {
         for (const std::string& name : names) {
             if (std::find(variables.names.begin(), variables.names.end(), name) != variables.names.end())
                 throw UsageError(option, "the variable '" + name + "' is given twice");
+            for (const auto& [constant_name, value] : given)
+                if (constant_name == name)
+                    throw UsageError(option,
+                                     "'" + name + "' is a constant of --let; a variable needs another name");
             variables.names.push_back(name);
         }
         if (boxes)
-            variables.ranges.resize(variables.names.size(), read_range(text.substr(equal + 1), option));
+            variables.ranges.resize(variables.names.size(),
+                                    read_range(text.substr(equal + 1), option, given));
     }
     return variables;
 }
 
-void read_densities(const std::vector<std::string>& densities, Variables& variables) {
+NamedConstants read_constants(const std::vector<std::string>& let) {
+    NamedConstants constants;
+    for (const std::string& text : let) {
+        const std::string option = "--let '" + text + "'";
+        const std::size_t equal = text.find('=');
+        if (equal == std::string::npos)
+            throw UsageError(option, "no value is given; expected NAME=VALUE, for example s=0.1");
+        const std::string name = trimmed(std::string_view(text).substr(0, equal));
+        check_variable_name(name, option);
+        for (const auto& [known, value] : constants)
+            if (known == name) throw UsageError(option, "the constant '" + name + "' is given twice");
+        const double value = constant(text.substr(equal + 1), option, constants);
+        if (std::isnan(value))
+            throw UsageError(option, "the value '" + text.substr(equal + 1) + "' is not a number");
+        constants.emplace_back(name, value);
+    }
+    return constants;
+}
+
+void read_densities(const std::vector<std::string>& densities, Variables& variables,
+                    const NamedConstants& given) {
     for (const std::string& text : densities) {
         const std::string option = "--density '" + text + "'";
         const std::size_t equal = text.find('=');
@@ -135,7 +160,7 @@ void read_densities(const std::vector<std::string>& densities, Variables& variab
         variables.densities.resize(variables.names.size());
         if (variables.densities[d])
             throw UsageError(option, "the variable '" + name + "' has a density already");
-        const Formulas formula({named ? text.substr(equal + 1) : text}, {name}, "--density " + name);
+        const Formulas formula({named ? text.substr(equal + 1) : text}, {name}, "--density " + name, given);
         const Range range = variables.ranges[d];
         try {
             variables.densities[d] = Distribution::from_density([formula](double x) { return formula(x); },
@@ -176,7 +201,7 @@ Domain box_domain(const Variables& variables) {
     return Domain::mapped_batch(dimensions, dimensions, std::move(map), std::move(description));
 }
 
-void check_densities(const Variables& variables, const Formulas& formulas, bool logarithm) {
+void check_densities(const Variables& variables, const NamedIntegrand& integrand, bool logarithm) {
     if (variables.densities.empty()) return;
     constexpr std::size_t points = 4096;
     const int dimensions = static_cast<int>(variables.names.size());
@@ -184,8 +209,8 @@ void check_densities(const Variables& variables, const Formulas& formulas, bool 
     fill_random(u, 0, 0, 0);
     std::vector<double> volume(points, 1.0);
     Domain(variables.ranges).map(u, x, volume);
-    ValueBuffer values(points, formulas.count());
-    formulas(x, values);
+    ValueBuffer values(points, integrand.count());
+    integrand.function(x, values);
     if (logarithm) {
         std::span<double> logs = values.component(0);
         double largest = -std::numeric_limits<double>::infinity();
@@ -193,7 +218,7 @@ void check_densities(const Variables& variables, const Formulas& formulas, bool 
             if (std::isfinite(v)) largest = std::max(largest, v);
         for (double& v : logs) v = std::exp(v - largest); // NaN where all are -infinity
     }
-    std::vector<double> everywhere(static_cast<std::size_t>(formulas.count())), missed(everywhere);
+    std::vector<double> everywhere(static_cast<std::size_t>(integrand.count())), missed(everywhere);
     std::vector<std::size_t> where(everywhere.size());
     for (std::size_t i = 0; i < points; ++i) {
         bool zero = false;
@@ -219,7 +244,7 @@ void check_densities(const Variables& variables, const Formulas& formulas, bool 
                           variables.names[static_cast<std::size_t>(d)].c_str(), x(where[c], d));
             point += text;
         }
-        throw Error("--density", "the density is zero where '" + formulas.texts()[c] +
+        throw Error("--density", "the density is zero where '" + integrand.names[c] +
                                      "' is not, for example at " + point +
                                      "; that part of the integral would be missed");
     }

@@ -8,6 +8,7 @@
 
 #include "montelux/mc/dist/distribution.h"
 #include "montelux/mc/integrate/domain.h"
+#include "montelux/mc/integrate/integrand.h"
 
 namespace montelux::app {
 
@@ -19,18 +20,30 @@ struct Variables {
 };
 
 // From the values of --over: NAMES=LOWER:UPPER (or NAMES alone where `boxes` is false), NAMES being x or
-// x,y or x1..x8. Throws UsageError.
-Variables read_variables(const std::vector<std::string>& over, bool boxes);
+// x,y or x1..x8. Ends of ranges may contain the given constants. Throws UsageError.
+Variables read_variables(const std::vector<std::string>& over, bool boxes, const NamedConstants& given = {});
 
 // Adds the values of --density: NAME=FORMULA in that variable alone, or FORMULA where there is one variable.
-void read_densities(const std::vector<std::string>& densities, Variables& variables);
+void read_densities(const std::vector<std::string>& densities, Variables& variables,
+                    const NamedConstants& given = {});
+
+// From the values of --let: NAME=VALUE, where VALUE may contain the names before it. Throws UsageError.
+NamedConstants read_constants(const std::vector<std::string>& let);
 
 // The box of the ranges; variables with a density are mapped by its quantile, with the volume factor
 // 1 / density, so that uniform numbers become samples of the density for every method.
 Domain box_domain(const Variables& variables);
 
-// Throws Error where a density is zero and a formula is not, since the integral would then be silently
-// wrong. Checks 4096 points. `logarithm`: the formulas are those of log f.
-void check_densities(const Variables& variables, const Formulas& formulas, bool logarithm);
+// Components of an integrand, and how reports call them.
+struct NamedIntegrand {
+    Integrand::BatchFunction function;
+    std::vector<std::string> names;
+
+    int count() const { return static_cast<int>(names.size()); }
+};
+
+// Throws Error where a density is zero and the integrand is not, since the integral would then be silently
+// wrong. Checks 4096 points. `logarithm`: the integrand is log f.
+void check_densities(const Variables& variables, const NamedIntegrand& integrand, bool logarithm);
 
 } // namespace montelux::app

@@ -29,10 +29,10 @@ SharedIntegration::SharedIntegration(const IntegrationTask& task, bool alone) {
     if (job == nullptr) return;
     const int fair = job->fair_threads();
     const int threads = task.options.threads > 0 ? task.options.threads : fair;
-    const int components = task.formulas.count();
+    const int components = task.integrand.count();
     if (job->rank() == 0) {
         try {
-            shared_ = std::make_unique<SharedIntegrand>(*job, task.formulas, components, threads,
+            shared_ = std::make_unique<SharedIntegrand>(*job, task.integrand.function, components, threads,
                                                         patience_with_ranks);
         } catch (const Error& e) { // a rank never came
             end_job_with(e);
@@ -41,7 +41,8 @@ SharedIntegration::SharedIntegration(const IntegrationTask& task, bool alone) {
     }
     helped_ = true;
     try {
-        serve_integrand(*job, task.formulas, components, threads, &follow_on_signals(), patience_with_leader);
+        serve_integrand(*job, task.integrand.function, components, threads, &follow_on_signals(),
+                        patience_with_leader);
     } catch (const std::exception& e) {
         print_rank_error(e.what());
         end_job(exit_failed);
@@ -49,7 +50,7 @@ SharedIntegration::SharedIntegration(const IntegrationTask& task, bool alone) {
 }
 
 void SharedIntegration::integrate(const IntegrationTask& task, const BatchFunction& f, const Work& work) {
-    const int components = task.formulas.count();
+    const int components = task.integrand.count();
     if (!shared_) return work(Integrand::batch(f, components), task.options);
 
     IntegrationOptions options = task.options;

@@ -277,7 +277,7 @@ std::string convergence_svg(const std::string& title, const IntegrationResult& r
 
 void write_convergence_plot(const std::string& path, const IntegrationTask& task,
                             const IntegrationResult& result) {
-    const std::string title = task.formulas.texts().front() + " by " + result.method + ": " +
+    const std::string title = task.integrand.names.front() + " by " + result.method + ": " +
                               (result.value.empty() ? "?" : to_string(result.estimate()));
     const std::string svg = convergence_svg(title, result);
     AtomicFile file(path);

@@ -79,7 +79,7 @@ int run(const IntegrateOptions& o) {
 
     PointRecorder recorder(task.points_limit);
     auto evaluate = [&, record = !o.points.empty()](const PointBatch& x, ValueBatch y) {
-        task.formulas(x, y);
+        task.integrand.function(x, y);
         if (record) recorder.add(x, y);
     };
     ProgressLine line(o.quiet);
@@ -95,7 +95,7 @@ int run(const IntegrateOptions& o) {
 #ifdef MONTELUX_WITH_RENDER
     shared.integrate(task, evaluate, work);
 #else
-    work(Integrand::batch(evaluate, task.formulas.count()), task.options);
+    work(Integrand::batch(evaluate, task.integrand.count()), task.options);
 #endif
     line.finish();
     const IntegrationResult& result = logarithm.relative;
@@ -105,7 +105,7 @@ int run(const IntegrateOptions& o) {
         std::fprintf(stderr, "montelux: warning: %s; went on from the checkpoint before it\n",
                      result.checkpoint_refused_because.c_str());
     if (!o.plot.empty()) write_convergence_plot(o.plot, task, result);
-    if (!o.points.empty()) recorder.write(o.points, task.variables, task.formulas.texts());
+    if (!o.points.empty()) recorder.write(o.points, task.variables, task.integrand.names);
     if (result.evaluations == 0)
         std::fprintf(stderr,
                      "montelux: warning: the run ended before its first step; nothing is known yet\n");

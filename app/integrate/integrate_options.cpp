@@ -1,5 +1,6 @@
 #include "app/integrate/integrate_options.h"
 
+#include "app/integrate/compiled_function.h"
 #include "app/joined.h"
 #include "app/option_values.h"
 #include "app/usage_error.h"
@@ -95,10 +96,38 @@ Method make_method(const std::string& name) {
 void check_logarithm(const IntegrateOptions& o) {
     if (o.formulas.size() > 1)
         throw UsageError("--log", std::to_string(o.formulas.size()) + " formulas were given; expected one");
+    if (!o.components.empty()) throw UsageError("--log", "log f has one value; leave out --components");
     if (!o.absolute_error.empty())
         throw UsageError("--absolute-error",
                          "with --log, expected --relative-error, which is the error of log Z");
     if (!o.plot.empty()) throw UsageError("--plot", "log Z is not drawn; leave out one of --log and --plot");
+}
+
+// One integrand.
+void check_sources(const IntegrateOptions& o) {
+    const int given = int(!o.formulas.empty()) + int(!o.library.empty()) + int(!o.source.empty());
+    if (given != 1)
+        throw UsageError("integrand", std::string(given == 0 ? "none" : "more than one") +
+                                          " is given; expected a FORMULA, --library or --source");
+    if (!o.components.empty() && !o.formulas.empty())
+        throw UsageError("--components", "each component of a vector is a FORMULA of its own");
+}
+
+NamedIntegrand make_integrand(const IntegrateOptions& o, const std::vector<std::string>& variables,
+                              const NamedConstants& constants) {
+    if (o.formulas.empty()) {
+        CompiledFunction::Form form;
+        if (!o.components.empty())
+            form.components = static_cast<int>(whole_number(o.components, "--components", 1, 100'000));
+        for (const auto& [name, value] : constants) form.parameters.push_back(value);
+        const CompiledFunction function = o.library.empty() ? CompiledFunction::from_source(o.source, form)
+                                                            : CompiledFunction::from_library(o.library, form);
+        return {function, function.names()};
+    }
+    std::vector<std::string> texts = o.formulas;
+    for (std::string& text : texts)
+        if (text.starts_with(" -")) text.erase(0, 1); // the blank of with_negative_formulas
+    return {Formulas(texts, variables, "", constants), texts};
 }
 
 // 10k, 1.5M and 2G as 10e3, 1.5e6 and 2e9; other texts as they are.
@@ -151,8 +180,7 @@ std::uint64_t whole_number(const std::string& text, const std::string& option, s
 
 void declare(CLI::App& c, IntegrateOptions& o) {
     c.add_option("FORMULA", o.formulas,
-                 "The integrand, for example 'sin(x)*y'; several are the components of a vector")
-        ->required();
+                 "The integrand, for example 'sin(x)*y'; several are the components of a vector");
     auto many = [&c](const std::string& name, std::vector<std::string>& target, const std::string& help,
                      const std::string& type) {
         c.add_option(name, target, help)->type_name(type)->allow_extra_args(false);
@@ -163,10 +191,19 @@ void declare(CLI::App& c, IntegrateOptions& o) {
     };
     many("--over", o.over, "A variable and its range, for example x=0:inf, x,y=-1:1 or x1..x8=0:1",
          "NAME=LOWER:UPPER");
-    c.add_flag(
-        "--log", o.log,
-        "FORMULA is log f, the natural logarithm of the integrand; print log Z, that of the integral, for "
-        "values such as e^-5000");
+    many("--let", o.let, "A constant for formulas and ranges, for example s=0.1", "NAME=VALUE");
+    text("--library", o.library,
+         "In place of formulas: a function of a shared library, for example ./f.so:name, declared as double "
+         "name(int n, const double *x)",
+         "FILE:FUNCTION");
+    text("--source", o.source, "The same from a file in C or C++, which the system's compiler translates",
+         "FILE:FUNCTION");
+    text("--components", o.components,
+         "The function has this many values: void name(int n, const double *x, int m, double *y)", "M");
+    c.add_flag("--log", o.log,
+               "The integrand is log f, the natural logarithm of the integrand; print log Z, that of the "
+               "integral, for "
+               "values such as e^-5000");
     many("--density", o.densities,
          "Draw a variable from a density that is proportional to this formula, for example x=exp(-5*x)",
          "NAME=FORMULA");
@@ -205,6 +242,7 @@ void declare(CLI::App& c, IntegrateOptions& o) {
         "  montelux integrate 'exp(-5*x)*cos(x)' --over x=0:inf --density x='exp(-5*x)' --evaluations 1e5\n"
         "  montelux integrate 1 x^2 --domain ball --over x,y,z --json\n"
         "  montelux integrate --log -5000-x^2/2 --over x=-inf:inf --relative-error 1e-6\n"
+        "  montelux integrate --source integrand.c --let s=0.1 --over x1..x6=0:1\n"
         "\n"
         "Formulas know + - * / ^, comparisons, && ||, c ? a : b, pi, e, inf, and\n"
         "  " +
@@ -218,14 +256,13 @@ IntegrationTask make_task(const IntegrateOptions& o) {
     check_choice(o.domain, domain_names, "--domain", "domain");
     check_choice(o.non_finite, policy_names, "--non-finite", "policy");
     const bool box = o.domain == "box";
-    Variables variables = read_variables(o.over, box);
+    check_sources(o);
+    const NamedConstants constants = read_constants(o.let);
+    Variables variables = read_variables(o.over, box, constants);
     if (!box && !o.densities.empty()) throw UsageError("--density", "only a box takes densities");
-    std::vector<std::string> texts = o.formulas;
-    for (std::string& text : texts)
-        if (text.starts_with(" -")) text.erase(0, 1); // the blank of with_negative_formulas
-    Formulas formulas(texts, variables.names, "");
-
     if (o.log) check_logarithm(o);
+    NamedIntegrand integrand = make_integrand(o, variables.names, constants);
+
     Method method = make_method(o.method);
     Budget budget;
     budget.relative_error = relative_error(o.relative_error);
@@ -260,11 +297,11 @@ IntegrationTask make_task(const IntegrateOptions& o) {
     }
     const std::uint64_t points_limit = whole_number(o.points_limit, "--points-limit", 1, 100'000'000);
 
-    read_densities(o.densities, variables);
-    check_densities(variables, formulas, o.log);
+    read_densities(o.densities, variables, constants);
+    check_densities(variables, integrand, o.log);
     Domain domain = make_domain(o, variables);
-    return {variables.names, std::move(formulas), std::move(domain), std::move(method),
-            budget,          std::move(options),  points_limit,      o.log};
+    return {variables.names, std::move(integrand), std::move(domain), std::move(method),
+            budget,          std::move(options),   points_limit,      o.log};
 }
 
 } // namespace montelux::app

@@ -1,7 +1,7 @@
 // Options of `montelux integrate`: flags as typed, and the task that they describe.
 #pragma once
 
-#include "app/expression.h"
+#include "app/variables.h"
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -16,7 +16,8 @@ namespace montelux::app {
 
 // As typed; numbers may be formulas ("1e6", "pi/2") and are read by make_task.
 struct IntegrateOptions {
-    std::vector<std::string> formulas, over, densities;
+    std::vector<std::string> formulas, let, over, densities;
+    std::string library, source, components;
     std::string domain = "box", radius, centre;
     std::string method;
     std::string relative_error, absolute_error, evaluations, time, seed = "0", threads = "0";
@@ -28,13 +29,13 @@ struct IntegrateOptions {
 // An integration that is ready to run. `options` lacks progress and cancel.
 struct IntegrationTask {
     std::vector<std::string> variables;
-    Formulas formulas;
+    NamedIntegrand integrand;
     Domain domain;
     Method method;
     Budget budget;
     IntegrationOptions options;
     std::uint64_t points_limit;
-    bool logarithm; // the formula is log f
+    bool logarithm; // the integrand is log f
 
     bool targeted() const { return budget.relative_error > 0 || budget.absolute_error > 0; }
 };

@@ -43,7 +43,7 @@ std::string report_text(const IntegrationTask& task, const IntegrationResult& r)
     for (std::size_t c = 0; c < r.value.size(); ++c) {
         Estimate one = r.estimate(static_cast<int>(c));
         one.non_finite = 0; // reported by a warning
-        if (r.value.size() > 1) text += task.formulas.texts()[c] + ": ";
+        if (r.value.size() > 1) text += task.integrand.names[c] + ": ";
         text += to_string(one) + "\n";
     }
     return text + report_rest(r);
@@ -54,7 +54,7 @@ std::string report_text(const LogIntegrationResult& r) {
 }
 
 Json report_json(const IntegrationTask& task, const IntegrationResult& r) {
-    const bool scalar = task.formulas.count() == 1;
+    const bool scalar = task.integrand.count() == 1;
     auto entry = [scalar](const std::vector<double>& values) {
         if (!scalar) return numbers(values);
         return values.empty() ? Json(nullptr) : number(values.front());
@@ -83,7 +83,7 @@ Json report_json(const IntegrationTask& task, const IntegrationResult& r) {
     out["seconds"] = number(r.seconds);
     out["seed"] = task.options.seed;
     out["variables"] = task.variables;
-    out["formulas"] = task.formulas.texts();
+    out["formulas"] = task.integrand.names;
     out["domain"] = task.domain.description();
     out["history"] = Json::array();
     for (const IterationRecord& h : r.history) {

@@ -6,9 +6,11 @@ docs=$(cd "$(dirname "$0")/../../docs" && pwd)
 
 mkdir bin && ln -s "$montelux" bin/montelux
 PATH=$folder/bin:$PATH
-# Files NUMBER.command and NUMBER.shown for each command of a page.
+# The C files that a page shows (```c title="NAME"), and files NUMBER.command and NUMBER.shown for each command of a page.
 split() {
     awk '
+        /^```c title="/ { split($0, part, "\""); file = part[2]; printf "" >file; next }
+        file != "" { if (/^```/) file = ""; else print >file; next }
         /^```/ && inside { inside = 0; shown = ""; next }
         /^```(text|sh|console)$/ { inside = 1; next }
         inside && continued { print >command; continued = /\\$/; next }

@@ -213,7 +213,7 @@ if command -v script >/dev/null; then
 fi
 
 # Mistakes of a new user.
-expect 2 "FORMULA is required" integrate
+expect 2 "expected a FORMULA, --library or --source" integrate
 expect 2 "a box has none" integrate 1 --over x=0:1 --radius 2
 expect 2 "a simplex has none" integrate 1 --domain simplex --over x,y --centre 1,1
 expect 2 "--checkpoint-every: expected --checkpoint FILE" integrate 1 --over x=0:1 --checkpoint-every 5

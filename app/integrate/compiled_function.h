@@ -1,0 +1,45 @@
+// CompiledFunction: an integrand in C, from a shared library, or from a source that the system's compiler translates.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "montelux/mc/integrate/points.h"
+
+namespace montelux::app {
+
+// The function is `double f(int n, const double *x)`, or, of several components,
+// `void f(int n, const double *x, int m, double *y)`, where x holds the n coordinates of a point and y takes the m
+// values. Where parameters are given, a further argument `const double *parameters` follows. It is called from many
+// threads at once.
+class CompiledFunction {
+  public:
+    // `components` is 0 for a function that returns its value. `parameters` may be empty.
+    struct Form {
+        int components = 0;
+        std::vector<double> parameters{};
+    };
+
+    // `place`: FILE:FUNCTION, or FILE alone, whose function is `integrand`. Throw Error naming `place` where there is
+    // no such file or function.
+    static CompiledFunction from_library(const std::string& place, Form form);
+    // A file in C or C++. $CC or cc, and $CXX or c++, translate it, with -O2 and the words of $CFLAGS or $CXXFLAGS.
+    // What the compiler prints goes to standard error.
+    static CompiledFunction from_source(const std::string& place, Form form);
+
+    int count() const { return form_.components > 0 ? form_.components : 1; }
+    // The function's name; of several components with an index: f[0], f[1].
+    std::vector<std::string> names() const;
+    void operator()(const PointBatch& x, ValueBatch y) const;
+
+  private:
+    CompiledFunction(const std::string& file, std::string function, Form form, const std::string& place);
+
+    std::shared_ptr<void> library_;
+    void* address_ = nullptr;
+    std::string function_;
+    Form form_;
+};
+
+} // namespace montelux::app
