@@ -1,16 +1,16 @@
 #include "app/integrate/compiled_function.h"
 
 #include <array>
-#include <bit>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <dlfcn.h>
 #include <filesystem>
+#include <optional>
 #include <spawn.h>
 #include <sstream>
 #include <string_view>
 #include <sys/wait.h>
+#include <type_traits>
 #include <unistd.h>
 #include <utility>
 
@@ -130,12 +130,21 @@ CompiledFunction CompiledFunction::from_source(const std::string& place, Form fo
 CompiledFunction::CompiledFunction(const std::string& file, std::string function, Form form,
                                    const std::string& place)
     : function_(std::move(function)), form_(std::move(form)) {
-    void* const handle = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (handle == nullptr)
-        throw Error(place, std::string("is not a shared library that can be loaded: ") + ::dlerror());
-    library_ = std::shared_ptr<void>(handle, [](void* h) { ::dlclose(h); });
-    address_ = ::dlsym(handle, function_.c_str());
-    if (address_ == nullptr)
+    std::string reason;
+    std::optional<SharedLibrary> opened = SharedLibrary::open(file, reason);
+    if (!opened) throw Error(place, "is not a shared library that can be loaded: " + reason);
+    library_ = std::make_shared<const SharedLibrary>(std::move(*opened));
+    bool found = false;
+    const auto find = [&](auto& f) {
+        f = library_->find<std::remove_reference_t<decltype(f)>>(function_.c_str());
+        found = f != nullptr;
+    };
+    const bool parameters = !form_.parameters.empty();
+    if (form_.components == 0)
+        parameters ? find(value_with_parameters_) : find(value_);
+    else
+        parameters ? find(values_with_parameters_) : find(values_);
+    if (!found)
         throw Error(place, "has no function '" + function_ +
                                "'; FILE:FUNCTION names another one, and functions of C++ need extern \"C\"");
 }
@@ -150,38 +159,19 @@ std::vector<std::string> CompiledFunction::names() const {
 void CompiledFunction::operator()(const PointBatch& x, ValueBatch y) const {
     const int n = x.dimensions(), m = form_.components;
     std::vector<double> point(static_cast<std::size_t>(n)), values(static_cast<std::size_t>(m));
-    const double* const parameters = form_.parameters.empty() ? nullptr : form_.parameters.data();
-    const auto each = [&](const auto& call) {
-        for (std::size_t i = 0; i < x.count(); ++i) {
-            x.gather(i, point.data());
-            call(i);
-        }
-    };
-    const auto as = [this](auto type) { return std::bit_cast<decltype(type)>(address_); };
-    if (m == 0) {
-        using Plain = double (*)(int, const double*);
-        using WithParameters = double (*)(int, const double*, const double*);
-        if (parameters == nullptr)
-            each([&, f = as(Plain())](std::size_t i) { y(i, 0) = f(n, point.data()); });
+    const double *const p = point.data(), *const parameters = form_.parameters.data();
+    for (std::size_t i = 0; i < x.count(); ++i) {
+        x.gather(i, point.data());
+        if (value_ != nullptr)
+            y(i, 0) = value_(n, p);
+        else if (value_with_parameters_ != nullptr)
+            y(i, 0) = value_with_parameters_(n, p, parameters);
+        else if (values_ != nullptr)
+            values_(n, p, m, values.data());
         else
-            each([&, f = as(WithParameters())](std::size_t i) { y(i, 0) = f(n, point.data(), parameters); });
-        return;
-    }
-    using Plain = void (*)(int, const double*, int, double*);
-    using WithParameters = void (*)(int, const double*, int, double*, const double*);
-    const auto keep = [&](std::size_t i) {
+            values_with_parameters_(n, p, m, values.data(), parameters);
         for (int c = 0; c < m; ++c) y(i, c) = values[static_cast<std::size_t>(c)];
-    };
-    if (parameters == nullptr)
-        each([&, f = as(Plain())](std::size_t i) {
-            f(n, point.data(), m, values.data());
-            keep(i);
-        });
-    else
-        each([&, f = as(WithParameters())](std::size_t i) {
-            f(n, point.data(), m, values.data(), parameters);
-            keep(i);
-        });
+    }
 }
 
 } // namespace montelux::app

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "montelux/mc/integrate/points.h"
+#include "montelux/mc/io/shared_library.h"
 
 namespace montelux::app {
 
@@ -36,10 +37,14 @@ class CompiledFunction {
   private:
     CompiledFunction(const std::string& file, std::string function, Form form, const std::string& place);
 
-    std::shared_ptr<void> library_;
-    void* address_ = nullptr;
+    std::shared_ptr<const SharedLibrary> library_;
     std::string function_;
     Form form_;
+    // One of these, as the form has it.
+    double (*value_)(int, const double*) = nullptr;
+    double (*value_with_parameters_)(int, const double*, const double*) = nullptr;
+    void (*values_)(int, const double*, int, double*) = nullptr;
+    void (*values_with_parameters_)(int, const double*, int, double*, const double*) = nullptr;
 };
 
 } // namespace montelux::app

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "montelux/denoise/shared_library.h"
+#include "montelux/mc/io/shared_library.h"
 
 namespace montelux {
 

@@ -189,7 +189,7 @@ std::vector<std::string> fenced_libraries(const std::vector<SourceFile>& files) 
         {std::regex("^boost/(asio|beast|system)"), "montelux/view/"},
         {std::regex("^(OpenEXR/|Imf|Imath|png\\.h|jpeglib\\.h|stb_|stb/)"), "montelux/image/"},
         {std::regex("^xxh"), "montelux/scene/"},
-        {std::regex("^dlfcn\\.h$"), "montelux/denoise/", "test/"},
+        {std::regex("^dlfcn\\.h$"), "montelux/mc/io/", "test/"},
         {std::regex("^mpi\\.h$"), "montelux/cluster/"},
         {std::regex("^nanovdb/"), "montelux/formats/", "test/"},
         {std::regex("^CLI/"), "app/"},

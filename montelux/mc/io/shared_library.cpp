@@ -1,4 +1,4 @@
-#include "montelux/denoise/shared_library.h"
+#include "montelux/mc/io/shared_library.h"
 
 #include <dlfcn.h>
 
