@@ -45,7 +45,10 @@ class RenderLoop {
         context_.set_guide(state_.guide);
         if (control.live != nullptr) control.live->open(state, tiles_, [this] { return report_now(); });
     }
-    ~RenderLoop() { close_live(); }
+    ~RenderLoop() {
+        close_live();
+        if (control_.executor != nullptr) control_.executor->release();
+    }
     RenderLoop(const RenderLoop&) = delete;
     RenderLoop& operator=(const RenderLoop&) = delete;
 
@@ -95,10 +98,17 @@ class RenderLoop {
         if (pause_is_due()) pause_ = true;
     }
     // With an executor, ends of rounds are expensive. If no decision depends on the error, one round takes
-    // all remaining samples after the first one; so does a pilot.
+    // all remaining samples after the first one; so does a pilot. Splats belong to one pass.
     void join_rounds() {
         const RenderTarget& target = renderer_.target();
         if (control_.executor == nullptr || !every_pixel_seen_) return;
+        if (state_.splats) {
+            const std::uint64_t points = order_.replicate_size();
+            const std::uint64_t end = (state_.target_samples.front() + points - 1) / points * points;
+            std::ranges::fill(state_.target_samples,
+                              static_cast<std::uint32_t>(std::min(end, order_.share())));
+            return;
+        }
         const std::uint64_t pilot = std::min(pilot_of(order_), order_.share());
         if (target.adaptive && state_.target_samples.front() < pilot)
             std::ranges::fill(state_.target_samples, static_cast<std::uint32_t>(pilot));
@@ -203,7 +213,7 @@ class RenderLoop {
             control_.executor->run(tile_renderer_, state_, watch);
         }
         samples_beyond_ = 0;
-        for (std::size_t t = 0; t < tiles_.size(); ++t) report_if_finished(t);
+        for (std::size_t t = 0; t < tiles_.size() && !state_.splats; ++t) report_if_finished(t);
         if (live != nullptr) live->wait_for_copies();
     }
 

@@ -30,9 +30,11 @@ class RoundExecutor {
     virtual ~RoundExecutor() = default;
 
     // Takes the missing samples of all pixels, up to state.target_samples, in their order, until none is
-    // missing or the watch stops it. At the end the state's film and report contain everything that was
+    // missing or the watch stops it. At the end the state's film, splats and report contain everything that was
     // taken.
     virtual void run(const TileRenderer& tiles, RenderState& state, const RoundWatch& watch) = 0;
+    // The render loop ends: what run() was given is not used any more.
+    virtual void release() = 0;
     // Whether the render must end as if cancelled, because the executor cannot continue.
     virtual bool failed() const = 0;
 };

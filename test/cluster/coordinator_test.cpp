@@ -6,10 +6,11 @@
 #include <thread>
 
 #include "montelux/cluster/coordinator.h"
-#include "montelux/cluster/tile_worker.h"
+#include "montelux/cluster/serve.h"
 #include "montelux/mc/io/byte_stream.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/render/renderer.h"
+#include "montelux/render/tile_renderer.h"
 
 namespace montelux::testing {
 namespace {
@@ -72,8 +73,7 @@ class CoordinatorTest : public ::testing::Test {
     void run(Coordinator& coordinator, const std::function<bool()>& stop) {
         const RoundWatch watch{[&](bool) { return stop(); },
                                [](std::uint64_t, const std::optional<FilmError>&) {}};
-        renderer_.serve(
-            [&](const TileRenderer& tile_renderer) { coordinator.run(tile_renderer, state_, watch); });
+        renderer_.serve([&](const SampleTakers& takers) { coordinator.run(takers.tiles, state_, watch); });
     }
     CoordinatorSettings settings(double patience_seconds = 60) const {
         return {.tile_size = edge, .threads = 0, .patience_seconds = patience_seconds};
