@@ -41,11 +41,14 @@ Coordinator::Coordinator(Mailbox& mailbox, const PixelBounds& crop, const Coordi
                          std::function<void()> on_wish)
     : settings_(settings), roster_(mailbox, settings.patience_seconds, std::move(on_wish)),
       bounds_(tiles_of(crop, settings.tile_size)), tiles_(bounds_.size()), ranks_(index(mailbox.size())),
-      schedule_(mailbox.size(), static_cast<int>(bounds_.size())) {}
+      schedule_(mailbox.size(), static_cast<int>(bounds_.size())), chains_(roster_, settings.threads) {}
 
 Coordinator::~Coordinator() { end(); }
 
-void Coordinator::release() { worker_.reset(); }
+void Coordinator::release() {
+    worker_.reset();
+    chains_.release();
+}
 
 void Coordinator::end() {
     if (std::exchange(ended_, true)) return;
@@ -115,6 +118,11 @@ void Coordinator::run(const TileRenderer& renderer, RenderState& state, const Ro
     }
     gather();
     roster_.end_listening();
+}
+
+void Coordinator::run(ChainRenderer& chains, RenderState& state, std::uint32_t target_samples,
+                      const ChainWatch& watch) {
+    chains_.run(chains, state, target_samples, watch);
 }
 
 void Coordinator::deal() {

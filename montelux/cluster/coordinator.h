@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "montelux/cluster/chain_leader.h"
 #include "montelux/cluster/mailbox.h"
 #include "montelux/cluster/protocol.h"
 #include "montelux/cluster/rank_roster.h"
@@ -42,6 +43,8 @@ class Coordinator final : public RoundExecutor {
     ~Coordinator() override;
 
     void run(const TileRenderer& renderer, RenderState& state, const RoundWatch& watch) override;
+    void run(ChainRenderer& chains, RenderState& state, std::uint32_t target_samples,
+             const ChainWatch& watch) override;
     void release() override;
     bool failed() const override { return failure().has_value(); }
     // Why the render ended early; a sentence.
@@ -99,6 +102,7 @@ class Coordinator final : public RoundExecutor {
     std::vector<Rank> ranks_;
     TileSchedule schedule_;
     std::unique_ptr<RankWorker> worker_; // of this rank
+    ChainLeader chains_;                 // of a Metropolis render
     std::uint64_t moved_tiles_ = 0;
     std::uint32_t gatherings_ = 0;
     std::vector<int> left_out_;

@@ -11,6 +11,8 @@ enum Tag : int {
     assign = 1,  // Assignments, one after another
     release,     // a tile's number: send its pixels back and forget them
     gather,      // a number: send back all changed pixels, and all splats; forget open assignments
+    take_groups, // Groups
+    drop_groups, // forget groups of chains that were not sent yet
     end,         // the render is over
     // In both directions.
     beat, // the sender is alive; a worker says so before its hello, too
@@ -21,6 +23,9 @@ enum Tag : int {
     splats,         // for each tile that has any: its number, and its sums of the SplatFilm, row by row
     splat_counts,   // SplatCounts, after the splats
     gathered,       // after the last of what `gather` asked for: its number
+    paths,          // a number: how many paths of the groups in hand were taken
+    replicate_part, // ReplicatePart, and as many ChainReplicate::PixelValues
+    replicate,      // after its parts: its number, ChainGroup::Tally, ChainCosts
     failed,         // why the worker cannot continue; its last message
     wish,           // this rank received a signal: cancel the render
 };
@@ -57,6 +62,17 @@ struct TilePixelsHeader {
 // Of all splats since the last gathering: SplatFilm::bad() and overflows().
 struct SplatCounts {
     std::uint64_t bad = 0, overflows = 0;
+};
+
+// Groups of chains, by their numbers among the film's replicates.
+struct Groups {
+    std::uint64_t first = 0, count = 0;
+};
+
+// Some pixels of a replicate.
+struct ReplicatePart {
+    std::uint64_t number = 0;
+    std::uint64_t first = 0, count = 0; // of pixels
 };
 
 } // namespace montelux::protocol

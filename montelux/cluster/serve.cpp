@@ -6,6 +6,7 @@
 #include <future>
 #include <thread>
 
+#include "montelux/cluster/chain_worker.h"
 #include "montelux/cluster/protocol.h"
 #include "montelux/cluster/rank_worker.h"
 #include "montelux/cluster/tile_worker.h"
@@ -51,6 +52,10 @@ void serve(RankWorker& worker, Mailbox& mailbox, const ServeSettings& settings) 
 
 void serve_render(const Renderer& renderer, Mailbox& mailbox, const ServeSettings& settings) {
     renderer.serve([&](const SampleTakers& takers) {
+        if (takers.chains != nullptr) {
+            ChainWorker worker(*takers.chains, settings.threads, mailbox);
+            return serve(worker, mailbox, settings);
+        }
         TileWorker worker(takers.tiles, tiles_of(renderer.description().film.crop, settings.tile_size),
                           settings.threads, mailbox);
         serve(worker, mailbox, settings);

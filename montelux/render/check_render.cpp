@@ -71,10 +71,6 @@ void check_sharing(const SceneDescription& d) {
         throw Error("guiding",
                     "a guided picture cannot be rendered by several processes yet: render it by one, or "
                     "turn guiding off");
-    if (d.integrator.method == IntegratorKind::metropolis)
-        throw Error("metropolis",
-                    "chains are not shared by several processes; let each render a slice (--slice) "
-                    "and join the pictures by 'montelux merge'");
 }
 
 } // namespace montelux

@@ -230,9 +230,12 @@ class RenderLoop {
             change();
             samples_beyond_ = 0;
         };
-        chains_->run(
-            state_, state_.target_samples.front(),
-            {[this] { return cancelled() || out_of_time(); }, [this] { return pause_is_due(); }, tell, add});
+        const ChainWatch watch{
+            {[this] { return cancelled() || out_of_time(); }, tell}, [this] { return pause_is_due(); }, add};
+        if (control_.executor != nullptr)
+            control_.executor->run(*chains_, state_, state_.target_samples.front(), watch);
+        else
+            chains_->run(state_, state_.target_samples.front(), watch);
         errors_are_known_ = state_.film.pixels().front().replicates().count() >= 2;
         for (std::size_t t = 0; t < tiles_.size(); ++t) report_if_finished(t);
     }

@@ -11,6 +11,8 @@
 
 namespace montelux {
 
+class ChainRenderer;
+struct ChainWatch;
 class TileRenderer;
 
 // The render loop as an executor sees it. Called only from the thread that runs the round.
@@ -33,6 +35,10 @@ class RoundExecutor {
     // missing or the watch stops it. At the end the state's film, splats and report contain everything that was
     // taken.
     virtual void run(const TileRenderer& tiles, RenderState& state, const RoundWatch& watch) = 0;
+    // Of a Metropolis render, as ChainRenderer::run: adds groups until all pixels have so many samples, or the watch says
+    // otherwise.
+    virtual void run(ChainRenderer& chains, RenderState& state, std::uint32_t target_samples,
+                     const ChainWatch& watch) = 0;
     // The render loop ends: what run() was given is not used any more.
     virtual void release() = 0;
     // Whether the render must end as if cancelled, because the executor cannot continue.

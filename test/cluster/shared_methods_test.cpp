@@ -1,4 +1,4 @@
-// Renders by light paths have the bits of one process, however many ranks share them.
+// Renders by light paths and by chains have the bits of one process, however many ranks share them.
 #include "test/cluster/shared_testing.h"
 #include "test/sanitized.h"
 #include <algorithm>
@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "montelux/cluster/coordinator.h"
+#include "montelux/mc/io/byte_stream.h"
+#include "montelux/mc/math/error.h"
 #include "montelux/render/renderer.h"
 #include "montelux/render/splat_pass.h"
 
@@ -103,6 +105,67 @@ TEST(SharedLightPaths, LostRanksLeaveNoSplatsAndNoSamples) {
         EXPECT_LT(saved.report.samples, whole.report.samples);
         render_on(2, d, {}, saved);
         expect_equal(saved, whole, "lost");
+    }
+}
+
+TEST(SharedChains, AnyNumberOfRanksGivesTheSameBits) {
+    for (const RenderTarget& target :
+         {RenderTarget{}, RenderTarget{.error = 0.25}, RenderTarget{.slice = {1, 3}}}) {
+        const SceneDescription d = picture_of(IntegratorKind::metropolis, SamplerKind::independent, 48);
+        const RenderState whole = rendered(d, target);
+        for (const int ranks : {2, target.error > 0 ? 3 : 1}) {
+            RenderState state(d);
+            render_on(ranks, d, target, state);
+            expect_equal(state, whole, "ranks");
+            const ChainStatistics &chains = state.report.chains, &alone = whole.report.chains;
+            EXPECT_EQ(chains.groups, alone.groups);
+            EXPECT_EQ(chains.large_accepted, alone.large_accepted);
+            EXPECT_EQ(chains.small_accepted, alone.small_accepted);
+            EXPECT_EQ(chains.starting_points, alone.starting_points);
+            EXPECT_EQ(chains.longest_step, alone.longest_step);
+            EXPECT_EQ(chains.agreement.worst_r_hat(), alone.agreement.worst_r_hat());
+        }
+    }
+}
+
+TEST(SharedChains, InterruptedRendersEndWithTheSameBits) {
+    const SceneDescription d = picture_of(IntegratorKind::metropolis, SamplerKind::independent, 48);
+    int stops = 0, within_passes = 0;
+    expect_equal(interrupted(d, 396 * 14, stops, within_passes), rendered(d), "interrupted");
+    EXPECT_GE(stops, 3);
+}
+
+// A rank falls silent when its group is half sent, and between two groups.
+TEST(SharedChains, LostRanksLeaveNoPartOfAGroup) {
+    const SceneDescription d = picture_of(IntegratorKind::metropolis, SamplerKind::independent, 48);
+    const RenderState whole = rendered(d);
+    for (const protocol::Tag last : {protocol::replicate_part, protocol::replicate}) {
+        RenderState saved = render_until_lost(d, last, 2);
+        EXPECT_LT(saved.report.samples, whole.report.samples);
+        EXPECT_GT(saved.report.samples, 0u);
+        render_on(2, d, {}, saved);
+        expect_equal(saved, whole, "lost");
+    }
+}
+
+TEST(SharedChains, MessagesThatMakeNoSenseAreRefused) {
+    const SceneDescription d = picture_of(IntegratorKind::metropolis, SamplerKind::independent, 48);
+    const Renderer renderer(d);
+    for (const auto& [tag, part] :
+         {std::pair{protocol::replicate_part, protocol::ReplicatePart{0, 300, 200}}, // 396 pixels
+          std::pair{protocol::replicate_part, protocol::ReplicatePart{0, ~std::uint64_t{0}, 2}},
+          std::pair{protocol::replicate_part, protocol::ReplicatePart{3, 5, 7}}, // without its beginning
+          std::pair{protocol::replicate, protocol::ReplicatePart{}},
+          std::pair{protocol::done, protocol::ReplicatePart{}}}) {
+        LocalJob job(2);
+        ByteWriter out;
+        out.put(part);
+        job.mailbox(1).send(0, tag, out.take());
+        Coordinator coordinator(job.mailbox(0), d.film.crop, {.threads = 1});
+        RenderControl control;
+        control.executor = &coordinator;
+        RenderState state(d);
+        EXPECT_THROW(renderer.render(state, control), Error) << tag;
     }
 }
 
