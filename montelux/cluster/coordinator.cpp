@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "montelux/cluster/run_beside.h"
 #include "montelux/cluster/tile_worker.h"
 #include "montelux/mc/io/byte_stream.h"
 #include "montelux/mc/math/error.h"
@@ -41,7 +42,8 @@ Coordinator::Coordinator(Mailbox& mailbox, const PixelBounds& crop, const Coordi
                          std::function<void()> on_wish)
     : settings_(settings), roster_(mailbox, settings.patience_seconds, std::move(on_wish)),
       bounds_(tiles_of(crop, settings.tile_size)), tiles_(bounds_.size()), ranks_(index(mailbox.size())),
-      schedule_(mailbox.size(), static_cast<int>(bounds_.size())), chains_(roster_, settings.threads) {}
+      schedule_(mailbox.size(), static_cast<int>(bounds_.size())), chains_(roster_, settings.threads),
+      guide_(roster_) {}
 
 Coordinator::~Coordinator() { end(); }
 
@@ -106,6 +108,7 @@ void Coordinator::run(const TileRenderer& renderer, RenderState& state, const Ro
     roster_.begin_listening();
     if (!worker_)
         worker_ = std::make_unique<TileWorker>(renderer, bounds_, settings_.threads, roster_.mailbox());
+    guide_.set(state.guide);
     begin_round();
     std::chrono::microseconds pause = shortest_poll;
     while (!schedule_.finished() && !failed() && !watch.stop(something_done_)) {
@@ -125,8 +128,20 @@ void Coordinator::run(ChainRenderer& chains, RenderState& state, std::uint32_t t
     chains_.run(chains, state, target_samples, watch);
 }
 
+void Coordinator::meanwhile(const std::function<void()>& work, const std::function<void()>& between) {
+    roster_.begin_listening();
+    run_beside([&] { with_threads(settings_.threads, work); }, longest_poll,
+               [&] {
+                   listen();
+                   roster_.watch();
+                   between();
+               });
+    roster_.end_listening();
+}
+
 void Coordinator::deal() {
     for (int r = 0; r < roster_.size(); ++r) {
+        if (!guide_.is_known_to(r)) continue;
         std::vector<std::uint8_t> message;
         while (schedule_.in_work(r) < tasks_a_thread * roster_.threads(r)) {
             const auto pick = schedule_.next(r);
@@ -203,7 +218,7 @@ bool Coordinator::listen() {
         else
             handle(*message);
     }
-    worker_->report();
+    if (worker_) worker_->report();
     return heard;
 }
 
@@ -229,7 +244,10 @@ void Coordinator::handle(const Message& message) {
         take_staged(rank);
         rank.gathering = false;
         return;
+    case protocol::guide_taken:
+        return guide_.piece_taken(message);
     case protocol::hello:
+        return guide_.greet(message.source);
     case protocol::wish:
     case protocol::failed:
     case protocol::beat:

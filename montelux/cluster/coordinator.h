@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "montelux/cluster/chain_leader.h"
+#include "montelux/cluster/guide_exchange.h"
 #include "montelux/cluster/mailbox.h"
 #include "montelux/cluster/protocol.h"
 #include "montelux/cluster/rank_roster.h"
@@ -45,6 +46,7 @@ class Coordinator final : public RoundExecutor {
     void run(const TileRenderer& renderer, RenderState& state, const RoundWatch& watch) override;
     void run(ChainRenderer& chains, RenderState& state, std::uint32_t target_samples,
              const ChainWatch& watch) override;
+    void meanwhile(const std::function<void()>& work, const std::function<void()>& between) override;
     void release() override;
     bool failed() const override { return failure().has_value(); }
     // Why the render ended early; a sentence.
@@ -103,6 +105,7 @@ class Coordinator final : public RoundExecutor {
     TileSchedule schedule_;
     std::unique_ptr<RankWorker> worker_; // of this rank
     ChainLeader chains_;                 // of a Metropolis render
+    GuideSender guide_;
     std::uint64_t moved_tiles_ = 0;
     std::uint32_t gatherings_ = 0;
     std::vector<int> left_out_;

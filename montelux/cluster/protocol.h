@@ -13,6 +13,7 @@ enum Tag : int {
     gather,      // a number: send back all changed pixels, and all splats; forget open assignments
     take_groups, // Groups
     drop_groups, // forget groups of chains that were not sent yet
+    guide,       // GuidePiece, and bytes of GuidingField::save: paths follow it from now on
     end,         // the render is over
     // In both directions.
     beat, // the sender is alive; a worker says so before its hello, too
@@ -26,6 +27,7 @@ enum Tag : int {
     paths,          // a number: how many paths of the groups in hand were taken
     replicate_part, // ReplicatePart, and as many ChainReplicate::PixelValues
     replicate,      // after its parts: its number, ChainGroup::Tally, ChainCosts
+    guide_taken,    // the worker has the piece
     failed,         // why the worker cannot continue; its last message
     wish,           // this rank received a signal: cancel the render
 };
@@ -73,6 +75,11 @@ struct Groups {
 struct ReplicatePart {
     std::uint64_t number = 0;
     std::uint64_t first = 0, count = 0; // of pixels
+};
+
+struct GuidePiece {
+    std::uint64_t first = 0; // byte
+    std::uint64_t size = 0;  // of the whole guide; 0: none
 };
 
 } // namespace montelux::protocol

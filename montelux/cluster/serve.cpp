@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <exception>
-#include <future>
 #include <thread>
 
 #include "montelux/cluster/chain_worker.h"
 #include "montelux/cluster/protocol.h"
 #include "montelux/cluster/rank_worker.h"
+#include "montelux/cluster/run_beside.h"
 #include "montelux/cluster/tile_worker.h"
 #include "montelux/mc/io/byte_stream.h"
 
@@ -57,26 +56,13 @@ void serve_render(const Renderer& renderer, Mailbox& mailbox, const ServeSetting
             return serve(worker, mailbox, settings);
         }
         TileWorker worker(takers.tiles, tiles_of(renderer.description().film.crop, settings.tile_size),
-                          settings.threads, mailbox);
+                          settings.threads, mailbox, &takers.context);
         serve(worker, mailbox, settings);
     });
 }
 
 void prepare_and_beat(Mailbox& mailbox, const std::function<void()>& prepare) {
-    std::promise<void> promise;
-    std::future<void> prepared = promise.get_future();
-    std::thread thread([&] {
-        try {
-            prepare();
-            promise.set_value();
-        } catch (...) {
-            promise.set_exception(std::current_exception());
-        }
-    });
-    while (prepared.wait_for(beat_interval) != std::future_status::ready)
-        mailbox.send(leading_rank, protocol::beat, {});
-    thread.join();
-    prepared.get();
+    run_beside(prepare, beat_interval, [&] { mailbox.send(leading_rank, protocol::beat, {}); });
 }
 
 void serve_failure(const std::string& why, Mailbox& mailbox, double patience_seconds) {

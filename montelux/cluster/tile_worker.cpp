@@ -17,9 +17,9 @@ using Clock = std::chrono::steady_clock;
 } // namespace
 
 TileWorker::TileWorker(const TileRenderer& renderer, std::vector<PixelBounds> tiles, int threads,
-                       Mailbox& mailbox)
-    : renderer_(renderer), bounds_(std::move(tiles)), mailbox_(mailbox), tiles_(bounds_.size()),
-      last_sent_(Clock::now()) {
+                       Mailbox& mailbox, SampleContext* context)
+    : renderer_(renderer), bounds_(std::move(tiles)), mailbox_(mailbox), context_(context),
+      tiles_(bounds_.size()), last_sent_(Clock::now()) {
     if (renderer.makes_splats())
         splats_.emplace(
             PixelBounds{bounds_.front().x0, bounds_.front().y0, bounds_.back().x1, bounds_.back().y1});
@@ -111,6 +111,8 @@ void TileWorker::handle(const Message& message) {
         tasks_.clear();
         return;
     }
+    case protocol::guide:
+        return take_guide(message);
     case protocol::end:
         ended_ = true;
         stop_.request();
@@ -118,6 +120,15 @@ void TileWorker::handle(const Message& message) {
     default:
         throw Error("a message came that is not known: " + std::to_string(message.tag));
     }
+}
+
+void TileWorker::take_guide(const Message& message) {
+    guide_.take(message, mailbox_, [this](std::shared_ptr<const GuidingField> guide) {
+        std::lock_guard lock(mutex_);
+        if (context_ == nullptr || busy_ > 0 || !tasks_.empty())
+            throw Error("guide", "it came while samples are taken");
+        context_->set_guide(std::move(guide));
+    });
 }
 
 void TileWorker::assign(const Message& message) {

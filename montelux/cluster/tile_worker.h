@@ -11,11 +11,13 @@
 #include <thread>
 #include <vector>
 
+#include "montelux/cluster/guide_exchange.h"
 #include "montelux/cluster/mailbox.h"
 #include "montelux/cluster/protocol.h"
 #include "montelux/cluster/rank_worker.h"
 #include "montelux/film/splat_film.h"
 #include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/render/sample_context.h"
 #include "montelux/render/tile_renderer.h"
 
 namespace montelux {
@@ -26,8 +28,10 @@ namespace montelux {
 // They are sent with the pixels of all these tiles, and the leader takes both or neither.
 class TileWorker final : public RankWorker {
   public:
-    // Everything must outlive it. Tells the leader, rank 0, that it is ready.
-    TileWorker(const TileRenderer& renderer, std::vector<PixelBounds> tiles, int threads, Mailbox& mailbox);
+    // Everything must outlive it. Tells the leader, rank 0, that it is ready. `context`, the renderer's, gets the guide that
+    // the leader sends; null: of the leader's own rank.
+    TileWorker(const TileRenderer& renderer, std::vector<PixelBounds> tiles, int threads, Mailbox& mailbox,
+               SampleContext* context = nullptr);
     ~TileWorker() override;
     TileWorker(const TileWorker&) = delete;
     TileWorker& operator=(const TileWorker&) = delete;
@@ -52,6 +56,7 @@ class TileWorker final : public RankWorker {
     void run_thread();
     protocol::TaskReport perform(const Task& task);
     void assign(const Message& message);
+    void take_guide(const Message& message);
     void send_tiles(std::span<const std::uint32_t> which);
     void finish_gathering();
     void send_splats();
@@ -60,6 +65,8 @@ class TileWorker final : public RankWorker {
     const TileRenderer& renderer_;
     std::vector<PixelBounds> bounds_;
     Mailbox& mailbox_;
+    SampleContext* context_;
+    GuideReceiver guide_;
     std::vector<std::unique_ptr<Tile>> tiles_; // those that are held
     std::optional<SplatFilm> splats_;          // of all samples since the last gathering, if they bring any
     std::uint32_t gathering_number_ = 0;

@@ -67,10 +67,6 @@ void check_sharing(const SceneDescription& d) {
     if (d.film.spectral)
         throw Error("film",
                     "a spectral film cannot be rendered by several processes: they exchange RGB alone");
-    if (d.integrator.guiding == Guiding::on)
-        throw Error("guiding",
-                    "a guided picture cannot be rendered by several processes yet: render it by one, or "
-                    "turn guiding off");
 }
 
 } // namespace montelux

@@ -59,7 +59,8 @@ class RenderLoop {
                 every_pixel_seen_ = std::ranges::all_of(state_.film.pixels(), [this](const Pixel& p) {
                     return state_.splats ? p.replicates().count() > 0 : p.samples() > 0;
                 });
-            train_guide_if_due();
+            // Before the next round is chosen: a resumed render trains its guide first, too.
+            if (!train_guide_if_due()) return end(all_taken() ? RenderStop::samples : RenderStop::cancelled);
             if (const auto reason = stop_between_rounds()) return end(*reason);
             if (round_is_done()) {
                 std::vector<std::uint32_t> target_samples =
@@ -148,24 +149,36 @@ class RenderLoop {
                                std::pow(*reached / renderer_.target().error, 2);
         samples_for_error_ = static_cast<std::uint64_t>(std::min(samples, 1e18));
     }
-    // After a first sample of every pixel: a render that is cancelled early has a picture.
-    void train_guide_if_due() {
+    // After a first sample of every pixel: a render that is cancelled early has a picture. False: the training was
+    // cancelled.
+    bool train_guide_if_due() {
         const IntegratorSettings& settings = renderer_.description().integrator;
         if (settings.guiding == Guiding::off || state_.report.guide.decided || !every_pixel_seen_ ||
-            !round_is_done() || cancelled() || control_.executor != nullptr)
-            return;
+            !round_is_done())
+            return true;
+        if (cancelled()) return false;
+        RoundExecutor* const executor = control_.executor;
+        CancelFlag stop; // of a render that others take part in
         const RenderTarget& target = renderer_.target();
         const GuideTrainingPlan plan{.bounds = state_.film.bounds(),
                                      .samples = order_.share(),
                                      .error = target.quantile > 0 ? 0 : target.error,
                                      .seconds = target.time,
-                                     .cancel = control_.cancel};
-        TrainedGuide trained = train_guide(context_, renderer_.accelerator(), settings, plan);
+                                     .cancel = executor != nullptr ? &stop : control_.cancel};
+        TrainedGuide trained;
+        const auto train = [&] { trained = train_guide(context_, renderer_.accelerator(), settings, plan); };
+        if (executor == nullptr)
+            train();
+        else
+            executor->meanwhile(train, [&] {
+                if (cancelled() || executor->failed()) stop.request();
+            });
         state_.guide = std::move(trained.guide);
         std::lock_guard lock(mutex_);
         state_.report.guide = trained.summary;
         state_.report.cpu_seconds += trained.summary.cpu_seconds;
         state_.report.seconds = seconds();
+        return trained.summary.decided;
     }
 
     void take_samples() {

@@ -39,6 +39,9 @@ class RoundExecutor {
     // otherwise.
     virtual void run(ChainRenderer& chains, RenderState& state, std::uint32_t target_samples,
                      const ChainWatch& watch) = 0;
+    // Runs `work`, which takes long and is no part of a round, in another thread on this process's threads. Meanwhile calls
+    // between(), which may request the work to end, many times a second. Rethrows exceptions.
+    virtual void meanwhile(const std::function<void()>& work, const std::function<void()>& between) = 0;
     // The render loop ends: what run() was given is not used any more.
     virtual void release() = 0;
     // Whether the render must end as if cancelled, because the executor cannot continue.

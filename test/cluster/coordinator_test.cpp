@@ -1,6 +1,7 @@
 // The leader of a render among ranks whose every word is chosen by the test.
 #include "test/cluster/local_job.h"
 #include "test/render/mixed_scene.h"
+#include <atomic>
 #include <gtest/gtest.h>
 #include <string>
 #include <thread>
@@ -176,6 +177,30 @@ TEST_F(CoordinatorTest, RanksThatPrepareForLongAreWaitedFor) {
     helper.join();
     EXPECT_TRUE(waited_for);
     EXPECT_FALSE(coordinator.failed()) << *coordinator.failure();
+}
+
+// A guide is trained by the leader alone: it hears the others meanwhile, and does without those that are silent.
+TEST_F(CoordinatorTest, RanksAreHeardWhileTheLeaderWorks) {
+    LocalJob job(3);
+    PlayedRank first(job.mailbox(1)), second(job.mailbox(2));
+    int wishes = 0, turns = 0;
+    Coordinator coordinator(job.mailbox(0), crop(), settings(0.2), [&] { ++wishes; });
+    first.say_hello();
+    second.say_hello();
+    std::atomic<bool> ended{false};
+    coordinator.meanwhile(
+        [&] {
+            while (!ended) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        },
+        [&] {
+            first.say(turns++ == 0 ? protocol::wish : protocol::beat);
+            ended = coordinator.failed();
+        });
+    EXPECT_EQ(wishes, 1);
+    EXPECT_GT(turns, 10);
+    ASSERT_TRUE(coordinator.failed());
+    EXPECT_NE(coordinator.failure()->find("rank 2 has not answered"), std::string::npos);
+    EXPECT_THROW(coordinator.meanwhile([] { throw Error("guide", "is bad"); }, [] {}), Error);
 }
 
 TEST_F(CoordinatorTest, WhatPreparationThrowsComesThrough) {

@@ -1,11 +1,13 @@
-// Renders by light paths and by chains have the bits of one process, however many ranks share them.
+// Renders by light paths, by chains and by guided paths have the bits of one process, however many ranks share them.
 #include "test/cluster/shared_testing.h"
+#include "test/render/hidden_lamp.h"
 #include "test/sanitized.h"
 #include <algorithm>
 #include <cstdint>
 #include <gtest/gtest.h>
 #include <optional>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include "montelux/cluster/coordinator.h"
@@ -167,6 +169,68 @@ TEST(SharedChains, MessagesThatMakeNoSenseAreRefused) {
         RenderState state(d);
         EXPECT_THROW(renderer.render(state, control), Error) << tag;
     }
+}
+
+SceneDescription guided_picture(std::uint32_t spp) {
+    SceneDescription d = hidden_lamp(16).description;
+    d.integrator.guiding = Guiding::on;
+    d.sampler.kind = SamplerKind::independent;
+    d.sampler.spp = spp;
+    return d;
+}
+
+TEST(SharedGuides, AnyNumberOfRanksGivesTheSameBits) {
+    for (const RenderTarget& target : {RenderTarget{}, RenderTarget{.adaptive = true}}) {
+        const SceneDescription d = guided_picture(96);
+        const RenderState whole = rendered(d, target);
+        ASSERT_NE(whole.guide, nullptr);
+        for (int ranks = 1; ranks <= 3; ++ranks) {
+            RenderState state(d);
+            render_on(ranks, d, target, state);
+            expect_equal(state, whole, "ranks");
+            EXPECT_EQ(state.report.guide.rounds, whole.report.guide.rounds);
+            EXPECT_EQ(state.report.guide.gain, whole.report.guide.gain);
+        }
+    }
+}
+
+// Before and after the training; the ranks of the next job get the guide of the checkpoint.
+TEST(SharedGuides, InterruptedRendersEndWithTheSameBits) {
+    const SceneDescription d = guided_picture(200);
+    int stops = 0, within_passes = 0;
+    expect_equal(interrupted(d, 10'000, stops, within_passes), rendered(d), "interrupted");
+    EXPECT_GE(stops, 3);
+}
+
+// A rank that is ready only when the guide is trained gets it before its first tile.
+TEST(SharedGuides, LateRanksGetTheGuide) {
+    const SceneDescription d = guided_picture(1000);
+    const RenderState whole = rendered(d);
+    LocalJob job(2);
+    const Renderer renderer(d);
+    std::optional<std::thread> late;
+    RenderState state(d);
+    Coordinator coordinator(job.mailbox(0), d.film.crop, {.tile_size = 4, .threads = 1});
+    RenderControl control;
+    control.executor = &coordinator;
+    control.progress = [&](const RenderProgress& p) {
+        if (late || p.samples_done < 2000) return;
+        late.emplace([&] { serve_render(renderer, job.mailbox(1), {.tile_size = 4, .threads = 1}); });
+    };
+    renderer.render(state, control);
+    EXPECT_EQ(coordinator.threads(), 2);
+    coordinator.end();
+    if (late) late->join();
+    EXPECT_GT(coordinator.traffic().bytes_in, 16 * sizeof(Pixel)); // that rank has rendered a tile
+    expect_equal(state, whole, "late");
+}
+
+TEST(SharedGuides, LostRanksTakeNoPart) {
+    const SceneDescription d = guided_picture(96);
+    RenderState saved = render_until_lost(d, protocol::guide_taken, 1);
+    EXPECT_NE(saved.guide, nullptr);
+    render_on(2, d, {}, saved);
+    expect_equal(saved, rendered(d), "lost");
 }
 
 } // namespace
