@@ -149,30 +149,21 @@ class RenderLoop {
                                std::pow(*reached / renderer_.target().error, 2);
         samples_for_error_ = static_cast<std::uint64_t>(std::min(samples, 1e18));
     }
-    // After a first sample of every pixel: a render that is cancelled early has a picture. False: the training was
-    // cancelled.
+    // After a first sample of every pixel: a render that is cancelled early has a picture. False: it was cancelled.
     bool train_guide_if_due() {
         const IntegratorSettings& settings = renderer_.description().integrator;
         if (settings.guiding == Guiding::off || state_.report.guide.decided || !every_pixel_seen_ ||
             !round_is_done())
             return true;
         if (cancelled()) return false;
-        RoundExecutor* const executor = control_.executor;
-        CancelFlag stop; // of a render that others take part in
         const RenderTarget& target = renderer_.target();
         const GuideTrainingPlan plan{.bounds = state_.film.bounds(),
                                      .samples = order_.share(),
                                      .error = target.quantile > 0 ? 0 : target.error,
                                      .seconds = target.time,
-                                     .cancel = executor != nullptr ? &stop : control_.cancel};
-        TrainedGuide trained;
-        const auto train = [&] { trained = train_guide(context_, renderer_.accelerator(), settings, plan); };
-        if (executor == nullptr)
-            train();
-        else
-            executor->meanwhile(train, [&] {
-                if (cancelled() || executor->failed()) stop.request();
-            });
+                                     .cancel = control_.cancel};
+        TrainedGuide trained =
+            train_guide(context_, renderer_.accelerator(), settings, plan, control_.executor);
         state_.guide = std::move(trained.guide);
         std::lock_guard lock(mutex_);
         state_.report.guide = trained.summary;

@@ -147,6 +147,8 @@ TEST(SharedChains, LostRanksLeaveNoPartOfAGroup) {
         EXPECT_GT(saved.report.samples, 0u);
         render_on(2, d, {}, saved);
         expect_equal(saved, whole, "lost");
+        EXPECT_EQ(saved.report.chains.groups, whole.report.chains.groups);
+        EXPECT_EQ(saved.report.chains.small_accepted, whole.report.chains.small_accepted);
     }
 }
 

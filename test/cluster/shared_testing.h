@@ -75,7 +75,7 @@ class FailingMailbox final : public Mailbox {
     int left_;
 };
 
-// A render by two ranks, the second of which falls silent: the state that was saved of it.
+// A render led by one rank and taken by another, which falls silent: the state that was saved of it.
 inline RenderState render_until_lost(const SceneDescription& description, protocol::Tag last, int n) {
     LocalJob job(2);
     FailingMailbox failing(job.mailbox(1), last, n);
@@ -85,7 +85,7 @@ inline RenderState render_until_lost(const SceneDescription& description, protoc
     RenderState state(description), saved(description);
     {
         Coordinator coordinator(job.mailbox(0), description.film.crop,
-                                {.tile_size = 4, .threads = 1, .patience_seconds = 0.5});
+                                {.tile_size = 4, .threads = 0, .patience_seconds = 1.5});
         RenderControl control;
         control.executor = &coordinator;
         control.checkpoint = [&](const RenderState& s) { saved = s; };
