@@ -148,13 +148,16 @@ TEST(Guiding, RendersCancelledBeforeTheTrainingEndWithTheSameBits) {
     RenderState saved(b.description);
     RenderControl control;
     control.cancel = &cancel;
-    control.tile = [&](const FinishedTile& tile) {
-        if (tile.bounds.x1 == 20 && tile.bounds.y1 == 20) cancel.request();
+    control.checkpoint_seconds = 0;
+    control.checkpoint = [&](const RenderState& s) {
+        saved = s;
+        if (s.report.samples == 400) cancel.request();
     };
-    control.checkpoint = [&](const RenderState& s) { saved = s; };
-    with_threads(1, [&] { render_guided(b.description, control); });
+    render_guided(b.description, control);
     EXPECT_EQ(saved.report.samples, 400u);
+    EXPECT_EQ(saved.target_samples.front(), 1u); // the next round is not chosen
     EXPECT_FALSE(saved.report.guide.decided);
+    EXPECT_NE(whole.guide, nullptr);
     Renderer(b.description).render(saved);
     int differing = 0;
     for (std::size_t i = 0; i < whole.film.pixels().size(); ++i)
