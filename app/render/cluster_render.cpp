@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "montelux/cluster/tile_worker.h"
+#include "montelux/cluster/serve.h"
 #include "montelux/mc/io/byte_stream.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/render/renderer.h"
@@ -69,10 +69,11 @@ void help_with(std::vector<std::uint8_t> bytes, Communicator& job, const RenderO
     prepare_and_beat(job, [&] {
         with_threads(threads, [&] { prepared = std::make_unique<Prepared>(std::move(bytes), options); });
     });
-    prepared->renderer->serve([&](const TileRenderer& tiles) {
-        serve_tiles(tiles, prepared->description.film.crop, prepared->opening.tile_size, threads, job,
-                    &cancel, patience_with_leader);
-    });
+    serve_render(*prepared->renderer, job,
+                 {.tile_size = prepared->opening.tile_size,
+                  .threads = threads,
+                  .cancel = &cancel,
+                  .patience_seconds = patience_with_leader});
 }
 
 } // namespace
@@ -117,13 +118,14 @@ void SharedRender::end() {
 
 void SharedRender::print_statistics() const {
     if (!coordinator_) return;
-    const Coordinator::Traffic& t = coordinator_->traffic();
+    const RankRoster::Traffic& t = coordinator_->traffic();
     constexpr double mib = 1 << 20;
     std::printf("ranks              %d, with %d threads in all\n", job_->size(), coordinator_->threads());
     std::printf("between ranks      %.1f MiB to rank 0, %.1f MiB from it in %llu messages; %llu tiles "
                 "changed hands\n",
                 static_cast<double>(t.bytes_in) / mib, static_cast<double>(t.bytes_out) / mib,
-                static_cast<unsigned long long>(t.messages), static_cast<unsigned long long>(t.moved_tiles));
+                static_cast<unsigned long long>(t.messages),
+                static_cast<unsigned long long>(coordinator_->moved_tiles()));
 }
 
 void SharedRender::end_job_if_failed(int exit_code) const {

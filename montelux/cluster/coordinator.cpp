@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
+#include "montelux/cluster/run_beside.h"
+#include "montelux/cluster/tile_worker.h"
 #include "montelux/mc/io/byte_stream.h"
 #include "montelux/mc/math/error.h"
 
@@ -39,22 +40,22 @@ void for_rows(const PixelBounds& film, const PixelBounds& tile, const F& f) {
 
 Coordinator::Coordinator(Mailbox& mailbox, const PixelBounds& crop, const CoordinatorSettings& settings,
                          std::function<void()> on_wish)
-    : mailbox_(mailbox), settings_(settings), on_wish_(std::move(on_wish)),
+    : settings_(settings), roster_(mailbox, settings.patience_seconds, std::move(on_wish)),
       bounds_(tiles_of(crop, settings.tile_size)), tiles_(bounds_.size()), ranks_(index(mailbox.size())),
-      schedule_(mailbox.size(), static_cast<int>(bounds_.size())) {}
+      schedule_(mailbox.size(), static_cast<int>(bounds_.size())), chains_(roster_, settings.threads),
+      guide_(roster_) {}
 
 Coordinator::~Coordinator() { end(); }
 
-void Coordinator::end() {
-    if (std::exchange(ended_, true)) return;
+void Coordinator::release() {
     worker_.reset();
-    for (int r = 1; r < mailbox_.size(); ++r) send(r, protocol::end, {});
+    chains_.release();
 }
 
-void Coordinator::send(int rank, protocol::Tag tag, std::vector<std::uint8_t> bytes) {
-    ++traffic_.messages;
-    if (rank != mailbox_.rank()) traffic_.bytes_out += bytes.size();
-    mailbox_.send(rank, tag, std::move(bytes));
+void Coordinator::end() {
+    if (std::exchange(ended_, true)) return;
+    release();
+    for (int r = 1; r < roster_.size(); ++r) roster_.send(r, protocol::end, {});
 }
 
 double Coordinator::work_of(int tile, std::uint64_t samples) const {
@@ -63,13 +64,8 @@ double Coordinator::work_of(int tile, std::uint64_t samples) const {
     return static_cast<double>(samples) * cost;
 }
 
-int Coordinator::threads() const {
-    int threads = 0;
-    for (const Rank& r : ranks_) threads += r.threads;
-    return threads;
-}
-
 std::uint32_t Coordinator::step_of(int tile) const {
+    if (state_->splats) return ~std::uint32_t{0};
     const double cost = tiles_[index(tile)].seconds_per_sample;
     if (!(cost > 0)) return first_step;
     const double seconds = std::max(task_seconds, seconds_a_thread * threads());
@@ -83,6 +79,13 @@ void Coordinator::begin_round() {
     uniform_target_ = target_samples.front();
     if (!std::ranges::all_of(target_samples, [&](std::uint32_t g) { return g == target_samples.front(); }))
         uniform_target_.reset();
+    if (state_->splats) { // all pixels are here
+        for (Tile& t : tiles_) {
+            t.holder = TileSchedule::no_rank;
+            t.home = true;
+        }
+        schedule_ = TileSchedule(roster_.size(), static_cast<int>(tiles_.size()));
+    }
     std::vector<double> work(tiles_.size());
     for (std::size_t t = 0; t < tiles_.size(); ++t) {
         std::uint64_t remaining = 0;
@@ -102,34 +105,49 @@ void Coordinator::begin_round() {
 void Coordinator::run(const TileRenderer& renderer, RenderState& state, const RoundWatch& watch) {
     state_ = &state;
     watch_ = &watch;
-    // Between rounds the leader writes checkpoints and does not listen, so silence then does not count.
-    const Clock::time_point now = Clock::now();
-    for (Rank& r : ranks_) r.last_heard = worker_ ? r.last_heard + (now - paused_) : now;
-    if (!worker_) worker_ = std::make_unique<TileWorker>(renderer, bounds_, settings_.threads, mailbox_);
+    roster_.begin_listening();
+    if (!worker_)
+        worker_ = std::make_unique<TileWorker>(renderer, bounds_, settings_.threads, roster_.mailbox());
+    guide_.set(state.guide);
     begin_round();
-    // Polls less often while nothing happens, to leave the processor to rendering threads.
-    constexpr std::chrono::microseconds shortest{50}, longest{1000};
-    std::chrono::microseconds pause = shortest;
+    std::chrono::microseconds pause = shortest_poll;
     while (!schedule_.finished() && !failed() && !watch.stop(something_done_)) {
         deal();
         const bool heard = listen();
-        check_silence();
+        roster_.watch();
         if (seconds_between(last_report_, Clock::now()) > 0.2) report_progress();
-        pause = heard ? shortest : std::min(2 * pause, longest);
+        pause = heard ? shortest_poll : std::min(2 * pause, longest_poll);
         if (!heard) worker_->wait(pause);
     }
     gather();
-    paused_ = Clock::now();
+    roster_.end_listening();
+}
+
+void Coordinator::run(ChainRenderer& chains, RenderState& state, std::uint32_t target_samples,
+                      const ChainWatch& watch) {
+    chains_.run(chains, state, target_samples, watch);
+}
+
+void Coordinator::meanwhile(const std::function<void()>& work, const std::function<void()>& between) {
+    roster_.begin_listening();
+    run_beside([&] { with_threads(settings_.threads, work); }, longest_poll,
+               [&] {
+                   listen();
+                   roster_.watch();
+                   between();
+               });
+    roster_.end_listening();
 }
 
 void Coordinator::deal() {
-    for (int r = 0; r < mailbox_.size(); ++r) {
+    for (int r = 0; r < roster_.size(); ++r) {
+        if (!guide_.is_known_to(r)) continue;
         std::vector<std::uint8_t> message;
-        while (schedule_.in_work(r) < tasks_a_thread * ranks_[index(r)].threads) {
+        while (schedule_.in_work(r) < tasks_a_thread * roster_.threads(r)) {
             const auto pick = schedule_.next(r);
             if (!pick) break;
             Tile& t = tiles_[index(*pick)];
-            if (t.holder != r && t.holder != TileSchedule::no_rank) ++traffic_.moved_tiles;
+            if (t.holder != r && t.holder != TileSchedule::no_rank) ++moved_tiles_;
             if (t.home || t.holder == r) {
                 assign(r, *pick, message);
                 continue;
@@ -139,9 +157,9 @@ void Coordinator::deal() {
             out.put(static_cast<std::uint32_t>(*pick));
             // The holder forgets the tile, even if the round ends before the tile reaches the rank that needs
             // it.
-            send(std::exchange(t.holder, TileSchedule::no_rank), protocol::release, out.take());
+            roster_.send(std::exchange(t.holder, TileSchedule::no_rank), protocol::release, out.take());
         }
-        if (!message.empty()) send(r, protocol::assign, std::move(message));
+        if (!message.empty()) roster_.send(r, protocol::assign, std::move(message));
     }
 }
 
@@ -192,7 +210,7 @@ void Coordinator::assign(int rank, int tile, std::vector<std::uint8_t>& message)
 
 bool Coordinator::listen() {
     bool heard = false;
-    while (auto message = mailbox_.receive()) {
+    while (auto message = roster_.receive()) {
         heard = true;
         if (message->tag == protocol::assign || message->tag == protocol::release ||
             message->tag == protocol::gather)
@@ -200,37 +218,67 @@ bool Coordinator::listen() {
         else
             handle(*message);
     }
-    worker_->report();
+    if (worker_) worker_->report();
     return heard;
 }
 
 void Coordinator::handle(const Message& message) {
     Rank& rank = ranks_[index(message.source)];
-    rank.last_heard = Clock::now();
-    if (message.source != mailbox_.rank()) traffic_.bytes_in += message.bytes.size();
-    ByteReader in(message.bytes);
     switch (message.tag) {
-    case protocol::hello:
-        rank.threads = in.get<std::int32_t>();
-        return;
     case protocol::done:
-        while (!in.at_end()) take_report(in.get<protocol::TaskReport>());
+        for (ByteReader in(message.bytes); !in.at_end();) take_report(in.get<protocol::TaskReport>());
         return;
     case protocol::tiles:
-        return take_tiles(message);
+        if (!state_->splats) return take_tiles(message);
+        [[fallthrough]];
+    case protocol::splats:
+    case protocol::splat_counts:
+        if (rank.gathering) rank.staged.push_back(message);
+        return;
     case protocol::gathered:
+        // An answer to an earlier request came too late: its tiles were dealt out again.
+        if (!message.bytes.empty() && ByteReader(message.bytes).get<std::uint32_t>() != gatherings_) {
+            rank.staged.clear();
+            return;
+        }
+        take_staged(rank);
         rank.gathering = false;
         return;
+    case protocol::guide_taken:
+        return guide_.piece_taken(message);
+    case protocol::hello:
+        return guide_.greet(message.source);
     case protocol::wish:
-        if (on_wish_) on_wish_();
-        return;
     case protocol::failed:
-        return give_up(message.source, ": " + in.get_text());
     case protocol::beat:
         return;
     default:
         throw Error("rank " + std::to_string(message.source),
                     "sent a message that rank 0 does not know: " + std::to_string(message.tag));
+    }
+}
+
+void Coordinator::take_staged(Rank& rank) {
+    for (const Message& message : std::exchange(rank.staged, {}))
+        message.tag == protocol::tiles ? take_tiles(message) : take_splats(message);
+}
+
+void Coordinator::take_splats(const Message& message) {
+    ByteReader in(message.bytes);
+    SplatFilm& splats = *state_->splats;
+    if (message.tag == protocol::splat_counts) {
+        const auto counts = in.get<protocol::SplatCounts>();
+        splats.set_counts(splats.bad() + counts.bad, splats.overflows() + counts.overflows);
+        return;
+    }
+    std::vector<std::int64_t> row;
+    while (!in.at_end()) {
+        const PixelBounds& tile = bounds_.at(in.get<std::uint32_t>());
+        row.resize(6 * index(tile.width()));
+        for (int y = tile.y0; y < tile.y1; ++y) {
+            in.get_all(std::span(row));
+            splats.merge_row(tile.x0, y, row);
+        }
     }
 }
 
@@ -278,47 +326,41 @@ void Coordinator::take_tiles(const Message& message) {
         std::vector<std::uint8_t> assignment;
         const int rank = std::exchange(t.wanted_by, TileSchedule::no_rank);
         assign(rank, static_cast<int>(header.tile), assignment);
-        send(rank, protocol::assign, std::move(assignment));
+        roster_.send(rank, protocol::assign, std::move(assignment));
     }
+}
+
+bool Coordinator::is_gathering(int rank) const {
+    return ranks_[index(rank)].gathering && roster_.takes_part(rank);
 }
 
 void Coordinator::gather() {
-    for (int r = 0; r < mailbox_.size(); ++r)
-        if (ranks_[index(r)].threads > 0 && !ranks_[index(r)].lost) {
-            ranks_[index(r)].gathering = true;
-            send(r, protocol::gather, {});
-        }
+    ++gatherings_;
+    for (int r = 0; r < roster_.size(); ++r) {
+        ranks_[index(r)] = {.gathering = roster_.takes_part(r)};
+        if (!ranks_[index(r)].gathering) continue;
+        ByteWriter out;
+        out.put(gatherings_);
+        roster_.send(r, protocol::gather, out.take());
+    }
     for (Tile& t : tiles_) t.wanted_by = TileSchedule::no_rank;
     const Clock::time_point begin = Clock::now();
-    while (std::ranges::any_of(ranks_, [](const Rank& r) { return r.gathering; })) {
+    const auto someone_gathers = [this] {
+        for (int r = 0; r < roster_.size(); ++r)
+            if (is_gathering(r)) return true;
+        return false;
+    };
+    while (someone_gathers()) {
         if (!listen()) worker_->wait(std::chrono::microseconds(100));
-        check_silence();
+        roster_.watch();
         const bool in_a_hurry = watch_->cancel != nullptr && watch_->cancel->requested();
         if (in_a_hurry && seconds_between(begin, Clock::now()) > settings_.patience_when_cancelled)
-            for (int r = 0; r < mailbox_.size(); ++r)
-                if (r != mailbox_.rank() && std::exchange(ranks_[index(r)].gathering, false))
+            for (int r = 0; r < roster_.size(); ++r)
+                if (!roster_.is_leader(r) && is_gathering(r)) {
+                    ranks_[index(r)] = {};
                     left_out_.push_back(r);
+                }
     }
-}
-
-void Coordinator::check_silence() {
-    const Clock::time_point now = Clock::now();
-    for (int r = 0; r < mailbox_.size(); ++r) {
-        Rank& rank = ranks_[index(r)];
-        if (r == mailbox_.rank() || rank.lost) continue;
-        const double silent = seconds_between(rank.last_heard, now);
-        if (silent <= settings_.patience_seconds) continue;
-        someone_is_silent_ = true;
-        char text[80];
-        std::snprintf(text, sizeof text, " has not answered for %.0f s; the job ends", silent);
-        give_up(r, text);
-    }
-}
-
-void Coordinator::give_up(int rank, const std::string& why) {
-    ranks_[index(rank)].lost = true;
-    ranks_[index(rank)].gathering = false;
-    if (!failure_) failure_ = "rank " + std::to_string(rank) + why + "; what the others did is saved";
 }
 
 void Coordinator::report_progress() {

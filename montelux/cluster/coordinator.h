@@ -9,10 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "montelux/cluster/chain_leader.h"
+#include "montelux/cluster/guide_exchange.h"
 #include "montelux/cluster/mailbox.h"
 #include "montelux/cluster/protocol.h"
+#include "montelux/cluster/rank_roster.h"
+#include "montelux/cluster/rank_worker.h"
 #include "montelux/cluster/tile_schedule.h"
-#include "montelux/cluster/tile_worker.h"
 #include "montelux/render/round_executor.h"
 
 namespace montelux {
@@ -28,6 +31,10 @@ struct CoordinatorSettings {
 
 // Tiles stay with the rank that rendered them last. Their pixels come to the leader at the end of a round, at
 // a checkpoint, and when a rank without work gets a tile of another one.
+//
+// If samples bring splats to other pixels, each tile is dealt out once in a round, for all its samples. At the end the
+// pixels and the splats of a rank are taken together, when all of them are here, so a rank that is lost leaves no splats
+// without their samples.
 class Coordinator final : public RoundExecutor {
   public:
     // `mailbox` is that of rank 0. on_wish() is called when another rank received a request to end; it may be
@@ -37,30 +44,31 @@ class Coordinator final : public RoundExecutor {
     ~Coordinator() override;
 
     void run(const TileRenderer& renderer, RenderState& state, const RoundWatch& watch) override;
-    bool failed() const override { return failure_.has_value(); }
+    void run(ChainRenderer& chains, RenderState& state, std::uint32_t target_samples,
+             const ChainWatch& watch) override;
+    void meanwhile(const std::function<void()>& work, const std::function<void()>& between) override;
+    void release() override;
+    bool failed() const override { return failure().has_value(); }
     // Why the render ended early; a sentence.
-    const std::optional<std::string>& failure() const { return failure_; }
+    const std::optional<std::string>& failure() const { return roster_.failure(); }
     // Ranks whose work since the last gathering is missing, because they did not answer in time.
     const std::vector<int>& left_out() const { return left_out_; }
     // Is there a rank that does not answer?
-    bool someone_hangs() const { return someone_is_silent_ || !left_out_.empty(); }
-    // Tells the workers that the render is over. The renderer of run() is not needed any more.
+    bool someone_hangs() const { return roster_.someone_is_silent() || !left_out_.empty(); }
+    // Tells the workers that the render is over.
     void end();
 
-    // Bytes sent to and received from all ranks so far, by the leader; tiles that changed ranks.
-    struct Traffic {
-        std::uint64_t messages = 0, bytes_out = 0, bytes_in = 0, moved_tiles = 0;
-    };
-    const Traffic& traffic() const { return traffic_; }
+    const RankRoster::Traffic& traffic() const { return roster_.traffic(); }
+    // Tiles that changed ranks.
+    std::uint64_t moved_tiles() const { return moved_tiles_; }
     // Of all ranks that were ready in time.
-    int threads() const;
+    int threads() const { return roster_.threads(); }
 
   private:
     using Clock = std::chrono::steady_clock;
     struct Rank {
-        int threads = 0; // 0 until its hello
-        bool gathering = false, lost = false;
-        Clock::time_point last_heard;
+        bool gathering = false;
+        std::vector<Message> staged{}; // of this gathering, if there are splats
     };
     struct Tile {
         double seconds_per_sample = 0;         // CPU time; 0 where it is not known
@@ -81,26 +89,27 @@ class Coordinator final : public RoundExecutor {
     void handle(const Message& message);
     void take_report(const protocol::TaskReport& report);
     void take_tiles(const Message& message);
+    void take_splats(const Message& message);
+    void take_staged(Rank& rank);
     void gather();
-    void check_silence();
-    void give_up(int rank, const std::string& why);
-    void send(int rank, protocol::Tag tag, std::vector<std::uint8_t> bytes);
+    bool is_gathering(int rank) const;
     void report_progress();
     double work_of(int tile, std::uint64_t samples) const;
     std::uint32_t step_of(int tile) const;
 
-    Mailbox& mailbox_;
     CoordinatorSettings settings_;
-    std::function<void()> on_wish_;
+    RankRoster roster_;
     std::vector<PixelBounds> bounds_;
     std::vector<Tile> tiles_;
     std::vector<Rank> ranks_;
     TileSchedule schedule_;
-    std::unique_ptr<TileWorker> worker_; // of this rank
-    Traffic traffic_;
-    std::optional<std::string> failure_;
+    std::unique_ptr<RankWorker> worker_; // of this rank
+    ChainLeader chains_;                 // of a Metropolis render
+    GuideSender guide_;
+    std::uint64_t moved_tiles_ = 0;
+    std::uint32_t gatherings_ = 0;
     std::vector<int> left_out_;
-    bool someone_is_silent_ = false, ended_ = false;
+    bool ended_ = false;
 
     // Of the present round.
     RenderState* state_ = nullptr;
@@ -110,7 +119,7 @@ class Coordinator final : public RoundExecutor {
     bool something_done_ = false;
     double known_seconds_ = 0; // sum over tiles whose cost is known, and their number
     int known_costs_ = 0;
-    Clock::time_point last_report_, paused_; // no message was received since
+    Clock::time_point last_report_;
 };
 
 } // namespace montelux

@@ -8,18 +8,28 @@ namespace montelux::protocol {
 // Tags of messages. A tile is named by its number in tiles_of() the film's crop.
 enum Tag : int {
     // To a worker.
-    assign = 1, // Assignments, one after another
-    release,    // a tile's number: send its pixels back and forget them
-    gather,     // send back all changed pixels; forget open assignments
-    end,        // the render is over
+    assign = 1,  // Assignments, one after another
+    release,     // a tile's number: send its pixels back and forget them
+    gather,      // a number: send back all changed pixels, and all splats; forget open assignments
+    take_groups, // Groups
+    drop_groups, // forget groups of chains that were not sent yet
+    guide,       // GuidePiece, and bytes of GuidingField::save: paths follow it from now on
+    end,         // the render is over
+    // In both directions.
+    beat, // the sender is alive; a worker says so before its hello, too
     // To the leader.
-    hello,    // a worker's number of threads: it is ready
-    done,     // TaskReports, one after another
-    tiles,    // TilePixels, one after another
-    gathered, // after the last of the tiles that `gather` asked for
-    beat,     // the worker is alive, also before its hello
-    failed,   // why the worker cannot continue; its last message
-    wish,     // this rank received a signal: cancel the render
+    hello,          // a worker's number of threads: it is ready
+    done,           // TaskReports, one after another
+    tiles,          // TilePixels, one after another
+    splats,         // for each tile that has any: its number, and its sums of the SplatFilm, row by row
+    splat_counts,   // SplatCounts, after the splats
+    gathered,       // after the last of what `gather` asked for: its number
+    paths,          // a number: how many paths of the groups in hand were taken
+    replicate_part, // ReplicatePart, and as many ChainReplicate::PixelValues
+    replicate,      // after its parts: its number, ChainGroup::Tally, ChainCosts
+    guide_taken,    // the worker has the piece
+    failed,         // why the worker cannot continue; its last message
+    wish,           // this rank received a signal: cancel the render
 };
 
 // Renders at most `step` more samples per pixel of a tile. Data that the worker does not have yet follows.
@@ -49,6 +59,27 @@ struct TaskReport {
 struct TilePixelsHeader {
     std::uint32_t tile = 0, pixels = 0;
     // The TileTally since the tile was last sent follows too, before the pixels.
+};
+
+// Of all splats since the last gathering: SplatFilm::bad() and overflows().
+struct SplatCounts {
+    std::uint64_t bad = 0, overflows = 0;
+};
+
+// Groups of chains, by their numbers among the film's replicates.
+struct Groups {
+    std::uint64_t first = 0, count = 0;
+};
+
+// Some pixels of a replicate.
+struct ReplicatePart {
+    std::uint64_t number = 0;
+    std::uint64_t first = 0, count = 0; // of pixels
+};
+
+struct GuidePiece {
+    std::uint64_t first = 0; // byte
+    std::uint64_t size = 0;  // of the whole guide; 0: none
 };
 
 } // namespace montelux::protocol

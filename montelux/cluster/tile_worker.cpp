@@ -1,8 +1,7 @@
 #include "montelux/cluster/tile_worker.h"
 
+#include <algorithm>
 #include <cmath>
-#include <exception>
-#include <future>
 #include <string>
 #include <utility>
 
@@ -14,27 +13,16 @@ namespace montelux {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-// Bytes of pixels in one message, which bounds memory at both ends.
-constexpr std::size_t message_bytes = std::size_t{8} << 20;
-constexpr std::chrono::seconds beat_interval{1};
-// Polls less often while nothing happens, to leave the processor to rendering threads.
-constexpr std::chrono::microseconds shortest_poll{50}, longest_poll{1000};
-// Longest reason: short messages need no waiting receiver.
-constexpr std::size_t longest_reason = 1000;
-
-// Throws when the leader has been silent since then.
-void check_leader(const Mailbox& mailbox, Clock::time_point last_heard, double patience_seconds) {
-    if (std::chrono::duration<double>(Clock::now() - last_heard).count() > patience_seconds)
-        throw LeaderIsSilent("rank " + std::to_string(mailbox.rank()),
-                             "rank 0, which leads the render, has been silent for too long");
-}
 
 } // namespace
 
 TileWorker::TileWorker(const TileRenderer& renderer, std::vector<PixelBounds> tiles, int threads,
-                       Mailbox& mailbox)
-    : renderer_(renderer), bounds_(std::move(tiles)), mailbox_(mailbox), tiles_(bounds_.size()),
-      last_sent_(Clock::now()) {
+                       Mailbox& mailbox, SampleContext* context)
+    : renderer_(renderer), bounds_(std::move(tiles)), mailbox_(mailbox), context_(context),
+      tiles_(bounds_.size()), last_sent_(Clock::now()) {
+    if (renderer.makes_splats())
+        splats_.emplace(
+            PixelBounds{bounds_.front().x0, bounds_.front().y0, bounds_.back().x1, bounds_.back().y1});
     for (int t = 0; t < threads; ++t) threads_.emplace_back([this] { run_thread(); });
     ByteWriter out;
     out.put(static_cast<std::int32_t>(threads));
@@ -87,6 +75,7 @@ protocol::TaskReport TileWorker::perform(const Task& task) {
                       .target_samples = tile.target_samples.data(),
                       .target_stride = stride,
                       .layer_sums = tile.layer_sums.data(),
+                      .splats = splats_ ? &*splats_ : nullptr,
                       .most = task.step},
                      tally, stop, stop);
     tile.tally.merge(tally);
@@ -115,12 +104,15 @@ void TileWorker::handle(const Message& message) {
         return;
     }
     case protocol::gather: {
+        gathering_number_ = in.get<std::uint32_t>();
         stop_.request();
         gathering_ = true;
         std::lock_guard lock(mutex_);
         tasks_.clear();
         return;
     }
+    case protocol::guide:
+        return take_guide(message);
     case protocol::end:
         ended_ = true;
         stop_.request();
@@ -128,6 +120,15 @@ void TileWorker::handle(const Message& message) {
     default:
         throw Error("a message came that is not known: " + std::to_string(message.tag));
     }
+}
+
+void TileWorker::take_guide(const Message& message) {
+    guide_.take(message, mailbox_, [this](std::shared_ptr<const GuidingField> guide) {
+        std::lock_guard lock(mutex_);
+        if (context_ == nullptr || busy_ > 0 || !tasks_.empty())
+            throw Error("guide", "it came while samples are taken");
+        context_->set_guide(std::move(guide));
+    });
 }
 
 void TileWorker::assign(const Message& message) {
@@ -185,9 +186,31 @@ void TileWorker::finish_gathering() {
     for (std::size_t t = 0; t < tiles_.size(); ++t)
         if (tiles_[t] && tiles_[t]->changed) changed.push_back(static_cast<std::uint32_t>(t));
     send_tiles(changed);
-    mailbox_.send(leading_rank, protocol::gathered, {});
+    if (splats_) send_splats();
+    ByteWriter out;
+    out.put(gathering_number_);
+    mailbox_.send(leading_rank, protocol::gathered, out.take());
     gathering_ = false;
     stop_.reset();
+}
+
+void TileWorker::send_splats() {
+    ByteWriter out;
+    const auto flush = [&] { mailbox_.send(leading_rank, protocol::splats, out.take()); };
+    for (std::size_t t = 0; t < bounds_.size(); ++t) {
+        const PixelBounds& tile = bounds_[t];
+        if (splats_->is_zero(tile)) continue;
+        out.put(static_cast<std::uint32_t>(t));
+        for (int y = tile.y0; y < tile.y1; ++y)
+            out.put_all(std::as_const(*splats_).sums(tile.x0, y, tile.width()));
+        if (out.size() >= message_bytes) flush();
+    }
+    if (out.size() > 0) flush();
+    out.put(protocol::SplatCounts{splats_->bad(), splats_->overflows()});
+    mailbox_.send(leading_rank, protocol::splat_counts, out.take());
+    splats_->clear();
+    // The leader ends replicates when it has all splats, and sends the pixels anew.
+    for (std::unique_ptr<Tile>& tile : tiles_) tile.reset();
 }
 
 void TileWorker::report() {
@@ -218,61 +241,6 @@ void TileWorker::report() {
 void TileWorker::wait(std::chrono::microseconds longest) {
     std::unique_lock lock(mutex_);
     reports_there_.wait_for(lock, longest, [this] { return !reports_.empty(); });
-}
-
-void serve_tiles(const TileRenderer& renderer, const PixelBounds& crop, int tile_size, int threads,
-                 Mailbox& mailbox, const CancelFlag* cancel, double patience_seconds) {
-    TileWorker worker(renderer, tiles_of(crop, tile_size), threads, mailbox);
-    bool cancel_sent = false;
-    Clock::time_point last_heard = Clock::now();
-    std::chrono::microseconds pause = shortest_poll;
-    while (!worker.ended()) {
-        bool heard = false;
-        while (auto message = mailbox.receive()) {
-            worker.handle(*message);
-            heard = true;
-        }
-        if (heard) last_heard = Clock::now();
-        worker.report();
-        if (!cancel_sent && cancel != nullptr && cancel->requested()) {
-            mailbox.send(leading_rank, protocol::wish, {});
-            cancel_sent = true;
-        }
-        check_leader(mailbox, last_heard, patience_seconds);
-        pause = heard ? shortest_poll : std::min(2 * pause, longest_poll);
-        worker.wait(pause);
-    }
-}
-
-void prepare_and_beat(Mailbox& mailbox, const std::function<void()>& prepare) {
-    std::promise<void> promise;
-    std::future<void> prepared = promise.get_future();
-    std::thread thread([&] {
-        try {
-            prepare();
-            promise.set_value();
-        } catch (...) {
-            promise.set_exception(std::current_exception());
-        }
-    });
-    while (prepared.wait_for(beat_interval) != std::future_status::ready)
-        mailbox.send(leading_rank, protocol::beat, {});
-    thread.join();
-    prepared.get();
-}
-
-void serve_failure(const std::string& why, Mailbox& mailbox, double patience_seconds) {
-    ByteWriter out;
-    out.put_text(why.substr(0, longest_reason));
-    mailbox.send(leading_rank, protocol::failed, out.take());
-    for (Clock::time_point last_heard = Clock::now();;) {
-        while (auto message = mailbox.receive()) {
-            if (message->tag == protocol::end) return;
-            last_heard = Clock::now();
-        }
-        check_leader(mailbox, last_heard, patience_seconds);
-        std::this_thread::sleep_for(longest_poll);
-    }
 }
 
 } // namespace montelux

@@ -83,8 +83,23 @@ void SplatFilm::merge(const SplatFilm& other) {
         throw Error("film", "splats of films of different bounds cannot be added");
     bad_ += other.bad_;
     overflows_ += other.overflows_;
-    for (std::size_t i = 0; i < sums_.size(); ++i)
-        if (__builtin_add_overflow(sums_[i], other.sums_[i], &sums_[i])) ++overflows_;
+    for (int y = bounds_.y0; y < bounds_.y1; ++y)
+        merge_row(bounds_.x0, y, other.sums(bounds_.x0, y, bounds_.width()));
+}
+
+void SplatFilm::merge_row(int x, int y, std::span<const std::int64_t> sums) {
+    std::int64_t* into = &sums_[index(x, y)];
+    for (const std::int64_t value : sums) {
+        if (__builtin_add_overflow(*into, value, into)) ++overflows_;
+        ++into;
+    }
+}
+
+bool SplatFilm::is_zero(const PixelBounds& part) const {
+    for (int y = part.y0; y < part.y1; ++y)
+        for (const std::int64_t value : sums(part.x0, y, part.width()))
+            if (value != 0) return false;
+    return true;
 }
 
 } // namespace montelux

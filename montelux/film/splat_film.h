@@ -52,6 +52,13 @@ class SplatFilm {
     // checkpoints and messages between processes.
     std::span<const std::int64_t> sums() const { return sums_; }
     std::span<std::int64_t> sums() { return sums_; }
+    // Of pixels of a row, from (x, y) on.
+    std::span<const std::int64_t> sums(int x, int y, int width) const {
+        return sums().subspan(index(x, y), 6 * static_cast<std::size_t>(width));
+    }
+    // Adds such sums of another film.
+    void merge_row(int x, int y, std::span<const std::int64_t> sums);
+    bool is_zero(const PixelBounds& part) const;
     void set_counts(std::uint64_t bad, std::uint64_t overflows) {
         bad_ = bad;
         overflows_ = overflows;

@@ -67,17 +67,6 @@ void check_sharing(const SceneDescription& d) {
     if (d.film.spectral)
         throw Error("film",
                     "a spectral film cannot be rendered by several processes: they exchange RGB alone");
-    if (traces_light(d.integrator.method))
-        throw Error("integrator " + std::string(name_of(d.integrator.method)),
-                    "it cannot be used by several processes yet: render slices, or choose 'path'");
-    if (d.integrator.guiding == Guiding::on)
-        throw Error("guiding",
-                    "a guided picture cannot be rendered by several processes yet: render it by one, or "
-                    "turn guiding off");
-    if (d.integrator.method == IntegratorKind::metropolis)
-        throw Error("metropolis",
-                    "chains are not shared by several processes; let each render a slice (--slice) "
-                    "and join the pictures by 'montelux merge'");
 }
 
 } // namespace montelux

@@ -9,6 +9,7 @@
 
 #include "montelux/mc/parallel/cpu_time.h"
 #include "montelux/mc/random/hash.h"
+#include "montelux/render/round_executor.h"
 #include "montelux/render/tile_renderer.h"
 #include "montelux/transport/guiding/guiding_learner.h"
 
@@ -243,6 +244,22 @@ TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
         summary.bytes = trained.guide->bytes();
     }
     summary.decided = true;
+    return trained;
+}
+
+TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
+                         const IntegratorSettings& settings, const GuideTrainingPlan& plan,
+                         RoundExecutor* executor) {
+    if (executor == nullptr) return train_guide(context, accelerator, settings, plan);
+    CancelFlag stop;
+    GuideTrainingPlan shared = plan;
+    shared.cancel = &stop;
+    TrainedGuide trained;
+    executor->meanwhile([&] { trained = train_guide(context, accelerator, settings, shared); },
+                        [&] {
+                            if ((plan.cancel != nullptr && plan.cancel->requested()) || executor->failed())
+                                stop.request();
+                        });
     return trained;
 }
 

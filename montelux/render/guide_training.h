@@ -10,6 +10,8 @@
 
 namespace montelux {
 
+class RoundExecutor;
+
 // What a render wants of a guide.
 struct GuideTrainingPlan {
     PixelBounds bounds;
@@ -32,5 +34,10 @@ struct TrainedGuide {
 // threads; with a time limit also on how fast the machine is. Not decided if it was cancelled.
 TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
                          const IntegratorSettings& settings, const GuideTrainingPlan& plan);
+// The same in a render whose samples the executor takes, if it is not null: other processes wait meanwhile. Not decided if
+// the executor fails.
+TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
+                         const IntegratorSettings& settings, const GuideTrainingPlan& plan,
+                         RoundExecutor* executor);
 
 } // namespace montelux

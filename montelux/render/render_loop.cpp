@@ -48,7 +48,10 @@ class RenderLoop {
         context_.set_guide(state_.guide);
         if (control.live != nullptr) control.live->open(state, tiles_, [this] { return report_now(); });
     }
-    ~RenderLoop() { close_live(); }
+    ~RenderLoop() {
+        close_live();
+        if (control_.executor != nullptr) control_.executor->release();
+    }
     RenderLoop(const RenderLoop&) = delete;
     RenderLoop& operator=(const RenderLoop&) = delete;
 
@@ -59,7 +62,8 @@ class RenderLoop {
                 every_pixel_seen_ = std::ranges::all_of(state_.film.pixels(), [this](const Pixel& p) {
                     return state_.splats ? p.replicates().count() > 0 : p.samples() > 0;
                 });
-            train_guide_if_due();
+            // Before the next round is chosen: a resumed render trains its guide first, too.
+            if (!train_guide_if_due()) return end(all_taken() ? RenderStop::samples : RenderStop::cancelled);
             if (const auto reason = stop_between_rounds()) return end(*reason);
             if (round_is_done()) {
                 std::vector<std::uint32_t> target_samples =
@@ -99,10 +103,17 @@ class RenderLoop {
         if (pause_is_due()) pause_ = true;
     }
     // With an executor, ends of rounds are expensive. If no decision depends on the error, one round takes
-    // all remaining samples after the first one; so does a pilot.
+    // all remaining samples after the first one; so does a pilot. Splats belong to one pass.
     void join_rounds() {
         const RenderTarget& target = renderer_.target();
         if (control_.executor == nullptr || !every_pixel_seen_) return;
+        if (state_.splats) {
+            const std::uint64_t points = order_.replicate_size();
+            const std::uint64_t end = (state_.target_samples.front() + points - 1) / points * points;
+            std::ranges::fill(state_.target_samples,
+                              static_cast<std::uint32_t>(std::min(end, order_.share())));
+            return;
+        }
         const std::uint64_t pilot = std::min(pilot_of(order_), order_.share());
         if (target.adaptive && state_.target_samples.front() < pilot)
             std::ranges::fill(state_.target_samples, static_cast<std::uint32_t>(pilot));
@@ -150,24 +161,27 @@ class RenderLoop {
         const double samples = static_cast<double>(state_.film.pixels().size()) * error.mean_samples;
         samples_for_error_ = samples_for_error(samples, *reached, target.error);
     }
-    // After a first sample of every pixel: a render that is cancelled early has a picture.
-    void train_guide_if_due() {
+    // After a first sample of every pixel: a render that is cancelled early has a picture. False: it was cancelled.
+    bool train_guide_if_due() {
         const IntegratorSettings& settings = renderer_.description().integrator;
         if (settings.guiding == Guiding::off || state_.report.guide.decided || !every_pixel_seen_ ||
-            !round_is_done() || cancelled() || control_.executor != nullptr)
-            return;
+            !round_is_done())
+            return true;
+        if (cancelled()) return false;
         const RenderTarget& target = renderer_.target();
         const GuideTrainingPlan plan{.bounds = state_.film.bounds(),
                                      .samples = order_.share(),
                                      .error = target.quantile > 0 ? 0 : target.error,
                                      .seconds = target.time,
                                      .cancel = control_.cancel};
-        TrainedGuide trained = train_guide(context_, renderer_.accelerator(), settings, plan);
+        TrainedGuide trained =
+            train_guide(context_, renderer_.accelerator(), settings, plan, control_.executor);
         state_.guide = std::move(trained.guide);
         std::lock_guard lock(mutex_);
         state_.report.guide = trained.summary;
         state_.report.cpu_seconds += trained.summary.cpu_seconds;
         state_.report.seconds = seconds();
+        return trained.summary.decided;
     }
 
     void take_samples() {
@@ -215,7 +229,7 @@ class RenderLoop {
             control_.executor->run(tile_renderer_, state_, watch);
         }
         samples_beyond_ = 0;
-        for (std::size_t t = 0; t < tiles_.size(); ++t) report_if_finished(t);
+        for (std::size_t t = 0; t < tiles_.size() && !state_.splats; ++t) report_if_finished(t);
         if (live != nullptr) live->wait_for_copies();
     }
 
@@ -232,9 +246,12 @@ class RenderLoop {
             change();
             samples_beyond_ = 0;
         };
-        chains_->run(
-            state_, state_.target_samples.front(),
-            {[this] { return cancelled() || out_of_time(); }, [this] { return pause_is_due(); }, tell, add});
+        const ChainWatch watch{
+            {[this] { return cancelled() || out_of_time(); }, tell}, [this] { return pause_is_due(); }, add};
+        if (control_.executor != nullptr)
+            control_.executor->run(*chains_, state_, state_.target_samples.front(), watch);
+        else
+            chains_->run(state_, state_.target_samples.front(), watch);
         errors_are_known_ = state_.film.pixels().front().replicates().count() >= 2;
         for (std::size_t t = 0; t < tiles_.size(); ++t) report_if_finished(t);
     }

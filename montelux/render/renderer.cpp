@@ -41,9 +41,12 @@ std::vector<MemoryUse> Renderer::memory_use() const {
     return table;
 }
 
-void Renderer::serve(const std::function<void(const TileRenderer&)>& work) const {
-    const SampleContext context(description_, sampler_, scene(), camera_);
-    work(TileRenderer(context, accelerator(), SampleOrder(sampler_, target_.slice)));
+void Renderer::serve(const std::function<void(const SampleTakers&)>& work) const {
+    SampleContext context(description_, sampler_, scene(), camera_);
+    const SampleOrder order(sampler_, target_.slice);
+    std::optional<ChainRenderer> chains;
+    if (sampler_.chains) chains.emplace(description_, sampler_, scene(), camera_, accelerator(), order);
+    work({context, TileRenderer(context, accelerator(), order), chains ? &*chains : nullptr});
 }
 
 void Renderer::render(RenderState& state, const RenderControl& control) const {

@@ -19,8 +19,17 @@
 
 namespace montelux {
 
+class ChainRenderer;
+class SampleContext;
 struct SampleRecord;
 class TileRenderer;
+
+// What takes the samples of a render.
+struct SampleTakers {
+    SampleContext& context; // of the tiles
+    const TileRenderer& tiles;
+    ChainRenderer* chains = nullptr; // take them in place of tiles, if not null
+};
 
 // The description must outlive it.
 class Renderer {
@@ -58,8 +67,8 @@ class Renderer {
     RenderReport render(Film& film, const ProgressCallback& progress = {},
                         const CancelFlag* cancel = nullptr) const;
 
-    // Takes samples for a render led by another process: calls `work` with the renderer of its tiles.
-    void serve(const std::function<void(const TileRenderer&)>& work) const;
+    // Takes samples for a render led by another process: calls `work` with what takes them.
+    void serve(const std::function<void(const SampleTakers&)>& work) const;
 
     // Replays one sample of the render (sample_record.h). The record refers to the renderer's scene and
     // tables. Throws Error, as check_sample does, if the render does not take this sample.

@@ -62,6 +62,7 @@ class TileRenderer {
 
     const SampleOrder& order() const { return order_; }
     const FilmLayers& layers() const { return context_.layers(); }
+    bool makes_splats() const { return context_.makes_splats(); }
 
     // Adds its statistics to `tally`. Stops early when stop(), called before each pixel, or check(), called
     // after each full batch of samples, returns true. Pixels are always consistent: a batch is added whole.

@@ -39,6 +39,18 @@ for options in '--spp 40 --sampler independent' '--spp 40' '--target-error 4% --
     done
 done
 
+# The other integrators, and a guide.
+for options in '--spp 16 --integrator bidirectional' '--spp 5 --integrator light-tracing --sampler independent' \
+    '--spp 64 --integrator metropolis' '--spp 64 --guiding on'; do
+    "$montelux" render ball.pbrt $options --quiet --threads 7 -o one.exr 2>messages || fail "one process: $(cat messages)"
+    ranks 3 render ball.pbrt $options --threads 1 -o many.exr
+    prints_once "$options on 3 ranks" 0 'many.exr: 70 x 50 pixels'
+    same "$options on 3 ranks" one.exr many.exr
+done
+sed 's/Film "rgb"/Film "spectral"/' ball.pbrt >spectral.pbrt
+ranks 2 render spectral.pbrt --spp 4 -o many.exr
+prints_once "a spectral film" 1 "a spectral film cannot be rendered by several processes"
+
 # Four slices of the samples, merged.
 for k in 1 2 3 4; do
     ranks 2 render ball.pbrt --spp 40 --sampler independent --slice $k/4 --threads 1 --quiet -o part$k.exr
@@ -142,6 +154,18 @@ done
 ranks 4 $whole --threads 1 --quiet -o many.exr --checkpoint state --resume
 [ $code -eq 0 ] || fail "resumed after a kill: $(cat out)"
 same "resumed after a kill" one.exr many.exr
+
+for options in '--spp 192 --integrator bidirectional' '--spp 640 --integrator metropolis' '--spp 640 --guiding on'; do
+    "$montelux" render ball.pbrt $options --quiet -o one.exr
+    rm -f state* many.exr
+    background 3 render ball.pbrt $options --threads 1 -o many.exr --checkpoint state --checkpoint-every 0.05
+    wait_for_file state
+    kill -KILL "$(rank 2)" 2>/dev/null
+    wait $job
+    ranks 2 render ball.pbrt $options --threads 1 --quiet -o many.exr --checkpoint state --resume
+    [ $code -eq 0 ] || fail "$options resumed after a kill: $(cat out)"
+    same "$options resumed after a kill" one.exr many.exr
+done
 
 # Integrals: the digits of one process.
 for options in 'sin(x)*y+exp(-40*(z-0.5)^2) --method basic' '1/(x+y+z) --method vegas' 'x*y*z --method cubature'; do

@@ -1,15 +1,17 @@
 // The leader of a render among ranks whose every word is chosen by the test.
 #include "test/cluster/local_job.h"
 #include "test/render/mixed_scene.h"
+#include <atomic>
 #include <gtest/gtest.h>
 #include <string>
 #include <thread>
 
 #include "montelux/cluster/coordinator.h"
-#include "montelux/cluster/tile_worker.h"
+#include "montelux/cluster/serve.h"
 #include "montelux/mc/io/byte_stream.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/render/renderer.h"
+#include "montelux/render/tile_renderer.h"
 
 namespace montelux::testing {
 namespace {
@@ -72,8 +74,7 @@ class CoordinatorTest : public ::testing::Test {
     void run(Coordinator& coordinator, const std::function<bool()>& stop) {
         const RoundWatch watch{[&](bool) { return stop(); },
                                [](std::uint64_t, const std::optional<FilmError>&) {}};
-        renderer_.serve(
-            [&](const TileRenderer& tile_renderer) { coordinator.run(tile_renderer, state_, watch); });
+        renderer_.serve([&](const SampleTakers& takers) { coordinator.run(takers.tiles, state_, watch); });
     }
     CoordinatorSettings settings(double patience_seconds = 60) const {
         return {.tile_size = edge, .threads = 0, .patience_seconds = patience_seconds};
@@ -176,6 +177,30 @@ TEST_F(CoordinatorTest, RanksThatPrepareForLongAreWaitedFor) {
     helper.join();
     EXPECT_TRUE(waited_for);
     EXPECT_FALSE(coordinator.failed()) << *coordinator.failure();
+}
+
+// A guide is trained by the leader alone: it hears the others meanwhile, and does without those that are silent.
+TEST_F(CoordinatorTest, RanksAreHeardWhileTheLeaderWorks) {
+    LocalJob job(3);
+    PlayedRank first(job.mailbox(1)), second(job.mailbox(2));
+    int wishes = 0, turns = 0;
+    Coordinator coordinator(job.mailbox(0), crop(), settings(0.2), [&] { ++wishes; });
+    first.say_hello();
+    second.say_hello();
+    std::atomic<bool> ended{false};
+    coordinator.meanwhile(
+        [&] {
+            while (!ended) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        },
+        [&] {
+            first.say(turns++ == 0 ? protocol::wish : protocol::beat);
+            ended = coordinator.failed();
+        });
+    EXPECT_EQ(wishes, 1);
+    EXPECT_GT(turns, 10);
+    ASSERT_TRUE(coordinator.failed());
+    EXPECT_NE(coordinator.failure()->find("rank 2 has not answered"), std::string::npos);
+    EXPECT_THROW(coordinator.meanwhile([] { throw Error("guide", "is bad"); }, [] {}), Error);
 }
 
 TEST_F(CoordinatorTest, WhatPreparationThrowsComesThrough) {

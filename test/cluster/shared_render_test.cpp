@@ -1,5 +1,5 @@
 // A render shared by any number of ranks, interrupted or not, ends with the bits of one process.
-#include "test/cluster/local_job.h"
+#include "test/cluster/shared_testing.h"
 #include "test/render/mixed_scene.h"
 #include "test/sanitized.h"
 #include <algorithm>
@@ -11,7 +11,6 @@
 #include <thread>
 #include <utility>
 
-#include "montelux/cluster/coordinator.h"
 #include "montelux/cluster/tile_worker.h"
 #include "montelux/mc/io/byte_stream.h"
 #include "montelux/mc/math/error.h"
@@ -21,51 +20,11 @@
 namespace montelux::testing {
 namespace {
 
-int differing(const Film& a, const Film& b) {
-    int count = 0;
-    for (std::size_t i = 0; i < a.pixels().size(); ++i) count += !same_pixel(a.pixels()[i], b.pixels()[i]);
-    return count;
-}
-
 SceneBuilder scene(SamplerKind kind, std::uint32_t spp) {
     SceneBuilder b = mixed_scene(1, 22, 18);
     b.description.sampler.kind = kind;
     b.description.sampler.spp = spp;
     return b;
-}
-
-// The ranks beside the first one.
-class Helpers {
-  public:
-    Helpers(LocalJob& job, const Renderer& renderer, const PixelBounds& crop, int ranks, int tile_size,
-            const CancelFlag* cancel = nullptr) {
-        for (int r = 1; r < ranks; ++r)
-            threads_.emplace_back([&job, &renderer, crop, tile_size, r, cancel] {
-                renderer.serve([&](const TileRenderer& tiles) {
-                    serve_tiles(tiles, crop, tile_size, 1 + r % 2, job.mailbox(r), cancel, 60);
-                });
-            });
-    }
-    ~Helpers() {
-        for (std::thread& t : threads_) t.join();
-    }
-
-  private:
-    std::vector<std::thread> threads_;
-};
-
-// Returns how many tiles changed hands.
-std::uint64_t render_on(int ranks, const SceneDescription& description, const RenderTarget& target,
-                        RenderState& state, RenderControl control = {}) {
-    LocalJob job(ranks);
-    const Renderer renderer(description, target);
-    const CoordinatorSettings settings{.tile_size = 4, .threads = 1};
-    const Helpers helpers(job, renderer, description.film.crop, ranks, settings.tile_size);
-    Coordinator coordinator(job.mailbox(0), description.film.crop, settings);
-    control.executor = &coordinator;
-    renderer.render(state, control);
-    EXPECT_FALSE(coordinator.failed());
-    return coordinator.traffic().moved_tiles;
 }
 
 TEST(SharedRender, AnyNumberOfRanksGivesTheSameBits) {
@@ -191,7 +150,7 @@ TEST(SharedRender, AnotherRankCanBeCancelled) {
     LocalJob job(3);
     const Renderer renderer(b.description);
     CancelFlag cancel, elsewhere;
-    const Helpers helpers(job, renderer, b.description.film.crop, 3, 4, &elsewhere);
+    const Helpers helpers(job, renderer, 3, 4, &elsewhere);
     Coordinator coordinator(job.mailbox(0), b.description.film.crop, {.tile_size = 4},
                             [&] { cancel.request(); });
     RenderControl control;
@@ -242,8 +201,8 @@ TEST(SharedRender, MessagesThatMakeNoSenseAreRefused) {
     const SceneBuilder b = scene(SamplerKind::independent, 4);
     LocalJob job(2);
     const Renderer renderer(b.description);
-    renderer.serve([&](const TileRenderer& tiles) {
-        TileWorker worker(tiles, tiles_of(b.description.film.crop, 4), 1, job.mailbox(1));
+    renderer.serve([&](const SampleTakers& takers) {
+        TileWorker worker(takers.tiles, tiles_of(b.description.film.crop, 4), 1, job.mailbox(1));
         ByteWriter out;
         out.put(std::uint32_t{3});
         const std::vector<std::uint8_t> bytes = out.take();

@@ -1,4 +1,5 @@
 // Guided renders: the same picture with less noise, whatever the guide has learned.
+#include "test/render/hidden_lamp.h"
 #include "test/render/mixed_scene.h"
 #include "test/sanitized.h"
 #include "test/temporary_folder.h"
@@ -12,34 +13,6 @@
 
 namespace montelux::testing {
 namespace {
-
-// A closed box; a wall across it leaves a slit, behind which a lamp shines. What the camera sees is lit through it.
-SceneBuilder hidden_lamp(int size) {
-    SceneBuilder b;
-    b.description.film.width = b.description.film.height = size;
-    b.description.film.crop = {0, 0, size, size};
-    b.description.integrator.max_depth = 12;
-    const Index grey = b.add(DiffuseMaterial{gray(0.7f)}), black = b.add(DiffuseMaterial{gray(0)});
-    const auto wall = [&](const Transform& t, Index material, float emission = 0) {
-        b.add_mesh(square(t), material, emission);
-    };
-    const Transform wide = Transform::scale({2, 1, 1});
-    wall(Transform::translate({0, 0, -1}) * wide, grey);
-    wall(Transform::translate({0, 0, 1}) * Transform::rotate(180, {1, 0, 0}) * wide, grey);
-    wall(Transform::translate({0, 1, 0}) * Transform::rotate(90, {1, 0, 0}) * wide, grey);
-    wall(Transform::translate({0, -1, 0}) * Transform::rotate(-90, {1, 0, 0}) * wide, grey);
-    wall(Transform::translate({-2, 0, 0}) * Transform::rotate(90, {0, 1, 0}), grey);
-    wall(Transform::translate({2, 0, 0}) * Transform::rotate(-90, {0, 1, 0}), grey);
-    // Across the box at x = 0.8, but for a slit beside y = 1.
-    wall(Transform::translate({0.8, -0.1, 0}) * Transform::rotate(90, {0, 1, 0}) *
-             Transform::scale({1, 0.9, 1}),
-         grey);
-    wall(Transform::translate({1.95, -0.6, 0}) * Transform::rotate(-90, {0, 1, 0}) *
-             Transform::scale({0.2, 0.2, 1}),
-         black, 100);
-    b.look({0.6, -0.9, 0.4}, {-2, 0.2, -0.5}, 60);
-    return b;
-}
 
 double mean_luminance(const Film& film, double* error = nullptr) {
     double sum = 0, squares = 0;
@@ -163,6 +136,33 @@ TEST(Guiding, CancelledTrainingsDecideNothing) {
     EXPECT_FALSE(trained.summary.decided);
     EXPECT_EQ(trained.guide, nullptr);
     EXPECT_EQ(context.guide(), nullptr);
+}
+
+// Cancelled when the training is due: the resumed render trains before it takes more samples.
+TEST(Guiding, RendersCancelledBeforeTheTrainingEndWithTheSameBits) {
+    SceneBuilder b = hidden_lamp(20);
+    b.description.sampler.spp = 32;
+    b.description.integrator.guiding = Guiding::on;
+    const RenderState whole = render_guided(b.description);
+    CancelFlag cancel;
+    RenderState saved(b.description);
+    RenderControl control;
+    control.cancel = &cancel;
+    control.checkpoint_seconds = 0;
+    control.checkpoint = [&](const RenderState& s) {
+        saved = s;
+        if (s.report.samples == 400) cancel.request();
+    };
+    render_guided(b.description, control);
+    EXPECT_EQ(saved.report.samples, 400u);
+    EXPECT_EQ(saved.target_samples.front(), 1u); // the next round is not chosen
+    EXPECT_FALSE(saved.report.guide.decided);
+    EXPECT_NE(whole.guide, nullptr);
+    Renderer(b.description).render(saved);
+    int differing = 0;
+    for (std::size_t i = 0; i < whole.film.pixels().size(); ++i)
+        differing += !same_pixel(whole.film.pixels()[i], saved.film.pixels()[i]);
+    EXPECT_EQ(differing, 0);
 }
 
 // An evenly lit floor leaves nothing to learn: the picture is that of a render that never tried.

@@ -40,7 +40,7 @@ ChainRenderer::ChainRenderer(const SceneDescription& description, const SamplerS
                       direct_integrator(description.integrator)) {}
 
 template <typename Task>
-bool ChainRenderer::run_tasks(std::size_t count, const ChainWatch& watch, std::uint64_t paths,
+bool ChainRenderer::run_tasks(std::size_t count, const GroupWatch& watch, std::uint64_t paths,
                               const Task& task) {
     std::atomic<bool> abandoned{false};
     parallel_for(static_cast<std::int64_t>(count), [&](std::int64_t i) {
@@ -65,8 +65,9 @@ bool ChainRenderer::run_tasks(std::size_t count, const ChainWatch& watch, std::u
     return !abandoned;
 }
 
-void ChainRenderer::take_direct_light(std::uint64_t group, int row, std::span<DirectLight> into,
-                                      RayTracer& tracer, BadSampleReport& bad) const {
+void ChainRenderer::take_direct_light(std::uint64_t group, int row,
+                                      std::span<ChainReplicate::PixelValue> into, RayTracer& tracer,
+                                      BadSampleReport& bad) const {
     const PixelBounds& crop = description_.film.crop;
     const std::uint32_t rays = direct_sampler_.replicate_points;
     constexpr int columns = 64; // pixels whose rays are traced together
@@ -82,38 +83,51 @@ void ChainRenderer::take_direct_light(std::uint64_t group, int row, std::span<Di
             direct_context_.take(tracer, keys, batch, results);
             for (std::size_t i = 0; i < keys.size(); ++i) {
                 const SampleContext::Result& r = results[i];
-                DirectLight& d = into[static_cast<std::size_t>(begin - crop.x0) + i];
+                ChainReplicate::PixelValue& d = into[static_cast<std::size_t>(begin - crop.x0) + i];
                 if (r.bad) {
                     bad.add({*r.bad, keys[i].x, keys[i].y, keys[i].index});
                     continue;
                 }
-                d.radiance += Vec3d(r.film.radiance);
+                d.mean += Vec3d(r.film.radiance);
                 d.albedo += r.film.albedo;
                 d.normal += r.film.normal;
                 d.depth += r.film.depth;
             }
         }
     }
-    for (DirectLight& d : into) {
+    for (ChainReplicate::PixelValue& d : into) {
         const float scale = 1 / static_cast<float>(rays);
-        d.radiance = separates_direct_light_ ? d.radiance / static_cast<double>(rays) : Vec3d();
+        d.mean = separates_direct_light_ ? d.mean / static_cast<double>(rays) : Vec3d();
         d.albedo *= scale;
         d.normal *= scale;
         d.depth *= scale;
     }
 }
 
-bool ChainRenderer::take(std::uint64_t first, std::size_t count, const ChainWatch& watch) {
+std::size_t ChainRenderer::groups_at_once(int threads) {
+    return static_cast<std::size_t>(1 + (threads - 1) / threads_per_group);
+}
+
+std::vector<ChainReplicate> ChainRenderer::take(std::uint64_t first, std::size_t count,
+                                                const GroupWatch& watch) {
+    paths_ = 0;
+    if (!plan_) {
+        const double begin = thread_cpu_seconds();
+        plan_ = make_chain_plan(sampler_, accelerator_, description_, order_.replicate_size(), watch.abandon);
+        costs_.cpu_seconds += thread_cpu_seconds() - begin;
+        if (!plan_) return {};
+    }
     const PixelBounds& crop = description_.film.crop;
     while (groups_.size() < count)
         groups_.push_back(std::make_unique<ChainGroup>(sampler_, *plan_, keys_, crop));
-    direct_.resize(groups_.size());
-    bad_.assign(groups_.size(), {});
     const std::uint32_t m = order_.replicate_size();
+    // Groups are counted over all slices of a render.
+    const auto group_of = [&](std::size_t g) { return order_.index((first + g) * m) / m; };
+    std::vector<ChainReplicate> replicates(count);
     for (std::size_t g = 0; g < count; ++g) {
-        // Groups are counted over all slices of a render.
-        groups_[g]->begin(order_.index((first + g) * m) / m);
-        direct_[g].assign(pixel_count(crop), {});
+        groups_[g]->begin(group_of(g));
+        replicates[g].number = first + g;
+        replicates[g].pixels.resize(pixel_count(crop));
     }
     const std::size_t starting = groups_[0]->starting_tasks(), walking = groups_[0]->walking_tasks();
     const std::uint64_t of_start = plan_->size.starting_points / starting;
@@ -121,79 +135,77 @@ bool ChainRenderer::take(std::uint64_t first, std::size_t count, const ChainWatc
     if (!run_tasks(count * starting, watch, of_start, [&](std::size_t i, RayTracer& tracer) {
             groups_[i / starting]->take_starting_points(i % starting, tracer);
         }))
-        return false;
+        return {};
     for (std::size_t g = 0; g < count; ++g) groups_[g]->choose_starts();
     if (!run_tasks(count * walking, watch, of_walk, [&](std::size_t i, RayTracer& tracer) {
             groups_[i / walking]->walk(i % walking, tracer, watch.abandon);
         }))
-        return false;
+        return {};
+    for (std::size_t g = 0; g < count; ++g) {
+        ChainGroup::Tally& tally = replicates[g].tally = groups_[g]->tally();
+        ChainStatistics& s = tally.statistics;
+        s.longest_step = static_cast<float>(plan_->small_step.longest());
+        s.large_step_probability = static_cast<float>(plan_->large_step_probability);
+        s.chains = plan_->size.all_chains();
+        s.states = plan_->size.states;
+        s.starting_points = plan_->size.starting_points;
+    }
     const auto rows = static_cast<std::size_t>(crop.height());
     const auto width = static_cast<std::size_t>(crop.width());
-    return run_tasks(count * rows, watch, 0, [&](std::size_t i, RayTracer& tracer) {
-        const std::size_t g = i / rows, row = i % rows;
-        BadSampleReport bad;
-        take_direct_light(order_.index((first + g) * m) / m, static_cast<int>(row),
-                          std::span(direct_[g]).subspan(row * width, width), tracer, bad);
-        if (bad.count() == 0) return;
-        std::lock_guard lock(mutex_);
-        bad_[g].merge(bad);
-    });
+    if (!run_tasks(count * rows, watch, 0, [&](std::size_t i, RayTracer& tracer) {
+            const std::size_t g = i / rows, row = i % rows;
+            const std::span pixels = std::span(replicates[g].pixels).subspan(row * width, width);
+            BadSampleReport bad;
+            take_direct_light(group_of(g), static_cast<int>(row), pixels, tracer, bad);
+            const int y = crop.y0 + static_cast<int>(row);
+            for (int x = crop.x0; x < crop.x1; ++x) {
+                Vec3d& mean = pixels[static_cast<std::size_t>(x - crop.x0)].mean;
+                mean = groups_[g]->mean(x, y) + mean;
+            }
+            if (bad.count() == 0) return;
+            std::lock_guard lock(mutex_);
+            replicates[g].tally.bad.merge(bad);
+        }))
+        return {};
+    return replicates;
 }
 
-void ChainRenderer::add(RenderState& state, const ChainGroup& group,
-                        std::span<const DirectLight> direct) const {
+ChainCosts ChainRenderer::take_costs() { return std::exchange(costs_, {}); }
+
+void ChainRenderer::add(RenderState& state, const ChainReplicate& replicate) const {
     const PixelBounds& crop = description_.film.crop;
     const std::uint32_t m = order_.replicate_size();
-    ChainGroup::Tally tally = group.tally();
+    const ChainGroup::Tally& tally = replicate.tally;
+    const std::span<Pixel> pixels = state.film.pixels();
     parallel_for(crop.height(), [&](std::int64_t row) {
-        const int y = crop.y0 + static_cast<int>(row);
-        for (int x = crop.x0; x < crop.x1; ++x) {
-            Pixel& pixel = state.film.pixel(x, y);
-            const std::size_t i = static_cast<std::size_t>(row) * static_cast<std::size_t>(crop.width()) +
-                                  static_cast<std::size_t>(x - crop.x0);
-            const DirectLight& d = direct[i];
-            pixel.add_features(d.albedo, d.normal, d.depth, m);
-            pixel.add_replicate(group.mean(x, y) + d.radiance, m);
-            if (tally.clamped > 0) pixel.add_clamped(static_cast<float>(tally.clamped * m));
+        const auto width = static_cast<std::size_t>(crop.width());
+        const std::size_t first = static_cast<std::size_t>(row) * width;
+        for (std::size_t i = first; i < first + width; ++i) {
+            const ChainReplicate::PixelValue& value = replicate.pixels[i];
+            pixels[i].add_features(value.albedo, value.normal, value.depth, m);
+            pixels[i].add_replicate(value.mean, m);
+            if (tally.clamped > 0) pixels[i].add_clamped(static_cast<float>(tally.clamped * m));
         }
     });
-    ChainStatistics& s = state.report.chains;
-    s.merge(tally.statistics);
-    s.longest_step = static_cast<float>(plan_->small_step.longest());
-    s.large_step_probability = static_cast<float>(plan_->large_step_probability);
-    s.chains = plan_->size.all_chains();
-    s.states = plan_->size.states;
-    s.starting_points = plan_->size.starting_points;
+    state.report.chains.merge(tally.statistics);
     state.report.bad.merge(tally.bad);
     state.report.clamped_samples += tally.clamped_samples;
     state.report.samples += std::uint64_t{m} * pixel_count(crop);
 }
 
 void ChainRenderer::run(RenderState& state, std::uint32_t target_samples, const ChainWatch& watch) {
-    if (!plan_) {
-        const double begin = thread_cpu_seconds();
-        plan_ = make_chain_plan(sampler_, accelerator_, description_, order_.replicate_size(), watch.abandon);
-        costs_.cpu_seconds += thread_cpu_seconds() - begin;
-        if (!plan_) return;
-    }
     const std::uint64_t target = target_samples / order_.replicate_size();
-    const auto most = static_cast<std::size_t>(1 + (thread_count() - 1) / threads_per_group);
+    const std::size_t most = groups_at_once(thread_count());
     for (;;) {
         const std::uint64_t done = state.film.pixels().front().replicates().count();
         if (done >= target) return;
         const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(most, target - done));
-        const bool complete = take(done, count, watch);
+        const std::vector<ChainReplicate> taken = take(done, count, watch.groups);
         watch.add([&] {
-            for (std::size_t g = 0; g < count && complete; ++g) {
-                add(state, *groups_[g], direct_[g]);
-                state.report.bad.merge(bad_[g]);
-            }
-            const Costs costs = std::exchange(costs_, {});
-            state.report.rays.merge(costs.rays);
-            state.report.cpu_seconds += costs.cpu_seconds;
+            for (const ChainReplicate& replicate : taken) add(state, replicate);
+            take_costs().add_to(state.report);
         });
-        paths_ = 0;
-        if (!complete || watch.pause()) return;
+        if (taken.empty() || watch.pause()) return;
     }
 }
 

@@ -18,16 +18,43 @@
 
 namespace montelux {
 
-// The render loop as a chain renderer sees it. Called from the rendering threads, several at once.
-struct ChainWatch {
-    // Whether to give up the groups that are being taken.
+// What groups that are being taken report. Called from the rendering threads, several at once.
+struct GroupWatch {
+    // Whether to give up these groups.
     std::function<bool()> abandon;
+    // Paths taken of them so far.
+    std::function<void(std::uint64_t paths)> tell;
+};
+
+// The render loop as a chain renderer sees it.
+struct ChainWatch {
+    GroupWatch groups;
     // Whether to return after a group, asked between groups.
     std::function<bool()> pause;
-    // Paths taken since the last group was added to the film.
-    std::function<void(std::uint64_t paths)> tell;
     // Calls the function, which changes the film and the report.
     std::function<void(const std::function<void()>& change)> add;
+};
+
+struct ChainCosts {
+    RayStatistics rays;
+    double cpu_seconds = 0;
+
+    void add_to(RenderReport& report) const {
+        report.rays.merge(rays);
+        report.cpu_seconds += cpu_seconds;
+    }
+};
+
+// What a group brings to the film: one replicate of every pixel.
+struct ChainReplicate {
+    struct PixelValue {
+        Vec3d mean;
+        Vec3f albedo, normal;
+        float depth = 0;
+    };
+    std::uint64_t number = 0;       // among the film's replicates, from 0
+    std::vector<PixelValue> pixels; // row by row
+    ChainGroup::Tally tally;        // with the statistics of the plan
 };
 
 // Groups are replicates: that of the film's n-th replicate has the number that `order` gives its samples. They are
@@ -46,25 +73,23 @@ class ChainRenderer {
     // Takes groups until all pixels have so many samples, or the watch says otherwise.
     void run(RenderState& state, std::uint32_t target_samples, const ChainWatch& watch);
 
+    // The parts of run(), for groups that several processes take.
+    const SampleOrder& order() const { return order_; }
+    // Groups that keep so many threads busy.
+    static std::size_t groups_at_once(int threads);
+    // The film's replicates from `first` on, each a pure function of its number; none if they were abandoned.
+    std::vector<ChainReplicate> take(std::uint64_t first, std::size_t count, const GroupWatch& watch);
+    // Of everything since the last call.
+    ChainCosts take_costs();
+    // Call in the order of their numbers. May run at the same time as take().
+    void add(RenderState& state, const ChainReplicate& replicate) const;
+
   private:
-    // Means over the camera rays of a pixel.
-    struct DirectLight {
-        Vec3d radiance;
-        Vec3f albedo, normal;
-        float depth = 0;
-    };
-    struct Costs {
-        RayStatistics rays;
-        double cpu_seconds = 0;
-    };
-    // Returns false if it was abandoned.
-    bool take(std::uint64_t first, std::size_t count, const ChainWatch& watch);
-    // A row of a group's pixels.
-    void take_direct_light(std::uint64_t group, int row, std::span<DirectLight> into, RayTracer& tracer,
-                           BadSampleReport& bad) const;
-    void add(RenderState& state, const ChainGroup& group, std::span<const DirectLight> direct) const;
+    // Light and features of a row of a group's pixels: means over their camera rays.
+    void take_direct_light(std::uint64_t group, int row, std::span<ChainReplicate::PixelValue> into,
+                           RayTracer& tracer, BadSampleReport& bad) const;
     template <typename Task>
-    bool run_tasks(std::size_t count, const ChainWatch& watch, std::uint64_t paths, const Task& task);
+    bool run_tasks(std::size_t count, const GroupWatch& watch, std::uint64_t paths, const Task& task);
 
     const SceneDescription& description_;
     const Accelerator& accelerator_;
@@ -76,11 +101,9 @@ class ChainRenderer {
     SampleContext direct_context_;
     std::optional<ChainPlan> plan_;
     std::vector<std::unique_ptr<ChainGroup>> groups_;
-    std::vector<std::vector<DirectLight>> direct_; // of the groups
-    std::vector<BadSampleReport> bad_;             // of their direct light
-    std::mutex mutex_;                             // of bad_ and the members below, while tasks run
-    Costs costs_;                                  // since the last group was added
-    std::uint64_t paths_ = 0;
+    std::mutex mutex_; // of the members below, while tasks run
+    ChainCosts costs_;
+    std::uint64_t paths_ = 0; // of the groups that are being taken
 };
 
 } // namespace montelux

@@ -30,6 +30,11 @@ struct ChainStatistics {
         groups += later.groups;
         dark_groups += later.dark_groups;
         agreement.merge(later.agreement);
+        longest_step = later.longest_step;
+        large_step_probability = later.large_step_probability;
+        chains = later.chains;
+        states = later.states;
+        starting_points = later.starting_points;
     }
     double large_acceptance() const {
         return large_steps > 0 ? large_accepted / static_cast<double>(large_steps) : 0;

@@ -1,0 +1,239 @@
+// Renders by light paths, by chains and by guided paths have the bits of one process, however many ranks share them.
+#include "test/cluster/shared_testing.h"
+#include "test/render/hidden_lamp.h"
+#include "test/sanitized.h"
+#include <algorithm>
+#include <cstdint>
+#include <gtest/gtest.h>
+#include <optional>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include "montelux/cluster/coordinator.h"
+#include "montelux/mc/io/byte_stream.h"
+#include "montelux/mc/math/error.h"
+#include "montelux/render/renderer.h"
+#include "montelux/render/splat_pass.h"
+
+namespace montelux::testing {
+namespace {
+
+SceneDescription picture_of(IntegratorKind method, SamplerKind sampler, std::uint32_t spp) {
+    SceneDescription d = mixed_scene(1, 22, 18).description;
+    d.film.filter = GaussianFilter{}; // splats reach pixels of other tiles
+    d.integrator.method = method;
+    d.sampler.kind = sampler;
+    d.sampler.spp = under_sanitizers ? spp / 3 : spp;
+    return d;
+}
+
+RenderState rendered(const SceneDescription& d, const RenderTarget& target = {}) {
+    RenderState state(d);
+    Renderer(d, target).render(state);
+    return state;
+}
+
+void expect_equal(const RenderState& shared, const RenderState& whole, std::string_view what) {
+    EXPECT_EQ(differing(shared.film, whole.film), 0) << what;
+    EXPECT_EQ(shared.report.samples, whole.report.samples) << what;
+    EXPECT_EQ(shared.report.stop, whole.report.stop) << what;
+    ASSERT_EQ(shared.splats.has_value(), whole.splats.has_value()) << what;
+    if (!shared.splats) return;
+    EXPECT_TRUE(std::ranges::equal(std::as_const(*shared.splats).sums(), std::as_const(*whole.splats).sums()))
+        << what; // of an incomplete last pass
+}
+
+// Interrupted again and again after about so many samples, and resumed by another number of ranks.
+RenderState interrupted(const SceneDescription& d, std::uint64_t samples, int& stops, int& within_passes) {
+    RenderState state(d);
+    for (bool ended = false; !ended; ++stops) {
+        if (stops >= 1000) return state;
+        RenderState saved = state;
+        CancelFlag cancel;
+        RenderControl control;
+        control.cancel = &cancel;
+        control.checkpoint_seconds = 0.001;
+        const std::uint64_t enough = state.report.samples + samples;
+        control.checkpoint = [&](const RenderState& s) {
+            saved = s;
+            if (s.report.samples >= enough) cancel.request();
+        };
+        render_on(1 + stops % 3, d, {}, state, control);
+        ended = !state.report.cancelled();
+        if (ended) continue;
+        within_passes += saved.splats && open_samples(saved.film) > 0;
+        state = saved;
+    }
+    return state;
+}
+
+TEST(SharedLightPaths, AnyNumberOfRanksGivesTheSameBits) {
+    int combination = 0;
+    for (const SamplerKind sampler : {SamplerKind::independent, SamplerKind::sobol})
+        for (const RenderTarget& target :
+             {RenderTarget{}, RenderTarget{.error = 0.3}, RenderTarget{.slice = {1, 3}}}) {
+            const SceneDescription d = picture_of(combination % 2 == 0 ? IntegratorKind::bidirectional
+                                                                       : IntegratorKind::light_tracing,
+                                                  sampler, 18);
+            const RenderState whole = rendered(d, target);
+            // Every number of ranks, in turns to save time.
+            for (const int ranks : {2 + combination % 2, combination == 0 ? 1 : 3 - combination % 2}) {
+                RenderState state(d);
+                render_on(ranks, d, target, state);
+                expect_equal(state, whole, "ranks");
+            }
+            ++combination;
+        }
+}
+
+TEST(SharedLightPaths, InterruptedRendersEndWithTheSameBits) {
+    for (const SamplerKind sampler : {SamplerKind::independent, SamplerKind::sobol}) {
+        const SceneDescription d = picture_of(IntegratorKind::bidirectional, sampler, 40);
+        int stops = 0, within_passes = 0;
+        expect_equal(interrupted(d, 3000, stops, within_passes), rendered(d), "interrupted");
+        EXPECT_GE(stops, 3);
+        EXPECT_TRUE(within_passes > 0 || sampler == SamplerKind::independent) << stops;
+    }
+}
+
+// A rank falls silent within what it sends at the end of a round: its pixels without its splats, or both without the
+// end. Neither counts.
+TEST(SharedLightPaths, LostRanksLeaveNoSplatsAndNoSamples) {
+    const SceneDescription d = picture_of(IntegratorKind::light_tracing, SamplerKind::sobol, 64);
+    const RenderState whole = rendered(d);
+    for (const protocol::Tag last : {protocol::tiles, protocol::splats, protocol::splat_counts}) {
+        RenderState saved = render_until_lost(d, last, 3);
+        EXPECT_LT(saved.report.samples, whole.report.samples);
+        render_on(2, d, {}, saved);
+        expect_equal(saved, whole, "lost");
+    }
+}
+
+TEST(SharedChains, AnyNumberOfRanksGivesTheSameBits) {
+    for (const RenderTarget& target :
+         {RenderTarget{}, RenderTarget{.error = 0.25}, RenderTarget{.slice = {1, 3}}}) {
+        const SceneDescription d = picture_of(IntegratorKind::metropolis, SamplerKind::independent, 48);
+        const RenderState whole = rendered(d, target);
+        for (const int ranks : {2, target.error > 0 ? 3 : 1}) {
+            RenderState state(d);
+            render_on(ranks, d, target, state);
+            expect_equal(state, whole, "ranks");
+            const ChainStatistics &chains = state.report.chains, &alone = whole.report.chains;
+            EXPECT_EQ(chains.groups, alone.groups);
+            EXPECT_EQ(chains.large_accepted, alone.large_accepted);
+            EXPECT_EQ(chains.small_accepted, alone.small_accepted);
+            EXPECT_EQ(chains.starting_points, alone.starting_points);
+            EXPECT_EQ(chains.longest_step, alone.longest_step);
+            EXPECT_EQ(chains.agreement.worst_r_hat(), alone.agreement.worst_r_hat());
+        }
+    }
+}
+
+TEST(SharedChains, InterruptedRendersEndWithTheSameBits) {
+    const SceneDescription d = picture_of(IntegratorKind::metropolis, SamplerKind::independent, 48);
+    int stops = 0, within_passes = 0;
+    expect_equal(interrupted(d, 396 * 14, stops, within_passes), rendered(d), "interrupted");
+    EXPECT_GE(stops, 3);
+}
+
+// A rank falls silent when its group is half sent, and between two groups.
+TEST(SharedChains, LostRanksLeaveNoPartOfAGroup) {
+    const SceneDescription d = picture_of(IntegratorKind::metropolis, SamplerKind::independent, 48);
+    const RenderState whole = rendered(d);
+    for (const protocol::Tag last : {protocol::replicate_part, protocol::replicate}) {
+        RenderState saved = render_until_lost(d, last, 2);
+        EXPECT_LT(saved.report.samples, whole.report.samples);
+        EXPECT_GT(saved.report.samples, 0u);
+        render_on(2, d, {}, saved);
+        expect_equal(saved, whole, "lost");
+        EXPECT_EQ(saved.report.chains.groups, whole.report.chains.groups);
+        EXPECT_EQ(saved.report.chains.small_accepted, whole.report.chains.small_accepted);
+    }
+}
+
+TEST(SharedChains, MessagesThatMakeNoSenseAreRefused) {
+    const SceneDescription d = picture_of(IntegratorKind::metropolis, SamplerKind::independent, 48);
+    const Renderer renderer(d);
+    for (const auto& [tag, part] :
+         {std::pair{protocol::replicate_part, protocol::ReplicatePart{0, 300, 200}}, // 396 pixels
+          std::pair{protocol::replicate_part, protocol::ReplicatePart{0, ~std::uint64_t{0}, 2}},
+          std::pair{protocol::replicate_part, protocol::ReplicatePart{3, 5, 7}}, // without its beginning
+          std::pair{protocol::replicate, protocol::ReplicatePart{}},
+          std::pair{protocol::done, protocol::ReplicatePart{}}}) {
+        LocalJob job(2);
+        ByteWriter out;
+        out.put(part);
+        job.mailbox(1).send(0, tag, out.take());
+        Coordinator coordinator(job.mailbox(0), d.film.crop, {.threads = 1});
+        RenderControl control;
+        control.executor = &coordinator;
+        RenderState state(d);
+        EXPECT_THROW(renderer.render(state, control), Error) << tag;
+    }
+}
+
+SceneDescription guided_picture(std::uint32_t spp) {
+    SceneDescription d = hidden_lamp(16).description;
+    d.integrator.guiding = Guiding::on;
+    d.sampler.kind = SamplerKind::independent;
+    d.sampler.spp = spp;
+    return d;
+}
+
+TEST(SharedGuides, AnyNumberOfRanksGivesTheSameBits) {
+    for (const RenderTarget& target : {RenderTarget{}, RenderTarget{.adaptive = true}}) {
+        const SceneDescription d = guided_picture(96);
+        const RenderState whole = rendered(d, target);
+        ASSERT_NE(whole.guide, nullptr);
+        for (int ranks = 1; ranks <= 3; ++ranks) {
+            RenderState state(d);
+            render_on(ranks, d, target, state);
+            expect_equal(state, whole, "ranks");
+            EXPECT_EQ(state.report.guide.rounds, whole.report.guide.rounds);
+            EXPECT_EQ(state.report.guide.gain, whole.report.guide.gain);
+        }
+    }
+}
+
+// Before and after the training; the ranks of the next job get the guide of the checkpoint.
+TEST(SharedGuides, InterruptedRendersEndWithTheSameBits) {
+    const SceneDescription d = guided_picture(200);
+    int stops = 0, within_passes = 0;
+    expect_equal(interrupted(d, 10'000, stops, within_passes), rendered(d), "interrupted");
+    EXPECT_GE(stops, 3);
+}
+
+// A rank that is ready only when the guide is trained gets it before its first tile.
+TEST(SharedGuides, LateRanksGetTheGuide) {
+    const SceneDescription d = guided_picture(1000);
+    const RenderState whole = rendered(d);
+    LocalJob job(2);
+    const Renderer renderer(d);
+    std::optional<std::thread> late;
+    RenderState state(d);
+    Coordinator coordinator(job.mailbox(0), d.film.crop, {.tile_size = 4, .threads = 1});
+    RenderControl control;
+    control.executor = &coordinator;
+    control.progress = [&](const RenderProgress& p) {
+        if (late || p.samples_done < 2000) return;
+        late.emplace([&] { serve_render(renderer, job.mailbox(1), {.tile_size = 4, .threads = 1}); });
+    };
+    renderer.render(state, control);
+    EXPECT_EQ(coordinator.threads(), 2);
+    coordinator.end();
+    if (late) late->join();
+    EXPECT_GT(coordinator.traffic().bytes_in, 16 * sizeof(Pixel)); // that rank has rendered a tile
+    expect_equal(state, whole, "late");
+}
+
+TEST(SharedGuides, LostRanksTakeNoPart) {
+    const SceneDescription d = guided_picture(96);
+    RenderState saved = render_until_lost(d, protocol::guide_taken, 1);
+    EXPECT_NE(saved.guide, nullptr);
+    render_on(2, d, {}, saved);
+    expect_equal(saved, rendered(d), "lost");
+}
+
+} // namespace
+} // namespace montelux::testing
