@@ -1,4 +1,4 @@
-"""Integrands in machine code: numba's cfuncs, functions of ctypes and scipy.LowLevelCallable, without importing these."""
+"""Integrands in machine code: numba's cfuncs, functions of ctypes, scipy.LowLevelCallable; none is imported."""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ def prepared(
         yield _with_components(function, components, region, threads)
         return
     if threads != 1:
-        raise Error(f"threads: {threads} was given with workers={workers}; each worker has a thread, expected threads=1")
+        raise Error(f"threads: {threads} was given with workers={workers}; each worker has one, expected threads=1")
     with WorkerPool(function, count, out=out, components=components or 0) as pool:
         yield _with_components(pool, components, region, count)
 

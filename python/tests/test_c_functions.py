@@ -106,9 +106,9 @@ def test_several_components():
         x, y = np.ctypeslib.as_array(x, (d, n)), np.ctypeslib.as_array(y, (2, n))
         y[:] = x[0], x[0] * x[1]
 
-    r = montelux.integrate(OfPoints(two), BOX, "vegas", evaluations=5000, seed=2, components=2)
+    r = montelux.integrate(OfPoints(two), BOX, "basic", evaluations=2000, seed=2, components=2)
     q = montelux.integrate(
-        lambda x: np.stack([x[:, 0], x[:, 0] * x[:, 1]], axis=-1), BOX, "vegas", evaluations=5000, seed=2
+        lambda x: np.stack([x[:, 0], x[:, 0] * x[:, 1]], axis=-1), BOX, "basic", evaluations=2000, seed=2
     )
     assert np.array_equal(r.value, q.value) and np.array_equal(r.covariance, q.covariance)
 
@@ -139,13 +139,13 @@ def test_many_dimensions():
     assert abs(r.value - 15) < 6 * r.standard_error
 
 
-SIGNATURES = r"expected double \(double\), double \(double, void \*\), double \(int, double \*\), .* or void \(int, int"
+EXPECTED = r"expected double \(double\), double \(double, void \*\), double \(int, double \*\), .* or void \(int, int"
 
 
 @pytest.mark.parametrize(
     "f, sentence",
     [
-        (ctypes.CFUNCTYPE(ctypes.c_float, ctypes.c_float)(abs), r"signature 'float \(float\)' was given; " + SIGNATURES),
+        (ctypes.CFUNCTYPE(ctypes.c_float, ctypes.c_float)(abs), r"signature 'float \(float\)' was given; " + EXPECTED),
         (ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_long, Pointer)(pow), r"'double \(long, double \*\)' was given"),
         (ctypes.CFUNCTYPE(ctypes.c_double)(dict), r"'double \(\)' was given"),
         (ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_char_p)(len), r"'double \(c_char_p\)' was given"),
@@ -153,7 +153,7 @@ SIGNATURES = r"expected double \(double\), double \(double, void \*\), double \(
         (LowLevelCallable(sine(), "int (int)"), r"'int \(int\)' was given"),
         (LowLevelCallable(sine(), None), r"signature '' was given"),
         (LowLevelCallable(sine(), "double (double)", 8), r"user data was given.*takes none; expected a void \* last"),
-        (type("LowLevelCallable", (tuple,), {"signature": "", "user_data": 0})((3,)), "type 'int' was found in a LowLevel"),
+        (type("Other", (tuple,), {"signature": "", "user_data": 0})((3,)), "type 'int' was found in a LowLevel"),
         ((), "an object of type 'tuple' was given; expected a function, a numba cfunc"),
         (3, "an object of type 'int' was given; expected a function, a numba cfunc"),
     ],
