@@ -7,6 +7,7 @@ import ctypes.util
 import math
 import subprocess
 import sys
+import threading
 
 import numpy as np
 import pytest
@@ -131,6 +132,16 @@ def test_threads_and_logarithms_and_maps():
     maps = [montelux.train_map(g, BOX, 4000) for g in (bumpy, lambda x: np.exp(-50 * (x[:, 0] - 0.3) ** 2))]
     runs = [montelux.integrate(f, BOX, montelux.Vegas(map=m), evaluations=2000) for m in maps]
     assert runs[0].value == pytest.approx(runs[1].value, rel=1e-9)
+
+
+def test_threads_call_at_the_same_time():
+    seen = set()
+    f = OfNumber(lambda x: seen.add(threading.get_ident()) or x)
+    for _ in range(10):  # on a busy machine threads start late
+        montelux.integrate(f, (0, 1), "basic", evaluations=50_000, threads=2)
+        if len(seen) == 2:
+            return
+    raise AssertionError("only one thread called the function")
 
 
 def test_many_dimensions():
