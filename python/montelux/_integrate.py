@@ -10,7 +10,9 @@ from typing import Any, Union
 import numpy as np
 
 from . import _core
+from ._c_functions import Integrand
 from ._core import Domain, Error
+from ._integrand_forms import ArrayMaker, prepared
 from ._names import MOST_THREADS, did_you_mean, is_number, is_whole, settings_of, unknown
 from ._progress import IntegrationProgress
 from ._result import Array, LogResult, Result, from_core, log_from_core
@@ -96,15 +98,8 @@ def as_method(method: Any, settings: dict[str, Any], arguments: Sequence[str]) -
     return made
 
 
-def pointwise(f: Callable[[Any], Any], one_variable: bool) -> Callable[[Array], Array]:
-    """The batch form of a function of one point."""
-    if one_variable:
-        return lambda x: np.array([f(v) for v in x.tolist()])
-    return lambda x: np.array([f(row) for row in x.copy()])
-
-
 def integrate(
-    f: Callable[..., Any],
+    f: Integrand,
     domain: Ranges,
     method: Any = "auto",
     *,
@@ -114,8 +109,10 @@ def integrate(
     time: float | None = None,
     seed: int = 0,
     threads: int = 1,
+    workers: int = 1,
     batch: bool = True,
     out: bool = False,
+    array: ArrayMaker | None = None,
     components: int | None = None,
     covariance: bool = True,
     non_finite: str = "skip",
@@ -132,7 +129,11 @@ def integrate(
     the library's own memory (strided, read-only, coordinate by coordinate) that ends with the call: keep
     `x.copy()`, not x. With `out=True` f(x, y) writes into y, shape (n,) or (n, m), so that values are not
     copied either. With `batch=False` f takes one point: a float for one variable, else an array of shape (d,).
-    What f raises ends the integration and passes through.
+    What f raises ends the integration and passes through. With `array`, such as torch.from_dlpack or
+    jax.numpy.asarray, f gets array(x) of a copy of x. It may return any object with `__dlpack__`.
+
+    f may be a C function, too: a numba cfunc, a scipy.LowLevelCallable, a function of ctypes with declared types;
+    double (double), double (int, double *), and more of docs/python-integrands.md.
 
     domain: a range (lower, upper), or a sequence of them, one a variable; ends may be infinite; or a Domain.
 
@@ -142,8 +143,9 @@ def integrate(
     It stops when every component's standard error is below the larger of `absolute_error` and `relative_error`
     times its value; after this many `evaluations`; or `time` seconds. Without any of these after 1e6 evaluations.
 
-    The result depends on f, domain, method, budget and seed, and not on `threads`. Python runs one thread at a
-    time, so that more than one helps only functions that release the interpreter's lock for long; 0: one a
+    The result depends on f, domain, method, budget and seed, and not on `threads` or `workers`. Python runs one
+    thread at a time, so that more than one helps only C functions and those that release the interpreter's lock
+    for long; 0: one a processor. Slow functions of Python take `workers`, processes that evaluate f; 0: one a
     processor.
 
     components: the m of f's shape (n, m); 0 for shape (n,). Without it f is called once more, with five to
@@ -169,8 +171,10 @@ def integrate(
         time=time,
         seed=seed,
         threads=threads,
+        workers=workers,
         batch=batch,
         out=out,
+        array=array,
         components=components,
         covariance=covariance,
         non_finite=non_finite,
@@ -184,7 +188,7 @@ def integrate(
 
 
 def integrate_log(
-    log_f: Callable[..., Any],
+    log_f: Integrand,
     domain: Ranges,
     method: Any = "auto",
     *,
@@ -193,8 +197,10 @@ def integrate_log(
     time: float | None = None,
     seed: int = 0,
     threads: int = 1,
+    workers: int = 1,
     batch: bool = True,
     out: bool = False,
+    array: ArrayMaker | None = None,
     non_finite: str = "skip",
     progress: Progress = False,
     checkpoint: str | os.PathLike[str] | None = None,
@@ -225,8 +231,10 @@ def integrate_log(
         time=time,
         seed=seed,
         threads=threads,
+        workers=workers,
         batch=batch,
         out=out,
+        array=array,
         components=None if not out else 0,
         covariance=True,
         non_finite=non_finite,
@@ -241,7 +249,7 @@ def integrate_log(
 
 def _run(
     call: Callable[..., Any],
-    f: Callable[..., Any],
+    f: Integrand,
     domain: Ranges,
     method: Any,
     settings: dict[str, Any],
@@ -252,8 +260,10 @@ def _run(
     time: float | None,
     seed: int,
     threads: int,
+    workers: int,
     batch: bool,
     out: bool,
+    array: ArrayMaker | None,
     components: int | None,
     covariance: bool,
     non_finite: str,
@@ -268,8 +278,6 @@ def _run(
     chosen = as_method(method, settings, _ARGUMENTS[call])
     if non_finite not in ("skip", "throw"):
         raise Error("non_finite: " + unknown("choice", non_finite, ["skip", "throw"]))
-    if not callable(f):
-        raise Error(f"integrand: an object of type '{type(f).__name__}' was given; expected a function")
     for name, error in (("relative_error", relative_error), ("absolute_error", absolute_error)):
         if not is_number(error):
             raise Error(f"{name}: {error!r} was given; expected a number")
@@ -280,45 +288,42 @@ def _run(
         raise Error(f"time: {time!r} was given; expected a number of seconds above zero")
     if not (is_whole(seed) and 0 <= seed < 2**64):
         raise Error(f"seed: {seed!r} was given; expected a whole number in [0, 2**64)")
-    if not (is_whole(threads) and 0 <= threads <= MOST_THREADS):
-        raise Error(f"threads: {threads!r} was given; expected a whole number from 0 to {MOST_THREADS}")
+    for name, number in (("threads", threads), ("workers", workers)):
+        if not (is_whole(number) and 0 <= number <= MOST_THREADS):
+            raise Error(f"{name}: {number!r} was given; expected a whole number from 0 to {MOST_THREADS}")
     if components is not None and not (is_whole(components) and 0 <= components < 2**31):
         raise Error(f"components: {components!r} was given; expected a whole number that is not negative")
     if not (isinstance(progress, bool) or callable(progress)):
         raise Error(f"progress: {progress!r} was given; expected True, False or a function")
-    if out and not batch:
-        raise Error("out: values are written into by batch functions only; expected batch=True or out=False")
-    function = f if batch else pointwise(f, region.dimensions == 1)
-    if components is None:
-        components = 0 if out else _components(function, region)
-    watch = IntegrationProgress(made is log_from_core) if progress is True else progress
-    report = None
-    vector = components > 0
-    if watch:
-        report = lambda r: watch(from_core(r, vector, int(seed)))  # noqa: E731
-    try:
-        result = call(
-            function,
-            components,
-            out,
-            region,
-            chosen,
-            float(relative_error),
-            float(absolute_error),
-            0 if evaluations is None else int(evaluations),
-            0.0 if time is None else float(time),
-            int(seed),
-            int(threads),
-            non_finite == "throw",
-            covariance,
-            report,
-            "" if checkpoint is None else os.fspath(checkpoint),
-            checkpoint_every,
-            resume,
-        )
-    finally:
-        if isinstance(watch, IntegrationProgress):
-            watch.finish()
+    with prepared(f, region, batch, out, array, int(threads), int(workers), components) as integrand:
+        watch = IntegrationProgress(made is log_from_core) if progress is True else progress
+        report = None
+        vector = integrand.components > 0
+        if watch:
+            report = lambda r: watch(from_core(r, vector, int(seed)))  # noqa: E731
+        try:
+            result = call(
+                integrand.function,
+                integrand.components,
+                out,
+                region,
+                chosen,
+                float(relative_error),
+                float(absolute_error),
+                0 if evaluations is None else int(evaluations),
+                0.0 if time is None else float(time),
+                int(seed),
+                integrand.threads,
+                non_finite == "throw",
+                covariance,
+                report,
+                "" if checkpoint is None else os.fspath(checkpoint),
+                checkpoint_every,
+                resume,
+            )
+        finally:
+            if isinstance(watch, IntegrationProgress):
+                watch.finish()
     return made(result, vector, int(seed))
 
 
@@ -328,28 +333,8 @@ _ARGUMENTS = {
 }
 
 
-def _components(function: Callable[[Array], Any], region: Domain) -> int:
-    """Calls the integrand with a few points of the domain, to see what it returns."""
-    k, d = region.uniforms, region.dimensions
-    n = next(n for n in (5, 7, 8) if n not in (k, d))
-    # Inside the cube and off its symmetries: additive sequences of square roots.
-    u = np.modf(0.5 + np.outer(np.arange(1, n + 1), np.sqrt(np.arange(k) + 2.5)))[0]
-    x, _ = region.map(u)
-    x.flags.writeable = False
-    try:
-        values = function(x)
-    except TypeError as error:  # math.sin, or a function of two arguments
-        if hasattr(error, "add_note"):  # Python 3.11
-            error.add_note(
-                f"montelux called the integrand with the array of {n} points x, of shape {x.shape}; "
-                "batch=False calls it with one point at a time"
-            )
-        raise
-    return _core.values_a_point(values, n)
-
-
 def train_map(
-    f: Callable[[Array], Any],
+    f: Integrand,
     domain: Ranges,
     evaluations: int = 100_000,
     settings: _core.Vegas | None = None,
@@ -362,6 +347,7 @@ def train_map(
     Start these with `Vegas(training_iterations=0, map=...)`. None of the evaluations goes into an integral.
     """
     region = as_domain(domain)
-    if components is None:
-        components = _components(f, region)
-    return _core.train_map(f, region, int(evaluations), settings or _core.Vegas(), seed, components)
+    with prepared(f, region, components=components) as integrand:
+        return _core.train_map(
+            integrand.function, region, int(evaluations), settings or _core.Vegas(), seed, integrand.components
+        )

@@ -1,8 +1,8 @@
 #include "montelux/mc/integrate/integrate.h"
 
 #include "python/src/bindings.h"
+#include "python/src/c_function.h"
 #include "python/src/numpy_bridge.h"
-#include "python/src/python_function.h"
 #include <chrono>
 #include <optional>
 #include <string>
@@ -28,9 +28,9 @@ std::string text_of(const LogIntegrationResult& r) {
 }
 
 template <typename Integrate>
-auto run(const Integrate& integrate, nb::object f, int components, bool into, const Domain& domain,
+auto run(const Integrate& integrate, const nb::object& f, int components, bool into, const Domain& domain,
          const Method& method, const Budget& budget, IntegrationOptions options, const nb::object& progress) {
-    const Integrand integrand = integrand_of(PythonFunction(std::move(f), "integrand"), components, into);
+    const Integrand integrand = integrand_of(f, components, into);
     if (!progress.is_none()) {
         // Called between steps from this thread, while the result is this scope's.
         options.progress = [&progress](const IntegrationResult& r) {
@@ -47,11 +47,11 @@ template <typename Integrate>
 void bind_call(nb::module_& m, const char* name, const char* help, const Integrate& integrate) {
     m.def(
         name,
-        [integrate](nb::object f, int components, bool into, const Domain& domain, const Method& method,
-                    double relative_error, double absolute_error, std::uint64_t evaluations, double time,
-                    std::uint64_t seed, int threads, bool throw_non_finite, bool covariance,
-                    const nb::object& progress, const std::string& checkpoint, double checkpoint_every,
-                    bool resume) {
+        [integrate](const nb::object& f, int components, bool into, const Domain& domain,
+                    const Method& method, double relative_error, double absolute_error,
+                    std::uint64_t evaluations, double time, std::uint64_t seed, int threads,
+                    bool throw_non_finite, bool covariance, const nb::object& progress,
+                    const std::string& checkpoint, double checkpoint_every, bool resume) {
             IntegrationOptions options;
             options.seed = seed;
             options.threads = threads;
@@ -62,8 +62,7 @@ void bind_call(nb::module_& m, const char* name, const char* help, const Integra
             options.resume = resume;
             const Budget budget{relative_error, absolute_error, evaluations,
                                 std::chrono::duration<double>(time)};
-            return run(integrate, std::move(f), components, into, domain, method, budget, std::move(options),
-                       progress);
+            return run(integrate, f, components, into, domain, method, budget, std::move(options), progress);
         },
         "f"_a, "components"_a, "into"_a, "domain"_a, "method"_a, "relative_error"_a, "absolute_error"_a,
         "evaluations"_a, "time"_a, "seed"_a, "threads"_a, "throw_non_finite"_a, "covariance"_a,

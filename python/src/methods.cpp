@@ -1,4 +1,5 @@
 #include "python/src/bindings.h"
+#include "python/src/c_function.h"
 #include "python/src/names.h"
 #include "python/src/numpy_bridge.h"
 #include "python/src/python_function.h"
@@ -127,10 +128,9 @@ void bind_vegas(nb::module_& m) {
                 "Where the map starts (AdaptiveMap); None: the identity.");
     m.def(
         "train_map",
-        [](nb::object f, const Domain& domain, std::uint64_t evaluations, const Vegas& settings,
+        [](const nb::object& f, const Domain& domain, std::uint64_t evaluations, const Vegas& settings,
            std::uint64_t seed, int components) {
-            const Integrand integrand =
-                integrand_of(PythonFunction(std::move(f), "integrand"), components, false);
+            const Integrand integrand = integrand_of(f, components, false);
             nb::gil_scoped_release unlocked;
             return with_threads(
                 1, [&] { return train_map(Evaluator(integrand, domain), evaluations, settings, seed); });

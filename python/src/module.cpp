@@ -38,6 +38,7 @@ NB_MODULE(_core, m) {
     bind_distributions(m);
     bind_techniques(m);
     bind_methods(m);
+    bind_c_functions(m);
     bind_integrate(m);
     bind_metropolis(m);
     bind_points(m);

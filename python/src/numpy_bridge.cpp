@@ -37,13 +37,21 @@ nb::object view(const double* data, std::size_t count, int columns, std::size_t 
                               const_cast<double*>(data), 0, flags, nullptr));
 }
 
+// Arrays of other libraries, by DLPack.
+nb::object as_numpy(const nb::handle& given, std::string_view what) {
+    return nb::module_::import_("montelux._foreign_arrays")
+        .attr("as_numpy")(given, nb::str(what.data(), what.size()));
+}
+
 // An array of doubles from any argument, in any memory order.
 nb::object double_array(const nb::handle& given, int requirements, std::string_view what) {
     auto fail = [what](const std::string& sentence) -> void { throw Error(what, sentence); };
     if (given.is_none()) fail("returned None; expected an array of numbers (is there a return statement?)");
     if (PyArray_Check(given.ptr()) && !PyArray_CheckExact(given.ptr()) && nb::hasattr(given, "mask"))
         fail("a masked array was found; replace the masked values, for example by y.filled(0)");
-    nb::object any = stolen(PyArray_FromAny(given.ptr(), nullptr, 0, 0, 0, nullptr));
+    const bool foreign = !PyArray_Check(given.ptr()) && nb::hasattr(given, "__dlpack__");
+    nb::object any =
+        foreign ? as_numpy(given, what) : stolen(PyArray_FromAny(given.ptr(), nullptr, 0, 0, 0, nullptr));
     const int type = PyArray_TYPE(as_array(any));
     if (PyTypeNum_ISCOMPLEX(type))
         fail("complex numbers were found; expected real ones. The real and the imaginary part can be two "

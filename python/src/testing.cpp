@@ -1,9 +1,8 @@
 #include "python/src/bindings.h"
-#include "python/src/python_function.h"
+#include "python/src/c_function.h"
 #include <chrono>
 #include <cstdint>
 #include <nanobind/nanobind.h>
-#include <utility>
 
 #include "montelux/mc/integrate/integrand.h"
 
@@ -11,8 +10,8 @@ namespace montelux::python {
 namespace {
 
 // (seconds per call, address of the points, address of the values).
-nb::tuple call_integrand(nb::object f, std::size_t points, int dimensions, int calls, bool into) {
-    const Integrand g = integrand_of(PythonFunction(std::move(f), "integrand"), 0, into);
+nb::tuple call_integrand(const nb::object& f, std::size_t points, int dimensions, int calls, bool into) {
+    const Integrand g = integrand_of(f, 0, into);
     PointBuffer x(points, dimensions);
     ValueBuffer y(points, 1);
     for (int d = 0; d < dimensions; ++d)

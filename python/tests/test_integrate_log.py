@@ -71,7 +71,7 @@ def test_progress_and_threads(capfd):
     "arguments, sentence",
     [
         ({"absolute_error": 1}, "expected relative_error, which is the error of log Z"),
-        ({"epsrel": 1}, r"no setting 'epsrel' \(did you mean 'relative_error'\?\); expected one of batch, checkpoint"),
+        ({"epsrel": 1}, r"no setting 'epsrel' \(did you mean 'relative_error'\?\); expected one of array, batch, checkpoint"),
         ({"method": "vegs"}, r"no method 'vegs' \(did you mean 'vegas'"),
     ],
 )

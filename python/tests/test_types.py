@@ -44,6 +44,7 @@ def test_every_public_name_is_used_with_types():
 
 def test_the_typed_file_runs():
     assert typed_usage.integrals().standard_error > 0
+    assert len(typed_usage.integrands_from_anywhere()) == 3
     assert len(typed_usage.methods()) == len(montelux.METHODS)
     assert typed_usage.sampling().shape == (64, 3)
     assert len(typed_usage.values()) > 20

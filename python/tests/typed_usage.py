@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from pathlib import Path
 from typing import Protocol
 
@@ -41,6 +42,15 @@ def integrals() -> montelux.Uncertain:
     assert len(numbers) == 3 and len(texts) >= 4 and issubclass(montelux.PropagationWarning, UserWarning)
     assert isinstance(r.uncertain if r.value is None else list(r)[0], montelux.Uncertain)
     return total
+
+
+def integrands_from_anywhere() -> list[montelux.Result]:
+    square = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)(lambda x: x * x)
+    return [
+        montelux.integrate(square, (0, 1), "quasi", evaluations=2000, threads=2),
+        montelux.integrate(np.sin, (0, 1), "quasi", evaluations=2000, workers=2),
+        montelux.integrate(np.sin, (0, 1), "quasi", evaluations=2000, array=np.from_dlpack),
+    ]
 
 
 def methods() -> list[str]:
