@@ -66,7 +66,7 @@ def test_options_of_render_have_the_names_of_python():
 def test_options_of_integrate_have_the_names_of_python():
     known, ours = options("integrate"), arguments(montelux.integrate)
     assert ours - known == {"batch", "out", "components", "covariance", "progress"}
-    of_the_program = {"over", "density", "method", "domain", "radius", "centre", "log", "json", "quiet"}
+    of_the_program = {"over", "density", "method", "domain", "radius", "centre", "log", "json", "quiet", "save_density"}
     assert known - ours == of_the_program | {"plot", "points", "points_limit"}
 
 
