@@ -144,7 +144,8 @@ def test_pickles_bring_it_back(result, density):
                 assert np.array_equal(again.samples(peak, 20).weights, made.samples(peak, 20).weights)
                 pickle.loads(pickle.dumps(again))
     for r in (result, round_one):
-        assert np.array_equal(pickle.loads(pickle.dumps(r)).density.samples(peak, 9).points, r.density.samples(peak, 9).points)
+        again = pickle.loads(pickle.dumps(r))
+        assert np.array_equal(again.density.samples(peak, 9).points, r.density.samples(peak, 9).points)
 
 
 @pytest.mark.parametrize(
