@@ -162,7 +162,8 @@ int run(const SampleOptions& o) {
 
 void add_sample(CLI::App& app, int& exit_code) {
     auto o = std::make_shared<SampleOptions>();
-    CLI::App* c = app.add_subcommand("sample", "Write the points of a set, or samples of a density");
+    CLI::App* c = app.add_subcommand(
+        "sample", "Write the points of a set, or samples: of a density, an integrand, Markov chains");
     c->add_option("FORMULA", o->formulas, "With --log: the logarithm of a density, for example -x^2/2");
     auto text = [c](const std::string& name, std::string& target, const std::string& help,
                     const std::string& type) {
@@ -173,7 +174,7 @@ void add_sample(CLI::App& app, int& exit_code) {
     text("--dim", o->dimensions, "Dimensions d. Default: 2", "D");
     text("--randomisation", o->randomisation,
          "How the set is randomised: " + joined(randomisation_names()) + ". Default: none", "NAME");
-    text("--seed", o->seed, "Seed of independent points and of the randomisation. Default: 0", "N");
+    text("--seed", o->seed, "Seed of all random numbers. Default: 0", "N");
     c->add_option(
          "--density", o->densities,
          "Sample the density that is proportional to this formula, by inversion: FORMULA where there is "
