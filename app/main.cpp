@@ -93,8 +93,10 @@ int report_usage(const CLI::App& app, const CLI::ParseError& e, int argc, char**
 }
 
 void parse(CLI::App& app, int argc, char** argv) {
-    if (argc < 2 || std::string_view(argv[1]) != "integrate") return app.parse(argc, argv);
-    std::vector<std::string> words = with_negative_formulas({argv + 2, argv + argc});
+    const std::string_view command = argc < 2 ? "" : argv[1];
+    if (command != "integrate" && command != "sample") return app.parse(argc, argv);
+    std::vector<std::string> words =
+        with_negative_formulas(*app.get_subcommand(std::string(command)), {argv + 2, argv + argc});
     words.insert(words.begin(), argv[1]);
     app.parse(std::vector<std::string>(words.rbegin(), words.rend())); // the last one first
 }

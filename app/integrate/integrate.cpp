@@ -1,6 +1,7 @@
 // montelux integrate: from a formula to a value, or log Z, with its error.
 #include "app/commands.h"
 #include "app/integrate/convergence_plot.h"
+#include "app/integrate/density_notes.h"
 #include "app/integrate/integrate_options.h"
 #include "app/integrate/integration_report.h"
 #include "app/integrate/point_recorder.h"
@@ -17,6 +18,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "montelux/mc/integrate/trained/trained_density.h"
 #include "montelux/mc/io/generation_file.h"
 #ifdef MONTELUX_WITH_RENDER
 #include "app/integrate/cluster_integrate.h"
@@ -34,8 +36,8 @@ void check_extension(const std::string& path, const std::string& option, const s
 void check_files(const IntegrateOptions& o) {
     if (!o.plot.empty()) check_extension(o.plot, "--plot", ".svg");
     if (!o.points.empty()) check_extension(o.points, "--points", ".csv");
-    check_output_names({o.plot, o.points, o.checkpoint}, {});
-    for (const std::string& path : {o.plot, o.points, o.checkpoint})
+    check_output_names({o.plot, o.points, o.checkpoint, o.save_density}, {});
+    for (const std::string& path : {o.plot, o.points, o.checkpoint, o.save_density})
         if (!path.empty()) check_output(path);
     if (!o.checkpoint.empty() && !o.resume && generation_exists(o.checkpoint))
         throw UsageError(o.checkpoint,
@@ -64,6 +66,16 @@ int exit_code_of(const IntegrationTask& task, const IntegrationResult& r) {
     if (r.stop == StopReason::cancelled) return exit_interrupted;
     if (r.stop == StopReason::error_target || !task.targeted()) return exit_done;
     return target_met(task, r) ? exit_done : exit_stopped;
+}
+
+void save_density(const IntegrateOptions& o, const IntegrationResult& result) {
+    if (!result.density)
+        throw Error("--save-density",
+                    "the method '" + result.method +
+                        "' trains no density; expected --method adaptive, vegas or vegas_sobol");
+    TrainedDensity density = *result.density;
+    density.set_notes(density_notes(o));
+    density.save(o.save_density);
 }
 
 int run(const IntegrateOptions& o) {
@@ -118,6 +130,7 @@ int run(const IntegrateOptions& o) {
         text = task.logarithm ? report_text(logarithm) : report_text(task, result);
     }
     std::fputs(text.c_str(), stdout);
+    if (!o.save_density.empty()) save_density(o, result);
     return exit_code_of(task, result);
 }
 

@@ -142,10 +142,7 @@ std::string with_exponent(const std::string& text) {
 
 } // namespace
 
-std::vector<std::string> with_negative_formulas(std::vector<std::string> words) {
-    CLI::App command;
-    IntegrateOptions unused;
-    declare(command, unused);
+std::vector<std::string> with_negative_formulas(const CLI::App& command, std::vector<std::string> words) {
     for (std::size_t i = 0; i < words.size(); ++i) {
         std::string& word = words[i];
         if (word == "--") break; // whatever follows is a formula
@@ -234,6 +231,9 @@ void declare(CLI::App& c, IntegrateOptions& o) {
          "FILE");
     text("--points-limit", o.points_limit, "Number of points written, from the first on. Default: 10000",
          "N");
+    text("--save-density", o.save_density,
+         "Save the density that adaptive, vegas or vegas_sobol trained, for `montelux sample --from`", "FILE")
+        ->check(file_name());
     c.add_flag("--json", o.json, "Print JSON");
     c.add_flag("--quiet", o.quiet, "Show no progress");
     c.footer(

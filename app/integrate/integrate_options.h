@@ -22,7 +22,7 @@ struct IntegrateOptions {
     std::string method;
     std::string relative_error, absolute_error, evaluations, time, seed = "0", threads = "0";
     std::string non_finite = "skip";
-    std::string checkpoint, checkpoint_every, plot, points, points_limit = "10000";
+    std::string checkpoint, checkpoint_every, plot, points, save_density, points_limit = "10000";
     bool log = false, resume = false, json = false, quiet = false;
 };
 
@@ -42,9 +42,9 @@ struct IntegrationTask {
 
 void declare(CLI::App& command, IntegrateOptions& options);
 
-// Words of the command line, the command's own left out, in which formulas such as -x^2 have got a blank
-// before the minus sign, so that they are not taken for options. Values of options stay as they are.
-std::vector<std::string> with_negative_formulas(std::vector<std::string> words);
+// Words of a command's line, its name left out, in which formulas such as -x^2 have got a blank before the
+// minus sign, so that they are not taken for options. Values of options stay as they are.
+std::vector<std::string> with_negative_formulas(const CLI::App& command, std::vector<std::string> words);
 
 // Throws UsageError for what makes no sense, and Error for a density that does not suit the integrand.
 IntegrationTask make_task(const IntegrateOptions& options);

@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any
 
 FOLDER = Path(__file__).resolve().parent
-NAMES = ("integration", "sampling", "rendering")
+NAMES = ("integration", "sampling", "events", "rendering")
 Output = dict[str, Any]  # of nbformat 4
 
 

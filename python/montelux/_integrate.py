@@ -40,6 +40,7 @@ METHODS: dict[str, Any] = {
         _core.Importance,
         _core.MultipleImportance,
         _core.ControlVariate,
+        _core.Trained,
     )
 }
 # Settings without defaults.
@@ -47,6 +48,7 @@ _REQUIRED = {
     "importance": ("technique",),
     "multiple_importance": ("techniques",),
     "control_variate": ("controls", "integrals"),
+    "trained": ("density",),
 }
 
 
@@ -324,7 +326,11 @@ def _run(
         finally:
             if isinstance(watch, IntegrationProgress):
                 watch.finish()
-    return made(result, vector, int(seed))
+    finished = made(result, vector, int(seed))
+    density = finished.density
+    if density is not None:
+        density._domain = region  # with which it is pickled
+    return finished
 
 
 _ARGUMENTS = {

@@ -62,6 +62,16 @@ def _reduced_map(grid: _core.AdaptiveMap) -> tuple[Any, ...]:
     return _core.AdaptiveMap, ([grid.edges(variable) for variable in range(grid.dimensions)],)
 
 
+def _reduced_density(density: _core.TrainedDensity) -> tuple[Any, ...]:
+    return _density_again, (density._bytes(), getattr(density, "_domain", None))
+
+
+def _density_again(content: bytes, domain: _core.Domain | None) -> _core.TrainedDensity:
+    density = _core.TrainedDensity._from_bytes(content, domain)
+    density._domain = domain  # type: ignore[attr-defined]
+    return density
+
+
 def make_picklable(*kinds: type) -> None:
     """Registers classes of the extension with pickle and copy."""
     for kind in kinds:
@@ -99,3 +109,4 @@ note_recipes(
 )
 make_picklable(_core.Domain, _core.Technique, _core.Distribution, _core.Discrete, _core.AliasTable, *METHODS.values())
 copyreg.pickle(_core.AdaptiveMap, _reduced_map)
+copyreg.pickle(_core.TrainedDensity, _reduced_density)

@@ -71,6 +71,8 @@ class Result(Computes):
     history: History
     #: Why the newest checkpoint could not be resumed and the previous one was; else empty.
     checkpoint_refused_because: str = ""
+    #: What the method learned about the integrand; None where it trains no density.
+    density: _core.TrainedDensity | None = None
     _text: str = ""
     _run: Run = field(default_factory=lambda: Run(0.0))
 
@@ -177,6 +179,7 @@ class Result(Computes):
             return v
 
         fields = {name: plain(v) for name, v in vars(self).items() if not name.startswith("_")}
+        del fields["density"]
         fields["converged"] = self.converged
         return fields
 
@@ -217,6 +220,11 @@ class LogResult(Computes):
     def evaluations(self) -> int:
         """Of the integrand, pilots included."""
         return self.relative.evaluations
+
+    @property
+    def density(self) -> _core.TrainedDensity | None:
+        """What the method learned about the integrand; None where it trains no density."""
+        return self.relative.density
 
     @property
     def method(self) -> str:
@@ -321,6 +329,7 @@ def from_core(r: _core.IntegrationResult, vector: bool, seed: int) -> Result:
         seconds=r.seconds,
         history=history,
         checkpoint_refused_because=r.checkpoint_refused_because,
+        density=r.density,
         _text=str(r),
         _run=Run(standard_error, covariance, seed if r.statistical else None, tuple(r.warnings)),
     )

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "montelux/mc/integrate/integrate_log.h"
+#include "montelux/mc/integrate/trained/trained_density.h"
 
 namespace montelux::python {
 namespace {
@@ -97,6 +98,11 @@ void bind_integrate(nb::module_& m) {
         .def_ro("warnings", &IntegrationResult::warnings)
         .def_ro("checkpoint_refused_because", &IntegrationResult::checkpoint_refused_because)
         .def_ro("seconds", &IntegrationResult::seconds)
+        .def_prop_ro("density",
+                     [](const IntegrationResult& r) -> std::optional<TrainedDensity> {
+                         if (!r.density) return std::nullopt;
+                         return *r.density;
+                     })
         .def("__str__", [](const IntegrationResult& r) { return to_string(r); });
 
     nb::class_<LogIntegrationResult>(m, "LogIntegrationResult",

@@ -21,6 +21,7 @@
 #include "montelux/mc/integrate/techniques/control_variate.h"
 #include "montelux/mc/integrate/techniques/importance.h"
 #include "montelux/mc/integrate/techniques/multiple_importance.h"
+#include "montelux/mc/integrate/trained/trained_method.h"
 #include "montelux/mc/integrate/vegas/vegas.h"
 #include "montelux/mc/math/error.h"
 
@@ -221,6 +222,21 @@ nb::object technique_of(const nb::object& given) {
 }
 
 void bind_densities(nb::module_& m) {
+    method_class<Trained>(m, "Trained",
+                          "A density that another integration trained, sampled from the first evaluation on.",
+                          nb::dynamic_attr())
+        .def(
+            "__init__",
+            [](nb::pointer_and_handle<Trained> self, const nb::object& density, int replicates) {
+                if (!nb::isinstance<TrainedDensity>(density))
+                    throw Error("Trained", "expected a TrainedDensity, such as the `density` of a Result");
+                new (self.p) Trained{nb::cast<TrainedDensity>(density), replicates};
+                note_recipe(self.h, nb::make_tuple(density));
+            },
+            "density"_a, nb::kw_only(), "replicates"_a = 16,
+            nb::sig("def __init__(self, density: TrainedDensity, *, replicates: int = 16) -> None"))
+        .def_rw("replicates", &Trained::replicates,
+                "Independent parts of the estimate by a mixture, at least 4.");
     method_class<Importance>(m, "Importance",
                              "Importance sampling: the mean of f / p over points of density p.",
                              nb::dynamic_attr())

@@ -37,6 +37,7 @@ NB_MODULE(_core, m) {
     bind_domains(m);
     bind_distributions(m);
     bind_techniques(m);
+    bind_trained(m);
     bind_methods(m);
     bind_c_functions(m);
     bind_integrate(m);

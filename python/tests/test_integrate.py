@@ -13,7 +13,8 @@ import pytest
 import montelux
 from montelux._core import call_integrand
 
-NAMED = [name for name in montelux.METHODS if name not in ("importance", "multiple_importance", "control_variate")]
+REQUIRE_SETTINGS = ("importance", "multiple_importance", "control_variate", "trained")
+NAMED = [name for name in montelux.METHODS if name not in REQUIRE_SETTINGS]
 
 
 def sine_times_y(x):

@@ -87,6 +87,7 @@ METHODS = [
     montelux.MultipleImportance([(PAIR, 3), FLAT], weights="power", parameter=1.5),
     montelux.MultipleImportance((TILTED, FLAT), weights="optimal", probes=False),
     montelux.ControlVariate(product_density, [1.0]),
+    montelux.Trained(montelux.integrate(f, UNIT, "vegas", evaluations=20_000).density),
 ]
 
 

@@ -65,8 +65,9 @@ def test_options_of_render_have_the_names_of_python():
 @needs_program
 def test_options_of_integrate_have_the_names_of_python():
     known, ours = options("integrate"), arguments(montelux.integrate)
-    assert ours - known == {"batch", "out", "array", "workers", "components", "covariance", "progress"}
-    of_the_program = {"over", "density", "method", "domain", "radius", "centre", "log", "json", "quiet"}
+    assert ours - known == {"batch", "out", "array", "workers", "covariance", "progress"}
+    of_the_program = {"over", "density", "method", "domain", "radius", "centre", "log", "json", "quiet", "save_density"}
+    of_the_program |= {"let", "library", "source"}
     assert known - ours == of_the_program | {"plot", "points", "points_limit"}
 
 

@@ -57,6 +57,8 @@ def methods() -> list[str]:
     normal: montelux.Distribution = montelux.Distribution.normal()
     technique = montelux.Technique(normal)
     trained: montelux.AdaptiveMap = montelux.train_map(two, [(0, 1), (0, 1)], 10_000)
+    density = montelux.integrate(two, [(0, 1), (0, 1)], "vegas", evaluations=10_000).density
+    assert density is not None
     chosen: list[Named] = [
         montelux.Adaptive(replicates=8),
         montelux.Auto(),
@@ -71,12 +73,29 @@ def methods() -> list[str]:
         montelux.Recursive(pilot=0.2),
         montelux.RiemannSum(cells=8),
         montelux.Stratified(strata=4),
+        montelux.Trained(density, replicates=8),
         montelux.TrapezoidRule(cells=8),
         montelux.Vegas(alpha=0.5, map=trained),
         montelux.VegasSobol(montelux.Vegas()),
     ]
     assert {m.name for m in chosen} == set(montelux.METHODS)
     return [m.name for m in chosen]
+
+
+def trained_density() -> list[float]:
+    r = montelux.integrate_log(lambda x: -x * x, (-9, 9), "adaptive", evaluations=5000)
+    density: montelux.TrainedDensity | None = r.density
+    assert density is not None and density.kind == "mixture" and density.dimensions == 1
+    density.notes = {"formula": "exp(-x^2)"}
+    p: Array = density.pdf([[0.5]])
+    samples: montelux.Samples = density.samples(lambda x: -x * x, 100, log=True, seed=2)
+    events: montelux.UnweightedSamples = density.unweighted(lambda x: -x * x, 100, log=True, pilot=1000)
+    arrays: list[Array] = [samples.points, samples.weights, events.values]
+    e: montelux.Expectations = density.expectations(lambda x: -x * x, np.cos, 1000, log=True)
+    bins: montelux.Expectations = density.histogram(lambda x: -x * x, np.abs, [0, 1, 2], 1000, log=True)
+    arrays += [e.mean, e.mean_covariance, bins.value, bins.covariance]
+    assert len(samples) == 100 and all(a.size for a in arrays) and not events.warnings
+    return [samples.integral, events.efficiency, events.efficiency_error, e.standard_error, float(p[0])]
 
 
 def sampling() -> Array:

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The commands that the documentation shows print what it shows: each `$ montelux integrate ...` of a code block,
-# up to the next `$` or the end of the block. Where a line shown ends with ..., its beginning is compared.
+# The commands that the documentation shows print what it shows: each `$ montelux integrate ...` and
+# `$ montelux sample ...` of a code block, up to the next `$` or the end of the block. Where a line shown ends with ..., its beginning is compared.
 docs=$(cd "$(dirname "$0")/../../docs" && pwd)
 . "$(dirname "$0")/common.sh"
 
@@ -16,7 +16,7 @@ split() {
         inside && continued { print >command; continued = /\\$/; next }
         inside && /^\$ / {
             shown = ""
-            if ($0 !~ /^\$ montelux integrate /) next
+            if ($0 !~ /^\$ montelux (integrate|sample) /) next
             name = sprintf("%03d", ++count)
             command = name ".command"
             shown = name ".shown"
@@ -31,7 +31,7 @@ split() {
     ' "$1"
 }
 
-for page in integration.md usage.md start.md tutorials/integrate.md; do
+for page in integration.md sampling.md usage.md start.md tutorials/integrate.md; do
     mkdir -p "$folder/$page" && cd "$folder/$page" || exit 1
     split "$docs/$page"
     for command in *.command; do

@@ -36,6 +36,48 @@ rows = [list(map(float, l.split(","))) for l in open("points.csv").read().split(
 assert [x for r in rows for x in r] == list(struct.unpack("<300d", open("points.bin", "rb").read()))
 END
 fi
+# A trained density: weighted samples, whose weights add up to the integral 1/2; unweighted ones of density 2x.
+"$montelux" integrate 'x*exp(-50*(x-y)^2)' --over x=0:1 --over y=-1:2 --method adaptive --evaluations 50k \
+    --save-density trained.mx --quiet >out || fail "save-density: exit code $?"
+"$montelux" sample --from trained.mx --n 20000 >out 2>err || fail "from: exit code $?: $(cat err)"
+awk -F, 'NR == 1 { named = $0 == "x,y,weight" } NR > 1 { s += $3 } END { exit !named || s < 0.122 || s > 0.128 }' out ||
+    fail "weights of a trained density: $(head -n 2 out)"
+"$montelux" sample --from trained.mx --unweighted --n 20000 -o out.csv 2>err || fail "unweighted: exit code $?"
+grep -q "20000 unweighted samples, efficiency 0\.[4-9]" err || fail "unweighted: $(cat err)"
+awk -F, 'NR > 1 { s += $1 * $3; w += $3 } END { exit s / w < 0.657 || s / w > 0.677 || NR != 20001 }' out.csv ||
+    fail "unweighted samples do not follow the integrand"
+"$montelux" sample --from trained.mx --unweighted --n 20000 --threads 1 --quiet -o one.csv || fail "one thread"
+cmp -s out.csv one.csv || fail "threads change the samples"
+"$montelux" sample --from trained.mx --histogram x=0:1:2 --covariance --n 50000 >out 2>err || fail "histogram: $(cat err)"
+awk -F, 'NR == 1 { named = $0 == "lower,upper,value,standard_error,covariance_1,covariance_2" } NR > 1 { v[NR] = $3 }
+    END { exit !named || v[2] / (v[2] + v[3]) < 0.24 || v[2] / (v[2] + v[3]) > 0.26 }' out || fail "histogram: $(cat out)"
+"$montelux" integrate --log -5000-x^2/2 --over x=-inf:inf --method vegas --evaluations 20k --save-density log.mx --quiet >out
+"$montelux" sample --from log.mx --unweighted --n 5000 >out 2>err || fail "logarithm: $(cat err)"
+grep -q "log Z = -4999\.08" err || fail "logarithm: $(cat err)"
+"$montelux" integrate 1+x --domain ball --over x,y --method vegas --evaluations 20k --save-density ball.mx --quiet >out
+"$montelux" sample --from ball.mx --n 2000 2>err | awk -F, 'NR > 1 { s += $3; if ($1 * $1 + $2 * $2 > 1) exit 1 }
+    END { exit s < 3.1 || s > 3.2 }' || fail "ball: $(cat err)"
+"$montelux" sample --from trained.mx --n 100 --max-draws 5 >out 2>err
+[ $? -eq 3 ] && grep -q "only 5 of 100 samples were found in 5 draws" err || fail "max-draws: $(cat err)"
+# Chains.
+"$montelux" sample -x^2-y^2+x*y --log --over x,y=-inf:inf --n 5000 -o chains.npy 2>err || fail "chains: $(cat err)"
+[ $(($(wc -c <chains.npy) % 32)) -eq 0 ] && grep -q "x: mean .*R-hat 1\.00.*effective samples" err || fail "chains: $(cat err)"
+"$montelux" sample -x --log --over x=0:inf --n 20000 --chains 2 --quiet --thin 5 >out || fail "chains: exit code $?"
+awk -F, 'NR > 1 { s += $3; if ($3 < 0) exit 1 } END { exit NR != 40001 || s / 40000 < 0.95 || s / 40000 > 1.05 }' out ||
+    fail "chains do not follow exp(-x)"
+head -c 300 trained.mx >cut.mx
+expect 1 "cut.mx" sample --from cut.mx
+expect 1 "none.mx" sample --from none.mx
+expect 1 "trains no density" integrate x --over x=0:1 --save-density cubature.mx
+expect 2 "--set: leave it out with --from" sample --from trained.mx --set sobol
+expect 2 "expected --from FILE" sample --unweighted
+expect 2 "expected --unweighted" sample --from trained.mx --pilot 100
+expect 2 "expected OBSERVABLE=LOWER:UPPER:BINS" sample --from trained.mx --histogram x
+expect 2 "there is no variable 'q'" sample --from trained.mx --histogram q=0:1:3
+expect 2 "expected --log with a formula" sample -x --over x=0:1
+expect 1 "the density is zero at all of 1000 points" sample 'log(0)' --log --over x=0:1
+expect 2 "2 numbers were given for 1 variables" sample -x --log --over x=0:1 --start 1,2
+expect 1 "/no/such/folder/p.csv" sample --from trained.mx -o /no/such/folder/p.csv
 expect 2 "expected --set NAME, or --density" sample
 expect 2 "'sobl' is not known (did you mean 'sobol'?)" sample --set sobl
 expect 2 "'scrambel' is not known (did you mean 'scramble'?)" sample --set sobol --randomisation scrambel

@@ -240,6 +240,9 @@ class AutoEstimator final : public Estimator {
         return tally;
     }
 
+    std::shared_ptr<const UnitDensity> density() const override {
+        return switched_ ? sampling_->density() : nullptr;
+    }
     void save(StateWriter& state) const override {
         state.put(std::uint64_t{switched_} | std::uint64_t{diverges_} << 1 | std::uint64_t{rules_end_} << 2 |
                   std::uint64_t{comparing_} << 3 | std::uint64_t{agreed_} << 4);

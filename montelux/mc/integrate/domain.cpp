@@ -44,6 +44,28 @@ void map_range(const Range& range, std::span<const double> u, std::span<double> 
     }
 }
 
+// u(x), and the same factor.
+void unmap_range(const Range& range, std::span<const double> x, std::span<double> u,
+                 std::span<double> volume) {
+    const bool from = std::isfinite(range.lower), to = std::isfinite(range.upper);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        if (from && to) {
+            u[i] = (x[i] - range.lower) / (range.upper - range.lower);
+            volume[i] *= range.upper - range.lower;
+        } else if (from || to) {
+            const double t = from ? x[i] - range.lower : range.upper - x[i]; // v / (1 - v) of v = u, or 1 - u
+            u[i] = t < 0 ? -1 : (from ? t : 1) / (1 + t);
+            volume[i] *= (1 + t) * (1 + t);
+        } else {
+            // The root of x u^2 + (2 - x) u - 1 = 0 in (0, 1), of |x| and mirrored, so that nothing cancels.
+            const double size = std::abs(x[i]), q = 2 / (std::sqrt(size * size + 4) + size);
+            const double near = 1 / (1 + q), far = q / (1 + q);
+            u[i] = x[i] < 0 ? far : near;
+            volume[i] *= 1 / (near * near) + 1 / (far * far);
+        }
+    }
+}
+
 void check(const Range& range, std::size_t index) {
     std::ostringstream what;
     what << "range " << index + 1 << " is [" << range.lower << ", " << range.upper << "]; expected ";
@@ -287,6 +309,13 @@ bool Domain::is_unit_cube() const { return implementation_->unit_cube; }
 double Domain::constant_volume() const { return implementation_->constant_volume; }
 void Domain::map(const PointBatch& u, PointBuffer& x, std::span<double> volume) const {
     implementation_->map(u, x, volume);
+}
+void Domain::inverse(const PointBatch& x, PointBuffer& u, std::span<double> volume) const {
+    if (ranges().empty())
+        throw Error("Domain", "points of a " + description() +
+                                  " cannot be mapped back to the unit cube; expected a box of ranges");
+    for (int d = 0; d < u.dimensions(); ++d)
+        unmap_range(ranges()[static_cast<std::size_t>(d)], x.coordinate(d), u.coordinate(d), volume);
 }
 
 } // namespace montelux

@@ -61,6 +61,9 @@ class Domain {
     double constant_volume() const;
 
     void map(const PointBatch& u, PointBuffer& x, std::span<double> volume) const;
+    // u(x) for a batch of points of a box; multiplies `volume[i]` by |dx/du| there. Outside of the box u is
+    // outside of (0, 1) or NaN. Throws Error where the domain is no box.
+    void inverse(const PointBatch& x, PointBuffer& u, std::span<double> volume) const;
 
   private:
     struct Implementation;

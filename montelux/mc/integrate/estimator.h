@@ -13,6 +13,8 @@
 
 namespace montelux {
 
+class UnitDensity;
+
 // The problem that an estimator solves.
 struct Problem {
     const Evaluator& evaluator; // outlives the estimator
@@ -70,6 +72,8 @@ class Estimator {
     // The state between two steps. `load` gets what `save` of an estimator with equal settings wrote.
     virtual void save(StateWriter& state) const = 0;
     virtual void load(StateReader& state) = 0;
+    // The density on the unit cube that the estimator has trained so far; null where it trains none.
+    virtual std::shared_ptr<const UnitDensity> density() const { return nullptr; }
 };
 
 } // namespace montelux

@@ -16,6 +16,7 @@
 #include "montelux/mc/integrate/iteration_history.h"
 #include "montelux/mc/integrate/problem_fingerprint.h"
 #include "montelux/mc/integrate/tally_checks.h"
+#include "montelux/mc/integrate/trained/trained_density.h"
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/special.h"
@@ -104,7 +105,10 @@ class Run {
             }
         }
         if (!options_.checkpoint.empty()) save();
-        return result(*stop);
+        IntegrationResult r = result(*stop);
+        if (auto unit = estimator_->density())
+            r.density = std::make_shared<const TrainedDensity>(std::move(unit), evaluator_.domain());
+        return r;
     }
 
   private:

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <iosfwd>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,8 @@
 #include "montelux/mc/stats/estimate.h"
 
 namespace montelux {
+
+class TrainedDensity;
 
 enum class StopReason : std::uint8_t {
     error_target, // each component reached its absolute or relative error
@@ -56,6 +59,9 @@ struct IntegrationResult {
     // Why the newest checkpoint could not be resumed and the previous one was; else empty.
     std::string checkpoint_refused_because;
     double seconds = 0; // wall time
+    // What the method learned about the integrand: a density to draw samples from, to save and to use again.
+    // Null where it trains none (all but adaptive, vegas and vegas_sobol), and in reports of progress.
+    std::shared_ptr<const TrainedDensity> density = nullptr;
 
     // The targets were met without a warning.
     bool converged() const { return stop == StopReason::error_target && warnings.empty(); }

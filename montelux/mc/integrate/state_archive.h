@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -53,6 +54,10 @@ class StateReader {
         return values;
     }
     bool at_end() const { return next_ == words_.size(); }
+    // What has not been read yet.
+    std::vector<std::uint64_t> rest() const {
+        return {words_.begin() + static_cast<std::ptrdiff_t>(next_), words_.end()};
+    }
 
   private:
     // A length that fits into the rest.

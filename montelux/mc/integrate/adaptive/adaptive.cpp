@@ -4,11 +4,13 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "montelux/mc/integrate/adaptive/balanced_points.h"
 #include "montelux/mc/integrate/adaptive/density_check.h"
 #include "montelux/mc/integrate/adaptive/density_trainer.h"
 #include "montelux/mc/integrate/adaptive/mixture_estimate.h"
+#include "montelux/mc/integrate/trained/unit_density.h"
 #include "montelux/mc/math/special.h"
 #include "montelux/mc/random/hash.h"
 #include "montelux/mc/random/sobol.h"
@@ -112,6 +114,9 @@ class AdaptiveEstimator final : public Estimator {
         return tally;
     }
 
+    std::shared_ptr<const UnitDensity> density() const override {
+        return std::make_shared<const UnitDensity>(phase_ == Phase::uniform ? cube_ : trainer_.density());
+    }
     void save(StateWriter& state) const override {
         state.put(static_cast<int>(phase_));
         state.put(previous_variance_);
@@ -347,23 +352,19 @@ class AdaptiveEstimator final : public Estimator {
     }
 
     void add_warnings(const MixtureEstimate& estimate, bool heavy, bool lost, Tally& tally) const {
-        if (lost) tally.warnings.push_back("the trained density lost what the exploring points had seen");
+        auto warn = [&tally](std::string text) { tally.warnings.push_back(std::move(text)); };
+        if (lost) warn("the trained density lost what the exploring points had seen");
         if (trainer_.nonzero() == 0 && tally.value[0] == 0)
-            tally.warnings.push_back(
-                "the integrand was zero at every point; a narrow peak may have been missed");
+            warn("the integrand was zero at every point; a narrow peak may have been missed");
         else if (trainer_.nonzero() < enough_nonzero)
-            tally.warnings.push_back(
-                "only " + std::to_string(trainer_.nonzero()) +
-                " of the exploring points saw anything but zero; other places may have been missed");
-        if (heavy)
-            tally.warnings.push_back(
-                "one sample makes up much of the standard error; the weights have a heavy tail");
+            warn("only " + std::to_string(trainer_.nonzero()) +
+                 " of the exploring points saw anything but zero; other places may have been missed");
+        if (heavy) warn("one sample makes up much of the standard error; the weights have a heavy tail");
         if (estimate.one_replicate_stands_out())
-            tally.warnings.push_back(
-                "one replicate stands far from the others; the error may be underestimated");
+            warn("one replicate stands far from the others; the error may be underestimated");
         if (tally.degrees_of_freedom > 0 &&
             chi_squared_p_value(tally.chi_squared, tally.degrees_of_freedom) < disagreement)
-            tally.warnings.push_back("the training rounds disagree with the result");
+            warn("the training rounds disagree with the result");
     }
 
     Problem problem_;

@@ -34,9 +34,13 @@ std::uint64_t MixtureDensity::balanced_points() const {
 }
 
 void MixtureDensity::sample(int channel, const PointBatch& u, PointBuffer& x,
-                            std::vector<double>& density) const {
+                            std::vector<double>& density, std::vector<std::size_t>* inside) const {
     const std::size_t count = u.count();
     if (channel < first_gaussian()) {
+        if (inside != nullptr) {
+            inside->resize(count);
+            std::iota(inside->begin(), inside->end(), std::size_t{0});
+        }
         x.resize(count, dimensions_);
         density.assign(count, 1.0);
         for (int d = 0; d < dimensions_; ++d) {
@@ -55,16 +59,18 @@ void MixtureDensity::sample(int channel, const PointBatch& u, PointBuffer& x,
     }
     PointBuffer all(count, dimensions_);
     gaussian(channel).sample(u, all);
-    std::vector<std::size_t> inside;
+    std::vector<std::size_t> own;
+    std::vector<std::size_t>& in_cube = inside != nullptr ? *inside : own;
+    in_cube.clear();
     for (std::size_t i = 0; i < count; ++i) {
         bool in = true;
         for (int d = 0; d < dimensions_; ++d) in = in && all(i, d) > 0 && all(i, d) < 1;
-        if (in) inside.push_back(i);
+        if (in) in_cube.push_back(i);
     }
-    x.resize(inside.size(), dimensions_);
+    x.resize(in_cube.size(), dimensions_);
     for (int d = 0; d < dimensions_; ++d)
-        for (std::size_t j = 0; j < inside.size(); ++j) x(j, d) = all(inside[j], d);
-    density.assign(inside.size(), 0.0);
+        for (std::size_t j = 0; j < in_cube.size(); ++j) x(j, d) = all(in_cube[j], d);
+    density.assign(in_cube.size(), 0.0);
     add_pdf(x, density, -1);
 }
 
@@ -192,10 +198,14 @@ MixtureDensity MixtureDensity::load(StateReader& state, int dimensions) {
     for (std::uint64_t n = state.get_word(); n > 0; --n) gaussians.push_back(Gaussian::load(state));
     MixtureDensity density(dimensions, std::move(maps), std::move(gaussians), boundary);
     std::vector<int> shares = state.get_all<int>();
-    if (shares.size() != density.shares_.size() ||
-        std::accumulate(shares.begin(), shares.end(), 0) != units ||
-        (!density.maps_.empty() && static_cast<int>(density.maps_.size()) != dimensions))
-        throw Error("the saved density does not fit the problem");
+    const bool fits = shares.size() == density.shares_.size() &&
+                      std::ranges::all_of(shares, [](int s) { return s >= 0 && s <= units; }) &&
+                      std::accumulate(shares.begin(), shares.end(), 0) == units && shares[0] > 0 &&
+                      (density.maps_.empty() || static_cast<int>(density.maps_.size()) == dimensions) &&
+                      std::ranges::all_of(density.gaussians_, [dimensions](const Gaussian& g) {
+                          return g.dimensions() == dimensions && std::isfinite(g.log_norm());
+                      });
+    if (!fits) throw Error("the saved density does not fit the problem");
     density.shares_ = std::move(shares);
     return density;
 }

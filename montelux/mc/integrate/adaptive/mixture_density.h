@@ -47,8 +47,9 @@ class MixtureDensity {
         return n * static_cast<std::uint64_t>(shares_[static_cast<std::size_t>(channel)]) / units;
     }
     // The points of a channel for uniform numbers u, those inside the cube one after the other, and q at
-    // each.
-    void sample(int channel, const PointBatch& u, PointBuffer& x, std::vector<double>& density) const;
+    // each; `inside`, if given, gets their indices in u.
+    void sample(int channel, const PointBatch& u, PointBuffer& x, std::vector<double>& density,
+                std::vector<std::size_t>* inside = nullptr) const;
     // q_k at each point, and q.
     void channel_pdf(int channel, const PointBatch& x, std::span<double> density) const;
     void pdf(const PointBatch& x, std::span<double> density) const;

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "montelux/mc/integrate/extreme_values.h"
+#include "montelux/mc/integrate/trained/unit_density.h"
 #include "montelux/mc/integrate/unit_points.h"
 #include "montelux/mc/random/hash.h"
 
@@ -219,6 +220,10 @@ Tally VegasEstimator::tally() const {
     warn_of_heavy_tail(state_.tail, state_.tail_values, state_.points, tally.standard_error[0],
                        tally.warnings);
     return tally;
+}
+
+std::shared_ptr<const UnitDensity> VegasEstimator::density() const {
+    return std::make_shared<const UnitDensity>(state_.map);
 }
 
 void VegasEstimator::save(StateWriter& state) const {

@@ -45,6 +45,7 @@ class VegasEstimator : public Estimator {
     Tally tally() const override;
     void save(StateWriter& state) const override;
     void load(StateReader& state) override;
+    std::shared_ptr<const UnitDensity> density() const override;
 
   protected:
     VegasEstimator(const Problem& problem, const Vegas& settings, int least_evaluations);

@@ -1,7 +1,8 @@
-// montelux sample: points of a set, or samples of a density.
+// montelux sample: points of a set, samples of a density, of a trained density, or of Markov chains.
 #include "app/commands.h"
 #include "app/integrate/integrate_options.h"
 #include "app/joined.h"
+#include "app/sample/sample_options.h"
 #include "app/table_file.h"
 #include "app/usage_error.h"
 #include "app/variables.h"
@@ -14,11 +15,6 @@
 
 namespace montelux::app {
 namespace {
-
-struct SampleOptions {
-    std::string set, randomisation, n = "1024", dimensions, seed = "0", output, format;
-    std::vector<std::string> over, densities;
-};
 
 // The names of an enumeration of consecutive values from 0 on.
 template <typename Enum>
@@ -36,7 +32,8 @@ std::vector<std::string_view> randomisation_names() { return names_up_to(Randomi
                                  "; expected one of " + joined(names));
 }
 
-// By --format, else by the name of the file, else CSV.
+} // namespace
+
 TableFormat format_of(const SampleOptions& o) {
     if (!o.format.empty()) {
         const auto format = table_format(o.format);
@@ -48,6 +45,8 @@ TableFormat format_of(const SampleOptions& o) {
     const auto format = table_format(extension.substr(1));
     return format ? *format : TableFormat::csv;
 }
+
+namespace {
 
 PointSet make_point_set(const SampleOptions& o, bool by_density, std::size_t variables) {
     PointSet::Settings settings;
@@ -76,12 +75,45 @@ PointSet make_point_set(const SampleOptions& o, bool by_density, std::size_t var
     }
 }
 
+// Options that belong to one kind of samples and were given with another.
+void check_kind(const SampleOptions& o) {
+    struct Rule {
+        const char* option;
+        bool given, allowed;
+        const char* answer;
+    };
+    const bool trained = !o.from.empty(), points = !trained && !o.log;
+    const Rule rules[] = {
+        {"--log", o.log, !trained, "leave it out with --from, whose file knows it"},
+        {"FORMULA", !o.formulas.empty(), o.log, "expected --log with a formula, or --density FORMULA"},
+        {"--set", !o.set.empty(), points, "leave it out with --from and --log"},
+        {"--randomisation", !o.randomisation.empty(), points, "leave it out with --from and --log"},
+        {"--dim", !o.dimensions.empty(), points, "leave it out with --from and --log"},
+        {"--density", !o.densities.empty(), points, "leave it out with --from and --log"},
+        {"--over", !o.over.empty(), !trained, "leave it out with --from, whose file knows the variables"},
+        {"--unweighted", o.unweighted, trained, "expected --from FILE with it"},
+        {"--histogram", !o.histogram.empty(), trained, "expected --from FILE with it"},
+        {"--covariance", o.covariance, trained, "expected --from FILE with it"},
+        {"--pilot", !o.pilot.empty(), trained, "expected --from FILE with it"},
+        {"--overweight-share", !o.overweight_share.empty(), trained, "expected --from FILE with it"},
+        {"--max-draws", !o.max_draws.empty(), trained, "expected --from FILE with it"},
+        {"--chains", !o.chains.empty(), o.log, "expected --log with it"},
+        {"--burn-in", !o.burn_in.empty(), o.log, "expected --log with it"},
+        {"--thin", !o.thin.empty(), o.log, "expected --log with it"},
+        {"--start", !o.starts.empty(), o.log, "expected --log with it"},
+    };
+    for (const Rule& rule : rules)
+        if (rule.given && !rule.allowed) throw UsageError(rule.option, rule.answer);
+}
+
 // Points in [0, 1)^d, each coordinate moved by the quantile of its variable's density.
-void run(const SampleOptions& o) {
+void write_points(const SampleOptions& o) {
     const TableFormat format = format_of(o);
     const bool by_density = !o.densities.empty() || !o.over.empty();
     if (!by_density && o.set.empty())
-        throw UsageError("sample", "expected --set NAME, or --density FORMULA with --over NAME=LOWER:UPPER");
+        throw UsageError("sample",
+                         "expected --set NAME, or --density FORMULA with --over NAME=LOWER:UPPER, or "
+                         "--from FILE, or FORMULA --log");
     Variables variables;
     if (by_density) {
         variables = read_variables(o.over, true);
@@ -118,21 +150,31 @@ void run(const SampleOptions& o) {
     table.finish();
 }
 
+int run(const SampleOptions& o) {
+    check_kind(o);
+    if (!o.from.empty()) return run_trained_samples(o);
+    if (o.log) return run_chains(o);
+    write_points(o);
+    return exit_done;
+}
+
 } // namespace
 
 void add_sample(CLI::App& app, int& exit_code) {
     auto o = std::make_shared<SampleOptions>();
-    CLI::App* c = app.add_subcommand("sample", "Write the points of a set, or samples of a density");
+    CLI::App* c = app.add_subcommand(
+        "sample", "Write the points of a set, or samples: of a density, an integrand, Markov chains");
+    c->add_option("FORMULA", o->formulas, "With --log: the logarithm of a density, for example -x^2/2");
     auto text = [c](const std::string& name, std::string& target, const std::string& help,
                     const std::string& type) {
         c->add_option(name, target, help)->type_name(type)->take_last();
     };
     text("--set", o->set, "Which points of [0, 1)^d: " + joined(set_names()), "NAME");
-    text("--n", o->n, "How many. Default: 1024", "N");
+    text("--n", o->n, "How many; with --histogram draws, with --log of each chain. Default: 1024", "N");
     text("--dim", o->dimensions, "Dimensions d. Default: 2", "D");
     text("--randomisation", o->randomisation,
          "How the set is randomised: " + joined(randomisation_names()) + ". Default: none", "NAME");
-    text("--seed", o->seed, "Seed of independent points and of the randomisation. Default: 0", "N");
+    text("--seed", o->seed, "Seed of all random numbers. Default: 0", "N");
     c->add_option(
          "--density", o->densities,
          "Sample the density that is proportional to this formula, by inversion: FORMULA where there is "
@@ -142,6 +184,29 @@ void add_sample(CLI::App& app, int& exit_code) {
     c->add_option("--over", o->over, "A variable and its range, for example x=0:inf")
         ->type_name("NAME=LOWER:UPPER")
         ->allow_extra_args(false);
+    text("--from", o->from, "Sample the density that `montelux integrate --save-density` saved in this file",
+         "FILE");
+    c->add_flag("--unweighted", o->unweighted, "With --from: by rejection, so that nearly all weights are 1");
+    text("--pilot", o->pilot, "With --unweighted: draws that decide the maximum weight. Default: 32768", "N");
+    text("--overweight-share", o->overweight_share,
+         "With --unweighted: share of the integral above the maximum weight. Default: 0.001", "SHARE");
+    text("--max-draws", o->max_draws, "With --from: draws after which it ends with fewer samples", "N");
+    text("--histogram", o->histogram,
+         "With --from: the integral over each bin of an observable, with its error, for example "
+         "'sqrt(s)=80:100:40'",
+         "FORMULA=LOWER:UPPER:BINS");
+    c->add_flag("--covariance", o->covariance, "With --histogram: the covariances, too");
+    c->add_flag(
+        "--log", o->log,
+        "Markov chains (Metropolis) whose states follow the density of which FORMULA is the logarithm");
+    text("--chains", o->chains, "With --log: how many. Default: 4", "N");
+    text("--burn-in", o->burn_in, "With --log: states left out of each. Default: 2000", "N");
+    text("--thin", o->thin, "With --log: every how many-th state is written. Default: 1", "N");
+    c->add_option("--start", o->starts, "With --log: where a chain starts; once for all, or once for each")
+        ->type_name("X,Y,...")
+        ->allow_extra_args(false);
+    text("--threads", o->threads, "Threads; 0: one per processor. The result does not depend on it", "N");
+    c->add_flag("--quiet", o->quiet, "Write the samples alone");
     text("-o,--output", o->output, "File to write. Default: standard output", "FILE");
     text("--format", o->format,
          "csv, npy (NumPy) or bin (little-endian doubles). Default: by the file's name, else csv", "NAME");
@@ -149,12 +214,11 @@ void add_sample(CLI::App& app, int& exit_code) {
         "Examples:\n"
         "  montelux sample --set sobol --n 1024 --dim 2 --randomisation scramble --seed 7 -o points.npy\n"
         "  montelux sample --density 'exp(-5*x)' --over x=0:inf --n 1000\n"
+        "  montelux sample --from trained.mx --unweighted --n 1e5 -o events.npy\n"
+        "  montelux sample -x^2-y^2+x*y --log --over x,y=-inf:inf --n 5000 -o chains.csv\n"
         "\n"
         "With a density, --set says which uniform numbers the quantiles get (default: independent).");
-    c->callback([o, &exit_code] {
-        run(*o);
-        exit_code = exit_done;
-    });
+    c->callback([o, &exit_code] { exit_code = run(*o); });
 }
 
 } // namespace montelux::app
