@@ -250,6 +250,7 @@ class VolumePath : private VolumePathLights<Stream> {
             return;
         }
         state_.previous = reference_point(s, surface, wo);
+        state_.scatter(); // before lights are sampled: no SegmentLight finds this vertex
         const std::optional<BsdfSample> scattered = std::visit(
             [&](const BsdfModel auto& bsdf) {
                 if (!bsdf.is_specular() && !last)
@@ -282,7 +283,6 @@ class VolumePath : private VolumePathLights<Stream> {
             passages_ = 0;
         }
         state_.throughput *= scattered->weight;
-        state_.scatter();
         state_.bsdf_pdf = scattered->pdf;
         state_.sees_lights = scattered->specular;
         if (!scattered->specular) state_.scattered_roughly = true;
