@@ -15,7 +15,7 @@ Integrator make_integrator(const SceneDescription& description, const Integrator
                            const SceneView& scene, const Camera& camera) {
     if (traces_light(settings.method))
         return BidirectionalIntegrator(settings, camera, footprint_scale, description.film.crop,
-                                       filter_radius(description.film.filter));
+                                       filter_radius(description.film.filter), scene.has_media());
     if (settings.occlusion) return OcclusionIntegrator(settings, camera, footprint_scale);
     if (scene.has_media()) return VolumePathIntegrator(settings, camera, footprint_scale);
     return PathIntegrator(settings, camera, footprint_scale);
