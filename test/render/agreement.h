@@ -60,7 +60,9 @@ inline Agreement agreement_in(const AgreementCase& c, std::size_t number, std::u
 }
 
 // Pooled over all cases, the pixels differ by as much as their errors say.
-inline void expect_agreement_of(const std::vector<AgreementCase>& cases, double most_error = 0.03) {
+// Heavy tails, of caustics with few samples, widen the differences a little: `most_ratio`.
+inline void expect_agreement_of(const std::vector<AgreementCase>& cases, double most_error = 0.03,
+                                double most_ratio = 1.1) {
     double squares = 0, pixels = 0;
     for (std::size_t i = 0; i < cases.size(); ++i) {
         const Agreement r = agreement_in(cases[i], i, 1);
@@ -70,7 +72,7 @@ inline void expect_agreement_of(const std::vector<AgreementCase>& cases, double 
         pixels += r.pixels;
     }
     EXPECT_GT(std::sqrt(squares / pixels), 0.9);
-    EXPECT_LT(std::sqrt(squares / pixels), 1.1);
+    EXPECT_LT(std::sqrt(squares / pixels), most_ratio);
 }
 
 } // namespace montelux::testing

@@ -176,16 +176,17 @@ std::vector<AgreementCase> glass_and_glow() {
 }
 
 // Of each set, light tracing alone for the first case only.
-void expect_fast_agreement_of(const std::vector<AgreementCase>& cases, double most_error) {
+void expect_fast_agreement_of(const std::vector<AgreementCase>& cases, double most_error,
+                              double most_ratio = 1.1) {
     std::vector<AgreementCase> chosen;
     int by_light_alone = 0;
     for (const AgreementCase& c : cases)
         if (c.method != by_light || by_light_alone++ == 0) chosen.push_back(c);
-    expect_agreement_of(chosen, most_error);
+    expect_agreement_of(chosen, most_error, most_ratio);
 }
 TEST(BidirectionalMedia, FogsAgree) { expect_fast_agreement_of(fogs(), 0.04); }
 TEST(BidirectionalMedia, CloudsAgree) { expect_fast_agreement_of(clouds(), 0.04); }
-TEST(BidirectionalMedia, GlassAndGlowAgree) { expect_fast_agreement_of(glass_and_glow(), 0.05); }
+TEST(BidirectionalMedia, GlassAndGlowAgree) { expect_fast_agreement_of(glass_and_glow(), 0.05, 1.25); }
 
 // The same with so many samples that a bias of 1 % would show.
 TEST(BidirectionalMediaSlowTest, NoBiasOfOnePerCent) {
