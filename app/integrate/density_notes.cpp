@@ -10,12 +10,13 @@ namespace {
 // The options by name; lists have an entry a line.
 constexpr std::pair<const char*, std::vector<std::string> IntegrateOptions::*> lists[] = {
     {"formulas", &IntegrateOptions::formulas},
+    {"let", &IntegrateOptions::let},
     {"over", &IntegrateOptions::over},
     {"density", &IntegrateOptions::densities}};
-constexpr std::pair<const char*, std::string IntegrateOptions::*> texts[] = {
-    {"domain", &IntegrateOptions::domain},
-    {"radius", &IntegrateOptions::radius},
-    {"centre", &IntegrateOptions::centre}};
+constexpr std::pair<const char*, std::string IntegrateOptions::*> single_texts[] = {
+    {"library", &IntegrateOptions::library},       {"source", &IntegrateOptions::source},
+    {"components", &IntegrateOptions::components}, {"domain", &IntegrateOptions::domain},
+    {"radius", &IntegrateOptions::radius},         {"centre", &IntegrateOptions::centre}};
 constexpr const char* log_note = "log";
 
 } // namespace
@@ -27,14 +28,18 @@ std::map<std::string, std::string> density_notes(const IntegrateOptions& options
             std::ranges::replace(line, '\n', ' ');
             notes[name] += line + "\n";
         }
-    for (const auto& [name, member] : texts) notes[name] = options.*member;
+    for (const auto& [name, member] : single_texts) notes[name] = options.*member;
     if (options.log) notes[log_note] = "yes";
     return notes;
 }
 
 IntegrateOptions options_of_notes(const std::map<std::string, std::string>& notes, const std::string& path) {
-    if (!notes.contains("formulas"))
-        throw Error(path, "holds a density without its formula; expected a file that `montelux integrate "
+    const auto given = [&notes](const char* name) {
+        const auto found = notes.find(name);
+        return found != notes.end() && !found->second.empty();
+    };
+    if (!given("formulas") && !given("library") && !given("source"))
+        throw Error(path, "holds a density without its integrand; expected a file that `montelux integrate "
                           "--save-density` wrote");
     IntegrateOptions options;
     for (const auto& [name, member] : lists) {
@@ -47,7 +52,7 @@ IntegrateOptions options_of_notes(const std::map<std::string, std::string>& note
             begin = end + 1;
         }
     }
-    for (const auto& [name, member] : texts)
+    for (const auto& [name, member] : single_texts)
         if (const auto found = notes.find(name); found != notes.end()) options.*member = found->second;
     options.log = notes.contains(log_note);
     return options;

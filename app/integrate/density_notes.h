@@ -10,7 +10,7 @@ namespace montelux::app {
 
 std::map<std::string, std::string> density_notes(const IntegrateOptions& options);
 
-// The options again. Throws Error that names the file where the notes hold no formula.
+// The options again. Throws Error that names the file where the notes hold no integrand.
 IntegrateOptions options_of_notes(const std::map<std::string, std::string>& notes, const std::string& path);
 
 } // namespace montelux::app

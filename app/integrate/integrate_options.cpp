@@ -124,10 +124,10 @@ NamedIntegrand make_integrand(const IntegrateOptions& o, const std::vector<std::
                                                             : CompiledFunction::from_library(o.library, form);
         return {function, function.names()};
     }
-    std::vector<std::string> texts = o.formulas;
-    for (std::string& text : texts)
+    std::vector<std::string> formulas = o.formulas;
+    for (std::string& text : formulas)
         if (text.starts_with(" -")) text.erase(0, 1); // the blank of with_negative_formulas
-    return {Formulas(texts, variables, "", constants), texts};
+    return {Formulas(formulas, variables, "", constants), formulas};
 }
 
 // 10k, 1.5M and 2G as 10e3, 1.5e6 and 2e9; other texts as they are.

@@ -22,10 +22,7 @@ struct Source {
     IntegrationTask task;
     TrainedDensity density;
 
-    Integrand target() const {
-        return Integrand::batch([f = task.formulas](const PointBatch& x, ValueBatch y) { f(x, y); },
-                                task.formulas.count());
-    }
+    Integrand target() const { return Integrand::batch(task.integrand.function, task.integrand.count()); }
 };
 
 Source read_source(const std::string& path) {
@@ -66,7 +63,7 @@ std::string integral_text(const Estimate& integral, double log_reference, bool l
 void write_samples(const SampleOptions& o, const Source& source, const Samples& s) {
     std::vector<std::string> names = source.task.variables;
     for (int c = 1; c < s.f.components(); ++c)
-        names.push_back(source.task.formulas.texts()[static_cast<std::size_t>(c)]);
+        names.push_back(source.task.integrand.names[static_cast<std::size_t>(c)]);
     names.push_back("weight");
     TableWriter table(o.output, format_of(o), names, s.count());
     std::vector<double> row(names.size());

@@ -54,8 +54,8 @@ void Renderer::render(RenderState& state, const RenderControl& control) const {
     SampleContext context(description_, sampler_, scene(), camera_);
     if (description_.integrator.guiding == Guiding::on && !context.can_be_guided())
         throw Error("guiding",
-                    "only the path integrator can be guided, between surfaces and by a strategy other than "
-                    "'uniform': leave guiding to 'auto' elsewhere, or turn it off");
+                    "only the path integrator can be guided, by a strategy other than 'uniform': leave "
+                    "guiding to 'auto' elsewhere, or turn it off");
     if (context.makes_splats() && !state.splats) state.splats.emplace(state.film.bounds());
     if (state.film.layers().channels() != context.layers().channels())
         throw Error("film", "its layers are not those of the scene's film");

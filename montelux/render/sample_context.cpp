@@ -15,7 +15,7 @@ Integrator make_integrator(const SceneDescription& description, const Integrator
                            const SceneView& scene, const Camera& camera) {
     if (traces_light(settings.method))
         return BidirectionalIntegrator(settings, camera, footprint_scale, description.film.crop,
-                                       filter_radius(description.film.filter));
+                                       filter_radius(description.film.filter), scene.has_media());
     if (settings.occlusion) return OcclusionIntegrator(settings, camera, footprint_scale);
     if (scene.has_media()) return VolumePathIntegrator(settings, camera, footprint_scale);
     return PathIntegrator(settings, camera, footprint_scale);
@@ -31,7 +31,8 @@ SampleContext::SampleContext(const SceneDescription& description, const SamplerS
       integrator_(make_integrator(description, integrator, scene, camera)), filter_(description.film.filter),
       exposure_(description), white_(RgbColorSpace::srgb().illuminant()),
       white_scale_(static_cast<float>(1 / integrate_luminance(white_))),
-      can_be_guided_(std::holds_alternative<PathIntegrator>(integrator_) &&
+      can_be_guided_((std::holds_alternative<PathIntegrator>(integrator_) ||
+                      std::holds_alternative<VolumePathIntegrator>(integrator_)) &&
                      description.integrator.method == IntegratorKind::path &&
                      integrator.strategy != Strategy::uniform) {
     if (description.film.spectral) buckets_.emplace(*description.film.spectral);
@@ -120,6 +121,7 @@ void SampleContext::sample_layers(const SampleExtras& extras, const FilmContribu
 void SampleContext::set_guide(std::shared_ptr<const GuidingField> guide) {
     guide_ = std::move(guide);
     if (auto* path = std::get_if<PathIntegrator>(&integrator_)) path->set_guide(guide_.get());
+    if (auto* path = std::get_if<VolumePathIntegrator>(&integrator_)) path->set_guide(guide_.get());
 }
 
 void SampleContext::begin(std::span<const Key> keys, Batch& batch) const {

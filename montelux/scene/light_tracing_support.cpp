@@ -1,5 +1,6 @@
 #include "montelux/scene/light_tracing_support.h"
 
+#include <algorithm>
 #include <variant>
 
 #include "montelux/mc/math/overloaded.h"
@@ -44,12 +45,42 @@ bool has_transmitting_sides(const Scene& scene) {
     return false;
 }
 
+bool is_body(const Medium& medium) {
+    const auto* m = std::get_if<HomogeneousMedium>(&medium);
+    return m != nullptr && m->is_body;
+}
+
+bool is_zero(SceneSpectrum s) { return s.is_constant() && s.constant == 0; }
+
+// True where it is not known.
+bool may_shine(const Medium& medium) {
+    return std::visit(
+        Overloaded{[](const HomogeneousMedium& m) { return !is_zero(m.le) && m.le_scale != 0; },
+                   [](const GridMedium& m) {
+                       return m.le_scale != 0 && (!is_zero(m.le) || m.temperature != no_index);
+                   },
+                   [](const RgbGridMedium& m) { return m.le != no_index && m.le_scale != 0; },
+                   [](const SparseGridMedium& m) { return m.temperature != no_index && m.le_scale != 0; },
+                   [](const CloudMedium&) { return false; }, [](const FieldMedium&) { return false; }},
+        medium);
+}
+
+std::optional<std::string> obstacle_of_media(const Scene& scene, const IntegratorSettings& settings) {
+    const std::vector<Medium>& media = scene.media;
+    if (std::any_of(media.begin(), media.end(), is_body))
+        return "translucent bodies count all that happens in them as one scattering event";
+    if (settings.method == IntegratorKind::light_tracing &&
+        std::any_of(media.begin(), media.end(), may_shine))
+        return "light that media emit is found by paths from the camera alone: choose 'bidirectional'";
+    return std::nullopt;
+}
+
 } // namespace
 
 std::optional<std::string> light_tracing_obstacle(const Scene& scene, const IntegratorSettings& settings) {
     const CameraModel& camera = scene.camera.model;
     if (settings.occlusion) return "ambient occlusion is no light";
-    if (SceneView(scene).has_media()) return "participating media and interfaces cannot be rendered by it";
+    if (auto obstacle = obstacle_of_media(scene, settings)) return obstacle;
     if (!std::holds_alternative<PerspectiveCamera>(camera) &&
         !std::holds_alternative<OrthographicCamera>(camera))
         return "spherical cameras and lens systems cannot be used";

@@ -34,6 +34,7 @@ struct PathObserver {
 // The memory of a sample; allocated once and used again.
 struct BidirectionalMemory {
     std::vector<SubpathVertex> camera, light; // z_1, z_2 ... and y_1, y_2 ...
+    std::vector<EdgeDensity> edges;           // of the path in question, with media
     PathDensities densities;
     std::vector<double> scratch;
     SplatList ignored; // where the caller wants no splats
@@ -45,8 +46,16 @@ struct BidirectionalMemory {
 // over all by their densities (strategy_weight.h). The one that joins a light to the lens is left to s = 0. Samples at
 // vertices (s = 1) choose lights as PathIntegrator does, so that this is its special case without light paths.
 //
-// Depths, wavelengths and the order of events are those of PathIntegrator: both estimate the same integral for each
+// Depths, wavelengths and the order of events are those of PathIntegrator and VolumePathIntegrator: all estimate the same integral for each
 // max_depth. Where one of the two subpaths has met a dispersive surface, the first wavelength stands for all.
+//
+// In media vertices scatter by phase functions, and have densities per volume: those of directions lack the cosine.
+// Subpaths walk from vertex to vertex by delta tracking, and edges are joined by ratio tracking, both at the extinction
+// of the first wavelength, as in VolumePathIntegrator; weights contain the densities of the null collisions on the way
+// at each wavelength (edge_density.h). Light that media emit is found by the camera's path alone.
+// Lafortune, Willems 1996, "Rendering Participating Media with Bidirectional Path Tracing"; Raab, Seibert, Keller 2008,
+// "Unbiased Global Illumination with Participating Media"; Georgiev et al. 2013, "Joint Importance Sampling of
+// Low-Order Volumetric Scattering".
 //
 // IntegratorKind::light_tracing takes the strategies t = 1 alone, and s = 0 for lights that the camera sees directly.
 // It finds no light on its way from a mirror or smooth glass straight to the camera.
@@ -57,9 +66,9 @@ class BidirectionalIntegrator {
     static constexpr std::string_view name = "bidirectional";
 
     // The camera must outlive it. `film`: where splats count; `light_paths`: for each path that starts at a square
-    // pixel.
+    // pixel. `volumes`: SceneView::has_media().
     BidirectionalIntegrator(const IntegratorSettings& settings, const Camera& camera, float footprint_scale,
-                            const PixelBounds& crop, Vec2f filter_radius);
+                            const PixelBounds& crop, Vec2f filter_radius, bool volumes);
 
     using Batch = BidirectionalMemory;
     // Splats go to camera.splats, unless null.
@@ -77,6 +86,8 @@ class BidirectionalIntegrator {
   private:
     template <RandomStream Stream>
     friend class BidirectionalSample;
+    template <RandomStream Stream>
+    friend class BidirectionalStrategies;
 
     bool on_film(Point2f p) const {
         return p.x >= window_min_.x && p.x < window_max_.x && p.y >= window_min_.y && p.y < window_max_.y;
@@ -87,6 +98,7 @@ class BidirectionalIntegrator {
     float footprint_scale_;
     Vec2f window_min_, window_max_; // film points that some pixel's filter reaches
     double light_paths_;
+    bool volumes_;
 };
 
 } // namespace montelux

@@ -1,144 +1,206 @@
-// BidirectionalSample: the two subpaths of a sample and the ways to join them.
+// BidirectionalSample: the two subpaths of a sample.
 #pragma once
 
-#include <algorithm>
 #include <limits>
 #include <optional>
 
-#include "montelux/scene/light/shadow_ray.h"
-#include "montelux/transport/bidirectional_integrator.h"
-#include "montelux/transport/light_choice.h"
+#include "montelux/transport/bidirectional_strategies.h"
+#include "montelux/transport/subpath_walk.h"
 
 namespace montelux {
 
 // Numbers are drawn in this order: the camera's path with next-event estimation at each vertex, the light's path, then
 // what joining them takes.
 template <RandomStream Stream>
-class BidirectionalSample {
+class BidirectionalSample : private BidirectionalStrategies<Stream> {
   public:
     BidirectionalSample(const BidirectionalIntegrator& integrator, const SceneView& scene, RayTracer& tracer,
                         const CameraSample& camera, Stream& stream, BidirectionalMemory& memory,
                         const PathObserver* observer)
-        : integrator_(integrator), settings_(integrator.settings_), scene_(scene), tracer_(tracer),
-          camera_(camera), stream_(stream), memory_(memory), observer_(observer),
-          splats_(camera.splats != nullptr ? *camera.splats : memory.ignored), time_(camera.ray.time),
-          all_strategies_(settings_.method == IntegratorKind::bidirectional) {
+        : BidirectionalStrategies<Stream>(integrator, scene, tracer, camera, stream, memory, observer) {
         memory_.camera.clear();
         memory_.light.clear();
         memory_.ignored.clear();
     }
 
     FilmContribution take() {
-        const auto depth = static_cast<std::size_t>(settings_.max_depth);
-        memory_.camera.reserve(depth + 1);
-        memory_.light.reserve(depth + 1);
+        memory_.camera.reserve(static_cast<std::size_t>(settings_.max_depth) + 1);
+        memory_.light.reserve(static_cast<std::size_t>(settings_.max_depth) + 1);
         trace_from_camera();
         trace_from_light();
         for (std::size_t j = 1; j <= memory_.light.size(); ++j) {
             join_lens(j);
             if (!all_strategies_) continue;
-            for (std::size_t k = 1; k <= memory_.camera.size() && j + k <= depth; ++k) join(j, k);
+            for (std::size_t k = 1; k <= memory_.camera.size(); ++k)
+                if (memory_.light[j - 1].events + memory_.camera[k - 1].events <= settings_.max_depth)
+                    join(j, k);
         }
         return {radiance_, camera_.lambda, first_, transparency_};
     }
 
   private:
-    using Vertices = std::vector<SubpathVertex>;
+    using Strategies = BidirectionalStrategies<Stream>;
+    using Strategies::all_strategies_;
+    using Strategies::camera_;
+    using Strategies::density_of_previous;
+    using Strategies::end_;
+    using Strategies::end_next_event_;
+    using Strategies::integrator_;
+    using Strategies::join;
+    using Strategies::join_lens;
+    using Strategies::meet_light;
+    using Strategies::memory_;
+    using Strategies::radiance_;
+    using Strategies::sample_light;
+    using Strategies::scene_;
+    using Strategies::settings_;
+    using Strategies::stream_;
+    using Strategies::time_;
+    using Strategies::tracer_;
+    using Strategies::volumes_;
+    using typename Strategies::Vertices;
 
-    // Of v, whose ray has just hit; false where nothing scatters.
-    bool make_scattering(SubpathVertex& v, SampledWavelengths& lambda) const {
-        return montelux::make_scattering(scene_, *integrator_.camera_, integrator_.footprint_scale_, v,
-                                         lambda);
+    // What the camera's path finds between its vertices.
+    struct CameraEvents {
+        BidirectionalSample& sample;
+        std::size_t k;          // number of the ray
+        Index light = no_index; // of the surface where it ends
+
+        void passed(const SubpathEnd& end, const SurfacePoint& s, const Hit& hit) {
+            const float distance = end.distance + hit.t;
+            sample.meet_surface(s, sample.scene_.light_at(hit), end, end.ray.d, k,
+                                end.pdf * std::abs(dot(s.ng, end.ray.d)) / (distance * distance));
+        }
+        void met(const SubpathEnd& end, const Hit& hit) {
+            light = sample.scene_.light_at(hit);
+            if (end.events == 0 && sample.camera_.extras != nullptr)
+                sample.camera_.extras->meet(end.ray, hit);
+        }
+        void left(const SubpathEnd& end) { sample.leave_scene(end, k); }
+        void emitted(const SubpathEnd& end, SampledSpectrum radiance) {
+            if (end.lambda.secondary_terminated()) radiance = SampledSpectrum(4 * radiance[0], 0, 0, 0);
+            sample.radiance_ += radiance;
+        }
+        void looped() { sample.report_loop(); }
+    };
+    // A light's path finds nothing there.
+    struct LightEvents {
+        BidirectionalSample& sample;
+
+        void passed(const SubpathEnd&, const SurfacePoint&, const Hit&) {}
+        void met(const SubpathEnd&, const Hit&) {}
+        void left(const SubpathEnd&) {}
+        void emitted(const SubpathEnd&, SampledSpectrum) {}
+        void looped() { sample.report_loop(); }
+    };
+    void report_loop() { radiance_ += SampledSpectrum(std::numeric_limits<float>::quiet_NaN()); }
+
+    // Of v, whose ray has just arrived; false where nothing scatters.
+    bool make_scattering(SubpathVertex& v, SubpathEnd& end) const {
+        return v.phase != nullptr ||
+               montelux::make_scattering(scene_, *integrator_.camera_, integrator_.footprint_scale_, v, end);
     }
 
-    // Goes on from the last vertex of a subpath. Empty if that ends there; otherwise the density of the ray's direction,
-    // 1 of a delta.
-    std::optional<float> scatter(Vertices& path, TransportMode mode, Ray& ray, SampledSpectrum& throughput,
-                                 float& eta_scale) {
+    // Goes on from the last vertex of a subpath. False if that ends there.
+    bool scatter(Vertices& path, TransportMode mode, SubpathEnd& end) {
         SubpathVertex& v = path.back();
+        if (v.phase != nullptr) {
+            const Vec2f u = stream_.next_2d();
+            const PhaseSample s =
+                std::visit([&](const PhaseModel auto& f) { return f.sample(v.wo, u); }, *v.phase);
+            // Phase functions are symmetric.
+            v.backward = density_of_previous(path, path.size(), mode, s.pdf);
+            end.pdf = s.pdf;
+            end.ray.o = v.s.p;
+            end.ray.d = normalize(s.wi);
+            return true;
+        }
         const std::optional<BsdfSample> scattered = std::visit(
             [&](const BsdfModel auto& bsdf) { return bsdf.sample(v.wo, mode, stream_); }, v.surface.bsdf);
-        if (!scattered) return std::nullopt;
-        throughput *= scattered->weight;
+        if (!scattered) return false;
+        end.throughput *= scattered->weight;
         if (mode == TransportMode::importance)
-            throughput *= adjoint_correction(v.s, v.surface.frame, v.wo, scattered->wi);
+            end.throughput *= v.adjoint_correction(scattered->wi);
         else if (scattered->transmission)
-            eta_scale *= scattered->eta * scattered->eta;
+            end.eta_scale *= scattered->eta * scattered->eta;
         v.delta = scattered->specular;
+        if (may_pass() && v.delta && scattered->transmission && scattered->eta == 1) --end.events;
         // Backwards: the vertex before is found from the one to come.
-        const float back = v.delta ? 1 : evaluate(v.surface, scattered->wi, v.wo, adjoint(mode), stream_).pdf;
+        const float back = v.delta ? 1 : v.evaluate(scattered->wi, v.wo, adjoint(mode), stream_).pdf;
         v.backward = density_of_previous(path, path.size(), mode, back);
         const Vec3f wi = v.surface.frame.to_world(scattered->wi);
-        ray.o = offset_origin(v.s.p, v.s.ng, v.s.error, wi);
-        ray.d = wi;
-        ray.t_max = std::numeric_limits<float>::infinity();
-        return v.delta ? 1 : scattered->pdf;
-    }
-    // Of the vertex before number i (from 1), given a density per solid angle at that.
-    float density_of_previous(const Vertices& path, std::size_t i, TransportMode mode, float pdf) const {
-        const SubpathVertex& v = path[i - 1];
-        if (i > 1) return path[i - 2].per_area(pdf, v.w, v.distance2);
-        return mode == TransportMode::importance ? end_.of_light(pdf, v.w, v.distance2) : 0;
+        end.medium = v.medium_towards(wi);
+        end.ray.o = offset_origin(v.s.p, v.s.ng, v.s.error, wi);
+        end.ray.d = normalize(wi);
+        end.pdf = v.delta ? 1 : scattered->pdf;
+        return true;
     }
 
+    // Passages straight through a surface are not counted. Mitsuba's volumetric integrators do the same.
+    bool may_pass() const { return volumes_ && !settings_.count_passages; }
+
     // Russian roulette as of PathIntegrator, by the share that is left of what set out.
-    bool survives(SampledSpectrum& throughput, float strength, std::size_t events) {
+    bool survives(SubpathEnd& end, float strength) {
         if (!(strength > 0)) {
             // A NaN throughput must not end silently: it makes the sample bad.
-            if (!is_black(throughput)) radiance_ += throughput;
+            if (!is_black(end.throughput)) radiance_ += end.throughput;
             return false;
         }
-        if (!(strength < 1) || events <= 1) return true;
+        if (!(strength < 1) || end.events <= 1) return true;
         if (!(stream_.next_1d() < strength)) return false;
-        throughput /= strength;
+        end.throughput /= strength;
         return true;
     }
 
     void trace_from_camera() {
-        Ray ray = camera_.ray;
-        SampledWavelengths lambda = camera_.lambda;
-        SampledSpectrum throughput(1);
-        float pdf = 0, eta_scale = 1;
-        const auto max_depth = static_cast<std::size_t>(settings_.max_depth);
-        for (std::size_t k = 1;; ++k) { // ... - 1 scattering events so far
-            Hit hit;
-            if (!tracer_.intersect(ray, hit)) return leave_scene(ray, throughput, lambda, k, pdf);
-            if (k == 1 && camera_.extras != nullptr) camera_.extras->meet(ray, hit);
-            SubpathVertex& v = add_vertex(memory_.camera, scene_, ray, hit, throughput);
-            v.forward = k == 1
-                            ? integrator_.camera_->density(ray.d, hit.t, time_) * std::abs(dot(v.s.ng, ray.d))
-                            : v.per_area(pdf, v.w, v.distance2);
-            if (const Index light = scene_.light_at(hit); light != no_index)
-                meet_light(light, {.wi = v.w, .part = v.s.primitive, .p = v.s.p, .n = v.s.ng, .b = v.s.b},
-                           throughput, lambda, k, v.forward);
-            const bool last = k > max_depth || (k > 1 && !all_strategies_);
-            if (last || !make_scattering(v, lambda)) {
-                if (last) memory_.camera.pop_back();
-                return;
-            }
-            if (k == 1)
+        SubpathEnd end;
+        end.ray = camera_.ray;
+        end.lambda = camera_.lambda;
+        end.medium = scene_.camera_medium;
+        for (std::size_t k = 1; k <= most_interfaces; ++k) {
+            CameraEvents events{*this, k};
+            SubpathVertex* found = walk_to_vertex(memory_.camera, scene_, tracer_, end, stream_, events);
+            if (found == nullptr) return;
+            SubpathVertex& v = *found;
+            const float distance = std::sqrt(v.distance2);
+            v.forward = k == 1 ? integrator_.camera_->density(v.w, distance, time_) * v.cosine(v.w)
+                               : v.per_area(end.pdf, v.w, v.distance2);
+            if (v.phase == nullptr) meet_surface(v.s, events.light, v, v.w, k, v.forward);
+            // Nothing scatters there any more, but the path may pass.
+            const bool last = v.events > settings_.max_depth;
+            if (last && (v.phase != nullptr || !may_pass())) break;
+            if (k > 1 && !all_strategies_) break;
+            if (!make_scattering(v, end)) return;
+            if (k == 1 && v.phase == nullptr)
                 first_ = {.albedo = std::visit([&](const auto& b) { return b.albedo(v.wo); }, v.surface.bsdf),
                           .normal = v.surface.frame.n,
-                          .depth = hit.t,
+                          .depth = distance,
                           .found = true};
             if (!all_strategies_) return;
-            if (v.connectible) sample_light(k);
-            const auto direction =
-                scatter(memory_.camera, TransportMode::radiance, ray, throughput, eta_scale);
-            if (!direction || !survives(throughput, max_value(throughput) * eta_scale, k)) return;
-            pdf = *direction;
+            if (v.connectible && !last) sample_light(k);
+            if (!scatter(memory_.camera, TransportMode::radiance, end) || end.events > settings_.max_depth ||
+                !survives(end, max_value(end.carried()) * end.eta_scale))
+                return;
         }
     }
 
-    void leave_scene(const Ray& ray, SampledSpectrum throughput, const SampledWavelengths& lambda,
-                     std::size_t k, float pdf) {
-        if (k == 1) {
-            transparency_ = 1;
-            if (camera_.extras != nullptr) camera_.extras->transparency = 1;
+    // Ray number k meets a surface that may shine; `path`: the end of the subpath, or its last vertex.
+    template <typename Path>
+    void meet_surface(const SurfacePoint& s, Index light, const Path& path, Vec3f w, std::size_t k,
+                      float density) {
+        if (light != no_index)
+            meet_light(light, {.wi = w, .part = s.primitive, .p = s.p, .n = s.ng, .b = s.b}, path.edge,
+                       path.throughput, path.lambda, k, density);
+    }
+
+    void leave_scene(const SubpathEnd& end, std::size_t k) {
+        if (end.events == 0) {
+            transparency_ = average(end.carried());
+            if (camera_.extras != nullptr) camera_.extras->transparency = transparency_;
             if (settings_.background) return;
         }
         for (const Index light : scene_.light_tables.infinite_lights)
-            meet_light(light, {.wi = ray.d}, throughput, lambda, k, pdf);
+            meet_light(light, {.wi = end.ray.d}, end.edge, end.throughput, end.lambda, k, end.pdf);
     }
 
     void trace_from_light() {
@@ -146,9 +208,10 @@ class BidirectionalSample {
         const float u_choice = stream_.next_1d();
         const LightChoice chosen = scene_.emitting_lights->sample({}, stream_.refined(u_choice));
         const Vec2f u_position = stream_.next_2d(), u_direction = stream_.next_2d();
-        SampledWavelengths lambda = camera_.lambda;
+        SubpathEnd end;
+        end.lambda = camera_.lambda;
         const std::optional<EmissionSample> sample =
-            sample_le({scene_, chosen.light, time_}, chosen.part, u_position, u_direction, lambda);
+            sample_le({scene_, chosen.light, time_}, chosen.part, u_position, u_direction, end.lambda);
         if (!sample || is_black(sample->radiance)) return;
         end_ = {
             .light = chosen.light,
@@ -159,217 +222,45 @@ class BidirectionalSample {
         end_.emission =
             chosen.probability * (end_.at_infinity() ? sample->pdf_direction : sample->pdf_position);
         end_.edge = end_.at_infinity() ? sample->pdf_position : sample->pdf_direction;
-        Ray ray = sample->ray;
-        SampledSpectrum throughput =
+        end.ray = sample->ray;
+        end.throughput =
             sample->radiance *
             (sample->cosine / (chosen.probability * sample->pdf_position * sample->pdf_direction));
-        const float all = max_value(throughput);
-        float pdf = 0, ignored = 1;
-        const auto max_depth = static_cast<std::size_t>(settings_.max_depth);
-        for (std::size_t j = 1; j <= max_depth; ++j) {
-            Hit hit;
-            if (!tracer_.intersect(ray, hit)) return;
-            SubpathVertex& v = add_vertex(memory_.light, scene_, ray, hit, throughput);
-            v.forward =
-                j == 1 ? end_.edge_density(v.s.ng, v.w, v.distance2) : v.per_area(pdf, v.w, v.distance2);
-            if (!make_scattering(v, lambda)) return;
+        if (volumes_ && !enter_medium(end)) return;
+        const float all = max_value(end.carried());
+        LightEvents events{*this};
+        for (std::size_t j = 1; j <= most_interfaces && end.events < settings_.max_depth; ++j) {
+            SubpathVertex* found = walk_to_vertex(memory_.light, scene_, tracer_, end, stream_, events);
+            if (found == nullptr) return;
+            SubpathVertex& v = *found;
+            v.forward = j == 1 ? end_.edge_density(v.cosine(v.w), v.distance2)
+                               : v.per_area(end.pdf, v.w, v.distance2);
+            if (!make_scattering(v, end)) return;
             if (j == 1)
                 end_next_event_ =
                     next_event_density(scene_, time_, end_, v.reference(v.wo), v.w, v.distance2);
-            if (j == max_depth) return;
-            const auto direction =
-                scatter(memory_.light, TransportMode::importance, ray, throughput, ignored);
-            if (!direction || !survives(throughput, max_value(throughput) / all, j)) return;
-            pdf = *direction;
+            if (v.events == settings_.max_depth && !may_pass()) return;
+            if (!scatter(memory_.light, TransportMode::importance, end) ||
+                !survives(end, max_value(end.carried()) / all))
+                return;
         }
     }
 
-    // s = 0: ray number k of the camera's path meets a light. `density`: of the light's point or direction.
-    void meet_light(Index light, const LightHit& hit, SampledSpectrum throughput,
-                    const SampledWavelengths& lambda, std::size_t k, float density) {
-        const ReferencePoint previous =
-            k > 1 ? memory_.camera[k - 2].reference(memory_.camera[k - 2].wo) : ReferencePoint{camera_.ray.o};
-        const SampledSpectrum le = incident_radiance({scene_, light, time_}, previous, hit, lambda);
-        if (is_black(le)) return;
-        const std::size_t t = k + 1;
-        LightEnd end = end_at(scene_, time_, light, hit, -hit.wi);
-        PathDensities& d = memory_.densities;
-        fill(0, t);
-        if (k > 1) {
-            const SubpathVertex& v = memory_.camera[k - 2];
-            const float distance2 = length_squared(hit.p - v.s.p);
-            d.from_light[0] = double(end.emission);
-            d.from_light[1] = double(end.edge_density(v.s.ng, -hit.wi, distance2));
-            d.from_camera[0] = double(density);
-            d.next_event = double(next_event_density(scene_, time_, end, previous, -hit.wi, distance2));
-        }
-        add(end, 0, t, throughput * le, lambda);
+    // The light's ray starts in a medium. Light at infinity has passed that around the scene: an unbounded one lets
+    // nothing through, bounded ones lie beyond the ray's origin. False if nothing arrives.
+    bool enter_medium(SubpathEnd& end) {
+        end.medium = medium_at_light(scene_, tracer_, end.ray, end_.at_infinity(), camera_.ray);
+        if (!end_.at_infinity() || end.medium == no_index) return true;
+        Ray back{end.ray.o, -end.ray.d};
+        back.time = time_;
+        const auto through = shadow_transmittance(scene_, tracer_, back, end.medium, end.lambda, stream_);
+        if (!through || !(through->t[0] > 0)) return false;
+        end.throughput *= through->t;
+        end.density *= through->r_u;
+        end.edge = {through->r_u, through->r_l};
+        return true;
     }
 
-    // s = 1: next-event estimation at vertex k of the camera's path.
-    void sample_light(std::size_t k) {
-        if (scene_.light_sampler->empty()) return;
-        const SubpathVertex& v = memory_.camera[k - 1];
-        const ReferencePoint here = v.reference(v.wo);
-        const ChosenLight chosen = choose_light(scene_, here, time_, v.lambda, stream_);
-        if (!chosen.sample) return;
-        const LightSample& light = *chosen.sample;
-        const Vec3f wi = v.surface.frame.to_local(light.wi);
-        const BsdfEvaluation e = evaluate(v.surface, v.wo, wi, TransportMode::radiance, stream_);
-        const float light_pdf = chosen.choice * light.pdf;
-        const SampledSpectrum value = v.throughput * e.f * light.radiance / light_pdf;
-        if (is_black(value) || is_occluded(light.shadow)) return;
-        LightEnd end = end_at(scene_, time_, chosen.light,
-                              {.wi = light.wi, .part = chosen.part, .p = light.p, .n = light.n, .b = light.b},
-                              -light.wi);
-        end.invisible = light.invisible;
-        const Point3f at = end.kind == LightKind::position ? light.shadow.o + light.shadow.d : light.p;
-        const float distance2 = end.at_infinity() ? 1 : length_squared(at - v.s.p);
-        PathDensities& d = memory_.densities;
-        fill(1, k + 1);
-        d.from_light[0] = double(end.emission);
-        d.from_light[1] = double(end.edge_density(v.s.ng, -light.wi, distance2));
-        d.from_camera[0] = end.invisible ? 0 : double(end.of_light(e.pdf, -light.wi, distance2));
-        d.next_event = double(end.of_light(light_pdf, -light.wi, distance2));
-        d.delta[1] = 0;
-        if (k > 1) {
-            const float back = evaluate(v.surface, wi, v.wo, TransportMode::importance, stream_).pdf;
-            d.from_light[2] = double(density_of_previous(memory_.camera, k, TransportMode::radiance, back));
-        }
-        add(end, 1, k + 1, value, v.lambda);
-    }
-
-    // t = 1: vertex j of the light's path seen from the lens.
-    void join_lens(std::size_t j) {
-        const SubpathVertex& y = memory_.light[j - 1];
-        if (!y.connectible) return;
-        const Camera& camera = *integrator_.camera_;
-        const Vec2f lens = camera.has_lens() ? stream_.next_2d() : Vec2f{0.5f, 0.5f};
-        const std::optional<CameraConnection> seen = camera.sample_wi(y.s.p, lens, time_);
-        if (!seen || !integrator_.on_film(seen->film)) return;
-        const Vec3f wi = y.surface.frame.to_local(seen->wi);
-        const BsdfEvaluation e = evaluate(y.surface, y.wo, wi, TransportMode::importance, stream_);
-        const SampledSpectrum value =
-            y.throughput * e.f * (adjoint_correction(y.s, y.surface.frame, y.wo, wi) * seen->density);
-        if (is_black(value)) return;
-        const Point3f o = offset_origin(y.s.p, y.s.ng, y.s.error, seen->wi);
-        if (is_occluded({o, seen->lens - o, 1})) return;
-        lens_ = seen->lens;
-        const std::size_t s = j + 1;
-        fill(s, 1);
-        PathDensities& d = memory_.densities;
-        d.from_camera[j] = double(seen->density * std::abs(dot(y.s.ng, seen->wi)));
-        d.delta[j] = 0;
-        const float back = evaluate(y.surface, wi, y.wo, TransportMode::radiance, stream_).pdf;
-        set_before_light_vertex(j, back);
-        add(end_, s, 1, value, y.lambda, &seen->film);
-    }
-
-    // Vertex j of the light's path with vertex k of the camera's.
-    void join(std::size_t j, std::size_t k) {
-        const SubpathVertex &y = memory_.light[j - 1], &z = memory_.camera[k - 1];
-        if (!y.connectible || !z.connectible) return;
-        const Vec3f across = y.s.p - z.s.p;
-        const float distance2 = length_squared(across);
-        if (!(distance2 > 0)) return;
-        const Vec3f w = across / std::sqrt(distance2); // from z to y
-        const Vec3f wz = z.surface.frame.to_local(w), wy = y.surface.frame.to_local(-w);
-        const BsdfEvaluation at_z = evaluate(z.surface, z.wo, wz, TransportMode::radiance, stream_);
-        if (is_black(at_z.f)) return;
-        const BsdfEvaluation at_y = evaluate(y.surface, y.wo, wy, TransportMode::importance, stream_);
-        const SampledSpectrum value = z.throughput * at_z.f * at_y.f * y.throughput *
-                                      (adjoint_correction(y.s, y.surface.frame, y.wo, wy) / distance2);
-        if (is_black(value)) return;
-        const ReferencePoint from{z.s.p, z.s.ng, z.s.error, Vec3f{}};
-        if (is_occluded(shadow_ray(from, w, y.s.p, y.s.ng, y.s.error))) return;
-        const std::size_t s = j + 1, t = k + 1;
-        fill(s, t);
-        PathDensities& d = memory_.densities;
-        d.from_light[s] = double(z.per_area(at_y.pdf, w, distance2));
-        d.from_camera[j] = double(y.per_area(at_z.pdf, w, distance2));
-        d.delta[j] = d.delta[s] = 0;
-        const float back_y = evaluate(y.surface, wy, y.wo, TransportMode::radiance, stream_).pdf;
-        set_before_light_vertex(j, back_y);
-        if (k > 1) {
-            const float back_z = evaluate(z.surface, wz, z.wo, TransportMode::importance, stream_).pdf;
-            d.from_light[s + 1] =
-                double(density_of_previous(memory_.camera, k, TransportMode::radiance, back_z));
-        }
-        SampledWavelengths lambda = y.lambda;
-        if (z.lambda.secondary_terminated()) lambda.terminate_secondary();
-        add(end_, s, t, value, lambda);
-    }
-
-    void set_before_light_vertex(std::size_t j, float pdf) {
-        const float density = density_of_previous(memory_.light, j, TransportMode::importance, pdf);
-        memory_.densities.from_camera[j - 1] = j == 1 && end_.invisible ? 0 : double(density);
-    }
-
-    // What the two subpaths know of the densities of a path: all but what depends on its joint.
-    void fill(std::size_t s, std::size_t t) {
-        const std::size_t n = s + t;
-        PathDensities& d = memory_.densities;
-        d.reset(n);
-        if (s >= 2) {
-            d.from_light[0] = double(end_.emission);
-            d.next_event = double(end_next_event_);
-        }
-        for (std::size_t j = 1; j < s; ++j) {
-            const SubpathVertex& y = memory_.light[j - 1];
-            d.from_light[j] = double(y.forward);
-            d.delta[j] = y.delta ? 1 : 0;
-            if (j > 1 || !end_.invisible) d.from_camera[j - 1] = double(y.backward);
-        }
-        for (std::size_t k = 1; k + std::max<std::size_t>(s, 1) < n; ++k) {
-            const SubpathVertex& z = memory_.camera[k - 1];
-            const std::size_t i = n - 1 - k;
-            d.from_camera[i] = double(z.forward);
-            d.delta[i] = z.delta ? 1 : 0;
-            if (k > 1) d.from_light[i + 1] = double(z.backward);
-        }
-        d.light_paths = integrator_.light_paths_;
-    }
-
-    bool is_occluded(Ray ray) {
-        ray.time = time_;
-        return tracer_.occluded(ray);
-    }
-
-    // The path's contribution; a splat where `film` is not null.
-    void add(const LightEnd& end, std::size_t s, std::size_t t, SampledSpectrum value,
-             const SampledWavelengths& lambda, const Point2f* film = nullptr) {
-        const double weight =
-            all_strategies_ ? strategy_weight(memory_.densities, s, settings_.heuristic, memory_.scratch) : 1;
-        if (lambda.secondary_terminated()) value = SampledSpectrum(4 * value[0], 0, 0, 0);
-        if (observer_ != nullptr) [[unlikely]] {
-            const std::size_t light = s > 0 ? s - 1 : 0, camera = s > 0 ? t - 1 : t - 2;
-            observer_->found(observer_->self,
-                             {s, t, end, std::span(memory_.light).first(light),
-                              std::span(memory_.camera).first(camera),
-                              film != nullptr ? lens_ : camera_.ray.o, memory_.densities, weight, value});
-        }
-        const SampledSpectrum weighted = value * static_cast<float>(weight);
-        if (film != nullptr)
-            splats_.push_back({*film, weighted});
-        else
-            radiance_ += weighted;
-    }
-
-    const BidirectionalIntegrator& integrator_;
-    const IntegratorSettings& settings_;
-    const SceneView& scene_;
-    RayTracer& tracer_;
-    const CameraSample& camera_;
-    Stream& stream_;
-    BidirectionalMemory& memory_;
-    const PathObserver* observer_;
-    SplatList& splats_;
-    float time_;
-    bool all_strategies_;
-    LightEnd end_;             // of the light's path
-    float end_next_event_ = 0; // PathDensities::next_event of it
-    Point3f lens_;             // of the last splat
-    SampledSpectrum radiance_{};
     FirstHit first_;
     float transparency_ = 0;
 };

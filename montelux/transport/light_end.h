@@ -19,9 +19,9 @@ struct LightEnd {
 
     bool at_infinity() const { return kind == LightKind::infinite || kind == LightKind::direction; }
     bool is_delta() const { return kind == LightKind::position || kind == LightKind::direction; }
-    // from_light[1] at a point with normal n, to which light comes along w (unit) over that squared distance.
-    float edge_density(Normal3f n, Vec3f w, float distance2) const {
-        const float density = edge * std::abs(dot(n, w));
+    // from_light[1] at a point over that squared distance; `cosine`: between the light and the point's surface, 1 in media.
+    float edge_density(float cosine, float distance2) const {
+        const float density = edge * cosine;
         return at_infinity() ? density : density / distance2;
     }
     // A density per solid angle of the direction to the light (-w) as one per area of the light.

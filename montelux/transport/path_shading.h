@@ -98,12 +98,9 @@ struct PathIntegrator::Vertex {
         return s;
     }
 
-    // Russian roulette on what the path is expected to bring, beside what its pixel expects (Vorba and Krivanek 2016,
-    // "Adjoint-Driven Russian Roulette and Splitting in Light Transport Simulation"). Returns false if the path ends.
+    // Russian roulette on what the path is expected to bring. Returns false if the path ends.
     bool is_worth_going_on() const {
-        if (state.depth <= 2 || !(state.expected > 0)) return true;
-        const float brings = average(state.throughput) * region->radiance;
-        const float survival = std::max(brings / state.expected, least_survival);
+        const float survival = guided_survival(*region, state.throughput, state.depth, state.expected);
         if (!(survival < 1)) return true;
         const float u = stream.next_1d();
         if (recorder) recorder.played_roulette({.survival = survival, .u = u});
@@ -116,7 +113,6 @@ struct PathIntegrator::Vertex {
             state.trace->survive(survival);
         return true;
     }
-    static constexpr float least_survival = 0.3f;
 
     // Russian roulette on the throughput to the film. Returns false if the path ends.
     bool survives() const {

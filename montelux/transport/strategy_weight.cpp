@@ -32,6 +32,8 @@ double strategy_weight(const PathDensities& path, std::size_t s, Heuristic heuri
     }
     scratch[n - 1] *= path.light_paths;
 
+    if (!path.media.empty())
+        for (std::size_t k = 0; k < n; ++k) scratch[k] *= path.media[k];
     for (std::size_t k = 0; k < n; ++k) {
         const bool joins_deltas =
             (k >= 2 && path.delta[k - 1] != 0) || (k >= 1 && k < n - 1 && path.delta[k] != 0);

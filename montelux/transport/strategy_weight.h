@@ -16,7 +16,7 @@ namespace montelux {
 //   s >= 2     emission from v_0, joined to the camera's path between v_{s-1} and v_s
 //   s = n - 1  ... joined to the lens; `light_paths` light paths for each that starts at a square pixel
 //
-// All are per area at the vertices, or per solid angle for v_0 at infinity; a density of a Dirac delta counts as 1,
+// All are per area at vertices on surfaces, per volume at those in media, or per solid angle for v_0 at infinity; a density of a Dirac delta counts as 1,
 // times the change from solid angle to area. So they are functions of the path alone, whatever strategy found it, and
 // the weights of all strategies sum to 1.
 struct PathDensities {
@@ -27,12 +27,14 @@ struct PathDensities {
     std::vector<char> delta;         // v_i scatters by a Dirac delta
     double next_event = 0;           // of v_0, for s = 1
     double light_paths = 1;
+    std::vector<double> media; // media_factors of each s (edge_density.h); empty without media
 
     // The elements of the vectors are those of v_0 to v_{n-2}; no memory is allocated up to the greatest n so far.
     void reset(std::size_t n) {
         from_light.assign(n - 1, 0);
         from_camera.assign(n - 1, 0);
         delta.assign(n - 1, 0);
+        media.clear();
         next_event = 0;
     }
     std::size_t vertices() const { return from_light.size() + 1; }

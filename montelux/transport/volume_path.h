@@ -6,6 +6,7 @@
 #include "montelux/mc/warp/sphere.h"
 #include "montelux/scene/material/make_bsdf.h"
 #include "montelux/scene/material/soft_terminator.h"
+#include "montelux/transport/guiding/guided_scattering.h"
 #include "montelux/transport/texture_footprint.h"
 #include "montelux/transport/uniform_scattering.h"
 #include "montelux/transport/volume_path_integrator.h"
@@ -23,12 +24,15 @@ class VolumePath : private VolumePathLights<Stream> {
   public:
     VolumePath(const VolumePathIntegrator& integrator, const SceneView& scene, RayTracer& tracer,
                const CameraSample& camera, Stream& stream, PathRecord* record)
-        : VolumePathLights<Stream>(integrator.settings_, scene, tracer, camera, stream, record),
+        : VolumePathLights<Stream>(integrator.settings_, integrator.guide_, scene, tracer, camera, stream,
+                                   record),
           integrator_(integrator) {}
 
     FilmContribution trace() {
         const SampledWavelengths lambda = state_.lambda;
         while (state_.alive) {
+            if (state_.trace != nullptr) [[unlikely]]
+                state_.trace->arrive(state_.radiance);
             Hit hit;
             const bool found = tracer_.intersect(state_.ray, hit);
             if (state_.medium != no_index &&
@@ -47,6 +51,8 @@ class VolumePath : private VolumePathLights<Stream> {
     using Lights = VolumePathLights<Stream>;
     using Lights::add_met_light;
     using Lights::body_at;
+    using Lights::guide_;
+    using Lights::guide_at;
     using Lights::recorder_;
     using Lights::sample_light;
     using Lights::sample_segment;
@@ -168,13 +174,22 @@ class VolumePath : private VolumePathLights<Stream> {
         }
         const Vec3f wo = -state_.ray.d;
         state_.previous = {p, {}, 0, Vec3f{}};
+        const GuidingRegion* const region = in_body ? nullptr : guide_at(p, Facing::medium);
+        if (!in_body && !begin_guided(p, Facing::medium, region)) return;
         std::visit(
             [&](const PhaseModel auto& f) {
                 if (!in_body)
-                    sample_light(state_.medium, [&](Vec3f wi) {
+                    sample_light(state_.medium, region, [&](Vec3f wi) {
                         const float pdf = f.pdf(wo, wi);
                         return BsdfEvaluation{SampledSpectrum(pdf), pdf};
                     });
+                if (region != nullptr) {
+                    const GuidedDirection d = sample_guided(f, wo, *region, stream_, state_.trace);
+                    state_.bsdf_pdf = d.pdf;
+                    state_.throughput *= d.weight;
+                    continue_in_medium(p, d.wi);
+                    return;
+                }
                 const Vec2f u = stream_.next_2d();
                 Vec3f wi;
                 if (settings_.strategy == Strategy::uniform) {
@@ -186,15 +201,38 @@ class VolumePath : private VolumePathLights<Stream> {
                     wi = normalize(s.wi);
                     state_.bsdf_pdf = s.pdf;
                 }
-                state_.ray.o = p;
-                state_.ray.d = wi;
-                state_.ray.t_max = std::numeric_limits<float>::infinity();
-                if (recorder_) recorder_.scattered_in_medium(wi, state_.bsdf_pdf, state_.carried());
+                if (state_.trace != nullptr && !in_body) [[unlikely]]
+                    state_.trace->scatter(wi, state_.bsdf_pdf, state_.bsdf_pdf, 0);
+                continue_in_medium(p, wi);
             },
             phase);
         state_.sees_lights = in_body;
         state_.scattered_roughly = true;
-        state_.alive = survives();
+        state_.alive = survives(region != nullptr);
+    }
+
+    void continue_in_medium(Point3f p, Vec3f wi) {
+        state_.ray.o = p;
+        state_.ray.d = wi;
+        state_.ray.t_max = std::numeric_limits<float>::infinity();
+        if (recorder_) recorder_.scattered_in_medium(wi, state_.bsdf_pdf, state_.carried());
+    }
+
+    // A vertex that a guide learns from. Returns false if Russian roulette ends the path by what its region (null: none)
+    // expects.
+    bool begin_guided(Point3f p, Facing facing, const GuidingRegion* region) {
+        if (state_.trace != nullptr) [[unlikely]]
+            state_.trace->begin(p, facing, state_.carried(), state_.radiance);
+        if (region == nullptr) return true;
+        const float survival = guided_survival(*region, state_.carried(), state_.depth, state_.expected);
+        if (!(survival < 1)) return true;
+        const float u = stream_.next_1d();
+        if (recorder_) recorder_.played_roulette({.survival = survival, .u = u});
+        if (!(u < survival)) return end(PathEnd::roulette);
+        state_.throughput /= survival;
+        if (state_.trace != nullptr) [[unlikely]]
+            state_.trace->survive(survival);
+        return true;
     }
 
     // What surrounds the ray is the inside of a translucent body.
@@ -250,11 +288,17 @@ class VolumePath : private VolumePathLights<Stream> {
             return;
         }
         state_.previous = reference_point(s, surface, wo);
+        state_.scatter(); // before lights are sampled: no SegmentLight finds this vertex
+        const Facing facing = facing_of(dot(s.ng, w) < 0 ? s.ng : -s.ng);
+        const bool guides = (guide_ != nullptr || state_.trace != nullptr) && !in_body && !last &&
+                            !std::visit([](const auto& b) { return b.is_specular(); }, surface.bsdf);
+        const GuidingRegion* const region = guides ? guide_at(s.p, facing) : nullptr;
+        if (guides && !begin_guided(s.p, facing, region)) return;
         const std::optional<BsdfSample> scattered = std::visit(
             [&](const BsdfModel auto& bsdf) {
                 if (!bsdf.is_specular() && !last)
                     sample_light(
-                        state_.medium,
+                        state_.medium, region,
                         [&](Vec3f wi) {
                             return bsdf.evaluate(wo, surface.frame.to_local(wi), TransportMode::radiance,
                                                  stream_);
@@ -262,7 +306,12 @@ class VolumePath : private VolumePathLights<Stream> {
                         &s, &context);
                 if (settings_.strategy == Strategy::uniform && !bsdf.is_specular())
                     return sample_uniform(bsdf, wo, stream_);
-                return bsdf.sample(wo, TransportMode::radiance, stream_);
+                if (region != nullptr)
+                    return sample_guided(bsdf, surface.frame, wo, *region, stream_, state_.trace);
+                const auto sample = bsdf.sample(wo, TransportMode::radiance, stream_);
+                if (guides && state_.trace != nullptr && sample && !sample->specular) [[unlikely]]
+                    state_.trace->scatter(surface.frame.to_world(sample->wi), sample->pdf, sample->pdf, 0);
+                return sample;
             },
             surface.bsdf);
         if (!scattered) {
@@ -282,7 +331,6 @@ class VolumePath : private VolumePathLights<Stream> {
             passages_ = 0;
         }
         state_.throughput *= scattered->weight;
-        state_.scatter();
         state_.bsdf_pdf = scattered->pdf;
         state_.sees_lights = scattered->specular;
         if (!scattered->specular) state_.scattered_roughly = true;
@@ -290,7 +338,7 @@ class VolumePath : private VolumePathLights<Stream> {
         if (recorder_) recorder_.scattered({*scattered, wi});
         leave(s, wi);
         if (scattered->transmission) state_.body = body_at(state_.medium, context);
-        state_.alive = survives();
+        state_.alive = survives(region != nullptr);
     }
 
     // The ray continues from a surface in direction w.
@@ -310,15 +358,16 @@ class VolumePath : private VolumePathLights<Stream> {
         end(PathEnd::left_scene);
     }
 
-    // Russian roulette on what the path carries to the film. Returns false if the path ends.
-    bool survives() {
+    // Russian roulette on what the path carries to the film, unless a guide has played its own. Returns false if the
+    // path ends.
+    bool survives(bool guided) {
         const float strength = max_value(state_.carried()) * state_.eta_scale;
         if (!(strength > 0)) {
             // A NaN must not end silently: it makes the sample bad.
             state_.radiance += state_.carried();
             return end(is_black(state_.throughput) ? PathEnd::nothing_carried : PathEnd::bad_throughput);
         }
-        if (!(strength < 1) || state_.depth <= 1) return true;
+        if (!(strength < 1) || state_.depth <= 1 || guided) return true;
         const float u = stream_.next_1d();
         if (recorder_) recorder_.played_roulette({.survival = strength, .u = u});
         if (!(u < strength)) return end(PathEnd::roulette);

@@ -11,6 +11,8 @@
 
 namespace montelux {
 
+class GuidingField;
+
 // Estimates the radiative transfer equation with the surfaces of PathIntegrator. Collisions are sampled by null
 // scattering (Woodcock et al. 1965) at the extinction of the first wavelength; all four share the path, weighted
 // by its densities at each of them (Miller, Georgiev, Jarosz 2019, "A Null-Scattering Path Integral Formulation
@@ -26,6 +28,9 @@ class VolumePathIntegrator {
     // As PathIntegrator.
     VolumePathIntegrator(const IntegratorSettings& settings, const Camera& camera, float footprint_scale = 1)
         : settings_(settings), camera_(&camera), footprint_scale_(footprint_scale) {}
+
+    // As PathIntegrator; directions are drawn from phase functions and the guide together, too.
+    void set_guide(const GuidingField* guide) { guide_ = guide; }
 
     template <RandomStream Stream>
     FilmContribution estimate(const SceneView& scene, RayTracer& tracer, const CameraSample& camera,
@@ -45,6 +50,7 @@ class VolumePathIntegrator {
     IntegratorSettings settings_;
     const Camera* camera_;
     float footprint_scale_;
+    const GuidingField* guide_ = nullptr;
 };
 
 } // namespace montelux

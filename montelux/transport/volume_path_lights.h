@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "montelux/scene/material/make_bsdf.h"
+#include "montelux/transport/guiding/guiding_trace.h"
 #include "montelux/transport/light_choice.h"
 #include "montelux/transport/path_recorder.h"
 #include "montelux/transport/path_weights.h"
@@ -18,10 +19,19 @@ namespace montelux {
 template <RandomStream Stream>
 class VolumePathLights {
   protected:
-    VolumePathLights(const IntegratorSettings& settings, const SceneView& scene, RayTracer& tracer,
-                     const CameraSample& camera, Stream& stream, PathRecord* record)
-        : settings_(settings), scene_(scene), tracer_(tracer), stream_(stream), recorder_(record),
-          state_(camera, scene.camera_medium) {}
+    VolumePathLights(const IntegratorSettings& settings, const GuidingField* guide, const SceneView& scene,
+                     RayTracer& tracer, const CameraSample& camera, Stream& stream, PathRecord* record)
+        : settings_(settings), guide_(guide), scene_(scene), tracer_(tracer), stream_(stream),
+          recorder_(record), state_(camera, scene.camera_medium) {}
+
+    // Null where directions are not drawn from the guide.
+    const GuidingRegion* guide_at(Point3f p, Facing facing) const {
+        return guide_ != nullptr ? guide_->find(p, facing) : nullptr;
+    }
+    // The density of a direction where scattering alone has the density `pdf`.
+    static float mixed_pdf(const GuidingRegion* region, Vec3f wi, float pdf) {
+        return region != nullptr ? region->mixed_pdf(region->pdf(wi), pdf) : pdf;
+    }
 
     // A light that the state's ray hit.
     void add_met_light(Index light, const LightHit& hit) {
@@ -49,6 +59,8 @@ class VolumePathLights {
                                    .light_pdf = pdf,
                                    .weight = weight,
                                    .counted = counted});
+        if (state_.trace != nullptr && shared) [[unlikely]]
+            state_.trace->left_to_light_samples(state_.carried() * le * (1 - weight));
         if (counted) state_.add(state_.carried() * le * weight, light);
     }
 
@@ -115,7 +127,8 @@ class VolumePathLights {
         const SampledSpectrum flight = state_.r_u * m.sigma_s * to_here.r_u;
         record.other_pdf = scene_.light_sampler->probability(here, chosen.light, chosen.part) * light->pdf *
                            average(flight * through->r_l) / before;
-        record.bsdf_pdf = alone ? 0 : phase * average(flight * through->r_u) / before;
+        const float scatter_pdf = mixed_pdf(guide_at(here.p, Facing::medium), light->wi, phase);
+        record.bsdf_pdf = alone ? 0 : scatter_pdf * average(flight * through->r_u) / before;
         record.weight = path_weight(settings_, record.light_pdf,
                                     joint_density(settings_, record.bsdf_pdf, record.other_pdf));
         if (settings_.strategy == Strategy::mis_bsdf) return finish(Outcome::other_term);
@@ -132,11 +145,12 @@ class VolumePathLights {
         return choice > 0 ? choice * pdf * average(state_.r_s * through) / average(state_.r_u) : 0;
     }
 
-    // Next-event estimation: one light, one point on it. evaluate(wi) gives value and density of scattering.
+    // Next-event estimation: one light, one point on it. evaluate(wi) gives value and density of scattering, which
+    // has that of `region` besides.
     // `surface` and `context`: of what scatters, if it is no medium.
     template <typename Evaluate>
-    void sample_light(Index medium, const Evaluate& evaluate, const SurfacePoint* surface = nullptr,
-                      const TextureContext* context = nullptr) {
+    void sample_light(Index medium, const GuidingRegion* region, const Evaluate& evaluate,
+                      const SurfacePoint* surface = nullptr, const TextureContext* context = nullptr) {
         using Outcome = DirectLight::Outcome;
         if (scene_.light_sampler->empty()) return;
         const ChosenLight chosen =
@@ -155,9 +169,11 @@ class VolumePathLights {
         record.shadow = light->shadow;
         record.radiance = light->radiance;
         record.f = e.f;
-        record.bsdf_pdf = e.pdf;
+        record.bsdf_pdf = mixed_pdf(region, light->wi, e.pdf);
         record.light_pdf = chosen.choice * light->pdf;
         if (is_black(e.f) || is_black(light->radiance)) return finish(Outcome::no_transport);
+        if (state_.trace != nullptr) [[unlikely]]
+            state_.trace->aim();
         if (surface != nullptr) medium = medium_beyond(*surface, light->wi, medium);
         Ray shadow = light->shadow;
         shadow.time = state_.ray.time;
@@ -190,6 +206,7 @@ class VolumePathLights {
     }
 
     const IntegratorSettings& settings_;
+    const GuidingField* guide_;
     const SceneView& scene_;
     RayTracer& tracer_;
     Stream& stream_;

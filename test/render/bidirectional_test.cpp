@@ -197,9 +197,8 @@ TEST(BidirectionalPictures, RefusesWhatItCannotDo) {
         d.integrator.method = IntegratorKind::path;
         EXPECT_EQ(refusal_of(d), "") << word;
     };
-    expect_refused(
-        [](auto& d) { d.scene.media.push_back(HomogeneousMedium{.sigma_a = 0.1f, .sigma_s = 0.0f}); },
-        "media");
+    expect_refused([](auto& d) { d.scene.media.push_back(HomogeneousMedium{.is_body = true}); },
+                   "translucent bodies");
     expect_refused([](auto& d) { d.scene.camera.model = SphericalCamera{}; }, "spherical");
     expect_refused([](auto& d) { d.integrator.strategy = Strategy::light; }, "strategies");
     expect_refused([](auto& d) { d.integrator.regularize = true; }, "regularization");

@@ -39,6 +39,19 @@ SceneBuilder room_of_all(bool with_lens) {
     b.description.integrator.method = IntegratorKind::bidirectional;
     return b;
 }
+// The same in coloured fog, which no infinite light gets through.
+SceneBuilder foggy_room(bool with_lens) {
+    SceneBuilder b = room_of_all(with_lens);
+    const auto line = [&](float at_360, float at_830) {
+        return add_spectrum(
+            b.scene, Spectrum(PiecewiseLinear::from_pairs(std::array{360.0f, at_360, 830.0f, at_830})));
+    };
+    HomogeneousMedium fog{.sigma_a = line(0.3f, 0.02f), .sigma_s = line(0.3f, 1.2f)};
+    fog.phase = HenyeyGreenstein{0.4f};
+    b.scene.media.push_back(fog);
+    b.scene.camera.medium = 0;
+    return b;
+}
 
 // Recomputes what PathDensities holds from nothing but the vertices.
 class Recomputed {
@@ -58,8 +71,8 @@ class Recomputed {
         const float choice = scene.emitting_lights->probability({}, end.light, hit.part);
         const bool far = end.at_infinity();
         d.from_light[0] = choice * (end.is_delta() ? 1 : far ? le.direction : le.position);
-        d.from_light[1] = double(far ? le.position : le.direction) * std::abs(dot(v1.s.ng, to_light)) /
-                          (far ? 1 : distance2(0));
+        d.from_light[1] =
+            double(far ? le.position : le.direction) * v1.cosine(to_light) / (far ? 1 : distance2(0));
         d.from_camera[0] =
             end.invisible ? 0 : double(end.of_light(pdf(1, true), -to_light, float(distance2(0))));
         for (std::size_t i = 1; i + 2 < n_; ++i) {
@@ -69,18 +82,39 @@ class Recomputed {
         const Vec3f from_lens = vertex(n_ - 2).s.p - path.lens;
         const float distance = length(from_lens);
         d.from_camera[n_ - 2] = double(camera.density(from_lens / distance, distance, 0)) *
-                                std::abs(dot(vertex(n_ - 2).s.ng, from_lens / distance));
+                                vertex(n_ - 2).cosine(from_lens / distance);
         const ReferencePoint here = v1.reference(local(1, direction(1, 2)));
         const float li = scene.light_sampler->probability(here, end.light, hit.part);
         d.next_event =
             end.is_delta()
                 ? double(li)
                 : double(end.of_light(li * pdf_li(context, here, hit), -to_light, float(distance2(0))));
+        if (scene.camera_medium != no_index) compute_media_factors();
     }
 
     PathDensities d;
 
   private:
+    // Of the homogeneous medium around the camera: free flights along all edges but the joined one.
+    void compute_media_factors() {
+        SampledWavelengths lambda = vertex(1).lambda;
+        for (std::size_t i = 1; i + 1 < n_; ++i)
+            if (vertex(i).lambda.secondary_terminated()) lambda = vertex(i).lambda;
+        const MediumPoint m =
+            std::get<HomogeneousMedium>(scene_.media[0]).at(scene_, 0, lambda).coefficients({});
+        d.media.assign(n_, 0);
+        for (std::size_t s = 0; s < n_; ++s)
+            for (int k = 0; k < (lambda.secondary_terminated() ? 1 : 4); ++k) {
+                double depth = 0, scattering = 1;
+                for (std::size_t i = 0; i + 1 < n_; ++i)
+                    if (s != i + 1)
+                        depth +=
+                            double(m.sigma_a[k] + m.sigma_s[k]) * double(length(point(i) - point(i + 1)));
+                for (std::size_t i = 1; i + 1 < n_; ++i)
+                    if (vertex(i).phase != nullptr) scattering *= double(m.sigma_s[k]);
+                d.media[s] += scattering * std::exp(-depth);
+            }
+    }
     const SubpathVertex& vertex(std::size_t i) const {
         return i < path_.s ? path_.light[i - 1] : path_.camera[n_ - 2 - i];
     }
@@ -104,12 +138,11 @@ class Recomputed {
         if (d.delta[i] != 0) return 1;
         const Vec3f light = local(i, direction(i, i - 1)), lens = local(i, direction(i, i + 1));
         SampleStream stream({.seed = 1}, 0, 0, 0);
-        return to_light ? evaluate(vertex(i).surface, lens, light, TransportMode::radiance, stream).pdf
-                        : evaluate(vertex(i).surface, light, lens, TransportMode::importance, stream).pdf;
+        return to_light ? vertex(i).evaluate(lens, light, TransportMode::radiance, stream).pdf
+                        : vertex(i).evaluate(light, lens, TransportMode::importance, stream).pdf;
     }
     double per_area(std::size_t i, std::size_t from, float pdf) const {
-        return double(pdf) * std::abs(double(dot(vertex(i).s.ng, direction(from, i)))) /
-               distance2(std::min(i, from));
+        return double(pdf) * double(vertex(i).cosine(direction(from, i))) / distance2(std::min(i, from));
     }
 
     const SceneView& scene_;
@@ -121,7 +154,7 @@ struct Counts {
     const SceneView* scene;
     const Camera* camera;
     Heuristic heuristic;
-    int paths = 0, off_weights = 0, off_densities = 0, off_sums = 0;
+    int paths = 0, off_weights = 0, off_densities = 0, off_sums = 0, in_media = 0;
     std::array<int, 12> of_strategy{}; // min(s, 2), min(t, 2)
     std::vector<double> scratch{};
 
@@ -141,7 +174,13 @@ struct Counts {
         for (std::size_t i = 0; i + 1 < found.s + found.t; ++i)
             off = off || differ(again.d.from_light[i], found.densities.from_light[i]) ||
                   differ(again.d.from_camera[i], found.densities.from_camera[i]);
+        // They have any unit.
+        for (std::size_t s = 1; s < again.d.media.size(); ++s)
+            off = off || differ(again.d.media[s] / again.d.media[0],
+                                found.densities.media[s] / found.densities.media[0]);
         off_densities += off;
+        for (const std::span<const SubpathVertex>& side : {found.light, found.camera})
+            for (const SubpathVertex& v : side) in_media += v.phase != nullptr;
     }
 };
 
@@ -151,7 +190,8 @@ void expect_consistent(const SceneDescription& description, int samples, const s
     const Accelerator accelerator(tables.view());
     const Camera camera(description.scene.camera, film_width, film_width);
     const BidirectionalIntegrator integrator(description.integrator, camera, 0.125f,
-                                             {0, 0, film_width, film_width}, {0.5f, 0.5f});
+                                             {0, 0, film_width, film_width}, {0.5f, 0.5f},
+                                             tables.view().has_media());
     Counts counts{&tables.view(), &camera, description.integrator.heuristic};
     const PathObserver observer{
         [](void* self, const FoundPath& path) { static_cast<Counts*>(self)->count(path); }, &counts};
@@ -166,9 +206,12 @@ void expect_consistent(const SceneDescription& description, int samples, const s
     }
     EXPECT_GT(counts.paths, 3 * samples / 2) << what;
     // Every kind of strategy took part: s = 0, 1, more; t = 1, more.
+    const int least = samples / (tables.view().has_media() ? 100 : 20);
     for (const int kind : {0 + 2, 4 + 2, 8 + 1, 8 + 2})
-        EXPECT_GT(counts.of_strategy[static_cast<std::size_t>(kind)], samples / 20) << what << ' ' << kind;
+        EXPECT_GT(counts.of_strategy[static_cast<std::size_t>(kind)], least) << what << ' ' << kind;
     EXPECT_EQ(counts.off_sums, 0) << what;
+    EXPECT_EQ(counts.in_media > counts.paths / 4, tables.view().has_media())
+        << what << ' ' << counts.in_media;
     // Rounding: vertices that almost touch, and grazing angles.
     EXPECT_LT(counts.off_densities, counts.paths / 100) << what << " of " << counts.paths;
     EXPECT_LT(counts.off_weights, counts.paths / 500) << what << " of " << counts.paths;
@@ -181,6 +224,28 @@ TEST(Bidirectional, WeightsAreThoseOfThePathAndSumToOne) {
             b.description.integrator.heuristic = heuristic;
             expect_consistent(b.description, 14000, lens ? "lens" : "pinhole");
         }
+}
+
+TEST(Bidirectional, WeightsInMediaAreThoseOfThePathAndSumToOne) {
+    for (const Heuristic heuristic : {Heuristic::balance, Heuristic::power})
+        for (const bool lens : {false, true}) {
+            SceneBuilder b = foggy_room(lens);
+            b.description.integrator.heuristic = heuristic;
+            expect_consistent(b.description, 7000, lens ? "lens in fog" : "pinhole in fog");
+        }
+}
+
+// Three edges at two wavelengths of four: strategy s joins edge s - 1.
+TEST(Bidirectional, MediaFactorsInClosedForm) {
+    const std::vector<EdgeDensity> edges{
+        {{2, 3, 1, 1}, {5, 7, 1, 1}}, {{11, 13, 1, 1}, {17, 19, 1, 1}}, {{23, 29, 1, 1}, {31, 37, 1, 1}}};
+    std::vector<double> factors, scratch;
+    media_factors(edges, true, factors, scratch);
+    EXPECT_EQ(factors, (std::vector<double>{2 * 11 * 23, 5 * 11 * 23, 2 * 17 * 23, 2 * 11 * 31}));
+    media_factors(edges, false, factors, scratch);
+    EXPECT_EQ(factors, (std::vector<double>{
+                           (2 * 11 * 23 + 3 * 13 * 29 + 2) / 4.0, (5 * 11 * 23 + 7 * 13 * 29 + 2) / 4.0,
+                           (2 * 17 * 23 + 3 * 19 * 29 + 2) / 4.0, (2 * 11 * 31 + 3 * 13 * 37 + 2) / 4.0}));
 }
 
 // In closed form: a path of four vertices, without deltas and with them.

@@ -243,6 +243,22 @@ TEST(Equiangular, StrategiesAgree) {
                      hall_mean(grid, Strategy::mis, Heuristic::power, false, 2), "grid, without");
 }
 
+// Light sampled at a surface after a scattering event in the medium: no point of the ray to that event finds it.
+TEST(Equiangular, SurfacesLitAfterScatteringKeepTheirLight) {
+    VolumeScene b;
+    b.scene.camera.medium =
+        b.add_medium(HomogeneousMedium{.sigma_a = 0.05f, .sigma_s = 0.2f, .phase = HenyeyGreenstein{0.6f}});
+    b.add_mesh(square(Transform::scale({1.5, 1.5, 1})), b.add(DiffuseMaterial{gray(0.6f)}));
+    b.add_mesh(square(Transform::translate({0.3, -0.2, 1.6}) * Transform::rotate(180, {1, 0, 0}) *
+                      Transform::scale({0.3, 0.3, 1})),
+               b.add(DiffuseMaterial{gray(0)}), 8);
+    b.look({0.2, -4, 2.2}, {0, 0, 0.3}, 40);
+    b.description.integrator.max_depth = 2;
+    for (const Strategy strategy : {Strategy::mis, Strategy::light})
+        expect_same_mean(hall_mean(b, strategy, Heuristic::power, true, 1),
+                         hall_mean(b, strategy, Heuristic::power, false, 2, 120000), "surface");
+}
+
 // What the densities of the strategies say about one another: with the balance heuristic a sample of strategy S
 // contributes f / (p_S + p_T + ...), so E_S[c p_T] = E_T[c p_S]; divided by a sum of densities both stay bounded. Each
 // is the difference of a path's two sides, and 0 on average.

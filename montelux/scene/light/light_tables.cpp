@@ -1,11 +1,14 @@
 #include "montelux/scene/light/light_tables.h"
 
+#include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "montelux/mc/math/overloaded.h"
 #include "montelux/mc/math/vector_bytes.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/scene/light/emissive_shape.h"
+#include "montelux/scene/medium/medium.h"
 #include "montelux/scene/shape/alpha.h"
 
 namespace montelux {
@@ -67,11 +70,31 @@ Bounds3 bounds_of(const Scene& scene) {
     return bounds;
 }
 
+namespace {
+
+// What light from infinity may meet: the scene's shapes, and media that no shape encloses.
+Bounds3 bounds_with_media(const Scene& scene) {
+    Bounds3 bounds = bounds_of(scene);
+    for (std::size_t i = 0; i < scene.media.size(); ++i) {
+        const auto encloses = [&](const Shape& s) { return s.media.inside == static_cast<Index>(i); };
+        if (std::any_of(scene.shapes.begin(), scene.shapes.end(), encloses)) continue;
+        const std::optional<MediumBox> box = box_of(scene.media[i]);
+        if (!box) continue;
+        for (int corner = 0; corner < 8; ++corner)
+            bounds.add(box->world_from_medium.point(
+                Vec3d(box->at(Point3f(static_cast<float>(corner & 1), static_cast<float>(corner >> 1 & 1),
+                                      static_cast<float>(corner >> 2))))));
+    }
+    return bounds;
+}
+
+} // namespace
+
 LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings)
     : lookup_(settings.lookup), first_triangle_(scene.lights.size() + 1), spheres_(scene.lights.size()),
       disks_(scene.lights.size()), environment_of_light_(scene.lights.size(), no_index),
       map_spectra_(scene.environments.size()), instance_of_light_(scene.lights.size(), no_index),
-      emits_(scene.shapes.size()), bounds_(bounds_of(scene)) {
+      emits_(scene.shapes.size()), bounds_(bounds_with_media(scene)) {
     find_emitters(scene);
     for (Index i = 0; i < scene.lights.size(); ++i) {
         first_patch_.push_back(patch_areas_.size());

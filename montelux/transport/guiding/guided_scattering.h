@@ -1,11 +1,13 @@
-// Directions drawn from a BSDF and a guide together.
+// Directions drawn from a BSDF or a phase function and a guide together.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "montelux/mc/math/frame.h"
 #include "montelux/mc/random/stream.h"
 #include "montelux/scene/bsdf/bsdf_model.h"
+#include "montelux/scene/medium/phase_function.h"
 #include "montelux/transport/guiding/guiding_trace.h"
 
 namespace montelux {
@@ -43,6 +45,34 @@ std::optional<BsdfSample> sample_guided(const B& bsdf, const Frame& frame, Vec3f
     s->weight *= bsdf_pdf / s->pdf;
     if (trace != nullptr) trace->scatter(wi, s->pdf, bsdf_pdf, guide_pdf);
     return s;
+}
+
+// The same of a phase function, in world space; the value of a sample is `weight` times its density.
+struct GuidedDirection {
+    Vec3f wi;
+    float pdf = 0, weight = 1;
+};
+template <PhaseModel P, RandomStream Stream>
+GuidedDirection sample_guided(const P& phase, Vec3f wo, const GuidingRegion& region, Stream& stream,
+                              GuidingTrace* trace) {
+    const float u = stream.next_1d();
+    const Vec2f u_direction = stream.next_2d();
+    const bool from_guide = u < region.share;
+    const Vec3f wi = normalize(from_guide ? region.sample(u_direction).wi : phase.sample(wo, u_direction).wi);
+    const float phase_pdf = phase.pdf(wo, wi), guide_pdf = region.pdf(wi);
+    const float pdf = region.mixed_pdf(guide_pdf, phase_pdf);
+    if (trace != nullptr) trace->scatter(wi, pdf, phase_pdf, guide_pdf);
+    return {wi, pdf, phase_pdf / pdf};
+}
+
+// The probability of Russian roulette by what a path of so much throughput is expected to bring after `depth` events,
+// beside what its pixel expects (0: not known). Vorba and Krivanek 2016, "Adjoint-Driven Russian Roulette and Splitting
+// in Light Transport Simulation".
+inline float guided_survival(const GuidingRegion& region, SampledSpectrum throughput, int depth,
+                             float expected) {
+    constexpr float least = 0.3f;
+    if (depth <= 2 || !(expected > 0)) return 1;
+    return std::min(1.0f, std::max(average(throughput) * region.radiance / expected, least));
 }
 
 } // namespace montelux

@@ -169,5 +169,39 @@ TEST(GuidedScattering, FollowsItsDensityAndKeepsTheAlbedo) {
     EXPECT_GT(error, 0);
 }
 
+// Counted on the square that the guide's directions are learned on, where its density is constant by squares. The
+// weights are those of a phase function of the mean 1.
+TEST(GuidedScattering, DirectionsFromPhaseFunctionsFollowTheirDensity) {
+    const GuidingField field = floor_field();
+    const GuidingRegion& region = *field.find({0.6f, 0.1f, 0}, facing_of({0, 0, 1}));
+    const Vec3f wo = normalize(Vec3f{0.3f, -0.2f, 0.8f});
+    for (const float g : {0.0f, 0.7f}) {
+        const HenyeyGreenstein phase{g};
+        std::uint64_t i = 0;
+        double weights = 0, squares = 0;
+        int off = 0;
+        const TestResult r = rectangle_chi_squared_test(
+            [&](Vec2f) {
+                SampleStream numbers({.kind = SamplerKind::independent, .seed = 9}, 0, 0, i++);
+                const GuidedDirection d = sample_guided(phase, wo, region, numbers, nullptr);
+                const float pdf = region.mixed_pdf(region.pdf(d.wi), phase.pdf(wo, d.wi));
+                off += !(std::abs(d.pdf - pdf) <= 1e-3f * pdf) || !(std::abs(length(d.wi) - 1) < 1e-5f);
+                off += !(std::abs(d.weight * pdf - phase.pdf(wo, d.wi)) <= 1e-3f * pdf);
+                weights += double(d.weight);
+                squares += double(d.weight) * double(d.weight);
+                return equal_area_sphere_to_square(d.wi);
+            },
+            [&](Vec2d p) {
+                const Vec3f wi = equal_area_square_to_sphere(Vec2f(p));
+                return double(region.mixed_pdf(region.pdf(wi), phase.pdf(wo, wi))) * 4 * pi;
+            },
+            {0, 0}, {1, 1}, {.samples = 100000, .cells_x = 16, .cells_y = 16});
+        EXPECT_TRUE(r.passes(significance)) << g << ": " << r.description;
+        EXPECT_EQ(off, 0) << g;
+        const double n = double(i), mean = weights / n, error = std::sqrt((squares / n - mean * mean) / n);
+        EXPECT_LT(std::abs(mean - 1), 5 * error + 1e-5) << g;
+    }
+}
+
 } // namespace
 } // namespace montelux
