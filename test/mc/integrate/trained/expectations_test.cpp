@@ -63,7 +63,8 @@ double mahalanobis(const std::vector<double>& value, const std::vector<double>& 
             scaled[a * n + b] =
                 covariance[a * n + b] / std::sqrt(covariance[a * n + a] * covariance[b * n + b]);
     }
-    return Gaussian(mean, cholesky_factor(scaled, static_cast<int>(n))).squared_distance(x);
+    return Gaussian(mean, cholesky_factor(std::span<const double>(scaled), static_cast<int>(n)))
+        .squared_distance(x);
 }
 
 // Histograms with their full covariance: chi-squared against the exact bins over many seeds, in absolute
@@ -83,15 +84,15 @@ TEST(Expectations, HistogramsAreCalibratedWithTheirCovariance) {
         SamplingOptions options;
         options.seed = seed;
         options.threads = 1;
-        const Expectations e = expectations(density, CutBells::value, bins, 8192, options);
+        const Expectations found = expectations(density, CutBells::value, bins, 8192, options);
         p_absolute.push_back(
-            chi_squared_p_value(mahalanobis(e.integral, absolute, e.integral_covariance), 4));
+            chi_squared_p_value(mahalanobis(found.integral, absolute, found.integral_covariance), 4));
         p_normalised.push_back(
-            chi_squared_p_value(mahalanobis(e.mean(), normalised, e.mean_covariance()), 3));
+            chi_squared_p_value(mahalanobis(found.mean(), normalised, found.mean_covariance()), 3));
     }
-    const auto uniform = [](double p) { return std::clamp(p, 0.0, 1.0); };
+    const auto uniform_cdf = [](double p) { return std::clamp(p, 0.0, 1.0); };
     for (const auto* p : {&p_absolute, &p_normalised}) {
-        const TestResult result = kolmogorov_smirnov_test(*p, uniform);
+        const TestResult result = kolmogorov_smirnov_test(*p, uniform_cdf);
         EXPECT_TRUE(result.passes(significance)) << result.description;
     }
 }

@@ -12,7 +12,7 @@
 namespace montelux {
 namespace {
 
-constexpr double shell_radius = 2, shell_width = 0.1, box = 6;
+constexpr double shell_radius = 2, shell_width = 0.1, half_width = 6;
 
 // Likelihood of two shells around +-3.5 on the first axis, with the uniform prior of the box.
 double log_shells(std::span<const double> x) {
@@ -24,10 +24,10 @@ double log_shells(std::span<const double> x) {
     };
     const double a = shell(-3.5), b = shell(3.5), larger = std::max(a, b);
     return larger + std::log(std::exp(a - larger) + std::exp(b - larger)) -
-           static_cast<double>(x.size()) * std::log(2 * box);
+           static_cast<double>(x.size()) * std::log(2 * half_width);
 }
 Domain shell_box(int dimensions) {
-    return Domain(std::vector<Range>(static_cast<std::size_t>(dimensions), {-box, box}));
+    return Domain(std::vector<Range>(static_cast<std::size_t>(dimensions), {-half_width, half_width}));
 }
 // Both shells by one integral over the radius.
 double shell_evidence(int n) {
@@ -35,7 +35,7 @@ double shell_evidence(int n) {
     const auto f = [&](double r) { return std::pow(r, n - 1) * bell(r, shell_radius, shell_width); };
     const double radial =
         integrate(f, Domain::interval(1, 3), Cubature{}, {.relative_error = 1e-10}).value[0];
-    return std::log(2 * area * radial) - n * std::log(2 * box);
+    return std::log(2 * area * radial) - n * std::log(2 * half_width);
 }
 
 double log_eggbox(std::span<const double> x) {

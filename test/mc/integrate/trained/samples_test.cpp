@@ -25,14 +25,15 @@ std::vector<double> expected_in_cells(double total) {
             expected.push_back(CutBells::integral(-1 + 4. * a / columns, -1 + 4. * (a + 1) / columns,
                                                   2. * b / rows, 2. * (b + 1) / rows));
     double sum = 0;
-    for (double e : expected) sum += e;
-    for (double& e : expected) e *= total / sum;
+    for (double cell : expected) sum += cell;
+    for (double& cell : expected) cell *= total / sum;
     return expected;
 }
 
 TEST(Samples, UnweightedFollowTheTarget) {
-    const TrainedDensity uniform(std::make_shared<const UnitDensity>(MixtureDensity(2)), CutBells::domain());
-    for (const TrainedDensity& density : {cut_bells(), cut_bells(Vegas{}), uniform}) {
+    const TrainedDensity untrained(std::make_shared<const UnitDensity>(MixtureDensity(2)),
+                                   CutBells::domain());
+    for (const TrainedDensity& density : {cut_bells(), cut_bells(Vegas{}), untrained}) {
         UnweightingOptions options;
         options.overweight_share = 0;
         const UnweightedSamples s = unweighted_samples(density, CutBells::value, 50000, options);
@@ -79,9 +80,9 @@ TEST(Samples, OverweightSamplesKeepTheirWeights) {
 // A Gaussian around a corner, which draws most of its points outside: few samples show the bias of ending
 // with the last one that was asked for.
 TEST(Samples, IntegralOfFewSamplesIsUnbiased) {
-    MixtureDensity corner(2, {}, {Gaussian({0, 0}, {0.4, 0, 0, 0.4})});
-    corner.set_shares({16, 48});
-    const TrainedDensity density(std::make_shared<const UnitDensity>(corner), Domain::unit_cube(2));
+    MixtureDensity at_corner(2, {}, {Gaussian({0, 0}, {0.4, 0, 0, 0.4})});
+    at_corner.set_shares({16, 48});
+    const TrainedDensity density(std::make_shared<const UnitDensity>(at_corner), Domain::unit_cube(2));
     auto f = [](std::span<const double> x) { return 1.5 - x[0]; };
     for (bool unweighted : {false, true}) {
         RunningMoments values;
@@ -174,11 +175,11 @@ TEST(Samples, LogarithmsGiveTheSameSamples) {
 TEST(Samples, DoNotDependOnTheUnitOfTheTarget) {
     const TrainedDensity density = cut_bells();
     const Samples one = weighted_samples(density, CutBells::value, 1000);
-    for (double unit : {0x1p900, 0x1p-900}) {
-        auto f = [unit](std::span<const double> x) { return unit * CutBells::value(x); };
+    for (double scale : {0x1p900, 0x1p-900}) {
+        auto f = [scale](std::span<const double> x) { return scale * CutBells::value(x); };
         const Samples s = weighted_samples(density, f, 1000);
-        for (std::size_t i = 0; i < s.count(); ++i) EXPECT_EQ(s.weight[i] / unit, one.weight[i]);
-        EXPECT_EQ(s.integral.standard_error / unit, one.integral.standard_error);
+        for (std::size_t i = 0; i < s.count(); ++i) EXPECT_EQ(s.weight[i] / scale, one.weight[i]);
+        EXPECT_EQ(s.integral.standard_error / scale, one.integral.standard_error);
         EXPECT_EQ(unweighted_samples(density, f, 100).draws,
                   unweighted_samples(density, CutBells::value, 100).draws);
     }
