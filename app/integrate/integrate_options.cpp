@@ -300,8 +300,9 @@ IntegrationTask make_task(const IntegrateOptions& o) {
     read_densities(o.densities, variables, constants);
     check_densities(variables, integrand, o.log);
     Domain domain = make_domain(o, variables);
-    return {variables.names, std::move(integrand), std::move(domain), std::move(method),
-            budget,          std::move(options),   points_limit,      o.log};
+    return {variables.names,    constants,         std::move(integrand),
+            std::move(domain),  std::move(method), budget,
+            std::move(options), points_limit,      o.log};
 }
 
 } // namespace montelux::app

@@ -29,6 +29,7 @@ struct IntegrateOptions {
 // An integration that is ready to run. `options` lacks progress and cancel.
 struct IntegrationTask {
     std::vector<std::string> variables;
+    NamedConstants constants;
     NamedIntegrand integrand;
     Domain domain;
     Method method;

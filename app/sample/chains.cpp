@@ -102,10 +102,11 @@ int run_chains(const SampleOptions& o) {
     end_on_signals();
     if (o.formulas.size() != 1)
         throw UsageError("--log", "expected one formula, the logarithm of the density, for example -x^2/2");
-    const Variables variables = read_variables(o.over, true);
+    const NamedConstants constants = read_constants(o.let);
+    const Variables variables = read_variables(o.over, true, constants);
     std::string text = o.formulas[0];
     if (text.starts_with(" -")) text.erase(0, 1); // the blank of with_negative_formulas
-    const Formulas formula({text}, variables.names, "");
+    const Formulas formula({text}, variables.names, "", constants);
     MetropolisOptions options;
     options.chains =
         o.chains.empty() ? 4 : static_cast<int>(whole_number(o.chains, "--chains", 1, most_chains));

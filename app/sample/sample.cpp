@@ -90,6 +90,9 @@ void check_kind(const SampleOptions& o) {
         {"--randomisation", !o.randomisation.empty(), points, "leave it out with --from and --log"},
         {"--dim", !o.dimensions.empty(), points, "leave it out with --from and --log"},
         {"--density", !o.densities.empty(), points, "leave it out with --from and --log"},
+        {"--let", !o.let.empty(), o.log || !o.densities.empty(),
+         trained ? "leave it out with --from, whose file knows the constants"
+                 : "expected --density or --log with it"},
         {"--over", !o.over.empty(), !trained, "leave it out with --from, whose file knows the variables"},
         {"--unweighted", o.unweighted, trained, "expected --from FILE with it"},
         {"--histogram", !o.histogram.empty(), trained, "expected --from FILE with it"},
@@ -116,8 +119,9 @@ void write_points(const SampleOptions& o) {
                          "--from FILE, or FORMULA --log");
     Variables variables;
     if (by_density) {
-        variables = read_variables(o.over, true);
-        read_densities(o.densities, variables);
+        const NamedConstants constants = read_constants(o.let);
+        variables = read_variables(o.over, true, constants);
+        read_densities(o.densities, variables, constants);
         variables.densities.resize(variables.names.size());
         for (std::size_t d = 0; d < variables.names.size(); ++d) {
             const Range range = variables.ranges[d];
@@ -180,6 +184,9 @@ void add_sample(CLI::App& app, int& exit_code) {
          "Sample the density that is proportional to this formula, by inversion: FORMULA where there is "
          "one variable, else NAME=FORMULA for each; variables without one are uniform")
         ->type_name("FORMULA")
+        ->allow_extra_args(false);
+    c->add_option("--let", o->let, "A constant for formulas and ranges, for example s=0.1")
+        ->type_name("NAME=VALUE")
         ->allow_extra_args(false);
     c->add_option("--over", o->over, "A variable and its range, for example x=0:inf")
         ->type_name("NAME=LOWER:UPPER")

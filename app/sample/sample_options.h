@@ -9,7 +9,7 @@ namespace montelux::app {
 
 struct SampleOptions {
     std::string set, randomisation, n = "1024", dimensions, seed = "0", threads = "0", output, format;
-    std::vector<std::string> over, densities;
+    std::vector<std::string> let, over, densities;
     // Of a trained density.
     std::string from, histogram, pilot, overweight_share, max_draws;
     bool unweighted = false, covariance = false;

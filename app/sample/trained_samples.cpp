@@ -126,7 +126,7 @@ struct HistogramRequest {
     std::string observable;
     std::vector<double> edges;
 };
-HistogramRequest read_histogram(const std::string& text) {
+HistogramRequest read_histogram(const std::string& text, const NamedConstants& constants) {
     const std::string expected = "; expected OBSERVABLE=LOWER:UPPER:BINS, for example 'sqrt(s)=80:100:40'";
     const std::size_t equals = text.rfind('='),
                       first = text.find(':', equals == std::string::npos ? 0 : equals),
@@ -134,8 +134,8 @@ HistogramRequest read_histogram(const std::string& text) {
     if (equals == std::string::npos || equals == 0 || second == std::string::npos ||
         text.find(':', second + 1) != std::string::npos)
         throw UsageError("--histogram", "'" + text + "' was given" + expected);
-    const double lower = constant(text.substr(equals + 1, first - equals - 1), "--histogram");
-    const double upper = constant(text.substr(first + 1, second - first - 1), "--histogram");
+    const double lower = constant(text.substr(equals + 1, first - equals - 1), "--histogram", constants);
+    const double upper = constant(text.substr(first + 1, second - first - 1), "--histogram", constants);
     if (!(std::isfinite(lower) && std::isfinite(upper) && lower < upper))
         throw UsageError("--histogram",
                          "'" + text + "' has no finite lower end below an upper one" + expected);
@@ -150,8 +150,9 @@ HistogramRequest read_histogram(const std::string& text) {
 
 int draw_histogram(const SampleOptions& o, const Source& source) {
     const UnweightingOptions options = sampling_options(o, source);
-    const HistogramRequest request = read_histogram(o.histogram);
-    const Formulas observable({request.observable}, source.task.variables, "--histogram");
+    const HistogramRequest request = read_histogram(o.histogram, source.task.constants);
+    const Formulas observable({request.observable}, source.task.variables, "--histogram",
+                              source.task.constants);
     const Integrand bins = histogram_bins(
         Integrand::batch([observable](const PointBatch& x, ValueBatch y) { observable(x, y); }),
         request.edges);

@@ -65,6 +65,22 @@ grep -q "log Z = -4999\.08" err || fail "logarithm: $(cat err)"
 "$montelux" sample -x --log --over x=0:inf --n 20000 --chains 2 --quiet --thin 5 >out || fail "chains: exit code $?"
 awk -F, 'NR > 1 { s += $3; if ($3 < 0) exit 1 } END { exit NR != 40001 || s / 40000 < 0.95 || s / 40000 > 1.05 }' out ||
     fail "chains do not follow exp(-x)"
+# Constants, which the file of a density keeps, as it does the place of a source in C.
+"$montelux" sample --density 'exp(-k*x)' --let k=5 --over x=0:inf --n 3 >out
+"$montelux" sample --density 'exp(-5*x)' --over x=0:inf --n 3 | cmp -s - out || fail "--let with --density"
+"$montelux" sample --log --let k=5 -k*x --over x=0:inf --n 100 --quiet >out
+"$montelux" sample --log -5*x --over x=0:inf --n 100 --quiet | cmp -s - out || fail "--let with --log"
+expect 2 "expected --density or --log" sample --set sobol --let k=5
+expect 2 "leave it out with --from" sample --from trained.mx --let k=5
+printf 'double integrand(int n, const double *x, const double *p) { return p[0] * x[0] * x[n - 1]; }\n' >f.c
+if command -v cc >/dev/null; then
+    "$montelux" integrate --source f.c --let k=4 --over x=0:1 --over y=0:k/4 --method vegas --save-density c.mx --quiet >out
+    "$montelux" sample --from c.mx --histogram 'k*x=0:k:2' --n 20000 >out 2>err || fail "source in a density: $(cat err)"
+    awk -F, 'NR > 1 { v[NR] = $3 } END { exit v[2] < 0.24 || v[2] > 0.26 || v[3] < 0.74 || v[3] > 0.76 }' out ||
+        fail "histogram with constants: $(cat out)"
+    rm f.c
+    expect 1 "f.c: there is no such file" sample --from c.mx
+fi
 head -c 300 trained.mx >cut.mx
 expect 1 "cut.mx" sample --from cut.mx
 expect 1 "none.mx" sample --from none.mx
