@@ -1,10 +1,12 @@
 #include "app/integrate/compiled_function.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <spawn.h>
 #include <sstream>
@@ -112,6 +114,13 @@ void compile(const std::string& source, const fs::path& library) {
 
 } // namespace
 
+std::string CompiledFunction::file_of(const std::string& place) { return read_place(place).file; }
+
+std::string CompiledFunction::absolute(const std::string& place) {
+    const Place at = read_place(place);
+    return fs::absolute(at.file).lexically_normal().string() + ":" + at.function;
+}
+
 CompiledFunction CompiledFunction::from_library(const std::string& place, Form form) {
     const Place at = read_place(place);
     check_file(at.file);
@@ -162,6 +171,8 @@ void CompiledFunction::operator()(const PointBatch& x, ValueBatch y) const {
     const double *const p = point.data(), *const parameters = form_.parameters.data();
     for (std::size_t i = 0; i < x.count(); ++i) {
         x.gather(i, point.data());
+        // What a function forgets to write is not the value of another point.
+        std::ranges::fill(values, std::numeric_limits<double>::quiet_NaN());
         if (value_ != nullptr)
             y(i, 0) = value_(n, p);
         else if (value_with_parameters_ != nullptr)

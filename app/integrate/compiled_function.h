@@ -29,6 +29,11 @@ class CompiledFunction {
     // What the compiler prints goes to standard error.
     static CompiledFunction from_source(const std::string& place, Form form);
 
+    // The file's part of a place.
+    static std::string file_of(const std::string& place);
+    // The same place, of a file by its absolute path.
+    static std::string absolute(const std::string& place);
+
     int count() const { return form_.components > 0 ? form_.components : 1; }
     // The function's name; of several components with an index: f[0], f[1].
     std::vector<std::string> names() const;

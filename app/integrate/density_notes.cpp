@@ -1,5 +1,6 @@
 #include "app/integrate/density_notes.h"
 
+#include "app/integrate/compiled_function.h"
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -29,6 +30,8 @@ std::map<std::string, std::string> density_notes(const IntegrateOptions& options
             notes[name] += line + "\n";
         }
     for (const auto& [name, member] : single_texts) notes[name] = options.*member;
+    for (const char* name : {"library", "source"})
+        if (!notes[name].empty()) notes[name] = CompiledFunction::absolute(notes[name]);
     if (options.log) notes[log_note] = "yes";
     return notes;
 }

@@ -1,5 +1,6 @@
 // montelux integrate: from a formula to a value, or log Z, with its error.
 #include "app/commands.h"
+#include "app/integrate/compiled_function.h"
 #include "app/integrate/convergence_plot.h"
 #include "app/integrate/density_notes.h"
 #include "app/integrate/integrate_options.h"
@@ -32,13 +33,30 @@ void check_extension(const std::string& path, const std::string& option, const s
         throw UsageError(option, "'" + path + "' was given; expected a name that ends in " + extension);
 }
 
+bool may_train(const std::string& method) {
+    return method == "auto" || method == "adaptive" || method == "vegas" || method == "vegas_sobol";
+}
+
+std::string trains_none(const std::string& method) {
+    return "the method '" + method + "' trains no density; expected --method adaptive, vegas or vegas_sobol";
+}
+
+std::vector<std::string> inputs_of(const IntegrateOptions& o) {
+    std::vector<std::string> inputs;
+    for (const std::string& place : {o.library, o.source})
+        if (!place.empty()) inputs.push_back(CompiledFunction::file_of(place));
+    return inputs;
+}
+
 // Before the work begins, not after hours of it.
-void check_files(const IntegrateOptions& o) {
+void check_files(const IntegrateOptions& o, const IntegrationTask& task) {
     if (!o.plot.empty()) check_extension(o.plot, "--plot", ".svg");
     if (!o.points.empty()) check_extension(o.points, "--points", ".csv");
-    check_output_names({o.plot, o.points, o.checkpoint, o.save_density}, {});
+    check_output_names({o.plot, o.points, o.checkpoint, o.save_density}, inputs_of(o));
     for (const std::string& path : {o.plot, o.points, o.checkpoint, o.save_density})
         if (!path.empty()) check_output(path);
+    if (!o.save_density.empty() && !may_train(task.method.name()))
+        throw UsageError("--save-density", trains_none(task.method.name()));
     if (!o.checkpoint.empty() && !o.resume && generation_exists(o.checkpoint))
         throw UsageError(o.checkpoint,
                          "exists already; add --resume to continue from it, or remove it to start again");
@@ -69,10 +87,7 @@ int exit_code_of(const IntegrationTask& task, const IntegrationResult& r) {
 }
 
 void save_density(const IntegrateOptions& o, const IntegrationResult& result) {
-    if (!result.density)
-        throw Error("--save-density",
-                    "the method '" + result.method +
-                        "' trains no density; expected --method adaptive, vegas or vegas_sobol");
+    if (!result.density) throw Error("--save-density", trains_none(result.method));
     TrainedDensity density = *result.density;
     density.set_notes(density_notes(o));
     density.save(o.save_density);
@@ -87,7 +102,7 @@ int run(const IntegrateOptions& o) {
     SharedIntegration shared(task, !o.points.empty());
     if (shared.helped()) return exit_done;
 #endif
-    check_files(o);
+    check_files(o, task);
 
     PointRecorder recorder(task.points_limit);
     auto evaluate = [&, record = !o.points.empty()](const PointBatch& x, ValueBatch y) {

@@ -28,16 +28,17 @@ double log_density_at(const Formulas& formula, const std::vector<Range>& ranges,
     return y;
 }
 
-// A start for each chain: the best of its own uniform points of the domain, or what --start says.
+// A start for each chain: one of its own uniform points of the domain, drawn by the density, or what --start says.
 std::vector<std::vector<double>> starts_of(const SampleOptions& o, const Formulas& formula,
-                                           const Variables& variables, int chains, std::uint64_t seed) {
+                                           const Variables& variables, const NamedConstants& constants,
+                                           int chains, std::uint64_t seed) {
     const std::size_t n = variables.names.size();
     std::vector<std::vector<double>> starts;
     for (const std::string& text : o.starts) {
         std::vector<double> start;
         for (std::size_t begin = 0; begin <= text.size();) {
             const std::size_t end = std::min(text.find(',', begin), text.size());
-            start.push_back(constant(text.substr(begin, end - begin), "--start"));
+            start.push_back(constant(text.substr(begin, end - begin), "--start", constants));
             begin = end + 1;
         }
         if (start.size() != n)
@@ -120,7 +121,7 @@ int run_chains(const SampleOptions& o) {
     options.cancel = &cancel_on_signals();
     const auto threads = static_cast<int>(whole_number(o.threads, "--threads", 0, most_threads));
     if (!o.output.empty()) check_output(o.output);
-    const auto starts = starts_of(o, formula, variables, options.chains, options.seed);
+    const auto starts = starts_of(o, formula, variables, constants, options.chains, options.seed);
 
     std::vector<double> states(static_cast<std::uint64_t>(options.chains) * kept * n);
     const MetropolisResult result = with_threads(threads, [&] {

@@ -90,9 +90,8 @@ void check_kind(const SampleOptions& o) {
         {"--randomisation", !o.randomisation.empty(), points, "leave it out with --from and --log"},
         {"--dim", !o.dimensions.empty(), points, "leave it out with --from and --log"},
         {"--density", !o.densities.empty(), points, "leave it out with --from and --log"},
-        {"--let", !o.let.empty(), o.log || !o.densities.empty(),
-         trained ? "leave it out with --from, whose file knows the constants"
-                 : "expected --density or --log with it"},
+        {"--let", !o.let.empty(), o.log || (!trained && !o.over.empty()),
+         trained ? "leave it out with --from, whose file knows the constants" : "expected --over with it"},
         {"--over", !o.over.empty(), !trained, "leave it out with --from, whose file knows the variables"},
         {"--unweighted", o.unweighted, trained, "expected --from FILE with it"},
         {"--histogram", !o.histogram.empty(), trained, "expected --from FILE with it"},

@@ -2,6 +2,7 @@
 #include "app/commands.h"
 #include "app/integrate/density_notes.h"
 #include "app/interrupt.h"
+#include "app/output_files.h"
 #include "app/progress_line.h"
 #include "app/sample/sample_options.h"
 #include "app/usage_error.h"
@@ -98,6 +99,7 @@ int draw_samples(const SampleOptions& o, const Source& source) {
     if (options.cancel->requested()) return exit_interrupted; // a part of the samples would pass for all
     finish_on_signals();
     write_samples(o, source, s);
+    say_warnings(s.warnings);
     if (o.quiet) return s.count() == n ? exit_done : exit_stopped;
     const std::string integral = integral_text(s.integral, s.log_reference, source.task.logarithm);
     char text[200];
@@ -117,7 +119,6 @@ int draw_samples(const SampleOptions& o, const Source& source) {
                       s.effective_sample_size());
         say(text + integral);
     }
-    say_warnings(s.warnings);
     return s.count() == n ? exit_done : exit_stopped;
 }
 
@@ -199,9 +200,14 @@ int run_trained_samples(const SampleOptions& o) {
     for (const auto& [option, text] :
          {std::pair("--pilot", &o.pilot), std::pair("--overweight-share", &o.overweight_share)})
         if (!text->empty() && !o.unweighted) throw UsageError(option, "expected --unweighted with it");
+    if (!o.max_draws.empty() && !o.histogram.empty())
+        throw UsageError("--max-draws", "a histogram takes --n draws; leave it out with --histogram");
     if (o.covariance && o.histogram.empty()) throw UsageError("--covariance", "expected --histogram with it");
     const Source source = read_source(o.from);
-    if (!o.output.empty()) check_output(o.output);
+    if (!o.output.empty()) {
+        check_output_names({o.output}, {o.from});
+        check_output(o.output);
+    }
     return o.histogram.empty() ? draw_samples(o, source) : draw_histogram(o, source);
 }
 

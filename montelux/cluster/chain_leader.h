@@ -11,8 +11,8 @@
 
 namespace montelux {
 
-// A rank takes whole groups, each a pure function of its number. Those that are finished before their turn wait here: at
-// most as many as the ranks take at once. Ranks work on while the leader writes checkpoints, and beyond the end of a round.
+// A rank takes whole groups, each a pure function of its number. Those that are finished before their turn wait here:
+// fewer than twice as many as the ranks take at once. Ranks work on while the leader writes checkpoints, and beyond the end of a round.
 class ChainLeader {
   public:
     // With so many threads on this rank. The roster must outlive it.

@@ -250,7 +250,8 @@ TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
 TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
                          const IntegratorSettings& settings, const GuideTrainingPlan& plan,
                          RoundExecutor* executor) {
-    if (executor == nullptr) return train_guide(context, accelerator, settings, plan);
+    if (executor == nullptr || !context.can_be_guided())
+        return train_guide(context, accelerator, settings, plan);
     CancelFlag stop;
     GuideTrainingPlan shared = plan;
     shared.cancel = &stop;

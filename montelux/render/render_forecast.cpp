@@ -16,6 +16,11 @@ std::optional<std::uint64_t> samples_for_error(double samples, double error, dou
     return static_cast<std::uint64_t>(std::min(wanted, 1e18));
 }
 
+std::uint64_t expected_samples(const RenderPace& pace) {
+    if (!pace.samples_for_error) return pace.samples_most;
+    return std::min(std::max(*pace.samples_for_error, pace.end_of_round), pace.samples_most);
+}
+
 RenderForecast forecast(const RenderPace& pace, const RenderTarget& target) {
     const auto done = static_cast<double>(pace.samples_done);
     if (pace.samples_done >= pace.samples_most) return {1, 0};
@@ -31,9 +36,7 @@ RenderForecast forecast(const RenderPace& pace, const RenderTarget& target) {
         if (speed > 0) consider(share_of(done, n), (n - done) / speed);
     };
     if (target.error > 0) {
-        if (pace.samples_for_error)
-            consider_samples(
-                std::min(std::max(*pace.samples_for_error, pace.end_of_round), pace.samples_most));
+        if (pace.samples_for_error) consider_samples(expected_samples(pace));
     } else {
         consider_samples(pace.samples_most);
     }

@@ -28,6 +28,9 @@ struct RenderForecast {
 // The samples that an error takes, from the error after some samples: it falls with the root of their number.
 std::optional<std::uint64_t> samples_for_error(double samples, double error, double target);
 
+// That the target error takes, to the end of a round; all that may be taken while it is not known.
+std::uint64_t expected_samples(const RenderPace& pace);
+
 // The limit that is met first decides: the target's time, its error, or the number of samples. As long as the error
 // cannot be estimated, it might be met long before the last sample: then a limit of time alone gives a forecast.
 RenderForecast forecast(const RenderPace& pace, const RenderTarget& target);

@@ -339,8 +339,7 @@ class RenderLoop {
                         .run_samples = progress_.samples_done - samples_before_,
                         .run_seconds = seconds_since(begin_)};
         progress_.samples_total =
-            std::max(progress_.samples_done,
-                     std::min(pace.samples_most, pace.samples_for_error.value_or(pace.samples_most)));
+            std::max(progress_.samples_done, std::min(pace.samples_most, expected_samples(pace)));
         const bool complete = ended_ && state_.report.stop != RenderStop::cancelled;
         progress_.forecast = complete ? RenderForecast{1, 0} : forecast(pace, renderer_.target());
         progress_.ended = ended_;
@@ -374,6 +373,8 @@ class RenderLoop {
         // The open replicates may have been the only ones missing.
         if (reason != RenderStop::cancelled && stopping_.is_reached(film, error))
             state_.report.stop = RenderStop::error;
+        const double quantile = renderer_.target().quantile;
+        if (progress_.quantile) progress_.quantile = {quantile, error_quantile(film, quantile)};
         ended_ = true;
         report_progress(std::isfinite(error.relative) ? std::optional(error) : std::nullopt);
     }

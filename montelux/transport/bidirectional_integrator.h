@@ -46,8 +46,9 @@ struct BidirectionalMemory {
 // over all by their densities (strategy_weight.h). The one that joins a light to the lens is left to s = 0. Samples at
 // vertices (s = 1) choose lights as PathIntegrator does, so that this is its special case without light paths.
 //
-// Depths, wavelengths and the order of events are those of PathIntegrator and VolumePathIntegrator: all estimate the same integral for each
-// max_depth. Where one of the two subpaths has met a dispersive surface, the first wavelength stands for all.
+// Depths, wavelengths and the order of events are those of PathIntegrator and VolumePathIntegrator: all estimate the
+// same integral for each max_depth. Where one of the two subpaths has met a dispersive surface, the first wavelength
+// stands for all.
 //
 // In media vertices scatter by phase functions, and have densities per volume: those of directions lack the cosine.
 // Subpaths walk from vertex to vertex by delta tracking, and edges are joined by ratio tracking, both at the extinction

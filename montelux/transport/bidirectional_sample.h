@@ -24,8 +24,10 @@ class BidirectionalSample : private BidirectionalStrategies<Stream> {
     }
 
     FilmContribution take() {
-        memory_.camera.reserve(static_cast<std::size_t>(settings_.max_depth) + 1);
-        memory_.light.reserve(static_cast<std::size_t>(settings_.max_depth) + 1);
+        const std::size_t usual =
+            static_cast<std::size_t>(std::min<std::int64_t>(settings_.max_depth, 64)) + 1;
+        memory_.camera.reserve(usual);
+        memory_.light.reserve(usual);
         trace_from_camera();
         trace_from_light();
         for (std::size_t j = 1; j <= memory_.light.size(); ++j) {
@@ -249,7 +251,7 @@ class BidirectionalSample : private BidirectionalStrategies<Stream> {
     // The light's ray starts in a medium. Light at infinity has passed that around the scene: an unbounded one lets
     // nothing through, bounded ones lie beyond the ray's origin. False if nothing arrives.
     bool enter_medium(SubpathEnd& end) {
-        end.medium = medium_at_light(scene_, tracer_, end.ray, end_.at_infinity(), camera_.ray);
+        end.medium = medium_at_light(scene_, tracer_, end.ray, camera_.ray);
         if (!end_.at_infinity() || end.medium == no_index) return true;
         Ray back{end.ray.o, -end.ray.d};
         back.time = time_;

@@ -16,8 +16,8 @@ namespace montelux {
 //   s >= 2     emission from v_0, joined to the camera's path between v_{s-1} and v_s
 //   s = n - 1  ... joined to the lens; `light_paths` light paths for each that starts at a square pixel
 //
-// All are per area at vertices on surfaces, per volume at those in media, or per solid angle for v_0 at infinity; a density of a Dirac delta counts as 1,
-// times the change from solid angle to area. So they are functions of the path alone, whatever strategy found it, and
+// All are per area at vertices on surfaces, per volume at those in media, or per solid angle for v_0 at infinity; a
+// density of a Dirac delta counts as 1, times the change from solid angle to area. So they are functions of the path alone, whatever strategy found it, and
 // the weights of all strategies sum to 1.
 struct PathDensities {
     // Of generating v_i from v_{i-1}; from_light[0]: of the emission's position (direction, of infinite lights) and

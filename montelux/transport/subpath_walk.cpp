@@ -12,15 +12,17 @@ bool visit_surfaces(const SceneView& scene, RayTracer& tracer, Ray ray, const Vi
         if (!tracer.intersect(ray, hit)) return false;
         const SurfacePoint s = surface_point(scene, ray, hit, false);
         if (visit(s)) return true;
-        ray.o = offset_origin(s.p, s.ng, s.error, ray.d);
+        const Point3f from = offset_origin(s.p, s.ng, s.error, ray.d);
+        ray.t_max -= length(from - ray.o);
+        if (!(ray.t_max > 0)) return false;
+        ray.o = from;
     }
     return false;
 }
 
 } // namespace
 
-Index medium_at_light(const SceneView& scene, RayTracer& tracer, const Ray& light, bool at_infinity,
-                      const Ray& camera) {
+Index medium_at_light(const SceneView& scene, RayTracer& tracer, const Ray& light, const Ray& camera) {
     if (scene.media.empty()) return no_index;
     Index medium = no_index;
     const auto separates = [&](const SurfacePoint& s) {
@@ -28,10 +30,13 @@ Index medium_at_light(const SceneView& scene, RayTracer& tracer, const Ray& ligh
         medium = medium_beyond(s, -light.d, no_index);
         return true;
     };
-    if (!at_infinity && visit_surfaces(scene, tracer, light, separates)) return medium;
-    // Around the scene, as seen from the camera.
+    if (visit_surfaces(scene, tracer, light, separates)) return medium;
+    // From the camera, whose medium is known, nearly to the light, whose own surface separates nothing here.
     medium = scene.camera_medium;
-    Ray out{camera.o, light.d};
+    const Vec3f way = light.o - camera.o;
+    const float far = length(way);
+    if (!(far > 0)) return medium;
+    Ray out{camera.o, way / far, 0.9999f * far};
     out.time = light.time;
     visit_surfaces(scene, tracer, out, [&](const SurfacePoint& s) {
         medium = medium_beyond(s, out.d, medium);

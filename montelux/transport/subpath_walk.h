@@ -128,8 +128,8 @@ SubpathVertex* walk_to_vertex(std::vector<SubpathVertex>& path, const SceneView&
 }
 
 // The medium in which a ray of light starts, at a light or at infinity: that on this side of the first surface which
-// separates media, and if the ray meets none, that around the scene. `camera`: a ray from the camera.
-Index medium_at_light(const SceneView& scene, RayTracer& tracer, const Ray& light, bool at_infinity,
-                      const Ray& camera);
+// separates media, as next-event estimation has it; if the ray meets none, that to which the way from the camera leads.
+// `camera`: a ray from the camera.
+Index medium_at_light(const SceneView& scene, RayTracer& tracer, const Ray& light, const Ray& camera);
 
 } // namespace montelux

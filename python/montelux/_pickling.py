@@ -72,6 +72,18 @@ def _density_again(content: bytes, domain: _core.Domain | None) -> _core.Trained
     return density
 
 
+def _note_domain(load: Callable[..., _core.TrainedDensity]) -> Callable[..., _core.TrainedDensity]:
+    """TrainedDensity.load that keeps the domain, with which the density is pickled."""
+
+    @wraps(load, updated=())
+    def loading(path: str, domain: _core.Domain | None = None) -> _core.TrainedDensity:
+        density = load(path, domain)
+        density._domain = domain  # type: ignore[attr-defined]
+        return density
+
+    return loading
+
+
 def make_picklable(*kinds: type) -> None:
     """Registers classes of the extension with pickle and copy."""
     for kind in kinds:
@@ -110,3 +122,4 @@ note_recipes(
 make_picklable(_core.Domain, _core.Technique, _core.Distribution, _core.Discrete, _core.AliasTable, *METHODS.values())
 copyreg.pickle(_core.AdaptiveMap, _reduced_map)
 copyreg.pickle(_core.TrainedDensity, _reduced_density)
+setattr(_core.TrainedDensity, "load", staticmethod(_note_domain(_core.TrainedDensity.load)))

@@ -25,6 +25,7 @@ from ._foreign_arrays import as_numpy
 from ._result import Array
 
 _SECONDS_TO_END = 5.0  # for processes that have nothing to do
+_END = b""  # the message that ends a process
 
 
 class WorkerTraceback(Exception):
@@ -100,7 +101,7 @@ class WorkerPool:
 
     def _end(self) -> None:
         for worker in self._workers:
-            worker.connection.close()
+            worker.end()
         for worker in self._workers:
             worker.process.join(_SECONDS_TO_END)
         self._kill()
@@ -142,6 +143,14 @@ class _Worker:
         except OSError:
             pass  # it ended; its exit code is looked up below
         return self._answer("while it evaluated the integrand")
+
+    def end(self) -> None:
+        # Forked processes of other pools may hold this end of the connection, too: closing it would not be noticed.
+        try:
+            self.connection.send_bytes(_END)
+        except OSError:
+            pass  # the process ended before
+        self.connection.close()
 
     def _answer(self, when: str) -> Any:
         try:
@@ -194,9 +203,12 @@ def _serve(connection: Connection, inherited: list[Connection], shared: Any) -> 
     _send(connection, ("values", None, ""))
     while True:
         try:
-            x, row = pickle.loads(connection.recv_bytes())
+            message = connection.recv_bytes()
         except EOFError:
             return
+        if message == _END:
+            return
+        x, row = pickle.loads(message)
         x = x.T
         x.flags.writeable = False
         try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import ctypes.util
+import itertools
 import math
 import subprocess
 import sys
@@ -135,13 +136,18 @@ def test_threads_and_logarithms_and_maps():
 
 
 def test_threads_call_at_the_same_time():
-    seen = set()
-    f = OfNumber(lambda x: seen.add(threading.get_ident()) or x)
-    for _ in range(10):  # on a busy machine threads start late
-        montelux.integrate(f, (0, 1), "basic", evaluations=50_000, threads=2)
+    seen, both, calls = set(), threading.Event(), itertools.count()
+
+    def f(x):
+        seen.add(threading.get_ident())
         if len(seen) == 2:
-            return
-    raise AssertionError("only one thread called the function")
+            both.set()
+        if next(calls) == 5000:  # on a busy machine the second thread starts late
+            both.wait(timeout=30)
+        return x
+
+    montelux.integrate(OfNumber(f), (0, 1), "basic", evaluations=50_000, threads=2)
+    assert both.is_set()
 
 
 def test_many_dimensions():

@@ -148,6 +148,19 @@ def test_pickles_bring_it_back(result, density):
         assert np.array_equal(again.density.samples(peak, 9).points, r.density.samples(peak, 9).points)
 
 
+@pytest.mark.parametrize("given", [(), (None,), (Domain.ball((0, 0)),)], ids=["left out", "None", "ball"])
+def test_loaded_densities_pickle(density, given, tmp_path):
+    path = str(tmp_path / "trained.mx")
+    domain = given[0] if given else None
+    made = density if domain is None else montelux.integrate(peak, domain, "vegas", evaluations=20_000).density
+    made.save(path)
+    loaded = TrainedDensity.load(path, *given)
+    named = TrainedDensity.load(path=path, domain=domain)
+    for again in (pickle.loads(pickle.dumps(loaded)), copy.copy(named), copy.deepcopy(loaded)):
+        assert np.array_equal(again.samples(peak, 20).points, made.samples(peak, 20).points)
+        pickle.loads(pickle.dumps(again))
+
+
 @pytest.mark.parametrize(
     "call, sentence",
     [

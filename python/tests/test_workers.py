@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 import traceback
 
@@ -113,6 +114,39 @@ def share_together(method):
 def test_slow_functions_run_at_the_same_time(method):
     # On a busy machine threads start late.
     assert any(share_together(method) > 0.15 for _ in range(6))
+
+
+def test_a_pool_ends_at_once_while_another_runs():
+    context = multiprocessing.get_context("fork")
+    first_runs, both_run, first_ended = (context.Event() for _ in range(3))
+
+    def first(x):
+        first_runs.set()
+        both_run.wait(20)
+        return x
+
+    def second(x):  # its processes start while those of the first one run, and inherit the ends of their pipes
+        both_run.set()
+        first_ended.wait(20)
+        return x
+
+    def integral(f):
+        return montelux.integrate(f, (0, 1), "basic", evaluations=100, batch=False, workers=2)
+
+    def integrate_beside():
+        first_runs.wait(20)
+        integral(second)
+
+    beside = threading.Thread(target=integrate_beside)
+    begin = time.monotonic()
+    beside.start()
+    integral(first)
+    seconds = time.monotonic() - begin
+    assert both_run.is_set() and beside.is_alive()
+    first_ended.set()
+    beside.join()
+    assert seconds < 5, "processes that have nothing to do are waited for 5 s each before they are killed"
+    assert multiprocessing.active_children() == []
 
 
 # What goes wrong.

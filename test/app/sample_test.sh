@@ -70,7 +70,7 @@ awk -F, 'NR > 1 { s += $3; if ($3 < 0) exit 1 } END { exit NR != 40001 || s / 40
 "$montelux" sample --density 'exp(-5*x)' --over x=0:inf --n 3 | cmp -s - out || fail "--let with --density"
 "$montelux" sample --log --let k=5 -k*x --over x=0:inf --n 100 --quiet >out
 "$montelux" sample --log -5*x --over x=0:inf --n 100 --quiet | cmp -s - out || fail "--let with --log"
-expect 2 "expected --density or --log" sample --set sobol --let k=5
+expect 2 "expected --over with it" sample --set sobol --let k=5
 expect 2 "leave it out with --from" sample --from trained.mx --let k=5
 printf 'double integrand(int n, const double *x, const double *p) { return p[0] * x[0] * x[n - 1]; }\n' >f.c
 if command -v cc >/dev/null; then
@@ -78,6 +78,10 @@ if command -v cc >/dev/null; then
     "$montelux" sample --from c.mx --histogram 'k*x=0:k:2' --n 20000 >out 2>err || fail "source in a density: $(cat err)"
     awk -F, 'NR > 1 { v[NR] = $3 } END { exit v[2] < 0.24 || v[2] > 0.26 || v[3] < 0.74 || v[3] > 0.76 }' out ||
         fail "histogram with constants: $(cat out)"
+    mkdir -p elsewhere && (cd elsewhere && "$montelux" sample --from ../c.mx --n 5 >/dev/null 2>&1) || fail "another folder"
+    cp f.c kept.c
+    expect 2 "f.c" integrate --source f.c --let k=4 --over x=0:1 --method vegas --save-density f.c
+    cmp -s f.c kept.c || fail "a density replaced its source"
     rm f.c
     expect 1 "f.c: there is no such file" sample --from c.mx
 fi
@@ -85,6 +89,12 @@ head -c 300 trained.mx >cut.mx
 expect 1 "cut.mx" sample --from cut.mx
 expect 1 "none.mx" sample --from none.mx
 expect 1 "trains no density" integrate x --over x=0:1 --save-density cubature.mx
+expect 2 "'basic' trains no density" integrate x --over x=0:1 --method basic --evaluations 1e15 --save-density basic.mx
+expect 2 "leave it out with --histogram" sample --from trained.mx --histogram x=0:1:2 --max-draws 5
+cp trained.mx kept.mx
+expect 2 "kept.mx" sample --from kept.mx -o kept.mx
+"$montelux" sample --from trained.mx --histogram 'sqrt(x-0.5)=0:1:2' --n 1000 >out 2>err
+grep -q "have an observable that is not finite" err || fail "observables that are no numbers: $(cat err)"
 expect 2 "--set: leave it out with --from" sample --from trained.mx --set sobol
 expect 2 "expected --from FILE" sample --unweighted
 expect 2 "expected --unweighted" sample --from trained.mx --pilot 100

@@ -87,6 +87,13 @@ std::vector<AgreementCase> fogs() {
     add("coloured fog", spot);
     cases[cases.size() - 2].scene.description.integrator.heuristic = Heuristic::balance;
 
+    // Surfaces that are not closed separate fog and vacuum, as in files that set a medium before the camera.
+    VolumeScene one_sided = corner_in(fog(0.02f, 0.15f));
+    for (Index shape = 0; shape < one_sided.scene.shapes.size(); ++shape)
+        one_sided.bound(shape, no_index, one_sided.scene.camera.medium);
+    add_point_lamp(one_sided);
+    add("open floor", one_sided);
+
     VolumeScene absorbing = corner_in(fog(0.2f, 0));
     add_box_lamp(absorbing);
     add("no scattering", absorbing);
@@ -118,6 +125,15 @@ std::vector<AgreementCase> clouds() {
     open.add_uniform_light(0.7f);
     open.look({0.2, -4, 2.2}, {0, 0, 0.3}, 90);
     cases.push_back({"cloud without boundary", open});
+    VolumeScene sunny = open;
+    sunny.scene.lights.push_back(
+        DistantLight{white_light(sunny.scene), white_scale(), normalize(Vec3f(0.3f, -1, 1))});
+    for (Index shape = 0; shape < sunny.scene.shapes.size(); ++shape)
+        sunny.bound(shape, no_index, sunny.scene.camera.medium);
+    add("open floor under the sun", sunny);
+    for (Index shape = 0; shape < open.scene.shapes.size(); ++shape)
+        open.bound(shape, open.scene.camera.medium, open.scene.camera.medium);
+    cases.push_back({"shapes within a cloud", open});
 
     VolumeScene inside = corner_in(vacuum());
     const Index ball = inside.add_medium(fog(0.1f, 1, 0.3f));

@@ -76,7 +76,9 @@ namespace {
 Bounds3 bounds_with_media(const Scene& scene) {
     Bounds3 bounds = bounds_of(scene);
     for (std::size_t i = 0; i < scene.media.size(); ++i) {
-        const auto encloses = [&](const Shape& s) { return s.media.inside == static_cast<Index>(i); };
+        const auto encloses = [&](const Shape& s) {
+            return s.media.is_transition() && s.media.inside == static_cast<Index>(i);
+        };
         if (std::any_of(scene.shapes.begin(), scene.shapes.end(), encloses)) continue;
         const std::optional<MediumBox> box = box_of(scene.media[i]);
         if (!box) continue;

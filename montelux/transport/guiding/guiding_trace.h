@@ -30,7 +30,7 @@ class GuidingTrace {
   public:
     void clear() { size_ = 0; }
 
-    // The ray has hit a surface or left the scene; the radiance is without what it meets there.
+    // The path goes on from the last vertex; the radiance is without what it meets there.
     void arrive(SampledSpectrum radiance) {
         if (size_ == 0 || seen_) return;
         vertices_[size_ - 1].after_light_sample = radiance;

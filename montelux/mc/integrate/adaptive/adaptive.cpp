@@ -115,7 +115,7 @@ class AdaptiveEstimator final : public Estimator {
     }
 
     std::shared_ptr<const UnitDensity> density() const override {
-        return std::make_shared<const UnitDensity>(phase_ == Phase::uniform ? cube_ : trainer_.density());
+        return std::make_shared<const UnitDensity>(trainer_.rounds() > 0 ? trainer_.density() : cube_);
     }
     void save(StateWriter& state) const override {
         state.put(static_cast<int>(phase_));

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
+#include "montelux/mc/integrate/extreme_values.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/stats/covariance_moments.h"
 
@@ -13,11 +15,19 @@ namespace {
 // Covariance matrices of all tasks lie in memory at once.
 constexpr std::uint64_t most_numbers = 1 << 23, most_tasks = 64, least_tasks = 4;
 
+constexpr double warned_effect = 0.02; // effective draws per draw
+
 struct DrawSums {
     CovarianceMoments moments;
-    NonFiniteCount non_finite;
+    ExtremeValues extremes;
+    NonFiniteCount non_finite, undefined; // weights; observables where the weight is finite
     std::uint64_t evaluations = 0;
 };
+
+// One observable after the other of the values that are not zero.
+void add_extremes(const std::vector<std::vector<double>>& columns, ExtremeValues& extremes) {
+    for (std::size_t k = 0; k < columns.size(); ++k) extremes.add(static_cast<int>(k), columns[k]);
+}
 
 void add_block(const Target& target, const Integrand& observables, std::uint64_t first, std::uint64_t count,
                DrawSums& sums) {
@@ -29,6 +39,7 @@ void add_block(const Target& target, const Integrand& observables, std::uint64_t
     ValueBuffer h(draws.index.size(), observables.components());
     if (h.count() > 0) observables(draws.x, h);
     std::vector<double> row(m + 1);
+    std::vector<std::vector<double>> columns(m + 1);
     std::size_t next = 0;
     for (std::uint64_t i = 0; i < count; ++i) {
         std::ranges::fill(row, 0.0);
@@ -40,16 +51,55 @@ void add_block(const Target& target, const Integrand& observables, std::uint64_t
                 finite = finite && std::isfinite(product);
                 row[k + 1] = product;
             }
-            if (!finite) { // left out as a whole, as by all estimators
-                std::ranges::fill(row, 0.0);
+            if (!finite) { // its weight still counts in Z
+                std::fill(row.begin() + 1, row.end(), 0.0);
                 std::vector<double> point(static_cast<std::size_t>(draws.x.dimensions()));
                 draws.x.view().gather(next, point.data());
-                sums.non_finite.merge({1, std::move(point)});
+                sums.undefined.merge({1, std::move(point)});
             }
+            for (std::size_t k = 0; k <= m; ++k)
+                if (row[k] != 0) columns[k].push_back(row[k]);
             ++next;
         }
         sums.moments.add(row);
     }
+    add_extremes(columns, sums.extremes);
+}
+
+// The diagonal of a covariance is at least what the number of its contributions allows.
+void raise_errors(const DrawSums& sums, std::uint64_t draws, std::vector<double>& covariance) {
+    const auto n = static_cast<std::size_t>(sums.extremes.components());
+    for (std::size_t k = 0; k < n; ++k) {
+        const double least = sums.extremes.least_standard_error(static_cast<int>(k), draws);
+        double& variance = covariance[k * n + k];
+        variance = std::max(variance, least * least);
+    }
+}
+
+// `covariance`: of the means of the draws, in their unit.
+void add_warnings(const DrawSums& sums, const std::vector<double>& covariance, Expectations& result) {
+    const auto add = [&](std::uint64_t count, std::uint64_t all, const char* rest) {
+        if (count > 0) result.warnings.push_back(std::to_string(count) + " of " + std::to_string(all) + rest);
+    };
+    add(sums.non_finite.count, result.evaluations, " values were not finite and were left out");
+    add(sums.undefined.count, result.evaluations,
+        " points have an observable that is not finite; they count in no observable");
+    const double n = static_cast<double>(result.draws), mean = sums.moments.means()[0];
+    warn_of_heavy_tail(sums.extremes.tail(), result.draws, n, std::sqrt(covariance[0]), result.warnings);
+    const double effective = n * mean * mean / (mean * mean + n * covariance[0]);
+    if (effective < warned_effect * n) {
+        char text[160];
+        std::snprintf(text, sizeof text,
+                      "the %llu draws are worth %.0f unweighted samples; a density trained on more "
+                      "evaluations evens the weights out",
+                      static_cast<unsigned long long>(result.draws), effective);
+        result.warnings.emplace_back(text);
+    }
+    std::uint64_t unseen = 0;
+    for (int k = 1; k < sums.extremes.components(); ++k)
+        unseen += sums.moments.means()[static_cast<std::size_t>(k)] == 0 && !(sums.moments.variance(k) > 0);
+    add(unseen, static_cast<std::uint64_t>(result.observables()),
+        " observables were zero in all draws; their error of zero says nothing");
 }
 
 } // namespace
@@ -95,6 +145,7 @@ Expectations expectations(const TrainedDensity& density, const Integrand& f, con
                 [&](std::int64_t t) {
                     DrawSums task;
                     task.moments = CovarianceMoments(static_cast<int>(n));
+                    task.extremes = ExtremeValues(static_cast<int>(n));
                     const auto at = static_cast<std::uint64_t>(t);
                     for (std::uint64_t b = blocks * at / tasks; b < blocks * (at + 1) / tasks; ++b) {
                         if (options.cancel && options.cancel->requested()) break;
@@ -105,6 +156,8 @@ Expectations expectations(const TrainedDensity& density, const Integrand& f, con
                 },
                 [](DrawSums a, const DrawSums& b) {
                     a.moments.merge(b.moments);
+                    a.extremes.merge(b.extremes);
+                    a.undefined.merge(b.undefined);
                     a.non_finite.merge(b.non_finite);
                     a.evaluations += b.evaluations;
                     return a;
@@ -119,18 +172,16 @@ Expectations expectations(const TrainedDensity& density, const Integrand& f, con
         }
         result.draws = draws;
         result.non_finite = sums->non_finite;
-        for (std::uint64_t a = 0; a < n; ++a) {
-            result.integral.push_back(target.unscaled(sums->moments.means()[a]));
+        result.non_finite.merge(sums->undefined);
+        std::vector<double> covariance;
+        for (std::uint64_t a = 0; a < n; ++a)
             for (std::uint64_t b = 0; b < n; ++b)
-                result.integral_covariance.push_back(target.unscaled_product(
-                    sums->moments.covariance(static_cast<int>(a), static_cast<int>(b)) /
-                        static_cast<double>(draws),
-                    0, 0));
-        }
-        if (result.non_finite.count > 0)
-            result.warnings.push_back(std::to_string(result.non_finite.count) + " of " +
-                                      std::to_string(result.evaluations) +
-                                      " values were not finite and were left out");
+                covariance.push_back(sums->moments.covariance(static_cast<int>(a), static_cast<int>(b)) /
+                                     static_cast<double>(draws));
+        raise_errors(*sums, draws, covariance);
+        for (double mean : sums->moments.means()) result.integral.push_back(target.unscaled(mean));
+        for (double v : covariance) result.integral_covariance.push_back(target.unscaled_product(v, 0, 0));
+        add_warnings(*sums, covariance, result);
         return result;
     });
 }

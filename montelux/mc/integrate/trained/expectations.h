@@ -18,7 +18,7 @@ struct Expectations {
     std::vector<double> integral_covariance; // (m + 1) x (m + 1), row by row
     double log_reference = 0;
     std::uint64_t draws = 0, evaluations = 0;
-    NonFiniteCount non_finite;
+    NonFiniteCount non_finite; // also points that count in Z, but have an observable that is not finite
     bool cancelled = false; // nothing is known then
     std::vector<std::string> warnings;
 

@@ -26,6 +26,8 @@ Integrand histogram_bins(const Integrand& observable, std::vector<double> edges)
             for (int c = 0; c < y.components(); ++c) std::ranges::fill(y.component(c), 0.0);
             for (std::size_t i = 0; i < x.count(); ++i) {
                 const double v = values(i);
+                if (std::isnan(v))
+                    for (int c = 0; c < y.components(); ++c) y(i, c) = v;
                 if (!(v >= edges.front() && v <= edges.back())) continue;
                 const auto above = std::ranges::upper_bound(edges, v) - edges.begin() - 1;
                 y(i, std::min(static_cast<int>(above), y.components() - 1)) = 1;

@@ -8,7 +8,7 @@
 namespace montelux {
 
 // The bins [edge k, edge k + 1) of an observable of one component: component k is 1 where the observable lies
-// in bin k, else 0; the last bin contains its upper edge. Throws Error unless the edges increase.
+// in bin k, else 0; the last bin contains its upper edge. All are NaN where the observable is. Throws Error unless the edges increase.
 Integrand histogram_bins(const Integrand& observable, std::vector<double> edges);
 
 // The components of all functions one after the other.

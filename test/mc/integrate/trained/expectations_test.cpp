@@ -32,7 +32,8 @@ TEST(Observables, BinsAreHalfOpenButForTheLast) {
     ValueBuffer y(6, 2);
     bins(x, y);
     const double first[] = {0, 1, 1, 0, 0, 0}, second[] = {0, 0, 0, 1, 1, 0};
-    for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_TRUE(std::isnan(y(5, 0)) && std::isnan(y(5, 1)));
+    for (std::size_t i = 0; i < 5; ++i) {
         EXPECT_EQ(y(i, 0), first[i]) << at[i];
         EXPECT_EQ(y(i, 1), second[i]) << at[i];
     }
@@ -122,7 +123,38 @@ TEST(Expectations, MistakesGetASentence) {
     const Integrand many = Integrand::vector_valued(1024, [](auto, auto y) { y[0] = 1; });
     EXPECT_THROW(expectations(density, CutBells::value, many, 100), Error);
     auto pole = Integrand([](std::span<const double> x) { return x[0] > 1 ? std::nan("") : 1.0; });
-    EXPECT_EQ(expectations(density, CutBells::value, pole, 1000).warnings.size(), 1u);
+    const Expectations left_out = expectations(density, CutBells::value, pole, 1000);
+    EXPECT_EQ(left_out.warnings.size(), 1u);
+    EXPECT_GT(left_out.non_finite.count, 50u);
+    const Expectations whole = expectations(density, CutBells::value, first_coordinate(), 1000);
+    EXPECT_EQ(left_out.integral[0], whole.integral[0]); // which knows no observable
+}
+
+// A peak that the density does not know: few draws carry all, and some bins see none.
+TEST(Expectations, ErrorsThatSayNothingGetAWarning) {
+    const TrainedDensity untrained(std::make_shared<const UnitDensity>(MixtureDensity(2)),
+                                   Domain::unit_cube(2));
+    auto peak = [](std::span<const double> x) {
+        return std::exp(-3e5 * (std::pow(x[0] - 0.3, 2) + std::pow(x[1] - 0.6, 2)));
+    };
+    const Integrand bins = histogram_bins(first_coordinate(), {0, 0.25, 0.35, 1});
+    const Expectations found = expectations(untrained, peak, bins, 20000);
+    std::string all;
+    for (const std::string& warning : found.warnings) all += warning + "\n";
+    EXPECT_NE(all.find("unweighted samples"), std::string::npos) << all;
+    EXPECT_NE(all.find("zero in all draws"), std::string::npos) << all;
+    // Of a rare event, two hits where eight are expected: their error knows how little that is.
+    int wrong = 0;
+    for (std::uint64_t seed = 0; seed < 400; ++seed) {
+        SamplingOptions options;
+        options.seed = seed;
+        const Expectations rare = expectations(
+            untrained, [](std::span<const double>) { return 1.0; },
+            Integrand([](std::span<const double> x) { return x[0] < 0.008 ? 1.0 : 0.0; }), 1000, options);
+        const double error = std::sqrt(rare.integral_covariance[3]);
+        wrong += rare.integral[1] > 0 && std::abs(rare.integral[1] - 0.008) > 4 * error;
+    }
+    EXPECT_EQ(wrong, 0); // about 5 by the spread of the draws alone
 }
 
 } // namespace
