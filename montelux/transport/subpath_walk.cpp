@@ -1,5 +1,7 @@
 #include "montelux/transport/subpath_walk.h"
 
+#include <algorithm>
+
 namespace montelux {
 
 namespace {
@@ -31,12 +33,13 @@ Index medium_at_light(const SceneView& scene, RayTracer& tracer, const Ray& ligh
         return true;
     };
     if (visit_surfaces(scene, tracer, light, separates)) return medium;
-    // From the camera, whose medium is known, nearly to the light, whose own surface separates nothing here.
+    // All of the ray lies in one medium. A point of it off the light, whose own surface may separate media, is reached
+    // from the camera, whose medium is known.
     medium = scene.camera_medium;
-    const Vec3f way = light.o - camera.o;
+    const Vec3f way = light.o + light.d * std::max(length(light.o - camera.o), 1e-3f) - camera.o;
     const float far = length(way);
     if (!(far > 0)) return medium;
-    Ray out{camera.o, way / far, 0.9999f * far};
+    Ray out{camera.o, way / far, far};
     out.time = light.time;
     visit_surfaces(scene, tracer, out, [&](const SurfacePoint& s) {
         medium = medium_beyond(s, out.d, medium);

@@ -125,12 +125,19 @@ std::vector<AgreementCase> clouds() {
     open.add_uniform_light(0.7f);
     open.look({0.2, -4, 2.2}, {0, 0, 0.3}, 90);
     cases.push_back({"cloud without boundary", open});
-    VolumeScene sunny = open;
+    // Above the floor alone, whose lower side the medium must not touch.
+    VolumeScene sunny = corner_in(vacuum());
+    GridMedium above = cloud(sunny);
+    above.scale = 0.2f;
+    above.box.world_from_medium = Transform::translate({0.3, -0.5, 3.01}) * Transform::scale({6, 5, 3});
+    sunny.scene.camera.medium = sunny.add_medium(above);
+    sunny.add_uniform_light(0.7f);
     sunny.scene.lights.push_back(
         DistantLight{white_light(sunny.scene), white_scale(), normalize(Vec3f(0.3f, -1, 1))});
+    sunny.look({0.2, -4, 2.2}, {0, 0, 0.3}, 60);
     for (Index shape = 0; shape < sunny.scene.shapes.size(); ++shape)
         sunny.bound(shape, no_index, sunny.scene.camera.medium);
-    add("open floor under the sun", sunny);
+    cases.push_back({"open floor under the sun", sunny});
     for (Index shape = 0; shape < open.scene.shapes.size(); ++shape)
         open.bound(shape, open.scene.camera.medium, open.scene.camera.medium);
     cases.push_back({"shapes within a cloud", open});
