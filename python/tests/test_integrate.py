@@ -65,19 +65,24 @@ def test_one_variable_has_shape_n():
 
 @pytest.mark.parametrize("name", ["basic", "vegas", "quasi", "cubature", "adaptive"])
 def test_slow_functions_that_release_the_lock_run_at_the_same_time(name):
-    running, most = 0, 0
+    running, most, calls, waits = 0, 0, 0, 0
 
     def f(x):
-        nonlocal running, most
+        nonlocal running, most, calls, waits
         running += 1
+        calls += 1
         most = max(most, running)
         time.sleep(1e-4)  # without the lock
+        end = time.monotonic() + 0.5
+        while calls > 300 and most < threads and waits < 20 and time.monotonic() < end:
+            time.sleep(1e-3)  # on a busy machine the second thread comes late
+        waits += calls > 300 and most < threads
         running -= 1
         return abs(x[0] - 0.3) * (1 + x[1])
 
     results = []
     for threads in (1, 2):
-        running = most = 0
+        running = most = calls = waits = 0
         results.append(montelux.integrate(f, BOX, name, evaluations=2500, threads=threads, batch=False))
         assert most == threads
     assert results[0].value == results[1].value and results[0].standard_error == results[1].standard_error
