@@ -92,7 +92,7 @@ TEST(SharedLightPaths, InterruptedRendersEndWithTheSameBits) {
         const SceneDescription d = picture_of(IntegratorKind::bidirectional, sampler, 40);
         int stops = 0, within_passes = 0;
         expect_equal(interrupted(d, 3000, stops, within_passes), rendered(d), "interrupted");
-        EXPECT_GE(stops, 3);
+        EXPECT_GE(stops, 2);
         EXPECT_TRUE(within_passes > 0 || sampler == SamplerKind::independent) << stops;
     }
 }
@@ -134,7 +134,7 @@ TEST(SharedChains, InterruptedRendersEndWithTheSameBits) {
     const SceneDescription d = picture_of(IntegratorKind::metropolis, SamplerKind::independent, 48);
     int stops = 0, within_passes = 0;
     expect_equal(interrupted(d, 396 * 14, stops, within_passes), rendered(d), "interrupted");
-    EXPECT_GE(stops, 3);
+    EXPECT_GE(stops, 2);
 }
 
 // A rank falls silent when its group is half sent, and between two groups.
