@@ -147,8 +147,8 @@ def integrate(
 
     The result depends on f, domain, method, budget and seed, and not on `threads` or `workers`. Python runs one
     thread at a time, so that more than one helps only C functions and those that release the interpreter's lock
-    for long; 0: one a processor. Slow functions of Python take `workers`, processes that evaluate f; 0: one a
-    processor.
+    for long; 0: one for each processor. Slow functions of Python take `workers`, processes that evaluate f; 0: one
+    for each processor.
 
     components: the m of f's shape (n, m); 0 for shape (n,). Without it f is called once more, with five to
     eight points, to see.

@@ -36,7 +36,7 @@ class WorkerTraceback(Exception):
 
 
 def worker_count(workers: int) -> int:
-    """The number of processes that `workers` asks for; 0: one a processor."""
+    """The number of processes that `workers` asks for; 0: one for each processor."""
     return workers or len(os.sched_getaffinity(0))
 
 

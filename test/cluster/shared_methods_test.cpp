@@ -44,7 +44,7 @@ void expect_equal(const RenderState& shared, const RenderState& whole, std::stri
         << what; // of an incomplete last pass
 }
 
-// Interrupted again and again after about so many samples, and resumed by another number of ranks.
+// Interrupted again and again after about so many samples (of as many as picture_of asks for), and resumed by another number of ranks.
 RenderState interrupted(const SceneDescription& d, std::uint64_t samples, int& stops, int& within_passes) {
     RenderState state(d);
     for (bool ended = false; !ended; ++stops) {
@@ -54,7 +54,7 @@ RenderState interrupted(const SceneDescription& d, std::uint64_t samples, int& s
         RenderControl control;
         control.cancel = &cancel;
         control.checkpoint_seconds = 0.001;
-        const std::uint64_t enough = state.report.samples + samples;
+        const std::uint64_t enough = state.report.samples + (under_sanitizers ? samples / 3 : samples);
         control.checkpoint = [&](const RenderState& s) {
             saved = s;
             if (s.report.samples >= enough) cancel.request();
@@ -92,7 +92,7 @@ TEST(SharedLightPaths, InterruptedRendersEndWithTheSameBits) {
         const SceneDescription d = picture_of(IntegratorKind::bidirectional, sampler, 40);
         int stops = 0, within_passes = 0;
         expect_equal(interrupted(d, 3000, stops, within_passes), rendered(d), "interrupted");
-        EXPECT_GE(stops, 2);
+        EXPECT_GE(stops, 3);
         EXPECT_TRUE(within_passes > 0 || sampler == SamplerKind::independent) << stops;
     }
 }
@@ -134,7 +134,7 @@ TEST(SharedChains, InterruptedRendersEndWithTheSameBits) {
     const SceneDescription d = picture_of(IntegratorKind::metropolis, SamplerKind::independent, 48);
     int stops = 0, within_passes = 0;
     expect_equal(interrupted(d, 396 * 14, stops, within_passes), rendered(d), "interrupted");
-    EXPECT_GE(stops, 2);
+    EXPECT_GE(stops, 3);
 }
 
 // A rank falls silent when its group is half sent, and between two groups.
@@ -201,7 +201,7 @@ TEST(SharedGuides, InterruptedRendersEndWithTheSameBits) {
     const SceneDescription d = guided_picture(200);
     int stops = 0, within_passes = 0;
     expect_equal(interrupted(d, 10'000, stops, within_passes), rendered(d), "interrupted");
-    EXPECT_GE(stops, 2);
+    EXPECT_GE(stops, 3);
 }
 
 // A rank that is ready only when the guide is trained gets it before its first tile.
