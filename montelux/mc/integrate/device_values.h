@@ -17,13 +17,12 @@ namespace montelux {
 // Draws are made by one thread at a time, reads of the last block by any number.
 class DeviceValues {
   public:
-    // Points of a block: large enough to hide the start of a kernel.
-    static constexpr std::uint64_t block_size = 1 << 20;
-
     // Null where the evaluator's integrand is on no device. Throws Error where the domain is no box.
     static std::unique_ptr<DeviceValues> of(const Evaluator& g);
 
     DeviceSampler& sampler() { return sampler_; }
+    // Points of a block.
+    std::uint64_t block_size() const { return g_.integrand().on_device().block; }
     // The points of fill_random. `placed`: in the sampler's boxes and by its map.
     void draw_random(std::uint64_t seed, std::uint32_t stream, std::uint64_t first, std::uint64_t count,
                      bool placed = false);
@@ -55,7 +54,7 @@ class DeviceValues {
 template <typename Draw, typename Make, typename Add, typename Sum = std::invoke_result_t<const Make&>>
 std::optional<Sum> sum_blocks(std::uint64_t count, const DeviceValues* device, const Draw& draw,
                               const Make& make, const Add& add, const CancelFlag* cancel) {
-    const std::uint64_t size = device ? DeviceValues::block_size : count;
+    const std::uint64_t size = device ? device->block_size() : count;
     std::optional<Sum> all;
     for (std::uint64_t begin = 0; begin < count; begin += size) {
         const std::uint64_t n = std::min(size, count - begin);

@@ -23,6 +23,8 @@ struct OnDevice {
     // Called before a number of points is evaluated, and with their values after it; may throw.
     std::vector<std::function<void(std::size_t)>> before = {};
     std::vector<std::function<void(ValueBatch)>> after = {};
+    // Points that are evaluated at a time: enough to hide the start of a kernel.
+    std::size_t block = 1 << 20;
 };
 
 // A function in one of the forms that users write, called once per batch. Functions are called from several

@@ -190,7 +190,7 @@ class StratifiedVegas final : public VegasEstimator {
             };
             const std::uint64_t first = tasks[begin].first_point;
             std::size_t end = begin + 1;
-            while (end < tasks.size() && end_of(end) - first <= DeviceValues::block_size) ++end;
+            while (end < tasks.size() && end_of(end) - first <= device_->block_size()) ++end;
             device_->draw_random(problem_.seed, next.stream, first, end_of(end - 1) - first, true);
             auto sum = sample(next, cubes, counts, std::span(tasks).subspan(begin, end - begin), first, point,
                               variances, cancel);
