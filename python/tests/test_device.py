@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import ctypes.util
+import ctypes
 import shutil
 
 import numpy as np
@@ -64,7 +64,7 @@ def test_components_and_logarithms():
         (dict(f=["x"], device="emulated"), "a list of one formula was given"),
         (dict(f=["x", "1"], components=3, device="emulated"), "components: 3 was given with 2 formulas"),
         (dict(f="x", workers=2, device="emulated"), "workers: it is for functions of Python, and the integrand is compiled"),
-        (dict(f="double integrand(int n, double *x) { return a; }", device="emulated"), "'a' was not declared"),
+        (dict(f="double integrand(int n, double *x) { return a; }", device="emulated"), "was not declared"),
         (dict(f="x", method="adaptive", device="emulated"), "the method 'adaptive' does not run on a device"),
     ],
 )
@@ -74,7 +74,15 @@ def test_mistakes(arguments, message):
         montelux.integrate(domain=(0, 1), **arguments)
 
 
-@pytest.mark.skipif(ctypes.util.find_library("cuda") is not None, reason="a driver is installed")
+def has_driver():
+    try:
+        ctypes.CDLL("libcuda.so.1")
+    except OSError:
+        return False
+    return True
+
+
+@pytest.mark.skipif(has_driver(), reason="a driver is installed")
 def test_without_a_driver_there_is_a_sentence():
     with pytest.raises(montelux.Error, match="device 'cuda': there is no NVIDIA driver"):
         montelux.integrate("x", (0, 1), "basic", device="cuda")

@@ -81,11 +81,10 @@ std::string Nvrtc::compile(const std::string& source, const std::string& file, i
                                          std::to_string(architecture / 10) + "." +
                                          std::to_string(architecture % 10) +
                                          "; expected an older version of it");
-    const std::string target = "--gpu-architecture=" + (native ? "sm_" + std::to_string(architecture)
-                                                               : "compute_" + std::to_string(*newest));
+    const std::string target =
+        "-arch=" + (native ? "sm_" + std::to_string(architecture) : "compute_" + std::to_string(*newest));
     // Arithmetic as written, so that points have the bits of the CPU's; functions without __device__ run there, too.
-    const std::array<const char*, 4> options{target.c_str(), "--std=c++17", "--fmad=false",
-                                             "--device-as-default-execution-space"};
+    const std::array<const char*, 4> options{target.c_str(), "-std=c++17", "-fmad=false", "-default-device"};
     // Its functions are known without it.
     constexpr std::array header_names{"math.h", "cmath"};
     constexpr std::array header_texts{"", ""};

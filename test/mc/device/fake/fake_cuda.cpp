@@ -138,8 +138,7 @@ EXPORT int nvrtcDestroyProgram(void** program) {
 }
 EXPORT int nvrtcCompileProgram(void*, int options, const char* const* texts) {
     bool architecture = false;
-    for (int i = 0; i < options; ++i)
-        architecture = architecture || std::string(texts[i]) == "--gpu-architecture=sm_90";
+    for (int i = 0; i < options; ++i) architecture = architecture || std::string(texts[i]) == "-arch=sm_90";
     program_log = "the log of the compiler";
     return architecture ? result_of("nvrtcCompileProgram") : 5;
 }
