@@ -39,20 +39,20 @@ class OnEmulatedDevice : public testing::Test {
 
 const Method all_methods[] = {BasicMonteCarlo{}, Quasi{}, Vegas{}, VegasSobol{}};
 
-const std::string peak = "double integrand(int n, const double* x) {\n"
-                         "    double s = 0;\n"
-                         "    for (int d = 0; d < n; ++d) s += (x[d] - 0.3) * (x[d] - 0.3);\n"
-                         "    return exp(-20 * s);\n"
-                         "}\n";
+const std::string peak_source = "double integrand(int n, const double* x) {\n"
+                                "    double s = 0;\n"
+                                "    for (int d = 0; d < n; ++d) s += (x[d] - 0.3) * (x[d] - 0.3);\n"
+                                "    return exp(-20 * s);\n"
+                                "}\n";
 double peak_here(std::span<const double> x) {
     double s = 0;
     for (double v : x) s += (v - 0.3) * (v - 0.3);
     return std::exp(-20 * s);
 }
-const std::string two = "void integrand(int, const double* x, int, double* y) {\n"
-                        "    y[0] = x[0] * exp(-x[1]);\n"
-                        "    y[1] = x[1] * x[1];\n"
-                        "}\n";
+const std::string two_source = "void integrand(int, const double* x, int, double* y) {\n"
+                               "    y[0] = x[0] * exp(-x[1]);\n"
+                               "    y[1] = x[1] * x[1];\n"
+                               "}\n";
 
 // The coordinates of a point as the components of a value.
 std::string coordinates(int n) {
@@ -102,7 +102,7 @@ TEST_F(OnEmulatedDevice, SobolPointsHaveTheProcessorsBits) {
 }
 
 TEST_F(OnEmulatedDevice, EstimatesHaveTheProcessorsBitsForAHundredSeeds) {
-    const Integrand there = integrand(peak, 3), here = peak_here;
+    const Integrand there = integrand(peak_source, 3), here = peak_here;
     for (const Method& method : all_methods)
         for (std::uint64_t seed = 0; seed < 100; ++seed) {
             const Budget budget{.evaluations = 6'000};
@@ -115,7 +115,7 @@ TEST_F(OnEmulatedDevice, EstimatesHaveTheProcessorsBitsForAHundredSeeds) {
 }
 
 TEST_F(OnEmulatedDevice, ManyBlocksAgreeToRounding) {
-    OnDevice small = integrand(peak, 2).on_device();
+    OnDevice small = integrand(peak_source, 2).on_device();
     small.block = 3000;
     const Integrand there = Integrand::compiled(small.function).with_device(small), here = peak_here;
     for (const Method& method : all_methods) {
@@ -148,7 +148,7 @@ TEST_F(OnEmulatedDevice, InfiniteRangesHaveTheProcessorsBits) {
 
 TEST_F(OnEmulatedDevice, VectorsAndParameters) {
     const KnownIntegral cpu = two_components();
-    const Integrand there = integrand(two, 2, 2);
+    const Integrand there = integrand(two_source, 2, 2);
     for (const Method& method : all_methods) {
         const Budget budget{.evaluations = 30'000};
         EXPECT_TRUE(same_but_for_time(integrate(there, cpu.domain, method, budget),
@@ -207,7 +207,7 @@ TEST_F(OnEmulatedDevice, ValuesThatAreNotFiniteAreCountedAndLocated) {
 }
 
 TEST_F(OnEmulatedDevice, SameBitsForAnyThreadsAndAfterAResume) {
-    const KnownIntegral problem{integrand(two, 2, 2), two_components().domain, two_components().truth};
+    const KnownIntegral problem{integrand(two_source, 2, 2), two_components().domain, two_components().truth};
     for (const Method& method : all_methods) {
         expect_same_bits_for_any_threads(problem, method, 20'000);
         expect_same_bits_after_resume(problem, method, 20'000);
@@ -228,7 +228,7 @@ TEST_F(OnEmulatedDevice, StopsInTime) {
 }
 
 TEST_F(OnEmulatedDevice, WhatADeviceCannotDoIsSaid) {
-    const Integrand f = integrand(peak, 2);
+    const Integrand f = integrand(peak_source, 2);
     const Budget budget{.evaluations = 1000};
     expect_error("the method 'adaptive' does not run on a device; expected basic",
                  [&] { integrate(f, Domain::unit_cube(2), Adaptive{}, budget); });
