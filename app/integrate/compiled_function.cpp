@@ -44,7 +44,10 @@ void compile(const std::string& source, const fs::path& library) {
     constexpr std::array<std::string_view, 4> of_cpp{".cpp", ".cc", ".cxx", ".C"};
     bool cpp = false;
     for (const std::string_view known : of_cpp) cpp = cpp || extension == known;
-    if (extension == ".cu") throw Error(source, "is a source for a device; expected --device cuda with it");
+    if (extension == ".cu")
+        throw Error(source,
+                    "is a CUDA source, for `montelux integrate --device cuda`; expected one in C (.c) or C++ "
+                    "(.cpp, .cc, .cxx)");
     if (!c && !cpp)
         throw Error(source,
                     "is not a source in C (.c) or C++ (.cpp, .cc, .cxx); other languages: make a shared "

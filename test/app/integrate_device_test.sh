@@ -45,7 +45,7 @@ expect 2 "a device compiles sources and does not call libraries" integrate --lib
 expect 2 "the points of a device stay there" integrate x --over x=0:1 --method basic --device emulated --points p.csv
 expect 1 "points of a ball in 2 dimensions are not drawn on a device" integrate x --over x,y --domain ball --method basic --device emulated
 expect 1 "by density are not drawn on a device" integrate x --over x=0:1 --density 'x=exp(-x)' --method basic --device emulated
-expect 1 "is a source for a device; expected --device cuda with it" integrate --source g.cu --over x=0:1
+expect 1 "g.cu: is a CUDA source, for" integrate --source g.cu --over x=0:1
 expect 1 "no.cu: there is no such file" integrate --source no.cu --over x=0:1 --method basic --device emulated
 printf 'double integrand(int n, const double *x) { return y; }\n' >bad.cu
 expect 1 "bad.cu:1" integrate --source bad.cu --over x=0:1 --method basic --device emulated
