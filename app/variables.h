@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/expression.h"
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,7 @@ Domain box_domain(const Variables& variables);
 struct NamedIntegrand {
     Integrand::BatchFunction function;
     std::vector<std::string> names;
+    std::shared_ptr<const DeviceFunction> compiled = nullptr; // on a device; null: there is none
 
     int count() const { return static_cast<int>(names.size()); }
 };

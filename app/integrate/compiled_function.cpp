@@ -2,20 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <optional>
-#include <spawn.h>
-#include <sstream>
 #include <string_view>
-#include <sys/wait.h>
 #include <type_traits>
-#include <unistd.h>
 #include <utility>
 
+#include "montelux/mc/io/file.h"
+#include "montelux/mc/io/system_compiler.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux::app {
@@ -40,53 +37,6 @@ void check_file(const std::string& file) {
     if (fs::is_directory(file, failure)) throw Error(file, "is a folder; expected FILE:FUNCTION");
 }
 
-// A folder that is removed with all it holds.
-class BuildFolder {
-  public:
-    BuildFolder() {
-        std::error_code failure;
-        std::string pattern = (fs::temp_directory_path(failure) / "montelux-XXXXXX").string();
-        if (failure || ::mkdtemp(pattern.data()) == nullptr)
-            throw Error("temporary folder", "cannot be created; set TMPDIR to a folder that can be written");
-        path_ = pattern;
-    }
-    ~BuildFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    BuildFolder(const BuildFolder&) = delete;
-    BuildFolder& operator=(const BuildFolder&) = delete;
-    const fs::path& path() const { return path_; }
-
-  private:
-    fs::path path_;
-};
-
-void add_words(std::vector<std::string>& words, const char* variable, const char* otherwise) {
-    const char* given = std::getenv(variable);
-    std::istringstream text(given != nullptr && *given != '\0' ? given : otherwise);
-    for (std::string word; text >> word;) words.push_back(word);
-}
-
-// Exit code of a command, whose standard output goes to standard error; throws Error where it cannot be started.
-int run(const std::vector<std::string>& command, const std::string& hint) {
-    std::vector<char*> words;
-    for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
-    words.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
-    pid_t child = 0;
-    const int failure = posix_spawnp(&child, words[0], &actions, nullptr, words.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (failure != 0)
-        throw Error(command[0], std::string("cannot be started: ") + std::strerror(failure) + "; " + hint);
-    int status = 0;
-    while (::waitpid(child, &status, 0) < 0)
-        if (errno != EINTR) throw Error(command[0], std::strerror(errno));
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
 // Translates a source to a shared library at `library`.
 void compile(const std::string& source, const fs::path& library) {
     const std::string extension = fs::path(source).extension().string();
@@ -94,22 +44,17 @@ void compile(const std::string& source, const fs::path& library) {
     constexpr std::array<std::string_view, 4> of_cpp{".cpp", ".cc", ".cxx", ".C"};
     bool cpp = false;
     for (const std::string_view known : of_cpp) cpp = cpp || extension == known;
+    if (extension == ".cu")
+        throw Error(source,
+                    "is a CUDA source, for `montelux integrate --device cuda`; expected one in C (.c) or C++ "
+                    "(.cpp, .cc, .cxx)");
     if (!c && !cpp)
         throw Error(source,
                     "is not a source in C (.c) or C++ (.cpp, .cc, .cxx); other languages: make a shared "
                     "library of it, and pass that with --library");
-    std::vector<std::string> command;
-    add_words(command, c ? "CC" : "CXX", c ? "cc" : "c++");
-    for (const char* word : {"-O2", "-fPIC", "-shared"}) command.emplace_back(word);
-    add_words(command, c ? "CFLAGS" : "CXXFLAGS", "");
-    for (const std::string& word :
-         {std::string("-o"), library.string(), fs::absolute(source).string(), std::string("-lm")})
-        command.push_back(word);
-    const std::string hint = c ? "install a C compiler (Debian: gcc), or name one in CC"
-                               : "install a C++ compiler (Debian: g++), or name one in CXX";
-    if (const int code = run(command, hint); code != 0)
-        throw Error(source, "the compiler " + command[0] + " ended with exit code " + std::to_string(code) +
-                                "; its messages are above");
+    montelux::compile({.source = source,
+                       .library = library,
+                       .language = c ? Compilation::Language::c : Compilation::Language::cpp});
 }
 
 } // namespace
@@ -158,10 +103,22 @@ CompiledFunction::CompiledFunction(const std::string& file, std::string function
                                "'; FILE:FUNCTION names another one, and functions of C++ need extern \"C\"");
 }
 
-std::vector<std::string> CompiledFunction::names() const {
-    if (form_.components == 0) return {function_};
+FunctionSource CompiledFunction::read_source(const std::string& place, const Form& form) {
+    constexpr std::size_t most_bytes = 1 << 24;
+    const Place at = read_place(place);
+    check_file(at.file);
+    const std::vector<std::uint8_t> bytes = read_file_bytes(at.file, most_bytes);
+    return {.text = std::string(bytes.begin(), bytes.end()),
+            .file = at.file,
+            .function = at.function,
+            .components = form.components,
+            .parameters = form.parameters};
+}
+
+std::vector<std::string> CompiledFunction::names(const std::string& function, int components) {
+    if (components == 0) return {function};
     std::vector<std::string> names;
-    for (int c = 0; c < form_.components; ++c) names.push_back(function_ + "[" + std::to_string(c) + "]");
+    for (int c = 0; c < components; ++c) names.push_back(function + "[" + std::to_string(c) + "]");
     return names;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "montelux/mc/device/kernel_text.h"
 #include "montelux/mc/integrate/points.h"
 #include "montelux/mc/io/shared_library.h"
 
@@ -29,14 +30,18 @@ class CompiledFunction {
     // What the compiler prints goes to standard error.
     static CompiledFunction from_source(const std::string& place, Form form);
 
+    // The text of a file, for a device: CUDA C++ (.cu), C or C++.
+    static FunctionSource read_source(const std::string& place, const Form& form);
+    // Of a function with so many components, 0 for one that returns its value: f, or f[0], f[1].
+    static std::vector<std::string> names(const std::string& function, int components);
+
     // The file's part of a place.
     static std::string file_of(const std::string& place);
     // The same place, of a file by its absolute path.
     static std::string absolute(const std::string& place);
 
     int count() const { return form_.components > 0 ? form_.components : 1; }
-    // The function's name; of several components with an index: f[0], f[1].
-    std::vector<std::string> names() const;
+    std::vector<std::string> names() const { return names(function_, form_.components); }
     void operator()(const PointBatch& x, ValueBatch y) const;
 
   private:

@@ -98,8 +98,8 @@ int run(const IntegrateOptions& o) {
     std::signal(SIGPIPE, SIG_IGN);
     IntegrationTask task = make_task(o);
 #ifdef MONTELUX_WITH_RENDER
-    // Points are written in the order of one thread.
-    SharedIntegration shared(task, !o.points.empty());
+    // Points are written in the order of one thread, and a device is one process's.
+    SharedIntegration shared(task, !o.points.empty() || task.integrand.compiled);
     if (shared.helped()) return exit_done;
 #endif
     check_files(o, task);
@@ -119,10 +119,13 @@ int run(const IntegrateOptions& o) {
         else
             logarithm.relative = integrate(f, task.domain, task.method, task.budget, options);
     };
+    if (task.integrand.compiled)
+        work(Integrand::compiled(task.integrand.compiled), task.options);
+    else
 #ifdef MONTELUX_WITH_RENDER
-    shared.integrate(task, evaluate, work);
+        shared.integrate(task, evaluate, work);
 #else
-    work(Integrand::batch(evaluate, task.integrand.count()), task.options);
+        work(Integrand::batch(evaluate, task.integrand.count()), task.options);
 #endif
     line.finish();
     const IntegrationResult& result = logarithm.relative;

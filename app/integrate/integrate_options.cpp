@@ -10,9 +10,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <memory>
 #include <string_view>
 #include <utility>
 
+#include "montelux/mc/device/device_function.h"
+#include "montelux/mc/device/formula_source.h"
 #include "montelux/mc/math/nearest_name.h"
 #include "montelux/mc/parallel/parallel_for.h"
 
@@ -113,6 +116,14 @@ void check_sources(const IntegrateOptions& o) {
         throw UsageError("--components", "each component of a vector is a FORMULA of its own");
 }
 
+NamedIntegrand on_device(const std::string& device, const FunctionSource& source,
+                         const std::vector<std::string>& variables, std::vector<std::string> names) {
+    auto compiled = std::make_shared<const DeviceFunction>(Device::open(device), source,
+                                                           static_cast<int>(variables.size()));
+    const Integrand f = Integrand::compiled(compiled);
+    return {[f](const PointBatch& x, ValueBatch y) { f(x, y); }, std::move(names), std::move(compiled)};
+}
+
 NamedIntegrand make_integrand(const IntegrateOptions& o, const std::vector<std::string>& variables,
                               const NamedConstants& constants) {
     if (o.formulas.empty()) {
@@ -120,6 +131,15 @@ NamedIntegrand make_integrand(const IntegrateOptions& o, const std::vector<std::
         if (!o.components.empty())
             form.components = static_cast<int>(whole_number(o.components, "--components", 1, 100'000));
         for (const auto& [name, value] : constants) form.parameters.push_back(value);
+        if (!o.device.empty()) {
+            if (!o.library.empty())
+                throw UsageError("--library",
+                                 "a device compiles sources and does not call libraries; expected a "
+                                 "FORMULA or --source with --device");
+            const FunctionSource source = CompiledFunction::read_source(o.source, form);
+            return on_device(o.device, source, variables,
+                             CompiledFunction::names(source.function, source.components));
+        }
         const CompiledFunction function = o.library.empty() ? CompiledFunction::from_source(o.source, form)
                                                             : CompiledFunction::from_library(o.library, form);
         return {function, function.names()};
@@ -127,7 +147,10 @@ NamedIntegrand make_integrand(const IntegrateOptions& o, const std::vector<std::
     std::vector<std::string> formulas = o.formulas;
     for (std::string& text : formulas)
         if (text.starts_with(" -")) text.erase(0, 1); // the blank of with_negative_formulas
-    return {Formulas(formulas, variables, "", constants), formulas};
+    Formulas parsed(formulas, variables, "", constants);
+    if (!o.device.empty())
+        return on_device(o.device, formula_source(formulas, variables, constants), variables, formulas);
+    return {std::move(parsed), formulas};
 }
 
 // 10k, 1.5M and 2G as 10e3, 1.5e6 and 2e9; other texts as they are.
@@ -205,6 +228,11 @@ void declare(CLI::App& c, IntegrateOptions& o) {
          "Draw a variable from a density that is proportional to this formula, for example x=exp(-5*x)",
          "NAME=FORMULA");
     text("--method", o.method, "How: " + joined(Method::names()) + ". Default: " + Method().name(), "NAME");
+    text("--device", o.device,
+         "Draw and evaluate the points on a device: cuda, a GPU, or emulated, to check its code. For "
+         "formulas and "
+         "--source (C or CUDA C++), and the methods basic, quasi, vegas and vegas_sobol",
+         "NAME");
     text("--relative-error", o.relative_error,
          "Stop at this standard error relative to the value, for example 1e-3 or 0.1%", "E");
     text("--absolute-error", o.absolute_error, "Stop at this standard error; with both, at the larger one",
@@ -255,15 +283,20 @@ void declare(CLI::App& c, IntegrateOptions& o) {
 IntegrationTask make_task(const IntegrateOptions& o) {
     check_choice(o.domain, domain_names, "--domain", "domain");
     check_choice(o.non_finite, policy_names, "--non-finite", "policy");
+    if (!o.device.empty()) check_choice(o.device, Device::names(), "--device", "device");
     const bool box = o.domain == "box";
     check_sources(o);
     const NamedConstants constants = read_constants(o.let);
     Variables variables = read_variables(o.over, box, constants);
     if (!box && !o.densities.empty()) throw UsageError("--density", "only a box takes densities");
     if (o.log) check_logarithm(o);
+    Method method = make_method(o.method);
+    if (!o.device.empty() && !method.on_device())
+        throw UsageError("--method", "the method '" + method.name() + "' does not run on a device" +
+                                         (o.method.empty() ? ", and is the default" : "") +
+                                         "; expected basic, quasi, vegas or vegas_sobol");
     NamedIntegrand integrand = make_integrand(o, variables.names, constants);
 
-    Method method = make_method(o.method);
     Budget budget;
     budget.relative_error = relative_error(o.relative_error);
     budget.absolute_error =
@@ -287,6 +320,9 @@ IntegrationTask make_task(const IntegrateOptions& o) {
     if (o.resume && o.checkpoint.empty())
         throw UsageError("--resume", "expected --checkpoint FILE to resume from");
     if (!o.points.empty()) {
+        if (!o.device.empty())
+            throw UsageError("--points",
+                             "the points of a device stay there; leave out one of --points and --device");
         if (options.threads > 1)
             throw UsageError("--points", "the points are written in their order, by one thread; leave out "
                                          "--threads");

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "montelux/mc/device/device_function.h"
+
 namespace montelux::app {
 namespace {
 
@@ -85,6 +87,7 @@ Json report_json(const IntegrationTask& task, const IntegrationResult& r) {
     out["variables"] = task.variables;
     out["formulas"] = task.integrand.names;
     out["domain"] = task.domain.description();
+    if (task.integrand.compiled) out["device"] = task.integrand.compiled->device()->description();
     out["history"] = Json::array();
     for (const IterationRecord& h : r.history) {
         Json record;

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from _ctypes import CFuncPtr
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol, Union
 
 from . import _core
@@ -23,8 +23,9 @@ class LowLevelCallable(Protocol):
         """What it gets as its last argument."""
 
 
-#: What integrate() takes for f: functions of Python, cfuncs of numba and functions of ctypes can be called.
-Integrand = Union[Callable[..., Any], LowLevelCallable]
+#: What integrate() takes for f: functions of Python, cfuncs of numba and functions of ctypes can be called; texts are
+#: for devices.
+Integrand = Union[Callable[..., Any], LowLevelCallable, str, Sequence[str]]
 
 _NUMBERS: dict[Any, str] = {
     ctypes.c_double: "double",

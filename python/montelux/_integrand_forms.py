@@ -13,11 +13,17 @@ import numpy as np
 from . import _core
 from ._c_functions import Integrand, c_function
 from ._core import Domain, Error
+from ._devices import device_function, is_text
+from ._names import unknown
 from ._result import Array
 from ._workers import WorkerPool, worker_count
 
 #: Makes another library's array of NumPy's: torch.from_dlpack, jax.numpy.asarray.
 ArrayMaker = Callable[[Array], Any]
+
+
+#: What `device` may be.
+DEVICES = ("cuda", "emulated")
 
 
 @dataclass(frozen=True)
@@ -39,8 +45,12 @@ def prepared(
     threads: int = 1,
     workers: int = 1,
     components: int | None = None,
+    device: str | None = None,
 ) -> Iterator[PreparedIntegrand]:
     """The integrand of a call of integrate(), and the processes that evaluate it meanwhile."""
+    if device is not None or is_text(f):
+        yield _on_device(f, region, batch, out, array, threads, workers, components, device)
+        return
     native = c_function(f, region.dimensions)
     if native is not None:
         _refuse_options_of_python(batch, out, array, workers)
@@ -71,12 +81,39 @@ def prepared(
         yield _with_components(pool, components, region, count)
 
 
-def _refuse_options_of_python(batch: bool, out: bool, array: ArrayMaker | None, workers: int) -> None:
+def _on_device(
+    f: Any,
+    region: Domain,
+    batch: bool,
+    out: bool,
+    array: ArrayMaker | None,
+    threads: int,
+    workers: int,
+    components: int | None,
+    device: str | None,
+) -> PreparedIntegrand:
+    if device is None:
+        raise Error("integrand: a text was given; expected a function, or device='cuda' with a formula or a source")
+    if not isinstance(device, str) or device not in DEVICES:
+        raise Error("device: " + unknown("device", str(device), DEVICES))
+    if not is_text(f):
+        raise Error(
+            f"device: an object of type '{type(f).__name__}' was given as integrand; expected a formula, a list of "
+            "formulas, or a source in C or CUDA C++"
+        )
+    _refuse_options_of_python(batch, out, array, workers, "compiled for a device")
+    function, count = device_function(f, device, region.dimensions, components)
+    return PreparedIntegrand(function, count, threads)
+
+
+def _refuse_options_of_python(
+    batch: bool, out: bool, array: ArrayMaker | None, workers: int, what: str = "a C function"
+) -> None:
     given = {"batch": not batch, "out": out, "array": array is not None, "workers": workers != 1}
     for name, is_given in given.items():
         if is_given:
-            hint = "; threads=N runs a C function on N processors" if name == "workers" else ""
-            raise Error(f"{name}: it is for functions of Python, and the integrand is a C function{hint}")
+            hint = "; threads=N runs a C function on N processors" if (name, what) == ("workers", "a C function") else ""
+            raise Error(f"{name}: it is for functions of Python, and the integrand is {what}{hint}")
 
 
 def _batch_form(f: Any, batch: bool, one_variable: bool, array: ArrayMaker | None) -> Callable[..., Any]:

@@ -112,6 +112,7 @@ def integrate(
     seed: int = 0,
     threads: int = 1,
     workers: int = 1,
+    device: str | None = None,
     batch: bool = True,
     out: bool = False,
     array: ArrayMaker | None = None,
@@ -150,6 +151,11 @@ def integrate(
     for long; 0: one for each processor. Slow functions of Python take `workers`, processes that evaluate f; 0: one
     for each processor.
 
+    device: 'cuda' draws and evaluates the points on a GPU, for the methods basic, quasi, vegas and vegas_sobol. f is
+    then a formula such as 'exp(-x*x)*y' (variables x, y, z, or x1 to xn of more than three), a list of formulas, or a
+    source in C or CUDA C++ with the function double integrand(int n, const double *x); docs/accelerator.md.
+    'emulated' runs the same code on the processor, to check it.
+
     components: the m of f's shape (n, m); 0 for shape (n,). Without it f is called once more, with five to
     eight points, to see.
 
@@ -174,6 +180,7 @@ def integrate(
         seed=seed,
         threads=threads,
         workers=workers,
+        device=device,
         batch=batch,
         out=out,
         array=array,
@@ -200,6 +207,7 @@ def integrate_log(
     seed: int = 0,
     threads: int = 1,
     workers: int = 1,
+    device: str | None = None,
     batch: bool = True,
     out: bool = False,
     array: ArrayMaker | None = None,
@@ -234,6 +242,7 @@ def integrate_log(
         seed=seed,
         threads=threads,
         workers=workers,
+        device=device,
         batch=batch,
         out=out,
         array=array,
@@ -263,6 +272,7 @@ def _run(
     seed: int,
     threads: int,
     workers: int,
+    device: str | None,
     batch: bool,
     out: bool,
     array: ArrayMaker | None,
@@ -297,7 +307,7 @@ def _run(
         raise Error(f"components: {components!r} was given; expected a whole number that is not negative")
     if not (isinstance(progress, bool) or callable(progress)):
         raise Error(f"progress: {progress!r} was given; expected True, False or a function")
-    with prepared(f, region, batch, out, array, int(threads), int(workers), components) as integrand:
+    with prepared(f, region, batch, out, array, int(threads), int(workers), components, device) as integrand:
         watch = IntegrationProgress(made is log_from_core) if progress is True else progress
         report = None
         vector = integrand.components > 0

@@ -27,6 +27,7 @@ void bind_distributions(nb::module_& m);
 void bind_techniques(nb::module_& m);
 void bind_methods(nb::module_& m);
 void bind_c_functions(nb::module_& m);
+void bind_devices(nb::module_& m);
 void bind_trained(nb::module_& m); // trained densities and their samples
 void bind_integrate(nb::module_& m);
 void bind_metropolis(nb::module_& m);

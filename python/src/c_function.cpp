@@ -1,6 +1,7 @@
 #include "python/src/c_function.h"
 
 #include "python/src/bindings.h"
+#include "python/src/devices.h"
 #include "python/src/python_function.h"
 #include <algorithm>
 #include <array>
@@ -151,6 +152,7 @@ Integrand CFunction::integrand(int components) const {
 
 Integrand integrand_of(const nb::object& f, int components, bool into) {
     if (nb::isinstance<CFunction>(f)) return nb::cast<const CFunction&>(f).integrand(components);
+    if (nb::isinstance<CompiledFunction>(f)) return nb::cast<const CompiledFunction&>(f).integrand();
     return integrand_of(PythonFunction(f, "integrand"), components, into);
 }
 

@@ -40,6 +40,7 @@ NB_MODULE(_core, m) {
     bind_trained(m);
     bind_methods(m);
     bind_c_functions(m);
+    bind_devices(m);
     bind_integrate(m);
     bind_metropolis(m);
     bind_points(m);

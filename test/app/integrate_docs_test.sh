@@ -31,7 +31,7 @@ split() {
     ' "$1"
 }
 
-for page in integration.md sampling.md usage.md start.md tutorials/integrate.md; do
+for page in accelerator.md integration.md sampling.md usage.md start.md tutorials/integrate.md; do
     mkdir -p "$folder/$page" && cd "$folder/$page" || exit 1
     split "$docs/$page"
     for command in *.command; do

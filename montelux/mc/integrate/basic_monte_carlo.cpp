@@ -1,5 +1,6 @@
 #include "montelux/mc/integrate/basic_monte_carlo.h"
 
+#include "montelux/mc/integrate/device_values.h"
 #include "montelux/mc/integrate/sampling.h"
 #include "montelux/mc/integrate/unit_points.h"
 
@@ -9,23 +10,34 @@ namespace {
 class BasicEstimator final : public Estimator {
   public:
     explicit BasicEstimator(const Problem& problem)
-        : problem_(problem), sum_{empty_moments(), {}, ExtremeValues(problem.evaluator.components())} {}
+        : problem_(problem),
+          device_(DeviceValues::of(problem.evaluator)), sum_{empty_moments(),
+                                                             {},
+                                                             ExtremeValues(problem.evaluator.components())} {}
 
     StepOutcome step(const StepRequest& request) override {
         const std::uint64_t done = sum_.moments.count();
         const std::uint64_t size = next_step_size(done, 4096, request.max_evaluations);
         if (size == 0) return StepOutcome::exhausted;
         const Evaluator& g = problem_.evaluator;
-        auto sum = sum_batches(
-            size,
+        auto sum = sum_blocks(
+            size, device_.get(),
+            [&](std::uint64_t first, std::uint64_t count) {
+                device_->draw_random(problem_.seed, 0, done + first, count);
+            },
             [&] {
                 return SampleMoments{empty_moments(), {}, sum_.extremes.empty()};
             },
-            [&](std::uint64_t first, std::uint64_t count, SampleMoments& to) {
-                PointBuffer u(count, g.dimensions());
+            [&](std::uint64_t first, std::uint64_t count, std::uint64_t number, SampleMoments& to) {
                 ValueBuffer values(count, g.components());
-                fill_random(u, problem_.seed, 0, done + first);
-                g(u, values, to.non_finite);
+                const auto fill = [&](PointBuffer& u) { fill_random(u, problem_.seed, 0, done + first); };
+                if (device_) {
+                    device_->read(number, values, fill, to.non_finite);
+                } else {
+                    PointBuffer u(count, g.dimensions());
+                    fill(u);
+                    g(u, values, to.non_finite);
+                }
                 to.add(values);
             },
             request.cancel);
@@ -58,6 +70,7 @@ class BasicEstimator final : public Estimator {
     }
 
     Problem problem_;
+    std::unique_ptr<DeviceValues> device_; // null: the processor
     SampleMoments sum_;
 };
 

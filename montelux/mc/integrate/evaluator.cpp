@@ -20,9 +20,11 @@ Evaluator::Evaluator(Integrand integrand, Domain domain, NonFinitePolicy policy)
         throw Error("integrate", "expected an integrand with at least one component");
     const int fixed = integrand_.fixed_dimensions();
     if (fixed != 0 && fixed != domain_.dimensions())
-        throw Error("integrate", "the integrand takes one number, but the domain (" + domain_.description() +
-                                     ") has " + std::to_string(domain_.dimensions()) +
-                                     " dimensions; expected f(std::span<const double>)");
+        throw Error("integrate", "the integrand takes " +
+                                     (fixed == 1 ? "one number" : std::to_string(fixed) + " numbers") +
+                                     ", but the domain (" + domain_.description() + ") has " +
+                                     std::to_string(domain_.dimensions()) + " dimensions" +
+                                     (fixed == 1 ? "; expected f(std::span<const double>)" : ""));
 }
 
 void Evaluator::screen(const PointBatch& x, ValueBatch values, NonFiniteCount& non_finite,
@@ -57,6 +59,32 @@ void Evaluator::screen(const PointBatch& x, ValueBatch values, NonFiniteCount& n
     }
 }
 
+void Evaluator::scale(ValueBatch g, const double* volume) const {
+    const double constant = domain_.constant_volume();
+    for (int c = 0; c < g.components(); ++c) {
+        std::span<double> values = g.component(c);
+        if (constant != 0)
+            for (double& v : values) v *= constant;
+        else // 0 * infinity: far out the integrand may underflow where the volume overflows
+            for (std::size_t i = 0; i < values.size(); ++i)
+                values[i] = values[i] == 0 ? 0 : values[i] * volume[i];
+    }
+}
+
+void Evaluator::complete(ValueBatch g, const double* volume, const std::function<void(PointBuffer&)>& points,
+                         NonFiniteCount& non_finite) const {
+    if (!domain_.is_unit_cube()) scale(g, volume);
+    double sum = 0; // zero unless a value is not finite
+    for (int c = 0; c < g.components(); ++c)
+        for (double v : g.component(c)) sum += v * 0;
+    if (sum == 0) return;
+    PointBuffer u(g.count(), domain_.uniforms()), x(g.count(), domain_.dimensions());
+    points(u);
+    std::vector<double> ignored(g.count(), 1.0);
+    domain_.map(u, x, ignored);
+    screen(x, g, non_finite);
+}
+
 void Evaluator::at_points(const PointBatch& x, ValueBatch f, NonFiniteCount& non_finite) const {
     integrand_(x, f);
     screen(x, f, non_finite);
@@ -74,18 +102,10 @@ void Evaluator::operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& no
     PointBuffer x = std::move(x_buffer);
     std::vector<double> volume = std::move(volume_buffer);
     x.resize(u.count(), domain_.dimensions());
-    const double constant = domain_.constant_volume();
     volume.assign(u.count(), 1.0);
     domain_.map(u, x, volume);
     integrand_(x, g);
-    for (int c = 0; c < g.components(); ++c) {
-        std::span<double> values = g.component(c);
-        if (constant != 0)
-            for (double& v : values) v *= constant;
-        else // 0 * infinity: far out the integrand may underflow where the volume overflows
-            for (std::size_t i = 0; i < values.size(); ++i)
-                values[i] = values[i] == 0 ? 0 : values[i] * volume[i];
-    }
+    scale(g, volume.data());
     screen(x, g, non_finite, where);
     x_buffer = std::move(x);
     volume_buffer = std::move(volume);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "montelux/mc/integrate/domain.h"
@@ -44,10 +45,17 @@ class Evaluator {
     void operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& non_finite,
                     std::vector<std::size_t>* where = nullptr) const;
 
+    // Makes g of values f that a device computed at points of the unit cube; `volume` is null where the change of
+    // volume is constant. `points` fills in those points, and is called where a value is not finite.
+    void complete(ValueBatch g, const double* volume, const std::function<void(PointBuffer&)>& points,
+                  NonFiniteCount& non_finite) const;
+
     // f at points x of the domain, for estimators that draw these themselves; not-finite values as above.
     void at_points(const PointBatch& x, ValueBatch f, NonFiniteCount& non_finite) const;
 
   private:
+    // Multiplies by the change of volume: the constant one, or else `volume` of each point.
+    void scale(ValueBatch g, const double* volume) const;
     void screen(const PointBatch& x, ValueBatch values, NonFiniteCount& non_finite,
                 std::vector<std::size_t>* where = nullptr) const;
 

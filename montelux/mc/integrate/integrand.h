@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -13,6 +14,18 @@
 #include "montelux/mc/integrate/points.h"
 
 namespace montelux {
+
+class DeviceFunction;
+
+// Where an integrand is evaluated at points that a device draws, and what happens to its values besides.
+struct OnDevice {
+    std::shared_ptr<const DeviceFunction> function; // null: on no device
+    // Called before a number of points is evaluated, and with their values after it; may throw.
+    std::vector<std::function<void(std::size_t)>> before = {};
+    std::vector<std::function<void(ValueBatch)>> after = {};
+    // Points that are evaluated at a time: enough to hide the start of a kernel.
+    std::size_t block = 1 << 20;
+};
 
 // A function in one of the forms that users write, called once per batch. Functions are called from several
 // threads at once and must not depend on the order of calls. They may throw: the integration then ends with
@@ -61,16 +74,26 @@ class Integrand {
         return Integrand(components, std::move(f));
     }
 
+    // From a function that a device compiled. Estimators that can have their points drawn there do so.
+    static Integrand compiled(std::shared_ptr<const DeviceFunction> f);
+
     // Number of variables that the form fixes: 1 for f(double), 0 where any will do.
     int fixed_dimensions() const { return dimensions_; }
     int components() const { return components_; }
 
     void operator()(const PointBatch& x, ValueBatch y) const { function_(x, y); }
 
-    // Another function of the same variables and components.
+    // Another function of the same variables and components, on no device.
     Integrand with_function(BatchFunction f) const {
         Integrand other(components_, std::move(f));
         other.dimensions_ = dimensions_;
+        return other;
+    }
+    const OnDevice& on_device() const { return on_device_; }
+    // The same integrand, evaluated in this way on a device.
+    Integrand with_device(OnDevice device) const {
+        Integrand other = *this;
+        other.on_device_ = std::move(device);
         return other;
     }
 
@@ -90,6 +113,7 @@ class Integrand {
     }
 
     BatchFunction function_;
+    OnDevice on_device_{};
     int dimensions_ = 0;
     int components_;
 };

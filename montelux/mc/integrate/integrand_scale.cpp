@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "montelux/mc/math/error.h"
 
@@ -113,10 +114,17 @@ void IntegrandScale::load(StateReader& state) {
 }
 
 Integrand scaled(const Integrand& f, IntegrandScale& scale) {
-    return f.with_function([f, &scale](const PointBatch& x, ValueBatch y) {
-        f(x, y);
+    const auto apply = [&scale](ValueBatch y) {
         for (int c = 0; c < y.components(); ++c) scale.apply(static_cast<std::size_t>(c), y.component(c));
-    });
+    };
+    OnDevice device = f.on_device();
+    device.after.emplace_back(apply);
+    return f
+        .with_function([f, apply](const PointBatch& x, ValueBatch y) {
+            f(x, y);
+            apply(y);
+        })
+        .with_device(std::move(device));
 }
 
 } // namespace montelux

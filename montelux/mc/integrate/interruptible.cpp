@@ -1,6 +1,7 @@
 #include "montelux/mc/integrate/interruptible.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace montelux {
 namespace {
@@ -50,12 +51,16 @@ void Interruption::evaluate_in_parallel(const Integrand& f, const PointBatch& x,
     });
 }
 
+void Interruption::begin(std::size_t points) {
+    if (cancelled() || late()) throw IntegrandInterrupted{};
+    evaluations_.fetch_add(points, std::memory_order_relaxed);
+}
+
 // `whole` points make a slice that is not the last of its batch; `slice` is what a slice held at most.
 void Interruption::evaluate_slice(const Integrand& f, const PointBatch& x, ValueBatch y, std::size_t whole,
                                   std::size_t slice) {
-    if (cancelled() || late()) throw IntegrandInterrupted{};
     const std::size_t n = x.count();
-    evaluations_.fetch_add(n, std::memory_order_relaxed);
+    begin(n);
     if (slice >= fast && n < worth_timing) return f(x, y);
 
     const Clock::time_point begin = Clock::now();
@@ -72,8 +77,12 @@ void Interruption::evaluate_slice(const Integrand& f, const PointBatch& x, Value
 }
 
 Integrand interruptible(const Integrand& f, Interruption& interruption) {
-    return f.with_function(
-        [f, &interruption](const PointBatch& x, ValueBatch y) { interruption.evaluate(f, x, y); });
+    OnDevice device = f.on_device();
+    device.before.emplace_back([&interruption](std::size_t points) { interruption.begin(points); });
+    return f
+        .with_function(
+            [f, &interruption](const PointBatch& x, ValueBatch y) { interruption.evaluate(f, x, y); })
+        .with_device(std::move(device));
 }
 
 } // namespace montelux

@@ -35,6 +35,8 @@ class Interruption {
   private:
     friend Integrand interruptible(const Integrand& f, Interruption& interruption);
     void evaluate(const Integrand& f, const PointBatch& x, ValueBatch y);
+    // Throws IntegrandInterrupted, or counts points that are evaluated next.
+    void begin(std::size_t points);
     void evaluate_in_parallel(const Integrand& f, const PointBatch& x, ValueBatch y, std::size_t slice);
     void evaluate_slice(const Integrand& f, const PointBatch& x, ValueBatch y, std::size_t whole,
                         std::size_t slice);

@@ -59,4 +59,12 @@ Method Method::named(std::string_view name) {
 
 std::span<const std::string_view> Method::names() { return method_names; }
 
+std::unique_ptr<Estimator> Method::estimator(const Problem& problem) const {
+    if (!on_device_ && problem.evaluator.integrand().on_device().function)
+        throw Error("integrate",
+                    "the method '" + name_ +
+                        "' does not run on a device; expected basic, quasi, vegas or vegas_sobol");
+    return make_(problem);
+}
+
 } // namespace montelux

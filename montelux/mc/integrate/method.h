@@ -28,7 +28,8 @@ class Method {
     template <typename S>
     requires(!std::same_as<S, Method> && MethodSettings<S>) // not the copy constructor
         Method(S settings)
-        : name_(S::name), make_([settings](const Problem& problem) { return settings.estimator(problem); }) {}
+        : name_(S::name), on_device_(draws_on_device<S>()),
+          make_([settings](const Problem& problem) { return settings.estimator(problem); }) {}
 
     // A method by name with its default settings; throws Error that lists the names.
     static Method named(std::string_view name);
@@ -36,10 +37,22 @@ class Method {
     static std::span<const std::string_view> names();
 
     const std::string& name() const { return name_; }
-    std::unique_ptr<Estimator> estimator(const Problem& problem) const { return make_(problem); }
+    // Can its points be drawn on a device?
+    bool on_device() const { return on_device_; }
+    // Throws Error where the integrand is on a device and the method does not run there.
+    std::unique_ptr<Estimator> estimator(const Problem& problem) const;
 
   private:
+    template <typename S>
+    static constexpr bool draws_on_device() {
+        if constexpr (requires { S::on_device; })
+            return S::on_device;
+        else
+            return false;
+    }
+
     std::string name_;
+    bool on_device_ = false;
     std::function<std::unique_ptr<Estimator>(const Problem&)> make_;
 };
 

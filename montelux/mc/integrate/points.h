@@ -105,6 +105,8 @@ class ValueBatch {
     double& operator()(std::size_t point, int c = 0) const {
         return data_[static_cast<std::size_t>(c) * stride_ + point];
     }
+    // Distance between the components of a value.
+    std::size_t stride() const { return stride_; }
     // Those of points [first, first + count).
     ValueBatch slice(std::size_t first, std::size_t count) const {
         return {data_ + first, count, components_, stride_};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "montelux/mc/integrate/points.h"
@@ -25,9 +26,12 @@ class ScrambledSobol {
     // Fills u, which has this many dimensions, with points first, first + 1, ...
     void fill(PointBuffer& u, std::uint64_t first) const;
 
+    // For those who compute the points elsewhere: a key of each dimension, and 32 bit-reversed generator columns.
+    std::span<const std::uint32_t> keys() const { return keys_; }
+    std::span<const std::uint32_t> columns() const { return columns_; }
+
   private:
     std::vector<std::uint32_t> keys_;
-    // Bit-reversed generator columns, 32 per dimension.
     std::vector<std::uint32_t> columns_;
 };
 

@@ -2,8 +2,9 @@
 
 #include <bit>
 #include <cmath>
-#include <limits>
 
+#include "montelux/mc/integrate/device_values.h"
+#include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/lane_sum.h"
 #include "montelux/mc/integrate/quasi/randomised_points.h"
 #include "montelux/mc/integrate/replicates.h"
@@ -12,7 +13,6 @@
 namespace montelux {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t first_points = 64;
 constexpr std::uint64_t limited = std::uint64_t{1} << 50; // more evaluations than any run makes
 
@@ -35,10 +35,14 @@ class QuasiEstimator final : public Estimator {
         : problem_(problem), kind_(settings.points),
           randomisation_(settings.randomisation.value_or(best_randomisation(kind_))),
           plain_(randomisation_ == Randomisation::none && kind_ != PointSetKind::independent),
-          asked_(settings.replicates), completed_extremes_(problem.evaluator.components()),
-          running_extremes_(completed_extremes_) {
+          asked_(settings.replicates), device_(DeviceValues::of(problem.evaluator)),
+          completed_extremes_(problem.evaluator.components()), running_extremes_(completed_extremes_) {
         if (asked_ < 0 || asked_ == 1 || asked_ > 65536)
             throw Error("quasi", std::to_string(asked_) + " replicates; expected 2 to 65536, or 0");
+        if (device_ && (kind_ != PointSetKind::sobol || randomisation_ != Randomisation::scramble))
+            throw Error("quasi", "a device draws scrambled Sobol' points only, not '" +
+                                     std::string(to_string(kind_)) + "' with the randomisation '" +
+                                     std::string(to_string(randomisation_)) + "'");
         // Throws at once if the set does not exist.
         RandomisedPoints(kind_, randomisation_, problem_.evaluator.dimensions(), 1, 0, 0);
     }
@@ -83,7 +87,7 @@ class QuasiEstimator final : public Estimator {
         tally.statistical = !plain_;
         const auto m = static_cast<std::size_t>(problem_.evaluator.components());
         tally.value.assign(m, 0.0);
-        tally.standard_error.assign(m, infinite);
+        tally.standard_error.assign(m, infinity);
         tally.ready = false;
         if (points_ == 0) return tally;
         tally_mean(completed_.moments(points_, problem_.full_covariance), tally);
@@ -195,6 +199,10 @@ class QuasiEstimator final : public Estimator {
             sets.emplace_back(kind_, randomisation_, problem_.evaluator.dimensions(),
                               static_cast<std::uint32_t>(std::min<std::uint64_t>(set, ~std::uint32_t{0})),
                               problem_.seed, static_cast<std::uint32_t>(r));
+        if (device_) {
+            device_->set_replicates(problem_.seed, 0, sums.replicates());
+            device_->draw_sobol(begin, size);
+        }
         const bool whole = parallel_for(
             static_cast<std::int64_t>(slots.size()),
             [&](std::int64_t task) {
@@ -208,10 +216,16 @@ class QuasiEstimator final : public Estimator {
                 ValueBuffer values;
                 for (std::uint64_t first = from; first < to; first += batch_size) {
                     const std::uint64_t count = std::min(batch_size, to - first);
-                    u.resize(count, problem_.evaluator.dimensions());
                     values.resize(count, m);
-                    replicate.fill(u, begin + first);
-                    problem_.evaluator(u, values, slot.non_finite);
+                    if (device_) {
+                        device_->read(
+                            static_cast<std::uint64_t>(task) / parts * size + first, values,
+                            [&](PointBuffer& at) { replicate.fill(at, begin + first); }, slot.non_finite);
+                    } else {
+                        u.resize(count, problem_.evaluator.dimensions());
+                        replicate.fill(u, begin + first);
+                        problem_.evaluator(u, values, slot.non_finite);
+                    }
                     for (int c = 0; c < m; ++c) {
                         std::span<const double> v = std::as_const(values).component(c);
                         slot.sums[static_cast<std::size_t>(c)] +=
@@ -299,7 +313,8 @@ class QuasiEstimator final : public Estimator {
     Randomisation randomisation_;
     bool plain_;
     int asked_;
-    int replicates_ = 0; // 0 before the first step
+    std::unique_ptr<DeviceValues> device_; // null: the processor
+    int replicates_ = 0;                   // 0 before the first step
     // Points of each replicate: in the estimate; to be reached; and done on the way there.
     std::uint64_t points_ = 0, next_ = 0, position_ = 0;
     std::uint64_t evaluations_ = 0;

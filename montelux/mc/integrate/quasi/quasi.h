@@ -30,6 +30,7 @@ namespace montelux {
 // unknown, infinite.
 struct Quasi {
     static constexpr std::string_view name = "quasi";
+    static constexpr bool on_device = true;
 
     PointSetKind points = PointSetKind::sobol;
     // Empty: Owen's scrambling where it exists, else a random shift (independent points need neither).

@@ -23,6 +23,7 @@ class Hypercubes {
     std::uint64_t count() const { return variances_.size(); }
     // s_d.
     int strata(int d) const { return strata_[static_cast<std::size_t>(d)]; }
+    std::span<const int> strata() const { return strata_; }
 
     // The finest grid of at most `most` boxes whose s_d differ by one at most, larger ones first. A new box
     // inherits the spread of the old one around its centre.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "montelux/mc/integrate/device_values.h"
 #include "montelux/mc/integrate/lane_sum.h"
 
 namespace montelux {
@@ -14,6 +15,37 @@ void MappedPoints::evaluate(const Evaluator& g, const AdaptiveMap& map, const Po
     jacobian_.assign(y.count(), 1.0);
     map.map(y, x_, jacobian_);
     g(x_, values_, non_finite);
+    finish(inverse_scale);
+}
+
+void MappedPoints::evaluate(const Evaluator& g, const AdaptiveMap& map, const DeviceValues& device,
+                            std::uint64_t number, std::size_t n,
+                            const std::function<void(PointBuffer&)>& uniform,
+                            std::span<const double> inverse_scale, NonFiniteCount& non_finite) {
+    values_.resize(n, g.components());
+    const std::span<const double> jacobian = device.jacobian(number, n);
+    jacobian_.assign(jacobian.begin(), jacobian.end());
+    const auto fill = [&](PointBuffer& x) {
+        PointBuffer y(n, x.dimensions());
+        uniform(y);
+        std::vector<double> ignored(n, 1.0);
+        map.map(y, x, ignored);
+    };
+    device.read(number, values_, fill, non_finite);
+    finish(inverse_scale);
+}
+
+void MappedPoints::evaluate_uniform(const Evaluator& g, const AdaptiveMap& map, const PointBatch& x,
+                                    const DeviceValues& device, std::uint64_t number,
+                                    std::span<const double> inverse_scale, NonFiniteCount& non_finite) {
+    x_.resize(x.count(), x.dimensions());
+    values_.resize(x.count(), g.components());
+    jacobian_.assign(x.count(), 1.0);
+    map.inverse(x, x_, jacobian_);
+    const auto fill = [&](PointBuffer& u) {
+        for (int d = 0; d < x.dimensions(); ++d) std::ranges::copy(x.coordinate(d), u.coordinate(d).begin());
+    };
+    device.read(number, values_, fill, non_finite);
     finish(inverse_scale);
 }
 

@@ -1,6 +1,8 @@
 // An integrand under an adaptive map: values at a batch of points, and sums that judge the map.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -10,6 +12,8 @@
 
 namespace montelux {
 
+class DeviceValues;
+
 // Buffers of a batch, used again and again.
 class MappedPoints {
   public:
@@ -17,8 +21,16 @@ class MappedPoints {
     // `inverse_scale` holds, for each component, 1 over its typical size.
     void evaluate(const Evaluator& g, const AdaptiveMap& map, const PointBatch& y,
                   std::span<const double> inverse_scale, NonFiniteCount& non_finite);
+    // The same of points number, number + 1, ... that a device drew; `uniform` fills in their places y.
+    void evaluate(const Evaluator& g, const AdaptiveMap& map, const DeviceValues& device,
+                  std::uint64_t number, std::size_t n, const std::function<void(PointBuffer&)>& uniform,
+                  std::span<const double> inverse_scale, NonFiniteCount& non_finite);
     // The same at points x of the integrand's cube, as if the map had drawn them.
     void evaluate_uniform(const Evaluator& g, const AdaptiveMap& map, const PointBatch& x,
+                          std::span<const double> inverse_scale, NonFiniteCount& non_finite);
+    // The same at points that a device drew.
+    void evaluate_uniform(const Evaluator& g, const AdaptiveMap& map, const PointBatch& x,
+                          const DeviceValues& device, std::uint64_t number,
                           std::span<const double> inverse_scale, NonFiniteCount& non_finite);
 
     std::size_t count() const { return jacobian_.size(); }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "montelux/mc/integrate/device_values.h"
 #include "montelux/mc/integrate/unit_points.h"
 #include "montelux/mc/math/special.h"
 
@@ -31,22 +32,28 @@ struct UniformSum {
 
 } // namespace
 
-bool UniformCheck::run(const Problem& problem, const AdaptiveMap& map, const MapInsight& insight,
-                       double weight, std::uint64_t points, std::uint32_t stream,
+bool UniformCheck::run(const Problem& problem, DeviceValues* device, const AdaptiveMap& map,
+                       const MapInsight& insight, double weight, std::uint64_t points, std::uint32_t stream,
                        std::span<const double> inverse_scale, NonFiniteCount& non_finite,
                        const CancelFlag* cancel) {
     const Evaluator& g = problem.evaluator;
     const int components = g.components();
-    const auto sum = sum_batches(
-        points,
+    const auto sum = sum_blocks(
+        points, device,
+        [&](std::uint64_t first, std::uint64_t count) {
+            device->draw_random(problem.seed, stream, first, count);
+        },
         [&] {
             return UniformSum{CovarianceMoments(components, false), 0, {}};
         },
-        [&](std::uint64_t first, std::uint64_t count, UniformSum& to) {
+        [&](std::uint64_t first, std::uint64_t count, std::uint64_t number, UniformSum& to) {
             PointBuffer x(count, g.dimensions());
             fill_random(x, problem.seed, stream, first);
             MappedPoints mapped;
-            mapped.evaluate_uniform(g, map, x, inverse_scale, to.non_finite);
+            if (device)
+                mapped.evaluate_uniform(g, map, x, *device, number, inverse_scale, to.non_finite);
+            else
+                mapped.evaluate_uniform(g, map, x, inverse_scale, to.non_finite);
             std::vector<double> one(static_cast<std::size_t>(components));
             for (std::size_t i = 0; i < count; ++i) {
                 const double inverse = 1 / mapped.jacobian()[i];

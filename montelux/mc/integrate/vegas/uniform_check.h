@@ -22,9 +22,9 @@ class UniformCheck {
     const CovarianceMoments& moments() const { return moments_; }
 
     // Evaluates `points` uniform points of stream (seed, stream), after an iteration of the map that had
-    // `weight` points and gave this insight. False (and nothing changed) when cancelled.
-    bool run(const Problem& problem, const AdaptiveMap& map, const MapInsight& insight, double weight,
-             std::uint64_t points, std::uint32_t stream, std::span<const double> inverse_scale,
+    // `weight` points and gave this insight. `device` may be null. False (and nothing changed) when cancelled.
+    bool run(const Problem& problem, DeviceValues* device, const AdaptiveMap& map, const MapInsight& insight,
+             double weight, std::uint64_t points, std::uint32_t stream, std::span<const double> inverse_scale,
              NonFiniteCount& non_finite, const CancelFlag* cancel);
 
     // Warnings for the result and its errors.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "montelux/mc/integrate/device_values.h"
 #include "montelux/mc/integrate/extreme_values.h"
 #include "montelux/mc/integrate/trained/unit_density.h"
 #include "montelux/mc/integrate/unit_points.h"
@@ -71,7 +72,7 @@ void VegasState::load(StateReader& state) {
 }
 
 VegasEstimator::VegasEstimator(const Problem& problem, const Vegas& settings, int least_evaluations)
-    : problem_(problem),
+    : problem_(problem), device_(DeviceValues::of(problem.evaluator)),
       settings_(settings), state_{.map = settings.map ? *settings.map
                                                       : AdaptiveMap(problem.evaluator.dimensions(), 16),
                                   .average = IterationAverage(problem.evaluator.components(),
@@ -91,6 +92,14 @@ VegasEstimator::VegasEstimator(const Problem& problem, const Vegas& settings, in
                                  " dimensions; the integrand takes " +
                                  std::to_string(problem.evaluator.dimensions()));
     if (problem.evaluator.components() == 1) state_.inverse_scale = {1};
+}
+
+void VegasEstimator::use_map(const AdaptiveMap& map) const {
+    if (!device_) return;
+    std::vector<double> edges;
+    for (int d = 0; d < map.dimensions(); ++d)
+        edges.insert(edges.end(), map.edges(d).begin(), map.edges(d).end());
+    device_->sampler().set_map(edges, map.increments());
 }
 
 bool VegasEstimator::run_pilot(VegasState& next, const StepRequest& request, std::uint64_t& used) const {

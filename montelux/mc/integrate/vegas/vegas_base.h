@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "montelux/mc/integrate/device_values.h"
 #include "montelux/mc/integrate/iteration_average.h"
 #include "montelux/mc/integrate/vegas/mapped_points.h"
 #include "montelux/mc/integrate/vegas/uniform_check.h"
@@ -76,7 +78,11 @@ class VegasEstimator : public Estimator {
     virtual void save_more(StateWriter&) const {}
     virtual void load_more(StateReader&) {}
 
+    // Gives the map to the device's points.
+    void use_map(const AdaptiveMap& map) const;
+
     Problem problem_;
+    std::unique_ptr<DeviceValues> device_; // null: the processor
     Vegas settings_;
     VegasState state_;
 

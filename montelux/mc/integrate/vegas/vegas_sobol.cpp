@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 
+#include "montelux/mc/integrate/device_values.h"
 #include "montelux/mc/integrate/lane_sum.h"
 #include "montelux/mc/integrate/replicates.h"
 #include "montelux/mc/integrate/sampling.h"
@@ -58,8 +59,8 @@ class SobolVegas final : public VegasEstimator {
         if (!pass) return StepOutcome::cancelled;
         const std::uint64_t all = points * replicates(), uniform = uniform_points(all);
         next.non_finite.merge(pass->insight.non_finite);
-        if (!next.check.run(problem_, next.map, pass->insight, static_cast<double>(all), uniform,
-                            next.stream++, next.inverse_scale, next.non_finite, request.cancel))
+        if (!next.check.run(problem_, device_.get(), next.map, pass->insight, static_cast<double>(all),
+                            uniform, next.stream++, next.inverse_scale, next.non_finite, request.cancel))
             return StepOutcome::cancelled;
         next.evaluations += used + all + uniform;
         note_iteration(next, pass->insight, static_cast<double>(all));
@@ -116,7 +117,8 @@ class SobolVegas final : public VegasEstimator {
         const double room = static_cast<double>(limit) / (1 + settings_.uniform_share);
         const auto most = static_cast<std::uint64_t>(room / static_cast<double>(replicates()));
         const std::uint64_t large =
-            std::bit_floor(std::max({large_step / replicates(), iteration.points / 8, std::uint64_t{1}}));
+            std::bit_floor(std::max({large_step / replicates(), device_ ? 0 : iteration.points / 8,
+                                     std::uint64_t{1}})); // a device keeps the values of a step
         const std::uint64_t start = std::max(first_points, iteration.length / iteration_growth);
         const std::uint64_t wanted = std::min(iteration.points == 0 ? start : iteration.points, large);
         // At the end of the budget the largest power of two that fits; a small remainder is not used.
@@ -128,13 +130,19 @@ class SobolVegas final : public VegasEstimator {
     std::optional<ReplicatePass> sample(const VegasState& next, std::uint32_t stream, std::uint64_t first,
                                         std::uint64_t points, bool training, const CancelFlag* cancel) const {
         const std::uint64_t runs = (points + vegas_task_points - 1) / vegas_task_points;
+        if (device_) {
+            use_map(next.map);
+            device_->set_replicates(problem_.seed, stream * 1024, settings_.replicates);
+            device_->draw_sobol(first, points);
+        }
         return parallel_reduce_ordered(
             static_cast<std::int64_t>(runs * replicates()),
             [&](std::int64_t t) {
                 const auto replicate = static_cast<std::uint64_t>(t) / runs;
                 const std::uint64_t begin = static_cast<std::uint64_t>(t) % runs * vegas_task_points;
                 return run(next, stream, static_cast<int>(replicate), first + begin,
-                           std::min(vegas_task_points, points - begin), points * replicates(), training);
+                           std::min(vegas_task_points, points - begin), replicate * points + begin,
+                           points * replicates(), training);
             },
             [](ReplicatePass a, const ReplicatePass& b) {
                 a.merge(b);
@@ -144,7 +152,8 @@ class SobolVegas final : public VegasEstimator {
     }
 
     ReplicatePass run(const VegasState& next, std::uint32_t stream, int replicate, std::uint64_t first,
-                      std::uint64_t count, std::uint64_t all_points, bool training) const {
+                      std::uint64_t count, std::uint64_t number, std::uint64_t all_points,
+                      bool training) const {
         const Evaluator& g = problem_.evaluator;
         ReplicatePass pass{ReplicateSums(settings_.replicates, g.components()), MapInsight(g.components())};
         pass.insight.tail = next.tail.empty();
@@ -159,9 +168,17 @@ class SobolVegas final : public VegasEstimator {
         std::vector<double> weighted(batch_size);
         for (std::uint64_t done = 0; done < count; done += batch_size) {
             const std::size_t n = std::min<std::uint64_t>(batch_size, count - done);
+            const bool trains_map =
+                training && settings_.alpha > 0 &&
+                trains(stream * 1024 + static_cast<std::uint64_t>(replicate), first + done, all_points);
+            const auto fill = [&](PointBuffer& to) { sobol.fill(to, first + done); };
             y.resize(n, g.dimensions());
-            sobol.fill(y, first + done);
-            points.evaluate(g, next.map, y, next.inverse_scale, pass.insight.non_finite);
+            if (!device_ || trains_map) fill(y);
+            if (device_)
+                points.evaluate(g, next.map, *device_, number + done, n, fill, next.inverse_scale,
+                                pass.insight.non_finite);
+            else
+                points.evaluate(g, next.map, y, next.inverse_scale, pass.insight.non_finite);
             pass.insight.add(points, {share.data(), n});
             for (std::size_t i = 0; i < n; ++i) weighted[i] = std::abs(points.values(0)[i]);
             pass.insight.tail.add({weighted.data(), n});
@@ -170,8 +187,7 @@ class SobolVegas final : public VegasEstimator {
                 const double* w = points.values(c).data();
                 pass.sums.sum(replicate, c) += lane_sum(n, [&](std::size_t i) { return w[i]; });
             }
-            if (training && settings_.alpha > 0 &&
-                trains(stream * 1024 + static_cast<std::uint64_t>(replicate), first + done, all_points)) {
+            if (trains_map) {
                 // Every point of the iteration weighs the same, whichever step it came in.
                 for (std::size_t i = 0; i < n; ++i) weighted[i] = points.squares()[i];
                 static const std::vector<double> ones(batch_size, 1.0);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "montelux/mc/integrate/device_values.h"
 #include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/sampling.h"
 #include "montelux/mc/integrate/unit_points.h"
@@ -131,8 +132,8 @@ class StratifiedVegas final : public VegasEstimator {
         const double weight = static_cast<double>(taken);
         if (next.trained) {
             const std::uint64_t uniform = uniform_points(points);
-            if (!next.check.run(problem_, next.map, sum->insight, weight, uniform, next.stream + 1,
-                                next.inverse_scale, next.non_finite, request.cancel))
+            if (!next.check.run(problem_, device_.get(), next.map, sum->insight, weight, uniform,
+                                next.stream + 1, next.inverse_scale, next.non_finite, request.cancel))
                 return StepOutcome::cancelled;
             used += uniform;
             sum->estimate.points = weight;
@@ -180,10 +181,47 @@ class StratifiedVegas final : public VegasEstimator {
             tasks.back().end = h + 1;
             point += counts[h];
         }
+        if (!device_) return sample(next, cubes, counts, tasks, 0, point, variances, cancel);
+        upload(next.map, cubes, counts);
+        std::optional<IterationSum> all;
+        for (std::size_t begin = 0; begin < tasks.size();) {
+            const auto end_of = [&](std::size_t t) {
+                return t + 1 < tasks.size() ? tasks[t + 1].first_point : point;
+            };
+            const std::uint64_t first = tasks[begin].first_point;
+            std::size_t end = begin + 1;
+            while (end < tasks.size() && end_of(end) - first <= device_->block_size()) ++end;
+            device_->draw_random(problem_.seed, next.stream, first, end_of(end - 1) - first, true);
+            auto sum = sample(next, cubes, counts, std::span(tasks).subspan(begin, end - begin), first, point,
+                              variances, cancel);
+            if (!sum) return std::nullopt;
+            if (all)
+                all->merge(*sum);
+            else
+                all = std::move(sum);
+            begin = end;
+        }
+        return all;
+    }
+
+    void upload(const AdaptiveMap& map, const Hypercubes& cubes,
+                const std::vector<std::uint32_t>& counts) const {
+        use_map(map);
+        std::vector<std::uint64_t> begin{0};
+        for (const std::uint32_t n : counts) begin.push_back(begin.back() + n);
+        device_->sampler().set_boxes(begin, cubes.strata());
+    }
+
+    // A run of tasks. `block`: the number of the first point that a device drew for them.
+    std::optional<IterationSum> sample(const VegasState& next, const Hypercubes& cubes,
+                                       const std::vector<std::uint32_t>& counts, std::span<const Task> tasks,
+                                       std::uint64_t block, std::uint64_t all_points,
+                                       std::vector<double>& variances, const CancelFlag* cancel) const {
         return parallel_reduce_ordered(
             static_cast<std::int64_t>(tasks.size()),
             [&](std::int64_t t) {
-                return run(next, cubes, counts, tasks[static_cast<std::size_t>(t)], point, variances);
+                return run(next, cubes, counts, tasks[static_cast<std::size_t>(t)], block, all_points,
+                           variances);
             },
             [](IterationSum a, const IterationSum& b) {
                 a.merge(b);
@@ -193,8 +231,8 @@ class StratifiedVegas final : public VegasEstimator {
     }
 
     IterationSum run(const VegasState& next, const Hypercubes& cubes,
-                     const std::vector<std::uint32_t>& counts, const Task& task, std::uint64_t all_points,
-                     std::vector<double>& variances) const {
+                     const std::vector<std::uint32_t>& counts, const Task& task, std::uint64_t block,
+                     std::uint64_t all_points, std::vector<double>& variances) const {
         const Evaluator& g = problem_.evaluator;
         const int m = g.components(), dimensions = g.dimensions();
         const double boxes = static_cast<double>(counts.size());
@@ -221,12 +259,20 @@ class StratifiedVegas final : public VegasEstimator {
                 left -= run;
                 if (left == 0 && ++h < task.end) left = counts[h];
             }
+            const bool training = settings_.alpha > 0 && trains(next.stream, first, all_points);
+            const auto fill = [&](PointBuffer& to) {
+                fill_random(to, problem_.seed, next.stream, first);
+                cubes.place(to, {box.data(), n});
+            };
             y.resize(n, dimensions);
-            fill_random(y, problem_.seed, next.stream, first);
-            cubes.place(y, {box.data(), n});
-            points.evaluate(g, next.map, y, next.inverse_scale, sum.insight.non_finite);
+            if (!device_ || training) fill(y);
+            if (device_)
+                points.evaluate(g, next.map, *device_, first - block, n, fill, next.inverse_scale,
+                                sum.insight.non_finite);
+            else
+                points.evaluate(g, next.map, y, next.inverse_scale, sum.insight.non_finite);
             sum.insight.add(points, {share.data(), n});
-            if (settings_.alpha > 0 && trains(next.stream, first, all_points)) {
+            if (training) {
                 for (std::size_t i = 0; i < n; ++i) weighted[i] = share[i] * points.squares()[i];
                 sum.insight.training.add(y, {share.data(), n}, {weighted.data(), n});
             }

@@ -12,7 +12,7 @@ namespace {
 using std::numbers::e;
 
 const Domain unit = Domain::unit_cube(1);
-const KnownIntegral exponential{[](double x) { return std::exp(x); }, unit, {e - 1}};
+const KnownIntegral exponential_over_unit{[](double x) { return std::exp(x); }, unit, {e - 1}};
 const Integrand identity = [](double x) { return x; };
 Integrand powers(int count) {
     return Integrand::vector_valued(count, [](std::span<const double> x, std::span<double> y) {
@@ -22,13 +22,16 @@ Integrand powers(int count) {
 }
 
 TEST(ControlVariate, UnbiasedAndCalibrated) {
-    expect_unbiased_and_calibrated(exponential, ControlVariate{identity, {0.5}}, {.evaluations = 2000}, 2000);
+    expect_unbiased_and_calibrated(exponential_over_unit, ControlVariate{identity, {0.5}},
+                                   {.evaluations = 2000}, 2000);
     // Betas from few points, and several steps.
-    expect_unbiased_and_calibrated(exponential, ControlVariate{powers(3), {1 / 2.0, 1 / 3.0, 1 / 4.0}},
+    expect_unbiased_and_calibrated(exponential_over_unit,
+                                   ControlVariate{powers(3), {1 / 2.0, 1 / 3.0, 1 / 4.0}},
                                    {.evaluations = 400}, 1500);
     // A control that has nothing to say.
     expect_unbiased_and_calibrated(
-        exponential, ControlVariate{[](double x) { return std::cos(40 * std::numbers::pi * x); }, {0}},
+        exponential_over_unit,
+        ControlVariate{[](double x) { return std::cos(40 * std::numbers::pi * x); }, {0}},
         {.evaluations = 2000}, 500);
 }
 
@@ -37,13 +40,13 @@ TEST(ControlVariate, VarianceFallsByTheCorrelationSquared) {
     const double variance = (e * e - 1) / 2 - (e - 1) * (e - 1), covariance = 1 - (e - 1) / 2;
     const double left = variance - covariance * covariance * 12;
     const IntegrationResult r =
-        integrate(exponential.f, unit, ControlVariate{identity, {0.5}}, {.evaluations = 1 << 20});
+        integrate(exponential_over_unit.f, unit, ControlVariate{identity, {0.5}}, {.evaluations = 1 << 20});
     const double square = r.standard_error[0] * r.standard_error[0] * static_cast<double>(r.evaluations);
     EXPECT_NEAR(square / left, 1, 0.03);
     EXPECT_LT(left, variance / 50);
     // More controls explain more.
     const IntegrationResult three =
-        integrate(exponential.f, unit, ControlVariate{powers(3), {1 / 2.0, 1 / 3.0, 1 / 4.0}},
+        integrate(exponential_over_unit.f, unit, ControlVariate{powers(3), {1 / 2.0, 1 / 3.0, 1 / 4.0}},
                   {.evaluations = 1 << 17});
     EXPECT_LT(three.standard_error[0], 0.03 * r.standard_error[0]);
 }
@@ -78,16 +81,18 @@ TEST(ControlVariate, AnyDomain) {
 
 TEST(ControlVariate, WrongIntegralsGiveWarningsAndMistakesErrors) {
     const IntegrationResult wrong =
-        integrate(exponential.f, unit, ControlVariate{identity, {0.6}}, {.evaluations = 20000});
+        integrate(exponential_over_unit.f, unit, ControlVariate{identity, {0.6}}, {.evaluations = 20000});
     ASSERT_EQ(wrong.warnings.size(), 1u);
     EXPECT_NE(wrong.warnings[0].find("control 1 was given as 0.6"), std::string::npos) << wrong.warnings[0];
-    EXPECT_TRUE(integrate(exponential.f, unit, ControlVariate{identity, {0.5}}, {.evaluations = 20000})
-                    .warnings.empty());
-    EXPECT_THROW(integrate(exponential.f, unit, ControlVariate{identity, {}}), Error);
-    EXPECT_THROW(integrate(exponential.f, unit, ControlVariate{identity, {INFINITY}}), Error);
+    EXPECT_TRUE(
+        integrate(exponential_over_unit.f, unit, ControlVariate{identity, {0.5}}, {.evaluations = 20000})
+            .warnings.empty());
+    EXPECT_THROW(integrate(exponential_over_unit.f, unit, ControlVariate{identity, {}}), Error);
+    EXPECT_THROW(integrate(exponential_over_unit.f, unit, ControlVariate{identity, {INFINITY}}), Error);
     auto one = [](std::span<const double>) { return 1.0; };
     EXPECT_THROW(integrate(one, Domain::unit_cube(2), ControlVariate{identity, {0.5}}), Error);
-    EXPECT_THROW(integrate(exponential.f, unit, ControlVariate{identity, {0.5}}, {.evaluations = 5}), Error);
+    EXPECT_THROW(
+        integrate(exponential_over_unit.f, unit, ControlVariate{identity, {0.5}}, {.evaluations = 5}), Error);
 }
 
 TEST(ControlVariate, KeepsPromises) {

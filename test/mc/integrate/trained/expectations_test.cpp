@@ -14,7 +14,7 @@ namespace {
 
 const std::vector<double> edges{-1, -0.75, -0.5, 2};
 
-Integrand first_coordinate() {
+Integrand coordinate_of_the_first() {
     return Integrand([](std::span<const double> x) { return x[0]; });
 }
 std::vector<double> exact_bins() {
@@ -25,7 +25,7 @@ std::vector<double> exact_bins() {
 }
 
 TEST(Observables, BinsAreHalfOpenButForTheLast) {
-    const Integrand bins = histogram_bins(first_coordinate(), {0, 1, 2});
+    const Integrand bins = histogram_bins(coordinate_of_the_first(), {0, 1, 2});
     PointBuffer x(6, 1);
     const double at[] = {-0.1, 0, 0.5, 1, 2, std::nan("")};
     for (std::size_t i = 0; i < 6; ++i) x(i, 0) = at[i];
@@ -37,13 +37,14 @@ TEST(Observables, BinsAreHalfOpenButForTheLast) {
         EXPECT_EQ(y(i, 0), first[i]) << at[i];
         EXPECT_EQ(y(i, 1), second[i]) << at[i];
     }
-    EXPECT_THROW(histogram_bins(first_coordinate(), {1}), Error);
-    EXPECT_THROW(histogram_bins(first_coordinate(), {1, 1}), Error);
-    EXPECT_THROW(histogram_bins(first_coordinate(), {0, std::nan("")}), Error);
+    EXPECT_THROW(histogram_bins(coordinate_of_the_first(), {1}), Error);
+    EXPECT_THROW(histogram_bins(coordinate_of_the_first(), {1, 1}), Error);
+    EXPECT_THROW(histogram_bins(coordinate_of_the_first(), {0, std::nan("")}), Error);
 }
 
 TEST(Observables, IntegrateGivesTheMeansInOneRun) {
-    const Integrand both = together({first_coordinate(), histogram_bins(first_coordinate(), edges)});
+    const Integrand both =
+        together({coordinate_of_the_first(), histogram_bins(coordinate_of_the_first(), edges)});
     const IntegrationResult r = integrate(with_observables(CutBells::value, both), CutBells::domain(),
                                           Vegas{}, {.evaluations = 100'000});
     ASSERT_EQ(r.value.size(), 5u);
@@ -79,7 +80,7 @@ TEST(Expectations, HistogramsAreCalibratedWithTheirCovariance) {
         absolute.push_back(bin);
         normalised.push_back(bin / all);
     }
-    const Integrand bins = histogram_bins(first_coordinate(), edges);
+    const Integrand bins = histogram_bins(coordinate_of_the_first(), edges);
     std::vector<double> p_absolute, p_normalised;
     for (std::uint64_t seed = 0; seed < 800; ++seed) {
         SamplingOptions options;
@@ -100,7 +101,7 @@ TEST(Expectations, HistogramsAreCalibratedWithTheirCovariance) {
 
 TEST(Expectations, ThreadsChangeNoBitAndLogarithmsNothing) {
     const TrainedDensity density = cut_bells(Vegas{});
-    const Integrand bins = histogram_bins(first_coordinate(), edges);
+    const Integrand bins = histogram_bins(coordinate_of_the_first(), edges);
     SamplingOptions options;
     options.threads = 1;
     const Expectations one = expectations(density, CutBells::value, bins, 30000, options);
@@ -119,14 +120,14 @@ TEST(Expectations, ThreadsChangeNoBitAndLogarithmsNothing) {
 
 TEST(Expectations, MistakesGetASentence) {
     const TrainedDensity density = cut_bells(Vegas{});
-    EXPECT_THROW(expectations(density, CutBells::value, first_coordinate(), 1), Error);
+    EXPECT_THROW(expectations(density, CutBells::value, coordinate_of_the_first(), 1), Error);
     const Integrand many = Integrand::vector_valued(1024, [](auto, auto y) { y[0] = 1; });
     EXPECT_THROW(expectations(density, CutBells::value, many, 100), Error);
     auto pole = Integrand([](std::span<const double> x) { return x[0] > 1 ? std::nan("") : 1.0; });
     const Expectations left_out = expectations(density, CutBells::value, pole, 1000);
     EXPECT_EQ(left_out.warnings.size(), 1u);
     EXPECT_GT(left_out.non_finite.count, 50u);
-    const Expectations whole = expectations(density, CutBells::value, first_coordinate(), 1000);
+    const Expectations whole = expectations(density, CutBells::value, coordinate_of_the_first(), 1000);
     EXPECT_EQ(left_out.integral[0], whole.integral[0]); // which knows no observable
 }
 
@@ -137,7 +138,7 @@ TEST(Expectations, ErrorsThatSayNothingGetAWarning) {
     auto peak = [](std::span<const double> x) {
         return std::exp(-3e5 * (std::pow(x[0] - 0.3, 2) + std::pow(x[1] - 0.6, 2)));
     };
-    const Integrand bins = histogram_bins(first_coordinate(), {0, 0.25, 0.35, 1});
+    const Integrand bins = histogram_bins(coordinate_of_the_first(), {0, 0.25, 0.35, 1});
     const Expectations found = expectations(untrained, peak, bins, 20000);
     std::string all;
     for (const std::string& warning : found.warnings) all += warning + "\n";

@@ -1,0 +1,157 @@
+#include <array>
+#include <utility>
+
+#include "montelux/mc/device/cuda_driver.h"
+#include "montelux/mc/device/device.h"
+#include "montelux/mc/device/nvrtc.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+namespace {
+
+CudaDriver::Pointer address(const void* memory) {
+    return static_cast<CudaDriver::Pointer>(reinterpret_cast<std::uintptr_t>(memory));
+}
+
+// The driver, and the primary context of a GPU, which other libraries of the process share.
+class CudaContextOwner {
+  public:
+    CudaContextOwner() {
+        const CudaDriver::Result started = driver.init(0);
+        int count = 0;
+        if (started == CudaDriver::no_device ||
+            (started == 0 && driver.device_count(&count) == 0 && count == 0))
+            throw Error("device 'cuda'", "the NVIDIA driver shows no GPU (CUDA_VISIBLE_DEVICES may hide it)");
+        if (started == CudaDriver::system_driver_mismatch)
+            throw Error("device 'cuda'",
+                        "the NVIDIA driver and its library have different versions; restart the machine");
+        driver.check(started, "the driver cannot be started");
+        driver.check(driver.device(&number, 0), "the first GPU cannot be opened");
+        std::array<char, 256> text{};
+        driver.check(driver.device_name(text.data(), static_cast<int>(text.size()) - 1, number),
+                     "the GPU's name cannot be read");
+        name = text.data();
+        int major = 0, minor = 0;
+        driver.check(driver.device_attribute(&major, CudaDriver::capability_major, number),
+                     "the GPU's compute capability cannot be read");
+        driver.check(driver.device_attribute(&minor, CudaDriver::capability_minor, number),
+                     "the GPU's compute capability cannot be read");
+        architecture = 10 * major + minor;
+        driver.check(driver.retain_context(&context_, number), "no context can be made on the GPU");
+    }
+    ~CudaContextOwner() { driver.release_context(number); }
+    CudaContextOwner(const CudaContextOwner&) = delete;
+    CudaContextOwner& operator=(const CudaContextOwner&) = delete;
+
+    // Calls of the driver concern the context of the calling thread.
+    bool enter_quietly() const noexcept { return driver.set_context(context_) == 0; }
+    void enter() const { driver.check(driver.set_context(context_), "the GPU's context cannot be entered"); }
+
+    CudaDriver driver;
+    CudaDriver::DeviceNumber number = 0;
+    std::string name;
+    int architecture = 0;
+
+  private:
+    CudaDriver::Context context_ = nullptr;
+};
+
+class CudaProgram final : public DeviceProgram {
+  public:
+    CudaProgram(std::shared_ptr<const CudaContextOwner> cuda, const std::string& image)
+        : cuda_(std::move(cuda)) {
+        cuda_->enter();
+        const CudaDriver::Result loaded = cuda_->driver.load_module(&module_, image.data());
+        if (loaded == CudaDriver::unsupported_ptx || loaded == CudaDriver::no_binary ||
+            loaded == CudaDriver::invalid_ptx)
+            throw Error("device 'cuda'",
+                        "the NVIDIA driver is too old for the code that this NVRTC makes; update the "
+                        "driver, or name an older NVRTC in MONTELUX_NVRTC");
+        cuda_->driver.check(loaded, "the kernels cannot be loaded");
+        const CudaDriver::Result found =
+            cuda_->driver.find_function(&evaluate_, module_, "montelux_evaluate");
+        if (found != 0) cuda_->driver.unload_module(module_);
+        cuda_->driver.check(found, "the kernels cannot be found");
+    }
+    ~CudaProgram() override {
+        if (cuda_->enter_quietly()) cuda_->driver.unload_module(module_);
+    }
+    CudaProgram(const CudaProgram&) = delete;
+    CudaProgram& operator=(const CudaProgram&) = delete;
+
+    void run(const DeviceJob& job) override {
+        if (job.count == 0) return;
+        cuda_->enter();
+        const auto blocks =
+            static_cast<unsigned int>((job.count + device_block_threads - 1) / device_block_threads);
+        DeviceJob argument = job;
+        std::array<void*, 1> parameters{&argument};
+        cuda_->driver.check(cuda_->driver.launch(evaluate_, blocks, 1, 1, device_block_threads, 1, 1, 0,
+                                                 nullptr, parameters.data(), nullptr),
+                            "a kernel cannot be started");
+        cuda_->driver.check(cuda_->driver.synchronise(),
+                            "a kernel failed; does the integrand stay in its arrays?");
+    }
+
+  private:
+    std::shared_ptr<const CudaContextOwner> cuda_;
+    CudaDriver::Module module_ = nullptr;
+    CudaDriver::Function evaluate_ = nullptr;
+};
+
+class CudaDevice final : public Device {
+  public:
+    std::string description() const override {
+        return cuda_->name + ", compute capability " + std::to_string(cuda_->architecture / 10) + "." +
+               std::to_string(cuda_->architecture % 10);
+    }
+    std::unique_ptr<DeviceProgram> compile(const std::string& source, const std::string& file) override {
+        return std::make_unique<CudaProgram>(cuda_, nvrtc_.compile(source, file, cuda_->architecture));
+    }
+
+    void* allocate(std::size_t bytes) override {
+        cuda_->enter();
+        CudaDriver::Pointer memory = 0;
+        check_memory(cuda_->driver.allocate(&memory, bytes), bytes, "the GPU");
+        return reinterpret_cast<void*>(static_cast<std::uintptr_t>(memory));
+    }
+    void release(void* memory) noexcept override {
+        if (cuda_->enter_quietly()) cuda_->driver.release(address(memory));
+    }
+    void* allocate_host(std::size_t bytes) override {
+        cuda_->enter();
+        void* memory = nullptr;
+        check_memory(cuda_->driver.allocate_host(&memory, bytes), bytes, "the processor, for copies");
+        return memory;
+    }
+    void release_host(void* memory) noexcept override {
+        if (cuda_->enter_quietly()) cuda_->driver.release_host(memory);
+    }
+    void copy_in(void* to, const void* from, std::size_t bytes) override {
+        cuda_->enter();
+        cuda_->driver.check(cuda_->driver.copy_in(address(to), from, bytes),
+                            "numbers cannot be copied to the GPU");
+    }
+    void copy_out(void* to, const void* from, std::size_t bytes) override {
+        cuda_->enter();
+        cuda_->driver.check(cuda_->driver.copy_out(to, address(from), bytes),
+                            "numbers cannot be copied from the GPU");
+    }
+
+  private:
+    void check_memory(CudaDriver::Result result, std::size_t bytes, const std::string& where) const {
+        if (result == CudaDriver::out_of_memory)
+            throw Error("device 'cuda'",
+                        "there is no memory for " + std::to_string(bytes) + " bytes on " + where);
+        cuda_->driver.check(result, "memory cannot be allocated on " + where);
+    }
+
+    std::shared_ptr<const CudaContextOwner> cuda_ = std::make_shared<CudaContextOwner>();
+    Nvrtc nvrtc_;
+};
+
+} // namespace
+
+std::shared_ptr<Device> open_cuda_device() { return std::make_shared<CudaDevice>(); }
+
+} // namespace montelux

@@ -1,0 +1,85 @@
+#include "montelux/mc/device/device_sampler.h"
+
+#include <utility>
+#include <vector>
+
+namespace montelux {
+
+DeviceSampler::DeviceSampler(std::shared_ptr<const DeviceFunction> function)
+    : function_(std::move(function)), ranges_(function_->device()), edges_(function_->device()),
+      keys_(function_->device()), columns_(function_->device()), box_begin_(function_->device()),
+      strata_(function_->device()), values_(function_->device()), volume_(function_->device()),
+      jacobian_(function_->device()) {}
+
+void DeviceSampler::set_ranges(std::span<const double> ends, bool with_volume) {
+    ranges_.assign(ends);
+    in_ranges_ = true;
+    with_volume_ = with_volume;
+}
+
+void DeviceSampler::set_sobol(std::span<const std::uint32_t> keys, std::span<const std::uint32_t> columns) {
+    keys_.assign(keys);
+    columns_.assign(columns);
+    replicates_ = keys.size() / static_cast<std::size_t>(function_->dimensions());
+}
+
+void DeviceSampler::set_boxes(std::span<const std::uint64_t> begin, std::span<const int> strata) {
+    const std::vector<unsigned long long> words(begin.begin(), begin.end());
+    box_begin_.assign(words);
+    strata_.assign(strata);
+    boxes_ = begin.size() - 1;
+}
+
+void DeviceSampler::set_map(std::span<const double> edges, int increments) {
+    edges_.assign(edges);
+    increments_ = increments;
+    mapped_ = true;
+}
+
+DeviceSampler::Block DeviceSampler::random(std::uint64_t key, std::uint32_t stream, std::uint64_t first,
+                                           std::size_t count, bool placed) {
+    DeviceJob job{};
+    job.kind = device_random_points;
+    job.count = count;
+    job.first = first;
+    job.key = key;
+    job.stream = stream;
+    if (placed && boxes_ > 0) {
+        job.box_begin = box_begin_.data();
+        job.boxes = boxes_;
+        job.strata = strata_.data();
+    }
+    return run(job, placed && mapped_);
+}
+
+DeviceSampler::Block DeviceSampler::sobol(std::uint64_t first, std::size_t each) {
+    DeviceJob job{};
+    job.kind = device_sobol_points;
+    job.count = each * replicates_;
+    job.first = first;
+    job.points_each = each;
+    job.sobol_keys = keys_.data();
+    job.sobol_columns = columns_.data();
+    return run(job, mapped_);
+}
+
+DeviceSampler::Block DeviceSampler::run(DeviceJob& job, bool mapped) {
+    const auto n = static_cast<std::size_t>(job.count);
+    const std::size_t all = n * static_cast<std::size_t>(function_->components());
+    if (n == 0) return {};
+    if (in_ranges_) job.ranges = ranges_.data();
+    if (mapped) {
+        job.edges = edges_.data();
+        job.increments = increments_;
+        job.jacobian = jacobian_.reserve(n);
+    }
+    if (with_volume_) job.volume = volume_.reserve(n);
+    job.values = values_.reserve(all);
+    function_->run(job);
+    Block block{.values = values_.fetch(all), .count = n};
+    if (with_volume_) block.volume = volume_.fetch(n);
+    if (mapped) block.jacobian = jacobian_.fetch(n);
+    return block;
+}
+
+} // namespace montelux

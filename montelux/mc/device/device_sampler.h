@@ -1,0 +1,57 @@
+// DeviceSampler: points that a device draws, maps and evaluates, block by block.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "montelux/mc/device/device_function.h"
+
+namespace montelux {
+
+// Used by one thread at a time. Tables stay on the device until others are given.
+class DeviceSampler {
+  public:
+    explicit DeviceSampler(std::shared_ptr<const DeviceFunction> function);
+
+    // Lower and upper end of each dimension; without them the domain is the unit cube. `with_volume`: they change the
+    // volume by different factors, which are wanted.
+    void set_ranges(std::span<const double> ends, bool with_volume);
+    // Scrambled Sobol' points: a key for each replicate and dimension, 32 bit-reversed columns for each dimension.
+    void set_sobol(std::span<const std::uint32_t> keys, std::span<const std::uint32_t> columns);
+    // Strata of the unit cube, whose number begin.size() - 1 is the product of `strata`: box h has the points begin[h]
+    // to begin[h + 1] - 1.
+    void set_boxes(std::span<const std::uint64_t> begin, std::span<const int> strata);
+    // An adaptive map, increments + 1 edges for each dimension.
+    void set_map(std::span<const double> edges, int increments);
+
+    // Component c of point i is values[c * count + i]. Null where it was not asked for: volume |dx/du| of the ranges,
+    // jacobian |du/dy| of the adaptive map. Valid until the next call.
+    struct Block {
+        const double *values = nullptr, *volume = nullptr, *jacobian = nullptr;
+        std::size_t count = 0;
+    };
+    // Random points first, first + 1, ... of the key. `placed`: in their boxes and by the map, if there are any.
+    Block random(std::uint64_t key, std::uint32_t stream, std::uint64_t first, std::size_t count,
+                 bool placed);
+    // Points first, first + 1, ... first + each - 1 of every replicate, one replicate after the other; by the map, if
+    // there is one.
+    Block sobol(std::uint64_t first, std::size_t each);
+
+    std::size_t replicates() const { return replicates_; }
+
+  private:
+    Block run(DeviceJob& job, bool mapped);
+
+    std::shared_ptr<const DeviceFunction> function_;
+    DeviceArray<double> ranges_, edges_;
+    DeviceArray<unsigned int> keys_, columns_;
+    DeviceArray<unsigned long long> box_begin_;
+    DeviceArray<int> strata_;
+    DeviceOutput values_, volume_, jacobian_;
+    bool in_ranges_ = false, with_volume_ = false, mapped_ = false;
+    std::size_t boxes_ = 0, replicates_ = 0;
+    int increments_ = 0;
+};
+
+} // namespace montelux

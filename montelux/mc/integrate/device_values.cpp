@@ -1,0 +1,61 @@
+#include "montelux/mc/integrate/device_values.h"
+
+#include <utility>
+#include <vector>
+
+#include "montelux/mc/math/error.h"
+#include "montelux/mc/random/hash.h"
+
+namespace montelux {
+
+std::unique_ptr<DeviceValues> DeviceValues::of(const Evaluator& g) {
+    if (!g.integrand().on_device().function) return nullptr;
+    return std::unique_ptr<DeviceValues>(new DeviceValues(g));
+}
+
+DeviceValues::DeviceValues(const Evaluator& g) : g_(g), sampler_(g.integrand().on_device().function) {
+    const Domain& domain = g.domain();
+    if (domain.ranges().empty())
+        throw Error("device", "points of a " + domain.description() +
+                                  " are not drawn on a device; expected a box of ranges without densities");
+    if (domain.is_unit_cube()) return;
+    std::vector<double> ends;
+    for (const Range& range : domain.ranges()) ends.insert(ends.end(), {range.lower, range.upper});
+    sampler_.set_ranges(ends, domain.constant_volume() == 0);
+}
+
+void DeviceValues::begin(std::uint64_t count) const {
+    for (const auto& before : g_.integrand().on_device().before) before(static_cast<std::size_t>(count));
+}
+
+void DeviceValues::draw_random(std::uint64_t seed, std::uint32_t stream, std::uint64_t first,
+                               std::uint64_t count, bool placed) {
+    begin(count);
+    block_ = sampler_.random(hash_key(seed, stream), stream, first, static_cast<std::size_t>(count), placed);
+}
+
+void DeviceValues::set_replicates(std::uint64_t seed, std::uint32_t first_replicate, int replicates) {
+    std::vector<std::uint32_t> keys, columns;
+    for (int r = 0; r < replicates; ++r) {
+        const ScrambledSobol points(g_.dimensions(), seed, first_replicate + static_cast<std::uint32_t>(r));
+        keys.insert(keys.end(), points.keys().begin(), points.keys().end());
+        if (r == 0) columns.assign(points.columns().begin(), points.columns().end());
+    }
+    sampler_.set_sobol(keys, columns);
+}
+
+void DeviceValues::draw_sobol(std::uint64_t first, std::uint64_t each) {
+    begin(each * static_cast<std::uint64_t>(sampler_.replicates()));
+    block_ = sampler_.sobol(first, static_cast<std::size_t>(each));
+}
+
+void DeviceValues::read(std::uint64_t number, ValueBatch g, const std::function<void(PointBuffer&)>& points,
+                        NonFiniteCount& non_finite) const {
+    for (int c = 0; c < g.components(); ++c)
+        std::copy_n(block_.values + static_cast<std::size_t>(c) * block_.count + number, g.count(),
+                    g.component(c).data());
+    for (const auto& after : g_.integrand().on_device().after) after(g);
+    g_.complete(g, block_.volume ? block_.volume + number : nullptr, points, non_finite);
+}
+
+} // namespace montelux

@@ -1,0 +1,79 @@
+// DeviceValues: values of an integrand at points that a device draws, read by batches as those of an Evaluator.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "montelux/mc/device/device_sampler.h"
+#include "montelux/mc/integrate/sampling.h"
+#include "montelux/mc/integrate/unit_points.h"
+
+namespace montelux {
+
+// Draws are made by one thread at a time, reads of the last block by any number.
+class DeviceValues {
+  public:
+    // Null where the evaluator's integrand is on no device. Throws Error where the domain is no box.
+    static std::unique_ptr<DeviceValues> of(const Evaluator& g);
+
+    DeviceSampler& sampler() { return sampler_; }
+    // Points of a block.
+    std::uint64_t block_size() const { return g_.integrand().on_device().block; }
+    // The points of fill_random. `placed`: in the sampler's boxes and by its map.
+    void draw_random(std::uint64_t seed, std::uint32_t stream, std::uint64_t first, std::uint64_t count,
+                     bool placed = false);
+    // Replicate r is that of ScrambledSobol(dimensions, seed, first_replicate + r); its point first + i is number
+    // r * each + i of the block.
+    void set_replicates(std::uint64_t seed, std::uint32_t first_replicate, int replicates);
+    void draw_sobol(std::uint64_t first, std::uint64_t each);
+
+    // Values of g at points number, number + 1, ... of the block. `points` fills in their coordinates in the unit cube
+    // before the domain; it is called where a value is not finite.
+    void read(std::uint64_t number, ValueBatch g, const std::function<void(PointBuffer&)>& points,
+              NonFiniteCount& non_finite) const;
+    // |dx/dy| of the sampler's map at these points.
+    std::span<const double> jacobian(std::uint64_t number, std::size_t n) const {
+        return {block_.jacobian + number, n};
+    }
+
+  private:
+    explicit DeviceValues(const Evaluator& g);
+    void begin(std::uint64_t count) const;
+
+    Evaluator g_;
+    DeviceSampler sampler_;
+    DeviceSampler::Block block_;
+};
+
+// sum_batches over points that a device draws, if there is one: draw(first, count) has it evaluate a block of them, and
+// add(first, count, number, sum) gets points [first, first + count), of which the first has that number in the block.
+template <typename Draw, typename Make, typename Add, typename Sum = std::invoke_result_t<const Make&>>
+std::optional<Sum> sum_blocks(std::uint64_t count, const DeviceValues* device, const Draw& draw,
+                              const Make& make, const Add& add, const CancelFlag* cancel) {
+    const std::uint64_t size = device ? device->block_size() : count;
+    std::optional<Sum> all;
+    for (std::uint64_t begin = 0; begin < count; begin += size) {
+        const std::uint64_t n = std::min(size, count - begin);
+        try {
+            if (device) draw(begin, n);
+        } catch (const IntegrandInterrupted&) {
+            return std::nullopt;
+        }
+        auto sum = sum_batches(
+            n, make,
+            [&](std::uint64_t first, std::uint64_t batch, Sum& to) { add(begin + first, batch, first, to); },
+            cancel);
+        if (!sum) return std::nullopt;
+        if (all)
+            all->merge(*sum);
+        else
+            all = std::move(sum);
+    }
+    return all ? std::move(all) : make();
+}
+
+} // namespace montelux

@@ -1,0 +1,102 @@
+// CudaDevice against a driver and a compiler that run on the processor (fake/fake_cuda.cpp): the calls, their order and
+// their arguments, and what is said where one fails. Whether a GPU computes the same is not tested here.
+#include <cstdlib>
+#include <gtest/gtest.h>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "montelux/mc/device/device_function.h"
+#include "montelux/mc/device/device_sampler.h"
+#include "montelux/mc/io/shared_library.h"
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+namespace {
+
+class CudaDeviceTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::string reason;
+        if (SharedLibrary::open("libcuda.so.1", reason) && !loaded)
+            GTEST_SKIP() << "a real driver is installed";
+        if (std::system("c++ --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "no C++ compiler";
+        // Its name within is libcuda.so.1, so that the device finds it from here on.
+        ASSERT_TRUE(SharedLibrary::open(MONTELUX_FAKE_CUDA_LIBRARY, reason)) << reason;
+        loaded = true;
+        ::setenv("MONTELUX_NVRTC", MONTELUX_FAKE_CUDA_LIBRARY, 1);
+    }
+    void TearDown() override {
+        ::unsetenv("MONTELUX_FAKE_CUDA");
+        ::unsetenv("MONTELUX_NVRTC");
+    }
+    static inline bool loaded = false;
+};
+
+const FunctionSource square{.text = "double integrand(int, const double* x) { return x[0] * x[0] + x[1]; }"};
+
+std::vector<double> random_values(const std::string& device) {
+    DeviceSampler sampler(std::make_shared<const DeviceFunction>(Device::open(device), square, 2));
+    const std::vector<double> ends{0, 2, -1, 1};
+    sampler.set_ranges(ends, true);
+    const DeviceSampler::Block block = sampler.random(1234, 5, 10, 1000, false);
+    std::vector<double> all(block.values, block.values + block.count);
+    all.insert(all.end(), block.volume, block.volume + block.count);
+    return all;
+}
+
+TEST_F(CudaDeviceTest, ComputesWhatTheEmulationComputes) {
+    EXPECT_EQ(Device::open("cuda")->description(), "Fake GPU, compute capability 9.0");
+    EXPECT_EQ(random_values("cuda"), random_values("emulated"));
+}
+
+TEST_F(CudaDeviceTest, ServesManyThreads) {
+    const DeviceFunction f(Device::open("cuda"), square, 2);
+    std::vector<double> sums(4);
+    std::vector<std::thread> threads;
+    for (std::size_t t = 0; t < sums.size(); ++t)
+        threads.emplace_back([&, t] {
+            for (int i = 0; i < 50; ++i) {
+                const double x[2] = {static_cast<double>(t), static_cast<double>(i)};
+                double y = 0;
+                f.at(x, 1, 1, &y, 1);
+                sums[t] += y;
+            }
+        });
+    for (std::thread& thread : threads) thread.join();
+    for (std::size_t t = 0; t < sums.size(); ++t)
+        EXPECT_EQ(sums[t], 50.0 * static_cast<double>(t * t) + 1225);
+}
+
+TEST_F(CudaDeviceTest, SaysWhatFails) {
+    const auto expect_said = [](const char* failure, const std::string& what) {
+        ::setenv("MONTELUX_FAKE_CUDA", failure, 1);
+        try {
+            random_values("cuda");
+            ADD_FAILURE() << failure;
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find(what), std::string::npos)
+                << failure << ": " << error.what();
+        }
+    };
+    expect_said("cuInit:100", "the NVIDIA driver shows no GPU");
+    expect_said("count:1", "the NVIDIA driver shows no GPU");
+    expect_said("cuInit:803", "different versions; restart the machine");
+    expect_said("cuInit:999", "the driver cannot be started: without a description (an unknown error, 999)");
+    expect_said("cuDevicePrimaryCtxRetain:2", "no context can be made on the GPU");
+    expect_said("nvrtcCompileProgram:6", "integrand.cu: NVRTC cannot compile it:\nthe log of the compiler");
+    expect_said("nvrtcCompileProgram:1", "the compilation failed: an error of NVRTC");
+    expect_said("cuModuleLoadData:222", "the NVIDIA driver is too old for the code that this NVRTC makes");
+    expect_said("cuModuleGetFunction:500", "the kernels cannot be found");
+    expect_said("cuMemAlloc:2", "there is no memory for 32 bytes on the GPU");
+    expect_said("cuMemAllocHost:2", "on the processor, for copies");
+    expect_said("cuMemcpyHtoD:1", "numbers cannot be copied to the GPU");
+    expect_said("cuLaunchKernel:1", "a kernel cannot be started");
+    expect_said("cuCtxSynchronize:719", "unspecified launch failure (CUDA_ERROR_LAUNCH_FAILED, 719)");
+    expect_said("cuMemcpyDtoH:1", "numbers cannot be copied from the GPU");
+}
+
+} // namespace
+} // namespace montelux

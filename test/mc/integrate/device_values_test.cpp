@@ -1,0 +1,258 @@
+// Integrals on a device. Its emulation runs the kernels' own source on the processor, so that everything but the GPU is
+// tested: points, values, sums and errors have the bits of the processor's.
+#include "test/mc/integrate/estimator_checks.h"
+#include "test/mc/integrate/integrate_testing.h"
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "montelux/mc/device/device_function.h"
+#include "montelux/mc/integrate/adaptive/adaptive.h"
+#include "montelux/mc/integrate/device_values.h"
+#include "montelux/mc/integrate/infinity.h"
+#include "montelux/mc/integrate/integrate_log.h"
+#include "montelux/mc/integrate/quasi/quasi.h"
+#include "montelux/mc/integrate/unit_points.h"
+#include "montelux/mc/integrate/vegas/vegas.h"
+#include "montelux/mc/random/hash.h"
+
+namespace montelux {
+namespace {
+
+class OnEmulatedDevice : public testing::Test {
+  protected:
+    void SetUp() override {
+        if (std::system("${CXX:-c++} --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "no C++ compiler";
+    }
+    static std::shared_ptr<const DeviceFunction> compiled(const FunctionSource& source, int dimensions) {
+        return std::make_shared<const DeviceFunction>(Device::open("emulated"), source, dimensions);
+    }
+    static Integrand integrand(const std::string& text, int dimensions, int components = 0,
+                               std::vector<double> parameters = {}) {
+        return Integrand::compiled(compiled(
+            {.text = text, .components = components, .parameters = std::move(parameters)}, dimensions));
+    }
+};
+
+const Method all_methods[] = {BasicMonteCarlo{}, Quasi{}, Vegas{}, VegasSobol{}};
+
+const std::string peak_source = "double integrand(int n, const double* x) {\n"
+                                "    double s = 0;\n"
+                                "    for (int d = 0; d < n; ++d) s += (x[d] - 0.3) * (x[d] - 0.3);\n"
+                                "    return exp(-20 * s);\n"
+                                "}\n";
+double peak_here(std::span<const double> x) {
+    double s = 0;
+    for (double v : x) s += (v - 0.3) * (v - 0.3);
+    return std::exp(-20 * s);
+}
+const std::string two_source = "void integrand(int, const double* x, int, double* y) {\n"
+                               "    y[0] = x[0] * exp(-x[1]);\n"
+                               "    y[1] = x[1] * x[1];\n"
+                               "}\n";
+
+// The coordinates of a point as the components of a value.
+std::string coordinates(int n) {
+    std::string text = "void integrand(int n, const double* x, int, double* y) {\n";
+    for (int d = 0; d < n; ++d) text += "y[" + std::to_string(d) + "] = x[" + std::to_string(d) + "];\n";
+    return text + "}\n";
+}
+
+TEST_F(OnEmulatedDevice, RandomPointsHaveTheProcessorsBits) {
+    constexpr std::size_t n = 300;
+    for (const int dimensions : {1, 3, 4, 9}) {
+        DeviceSampler sampler(
+            compiled({.text = coordinates(dimensions), .components = dimensions}, dimensions));
+        for (const std::uint64_t first :
+             {std::uint64_t{0}, std::uint64_t{12345}, (std::uint64_t{1} << 32) - 100}) {
+            PointBuffer u(n, dimensions);
+            fill_random(u, 77, 5, first);
+            const DeviceSampler::Block block = sampler.random(hash_key(77, 5), 5, first, n, false);
+            for (int d = 0; d < dimensions; ++d)
+                for (std::size_t i = 0; i < n; ++i)
+                    ASSERT_EQ(block.values[static_cast<std::size_t>(d) * n + i], u(i, d)) << d << " " << i;
+        }
+    }
+}
+
+TEST_F(OnEmulatedDevice, SobolPointsHaveTheProcessorsBits) {
+    constexpr std::size_t each = 130;
+    constexpr int dimensions = 7, replicates = 3;
+    const Evaluator g(integrand(coordinates(dimensions), dimensions, dimensions),
+                      Domain::unit_cube(dimensions));
+    const auto device = DeviceValues::of(g);
+    device->set_replicates(11, 4, replicates);
+    for (const std::uint64_t first :
+         {std::uint64_t{0}, std::uint64_t{1000}, (std::uint64_t{1} << 32) - each}) {
+        device->draw_sobol(first, each);
+        for (std::uint32_t r = 0; r < replicates; ++r) {
+            PointBuffer u(each, dimensions);
+            ScrambledSobol(dimensions, 11, 4 + r).fill(u, first);
+            ValueBuffer values(each, dimensions);
+            NonFiniteCount none;
+            device->read(r * each, values, {}, none);
+            for (int d = 0; d < dimensions; ++d)
+                for (std::size_t i = 0; i < each; ++i)
+                    ASSERT_EQ(std::as_const(values)(i, d), u(i, d)) << r << " " << d << " " << i;
+        }
+    }
+}
+
+TEST_F(OnEmulatedDevice, EstimatesHaveTheProcessorsBitsForAHundredSeeds) {
+    const Integrand there = integrand(peak_source, 3), here = peak_here;
+    for (const Method& method : all_methods)
+        for (std::uint64_t seed = 0; seed < 100; ++seed) {
+            const Budget budget{.evaluations = 6'000};
+            const IntegrationResult a =
+                integrate(there, Domain::unit_cube(3), method, budget, {.seed = seed});
+            const IntegrationResult b = integrate(here, Domain::unit_cube(3), method, budget, {.seed = seed});
+            ASSERT_TRUE(same_but_for_time(a, b)) << method.name() << ", seed " << seed << ": " << to_string(a)
+                                                 << " instead of " << to_string(b);
+        }
+}
+
+TEST_F(OnEmulatedDevice, ManyBlocksAgreeToRounding) {
+    OnDevice small = integrand(peak_source, 2).on_device();
+    small.block = 3000;
+    const Integrand there = Integrand::compiled(small.function).with_device(small), here = peak_here;
+    for (const Method& method : all_methods) {
+        const Budget budget{.evaluations = 100'000};
+        const IntegrationResult a = integrate(there, Domain::unit_cube(2), method, budget);
+        const IntegrationResult b = integrate(here, Domain::unit_cube(2), method, budget);
+        EXPECT_NEAR(a.value[0], b.value[0], 1e-13 * b.value[0]) << method.name();
+        EXPECT_NEAR(a.standard_error[0], b.standard_error[0], 1e-9 * b.standard_error[0]) << method.name();
+        EXPECT_EQ(a.evaluations, b.evaluations);
+    }
+}
+
+TEST_F(OnEmulatedDevice, InfiniteRangesHaveTheProcessorsBits) {
+    const double inf = infinity;
+    const Domain domain({{-inf, inf}, {0, inf}, {-inf, 2}, {-1, 3}});
+    const Integrand there = integrand("double integrand(int, const double* x) {\n"
+                                      "    return exp(-x[0] * x[0] - x[1] + (x[2] - 2) + 0.1 * x[3]);\n"
+                                      "}\n",
+                                      4);
+    const Integrand here = [](std::span<const double> x) {
+        return std::exp(-x[0] * x[0] - x[1] + (x[2] - 2) + 0.1 * x[3]);
+    };
+    for (const Method& method : all_methods) {
+        const Budget budget{.evaluations = 50'000};
+        EXPECT_TRUE(same_but_for_time(integrate(there, domain, method, budget),
+                                      integrate(here, domain, method, budget)))
+            << method.name();
+    }
+}
+
+TEST_F(OnEmulatedDevice, VectorsAndParameters) {
+    const KnownIntegral cpu = two_components();
+    const Integrand there = integrand(two_source, 2, 2);
+    for (const Method& method : all_methods) {
+        const Budget budget{.evaluations = 30'000};
+        EXPECT_TRUE(same_but_for_time(integrate(there, cpu.domain, method, budget),
+                                      integrate(cpu.f, cpu.domain, method, budget)))
+            << method.name();
+    }
+    const Integrand with_parameters =
+        integrand("double integrand(int, const double* x, const double* parameters) {\n"
+                  "    return parameters[0] * x[0] + parameters[1];\n"
+                  "}\n",
+                  1, 0, {4, 0.5});
+    EXPECT_NEAR(integrate(with_parameters, Domain::interval(0, 1), Quasi{}, {.evaluations = 4096}).value[0],
+                2.5, 1e-4);
+}
+
+TEST_F(OnEmulatedDevice, Logarithms) {
+    const Integrand there =
+        integrand("double integrand(int, const double* x) { return -5000 - x[0] * x[0] / 2; }", 1);
+    const Integrand here = [](double x) { return -5000 - x * x / 2; };
+    const Domain line = Domain::interval(-infinity, infinity);
+    for (const Method& method : all_methods) {
+        const LogIntegrationResult a = integrate_log(there, line, method, {.evaluations = 30'000});
+        const LogIntegrationResult b = integrate_log(here, line, method, {.evaluations = 30'000});
+        EXPECT_EQ(a.log_value, b.log_value) << method.name();
+        EXPECT_EQ(a.log_error, b.log_error) << method.name();
+    }
+}
+
+TEST_F(OnEmulatedDevice, HugeAndTinyValuesAreScaled) {
+    for (const char* factor : {"1e200", "1e-200"}) {
+        const Integrand there = integrand(
+            std::string("double integrand(int, const double* x) { return ") + factor + " * x[0]; }", 1);
+        const IntegrationResult r =
+            integrate(there, Domain::interval(0, 1), BasicMonteCarlo{}, {.evaluations = 10'000});
+        EXPECT_NEAR(r.value[0] / std::atof(factor), 0.5, 0.02);
+        EXPECT_GT(r.standard_error[0], 0);
+    }
+}
+
+TEST_F(OnEmulatedDevice, ValuesThatAreNotFiniteAreCountedAndLocated) {
+    const Integrand there =
+        integrand("double integrand(int, const double* x) { return x[0] < 0.1 ? nan(\"\") : 1; }", 2);
+    const Integrand here = [](std::span<const double> x) { return x[0] < 0.1 ? std::nan("") : 1.0; };
+    const Domain domain({{-0.5, 1}, {0, 1}});
+    for (const Method& method : all_methods) {
+        const Budget budget{.evaluations = 20'000};
+        const IntegrationResult a = integrate(there, domain, method, budget),
+                                b = integrate(here, domain, method, budget);
+        EXPECT_GT(a.non_finite, 1000u) << method.name();
+        EXPECT_TRUE(same_but_for_time(a, b)) << method.name();
+        EXPECT_EQ(a.first_non_finite_point, b.first_non_finite_point) << method.name();
+        expect_error("the integrand is nan at (", [&] {
+            integrate(there, domain, method, budget, {.non_finite = NonFinitePolicy::throw_error});
+        });
+    }
+}
+
+TEST_F(OnEmulatedDevice, SameBitsForAnyThreadsAndAfterAResume) {
+    const KnownIntegral problem{integrand(two_source, 2, 2), two_components().domain, two_components().truth};
+    for (const Method& method : all_methods) {
+        expect_same_bits_for_any_threads(problem, method, 20'000);
+        expect_same_bits_after_resume(problem, method, 20'000);
+    }
+}
+
+TEST_F(OnEmulatedDevice, StopsInTime) {
+    const Integrand slow = integrand("double integrand(int, const double* x) {\n"
+                                     "    double s = x[0];\n"
+                                     "    for (int i = 0; i < 1000; ++i) s = s * 0.999 + 1e-4;\n"
+                                     "    return s;\n"
+                                     "}\n",
+                                     1);
+    const IntegrationResult r = integrate(slow, Domain::interval(0, 1), BasicMonteCarlo{},
+                                          {.time = std::chrono::duration<double>(0.2)});
+    EXPECT_EQ(r.stop, StopReason::time);
+    EXPECT_GT(r.evaluations, 0u);
+}
+
+TEST_F(OnEmulatedDevice, WhatADeviceCannotDoIsSaid) {
+    const Integrand f = integrand(peak_source, 2);
+    const Budget budget{.evaluations = 1000};
+    expect_error("the method 'adaptive' does not run on a device; expected basic",
+                 [&] { integrate(f, Domain::unit_cube(2), Adaptive{}, budget); });
+    expect_error("points of a ball in 2 dimensions are not drawn on a device", [&] {
+        integrate(f, Domain::ball({0, 0}), BasicMonteCarlo{}, budget);
+    });
+    expect_error("a device draws scrambled Sobol' points only, not 'halton'",
+                 [&] { integrate(f, Domain::unit_cube(2), Quasi{.points = PointSetKind::halton}, budget); });
+    expect_error("the integrand takes 2 numbers, but the domain",
+                 [&] { integrate(f, Domain::unit_cube(3), BasicMonteCarlo{}, budget); });
+    expect_error("there is no device 'cudo' (did you mean 'cuda'?)", [] { Device::open("cudo"); });
+}
+
+TEST_F(OnEmulatedDevice, TheCompilersMessagesAreInTheError) {
+    const auto compile = [](const std::string& text, const std::string& function = "integrand") {
+        compiled({.text = text, .file = "bad.cu", .function = function}, 1);
+    };
+    expect_error("bad.cu:2",
+                 [&] { compile("double integrand(int, const double* x) {\n return unknown_name; }"); });
+    expect_error("unknown_name",
+                 [&] { compile("double integrand(int, const double*) { return unknown_name; }"); });
+    expect_error("other",
+                 [&] { compile("double integrand(int, const double* x) { return x[0]; }", "other"); });
+}
+
+} // namespace
+} // namespace montelux
