@@ -83,7 +83,9 @@ TEST(ViewedRender, AreAsWithoutViewersWhenTimeIsUp) {
     const RenderSnapshot finished = watched.last->finish();
     const std::size_t pixels = finished.image->pixel_count();
     EXPECT_GE(finished.report.samples, pixels);
-    if (finished.report.samples >= 64 * pixels) EXPECT_TRUE(std::isfinite(finished.error.relative));
+    if (finished.report.samples >= 64 * pixels) {
+        EXPECT_TRUE(std::isfinite(finished.error.relative));
+    }
 }
 
 TEST(ViewedRender, ClockStandsStillWhilePaused) {
