@@ -14,8 +14,8 @@
 namespace montelux {
 namespace {
 
-constexpr double warned_overweight = 0.01; // of the weight, beyond 1 in overweight samples
-constexpr double warned_effect = 0.02;     // effective samples per sample
+constexpr double warned_overweight = 0.01;    // of the weight, beyond 1 in overweight samples
+constexpr double warned_sample_effect = 0.02; // effective samples per sample
 constexpr std::uint64_t most_pilot = 1 << 24;
 
 // Rows that grow one by one, in the order of coordinates.
@@ -125,7 +125,7 @@ Samples draw_weighted(const Target& target, std::uint64_t n, const SamplingOptio
     warn_of_heavy_tail(extremes.tail(), s.count(), static_cast<double>(drawn), s.integral.standard_error,
                        s.warnings);
     if (const double effective = s.effective_sample_size();
-        s.count() > 100 && effective < warned_effect * static_cast<double>(s.count())) {
+        s.count() > 100 && effective < warned_sample_effect * static_cast<double>(s.count())) {
         char text[160];
         std::snprintf(text, sizeof text,
                       "the %zu samples are worth %.0f unweighted ones; a density trained on more evaluations "
