@@ -42,6 +42,7 @@ NB_MODULE(_core, m) {
     bind_c_functions(m);
     bind_integrate(m);
     bind_metropolis(m);
+    bind_chains(m);
     bind_points(m);
     bind_warps(m);
     bind_tables(m);
