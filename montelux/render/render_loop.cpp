@@ -12,6 +12,7 @@
 #include "montelux/mc/math/error.h"
 #include "montelux/render/guide_training.h"
 #include "montelux/render/live_film.h"
+#include "montelux/render/progress_reporter.h"
 #include "montelux/render/round_executor.h"
 #include "montelux/render/sample_allocation.h"
 #include "montelux/render/splat_pass.h"
@@ -39,11 +40,10 @@ class RenderLoop {
         : renderer_(renderer), context_(context), state_(state), control_(control),
           order_(renderer.sampler(), renderer.target().slice),
           tile_renderer_(context, renderer.accelerator(), order_), chains_(chains),
-          tiles_(tiles_of(state.film.bounds(), tile_size)), finished_(tiles_.size()),
-          seconds_before_(state.report.seconds), samples_before_(state.report.samples) {
+          tiles_(tiles_of(state.film.bounds(), tile_size)), finished_(tiles_.size()) {
         if (!round_is_done()) { // in a restored state
             round_ = 0;
-            end_of_round_ = samples_at_end_of_round();
+            progress_.round_begins();
         }
         context_.set_guide(state_.guide);
         if (control.live != nullptr) control.live->open(state, tiles_, [this] { return report_now(); });
@@ -71,7 +71,7 @@ class RenderLoop {
                 if (target_samples.empty()) return end(RenderStop::samples);
                 state_.target_samples = std::move(target_samples);
                 join_rounds();
-                end_of_round_ = samples_at_end_of_round();
+                progress_.round_begins();
                 std::ranges::fill(finished_, char{0});
                 ++round_;
             }
@@ -79,7 +79,7 @@ class RenderLoop {
             if (state_.splats && round_is_done() && no_replicate_is_open()) close_pass();
             {
                 std::lock_guard lock(mutex_);
-                state_.report.seconds = seconds();
+                state_.report.seconds = progress_.seconds();
             }
             if (cancelled() || (control_.executor != nullptr && control_.executor->failed()))
                 return end(all_taken() ? RenderStop::samples : RenderStop::cancelled);
@@ -88,7 +88,6 @@ class RenderLoop {
     }
 
   private:
-    double seconds() const { return seconds_before_ + seconds_since(begin_); }
     bool cancelled() const { return control_.cancel != nullptr && control_.cancel->requested(); }
     bool checkpoint_is_due() const {
         return control_.checkpoint && seconds_since(last_checkpoint_) >= control_.checkpoint_seconds;
@@ -96,7 +95,7 @@ class RenderLoop {
     bool out_of_time() const {
         // A time limit ends the render only after one sample per pixel, or two groups of chains.
         const bool may_end = chains_ != nullptr ? errors_are_known_ : every_pixel_seen_;
-        return renderer_.target().time > 0 && may_end && seconds() >= renderer_.target().time;
+        return renderer_.target().time > 0 && may_end && progress_.seconds() >= renderer_.target().time;
     }
     bool pause_is_due() const { return checkpoint_is_due() || out_of_time(); }
     void pause_if_due() {
@@ -128,13 +127,6 @@ class RenderLoop {
             if (pixels[i].samples() < state_.target_samples[i]) return false;
         return true;
     }
-    std::uint64_t samples_at_end_of_round() const {
-        const std::span<const Pixel> pixels = state_.film.pixels();
-        std::uint64_t samples = 0;
-        for (std::size_t i = 0; i < pixels.size(); ++i)
-            samples += std::max<std::uint64_t>(pixels[i].samples(), state_.target_samples[i]);
-        return samples;
-    }
     bool all_taken() const {
         return round_is_done() &&
                next_target_samples(state_, renderer_.sampler(), renderer_.target()).empty();
@@ -148,18 +140,11 @@ class RenderLoop {
         if (out_of_time()) return RenderStop::time;
         if (state_.target_samples.empty() || !round_is_done() || !no_replicate_is_open()) return std::nullopt;
         const FilmError error = state_.film.error();
-        learn_from(error);
-        report_progress(error);
+        if (const auto reached = stopping_.error_for_target(state_.film, error))
+            progress_.learn_from(error, *reached);
+        progress_.report(error);
         if (stopping_.is_reached(state_.film, error)) return RenderStop::error;
         return std::nullopt;
-    }
-    void learn_from(const FilmError& error) {
-        const RenderTarget& target = renderer_.target();
-        const std::optional<double> reached = stopping_.error_for_target(state_.film, error);
-        if (!reached) return;
-        if (target.quantile > 0) progress_.quantile = {target.quantile, *reached};
-        const double samples = static_cast<double>(state_.film.pixels().size()) * error.mean_samples;
-        samples_for_error_ = samples_for_error(samples, *reached, target.error);
     }
     // After a first sample of every pixel: a render that is cancelled early has a picture. False: it was cancelled.
     bool train_guide_if_due() {
@@ -180,7 +165,7 @@ class RenderLoop {
         std::lock_guard lock(mutex_);
         state_.report.guide = trained.summary;
         state_.report.cpu_seconds += trained.summary.cpu_seconds;
-        state_.report.seconds = seconds();
+        state_.report.seconds = progress_.seconds();
         return trained.summary.decided;
     }
 
@@ -220,15 +205,15 @@ class RenderLoop {
                                    return cancelled() || (something_done && (pause_is_due() || copy_wanted));
                                },
                                [this](std::uint64_t samples, const std::optional<FilmError>& error) {
-                                   samples_beyond_ = samples;
-                                   report_progress(error);
+                                   progress_.set_samples_beyond(samples);
+                                   progress_.report(error);
                                },
                                control_.cancel};
         {
             const auto held = live != nullptr ? live->hold_all() : std::unique_lock<std::timed_mutex>();
             control_.executor->run(tile_renderer_, state_, watch);
         }
-        samples_beyond_ = 0;
+        progress_.set_samples_beyond(0);
         for (std::size_t t = 0; t < tiles_.size() && !state_.splats; ++t) report_if_finished(t);
         if (live != nullptr) live->wait_for_copies();
     }
@@ -237,14 +222,14 @@ class RenderLoop {
         LiveFilm* const live = control_.live;
         const auto tell = [this](std::uint64_t paths) {
             std::lock_guard lock(mutex_);
-            samples_beyond_ = paths;
-            if (seconds_since(last_progress_) > 0.2) report_progress(std::nullopt);
+            progress_.set_samples_beyond(paths);
+            if (progress_.is_due()) progress_.report(std::nullopt);
         };
         const auto add = [&](const std::function<void()>& change) {
             const auto held = live != nullptr ? live->hold_all() : std::unique_lock<std::timed_mutex>();
             std::lock_guard lock(mutex_);
             change();
-            samples_beyond_ = 0;
+            progress_.set_samples_beyond(0);
         };
         const ChainWatch watch{
             {[this] { return cancelled() || out_of_time(); }, tell}, [this] { return pause_is_due(); }, add};
@@ -292,7 +277,7 @@ class RenderLoop {
         tally.add_to(state_.report);
         // Only after some samples: short intervals must not stop progress.
         if (tally.samples > 0) pause_if_due();
-        if (seconds_since(last_progress_) > 0.2) report_progress(std::nullopt);
+        if (progress_.is_due()) progress_.report(std::nullopt);
     }
 
     BucketMoments* buckets_at(std::size_t pixel) {
@@ -318,32 +303,11 @@ class RenderLoop {
     RenderReport report_now() {
         std::lock_guard lock(mutex_);
         RenderReport report = state_.report;
-        report.seconds = seconds();
+        report.seconds = progress_.seconds();
         return report;
     }
     void close_live() {
         if (control_.live != nullptr) control_.live->close();
-    }
-
-    void report_progress(const std::optional<FilmError>& error) {
-        if (!control_.progress) return;
-        last_progress_ = Clock::now();
-        if (error) progress_.error = error;
-        progress_.seconds = seconds();
-        progress_.samples_done = state_.report.samples + samples_beyond_;
-        RenderPace pace{.samples_done = progress_.samples_done,
-                        .samples_most = state_.film.pixels().size() * order_.share(),
-                        .samples_for_error = samples_for_error_,
-                        .end_of_round = end_of_round_,
-                        .seconds = progress_.seconds,
-                        .run_samples = progress_.samples_done - samples_before_,
-                        .run_seconds = seconds_since(begin_)};
-        progress_.samples_total =
-            std::max(progress_.samples_done, std::min(pace.samples_most, expected_samples(pace)));
-        const bool complete = ended_ && state_.report.stop != RenderStop::cancelled;
-        progress_.forecast = complete ? RenderForecast{1, 0} : forecast(pace, renderer_.target());
-        progress_.ended = ended_;
-        control_.progress(progress_);
     }
 
     void save_checkpoint() {
@@ -352,7 +316,7 @@ class RenderLoop {
     }
     void end(RenderStop reason) {
         close_live();
-        state_.report.seconds = seconds();
+        state_.report.seconds = progress_.seconds();
         state_.report.stop = reason;
         if (state_.report.rays.timed > 0)
             state_.report.ray_seconds = state_.report.rays.timed_seconds *
@@ -373,10 +337,8 @@ class RenderLoop {
         // The open replicates may have been the only ones missing.
         if (reason != RenderStop::cancelled && stopping_.is_reached(film, error))
             state_.report.stop = RenderStop::error;
-        const double quantile = renderer_.target().quantile;
-        if (progress_.quantile) progress_.quantile = {quantile, error_quantile(film, quantile)};
-        ended_ = true;
-        report_progress(std::isfinite(error.relative) ? std::optional(error) : std::nullopt);
+        progress_.set_final_quantile(film);
+        progress_.report(std::isfinite(error.relative) ? std::optional(error) : std::nullopt, true);
     }
 
     const Renderer& renderer_;
@@ -390,18 +352,12 @@ class RenderLoop {
     std::vector<PixelBounds> tiles_;
     std::vector<char> finished_;              // of each tile, in this round
     std::uint64_t round_ = ~std::uint64_t{0}; // incremented to 0 by the first round
-    // Of earlier runs of this render.
-    double seconds_before_;
-    std::uint64_t samples_before_;
-    Clock::time_point begin_ = Clock::now(), last_checkpoint_ = begin_, last_progress_ = begin_;
-    bool every_pixel_seen_ = false, ended_ = false;
+    Clock::time_point last_checkpoint_ = Clock::now();
+    bool every_pixel_seen_ = false;
     bool errors_are_known_ = state_.film.pixels().front().replicates().count() >= 2;
     std::atomic<bool> pause_{false};
     std::mutex mutex_; // of the report and the progress
-    RenderProgress progress_;
-    std::uint64_t samples_beyond_ = 0;                 // samples beyond the report, counted by an executor
-    std::uint64_t end_of_round_ = 0;                   // samples then
-    std::optional<std::uint64_t> samples_for_error_{}; // that the target error takes, by the last error
+    ProgressReporter progress_{renderer_.target(), order_, state_, control_};
 };
 
 } // namespace
