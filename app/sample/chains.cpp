@@ -71,11 +71,12 @@ ChainOptions read_options(const SampleOptions& o, const NamedConstants& constant
 
 void say_summary(const std::vector<std::string>& names, const ChainDraws& r, const ChainOptions& options) {
     const auto draws = static_cast<unsigned long long>(r.draws);
+    const char* const plural = options.chains == 1 ? "" : "s";
     const double states = static_cast<double>((r.draws * options.thin + options.burn_in) * r.chains);
     if (options.sampler == ChainSampler::metropolis)
-        std::fprintf(stderr, "montelux: %d chains of %llu draws", options.chains, draws);
+        std::fprintf(stderr, "montelux: %d chain%s of %llu draws", options.chains, plural, draws);
     else
-        std::fprintf(stderr, "montelux: %d ensembles of %d walkers, %llu draws each", options.chains,
+        std::fprintf(stderr, "montelux: %d ensemble%s of %d walkers, %llu draws each", options.chains, plural,
                      static_cast<int>(r.chains) / options.chains, draws);
     if (options.sampler == ChainSampler::slice)
         std::fprintf(stderr, ", %.1f evaluations per state\n", static_cast<double>(r.evaluations) / states);

@@ -1,8 +1,15 @@
 #include "montelux/mc/integrate/chains/log_density_calls.h"
 
+#include <cmath>
 #include <limits>
 
 namespace montelux {
+
+bool LogDensityCalls::inside(std::span<const Range> box, std::span<const double> x) {
+    for (std::size_t k = 0; k < x.size(); ++k)
+        if (!(std::isfinite(x[k]) && x[k] >= box[k].lower && x[k] <= box[k].upper)) return false;
+    return true;
+}
 
 void LogDensityCalls::operator()(std::span<const double> points, std::span<double> log_p) {
     constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -10,10 +17,7 @@ void LogDensityCalls::operator()(std::span<const double> points, std::span<doubl
     inside_.clear();
     for (std::size_t i = 0; i < log_p.size(); ++i) {
         log_p[i] = -infinite;
-        bool in = true;
-        for (std::size_t k = 0; k < d; ++k)
-            in = in && points[i * d + k] >= box_[k].lower && points[i * d + k] <= box_[k].upper;
-        if (in) inside_.push_back(i);
+        if (inside(box_, points.subspan(i * d, d))) inside_.push_back(i);
     }
     if (inside_.empty()) return;
     x_.resize(inside_.size(), static_cast<int>(d));

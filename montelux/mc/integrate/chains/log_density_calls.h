@@ -17,9 +17,11 @@ class LogDensityCalls {
         : log_density_(&log_density), box_(box) {}
 
     std::size_t dimensions() const { return box_.size(); }
-    // log p at points given one after the other. Outside of the box it is -infinity, without a call; NaN and +infinity
-    // become -infinity and are counted.
+    // log p at points given one after the other. Outside of the box, and at infinity, it is -infinity, without a call;
+    // NaN and +infinity become -infinity and are counted.
     void operator()(std::span<const double> points, std::span<double> log_p);
+    // Is a point one of the box, with finite coordinates?
+    static bool inside(std::span<const Range> box, std::span<const double> x);
 
     std::uint64_t evaluations() const { return evaluations_; }
     std::uint64_t non_finite() const { return non_finite_; }

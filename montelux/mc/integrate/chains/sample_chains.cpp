@@ -107,9 +107,8 @@ void run_walks(const ChainPlan& plan, ChainDraws& result) {
     for (std::size_t c = 0; c < plan.chains(); ++c) starts.push_back(plan.starts(density, c));
     const MetropolisResult run = metropolis(
         [&](std::span<const double> x) {
-            for (std::size_t d = 0; d < n; ++d)
-                if (!(x[d] >= plan.domain.ranges()[d].lower && x[d] <= plan.domain.ranges()[d].upper))
-                    return -std::numeric_limits<double>::infinity();
+            if (!LogDensityCalls::inside(plan.domain.ranges(), x))
+                return -std::numeric_limits<double>::infinity();
             double y = 0;
             plan.log_density(PointBatch(x.data(), 1, static_cast<int>(n), 1), ValueBatch(&y, 1, 1, 1));
             return y;
@@ -205,6 +204,12 @@ void add_warnings(const ChainPlan& plan, ChainDraws& result) {
         if (plan.dimensions == 1) return std::string();
         return " (so in " + std::to_string(count) + " of " + std::to_string(plan.dimensions) + " variables)";
     };
+    for (std::size_t k = 0; k < plan.dimensions; ++k)
+        if (!std::isfinite(result.variables[k].standard_deviation)) {
+            warn("the draws of '%.40s' run to infinity; the density seems to have no finite integral",
+                 plan.names[k].c_str());
+            break;
+        }
     if (disagree > 0)
         warn("the chains disagree: R-hat of '%.40s' is %.3f, expected at most 1.01%s",
              plan.names[most].c_str(), result.variables[most].r_hat, others(disagree).c_str());

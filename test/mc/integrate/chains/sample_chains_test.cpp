@@ -219,6 +219,20 @@ TEST(SampleChains, ValuesThatAreNotFiniteAreCounted) {
     }
 }
 
+// A density that has no integral: its draws run away, and that is said.
+TEST(SampleChains, DrawsThatRunToInfinityAreWarnedOf) {
+    for (ChainSampler sampler : {ChainSampler::ensemble, ChainSampler::slice}) {
+        ChainOptions options;
+        options.sampler = sampler;
+        if (sampler == ChainSampler::slice) options.burn_in = options.draws = 400;
+        const ChainDraws draws =
+            sample_chains([](double) { return 0.0; }, Domain::interval(-no_bound, no_bound), options);
+        ASSERT_FALSE(draws.warnings.empty());
+        EXPECT_NE(draws.warnings[0].find("run to infinity"), std::string::npos) << draws.warnings[0];
+        for (double x : draws.states) ASSERT_TRUE(std::isfinite(x));
+    }
+}
+
 TEST(SampleChains, SenselessOptionsAreRefused) {
     const Domain plane({{-5, 5}, {-5, 5}});
     auto refused = [&](ChainOptions options, const char* why) {
