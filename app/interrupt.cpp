@@ -12,14 +12,17 @@ namespace montelux::app {
 
 namespace {
 
-enum class Phase { nothing_to_save, cancellable, following, writing };
+enum class Phase { nothing_to_save, cancellable, following, waiting, writing };
 
 constexpr std::int64_t same_wish_milliseconds = 1000;
 
 CancelFlag cancel_flag;
 std::atomic<Phase> phase{Phase::nothing_to_save};
+std::atomic<Phase> phase_before{Phase::nothing_to_save}; // of waiting
+std::atomic<bool> signal_waits{false};
 std::atomic<std::int64_t> first_signal{0}; // in milliseconds, where it set the flag
-static_assert(std::atomic<Phase>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free);
+static_assert(std::atomic<Phase>::is_always_lock_free && std::atomic<bool>::is_always_lock_free &&
+              std::atomic<std::int64_t>::is_always_lock_free);
 
 std::int64_t milliseconds() {
     timespec t{};
@@ -31,6 +34,10 @@ std::int64_t milliseconds() {
 extern "C" void on_signal(int) {
     const Phase now = phase.load();
     if (now == Phase::writing) return;
+    if (now == Phase::waiting) {
+        signal_waits.store(true);
+        return;
+    }
     if (now == Phase::cancellable || now == Phase::following) {
         const std::int64_t first = first_signal.load(), at = milliseconds();
         if (first == 0) first_signal.store(at);
@@ -62,6 +69,13 @@ void end_on_signals() {
 const CancelFlag& cancel_on_signals() {
     phase.store(Phase::cancellable);
     return cancel_flag;
+}
+
+WaitingSignals::WaitingSignals() { phase_before.store(phase.exchange(Phase::waiting)); }
+
+WaitingSignals::~WaitingSignals() {
+    phase.store(phase_before.load());
+    if (signal_waits.exchange(false)) on_signal(0);
 }
 
 const CancelFlag& follow_on_signals() {

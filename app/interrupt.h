@@ -11,6 +11,15 @@ void end_on_signals();
 // the program at once with exit_interrupted: mpirun, a terminal and a shell may each pass on what was meant
 // as one.
 const CancelFlag& cancel_on_signals();
+// While it lives, signals wait, so that temporary files of another program are removed; one that came takes effect at
+// its end. Child processes get the signals of a terminal themselves.
+class WaitingSignals {
+  public:
+    WaitingSignals();
+    ~WaitingSignals();
+    WaitingSignals(const WaitingSignals&) = delete;
+    WaitingSignals& operator=(const WaitingSignals&) = delete;
+};
 // From now on all signals set the flag that is returned and do nothing else: another process decides.
 const CancelFlag& follow_on_signals();
 // As the first signal does.

@@ -1,5 +1,6 @@
 #include "app/integrate/compiled_function.h"
 
+#include "app/interrupt.h"
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -75,6 +76,7 @@ CompiledFunction CompiledFunction::from_library(const std::string& place, Form f
 CompiledFunction CompiledFunction::from_source(const std::string& place, Form form) {
     const Place at = read_place(place);
     check_file(at.file);
+    const WaitingSignals until_removed;
     const BuildFolder folder;
     const fs::path library = folder.path() / "integrand.so";
     compile(at.file, library);

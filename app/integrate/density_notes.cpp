@@ -2,8 +2,12 @@
 
 #include "app/integrate/compiled_function.h"
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 #include <vector>
+
+#include "montelux/mc/io/file.h"
+#include "montelux/mc/io/siphash.h"
 
 namespace montelux::app {
 namespace {
@@ -19,6 +23,18 @@ constexpr std::pair<const char*, std::string IntegrateOptions::*> single_texts[]
     {"components", &IntegrateOptions::components}, {"domain", &IntegrateOptions::domain},
     {"radius", &IntegrateOptions::radius},         {"centre", &IntegrateOptions::centre}};
 constexpr const char* log_note = "log";
+constexpr const char* digest_note = "function_digest"; // of the bytes of the source or library
+constexpr std::size_t most_function_bytes = std::size_t{1} << 30;
+
+std::string digest_of(const std::string& place) {
+    SipHash128 hash(0, 0);
+    hash.add(read_file_bytes(CompiledFunction::file_of(place), most_function_bytes));
+    char text[40];
+    const auto digest = hash.digest();
+    std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(digest[0]),
+                  static_cast<unsigned long long>(digest[1]));
+    return text;
+}
 
 } // namespace
 
@@ -31,9 +47,24 @@ std::map<std::string, std::string> density_notes(const IntegrateOptions& options
         }
     for (const auto& [name, member] : single_texts) notes[name] = options.*member;
     for (const char* name : {"library", "source"})
-        if (!notes[name].empty()) notes[name] = CompiledFunction::absolute(notes[name]);
+        if (!notes[name].empty()) {
+            notes[name] = CompiledFunction::absolute(notes[name]);
+            notes[digest_note] = digest_of(notes[name]);
+        }
     if (options.log) notes[log_note] = "yes";
     return notes;
+}
+
+std::string changed_function(const std::map<std::string, std::string>& notes) {
+    const auto digest = notes.find(digest_note);
+    for (const char* name : {"library", "source"}) {
+        const auto place = notes.find(name);
+        if (digest == notes.end() || place == notes.end() || place->second.empty()) continue;
+        if (digest_of(place->second) != digest->second)
+            return "'" + CompiledFunction::file_of(place->second) +
+                   "' has changed since the density was trained; samples follow the function as it is now";
+    }
+    return "";
 }
 
 IntegrateOptions options_of_notes(const std::map<std::string, std::string>& notes, const std::string& path) {

@@ -13,4 +13,7 @@ std::map<std::string, std::string> density_notes(const IntegrateOptions& options
 // The options again. Throws Error that names the file where the notes hold no integrand.
 IntegrateOptions options_of_notes(const std::map<std::string, std::string>& notes, const std::string& path);
 
+// A sentence where the source or library of the integrand is not the file that it was; else "".
+std::string changed_function(const std::map<std::string, std::string>& notes);
+
 } // namespace montelux::app

@@ -91,6 +91,12 @@ void save_density(const IntegrateOptions& o, const IntegrationResult& result) {
     TrainedDensity density = *result.density;
     density.set_notes(density_notes(o));
     density.save(o.save_density);
+    if (density.unit().uniform() && !o.quiet)
+        std::fprintf(stderr,
+                     "montelux: uniform points were enough, so the density in '%s' is uniform; --evaluations "
+                     "instead of "
+                     "an error trains one\n",
+                     o.save_density.c_str());
 }
 
 int run(const IntegrateOptions& o) {

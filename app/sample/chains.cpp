@@ -2,37 +2,23 @@
 #include "app/commands.h"
 #include "app/integrate/integrate_options.h"
 #include "app/interrupt.h"
+#include "app/sample/netcdf_file.h"
 #include "app/sample/sample_options.h"
 #include "app/usage_error.h"
 #include "app/variables.h"
-#include <cmath>
 #include <cstdio>
-#include <limits>
 
-#include "montelux/mc/integrate/metropolis/metropolis_chain.h"
-#include "montelux/mc/integrate/unit_points.h"
+#include "montelux/mc/integrate/chains/sample_chains.h"
+#include "montelux/mc/stats/estimate.h"
 
 namespace montelux::app {
 namespace {
 
-constexpr int most_chains = 10000;
+constexpr int most_chains = 10000, most_walkers = 100000;
 constexpr std::uint64_t most_numbers = std::uint64_t{1} << 32; // of all states
-constexpr std::uint64_t start_draws = 1000;
 
-double log_density_at(const Formulas& formula, const std::vector<Range>& ranges, std::span<const double> x) {
-    for (std::size_t d = 0; d < x.size(); ++d)
-        if (!(x[d] >= ranges[d].lower && x[d] <= ranges[d].upper))
-            return -std::numeric_limits<double>::infinity();
-    double y = 0;
-    formula(PointBatch(x.data(), 1, static_cast<int>(x.size()), 1), ValueBatch(&y, 1, 1, 1));
-    return y;
-}
-
-// A start for each chain: one of its own uniform points of the domain, drawn by the density, or what --start says.
-std::vector<std::vector<double>> starts_of(const SampleOptions& o, const Formulas& formula,
-                                           const Variables& variables, const NamedConstants& constants,
-                                           int chains, std::uint64_t seed) {
-    const std::size_t n = variables.names.size();
+std::vector<std::vector<double>> read_starts(const SampleOptions& o, const NamedConstants& constants,
+                                             std::size_t variables) {
     std::vector<std::vector<double>> starts;
     for (const std::string& text : o.starts) {
         std::vector<double> start;
@@ -41,60 +27,85 @@ std::vector<std::vector<double>> starts_of(const SampleOptions& o, const Formula
             start.push_back(constant(text.substr(begin, end - begin), "--start", constants));
             begin = end + 1;
         }
-        if (start.size() != n)
+        if (start.size() != variables)
             throw UsageError("--start", std::to_string(start.size()) + " numbers were given for " +
-                                            std::to_string(n) + " variables");
-        starts.push_back(std::move(start));
-    }
-    if (!starts.empty()) {
-        if (starts.size() != 1 && starts.size() != static_cast<std::size_t>(chains))
-            throw UsageError("--start", std::to_string(starts.size()) + " starts were given for " +
-                                            std::to_string(chains) +
-                                            " chains; expected one, or one for each");
-        return starts;
-    }
-    const Domain domain(variables.ranges);
-    for (int chain = 0; chain < chains; ++chain) {
-        PointBuffer u(start_draws, static_cast<int>(n)), x(start_draws, static_cast<int>(n));
-        fill_random(u, hash_key(seed, 0x7374617274), static_cast<std::uint32_t>(chain), 0);
-        std::vector<double> volume(start_draws, 1.0);
-        domain.map(u, x, volume);
-        ValueBuffer y(start_draws, 1);
-        formula(x, y);
-        // In proportion to the density: the largest log p + Gumbel number.
-        std::size_t best = start_draws;
-        double largest = -std::numeric_limits<double>::infinity();
-        PhiloxStream numbers(hash_key(seed, 0x67756d62656c), {static_cast<std::uint32_t>(chain), 0, 0});
-        for (std::size_t i = 0; i < start_draws; ++i) {
-            const double gumbel = -std::log(-std::log(numbers.next_double()));
-            const double key = y(i) + std::log(volume[i]) + gumbel;
-            if (key > largest && key < std::numeric_limits<double>::infinity()) {
-                largest = key;
-                best = i;
-            }
-        }
-        if (best == start_draws)
-            throw Error("sample", "the density is zero at all of " + std::to_string(start_draws) +
-                                      " points; expected --start, where it is not");
-        std::vector<double> start(n);
-        x.view().gather(best, start.data());
+                                            std::to_string(variables) + " variables");
         starts.push_back(std::move(start));
     }
     return starts;
 }
 
-void say_summary(const std::vector<std::string>& names, const MetropolisResult& r, int chains,
-                 std::uint64_t samples) {
-    std::fprintf(stderr, "montelux: %d chains of %llu states, %.0f %% accepted\n", chains,
-                 static_cast<unsigned long long>(samples), 100 * r.acceptance_rate);
+ChainOptions read_options(const SampleOptions& o, const NamedConstants& constants,
+                          const std::vector<std::string>& names) {
+    ChainOptions options;
+    const auto n = static_cast<int>(names.size());
+    if (!o.sampler.empty()) options.sampler = *chain_sampler(o.sampler);
+    if (!o.chains.empty())
+        options.chains = static_cast<int>(whole_number(o.chains, "--chains", 1, most_chains));
+    if (!o.walkers.empty()) {
+        if (options.sampler == ChainSampler::metropolis)
+            throw UsageError("--walkers",
+                             "chains of metropolis have none; expected --sampler ensemble or slice");
+        options.walkers = static_cast<int>(whole_number(o.walkers, "--walkers", 1, most_walkers));
+        if (options.walkers < fewest_walkers(n))
+            throw UsageError("--walkers", o.walkers + " are too few for " + std::to_string(n) +
+                                              (n == 1 ? " variable" : " variables") + "; expected at least " +
+                                              std::to_string(fewest_walkers(n)));
+    }
+    if (!o.thin.empty()) options.thin = whole_number(o.thin, "--thin", 1, 1'000'000'000);
+    const auto sequences =
+        static_cast<std::uint64_t>(options.chains) * static_cast<std::uint64_t>(walkers_of(options, n));
+    options.draws = whole_number(o.n, "--n", 8, most_numbers / (sequences * names.size()));
+    if (!o.burn_in.empty()) options.burn_in = whole_number(o.burn_in, "--burn-in", 0, 1'000'000'000'000);
+    options.seed = whole_number(o.seed, "--seed", 0, UINT64_MAX);
+    options.starts = read_starts(o, constants, names.size());
+    const std::size_t starts = options.starts.size();
+    if (starts > 1 && starts != static_cast<std::size_t>(options.chains) && starts != sequences)
+        throw UsageError("--start", std::to_string(starts) + " starts were given for " +
+                                        std::to_string(options.chains) +
+                                        " chains; expected one, or one for each");
+    options.names = names;
+    options.cancel = &cancel_on_signals();
+    return options;
+}
+
+void say_summary(const std::vector<std::string>& names, const ChainDraws& r, const ChainOptions& options) {
+    const auto draws = static_cast<unsigned long long>(r.draws);
+    const char* const plural = options.chains == 1 ? "" : "s";
+    const double states = static_cast<double>((r.draws * options.thin + options.burn_in) * r.chains);
+    if (options.sampler == ChainSampler::metropolis)
+        std::fprintf(stderr, "montelux: %d chain%s of %llu draws", options.chains, plural, draws);
+    else
+        std::fprintf(stderr, "montelux: %d ensemble%s of %d walkers, %llu draws each", options.chains, plural,
+                     static_cast<int>(r.chains) / options.chains, draws);
+    if (options.sampler == ChainSampler::slice)
+        std::fprintf(stderr, ", %.1f evaluations per state\n", static_cast<double>(r.evaluations) / states);
+    else
+        std::fprintf(stderr, ", %.0f %% accepted\n", 100 * r.acceptance_rate);
     for (std::size_t d = 0; d < names.size(); ++d) {
-        const ChainSummary& s = r.observables[d];
-        std::fprintf(stderr, "  %s: mean %s, deviation %.4g, R-hat %.4f, effective samples %.0f\n",
-                     names[d].c_str(), to_string(Estimate{s.mean, s.standard_error}).c_str(),
-                     std::sqrt(s.variance), s.r_hat, s.effective_sample_size);
+        const DrawSummary& s = r.variables[d];
+        std::fprintf(
+            stderr, "  %s: mean %s, deviation %.4g, R-hat %.4f, effective samples %.0f (bulk), %.0f (tail)\n",
+            names[d].c_str(), to_string(Estimate{s.mean, s.standard_error}).c_str(), s.standard_deviation,
+            s.r_hat, s.bulk_effective_size, s.tail_effective_size);
     }
     for (const std::string& warning : r.warnings)
         std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
+}
+
+void write_table(const SampleOptions& o, const std::vector<std::string>& variables, const ChainDraws& draws) {
+    std::vector<std::string> names{"chain", "draw"};
+    names.insert(names.end(), variables.begin(), variables.end());
+    TableWriter table(o.output, format_of(o), names, draws.chains * draws.draws);
+    std::vector<double> row(names.size());
+    const std::size_t n = variables.size();
+    for (std::uint64_t i = 0; i < draws.chains * draws.draws; ++i) {
+        row[0] = static_cast<double>(i / draws.draws);
+        row[1] = static_cast<double>(i % draws.draws);
+        std::copy_n(draws.states.begin() + static_cast<std::ptrdiff_t>(i * n), n, row.begin() + 2);
+        table.add(row);
+    }
+    table.finish();
 }
 
 } // namespace
@@ -108,50 +119,22 @@ int run_chains(const SampleOptions& o) {
     std::string text = o.formulas[0];
     if (text.starts_with(" -")) text.erase(0, 1); // the blank of with_negative_formulas
     const Formulas formula({text}, variables.names, "", constants);
-    MetropolisOptions options;
-    options.chains =
-        o.chains.empty() ? 4 : static_cast<int>(whole_number(o.chains, "--chains", 1, most_chains));
-    options.thin = o.thin.empty() ? 1 : whole_number(o.thin, "--thin", 1, 1'000'000'000);
-    const std::uint64_t n = variables.names.size();
-    const std::uint64_t kept =
-        whole_number(o.n, "--n", 8, most_numbers / (static_cast<std::uint64_t>(options.chains) * n));
-    options.samples = kept * options.thin;
-    options.burn_in = o.burn_in.empty() ? 2000 : whole_number(o.burn_in, "--burn-in", 0, 1'000'000'000'000);
-    options.seed = whole_number(o.seed, "--seed", 0, UINT64_MAX);
-    options.cancel = &cancel_on_signals();
+    const ChainOptions options = read_options(o, constants, variables.names);
     const auto threads = static_cast<int>(whole_number(o.threads, "--threads", 0, most_threads));
+    const bool netcdf = is_netcdf(o);
+    if (netcdf) check_netcdf(variables.names);
     if (!o.output.empty()) check_output(o.output);
-    const auto starts = starts_of(o, formula, variables, constants, options.chains, options.seed);
-
-    std::vector<double> states(static_cast<std::uint64_t>(options.chains) * kept * n);
-    const MetropolisResult result = with_threads(threads, [&] {
-        return metropolis(
-            [&](std::span<const double> x) { return log_density_at(formula, variables.ranges, x); },
-            GaussianWalk{}, starts, static_cast<int>(n),
-            [](std::span<const double> x, std::span<double> values) {
-                std::copy(x.begin(), x.end(), values.begin());
-            },
-            [&](int chain, std::uint64_t k, std::span<const double> x) {
-                std::copy(x.begin(), x.end(),
-                          states.begin() + static_cast<std::ptrdiff_t>(
-                                               (static_cast<std::uint64_t>(chain) * kept + k) * n));
-            },
-            options);
+    const ChainDraws draws = with_threads(threads, [&] {
+        return sample_chains(Integrand::batch([&](const PointBatch& x, ValueBatch y) { formula(x, y); }),
+                             variables.ranges, options);
     });
-    if (result.cancelled) return exit_interrupted;
+    if (draws.cancelled) return exit_interrupted;
     finish_on_signals();
-    std::vector<std::string> names{"chain", "draw"};
-    names.insert(names.end(), variables.names.begin(), variables.names.end());
-    TableWriter table(o.output, format_of(o), names, static_cast<std::uint64_t>(options.chains) * kept);
-    std::vector<double> row(names.size());
-    for (std::uint64_t i = 0; i < states.size() / n; ++i) {
-        row[0] = static_cast<double>(i / kept);
-        row[1] = static_cast<double>(i % kept);
-        std::copy_n(states.begin() + static_cast<std::ptrdiff_t>(i * n), n, row.begin() + 2);
-        table.add(row);
-    }
-    table.finish();
-    if (!o.quiet) say_summary(variables.names, result, options.chains, kept);
+    if (netcdf)
+        write_netcdf(o.output, variables.names, draws);
+    else
+        write_table(o, variables.names, draws);
+    if (!o.quiet) say_summary(variables.names, draws, options);
     return exit_done;
 }
 

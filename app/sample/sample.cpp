@@ -8,8 +8,10 @@
 #include "app/variables.h"
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 
+#include "montelux/mc/integrate/chains/sample_chains.h"
 #include "montelux/mc/math/nearest_name.h"
 #include "montelux/mc/random/point_set.h"
 
@@ -26,6 +28,8 @@ std::vector<std::string_view> names_up_to(Enum last) {
 std::vector<std::string_view> set_names() { return names_up_to(PointSetKind::weyl); }
 std::vector<std::string_view> randomisation_names() { return names_up_to(Randomisation::scramble); }
 
+constexpr std::string_view netcdf_name = "netcdf";
+
 [[noreturn]] void refuse_name(const std::string& option, const std::string& given,
                               std::span<const std::string_view> names) {
     throw UsageError(option, "'" + given + "' is not known" + did_you_mean(given, names) +
@@ -37,13 +41,22 @@ std::vector<std::string_view> randomisation_names() { return names_up_to(Randomi
 TableFormat format_of(const SampleOptions& o) {
     if (!o.format.empty()) {
         const auto format = table_format(o.format);
-        if (!format) refuse_name("--format", o.format, table_format_names);
+        if (!format) {
+            std::vector<std::string_view> names(std::begin(table_format_names), std::end(table_format_names));
+            names.push_back(netcdf_name);
+            refuse_name("--format", o.format, names);
+        }
         return *format;
     }
     const std::string extension = std::filesystem::path(o.output).extension().string();
     if (extension.empty()) return TableFormat::csv;
     const auto format = table_format(extension.substr(1));
     return format ? *format : TableFormat::csv;
+}
+
+bool is_netcdf(const SampleOptions& o) {
+    if (!o.format.empty()) return o.format == netcdf_name;
+    return std::filesystem::path(o.output).extension() == ".nc";
 }
 
 namespace {
@@ -99,13 +112,19 @@ void check_kind(const SampleOptions& o) {
         {"--pilot", !o.pilot.empty(), trained, "expected --from FILE with it"},
         {"--overweight-share", !o.overweight_share.empty(), trained, "expected --from FILE with it"},
         {"--max-draws", !o.max_draws.empty(), trained, "expected --from FILE with it"},
+        {"--sampler", !o.sampler.empty(), o.log, "expected --log with it"},
         {"--chains", !o.chains.empty(), o.log, "expected --log with it"},
+        {"--walkers", !o.walkers.empty(), o.log, "expected --log with it"},
         {"--burn-in", !o.burn_in.empty(), o.log, "expected --log with it"},
         {"--thin", !o.thin.empty(), o.log, "expected --log with it"},
         {"--start", !o.starts.empty(), o.log, "expected --log with it"},
+        {"netCDF", is_netcdf(o), o.log,
+         "such files hold chains; expected --log, or --format csv, npy or bin"},
     };
     for (const Rule& rule : rules)
         if (rule.given && !rule.allowed) throw UsageError(rule.option, rule.answer);
+    if (!o.sampler.empty() && !chain_sampler(o.sampler))
+        refuse_name("--sampler", o.sampler, chain_sampler_names);
 }
 
 // Points in [0, 1)^d, each coordinate moved by the quantile of its variable's density.
@@ -202,11 +221,17 @@ void add_sample(CLI::App& app, int& exit_code) {
          "'sqrt(s)=80:100:40'",
          "FORMULA=LOWER:UPPER:BINS");
     c->add_flag("--covariance", o->covariance, "With --histogram: the covariances, too");
-    c->add_flag(
-        "--log", o->log,
-        "Markov chains (Metropolis) whose states follow the density of which FORMULA is the logarithm");
-    text("--chains", o->chains, "With --log: how many. Default: 4", "N");
-    text("--burn-in", o->burn_in, "With --log: states left out of each. Default: 2000", "N");
+    c->add_flag("--log", o->log,
+                "Markov chains whose states follow the density of which FORMULA is the logarithm");
+    text("--sampler", o->sampler,
+         "With --log: " + joined(chain_sampler_names) +
+             ". Random walks, or walkers that stretch or slice along one another's differences. Default: "
+             "metropolis",
+         "NAME");
+    text("--chains", o->chains, "With --log: how many, or how many independent ensembles. Default: 4", "N");
+    text("--walkers", o->walkers,
+         "With --sampler ensemble or slice: of each ensemble. Default: 2 (variables + 1), at least 8", "N");
+    text("--burn-in", o->burn_in, "With --log: states left out of each chain or walker. Default: 2000", "N");
     text("--thin", o->thin, "With --log: every how many-th state is written. Default: 1", "N");
     c->add_option("--start", o->starts, "With --log: where a chain starts; once for all, or once for each")
         ->type_name("X,Y,...")
@@ -215,13 +240,18 @@ void add_sample(CLI::App& app, int& exit_code) {
     c->add_flag("--quiet", o->quiet, "Write the samples alone");
     text("-o,--output", o->output, "File to write. Default: standard output", "FILE");
     text("--format", o->format,
-         "csv, npy (NumPy) or bin (little-endian doubles). Default: by the file's name, else csv", "NAME");
+         "csv, npy (NumPy), bin (little-endian doubles) or, with --log, netcdf (ArviZ). Default: by the "
+         "file's "
+         "name, else csv",
+         "NAME");
     c->footer(
         "Examples:\n"
         "  montelux sample --set sobol --n 1024 --dim 2 --randomisation scramble --seed 7 -o points.npy\n"
         "  montelux sample --density 'exp(-5*x)' --over x=0:inf --n 1000\n"
         "  montelux sample --from trained.mx --unweighted --n 1e5 -o events.npy\n"
         "  montelux sample -x^2-y^2+x*y --log --over x,y=-inf:inf --n 5000 -o chains.csv\n"
+        "  montelux sample -x^2/2-8*(y-x^2)^2 --log --over x,y=-inf:inf --sampler slice --thin 10 -o "
+        "banana.nc\n"
         "\n"
         "With a density, --set says which uniform numbers the quantiles get (default: independent).");
     c->callback([o, &exit_code] { exit_code = run(*o); });

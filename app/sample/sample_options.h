@@ -15,13 +15,15 @@ struct SampleOptions {
     bool unweighted = false, covariance = false;
     // Of chains.
     std::vector<std::string> formulas, starts;
-    std::string chains, burn_in, thin;
+    std::string sampler, chains, walkers, burn_in, thin;
     bool log = false;
     bool quiet = false;
 };
 
 // By --format, else by the name of the file, else CSV. Throws UsageError.
 TableFormat format_of(const SampleOptions& options);
+// By --format netcdf, else by a file name that ends in .nc; of chains only.
+bool is_netcdf(const SampleOptions& options);
 
 // Samples, or a histogram, from a density that `montelux integrate --save-density` trained. Returns the exit
 // code.

@@ -27,7 +27,10 @@ struct Source {
 };
 
 Source read_source(const std::string& path) {
-    IntegrationTask task = make_task(options_of_notes(TrainedDensity::notes_of(path), path));
+    const auto notes = TrainedDensity::notes_of(path);
+    IntegrationTask task = make_task(options_of_notes(notes, path));
+    if (const std::string changed = changed_function(notes); !changed.empty())
+        std::fprintf(stderr, "montelux: warning: %s\n", changed.c_str());
     TrainedDensity density = TrainedDensity::load(path, task.domain);
     return {std::move(task), std::move(density)};
 }

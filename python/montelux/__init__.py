@@ -103,6 +103,7 @@ from ._picture import Picture
 from ._propagation import PropagationWarning
 from ._render import Progress, Render, View
 from ._result import History, LogResult, Result
+from ._sample import Draws, sample
 from ._scene import Scene, load, parse
 from ._uncertain import Uncertain, covariance, propagate
 
@@ -137,6 +138,7 @@ __all__ = [
     "DistantLight",
     "Distribution",
     "Domain",
+    "Draws",
     "EnvironmentLight",
     "EnvironmentSampler",
     "Error",
@@ -185,6 +187,7 @@ __all__ = [
     "Render",
     "Result",
     "RiemannSum",
+    "sample",
     "Sampler",
     "Samples",
     "Scene",

@@ -31,6 +31,7 @@ void bind_devices(nb::module_& m);
 void bind_trained(nb::module_& m); // trained densities and their samples
 void bind_integrate(nb::module_& m);
 void bind_metropolis(nb::module_& m);
+void bind_chains(nb::module_& m); // montelux.sample
 void bind_points(nb::module_& m);
 void bind_warps(nb::module_& m);
 void bind_tables(nb::module_& m); // discrete variables, tabulated densities

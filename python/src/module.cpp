@@ -43,6 +43,7 @@ NB_MODULE(_core, m) {
     bind_devices(m);
     bind_integrate(m);
     bind_metropolis(m);
+    bind_chains(m);
     bind_points(m);
     bind_warps(m);
     bind_tables(m);

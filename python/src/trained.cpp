@@ -1,4 +1,5 @@
 #include "python/src/bindings.h"
+#include "python/src/c_function.h"
 #include "python/src/numpy_bridge.h"
 #include "python/src/python_function.h"
 #include <cmath>
@@ -54,7 +55,18 @@ Integrand observables_of(const TrainedDensity& density, nb::object f, const char
     return integrand_of(function, components, false);
 }
 
-Integrand target_of(nb::object f) { return integrand_of(PythonFunction(std::move(f), "target"), 0, false); }
+// A function of Python, or in machine code in any form that integrate() takes, which the object keeps alive.
+struct GivenFunction {
+    nb::object owner;
+    Integrand integrand;
+};
+GivenFunction given_function(const TrainedDensity& density, nb::object f, const char* what) {
+    nb::object native =
+        nb::module_::import_("montelux._c_functions").attr("c_function")(f, density.domain().dimensions());
+    if (native.is_none()) return {nb::object(), integrand_of(PythonFunction(std::move(f), what), 0, false)};
+    Integrand integrand = integrand_of(native, 0, false);
+    return {std::move(native), std::move(integrand)};
+}
 
 // Numbers of an array.
 std::vector<double> vector_of(const nb::handle& given, const char* what) {
@@ -206,9 +218,9 @@ void bind_trained(nb::module_& m) {
                int threads, std::uint64_t max_draws, const std::string& non_finite) {
                 const UnweightingOptions options =
                     options_of(log, seed, threads, max_draws, throws(non_finite));
-                const Integrand target = target_of(std::move(f));
+                const GivenFunction target = given_function(density, std::move(f), "target");
                 nb::gil_scoped_release unlocked;
-                return weighted_samples(density, target, n, options);
+                return weighted_samples(density, target.integrand, n, options);
             },
             "f"_a, "n"_a, nb::kw_only(), "log"_a = false, "seed"_a = 0, "threads"_a = 1, "max_draws"_a = 0,
             "non_finite"_a = "skip",
@@ -222,9 +234,9 @@ void bind_trained(nb::module_& m) {
                 UnweightingOptions options = options_of(log, seed, threads, max_draws, throws(non_finite));
                 options.pilot = pilot;
                 options.overweight_share = overweight_share;
-                const Integrand target = target_of(std::move(f));
+                const GivenFunction target = given_function(density, std::move(f), "target");
                 nb::gil_scoped_release unlocked;
-                return unweighted_samples(density, target, n, options);
+                return unweighted_samples(density, target.integrand, n, options);
             },
             "f"_a, "n"_a, nb::kw_only(), "log"_a = false, "seed"_a = 0, "threads"_a = 1,
             "pilot"_a = UnweightingOptions().pilot,
@@ -239,9 +251,9 @@ void bind_trained(nb::module_& m) {
                bool log, std::uint64_t seed, int threads, const std::string& non_finite) {
                 const UnweightingOptions options = options_of(log, seed, threads, 0, throws(non_finite));
                 const Integrand h = observables_of(density, std::move(observables), "observables");
-                const Integrand target = target_of(std::move(f));
+                const GivenFunction target = given_function(density, std::move(f), "target");
                 nb::gil_scoped_release unlocked;
-                return expectations(density, target, h, draws, options);
+                return expectations(density, target.integrand, h, draws, options);
             },
             "f"_a, "observables"_a, "draws"_a = 100'000, nb::kw_only(), "log"_a = false, "seed"_a = 0,
             "threads"_a = 1, "non_finite"_a = "skip",
@@ -254,12 +266,11 @@ void bind_trained(nb::module_& m) {
                std::uint64_t draws, bool log, std::uint64_t seed, int threads,
                const std::string& non_finite) {
                 const UnweightingOptions options = options_of(log, seed, threads, 0, throws(non_finite));
-                const Integrand h = histogram_bins(
-                    integrand_of(PythonFunction(std::move(observable), "observable"), 0, false),
-                    vector_of(edges, "edges"));
-                const Integrand target = target_of(std::move(f));
+                const GivenFunction of_points = given_function(density, std::move(observable), "observable");
+                const Integrand h = histogram_bins(of_points.integrand, vector_of(edges, "edges"));
+                const GivenFunction target = given_function(density, std::move(f), "target");
                 nb::gil_scoped_release unlocked;
-                return expectations(density, target, h, draws, options);
+                return expectations(density, target.integrand, h, draws, options);
             },
             "f"_a, "observable"_a, "edges"_a, "draws"_a = 100'000, nb::kw_only(), "log"_a = false,
             "seed"_a = 0, "threads"_a = 1, "non_finite"_a = "skip",
@@ -268,8 +279,11 @@ void bind_trained(nb::module_& m) {
         .def("_bytes", &bytes_of)
         .def_static("_from_bytes", &from_bytes, "bytes"_a, "domain"_a.none() = nb::none())
         .def("__repr__", [](const TrainedDensity& d) {
-            return std::string("TrainedDensity: a ") + (d.unit().map() ? "map" : "mixture") + " on " +
-                   d.domain().description();
+            return std::string("TrainedDensity: ") +
+                   (d.unit().uniform() ? "uniform"
+                    : d.unit().map()   ? "a map"
+                                       : "a mixture") +
+                   " on " + d.domain().description();
         });
 }
 

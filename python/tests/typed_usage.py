@@ -105,7 +105,9 @@ def sampling() -> Array:
     discrete, alias = montelux.Discrete([1, 2, 3]), montelux.AliasTable([1, 2, 3])
     assert len(discrete) == len(alias) == 3 and weights.shape == (1, 2)
     chains: montelux.Chains = montelux.metropolis(lambda x: -float(x @ x), [0.0], samples=100, burn_in=50)
-    assert chains.mean.shape == (1,)
+    draws: montelux.Draws = montelux.sample(lambda x: -x * x, (-9, 9), 100, sampler="slice", names=["x"], burn_in=50)
+    posterior: dict[str, Array] = draws.posterior
+    assert chains.mean.shape == (1,) and posterior["x"].shape == draws.states.shape[:2] and draws.r_hat[0] > 0
     directions: Array = montelux.warp.cosine_hemisphere.sample(points)
     return directions
 

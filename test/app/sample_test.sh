@@ -36,6 +36,10 @@ rows = [list(map(float, l.split(","))) for l in open("points.csv").read().split(
 assert [x for r in rows for x in r] == list(struct.unpack("<300d", open("points.bin", "rb").read()))
 END
 fi
+# Adaptive trains nothing where uniform points suffice, and says so.
+"$montelux" integrate 1+x --over x=0:1 --method adaptive --relative-error 0.01 --save-density flat.mx >out 2>err ||
+    fail "flat: exit code $?"
+grep -q "the density in 'flat.mx' is uniform" err || fail "uniform density: $(cat out err)"
 # A trained density: weighted samples, whose weights add up to the integral 1/2; unweighted ones of density 2x.
 "$montelux" integrate 'x*exp(-50*(x-y)^2)' --over x=0:1 --over y=-1:2 --method adaptive --evaluations 50k \
     --save-density trained.mx --quiet >out || fail "save-density: exit code $?"
@@ -62,6 +66,67 @@ grep -q "log Z = -4999\.08" err || fail "logarithm: $(cat err)"
 # Chains.
 "$montelux" sample -x^2-y^2+x*y --log --over x,y=-inf:inf --n 5000 -o chains.npy 2>err || fail "chains: $(cat err)"
 [ $(($(wc -c <chains.npy) % 32)) -eq 0 ] && grep -q "x: mean .*R-hat 1\.00.*effective samples" err || fail "chains: $(cat err)"
+for sampler in ensemble slice; do
+    "$montelux" sample -x^2-y^2+x*y --log --over x,y=-inf:inf --n 2000 --sampler $sampler --threads 1 >one 2>err ||
+        fail "$sampler: $(cat err)"
+    grep -q "4 ensembles of 8 walkers, 2000 draws each" err || fail "$sampler: $(cat err)"
+    "$montelux" sample -x^2-y^2+x*y --log --over x,y=-inf:inf --n 2000 --sampler $sampler --quiet 2>err | cmp -s - one ||
+        fail "$sampler: threads change the draws"
+    # Variance 2/3.
+    awk -F, 'NR > 1 { s += $3; q += $3 * $3 } END { n = NR - 1; v = q / n - s * s / n / n
+        exit n != 64000 || v < 0.63 || v > 0.70 }' one || fail "$sampler: $(head -n 3 one)"
+done
+"$montelux" sample -x --log --over x=0:1 --n 1000 --sampler slice --chains 2 --walkers 5 --start 0.5 --quiet >out || fail "start"
+[ "$(wc -l <out)" -eq 10001 ] || fail "walkers: $(wc -l <out) lines"
+"$montelux" sample 'log(exp(-(x-20)^2)+exp(-(x+20)^2))' --log --over x=-30:30 --start=-20 --start 20 --start=-20 --start 20 \
+    >out 2>err
+grep -q "warning: the chains disagree: R-hat of 'x'" err || fail "chains that disagree: $(cat err)"
+# What is reported is of the draws that are written: thinned ones are nearly independent.
+"$montelux" sample -x^2/2 --log --over x=-inf:inf --n 1000 --thin 50 2>err >out
+awk '/effective samples/ { sub(".*effective samples ", ""); if ($1 < 3000 || $1 > 5000) exit 1 }' err ||
+    fail "thinned draws: $(cat err)"
+expect 2 "'slce' is not known (did you mean 'slice'?)" sample -x --log --over x=0:1 --sampler slce
+expect 2 "3 are too few for 2 variables; expected at least 4" sample -x --log --over x,y=0:1 --sampler slice --walkers 3
+expect 2 "chains of metropolis have none" sample -x --log --over x=0:1 --walkers 8
+expect 2 "expected --log with it" sample --set sobol --sampler slice
+expect 2 "3 starts were given for 4 chains" sample -x --log --over x=0:1 --start 0.1 --start 0.2 --start 0.3
+# netCDF, if its library is installed.
+expect 2 "such files hold chains" sample --set sobol --format netcdf
+expect 2 "such files hold chains" sample --set sobol -o points.nc
+expect 2 "has the name of a dimension" sample -draw --log --over draw=0:1 -o chains.nc
+MONTELUX_NETCDF_LIBRARY=/no/such/library.so "$montelux" sample -x --log --over x=0:1 -o chains.nc >out 2>err &&
+    fail "netCDF without its library"
+grep -q "netCDF cannot be loaded from '/no/such/library.so'" err || fail "netCDF: $(cat err)"
+if "$montelux" sample -x^2-y^2 --log --over x,y=-inf:inf --n 500 --sampler slice --quiet -o chains.nc 2>err; then
+    head -c 4 chains.nc | tail -c 3 | grep -q HDF || fail "netCDF: $(head -c 8 chains.nc | od -c)"
+    "$montelux" sample -x^2-y^2 --log --over x,y=-inf:inf --n 500 --sampler slice --quiet --format netcdf >piped.nc
+    cmp -s chains.nc piped.nc || fail "netCDF: standard output differs from a file"
+    "$montelux" sample -x^2-y^2 --log --over x,y=-inf:inf --n 500 --sampler slice --quiet -o chains.csv
+    read_back=0
+    python3 - 2>err <<'END' || read_back=$?
+import sys
+try:
+    import h5py
+except ImportError:
+    sys.exit(77)
+rows = [list(map(float, line.split(","))) for line in open("chains.csv").read().split()[1:]]
+with h5py.File("chains.nc") as file:
+    group = file["posterior"]
+    assert list(group["chain"]) == list(range(32)) and list(group["draw"]) == list(range(500))
+    assert group["x"].dims[0][0].name == "/posterior/chain" and group["x"].dims[1][0].name == "/posterior/draw"
+    for k, name in enumerate("xy"):
+        assert group[name].shape == (32, 500)
+        assert [float(v) for chain in group[name] for v in chain] == [row[2 + k] for row in rows]
+END
+    case $read_back in
+    0) ;;
+    77) echo "note: netCDF files were not read back, which needs h5py" ;;
+    *) fail "netCDF read back: $(cat err)" ;;
+    esac
+else
+    grep -q "libnetcdf was not found" err || fail "netCDF: $(cat err)"
+    echo "note: netCDF files were not written, which needs libnetcdf"
+fi
 "$montelux" sample -x --log --over x=0:inf --n 20000 --chains 2 --quiet --thin 5 >out || fail "chains: exit code $?"
 awk -F, 'NR > 1 { s += $3; if ($3 < 0) exit 1 } END { exit NR != 40001 || s / 40000 < 0.95 || s / 40000 > 1.05 }' out ||
     fail "chains do not follow exp(-x)"
@@ -79,6 +144,23 @@ if command -v cc >/dev/null; then
     awk -F, 'NR > 1 { v[NR] = $3 } END { exit v[2] < 0.24 || v[2] > 0.26 || v[3] < 0.74 || v[3] > 0.76 }' out ||
         fail "histogram with constants: $(cat out)"
     mkdir -p elsewhere && (cd elsewhere && "$montelux" sample --from ../c.mx --n 5 >/dev/null 2>&1) || fail "another folder"
+    "$montelux" sample --from c.mx --n 5 2>&1 >/dev/null | grep -q "has changed" && fail "a source that is as it was"
+    sed 's/p\[0\]/2 * p[0]/' f.c >twice.c && cp f.c first.c && cp twice.c f.c
+    "$montelux" sample --from c.mx --n 5 2>&1 >/dev/null | grep -q "f.c' has changed since the density was trained" ||
+        fail "a source that has changed"
+    cp first.c f.c
+    # Ctrl-C while the compiler runs leaves no temporary folder.
+    mkdir -p temporary
+    printf '#!/bin/sh\ntouch started\nsleep 1\nexec cc "$@"\n' >slow-cc && chmod +x slow-cc
+    rm -f started
+    TMPDIR=$PWD/temporary CC=./slow-cc "$montelux" integrate --source f.c --let k=4 --over x=0:1 >out 2>&1 &
+    job=$!
+    while [ ! -e started ]; do sleep 0.05; done
+    [ -n "$(ls temporary)" ] || fail "the compiler's folder is elsewhere"
+    kill -TERM $job
+    wait $job
+    [ $? -eq 130 ] || fail "a signal while compiling: exit code $?"
+    [ -z "$(ls temporary)" ] || fail "a signal while compiling leaves $(ls temporary)"
     cp f.c kept.c
     expect 2 "f.c" integrate --source f.c --let k=4 --over x=0:1 --method vegas --save-density f.c
     cmp -s f.c kept.c || fail "a density replaced its source"

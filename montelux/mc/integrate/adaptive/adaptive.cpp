@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "montelux/mc/integrate/adaptive/balanced_points.h"
 #include "montelux/mc/integrate/adaptive/density_check.h"
 #include "montelux/mc/integrate/adaptive/density_trainer.h"
 #include "montelux/mc/integrate/adaptive/mixture_estimate.h"
@@ -266,20 +265,9 @@ class AdaptiveEstimator final : public Estimator {
     StepOutcome sample(const StepRequest& request, const MixtureDensity& density, std::uint64_t stream,
                        MixtureEstimate& estimate) {
         const std::uint64_t points = estimate.points();
-        const std::uint64_t affordable = points + request.max_evaluations / replicates();
-        std::uint64_t goal = points == 0 ? first_sample() : next_balanced(points);
-        if (points > 0 && targeted(request)) {
-            // No further than the target is expected to need, but at most twice as far.
-            const double needed = static_cast<double>(points) * std::min(2.0, estimate.error_ratio(request));
-            while (static_cast<double>(next_balanced(goal)) <= needed) goal = next_balanced(goal);
-        } else if (points > 0) {
-            while (next_balanced(goal) <= std::min(2 * points, affordable)) goal = next_balanced(goal);
-        }
-        if (goal > affordable) goal = last_balanced(affordable);
-        const std::uint64_t balanced = density.balanced_points();
-        goal = goal / balanced * balanced;
-        if (goal <= points) return StepOutcome::exhausted;
-        const std::uint64_t end = std::min(goal, (points + step_points) / balanced * balanced);
+        const std::uint64_t end =
+            estimate.next_end(request, first_sample(), density.balanced_points(), step_points);
+        if (end <= points) return StepOutcome::exhausted;
         // Training gets the uniform points drawn since the exploration.
         const bool keep = phase_ == Phase::uniform && trainer_.rounds() == 0 && targeted(request) &&
                           (end - points) * replicates() <= most_kept;

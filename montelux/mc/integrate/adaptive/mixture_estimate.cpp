@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "montelux/mc/integrate/adaptive/balanced_points.h"
 #include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/math/error.h"
 
@@ -74,6 +75,22 @@ double MixtureEstimate::error_ratio(const StepRequest& request) const {
         if (error > 0) ratio = std::max(ratio, error / tolerance);
     }
     return ratio;
+}
+
+std::uint64_t MixtureEstimate::next_end(const StepRequest& request, std::uint64_t first,
+                                        std::uint64_t balanced, std::uint64_t most) const {
+    const std::uint64_t affordable =
+        points_ + request.max_evaluations / static_cast<std::uint64_t>(sums_.sums.replicates());
+    std::uint64_t goal = points_ == 0 ? first : next_balanced(points_);
+    if (points_ > 0) {
+        const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
+        const double wanted = targeted ? static_cast<double>(points_) * std::min(2.0, error_ratio(request))
+                                       : static_cast<double>(std::min(2 * points_, affordable));
+        while (static_cast<double>(next_balanced(goal)) <= wanted) goal = next_balanced(goal);
+    }
+    if (goal > affordable) goal = last_balanced(affordable);
+    goal = goal / balanced * balanced;
+    return std::min(goal, (points_ + most) / balanced * balanced);
 }
 
 double MixtureEstimate::expected_rest(const StepRequest& request) const {

@@ -32,6 +32,11 @@ class MixtureEstimate {
     // The largest quotient of error and tolerance over the components; the relative error itself where there
     // is no target. Above 1: not reached.
     double error_ratio(const StepRequest& request) const;
+    // Where the next step ends, in points of each replicate: `first`, then twice as far at most and no further than the
+    // target is expected to need; within the allowed evaluations, `most` points, and in multiples of `balanced`. Not
+    // above points(): nothing more can be done.
+    std::uint64_t next_end(const StepRequest& request, std::uint64_t first, std::uint64_t balanced,
+                           std::uint64_t most) const;
     // Expected further evaluations.
     double expected_rest(const StepRequest& request) const;
     // Fills values, errors and covariance; zero with infinite errors while there are no points.

@@ -9,7 +9,7 @@ namespace montelux {
 namespace {
 
 constexpr std::uint64_t too_many = ~std::uint64_t{0};
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double unknown_error = std::numeric_limits<double>::infinity();
 
 enum class Rule : std::uint8_t { riemann, midpoint, trapezoid };
 
@@ -69,7 +69,7 @@ class GridEstimator final : public Estimator {
         tally.value = value_;
         tally.value.resize(components());
         tally.standard_error = error_;
-        tally.standard_error.resize(components(), infinite);
+        tally.standard_error.resize(components(), unknown_error);
         tally.evaluations = completed_.evaluations + running_.evaluations;
         tally.non_finite = completed_.non_finite;
         tally.non_finite.merge(running_.non_finite);
@@ -207,7 +207,8 @@ class GridEstimator final : public Estimator {
         completed_.non_finite.merge(running_.non_finite);
         running_ = empty();
 
-        std::vector<double> value, error(components(), infinite), difference(components(), infinite);
+        std::vector<double> value, error(components(), unknown_error),
+            difference(components(), unknown_error);
         for (std::size_t c = 0; c < components(); ++c) {
             value.push_back(completed_.sums[c] * volume);
             if (levels_ == 0) continue;

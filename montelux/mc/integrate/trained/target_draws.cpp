@@ -15,7 +15,10 @@ namespace {
 
 constexpr std::uint64_t samples_tag = 0x73616d706c6573; // sequences of their own, apart from the training's
 constexpr std::uint64_t scale_draws = 1024;
-constexpr std::uint64_t most_blocks = 256; // drawn at a time
+constexpr std::uint64_t most_blocks = 256; // drawn at a time,
+constexpr std::uint64_t least_blocks = 4;
+constexpr std::uint64_t most_block_numbers = 1
+                                             << 24; // which keep at most so many numbers, unless they are few
 
 // log2 of the change of volume at the middle of the domain, roughly.
 double volume_exponent_of(const Domain& domain) {
@@ -66,6 +69,11 @@ void Target::draw(Stream stream, std::uint64_t first, std::uint64_t count, Targe
     }
 }
 
+std::uint64_t Target::block_numbers() const {
+    const auto of_draw = static_cast<std::uint64_t>(density_.domain().dimensions() + components() + 3);
+    return block * of_draw;
+}
+
 std::uint64_t Target::find_scale() {
     if (scale_.form() != IntegrandForm::logarithm) return 0;
     std::uint64_t made = 0;
@@ -97,11 +105,13 @@ bool draw_blocks(const Target& target, Target::Stream stream, const SamplingOpti
                  const std::function<bool(TargetDraws&, std::uint64_t, std::uint64_t)>& take) {
     const std::uint64_t limit =
         options.max_draws > 0 ? options.max_draws : std::numeric_limits<std::uint64_t>::max();
+    const std::uint64_t most =
+        std::clamp(most_block_numbers / target.block_numbers(), least_blocks, most_blocks);
     std::uint64_t done = 0;
     std::vector<TargetDraws> blocks;
     while (done < limit) {
         const std::uint64_t wanted =
-            std::min({std::max<std::uint64_t>(1, expected(done)), limit - done, most_blocks * Target::block});
+            std::min({std::max<std::uint64_t>(1, expected(done)), limit - done, most * Target::block});
         const std::uint64_t count = (wanted - 1) / Target::block + 1;
         blocks.resize(count);
         auto size_of = [&](std::uint64_t b) { return std::min(Target::block, wanted - b * Target::block); };

@@ -49,6 +49,8 @@ class Target {
     Target(const TrainedDensity& density, const Integrand& f, const SamplingOptions& options);
 
     int components() const { return evaluator_.components(); }
+    // Numbers that a block keeps.
+    std::uint64_t block_numbers() const;
     // Draws [first, first + count) of a sequence: each a function of seed, stream and index alone.
     void draw(Stream stream, std::uint64_t first, std::uint64_t count, TargetDraws& draws) const;
 

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "montelux/mc/integrate/domain_probe.h"
+#include "montelux/mc/integrate/whole_file.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
@@ -15,19 +17,6 @@ constexpr std::uint64_t density_version = 1;
 // More are no density that training makes.
 constexpr std::uint64_t most_dimensions = 1 << 16;
 constexpr double domain_rounding = 1e-9;
-
-// x and the change of volume at a few points: what tells two domains apart.
-std::vector<double> domain_probe(const Domain& domain) {
-    PointBuffer u(4, domain.uniforms()), x(4, domain.dimensions());
-    for (std::size_t i = 0; i < u.count(); ++i)
-        for (int d = 0; d < u.dimensions(); ++d)
-            u(i, d) = 0.1 + 0.2 * static_cast<double>(i) + 0.05 * (d % 3);
-    std::vector<double> values(u.count(), 1.0);
-    domain.map(u, x, values);
-    for (int d = 0; d < x.dimensions(); ++d)
-        values.insert(values.end(), x.coordinate(d).begin(), x.coordinate(d).end());
-    return values;
-}
 
 bool agree(const std::vector<double>& a, const std::vector<double>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
@@ -51,7 +40,7 @@ Domain load_domain(StateReader& state, const Domain* given) {
         for (std::size_t i = 0; i < ends.size(); i += 2) ranges.push_back({ends[i], ends[i + 1]});
         domain = Domain(std::move(ranges));
     }
-    if (!agree(domain_probe(*domain), values))
+    if (!agree(DomainProbe(*domain).numbers(), values))
         throw Error("holds a density on another domain (" + description + ") than the one given (" +
                     domain->description() + ")");
     return *domain;
@@ -98,7 +87,7 @@ std::vector<std::uint64_t> TrainedDensity::words() const {
     std::vector<double> ends;
     for (const Range& range : domain_.ranges()) ends.insert(ends.end(), {range.lower, range.upper});
     state.put(ends);
-    state.put(domain_probe(domain_));
+    state.put(DomainProbe(domain_).numbers());
     unit_->save(state);
     const auto all = state.words();
     return {all.begin(), all.end()};
@@ -135,33 +124,17 @@ void TrainedDensity::save(const std::string& path) const {
     write_state(path, density_file, state);
 }
 
-namespace {
-
-// What `read` makes of a file; its errors begin with the path.
-template <typename Read>
-auto from_file(const std::string& path, const Read& read) {
-    SavedState saved = read_state(path, density_file);
-    // The density before is another density.
-    if (!saved.newest_refused_because.empty()) throw Error(saved.newest_refused_because);
-    try {
-        return read(saved.reader);
-    } catch (const Error& error) {
-        throw Error(path, error.what());
-    }
-}
-
-} // namespace
-
 std::map<std::string, std::string> TrainedDensity::notes_of(const std::string& path) {
-    return from_file(path, load_notes);
+    return read_whole_file(path, density_file, load_notes);
 }
 
 TrainedDensity TrainedDensity::load(const std::string& path) {
-    return from_file(path, [](StateReader& state) { return from_words(state.rest()); });
+    return read_whole_file(path, density_file, [](StateReader& state) { return from_words(state.rest()); });
 }
 
 TrainedDensity TrainedDensity::load(const std::string& path, const Domain& domain) {
-    return from_file(path, [&](StateReader& state) { return from_words(state.rest(), &domain); });
+    return read_whole_file(path, density_file,
+                           [&](StateReader& state) { return from_words(state.rest(), &domain); });
 }
 
 } // namespace montelux

@@ -1,10 +1,8 @@
 #include "montelux/mc/integrate/trained/trained_method.h"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 
-#include "montelux/mc/integrate/adaptive/balanced_points.h"
 #include "montelux/mc/integrate/adaptive/mixture_estimate.h"
 #include "montelux/mc/integrate/vegas/vegas.h"
 #include "montelux/mc/math/error.h"
@@ -25,19 +23,10 @@ class FixedMixtureEstimator final : public Estimator {
 
     StepOutcome step(const StepRequest& request) override {
         const MixtureDensity& mixture = *density_->mixture();
-        const std::uint64_t points = estimate_.points(), balanced = mixture.balanced_points();
-        const std::uint64_t affordable =
-            points + request.max_evaluations / static_cast<std::uint64_t>(replicates_);
-        std::uint64_t goal = std::max(points == 0 ? first_mixture_points : next_balanced(points), balanced);
-        const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
-        const double wanted =
-            targeted ? static_cast<double>(points) * std::min(2.0, estimate_.error_ratio(request))
-                     : static_cast<double>(std::min(2 * points, affordable));
-        while (points > 0 && static_cast<double>(next_balanced(goal)) <= wanted) goal = next_balanced(goal);
-        if (goal > affordable) goal = last_balanced(affordable);
-        goal = goal / balanced * balanced;
-        if (goal <= points) return StepOutcome::exhausted;
-        const std::uint64_t end = std::min(goal, (points + most_mixture_step) / balanced * balanced);
+        const std::uint64_t points = estimate_.points();
+        const std::uint64_t end =
+            estimate_.next_end(request, first_mixture_points, mixture.balanced_points(), most_mixture_step);
+        if (end <= points) return StepOutcome::exhausted;
         const auto added = sample_mixture(problem_.evaluator, mixture, hash_key(problem_.seed, 3),
                                           replicates_, points, end, nullptr, request.cancel);
         if (!added) return StepOutcome::cancelled;

@@ -33,6 +33,9 @@ class UnitDensity {
     // The mixture; null for a map.
     const MixtureDensity* mixture() const { return std::get_if<MixtureDensity>(&density_); }
 
+    // The uniform density: Adaptive trains none where uniform points suffice.
+    bool uniform() const { return mixture() != nullptr && mixture()->channels() == 1; }
+
     // A draw for each point of v, uniform in dimensions() + 1 variables; the last one chooses among the parts
     // of a mixture.
     void draw(const PointBatch& v, UnitDraws& draws) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "montelux/mc/integrate/whole_file.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
@@ -319,14 +320,7 @@ void AdaptiveMap::save(const std::string& path) const {
 }
 
 AdaptiveMap AdaptiveMap::load(const std::string& path) {
-    SavedState saved = read_state(path, file_kind);
-    // The map before is another map.
-    if (!saved.newest_refused_because.empty()) throw Error(saved.newest_refused_because);
-    try {
-        return load(saved.reader);
-    } catch (const Error& error) {
-        throw Error(path, error.what());
-    }
+    return read_whole_file(path, file_kind, [](StateReader& state) { return load(state); });
 }
 
 } // namespace montelux

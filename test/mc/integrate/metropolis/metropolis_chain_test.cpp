@@ -15,14 +15,14 @@ using Point = std::span<const double>;
 using Values = std::span<double>;
 
 constexpr double minus_infinity = -std::numeric_limits<double>::infinity();
-const auto first_coordinate = [](Point x, Values v) { v[0] = x[0]; };
+const auto observe_first = [](Point x, Values v) { v[0] = x[0]; };
 double normal(Point x) {
     double square = 0;
     for (double v : x) square += v * v;
     return -0.5 * square;
 }
 // p = 5 exp(-5 x) on x > 0, up to a constant.
-double exponential(Point x) { return x[0] > 0 ? 3 - 5 * x[0] : minus_infinity; }
+double decaying(Point x) { return x[0] > 0 ? 3 - 5 * x[0] : minus_infinity; }
 
 // Counts of thinned states in cells of equal probability, by the distribution function of the target.
 template <typename Density, typename Propose, typename Cdf>
@@ -32,7 +32,7 @@ TestResult histogram_test(const Density& density, const Propose& propose, double
     std::vector<double> observed(cells, 0.0);
     std::mutex mutex;
     double total = 0;
-    metropolis(density, propose, {{start}}, 1, first_coordinate,
+    metropolis(density, propose, {{start}}, 1, observe_first,
                [&](int, std::uint64_t, Point x) {
                    const std::lock_guard lock(mutex);
                    ++observed[std::min(cells - 1, static_cast<std::size_t>(cdf(x[0]) * cells))];
@@ -44,11 +44,11 @@ TestResult histogram_test(const Density& density, const Propose& propose, double
 
 TEST(MetropolisChain, HistogramOfThinnedSamplesIsTheTarget) {
     const TestResult r = histogram_test(
-        exponential, GaussianWalk{}, 0.2, [](double x) { return -std::expm1(-5 * x); }, 60);
+        decaying, GaussianWalk{}, 0.2, [](double x) { return -std::expm1(-5 * x); }, 60);
     EXPECT_TRUE(r.passes(1e-6)) << r.description;
     // The test can see a density that is a little wrong.
     const TestResult wrong = histogram_test(
-        exponential, GaussianWalk{}, 0.2, [](double x) { return -std::expm1(-4 * x); }, 60);
+        decaying, GaussianWalk{}, 0.2, [](double x) { return -std::expm1(-4 * x); }, 60);
     EXPECT_FALSE(wrong.passes(1e-6)) << wrong.description;
 }
 
@@ -61,13 +61,13 @@ std::optional<double> multiply(PhiloxStream& numbers, Point x, Values y) {
 
 TEST(MetropolisChain, AsymmetricProposalNeedsAndGetsItsCorrection) {
     const auto cdf = [](double x) { return -std::expm1(-5 * x); };
-    const TestResult right = histogram_test(exponential, multiply, 0.2, cdf, 40);
+    const TestResult right = histogram_test(decaying, multiply, 0.2, cdf, 40);
     EXPECT_TRUE(right.passes(1e-6)) << right.description;
     const auto uncorrected = [](PhiloxStream& numbers, Point x, Values y) -> std::optional<double> {
         multiply(numbers, x, y);
         return 0;
     };
-    const TestResult wrong = histogram_test(exponential, uncorrected, 0.2, cdf, 40);
+    const TestResult wrong = histogram_test(decaying, uncorrected, 0.2, cdf, 40);
     EXPECT_FALSE(wrong.passes(1e-6)) << wrong.description;
 }
 
@@ -80,7 +80,7 @@ TEST(MetropolisChain, AutocorrelationTimeOfAnAutoregressiveChainIsExact) {
             y[0] = rho * x[0] + std::sqrt(1 - rho * rho) * z;
             return 0.5 * (y[0] * y[0] - x[0] * x[0]);
         };
-        const auto r = metropolis(normal, propose, {{0.0}}, 1, first_coordinate,
+        const auto r = metropolis(normal, propose, {{0.0}}, 1, observe_first,
                                   {.chains = 4, .samples = 150000, .seed = 5});
         EXPECT_EQ(r.acceptance_rate, 1);
         const double exact = (1 + rho) / (1 - rho);
@@ -131,7 +131,7 @@ TEST(MetropolisChain, WalkAdaptsToScalesThatDifferALot) {
     EXPECT_NEAR(r.acceptance_rate, 0.29, 0.1);
     // Two dimensions of one scale, but a walk that may not adapt.
     const auto fixed = metropolis(density, GaussianWalk{.step = 0.01, .adapt = false}, {{0.01, 10.0}}, 1,
-                                  first_coordinate, {.samples = 1000});
+                                  observe_first, {.samples = 1000});
     EXPECT_GT(fixed.acceptance_rate, 0.5);
 }
 
@@ -141,8 +141,7 @@ TEST(MetropolisChain, ChainsThatDisagreeGiveAWarning) {
         return std::log(std::exp(-0.5 * (x[0] - 20) * (x[0] - 20)) +
                         std::exp(-0.5 * (x[0] + 20) * (x[0] + 20)));
     };
-    const auto apart =
-        metropolis(two, GaussianWalk{}, {{-20.0}, {20.0}, {-20.0}, {20.0}}, 1, first_coordinate);
+    const auto apart = metropolis(two, GaussianWalk{}, {{-20.0}, {20.0}, {-20.0}, {20.0}}, 1, observe_first);
     EXPECT_GT(apart.observables[0].r_hat, 2);
     EXPECT_FALSE(apart.warnings.empty());
     // Chains that disagree do not claim to know.
@@ -152,7 +151,7 @@ TEST(MetropolisChain, ChainsThatDisagreeGiveAWarning) {
 TEST(MetropolisChain, BitsDoNotDependOnThreads) {
     auto run = [&](int threads) {
         return with_threads(threads, [&] {
-            return metropolis(normal, GaussianWalk{}, {{1.0, 1.0, 1.0}}, 1, first_coordinate,
+            return metropolis(normal, GaussianWalk{}, {{1.0, 1.0, 1.0}}, 1, observe_first,
                               {.chains = 6, .samples = 5000, .seed = 3});
         });
     };
@@ -166,20 +165,20 @@ TEST(MetropolisChain, DensityItselfServesAndWhatIsNotFiniteIsCounted) {
     const auto density = log_of([](Point x) {
         return x[0] < -3 ? std::numeric_limits<double>::quiet_NaN() : std::exp(-0.5 * x[0] * x[0]);
     });
-    const auto r = metropolis(density, GaussianWalk{}, {{0.0}}, 1, first_coordinate);
+    const auto r = metropolis(density, GaussianWalk{}, {{0.0}}, 1, observe_first);
     EXPECT_GT(r.non_finite, 0u);
     EXPECT_FALSE(r.warnings.empty());
     EXPECT_NEAR(r.observables[0].mean, 0, 0.1);
 }
 
 TEST(MetropolisChain, SenselessOptionsAreRefused) {
-    EXPECT_THROW(metropolis(exponential, GaussianWalk{}, {{-1.0}}, 1, first_coordinate),
+    EXPECT_THROW(metropolis(decaying, GaussianWalk{}, {{-1.0}}, 1, observe_first),
                  Error); // density zero
-    EXPECT_THROW(metropolis(normal, GaussianWalk{}, {{0.0}}, 1, first_coordinate, {.chains = 0}), Error);
-    EXPECT_THROW(metropolis(normal, GaussianWalk{}, {{0.0}, {1.0}}, 1, first_coordinate), Error);
-    EXPECT_THROW(metropolis(normal, GaussianWalk{}, {{}}, 1, first_coordinate), Error);
-    EXPECT_THROW(metropolis(normal, GaussianWalk{.scale = {1, 1}}, {{0.0}}, 1, first_coordinate), Error);
-    EXPECT_THROW(metropolis(normal, GaussianWalk{}, {{0.0}}, 1, first_coordinate, {.thin = 0}), Error);
+    EXPECT_THROW(metropolis(normal, GaussianWalk{}, {{0.0}}, 1, observe_first, {.chains = 0}), Error);
+    EXPECT_THROW(metropolis(normal, GaussianWalk{}, {{0.0}, {1.0}}, 1, observe_first), Error);
+    EXPECT_THROW(metropolis(normal, GaussianWalk{}, {{}}, 1, observe_first), Error);
+    EXPECT_THROW(metropolis(normal, GaussianWalk{.scale = {1, 1}}, {{0.0}}, 1, observe_first), Error);
+    EXPECT_THROW(metropolis(normal, GaussianWalk{}, {{0.0}}, 1, observe_first, {.thin = 0}), Error);
 }
 
 TEST(ChainTrace, BatchesKeepMeanAndVarianceInConstantMemory) {

@@ -42,6 +42,9 @@ double log_eggbox(std::span<const double> x) {
     return std::pow(2 + std::cos(x[0] / 2) * std::cos(x[1] / 2), 5) - 2 * std::log(10 * pi);
 }
 const Domain egg_box{{0, 10 * pi}, {0, 10 * pi}};
+double eggbox_evidence() {
+    return integrate_log(log_eggbox, egg_box, Cubature{}, {.relative_error = 1e-6}).log_value;
+}
 
 TEST(Posterior, EvidenceOfGaussianShells) {
     for (int n : {2, 5, 10}) {
@@ -56,22 +59,23 @@ TEST(Posterior, EvidenceOfGaussianShells) {
 }
 
 TEST(Posterior, EvidenceOfTheEggbox) {
-    const double exact = integrate_log(log_eggbox, egg_box, Cubature{}, {.relative_error = 1e-6}).log_value;
+    const double exact = eggbox_evidence();
     EXPECT_NEAR(exact, 235.856, 0.01); // published; the prior's density is 1 over the area
     const auto r = integrate_log(log_eggbox, egg_box, Adaptive{}, {.evaluations = 200'000});
     EXPECT_LT(std::abs(r.log_value - exact), 3 * r.log_error);
     EXPECT_LT(r.log_error, 0.01);
 }
 
-// Means of the coordinates over weighted and over unweighted samples of the posterior, with the errors that
-// the effective sample size gives.
-void expect_calibrated_means(const Integrand& log_f, const Domain& domain, std::uint64_t evaluations,
-                             const std::vector<double>& truth) {
-    std::vector<double> weighted, unweighted;
+// log Z with its error, and means of the coordinates over weighted and over unweighted samples of the posterior, with
+// the errors that the effective sample size gives.
+void expect_calibrated(const Integrand& log_f, const Domain& domain, std::uint64_t evaluations, double log_z,
+                       const std::vector<double>& truth) {
+    std::vector<double> evidence, weighted, unweighted;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
-        const auto density = integrate_log(log_f, domain, Adaptive{}, {.evaluations = evaluations},
-                                           {.seed = seed, .threads = 1})
-                                 .relative.density;
+        const auto r = integrate_log(log_f, domain, Adaptive{}, {.evaluations = evaluations},
+                                     {.seed = seed, .threads = 1});
+        evidence.push_back((r.log_value - log_z) / r.log_error);
+        const auto& density = r.relative.density;
         UnweightingOptions options;
         options.seed = seed;
         options.form = IntegrandForm::logarithm;
@@ -91,7 +95,7 @@ void expect_calibrated_means(const Integrand& log_f, const Domain& domain, std::
             }
         }
     }
-    for (const auto* z : {&weighted, &unweighted}) {
+    for (const auto* z : {&evidence, &weighted, &unweighted}) {
         const TestResult result = calibration_test(*z);
         EXPECT_TRUE(result.passes(significance)) << result.description;
         RunningMoments mean;
@@ -101,10 +105,17 @@ void expect_calibrated_means(const Integrand& log_f, const Domain& domain, std::
     }
 }
 
-TEST(PosteriorSlowTest, MeansOfShellsAndEggboxAreCalibrated) {
-    expect_calibrated_means(log_shells, shell_box(2), 60'000, {0, 0});
-    expect_calibrated_means(log_shells, shell_box(5), 300'000, {0, 0, 0, 0, 0});
-    expect_calibrated_means(log_eggbox, egg_box, 60'000, {5 * pi, 5 * pi});
+TEST(PosteriorSlowTest, EvidenceAndMeansOfShellsAndEggboxAreCalibrated) {
+    const auto shells = [](int n, std::uint64_t evaluations) {
+        expect_calibrated(log_shells, shell_box(n), evaluations, shell_evidence(n),
+                          std::vector<double>(static_cast<std::size_t>(n), 0.0));
+    };
+    shells(2, 60'000);
+    shells(5, 300'000);
+    expect_calibrated(log_eggbox, egg_box, 60'000, eggbox_evidence(), {5 * pi, 5 * pi});
+}
+TEST(PosteriorSlowTest, EvidenceAndMeansOfShellsInTenVariablesAreCalibrated) {
+    expect_calibrated(log_shells, shell_box(10), 1'000'000, shell_evidence(10), std::vector<double>(10, 0.0));
 }
 
 // A density that was trained on too little says so.

@@ -110,11 +110,11 @@ TEST(Samples, IntegralIsUnbiasedAndCalibrated) {
             options.seed = seed;
             options.threads = 1;
             options.pilot = 256;
-            const Estimate integral =
-                unweighted ? unweighted_samples(density, CutBells::value, 600, options).integral
-                           : weighted_samples(density, CutBells::value, 600, options).integral;
-            values.add(integral.value);
-            z.push_back(integral.z_score(truth));
+            const Estimate found = unweighted
+                                       ? unweighted_samples(density, CutBells::value, 600, options).integral
+                                       : weighted_samples(density, CutBells::value, 600, options).integral;
+            values.add(found.value);
+            z.push_back(found.z_score(truth));
         }
         const TestResult bias = unbiasedness_test(values, truth);
         EXPECT_TRUE(bias.passes(significance)) << unweighted << ": " << bias.description;
@@ -243,6 +243,31 @@ TEST(Samples, PeaksOffTheAxesAreUnweightedFarBetterThanByTheMapsOfVegas) {
         EXPECT_GT(mixture.value, 2 * map.value) << bench::line_name(line);
         RecordProperty(bench::line_name(line),
                        std::to_string(mixture.value) + " vs " + std::to_string(map.value));
+    }
+}
+
+// What lies in memory between two calls of `take` does not grow with the number of variables.
+TEST(Samples, BlocksOfManyVariablesAreFewer) {
+    for (int n : {2, 500}) {
+        const TrainedDensity density(std::make_shared<const UnitDensity>(MixtureDensity(n)),
+                                     Domain::unit_cube(n));
+        const SamplingOptions options;
+        const Target target(
+            density, [](std::span<const double>) { return 1.0; }, options);
+        std::uint64_t most = 0, before = 0;
+        draw_blocks(
+            target, Target::Stream::samples, options,
+            [&](std::uint64_t done) {
+                most = std::max(most, done - before);
+                before = done;
+                return std::uint64_t{1} << 40;
+            },
+            [&](TargetDraws&, std::uint64_t first, std::uint64_t) { return first < Target::block * 9; });
+        if (n == 500) {
+            EXPECT_EQ(most, Target::block * 8); // 2^24 numbers over 504 a draw
+        } else {
+            EXPECT_EQ(most, 0u); // all within the first round
+        }
     }
 }
 
