@@ -7,7 +7,9 @@
 namespace montelux {
 namespace {
 
+// Beyond a hundred, rare samples decide how large the ratio is.
 std::string times_text(double ratio) {
+    if (ratio > 100) return "over 100";
     char text[32];
     std::snprintf(text, sizeof text, ratio < 10 ? "%.1f" : "%.0f", ratio);
     return text;

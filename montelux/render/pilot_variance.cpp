@@ -7,7 +7,8 @@ namespace montelux {
 namespace {
 
 constexpr double significant = 3;     // errors of a difference
-constexpr double darkest_share = 0.1; // of the mean over all tiles
+// Of the mean over all tiles: relMSE of pictures of mean 0.2 with its usual epsilon of 0.01.
+constexpr double darkest_share = 0.5;
 
 // One picture in one tile.
 struct TileMoments {

@@ -38,7 +38,7 @@ enum class PilotMeasure : unsigned char {
 // of one sample. More light, not less: what is missed lowers a mean, and fireflies that raise it raise its error as well.
 //
 // Variances are divided by the squares of the same means for all: those of the picture with the smallest variance
-// relative to its mean, in each tile, and of no less than a tenth of its mean over all tiles. Means of others would
+// relative to its mean, in each tile, and of no less than half its mean over all tiles. Means of others would
 // follow their own fireflies.
 std::vector<double> relative_variances(std::span<const PilotPicture> pictures,
                                        std::span<const std::size_t> tile_ends, PilotMeasure measure);
