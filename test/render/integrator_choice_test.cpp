@@ -19,7 +19,7 @@
 namespace montelux::testing {
 namespace {
 
-int differing_pixels(const Film& a, const Film& b) {
+int count_differing(const Film& a, const Film& b) {
     int n = 0;
     for (std::size_t i = 0; i < a.pixels().size(); ++i) n += !same_pixel(a.pixels()[i], b.pixels()[i]);
     return n;
@@ -155,7 +155,7 @@ TEST(IntegratorChoice, PilotsTakeTheSamplesOfTheRender) {
         RenderState continued = pilot.take_state();
         EXPECT_GT(continued.report.samples, 0u);
         renderer.render(continued);
-        EXPECT_EQ(differing_pixels(continued.film, plain.film), 0) << int(c.kind) << int(c.sampler);
+        EXPECT_EQ(count_differing(continued.film, plain.film), 0) << int(c.kind) << int(c.sampler);
         EXPECT_EQ(continued.report.samples, plain.report.samples);
         EXPECT_EQ(continued.report.stop, plain.report.stop);
         EXPECT_EQ(continued.guide != nullptr, c.guiding == Guiding::on);
@@ -177,7 +177,7 @@ TEST(IntegratorChoice, DoesNotDependOnThreads) {
             EXPECT_EQ(now, efforts) << threads;
             EXPECT_EQ(d.integrator.method, IntegratorKind::bidirectional);
             if (!film) film = chosen->state.film;
-            EXPECT_EQ(differing_pixels(chosen->state.film, *film), 0);
+            EXPECT_EQ(count_differing(chosen->state.film, *film), 0);
         });
 }
 
