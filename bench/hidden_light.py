@@ -20,6 +20,7 @@ METHODS = {
     "path, guided auto": ["--guiding", "auto"],
     "bidirectional": ["--integrator", "bidirectional"],
     "metropolis": ["--integrator", "metropolis"],
+    "auto": ["--integrator", "auto"],
 }
 
 

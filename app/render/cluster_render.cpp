@@ -26,6 +26,7 @@ struct Opening {
     SceneDigest scene;
     SamplerSettings sampler;
     std::int32_t tile_size = 0;
+    IntegratorKind integrator = IntegratorKind::path; // the chosen one, if rank 0 chose
 };
 
 // Large tiles need the fewest messages; small ones keep many threads busy to the end of a round.
@@ -58,6 +59,7 @@ struct Prepared {
         if (digest_of(description.scene) != opening.scene)
             throw Error("the scene", "this rank has read another one than rank 0");
         description.sampler = opening.sampler;
+        description.integrator.method = opening.integrator;
         renderer.emplace(description, target);
     }
 };
@@ -95,7 +97,8 @@ RoundExecutor* SharedRender::begin(const SceneDescription& description, const Sa
     settings.tile_size = tile_size_for(description.film.crop, static_cast<double>(threads_) * job_->size());
     settings.patience_seconds = patience_seconds_;
     ByteWriter out;
-    out.put(Opening{digest_of(description.scene), sampler, settings.tile_size});
+    out.put(
+        Opening{digest_of(description.scene), sampler, settings.tile_size, description.integrator.method});
     out.put(target);
     out.put_bytes(files_.bundle().to_bytes());
     files_ = {};

@@ -116,6 +116,13 @@ std::optional<double> visible_error(const Image& image, const ToneOptions& tone,
     return visible_error_share(image, tone_curve_of(tone, colors, by_default));
 }
 
+// Without samples by one integrator there is no picture.
+int interrupted_pilot(bool is_frame, bool quiet) {
+    if (!is_frame && !quiet)
+        std::fprintf(stderr, "montelux: interrupted before the integrator was chosen: nothing is written\n");
+    return exit_interrupted;
+}
+
 bool denoiser_is_installed() {
     try {
         load_oidn();
@@ -137,11 +144,15 @@ void check_slice_option(const SamplerSettings& sampler, const RenderTarget& targ
 
 PictureResult render_picture(const PictureTask& task, const RenderOptions& options, SharedRender& shared,
                              const std::optional<Denoiser>& denoiser) {
-    const RenderTarget& target = task.target;
-    auto session = std::make_unique<RenderSession>(
-        task.description,
-        RenderSessionSettings{target, std::filesystem::path(options.scene).filename().string(),
-                              options.checkpoint, options.checkpoint_every, options.resume});
+    RenderSessionSettings settings{task.target, std::filesystem::path(options.scene).filename().string(),
+                                   options.checkpoint, options.checkpoint_every, options.resume};
+    if (!decide_integrator(*task.description, settings,
+                           {.target = [&](IntegratorKind kind) { return target_of(options, kind); },
+                            .cancel = &cancel_on_signals()}))
+        return {.exit_code = interrupted_pilot(task.is_frame, options.quiet)};
+    const RenderTarget target = settings.target;
+    if (settings.chosen && !options.quiet) print_choice(*settings.chosen);
+    auto session = std::make_unique<RenderSession>(task.description, std::move(settings));
     print_resume_notices(*session, options.quiet);
     const SamplerSettings sampler = session->sampler();
     check_slice_option(sampler, target);

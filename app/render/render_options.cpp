@@ -183,9 +183,8 @@ void declare(CLI::App& c, RenderOptions& o) {
         c, "--integrator", o.integrator, integrator_names,
         "How paths are found: from the camera, the default; from the camera and from lights, joined in all "
         "ways, for caustics and lamps in shades; from lights alone, which misses what mirrors and smooth "
-        "glass show the camera; or from the camera by Markov chains that stay near bright paths, for light "
-        "that "
-        "path tracing rarely finds: ");
+        "glass show the camera; from the camera by Markov chains that stay near bright paths, for light "
+        "that path tracing rarely finds; or as a short pilot chooses (auto): ");
     add_parsed(c, "--large-steps", "SHARE", o.large_steps, parse_share,
                "Of metropolis: share of the steps that start a path anew. Default: chosen by a pilot");
     add_choice(c, "--strategy", o.strategy, strategy_names, "How light is found: ");
@@ -277,7 +276,7 @@ void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.large_steps) d.integrator.large_step_probability = static_cast<float>(*o.large_steps);
     if (o.strategy)
         d.integrator.strategy = *o.strategy;
-    else if (o.integrator && traces_light(*o.integrator))
+    else if (o.integrator && (traces_light(*o.integrator) || o.integrator == IntegratorKind::automatic))
         d.integrator.strategy = Strategy::mis; // whatever the scene's integrator was
     if (o.heuristic) d.integrator.heuristic = *o.heuristic;
     if (o.light_sampling) d.integrator.light_sampling = *o.light_sampling;
@@ -336,7 +335,7 @@ RenderTarget target_of(const RenderOptions& o, IntegratorKind integrator) {
     target.quantile = o.target_quantile.value_or(0);
     target.time = o.time.value_or(0);
     // Light paths reach all pixels at once, and chains choose themselves where they take samples.
-    const bool may_adapt = integrator == IntegratorKind::path;
+    const bool may_adapt = integrator == IntegratorKind::path || integrator == IntegratorKind::automatic;
     target.adaptive = o.adaptive.value_or(o.target_error.has_value() && may_adapt);
     target.slice = o.slice;
     if (target.slice.count > 1 && (target.error > 0 || target.adaptive))

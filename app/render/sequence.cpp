@@ -201,8 +201,9 @@ int render_sequence(const RenderOptions& options, SharedRender& shared) {
             skipped.push_back(number);
             continue;
         }
+        const IntegratorKind integrator = scene->integrator.method; // each frame chooses for itself
         const PictureResult result =
-            render_picture({.description = std::move(scene),
+            render_picture({.description = scene,
                             .target = target,
                             .outputs = files,
                             .tone = tone,
@@ -211,6 +212,7 @@ int render_sequence(const RenderOptions& options, SharedRender& shared) {
                             .doing = "frame " + std::to_string(number) + " (" + std::to_string(done + 1) +
                                      " of " + std::to_string(numbers.size()) + ")"},
                            options, shared, denoiser);
+        scene->integrator.method = integrator;
         std::fflush(stdout);
         if (result.exit_code == exit_interrupted) break;
         if (result.exit_code != exit_done) exit_code = result.exit_code;

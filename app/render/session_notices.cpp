@@ -6,6 +6,7 @@
 #include <string>
 
 #include "montelux/render/render_warnings.h"
+#include "montelux/scene/setting_names.h"
 
 namespace montelux::app {
 
@@ -41,6 +42,15 @@ void print_statistics(const RenderReport& report, double load_seconds, const Ren
     std::printf("load               %.3f s\n", load_seconds);
     std::printf("build              %.3f s\n", renderer.build_seconds());
     std::printf("render             %.3f s, %.3f s of CPU\n", report.seconds, report.cpu_seconds);
+    if (const IntegratorChoice& choice = report.choice; choice.decided) {
+        std::printf("integrator         %s\n", choice_text(choice).c_str());
+        std::printf("pilots             %.3f s of CPU, of", choice.cpu_seconds);
+        for (const IntegratorChoice::Candidate& c : choice.candidates)
+            if (c.outcome == CandidateOutcome::measured)
+                std::printf(" %llu samples by %s", static_cast<unsigned long long>(c.samples),
+                            std::string(name_of(c.kind)).c_str());
+        std::printf("\n");
+    }
     std::printf("samples            %ssamples/s, %.3f us of CPU each\n",
                 count_text(samples / report.seconds).c_str(), 1e6 * report.cpu_seconds / samples);
     std::printf(
@@ -67,6 +77,16 @@ void print_statistics(const RenderReport& report, double load_seconds, const Ren
         std::printf("environment        %s\n", map.description().c_str());
     for (const PortalSampler& map : renderer.scene().light_tables.portals)
         std::printf("environment        %s\n", map.description().c_str());
+}
+
+void print_choice(const ChosenIntegrator& chosen) {
+    const IntegratorChoice& choice = chosen.state.report.choice;
+    std::string text = choice_text(choice);
+    if (choice.seconds_to_target > 0)
+        text += "; about " + duration_text(choice.seconds_to_target) + " to the target";
+    std::fprintf(stderr, "montelux: integrator %s\n", text.c_str());
+    for (const std::string& refusal : chosen.refusals)
+        std::fprintf(stderr, "montelux: not a candidate: %s\n", refusal.c_str());
 }
 
 void print_resume_notices(const RenderSession& session, bool quiet) {

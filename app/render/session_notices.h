@@ -8,6 +8,8 @@
 
 namespace montelux::app {
 
+// Which integrator was chosen, and why.
+void print_choice(const ChosenIntegrator& chosen);
 void print_resume_notices(const RenderSession& session, bool quiet);
 // Why a resumed render took no samples.
 void print_nothing_left(const RenderSession& session, const RenderReport& report);

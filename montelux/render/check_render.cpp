@@ -50,6 +50,10 @@ SamplerSettings sampler_of(const SceneDescription& description) {
 }
 
 void check_render(const SceneDescription& d, const SamplerSettings& sampler, const RenderTarget& target) {
+    if (d.integrator.method == IntegratorKind::automatic)
+        throw Error(
+            "integrator auto",
+            "it is chosen at the start of a whole picture; here choose path, bidirectional or metropolis");
     if (d.sampler.spp < 1) throw Error("sampler", "at least 1 sample per pixel is needed");
     check_slice(sampler, target);
     if (d.film.spectral && target.slice.count > 1)

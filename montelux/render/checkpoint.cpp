@@ -1,5 +1,6 @@
 #include "montelux/render/checkpoint.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <span>
@@ -13,13 +14,14 @@
 #include "montelux/mc/random/hash.h"
 #include "montelux/scene/light/light_groups.h"
 #include "montelux/scene/scene_names.h"
+#include "montelux/scene/setting_names.h"
 
 namespace montelux {
 namespace {
 
 constexpr std::string_view kind = "render";
 // Version of the layout below.
-constexpr std::uint32_t layout_version = 5;
+constexpr std::uint32_t layout_version = 6;
 static_assert(std::is_trivially_copyable_v<Pixel> && std::endian::native == std::endian::little);
 
 template <typename... T>
@@ -85,8 +87,9 @@ std::uint64_t hash_of_integrator(const IntegratorSettings& s) {
 // Another version of the program may take different samples.
 std::uint64_t version() { return hash_of(layout_version, hash_of_text(MONTELUX_VERSION)); }
 
-std::array<Fingerprint, 10> fingerprints(const SceneDigest& scene, const SceneDescription& d,
-                                         const RenderTarget& target) {
+constexpr std::size_t fingerprint_count = 10;
+std::array<Fingerprint, fingerprint_count> fingerprints(const SceneDigest& scene, const SceneDescription& d,
+                                                        const RenderTarget& target) {
     auto of = [](const ContentDigest& part) { return hash_of(part.high, part.low); };
     return {{{"the scene's geometry differs", of(scene.geometry)},
              {"the scene's materials differ", of(scene.materials)},
@@ -126,6 +129,22 @@ std::uint64_t hash_of_layers(const SceneDescription& d, const FilmLayers& layers
 
 std::size_t splat_bytes(const RenderState& state) {
     return state.splats ? state.splats->sums().size_bytes() + 2 * sizeof(std::uint64_t) : 0;
+}
+
+// An upper bound of the size for this film, generous so that a checkpoint of a larger film is refused by the right
+// message. Larger files are not read into memory.
+std::size_t most_bytes(const RenderState& state) {
+    const std::span<const Pixel> pixels = state.film.pixels();
+    // With splats, whatever the integrator is.
+    return 64 * (pixels.size_bytes() + pixels.size() * (sizeof(std::uint32_t) + 6 * sizeof(std::int64_t)) +
+                 state.film.buckets().size_bytes() + state.film.layer_sums().size_bytes()) +
+           1024;
+}
+
+void check_version(const std::filesystem::path& path, ByteReader& in) {
+    if (in.get<std::uint64_t>() != version())
+        throw Error(path.string(), "the checkpoint is of another version of Montelux, which this one cannot "
+                                   "resume; resume it with that version, or render anew to another file");
 }
 
 } // namespace
@@ -181,24 +200,30 @@ std::uint64_t picture_fingerprint(const SceneDescription& d, const RenderTarget&
     return hash;
 }
 
+IntegratorKind integrator_of_checkpoint(const std::filesystem::path& path, const SceneDescription& d) {
+    const Generation generation = read_generation(path, kind, most_bytes(RenderState(d)));
+    ByteReader in(generation.payload, "checkpoint");
+    check_version(path, in);
+    std::array<std::uint64_t, fingerprint_count> saved{};
+    in.get_all(std::span<std::uint64_t>(saved));
+    IntegratorSettings settings = d.integrator;
+    for (const auto& [name, method] : integrator_names) {
+        settings.method = method;
+        if (std::ranges::find(saved, hash_of_integrator(settings)) != saved.end()) return method;
+    }
+    throw Error(path.string(), "the checkpoint is of another render: the integrator's settings differ");
+}
+
 RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDescription& description,
                                const RenderTarget& target) {
     RestoredRender restored{RenderState(description), 0, {}};
     RenderState& state = restored.state;
     const std::span<Pixel> pixels = state.film.pixels();
     const bool may_be_guided = description.integrator.guiding != Guiding::off;
-    // An upper bound of the size for this film, generous so that a checkpoint of a larger film is refused by
-    // the right message. Larger files are not read into memory.
-    const std::size_t most =
-        64 * (pixels.size_bytes() + pixels.size() * sizeof(std::uint32_t) +
-              state.film.buckets().size_bytes() + state.film.layer_sums().size_bytes() + splat_bytes(state)) +
-        1024;
-    const Generation generation = read_generation(path, kind, most);
+    const Generation generation = read_generation(path, kind, most_bytes(state));
     restored.newest_refused_because = generation.newest_refused_because;
     ByteReader in(generation.payload, "checkpoint");
-    if (in.get<std::uint64_t>() != version())
-        throw Error(path.string(), "the checkpoint is of another version of Montelux, which this one cannot "
-                                   "resume; resume it with that version, or render anew to another file");
+    check_version(path, in);
     for (const Fingerprint& f : fingerprints(digest_of(description.scene), description, target))
         if (in.get<std::uint64_t>() != f.hash)
             throw Error(path.string(), std::string("the checkpoint is of another render: ") + f.difference);

@@ -30,6 +30,11 @@ struct RestoredRender {
 RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDescription& description,
                                const RenderTarget& target);
 
+// The integrator of the saved render, for a render whose integrator is automatic. Throws Error as load_checkpoint() does
+// for a file that is not usable.
+IntegratorKind integrator_of_checkpoint(const std::filesystem::path& path,
+                                        const SceneDescription& description);
+
 // Hash of everything that the values and replicates of samples depend on: equal for the slices of one render.
 std::uint64_t render_fingerprint(const Renderer& renderer);
 

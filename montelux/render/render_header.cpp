@@ -8,6 +8,7 @@
 #include "montelux/image/cryptomatte.h"
 #include "montelux/image/placement.h"
 #include "montelux/render/checkpoint.h"
+#include "montelux/render/integrator_choice.h"
 #include "montelux/render/layer_sampler.h"
 #include "montelux/render/sample_order.h"
 #include "montelux/scene/setting_names.h"
@@ -56,6 +57,7 @@ void add_render_header(Image& image, const std::string& scene_name, const Render
     a["interrupted"] = report.cancelled() ? 1 : 0;
     a["sampler"] = std::string(name_of(description.sampler.kind));
     a["integrator"] = std::string(name_of(description.integrator.method));
+    if (report.choice.decided) a["integratorChoice"] = choice_text(report.choice);
     if (description.integrator.method == IntegratorKind::metropolis) {
         const ChainStatistics& chains = report.chains;
         a["chainsPerReplicate"] = static_cast<int>(chains.chains);

@@ -13,6 +13,19 @@
 
 namespace montelux {
 
+bool decide_integrator(SceneDescription& description, RenderSessionSettings& settings,
+                       const IntegratorChoiceSettings& choice) {
+    if (description.integrator.method != IntegratorKind::automatic) return true;
+    if (settings.resume && generation_exists(settings.checkpoint)) {
+        description.integrator.method = integrator_of_checkpoint(settings.checkpoint, description);
+    } else {
+        settings.chosen = choose_integrator(description, choice);
+        if (!settings.chosen) return false;
+    }
+    settings.target = choice.target(description.integrator.method);
+    return true;
+}
+
 RenderSession::RenderSession(std::shared_ptr<const SceneDescription> description,
                              RenderSessionSettings settings)
     : description_(std::move(description)), settings_(std::move(settings)) {
@@ -28,9 +41,13 @@ RenderSession::RenderSession(std::shared_ptr<const SceneDescription> description
         replicate_points_ = restored.replicate_points;
         state_.emplace(std::move(restored.state));
         samples_before_ = state_->film.error().mean_samples;
+    } else if (settings_.chosen) {
+        state_.emplace(std::move(settings_.chosen->state));
+        settings_.prepared = std::move(settings_.chosen->prepared);
     } else {
         state_.emplace(*description_);
     }
+    settings_.chosen.reset(); // later sessions with these settings render anew
 }
 
 SamplerSettings RenderSession::sampler() const {

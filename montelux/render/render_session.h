@@ -10,6 +10,7 @@
 
 #include "montelux/film/film_error.h"
 #include "montelux/image/image.h"
+#include "montelux/render/integrator_choice.h"
 #include "montelux/render/live_film.h"
 #include "montelux/render/render_control.h"
 #include "montelux/render/renderer.h"
@@ -24,7 +25,14 @@ struct RenderSessionSettings {
     bool resume = false;                // from the checkpoint, if it exists
     // Of an earlier session with the same scene (Renderer); null: built by this one.
     std::shared_ptr<const PreparedScene> prepared{};
+    // Of a description whose integrator was chosen by a pilot: the render begins with its samples.
+    std::shared_ptr<ChosenIntegrator> chosen{};
 };
+
+// Sets the integrator of a description for which it is automatic, and the target of the settings: that of the
+// checkpoint to be resumed, or one that a pilot chooses. Returns false, and sets nothing, if it was cancelled.
+bool decide_integrator(SceneDescription& description, RenderSessionSettings& settings,
+                       const IntegratorChoiceSettings& choice);
 
 // The picture of a render at some moment.
 struct RenderSnapshot {

@@ -11,6 +11,7 @@
 #include "montelux/film/splat_film.h"
 #include "montelux/render/bad_sample_report.h"
 #include "montelux/render/guide_summary.h"
+#include "montelux/render/integrator_summary.h"
 #include "montelux/render/metropolis/chain_statistics.h"
 #include "montelux/transport/guiding/guiding_field.h"
 #include "montelux/transport/ray_tracer.h"
@@ -35,7 +36,8 @@ struct RenderReport {
     std::uint64_t clamped_samples = 0; // by the film's limit
     ChainStatistics chains;            // of a Metropolis render
     RenderStop stop = RenderStop::samples;
-    GuideSummary guide; // of a render that may be guided
+    GuideSummary guide;      // of a render that may be guided
+    IntegratorChoice choice; // of a render whose integrator was chosen by a pilot
 
     bool cancelled() const { return stop == RenderStop::cancelled; }
 };

@@ -20,11 +20,12 @@ inline constexpr SettingNames<SamplerKind, 6> sampler_names{
      {"hammersley", SamplerKind::hammersley},
      {"sobol", SamplerKind::sobol},
      {"sobol-blue-noise", SamplerKind::sobol_blue_noise}}};
-inline constexpr SettingNames<IntegratorKind, 4> integrator_names{
+inline constexpr SettingNames<IntegratorKind, 5> integrator_names{
     {{"path", IntegratorKind::path},
      {"bidirectional", IntegratorKind::bidirectional},
      {"light-tracing", IntegratorKind::light_tracing},
-     {"metropolis", IntegratorKind::metropolis}}};
+     {"metropolis", IntegratorKind::metropolis},
+     {"auto", IntegratorKind::automatic}}};
 inline constexpr SettingNames<Strategy, 6> strategy_names{{{"uniform", Strategy::uniform},
                                                            {"bsdf", Strategy::bsdf},
                                                            {"light", Strategy::light},

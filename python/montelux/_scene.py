@@ -119,7 +119,7 @@ class Scene(_core.SceneBase):
             target_error=float(target_error or 0),
             target_quantile=float(target_quantile or 0),
             time=float(time or 0),
-            adaptive=target_error is not None and self.integrator.method == "path" if adaptive is None else bool(adaptive),
+            adaptive=None if adaptive is None else bool(adaptive),
             threads=int(threads),
             checkpoint="" if checkpoint is None else os.fspath(checkpoint),
             checkpoint_every=float(checkpoint_every),

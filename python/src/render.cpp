@@ -29,7 +29,7 @@ void check_scene(const SceneHolder& scene) {
 
 std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::uint32_t> spp,
                                  std::optional<std::uint64_t> seed, double target_error, double quantile,
-                                 double time, bool adaptive, int threads,
+                                 double time, std::optional<bool> adaptive, int threads,
                                  const std::filesystem::path& checkpoint, double checkpoint_every,
                                  bool resume, std::pair<std::uint32_t, std::uint32_t> slice, bool denoise,
                                  bool view) {
@@ -48,13 +48,27 @@ std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::ui
     settings.target.error = target_error;
     settings.target.quantile = quantile;
     settings.target.time = time;
-    settings.target.adaptive = adaptive;
+    const auto adapts = [=](IntegratorKind kind) {
+        return adaptive.value_or(target_error > 0 && kind == IntegratorKind::path);
+    };
+    settings.target.adaptive = adapts(description->integrator.method);
     settings.target.slice = {slice.first - 1, slice.second};
     settings.scene_name = scene.holder->name;
     settings.checkpoint = checkpoint;
     settings.checkpoint_every = checkpoint_every;
     settings.resume = resume;
     nb::gil_scoped_release unlocked;
+    if (description->integrator.method == IntegratorKind::automatic) {
+        auto own = std::make_shared<SceneDescription>(*description);
+        const RenderTarget target = settings.target;
+        const auto target_of = [&](IntegratorKind kind) {
+            RenderTarget t = target;
+            t.adaptive = adapts(kind);
+            return t;
+        };
+        with_threads(threads, [&] { decide_integrator(*own, settings, {.target = target_of}); });
+        description = std::move(own);
+    }
     return std::make_unique<RenderJob>(std::move(description), std::move(settings), threads, denoise, view);
 }
 

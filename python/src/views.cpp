@@ -25,7 +25,7 @@ constexpr Names<LightSampling, 3> light_samplings{"light_sampling", light_sampli
 constexpr Names<MicrofacetScattering, 2> microfacet_scatterings{"microfacet_scattering",
                                                                 microfacet_scattering_names};
 constexpr Names<ShadingTerminator, 2> shading_terminators{"shading_terminator", shading_terminator_names};
-constexpr Names<IntegratorKind, 4> integrator_kinds{"method", integrator_names};
+constexpr Names<IntegratorKind, 5> integrator_kinds{"method", integrator_names};
 constexpr Names<Strategy, 6> strategies{"strategy", strategy_names};
 constexpr Names<Heuristic, 2> heuristics{"heuristic", heuristic_names};
 constexpr Names<EnvironmentSampling, 4> environment_samplings{"environment_sampling",
@@ -289,8 +289,8 @@ void bind_views(nb::module_& m) {
     choice(
         integrator, "method", &IntegratorSettings::method, integrator_kinds,
         "How paths are found: from the camera ('path'), from the camera and from lights "
-        "('bidirectional'), from lights alone ('light-tracing'), or by Markov chains that stay near bright "
-        "paths ('metropolis').");
+        "('bidirectional'), from lights alone ('light-tracing'), by Markov chains that stay near bright "
+        "paths ('metropolis'), or as a pilot chooses ('auto').");
     number(
         integrator, "large_step_probability", &IntegratorSettings::large_step_probability,
         [](double x) { return x >= 0 && x <= 1; }, "a number from 0 to 1",

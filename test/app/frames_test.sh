@@ -74,6 +74,10 @@ expect 0 "RMSE" compare back.pfm turn.0003.pfm
 sed -n 's/.*RMSE \([0-9.e-]*\),.*/\1/p' out | head -n 1 | awk '{ exit !($1 < 0.01) }' || fail "half a turn: $(cat out)"
 [ -e turn.0005.pfm ] && fail "a turntable of 4 frames has a fifth"
 expect 0 "skipped: frames 2-3" render tent.obj $small --turntable 4 --frames 2-3 -o turn.pfm
+# Each frame chooses its integrator, and is found again.
+expect 0 "montelux: integrator path: " render tent.obj --resolution 32x24 --spp 8 --turntable 2 --integrator auto -o chosen.exr
+[ "$(grep -c "montelux: integrator path: " out)" -eq 2 ] || fail "not both frames chose an integrator: $(cat out)"
+expect 0 "skipped: frames 1-2" render tent.obj --resolution 32x24 --spp 8 --turntable 2 --integrator auto -o chosen.exr
 expect 0 "target reached" render tent.obj --resolution 32x24 --max-spp 256 --target-error 50% --turntable 1 -o turn.exr
 expect 3 "samples are used up before the target was reached" render tent.obj --resolution 32x24 --max-spp 2 --target-error 0.01% --turntable 2 -o never.exr
 [ -e never.0002.exr ] || fail "a frame that missed its target ended the sequence"

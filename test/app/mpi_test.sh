@@ -41,7 +41,7 @@ done
 
 # The other integrators, and a guide.
 for options in '--spp 16 --integrator bidirectional' '--spp 5 --integrator light-tracing --sampler independent' \
-    '--spp 64 --integrator metropolis' '--spp 64 --guiding on'; do
+    '--spp 64 --integrator metropolis' '--spp 64 --guiding on' '--spp 300 --integrator auto'; do
     "$montelux" render ball.pbrt $options --quiet --threads 7 -o one.exr 2>messages || fail "one process: $(cat messages)"
     ranks 3 render ball.pbrt $options --threads 1 -o many.exr
     prints_once "$options on 3 ranks" 0 'many.exr: 70 x 50 pixels'

@@ -29,7 +29,7 @@ expect 2 "--rank-timeout: '1' was given; a time of at least 2s" render ok.pbrt -
 for option in --sampler --integrator --strategy --heuristic --light-sampling --microfacet-scattering --shading-terminator; do
     expect 2 "$option: 'foo' was given; one of" render ok.pbrt $option foo
 done
-expect 2 "path, bidirectional, light-tracing, metropolis is expected" render ok.pbrt --integrator bdpt
+expect 2 "path, bidirectional, light-tracing, metropolis, auto is expected" render ok.pbrt --integrator bdpt
 expect 1 "leave out --adaptive or choose 'path'" render ok.pbrt --integrator bidirectional --adaptive on
 expect 1 "cannot be replayed" render ok.pbrt --integrator bidirectional --debug-sample 0,0,0
 expect 2 "mis, mis-bsdf, mis-light is expected" render ok.pbrt --strategy mis_bsdf
@@ -75,6 +75,32 @@ for change in "--max-depth 1" "--spp 9" "--sampler halton" "--strategy bsdf" "--
     cmp -s one.pfm two.pfm && fail "$change changes nothing"
 done
 [ -s out ] && fail "--quiet printed something: $(cat out)"
+
+# An integrator chosen by a pilot: the picture of that integrator, and what it says.
+scene shaded "LightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [0 0 2]
+AttributeBegin Material \"dielectric\" Translate 0 0 2 Shape \"sphere\" \"float radius\" 0.3 AttributeEnd
+Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-5 -5 -1  5 -5 -1  -5 5 -1  5 5 -1]" 64 48
+for case in "ok path --spp 512" "shaded bidirectional --spp 512" "shaded bidirectional --target-error 15%"; do
+    set -- $case
+    scene=$1.pbrt kind=$2
+    shift 2
+    expect 0 "montelux: integrator $kind: to the same error " render $scene "$@" --integrator auto -o chosen.exr -o chosen.pfm
+    expect 0 "\"integratorChoice\" = \"$kind: to the same error " info chosen.exr
+    expect 0 "\"integrator\" = \"$kind\"" info chosen.exr
+    "$montelux" render $scene "$@" --integrator $kind --quiet -o by_name.pfm
+    cmp -s by_name.pfm chosen.pfm || fail "$case: the picture is not that of --integrator $kind"
+done
+expect 0 "about " render shaded.pbrt --target-error 15% --integrator auto -o chosen.pfm
+expect 0 "the render is too short to try bidirectional and metropolis" render ok.pbrt --spp 4 --integrator auto -o chosen.pfm
+expect 0 "not a candidate: integrator bidirectional: its light paths reach all pixels" render ok.pbrt --spp 64 \
+    --adaptive on --integrator auto -o chosen.pfm
+expect 1 "all slices of a picture must be rendered by the same integrator" render ok.pbrt --spp 64 --slice 1/2 \
+    --integrator auto -o chosen.exr
+expect 1 "choose path, bidirectional or metropolis" render ok.pbrt --integrator auto --debug-sample 0,0,0
+"$montelux" render shaded.pbrt --spp 256 --integrator auto --quiet --checkpoint chosen.ckpt -o part.pfm
+expect 0 "272 samples per pixel" render shaded.pbrt --spp 272 --integrator auto --checkpoint chosen.ckpt --resume -o resumed.exr
+expect 0 '"integratorChoice" = "bidirectional: ' info resumed.exr
+expect 0 '"integrator" = "bidirectional"' info resumed.exr
 expect 0 "inside Embree" render ok.pbrt --stats
 
 # Options of surfaces change what they are for, and by default nothing.

@@ -249,6 +249,7 @@ void SceneWriter::integrator() {
             warn("integrator", "pbrt has no setting for it; add " + text + " where the scene is rendered");
     };
     option(s.method != IntegratorKind::metropolis || by_chains, "--integrator metropolis");
+    option(s.method != IntegratorKind::automatic, "--integrator auto");
     if (traces) {
         option(s.light_sampling == standard.light_sampling, "--light-sampling");
     } else if (by_chains) {
