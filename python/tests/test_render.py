@@ -318,3 +318,16 @@ def test_a_viewed_render_is_stopped(scene):
     render = scene.render(spp=1 << 24, view=True)
     assert next(iter(render)).mean.max() > 0
     assert render.stop().stopped_by == "cancelled"
+
+
+def test_an_integrator_is_chosen_by_a_pilot(scene):
+    scene.film.resolution = 64, 48
+    scene.sampler.spp = 256
+    scene.integrator.method = "auto"
+    chosen = scene.render()
+    assert scene.integrator.method == "auto"
+    scene.integrator.method = "path"
+    assert np.array_equal(chosen.mean, scene.render().mean)
+    scene.integrator.method = "auto"
+    with pytest.raises(montelux.Error, match="all slices of a picture must be rendered by the same integrator"):
+        scene.render(slice=(1, 2))
