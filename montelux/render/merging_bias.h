@@ -10,10 +10,11 @@
 namespace montelux {
 
 // Merging by discs of radius r replaces the irradiance E at a point by its mean over the disc. Where E is smooth that is
-// wrong by b r^2 + O(r^4) (Silverman 1986, "Density Estimation", section 4.3; Hachisuka, Jarosz, Jensen 2010, "A Progressive Error Estimation Framework
-// for Photon Density Estimation"). A disc of half the area has half the bias, so twice the difference of the two
-// estimates, from the same light paths with the same weights, estimates the bias (Richardson's extrapolation). At edges
-// of shadows and of surfaces the bias falls more slowly, as r does at worst, and twice the difference is 0.6 of it.
+// wrong by b r^2 + O(r^4) (Silverman 1986, "Density Estimation", section 4.3; Hachisuka, Jarosz, Jensen 2010, "A
+// Progressive Error Estimation Framework for Photon Density Estimation"). A disc of half the area has half the bias, so
+// twice the difference of the two estimates, from the same light paths with the same weights, estimates the bias
+// (Richardson's extrapolation). At edges of shadows and of surfaces the bias falls more slowly, as r does at worst, and
+// twice the difference is 0.6 of it.
 //
 // The differences are as noisy as the picture: they are averaged over cells of pixels, and their own noise, known from
 // their spread over the passes, is subtracted from their squares.

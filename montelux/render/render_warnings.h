@@ -13,7 +13,8 @@ std::string bad_sample_warning(const BadSampleReport& bad, std::uint64_t seed);
 // Of a Metropolis render whose chains do not agree, or found no light; empty otherwise.
 std::string chain_warning(const ChainStatistics& chains);
 
-// Of a render whose paths merged: that its picture is consistent, not unbiased, and how large the bias is; empty of others.
+// Of a render whose paths merged: that its picture is consistent, not unbiased, and how large the bias is; empty for
+// others.
 std::string merging_notice(const RenderSnapshot& result, const RenderTarget& target);
 // That its light paths did not fit into the memory; empty if they did.
 std::string merging_memory_warning(const MergingSummary& merging);

@@ -51,8 +51,8 @@ struct LightPaths {
     }
 };
 
-// A hash grid of cells a little wider than the balls in which vertices merge. Vertices are visited in an order that depends on the light paths
-// alone.
+// A hash grid of cells a little wider than the balls in which vertices merge. Vertices are visited in an order that
+// depends on the light paths alone.
 class LightMap {
   public:
     // `paths`: how many there are, with those that found nothing. The radius must be positive.
